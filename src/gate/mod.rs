@@ -1,0 +1,3 @@
+//! Judges metrics against limits.
+//!
+//! Invariant: judges, does not compute.

@@ -1,0 +1,3 @@
+//! Formats results: JSON, JUnit, SVG, CSV, text.
+//!
+//! Invariant: formats, does not compute.

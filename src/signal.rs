@@ -1,0 +1,111 @@
+//! Plain records handed from stage to stage. No behaviour beyond reading them.
+//!
+//! Invariant: no stage knowledge; a stage passes these to the right and never imports another.
+
+/// Motion of the gyro's input axis over one output sample interval.
+///
+/// A cubic in normalised time `u`, 0 at the start of the interval and 1 at its end:
+/// `rate(u) = c0 + c1 u + c2 u^2 + c3 u^3`, inertial rate about the input axis (table motion plus
+/// the projection of Earth rate), rad/s. For a sine of angular frequency w the cubic through the
+/// end rates and slopes errs by at most `(w T)^4 / 384` of the amplitude: 2e-10 at 10 Hz, 4 kHz.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionSegment {
+    /// Polynomial coefficients `c0..c3`, rad/s.
+    pub rate_rad_per_s: [f64; 4],
+}
+
+impl MotionSegment {
+    /// A segment of constant rate.
+    #[must_use]
+    pub fn constant(rate_rad_per_s: f64) -> Self {
+        Self {
+            rate_rad_per_s: [rate_rad_per_s, 0.0, 0.0, 0.0],
+        }
+    }
+
+    /// The cubic with given rates (rad/s) and slopes (rad/s per interval) at both ends.
+    #[must_use]
+    pub fn hermite(start: f64, start_slope: f64, end: f64, end_slope: f64) -> Self {
+        let rise = end - start;
+        Self {
+            rate_rad_per_s: [
+                start,
+                start_slope,
+                3.0 * rise - 2.0 * start_slope - end_slope,
+                start_slope + end_slope - 2.0 * rise,
+            ],
+        }
+    }
+
+    /// Rate at normalised time `u` in `[0, 1]`, rad/s.
+    #[inline]
+    #[must_use]
+    pub fn rate_at(&self, u: f64) -> f64 {
+        let [c0, c1, c2, c3] = self.rate_rad_per_s;
+        ((c3 * u + c2) * u + c1) * u + c0
+    }
+}
+
+/// One channel of uniformly spaced rate words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RateSeries {
+    /// Rate words, deg/h; index 0 is the first sample of the warm-up.
+    pub rate_deg_per_h: Vec<f64>,
+    /// Sample period, s.
+    pub sample_period_s: f64,
+}
+
+/// A filter as its outputs are judged: which input samples it weighs and what it aims at.
+///
+/// Ages count whole samples before the instant a value is stamped; the output register is
+/// included, so that the newest sample a next-sample filter can use has age 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilterShape {
+    /// Number of adaptive weights, p.
+    pub taps: usize,
+    /// Age in samples of the newest weighed input when the output is stamped, l.
+    pub newest_age_samples: usize,
+    /// Desired signal as weights on input samples of ages 0, 1, ... before the register
+    /// (`[1]` = the current sample, `[0.5, 0.5]` = mean of the newest two).
+    pub desired_weights: Vec<f64>,
+    /// Samples the output register adds, 0 or 1; already part of `newest_age_samples`.
+    pub register_samples: usize,
+}
+
+/// What a gyro is, in closed form, as the report prints it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GyroFacts {
+    /// Sagnac scale factor `2 pi L D / (lambda c)`, s (rad per rad/s).
+    pub scale_factor_s: f64,
+    /// Coil transit time, us.
+    pub transit_time_us: f64,
+    /// Proper (eigen) frequency `1 / 2 tau`, kHz.
+    pub proper_frequency_khz: f64,
+    /// Rate words per second, Hz.
+    pub output_rate_hz: f64,
+    /// Integrator gain g of the loop.
+    pub loop_gain: f64,
+    /// Closed-loop -3 dB bandwidth, Hz.
+    pub loop_bandwidth_hz: f64,
+    /// Delay of the rate word behind the motion at low frequency, ms.
+    pub delay_ms: f64,
+    /// Angle random walk by source (`shot`, `thermal`, `amplifier`, `rin`, `adc`, `total`),
+    /// deg/sqrt(h).
+    pub angle_random_walk_budget_deg_per_sqrt_h: Vec<(&'static str, f64)>,
+}
+
+/// The samples of one run, borrowed: what the plots draw and the sample files hold.
+///
+/// All slices have the same length; index 0 is the first sample of the warm-up and is stamped one
+/// sample period after the start.
+#[derive(Clone, Debug)]
+pub struct RunSignals<'a> {
+    /// Sample period, s.
+    pub sample_period_s: f64,
+    /// Index of the first sample that metrics use.
+    pub first_measured: usize,
+    /// Inertial rate of the input axis at each stamp, deg/h.
+    pub truth_deg_per_h: &'a [f64],
+    /// Channels in order, `raw` first: name and rate words, deg/h.
+    pub channels: Vec<(&'a str, &'a [f64])>,
+}
