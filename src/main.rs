@@ -1,3 +1,7 @@
 //! Arguments to the command line, and its exit code to the shell.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    fogbench::cli::main()
+}

@@ -1,1 +1,43 @@
 //! The command line: one file per command, exit codes, and the only code that prints.
+//!
+//! Data goes to stdout, talk and progress to stderr. A progress bar is drawn on a terminal only.
+
+mod arguments;
+mod check;
+mod exit;
+mod expand;
+mod list;
+mod output;
+mod run;
+mod schema;
+mod select;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+use exit::Exit;
+
+/// Runs the program: parses the arguments, dispatches the command and returns the exit code.
+#[must_use]
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return exit::usage(&error),
+    };
+    let outcome = std::panic::catch_unwind(|| dispatch(&arguments));
+    // The panic hook has already printed what broke.
+    outcome.unwrap_or(Exit::Internal).code()
+}
+
+fn dispatch(arguments: &Arguments) -> Exit {
+    let result = match &arguments.command {
+        Command::Run(options) => run::run(options),
+        Command::Check(options) => check::check(options),
+        Command::Expand(options) => expand::expand(options),
+        Command::List(options) => list::list(options),
+        Command::Schema => schema::schema(),
+    };
+    result.unwrap_or_else(exit::io_failure)
+}

@@ -1,0 +1,80 @@
+//! What may be said on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Closed-loop fibre-optic-gyro and rate-turntable testbench.
+///
+/// Runs TOML scenarios through turntable, gyro, denoising filters and metrics, and judges them.
+/// Exit codes: 0 all well, 1 a gate failed, 2 usage or scenario error, 3 a channel failed,
+/// 4 nothing selected, 70 internal error, 74 input/output error.
+#[derive(Debug, Parser)]
+#[command(name = "fogbench", version, propagate_version = true, arg_required_else_help = true)]
+pub(super) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+/// Commands.
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Run scenarios in parallel, write results and evaluate gates
+    Run(RunOptions),
+    /// Check scenario files without running them
+    Check(SelectOptions),
+    /// Print every resolved run of scenario files, defaults and sweeps included
+    Expand(SelectOptions),
+    /// List the runs that a selection holds
+    List(ListOptions),
+    /// Print the JSON Schema of scenario files
+    Schema,
+}
+
+/// Which scenarios.
+#[derive(Args, Debug)]
+pub(super) struct SelectOptions {
+    /// Scenario files and folders [default: every folder of scenarios/]
+    pub(super) paths: Vec<PathBuf>,
+    /// Override a key of every selected scenario; `filter.<name>.<key>` reaches into a filter
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(super) set: Vec<String>,
+}
+
+/// Form of printed results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// Tables for people
+    Text,
+    /// One JSON document
+    Json,
+    /// One JSON document per line and run
+    Jsonl,
+}
+
+/// Options of `list`.
+#[derive(Args, Debug)]
+pub(super) struct ListOptions {
+    #[command(flatten)]
+    pub(super) select: SelectOptions,
+    /// Form of the list
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+}
+
+/// Options of `run`.
+#[derive(Args, Debug)]
+pub(super) struct RunOptions {
+    #[command(flatten)]
+    pub(super) select: SelectOptions,
+    /// Folder for the results
+    #[arg(short, long, value_name = "DIR", default_value = "output")]
+    pub(super) output: PathBuf,
+    /// Threads, 0 = one per core; the results do not depend on it
+    #[arg(short, long, value_name = "N", default_value_t = 0)]
+    pub(super) jobs: usize,
+    /// Form of the results on stdout
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+}

@@ -1,0 +1,144 @@
+//! `fogbench run`: runs scenarios, prints tables as they become ready, ends with the verdict.
+
+use std::collections::BTreeMap;
+use std::io::{self, IsTerminal};
+use std::sync::Mutex;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::arguments::{Format, RunOptions};
+use super::exit::Exit;
+use super::{output, select};
+use crate::experiment::{
+    Observer, Plan, RunOutcome, RunStatus, SuiteError, SuiteOptions, SuiteOutcome, run_suite,
+};
+use crate::report;
+
+/// Plans, runs, prints and judges.
+pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
+    let plans = match select::plans(&options.select) {
+        Ok(plans) => plans,
+        Err(exit) => return Ok(exit),
+    };
+    let progress = Progress::new(&plans, options.format);
+    let suite = SuiteOptions { output: options.output.clone(), threads: options.jobs };
+    let result = run_suite(&plans, &suite, &progress);
+    progress.bar.finish_and_clear();
+    let outcome = match result {
+        Ok(outcome) => outcome,
+        Err(error) => {
+            output::talk(&format!("error: {error}"));
+            return Ok(match error {
+                SuiteError::Write { .. } => Exit::Io,
+                SuiteError::Threads { .. } | SuiteError::Gyro { .. } => Exit::Internal,
+            });
+        }
+    };
+    progress.printed()?;
+    output::data(&closing(&outcome, options.format))?;
+    output::talk(&format!("results in {}", options.output.display()));
+    Ok(exit_of(&outcome))
+}
+
+/// The verdict of the whole suite.
+fn exit_of(outcome: &SuiteOutcome) -> Exit {
+    match outcome.status() {
+        RunStatus::Passed => Exit::Success,
+        RunStatus::GateFailed => Exit::GateFailed,
+        RunStatus::ChannelFailed => Exit::RunFailed,
+    }
+}
+
+fn closing(outcome: &SuiteOutcome, format: Format) -> String {
+    match format {
+        Format::Text => {
+            let reports = outcome.reports();
+            report::suite_text(&reports, output::width(), output::colour())
+        }
+        Format::Json => report::suite_summary_json(&outcome.reports()),
+        // Every run has been printed on its own line.
+        Format::Jsonl => String::new(),
+    }
+}
+
+/// Progress on stderr, results on stdout in the order of the plan.
+struct Progress {
+    bar: ProgressBar,
+    format: Format,
+    pending: Mutex<Pending>,
+}
+
+/// Texts that wait for their turn.
+struct Pending {
+    next: usize,
+    texts: BTreeMap<usize, String>,
+    failure: Option<io::Error>,
+}
+
+impl Progress {
+    fn new(plans: &[Plan], format: Format) -> Self {
+        let total_s: f64 = plans.iter().map(Plan::simulated_s).sum();
+        let bar = if io::stderr().is_terminal() {
+            ProgressBar::new(whole(total_s))
+        } else {
+            ProgressBar::hidden()
+        };
+        let style = "{spinner} {bar:40} {percent:>3} % of {len} s of gyro time, {eta} to go";
+        if let Ok(style) = ProgressStyle::with_template(style) {
+            bar.set_style(style);
+        }
+        let pending = Pending { next: 0, texts: BTreeMap::new(), failure: None };
+        Self { bar, format, pending: Mutex::new(pending) }
+    }
+
+    fn text(&self, outcome: &RunOutcome) -> String {
+        match self.format {
+            Format::Text => {
+                let table =
+                    report::table_text(&outcome.report(), output::width(), output::colour());
+                format!("{table}\n")
+            }
+            Format::Json => String::new(),
+            Format::Jsonl => outcome.summary_line(),
+        }
+    }
+
+    /// The first failure to print, if any.
+    fn printed(&self) -> io::Result<()> {
+        let mut pending = self.pending.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        pending.failure.take().map_or(Ok(()), Err)
+    }
+}
+
+impl Observer for Progress {
+    fn advanced(&self, simulated_s: f64) {
+        self.bar.inc(whole(simulated_s));
+    }
+
+    fn finished(&self, index: usize, outcome: &RunOutcome) {
+        let text = self.text(outcome);
+        let mut pending = self.pending.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        pending.texts.insert(index, text);
+        let next = pending.next;
+        let mut ready = String::new();
+        let mut following = next;
+        while let Some(text) = pending.texts.remove(&following) {
+            ready.push_str(&text);
+            following += 1;
+        }
+        pending.next = following;
+        if pending.failure.is_none() && !ready.is_empty() {
+            let result = self.bar.suspend(|| output::data(&ready));
+            pending.failure = result.err();
+        }
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a time in whole seconds for the progress bar, positive and far below 2^53"
+)]
+fn whole(seconds: f64) -> u64 {
+    seconds.round() as u64
+}

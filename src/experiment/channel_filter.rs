@@ -1,0 +1,179 @@
+//! One filter channel: the filter that makes the words, and a twin that measures its DC gain.
+//!
+//! Two DC gains are measured beside the words. *Replayed*: the time mean of the sum of the weights
+//! that made each output, which is the response to a small added rate with the weight sequence of
+//! the unperturbed run. *Adapted*: a twin filter runs on the same words plus a small rate from the
+//! first sample on and is free to adapt; its mean output differs by that rate times the gain.
+
+use crate::filters::{
+    Desired, Divergence, Filter, LmsConfig, LmsFilter, OutputRegister as Register, RlsConfig,
+    RlsFilter, UpdateSign as Sign,
+};
+use crate::scenario::{
+    DesiredSignal, FilterConfig, FilterKind, LmsFilterConfig, OutputRegister, RlsFilterConfig,
+    UpdateSign,
+};
+use crate::signal::FilterShape;
+
+/// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
+pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
+
+/// A filter channel while it runs.
+pub(super) struct ChannelFilter {
+    name: String,
+    shape: FilterShape,
+    filter: Box<dyn Filter + Send>,
+    twin: Option<Box<dyn Filter + Send>>,
+    output_deg_per_h: Vec<f64>,
+    failure: Option<Divergence>,
+    weight_sum_total: f64,
+    twin_difference_total: f64,
+    measured: u64,
+}
+
+/// A filter channel after its run.
+pub(super) struct FinishedFilter {
+    /// Channel name.
+    pub(super) name: String,
+    /// What the filter weighs and aims at.
+    pub(super) shape: FilterShape,
+    /// The words, or why there are none.
+    pub(super) words: Result<FilterWords, Divergence>,
+}
+
+/// What a filter that did not fail has made.
+pub(super) struct FilterWords {
+    /// Output words, deg/h, warm-up included.
+    pub(super) output_deg_per_h: Vec<f64>,
+    /// Time mean of the sum of the weights over the measured record.
+    pub(super) dc_gain: Option<f64>,
+    /// The same with the filter free to adapt to the added rate; none if the twin failed.
+    pub(super) dc_gain_adapted: Option<f64>,
+}
+
+impl ChannelFilter {
+    /// The filter of `config`, with room for `samples` words.
+    pub(super) fn new(config: &FilterConfig, samples: usize) -> Self {
+        let (filter, shape) = build(&config.kind);
+        let (twin, _) = build(&config.kind);
+        Self {
+            name: config.name.clone(),
+            shape,
+            filter,
+            twin: Some(twin),
+            output_deg_per_h: Vec::with_capacity(samples),
+            failure: None,
+            weight_sum_total: 0.0,
+            twin_difference_total: 0.0,
+            measured: 0,
+        }
+    }
+
+    /// Filters one word; `is_measured` says whether it lies after the warm-up.
+    #[inline]
+    pub(super) fn step(&mut self, word_deg_per_h: f64, is_measured: bool) {
+        if self.failure.is_some() {
+            return;
+        }
+        let output = match self.filter.step(word_deg_per_h) {
+            Ok(output) => output,
+            Err(divergence) => {
+                self.failure = Some(divergence);
+                self.output_deg_per_h = Vec::new();
+                return;
+            }
+        };
+        self.output_deg_per_h.push(output.value_deg_per_h);
+        let twin = self.twin.as_mut().map(|twin| twin.step(word_deg_per_h + ADDED_RATE_DEG_PER_H));
+        match twin {
+            Some(Ok(twin)) if is_measured => {
+                self.twin_difference_total += twin.value_deg_per_h - output.value_deg_per_h;
+            }
+            Some(Err(_)) => self.twin = None,
+            _ => {}
+        }
+        if is_measured {
+            self.weight_sum_total += output.weight_sum;
+            self.measured += 1;
+        }
+    }
+
+    /// Ends the run.
+    pub(super) fn finish(self) -> FinishedFilter {
+        #[expect(clippy::cast_precision_loss, reason = "sample counts are far below 2^53")]
+        let measured = self.measured as f64;
+        let mean = |total: f64| (self.measured > 0).then(|| total / measured);
+        let words = match self.failure {
+            Some(divergence) => Err(divergence),
+            None => Ok(FilterWords {
+                dc_gain: mean(self.weight_sum_total),
+                dc_gain_adapted: self.twin.as_ref().and_then(|_| {
+                    mean(self.twin_difference_total).map(|gain| gain / ADDED_RATE_DEG_PER_H)
+                }),
+                output_deg_per_h: self.output_deg_per_h,
+            }),
+        };
+        FinishedFilter { name: self.name, shape: self.shape, words }
+    }
+}
+
+fn build(kind: &FilterKind) -> (Box<dyn Filter + Send>, FilterShape) {
+    match kind {
+        FilterKind::Rls(config) => {
+            let filter = RlsFilter::new(rls(config));
+            let shape = filter.shape();
+            (Box::new(filter), shape)
+        }
+        FilterKind::Lms(config) => {
+            let filter = LmsFilter::new(lms(config));
+            let shape = filter.shape();
+            (Box::new(filter), shape)
+        }
+    }
+}
+
+fn rls(config: &RlsFilterConfig) -> RlsConfig {
+    RlsConfig {
+        taps: config.taps as usize,
+        forgetting_factor: config.forgetting_factor,
+        initial_inverse_correlation: config.initial_inverse_correlation,
+        desired: desired(config.desired),
+        input_lag_samples: config.input_lag_samples as usize,
+        output_register: register(config.output_register),
+        update_sign: sign(config.update_sign),
+    }
+}
+
+fn lms(config: &LmsFilterConfig) -> LmsConfig {
+    LmsConfig {
+        taps: config.taps as usize,
+        step_size: config.step_size,
+        normalised: config.normalised,
+        regularisation: config.regularisation_deg2_per_h2,
+        desired: desired(config.desired),
+        input_lag_samples: config.input_lag_samples as usize,
+        output_register: register(config.output_register),
+        update_sign: sign(config.update_sign),
+    }
+}
+
+fn desired(desired: DesiredSignal) -> Desired {
+    match desired {
+        DesiredSignal::Current => Desired::Current,
+        DesiredSignal::TwoSampleMean => Desired::TwoSampleMean,
+    }
+}
+
+fn register(register: OutputRegister) -> Register {
+    match register {
+        OutputRegister::NextSample => Register::NextSample,
+        OutputRegister::Immediate => Register::Immediate,
+    }
+}
+
+fn sign(sign: UpdateSign) -> Sign {
+    match sign {
+        UpdateSign::Corrected => Sign::Corrected,
+        UpdateSign::AsPrinted => Sign::AsPrinted,
+    }
+}

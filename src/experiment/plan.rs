@@ -1,0 +1,279 @@
+//! From scenario files to checked plans: the checks that need physics or metrics.
+
+use std::path::PathBuf;
+
+use crate::filters::{covariance_digits_warning, lms_step_bound};
+use crate::gyro;
+use crate::metrics::{self, Motion};
+use crate::scenario::{
+    Fidelity, FilterKind, LmsFilterConfig, MotionConfig, Resolved, SamplesFormat, Scenario,
+    ScenarioError, load_suite,
+};
+use crate::signal::GyroFacts;
+use crate::turntable::{self, earth_rate_rad_per_s};
+use crate::units::{deg_per_s_to_deg_per_h, rad_per_s_to_deg_per_h};
+
+/// Metric that turns the divergence of a channel into an expected result.
+pub(super) const DIVERGED_AT: &str = "diverged_at_s";
+/// Longest record held in memory, samples (two hours at 4 kHz).
+const SAMPLES_MAX: f64 = 3.0e7;
+
+/// One run that has passed every check.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    resolved: Resolved,
+    facts: GyroFacts,
+    warnings: Vec<String>,
+}
+
+impl Plan {
+    /// The resolved scenario.
+    #[must_use]
+    pub fn resolved(&self) -> &Resolved {
+        &self.resolved
+    }
+
+    /// The gyro in closed form.
+    #[must_use]
+    pub fn facts(&self) -> &GyroFacts {
+        &self.facts
+    }
+
+    /// What is allowed but worth saying.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Channels in order, `raw` first.
+    #[must_use]
+    pub fn channel_names(&self) -> Vec<&str> {
+        let filters = self.resolved.scenario.filters.iter().map(|filter| filter.name.as_str());
+        std::iter::once("raw").chain(filters).collect()
+    }
+
+    /// Gyro time of all repeats, s.
+    #[must_use]
+    pub fn simulated_s(&self) -> f64 {
+        let scenario = &self.resolved.scenario;
+        f64::from(scenario.repeats) * (scenario.warm_up_s + scenario.duration_s)
+    }
+
+    /// Relative cost of the run, for the order of work only.
+    pub(super) fn cost(&self) -> f64 {
+        const LOOP_COST: f64 = 10.0;
+        let samples = self.simulated_s() * self.facts.output_rate_hz;
+        match self.resolved.scenario.fidelity {
+            Fidelity::Loop => LOOP_COST * samples,
+            Fidelity::Rate => samples,
+        }
+    }
+}
+
+/// Reads and checks everything under `paths`, `--set` overrides applied.
+///
+/// # Errors
+/// Every complaint about every file; then nothing may run.
+pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<ScenarioError>> {
+    let suite = load_suite(paths, sets)?;
+    let mut plans = Vec::with_capacity(suite.len());
+    let mut errors = Vec::new();
+    for resolved in suite {
+        match plan(resolved) {
+            Ok(plan) => plans.push(plan),
+            Err(found) => errors.extend(found),
+        }
+    }
+    if errors.is_empty() { Ok(plans) } else { Err(errors) }
+}
+
+fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
+    let mut checker = Checker { resolved: &resolved, errors: Vec::new(), warnings: Vec::new() };
+    let facts = checker.gyro();
+    if let Some(facts) = &facts {
+        checker.record_length(facts);
+        checker.filters(facts);
+        checker.metrics(facts);
+    }
+    let Checker { errors, warnings, .. } = checker;
+    match facts {
+        Some(facts) if errors.is_empty() => Ok(Plan { resolved, facts, warnings }),
+        _ => Err(errors),
+    }
+}
+
+/// Motion as the metrics see it; a staircase's last step counts from the start of the record.
+pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
+    match &scenario.turntable.motion {
+        MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
+        MotionConfig::Swing(swing) => Motion::Swing { frequency_hz: swing.frequency_hz },
+        MotionConfig::Steps(steps) => {
+            let rates = &steps.rates_deg_per_s;
+            let last_step_index = turntable::step_indices(steps, 0.0, sample_period_s)
+                .last()
+                .copied()
+                .unwrap_or_default();
+            let rise = match rates.as_slice() {
+                [.., before, last] => last - before,
+                _ => 0.0,
+            };
+            Motion::Steps { last_step_index, step_deg_per_h: deg_per_s_to_deg_per_h(rise) }
+        }
+    }
+}
+
+/// Largest rate the configured motion puts on the input axis, deg/h.
+fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
+    let earth = rad_per_s_to_deg_per_h(earth_rate_rad_per_s(&scenario.turntable.site)).abs();
+    let commanded = match &scenario.turntable.motion {
+        MotionConfig::Static(_) => 0.0,
+        MotionConfig::Swing(swing) => turntable::swing_rate_amplitude_deg_per_s(swing),
+        MotionConfig::Rotation(rotation) => rotation.rate_deg_per_s.abs(),
+        MotionConfig::Steps(steps) => {
+            steps.rates_deg_per_s.iter().fold(0.0_f64, |most, rate| most.max(rate.abs()))
+        }
+    };
+    earth + deg_per_s_to_deg_per_h(commanded)
+}
+
+/// Collects every complaint about one run.
+struct Checker<'a> {
+    resolved: &'a Resolved,
+    errors: Vec<ScenarioError>,
+    warnings: Vec<String>,
+}
+
+impl Checker<'_> {
+    fn complain(&mut self, key: &str, message: String) {
+        self.errors.push(ScenarioError::new(Some(self.resolved.locate(key)), message));
+    }
+
+    fn gyro(&mut self) -> Option<GyroFacts> {
+        gyro::facts(&self.resolved.scenario.gyro)
+            .map_err(|error| self.complain("gyro", format!("gyro: {error}")))
+            .ok()
+    }
+
+    fn record_length(&mut self, facts: &GyroFacts) {
+        let scenario = &self.resolved.scenario;
+        let rate_hz = facts.output_rate_hz;
+        let (duration_s, warm_up_s) = (scenario.duration_s, scenario.warm_up_s);
+        if duration_s * rate_hz < 1.0 {
+            self.complain(
+                "duration_s",
+                format!(
+                    "duration_s = {duration_s} s holds no sample: one sample of this gyro takes \
+                     {} s",
+                    1.0 / rate_hz
+                ),
+            );
+        }
+        let samples = (duration_s + warm_up_s) * rate_hz;
+        if samples > SAMPLES_MAX {
+            self.complain(
+                "duration_s",
+                format!(
+                    "duration_s + warm_up_s = {} s at {rate_hz:.2} Hz are {samples:.3e} samples: \
+                     at most {SAMPLES_MAX:e} are held in memory; use `repeats`, or a larger \
+                     gyro.output.half_periods_per_sample",
+                    duration_s + warm_up_s
+                ),
+            );
+        }
+        if scenario.repeats > 1 && scenario.output.samples != SamplesFormat::None {
+            self.complain(
+                "output.samples",
+                format!(
+                    "output.samples needs repeats = 1: {} repeats would write as many records to \
+                     the same files",
+                    scenario.repeats
+                ),
+            );
+        }
+    }
+
+    fn filters(&mut self, facts: &GyroFacts) {
+        let resolved = self.resolved;
+        let rate_max = rate_deg_per_h_max(&resolved.scenario);
+        for (index, filter) in resolved.scenario.filters.iter().enumerate() {
+            match &filter.kind {
+                FilterKind::Lms(config) => self.lms(index, config, rate_max),
+                FilterKind::Rls(config) => {
+                    let peak = rate_max + PEAK_SIGMAS * self.noise_std_deg_per_h(facts);
+                    let delta = config.initial_inverse_correlation;
+                    let warning = covariance_digits_warning(delta, config.taps as usize, peak);
+                    if let Some(text) = warning {
+                        let place = resolved.locate(&format!("filter[{index}].rls"));
+                        self.warnings.push(format!("{place}: filter `{}`: {text}", filter.name));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Standard deviation of white noise with the budget's angle random walk, deg/h.
+    fn noise_std_deg_per_h(&self, facts: &GyroFacts) -> f64 {
+        let total = facts
+            .angle_random_walk_budget_deg_per_sqrt_h
+            .iter()
+            .find(|(source, _)| *source == "total")
+            .map_or(0.0, |(_, value)| *value);
+        crate::units::deg_per_sqrt_h_to_deg_per_h_sqrt_s(total) * facts.output_rate_hz.sqrt()
+    }
+
+    /// Refuses an un-normalised step that the configured motion alone makes unstable.
+    fn lms(&mut self, index: usize, config: &LmsFilterConfig, rate_max: f64) {
+        if config.normalised || config.allow_unstable {
+            return;
+        }
+        let swings = matches!(self.resolved.scenario.turntable.motion, MotionConfig::Swing(_));
+        let bound = lms_step_bound(config.taps as usize, rate_max, swings);
+        if config.step_size >= bound {
+            self.complain(
+                &format!("filter[{index}].lms.step_size"),
+                format!(
+                    "filter[{index}].lms.step_size = {} is unstable: with {} taps and up to \
+                     {rate_max:.4} deg/h on the axis the un-normalised step must stay below \
+                     {bound:.3e} (deg/h)^-2; use normalised = true, a smaller step, or \
+                     allow_unstable = true",
+                    config.step_size, config.taps
+                ),
+            );
+        }
+    }
+
+    /// Refuses gates and published figures that this record can never support.
+    fn metrics(&mut self, facts: &GyroFacts) {
+        let scenario = &self.resolved.scenario;
+        let motion = motion(scenario, 1.0 / facts.output_rate_hz);
+        let gates = scenario.gates.iter().enumerate();
+        let published = scenario.published.iter().enumerate();
+        let requested: Vec<(String, &str)> = gates
+            .map(|(index, gate)| (format!("gate[{index}].metric"), gate.metric.as_str()))
+            .chain(published.map(|(index, figure)| {
+                (format!("published[{index}].metric"), figure.metric.as_str())
+            }))
+            .collect();
+        for (key, metric) in requested {
+            // The reader has checked that there is a dot and that the channel exists.
+            let Some((channel, name)) = metric.rsplit_once('.') else { continue };
+            if name == DIVERGED_AT {
+                continue;
+            }
+            let supported = metrics::support(
+                name,
+                scenario.duration_s,
+                1.0 / facts.output_rate_hz,
+                &motion,
+                channel != "raw",
+                scenario.bias_averaging_time_s,
+            );
+            if let Err(reason) = supported {
+                self.complain(&key, format!("{key} = \"{metric}\": {reason}"));
+            }
+        }
+    }
+}
+
+/// Peak of the noise that the digits warning reckons with, standard deviations.
+const PEAK_SIGMAS: f64 = 4.0;

@@ -1,0 +1,161 @@
+//! One scenario: its repeats, their measurement, the verdicts and the files.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
+use super::outcome::RunOutcome;
+use super::plan::{DIVERGED_AT, Plan, motion};
+use super::simulate::{RecordLength, Simulation, simulate};
+use super::suite::{Observer, SuiteError};
+use crate::filters::Divergence;
+use crate::gate::judge;
+use crate::metrics::{
+    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Motion, Record, Settings,
+    aggregate, measure,
+};
+use crate::report::{self, FolderWriter};
+use crate::scenario::{SamplesFormat, manifest_toml};
+use crate::signal::{FilterShape, RunSignals};
+
+/// Channels of one repeat with their metrics.
+type Channels = Vec<(String, ChannelMetrics)>;
+
+/// Runs `plan`, writes its folder under `output` and judges it.
+pub(super) fn run_scenario(
+    plan: &Plan,
+    output: &Path,
+    observer: &dyn Observer,
+) -> Result<RunOutcome, SuiteError> {
+    let scenario = &plan.resolved().scenario;
+    // The first repeat's records are kept for the plots and sample files; the others are dropped
+    // as soon as they are measured.
+    let (simulation, first) = run_repeat(plan, 0, observer)?;
+    let others: Vec<Channels> = (1..scenario.repeats)
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|repeat| run_repeat(plan, repeat, observer).map(|(_, channels)| channels))
+        .collect::<Result<_, _>>()?;
+    let channels = combine(first, others);
+    let resolved = plan.resolved();
+    let gates = scenario.gates.iter().enumerate();
+    let verdicts = gates
+        .map(|(index, gate)| {
+            let place = resolved.locate(&format!("gate[{index}].metric"));
+            judge(gate, &channels, Some(place.to_string()))
+        })
+        .collect();
+    let outcome = RunOutcome::new(plan, channels, verdicts);
+    write_folder(plan, &outcome, &simulation, output)?;
+    Ok(outcome)
+}
+
+fn run_repeat(
+    plan: &Plan,
+    repeat: u32,
+    observer: &dyn Observer,
+) -> Result<(Simulation, Channels), SuiteError> {
+    let scenario = &plan.resolved().scenario;
+    let length = RecordLength::new(scenario, plan.sample_period_s());
+    let simulation = simulate(scenario, length, repeat, observer)?;
+    let channels = measure_repeat(plan, &simulation, length);
+    Ok((simulation, channels))
+}
+
+fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) -> Channels {
+    let scenario = &plan.resolved().scenario;
+    let sample_period_s = plan.sample_period_s();
+    let settings = Settings {
+        motion: motion(scenario, sample_period_s),
+        bias_averaging_time_s: scenario.bias_averaging_time_s,
+        fit_tau_min_s: plan.fit_tau_min_s(),
+    };
+    let cut = &Cut { simulation, length, sample_period_s, settings };
+    let raw = ("raw".to_owned(), cut.measure(&simulation.raw_deg_per_h, None));
+    let filters: Channels = simulation
+        .filters
+        .par_iter()
+        .map(|filter| (filter.name.clone(), cut.measure_filter(filter)))
+        .collect();
+    std::iter::once(raw).chain(filters).collect()
+}
+
+/// The measured part of a simulation and how to measure it.
+struct Cut<'a> {
+    simulation: &'a Simulation,
+    length: RecordLength,
+    sample_period_s: f64,
+    settings: Settings,
+}
+
+impl Cut<'_> {
+    fn measure(&self, channel_deg_per_h: &[f64], filter: Option<&FilterFacts>) -> ChannelMetrics {
+        let first = self.length.warm_up;
+        let record = Record {
+            channel_deg_per_h: &channel_deg_per_h[first..],
+            raw_deg_per_h: &self.simulation.raw_deg_per_h[first..],
+            truth_deg_per_h: &self.simulation.truth_deg_per_h[first..],
+            sample_period_s: self.sample_period_s,
+            first_stamp_s: stamp_s(first as u64, self.sample_period_s),
+        };
+        measure(&record, &self.settings, filter)
+    }
+
+    fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
+        match &filter.words {
+            Ok(words) => {
+                let facts = filter_facts(&filter.shape, words);
+                self.measure(&words.output_deg_per_h, Some(&facts))
+            }
+            Err(divergence) => diverged(divergence, self.sample_period_s),
+        }
+    }
+}
+
+fn filter_facts(shape: &FilterShape, words: &FilterWords) -> FilterFacts {
+    FilterFacts {
+        shape: shape.clone(),
+        dc_gain: words.dc_gain,
+        dc_gain_adapted: words.dc_gain_adapted,
+        added_rate_deg_per_h: ADDED_RATE_DEG_PER_H,
+    }
+}
+
+/// A channel that failed has no numbers but the instant of its failure.
+fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
+    let mut channel = ChannelMetrics::default();
+    let at_s = stamp_s(divergence.sample, sample_period_s);
+    channel.metrics.insert(DIVERGED_AT.to_owned(), Metric::new(Estimate::exact(at_s), "s"));
+    channel.error = Some(ChannelFailure {
+        kind: "diverged".to_owned(),
+        sample: divergence.sample,
+        message: divergence.to_string(),
+    });
+    channel
+}
+
+/// Stamp of sample `index`, s from the start of the warm-up.
+fn stamp_s(index: u64, sample_period_s: f64) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "sample counts are far below 2^53")]
+    let ordinal = (index + 1) as f64;
+    ordinal * sample_period_s
+}
+
+/// One table from the tables of all repeats; a channel that failed once has failed.
+fn combine(first: Channels, others: Vec<Channels>) -> Channels {
+    if others.is_empty() {
+        return first;
+    }
+    let mut repeats = vec![first];
+    repeats.extend(others);
+    let names: Vec<String> = repeats[0].iter().map(|(name, _)| name.clone()).collect();
+    let combined = names.into_iter().enumerate().map(|(index, name)| {
+        let tables: Vec<ChannelMetrics> =
+            repeats.iter().map(|channels| channels[index].1.clone()).collect();
+        let failed = tables.iter().find(|table| table.error.is_some());
+        let table = failed.cloned().unwrap_or_else(|| aggregate(&tables));
+        (name, table)
+    });
+    combined.collect()
+}
