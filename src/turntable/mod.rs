@@ -1,3 +1,27 @@
 //! Rate table: commanded motion, servo and the site, giving the true rate of the gyro's input axis.
 //!
+//! ```text
+//!  motion ──> profile ──command──> servo ──table rate──> axis ──truth──> gyro
+//!             swing, steps,        ideal or              + projection
+//!             rotation, rest       second order            of Earth rate
+//! ```
+//!
+//! Truth is what the axis does, not what it was told to do: a 40 Hz table lags a 10 Hz command by
+//! 5.7 ms, twenty times the delay of the gyro under test, so that anything measured against the
+//! command measures the table. Motion leaves this module as one cubic per output sample.
+//!
+//! Instants are counted in samples from the start of the warm-up; sample `k` covers the time from
+//! `k T` to its stamp `(k + 1) T`. Phases are computed from that count, never accumulated.
+//!
 //! Invariant: this is truth; it never sees a gyro output.
+
+mod axis;
+mod profile;
+mod servo;
+mod table;
+
+pub use axis::earth_rate_rad_per_s;
+pub use profile::{
+    command_rate_max_rad_per_s, first_measured_index, step_indices, swing_rate_amplitude_rad_per_s,
+};
+pub use table::Turntable;
