@@ -1,6 +1,8 @@
 //! The one integration-test binary.
 
+mod architecture;
+mod cli;
+mod closed_loop;
+mod determinism;
 mod known_answers_turntable;
 mod support;
-
-mod architecture;

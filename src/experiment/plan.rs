@@ -1,5 +1,6 @@
 //! From scenario files to checked plans: the checks that need physics or metrics.
 
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use crate::filters::{covariance_digits_warning, lms_step_bound};
@@ -10,7 +11,7 @@ use crate::scenario::{
     ScenarioError, load_suite,
 };
 use crate::signal::GyroFacts;
-use crate::turntable::{self, earth_rate_rad_per_s};
+use crate::turntable::{command_rate_max_rad_per_s, earth_rate_rad_per_s, step_indices};
 use crate::units::{deg_per_s_to_deg_per_h, rad_per_s_to_deg_per_h};
 
 /// Metric that turns the divergence of a channel into an expected result.
@@ -50,6 +51,20 @@ impl Plan {
     pub fn channel_names(&self) -> Vec<&str> {
         let filters = self.resolved.scenario.filters.iter().map(|filter| filter.name.as_str());
         std::iter::once("raw").chain(filters).collect()
+    }
+
+    /// Period of the rate words, s.
+    pub(super) fn sample_period_s(&self) -> f64 {
+        gyro::sample_period_s(&self.resolved.scenario.gyro)
+    }
+
+    /// Shortest averaging time that sees the white noise of the gyro and not the low pass of loop
+    /// and averager, s: ten samples and 20 time constants of the loop.
+    pub(super) fn fit_tau_min_s(&self) -> f64 {
+        const SAMPLES: f64 = 10.0;
+        const TIME_CONSTANTS: f64 = 20.0;
+        let time_constant_s = 1.0 / (TAU * self.facts.loop_bandwidth_hz);
+        (SAMPLES * self.sample_period_s()).max(TIME_CONSTANTS * time_constant_s)
     }
 
     /// Gyro time of all repeats, s.
@@ -109,10 +124,9 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
         MotionConfig::Swing(swing) => Motion::Swing { frequency_hz: swing.frequency_hz },
         MotionConfig::Steps(steps) => {
             let rates = &steps.rates_deg_per_s;
-            let last_step_index = turntable::step_indices(steps, 0.0, sample_period_s)
+            let last_step_index = step_indices(steps, 0.0, sample_period_s)
                 .last()
-                .copied()
-                .unwrap_or_default();
+                .map_or(0, |&index| usize::try_from(index).unwrap_or(usize::MAX));
             let rise = match rates.as_slice() {
                 [.., before, last] => last - before,
                 _ => 0.0,
@@ -125,15 +139,8 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
 /// Largest rate the configured motion puts on the input axis, deg/h.
 fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
     let earth = rad_per_s_to_deg_per_h(earth_rate_rad_per_s(&scenario.turntable.site)).abs();
-    let commanded = match &scenario.turntable.motion {
-        MotionConfig::Static(_) => 0.0,
-        MotionConfig::Swing(swing) => turntable::swing_rate_amplitude_deg_per_s(swing),
-        MotionConfig::Rotation(rotation) => rotation.rate_deg_per_s.abs(),
-        MotionConfig::Steps(steps) => {
-            steps.rates_deg_per_s.iter().fold(0.0_f64, |most, rate| most.max(rate.abs()))
-        }
-    };
-    earth + deg_per_s_to_deg_per_h(commanded)
+    let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
+    earth + rad_per_s_to_deg_per_h(commanded)
 }
 
 /// Collects every complaint about one run.

@@ -1,5 +1,8 @@
 //! Helpers shared by the integration tests.
 
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
 /// Asserts that `got` equals `want` within `rtol * |want| + atol`.
 #[track_caller]
 pub(crate) fn assert_close(got: f64, want: f64, rtol: f64, atol: f64) {
@@ -8,4 +11,79 @@ pub(crate) fn assert_close(got: f64, want: f64, rtol: f64, atol: f64) {
         error <= rtol * want.abs() + atol,
         "got {got}, want {want}: off by {error}, allowed rtol {rtol}, atol {atol}"
     );
+}
+
+/// A path inside the repository.
+pub(crate) fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// Runs the program with `arguments` in `folder`, output captured and colours off.
+pub(crate) fn fogbench(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fogbench"))
+        .args(arguments)
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .env_remove("COLUMNS")
+        .output()
+        .expect("the program starts")
+}
+
+/// Exit code of a finished program.
+pub(crate) fn code(output: &Output) -> i32 {
+    output.status.code().expect("the program was not killed by a signal")
+}
+
+/// Standard output as text.
+pub(crate) fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("stdout is UTF-8")
+}
+
+/// Standard error as text.
+pub(crate) fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("stderr is UTF-8")
+}
+
+/// Writes `text` to `folder/name`, making folders on the way.
+pub(crate) fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::create_dir_all(path.parent().expect("a file lies in a folder")).expect("writable");
+    std::fs::write(&path, text).expect("writable");
+    path
+}
+
+/// Every file below `folder`, as (path below it, bytes), sorted.
+pub(crate) fn tree(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    fn walk(root: &Path, folder: &Path, files: &mut Vec<(PathBuf, Vec<u8>)>) {
+        for entry in std::fs::read_dir(folder).expect("a readable folder").flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                walk(root, &path, files);
+            } else {
+                let inside = path.strip_prefix(root).expect("below the root").to_owned();
+                files.push((inside, std::fs::read(&path).expect("a readable file")));
+            }
+        }
+    }
+    let mut files = Vec::new();
+    walk(folder, folder, &mut files);
+    files.sort();
+    files
+}
+
+/// A run's `summary.json`.
+pub(crate) fn summary(output: &Path, run: &str) -> serde_json::Value {
+    let path = output.join(run).join("summary.json");
+    let text = std::fs::read_to_string(&path)
+        .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    serde_json::from_str(&text).expect("summary.json is JSON")
+}
+
+/// `channels.<channel>.<metric>.<field>` of a summary.
+#[track_caller]
+pub(crate) fn field(summary: &serde_json::Value, metric: &str, field: &str) -> f64 {
+    let (channel, name) = metric.rsplit_once('.').expect("<channel>.<metric>");
+    summary["channels"][channel][name][field]
+        .as_f64()
+        .unwrap_or_else(|| panic!("no {metric}.{field} in the summary"))
 }

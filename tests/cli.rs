@@ -1,0 +1,234 @@
+//! The program as a user meets it: exit codes, files, messages.
+
+use std::path::Path;
+
+use crate::support::{code, field, fogbench, repository, stderr, stdout, summary, tree, write};
+
+/// A scenario of two seconds of the rate model; runs in a fraction of a second.
+const SHORT: &str = "schema = 1
+name = \"short\"
+duration_s = 2.0
+warm_up_s = 1.0
+fidelity = \"rate\"
+";
+
+fn scratch() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a scratch folder")
+}
+
+#[test]
+fn documented_commands_print_what_the_snapshots_hold() {
+    trycmd::TestCases::new().case("tests/cmd/*.trycmd");
+}
+
+#[test]
+fn a_passing_run_exits_0_and_writes_the_contracted_files() {
+    let folder = scratch();
+    let gate = "[[gate]]\nmetric = \"raw.mean_deg_per_h\"\nmin = 5.0\nmax = 12.0\n";
+    write(folder.path(), "a.toml", &format!("{SHORT}{gate}[output]\nsamples = \"npy\"\n"));
+    let output = fogbench(folder.path(), &["run", "a.toml"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let names: Vec<String> = tree(&folder.path().join("output"))
+        .iter()
+        .map(|(path, _)| path.to_string_lossy().into_owned())
+        .collect();
+    for name in [
+        "junit.xml",
+        "short/allan.csv",
+        "short/manifest.toml",
+        "short/psd.csv",
+        "short/samples/raw.npy",
+        "short/samples/time_s.npy",
+        "short/samples/truth.npy",
+        "short/summary.json",
+        "summary.json",
+    ] {
+        assert!(names.iter().any(|found| found == name), "{name} is missing from {names:?}");
+    }
+    assert!(names.iter().any(|name| name.ends_with(".svg")), "no picture in {names:?}");
+    let text = stdout(&output);
+    assert!(text.contains("short") && text.contains("raw.mean_deg_per_h"), "{text}");
+}
+
+#[test]
+fn a_failing_gate_exits_1_and_keeps_the_results() {
+    let folder = scratch();
+    let gate = "[[gate]]\nmetric = \"raw.mean_deg_per_h\"\nmax = 1.0\n";
+    write(folder.path(), "a.toml", &format!("{SHORT}{gate}"));
+    let output = fogbench(folder.path(), &["run", "a.toml", "-o", "results"]);
+    assert_eq!(code(&output), 1, "{}", stderr(&output));
+    let summary = summary(&folder.path().join("results"), "short");
+    assert_eq!(summary["gates"][0]["verdict"], "fail");
+    let junit = std::fs::read_to_string(folder.path().join("results/junit.xml")).expect("written");
+    assert!(junit.contains("failures=\"1\""), "{junit}");
+}
+
+#[test]
+fn an_inconclusive_gate_fails_unless_it_is_allowed() {
+    let folder = scratch();
+    // The limit lies inside the interval of the mean: neither side can be shown.
+    let gate = "[[gate]]\nmetric = \"raw.mean_deg_per_h\"\nmin = 8.47\n";
+    write(folder.path(), "a.toml", &format!("{SHORT}{gate}"));
+    assert_eq!(code(&fogbench(folder.path(), &["run", "a.toml"])), 1);
+    let verdict = summary(&folder.path().join("output"), "short")["gates"][0]["verdict"].clone();
+    assert_eq!(verdict, "inconclusive");
+    write(folder.path(), "a.toml", &format!("{SHORT}{gate}inconclusive = \"allow\"\n"));
+    assert_eq!(code(&fogbench(folder.path(), &["run", "a.toml"])), 0);
+}
+
+#[test]
+fn a_diverging_channel_exits_3_unless_a_gate_expects_it() {
+    let folder = scratch();
+    let filter = "[[filter]]\nname = \"wrong\"\n[filter.rls]\nupdate_sign = \"as-printed\"\n";
+    write(folder.path(), "a.toml", &format!("{SHORT}{filter}"));
+    let output = fogbench(folder.path(), &["run", "a.toml"]);
+    assert_eq!(code(&output), 3, "{}", stdout(&output));
+    let run = summary(&folder.path().join("output"), "short");
+    assert_eq!(run["channels"]["wrong"]["error"]["kind"], "diverged");
+    assert!(run["channels"]["wrong"]["mean_deg_per_h"].is_null(), "a diverged channel has numbers");
+    assert!(field(&run, "raw.mean_deg_per_h", "value").is_finite(), "raw goes on");
+    let gate = "[[gate]]\nmetric = \"wrong.diverged_at_s\"\nmax = 3.0\n";
+    write(folder.path(), "a.toml", &format!("{SHORT}{filter}{gate}"));
+    let output = fogbench(folder.path(), &["run", "a.toml"]);
+    assert_eq!(code(&output), 0, "{}", stdout(&output));
+}
+
+#[test]
+fn a_bad_file_exits_2_before_anything_runs_and_earlier_results_stay() {
+    let folder = scratch();
+    write(folder.path(), "good.toml", SHORT);
+    assert_eq!(code(&fogbench(folder.path(), &["run", "good.toml"])), 0);
+    let before = tree(&folder.path().join("output"));
+    write(folder.path(), "bad.toml", "schema = 1\nname = \"bad\"\nduration_s = -1.0\n");
+    let output = fogbench(folder.path(), &["run", "good.toml", "bad.toml"]);
+    assert_eq!(code(&output), 2);
+    let talk = stderr(&output);
+    assert!(talk.contains("bad.toml:3:") && talk.contains("duration_s = -1"), "{talk}");
+    assert!(stdout(&output).is_empty(), "nothing may run");
+    assert_eq!(before, tree(&folder.path().join("output")));
+}
+
+#[test]
+fn a_gate_that_the_duration_can_never_support_exits_2() {
+    let folder = scratch();
+    let gate = "[[gate]]\nmetric = \"raw.bias_stability_100s_deg_per_h\"\nmax = 1.0\n";
+    write(folder.path(), "a.toml", &format!("{SHORT}{gate}"));
+    let output = fogbench(folder.path(), &["check", "a.toml"]);
+    assert_eq!(code(&output), 2);
+    let talk = stderr(&output);
+    assert!(talk.contains("a.toml:7:") && talk.contains("bias_stability_100s_deg_per_h"), "{talk}");
+}
+
+#[test]
+fn an_unknown_metric_in_a_gate_names_the_nearest_one() {
+    let folder = scratch();
+    let gate = "[[gate]]\nmetric = \"raw.mean_deg_per_hour\"\nmax = 1.0\n";
+    write(folder.path(), "a.toml", &format!("{SHORT}{gate}"));
+    let output = fogbench(folder.path(), &["check", "a.toml"]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("mean_deg_per_h"), "{}", stderr(&output));
+}
+
+#[test]
+fn an_unstable_step_is_refused_unless_it_is_asked_for() {
+    let folder = scratch();
+    let filter = "[[filter]]\nname = \"lms\"\n[filter.lms]\nnormalised = false\n";
+    write(folder.path(), "a.toml", &format!("{SHORT}{filter}"));
+    let output = fogbench(folder.path(), &["check", "a.toml"]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("unstable"), "{}", stderr(&output));
+    write(folder.path(), "a.toml", &format!("{SHORT}{filter}allow_unstable = true\n"));
+    assert_eq!(code(&fogbench(folder.path(), &["check", "a.toml"])), 0);
+}
+
+#[test]
+fn nothing_selected_exits_4() {
+    let folder = scratch();
+    assert_eq!(code(&fogbench(folder.path(), &["run"])), 4);
+    write(folder.path(), "bases/base.toml", "schema = 1\nseed = 2\n");
+    assert_eq!(code(&fogbench(folder.path(), &["run", "bases"])), 4);
+}
+
+#[test]
+fn wrong_usage_exits_2() {
+    let folder = scratch();
+    assert_eq!(code(&fogbench(folder.path(), &["run", "--no-such-option"])), 2);
+    assert_eq!(code(&fogbench(folder.path(), &["run", "missing.toml"])), 2);
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_made_exits_74() {
+    let folder = scratch();
+    write(folder.path(), "a.toml", SHORT);
+    write(folder.path(), "taken", "a file stands where the folder should");
+    let output = fogbench(folder.path(), &["run", "a.toml", "-o", "taken"]);
+    assert_eq!(code(&output), 74, "{}", stderr(&output));
+}
+
+#[test]
+fn a_manifest_repeats_its_run_to_the_byte() {
+    let folder = scratch();
+    let filter = "[[filter]]\nname = \"rls\"\n[filter.rls]\ntaps = 3\n";
+    let samples = "[output]\nsamples = \"npy\"\n";
+    write(folder.path(), "in/a.toml", &format!("{SHORT}{samples}{filter}"));
+    let arguments = ["run", "in/a.toml", "--set", "seed=5", "-o", "first"];
+    assert_eq!(code(&fogbench(folder.path(), &arguments)), 0);
+    let output = fogbench(folder.path(), &["run", "first/short/manifest.toml", "-o", "second"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let (first, second) = (folder.path().join("first"), folder.path().join("second"));
+    assert_eq!(names_and_bytes(&first), names_and_bytes(&second));
+}
+
+fn names_and_bytes(folder: &Path) -> Vec<(String, String)> {
+    let named = |(path, bytes): &(std::path::PathBuf, Vec<u8>)| {
+        (path.to_string_lossy().into_owned(), String::from_utf8_lossy(bytes).into_owned())
+    };
+    tree(folder).iter().map(named).collect()
+}
+
+#[test]
+fn a_sweep_writes_one_folder_per_point_and_its_points_share_the_noise() {
+    let folder = scratch();
+    let matrix = "[matrix]\n\"bias_averaging_time_s\" = [0.5, 1.0]\n";
+    write(folder.path(), "a.toml", &format!("{SHORT}{matrix}"));
+    let output = fogbench(folder.path(), &["run", "a.toml"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let results = folder.path().join("output");
+    let (one, two) = (summary(&results, "short/0000"), summary(&results, "short/0001"));
+    let bits = |run| field(run, "raw.mean_deg_per_h", "value").to_bits();
+    assert_eq!(bits(&one), bits(&two), "the points of a sweep draw the same noise");
+    let listed = stdout(&fogbench(folder.path(), &["list", "a.toml"]));
+    assert_eq!(listed.lines().count(), 2, "{listed}");
+}
+
+#[test]
+fn expanded_scenarios_can_be_read_back() {
+    let folder = scratch();
+    let path = repository("scenarios/paper/swing-5hz.toml");
+    let expanded = stdout(&fogbench(folder.path(), &["expand", &path.to_string_lossy()]));
+    write(folder.path(), "expanded.toml", &expanded);
+    let again = fogbench(folder.path(), &["expand", "expanded.toml"]);
+    assert_eq!(code(&again), 0, "{}", stderr(&again));
+    let body = |text: &str| text.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(body(&expanded), body(&stdout(&again)));
+}
+
+#[test]
+fn json_formats_are_json() {
+    let folder = scratch();
+    write(folder.path(), "a.toml", SHORT);
+    for format in ["json", "jsonl"] {
+        let output = fogbench(folder.path(), &["run", "a.toml", "--format", format]);
+        let text = stdout(&output);
+        serde_json::from_str::<serde_json::Value>(&text)
+            .unwrap_or_else(|error| panic!("{format}: {error}: {text}"));
+    }
+}
+
+#[test]
+fn the_schema_is_json_and_knows_the_keys() {
+    let folder = scratch();
+    let text = stdout(&fogbench(folder.path(), &["schema"]));
+    let schema: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert!(schema["properties"]["gyro"]["properties"]["coil"].is_object(), "{text}");
+}
