@@ -4,5 +4,6 @@ mod architecture;
 mod cli;
 mod closed_loop;
 mod determinism;
+mod filters;
 mod known_answers_turntable;
 mod support;

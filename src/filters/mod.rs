@@ -1,3 +1,38 @@
 //! Textbook adaptive filters: the oracle for the hardware pipelines, never called by them.
 //!
+//! ```text
+//!            ┌ regressors L = x[k-lag] .. x[k-lag-p+1] ──> W'L = y ──> output register ──> out
+//!  x[k] ──> delay line                                       │
+//!            └ desired d = x[k]  or  (x[k] + x[k-1]) / 2 ──> e = d - y ──> update of W
+//! ```
+//!
+//! [`Rls`] is the gain form of recursive least squares as the books print it, [`Lms`] the least
+//! mean squares filter, normalised or not. Both share the front end, the output register and the
+//! watch for divergence; a filter that diverges says so in every step from then on and never
+//! returns another number.
+//!
+//! Words are rates in deg/h, but the equations only ask that the constants fit the words: the
+//! initial inverse correlation is in the inverse square of the words' unit, the regularisation of
+//! the normalised step in its square.
+//!
 //! Invariant: a filter sees rate words and its own configuration, nothing else.
+
+mod adaptive;
+mod divergence;
+mod filter;
+mod front_end;
+mod lms;
+mod rls;
+mod stability;
+mod update_sign;
+
+pub use adaptive::{AdaptiveFilter, Core};
+pub use divergence::{Divergence, DivergenceKind, Fault};
+pub use filter::{Filter, Output};
+pub use front_end::{Desired, FrontEndConfig, OutputRegister};
+pub use lms::{Lms, LmsConfig, LmsCore, Normalisation};
+pub use rls::{Rls, RlsConfig, RlsCore};
+pub use stability::{
+    constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
+};
+pub use update_sign::UpdateSign;

@@ -1,0 +1,98 @@
+//! An adaptive filter: front end, weights and their update, output register, watch.
+
+use super::divergence::{Divergence, Fault, Watch};
+use super::filter::{Filter, Output};
+use super::front_end::{FrontEnd, FrontEndConfig, Register};
+use crate::signal::FilterShape;
+
+/// Weights and the rule that updates them, on regressors and desired values given directly.
+pub trait Core: Send {
+    /// Predicts with the weights as they are, then updates them: the prediction is *a priori*.
+    ///
+    /// * `regressors`: `[p]`, newest first.
+    /// * `desired`: what the prediction aims at, in the same unit.
+    ///
+    /// # Errors
+    /// What is wrong with the state of the core, in words; the state is then of no use.
+    fn update(&mut self, regressors: &[f64], desired: f64) -> Result<Output, Fault>;
+
+    /// Weights after the newest update, the one on the newest regressor first.
+    fn weights(&self) -> &[f64];
+}
+
+/// A core behind the common front end, with the output register and the watch for divergence.
+#[derive(Clone, Debug)]
+pub struct AdaptiveFilter<C> {
+    front_end: FrontEnd,
+    core: C,
+    register: Register,
+    watch: Watch,
+    shape: FilterShape,
+    samples: u64,
+    diverged: Option<Divergence>,
+}
+
+impl<C: Core> AdaptiveFilter<C> {
+    /// Puts `core` behind a front end.
+    #[must_use]
+    pub fn with_core(core: C, front_end: &FrontEndConfig) -> Self {
+        let taps = core.weights().len();
+        Self {
+            front_end: FrontEnd::new(front_end, taps),
+            core,
+            register: Register::new(front_end.output_register),
+            watch: Watch::new(),
+            shape: front_end.shape(taps),
+            samples: 0,
+            diverged: None,
+        }
+    }
+
+    /// The weights and their update rule.
+    #[must_use]
+    pub fn core(&self) -> &C {
+        &self.core
+    }
+
+    fn advance(&mut self, input: f64) -> Result<Output, Fault> {
+        self.watch.check_input(input)?;
+        let (regressors, desired) = self.front_end.push(input);
+        let result = self.core.update(regressors, desired)?;
+        self.watch.check_output(result)?;
+        Ok(self.register.clock(result))
+    }
+}
+
+impl<C: Core> Filter for AdaptiveFilter<C> {
+    fn step(&mut self, input_deg_per_h: f64) -> Result<Output, Divergence> {
+        if let Some(divergence) = &self.diverged {
+            return Err(divergence.clone());
+        }
+        let sample = self.samples;
+        self.samples += 1;
+        self.advance(input_deg_per_h)
+            .map_err(|Fault { kind, message }| {
+                let divergence = Divergence {
+                    sample,
+                    kind,
+                    message,
+                };
+                self.diverged = Some(divergence.clone());
+                divergence
+            })
+    }
+
+    fn weights(&self) -> &[f64] {
+        self.core.weights()
+    }
+
+    fn shape(&self) -> FilterShape {
+        self.shape.clone()
+    }
+}
+
+/// Inner product in index order.
+#[inline]
+pub(super) fn dot(left: &[f64], right: &[f64]) -> f64 {
+    left.iter().zip(right).map(|(l, r)| l * r).sum()
+}

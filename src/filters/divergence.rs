@@ -1,0 +1,114 @@
+//! How a filter notices that it has diverged.
+
+use thiserror::Error;
+
+use super::filter::Output;
+
+/// An output above this multiple of the largest input seen is an overflow. No run of weights that
+/// track anything comes near it, start-up on nearly collinear samples included.
+const OVERFLOW_RATIO: f64 = 1e9;
+/// An output above this is an overflow whatever the input, in the unit of the words.
+const OVERFLOW_ABSOLUTE: f64 = 1e15;
+/// An output above this multiple of the largest input seen is suspect; one alone is a start-up
+/// transient, but [`SUSPECT_SAMPLES`] of them are a filter that creeps away, as recursive least
+/// squares without forgetting does under the wrong sign: its error grows with k, not by powers.
+const SUSPECT_RATIO: f64 = 100.0;
+/// Surplus of suspect over sound outputs at which a filter counts as diverged.
+const SUSPECT_SAMPLES: u32 = 1000;
+
+/// Why a filter counts as diverged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DivergenceKind {
+    /// An input, an output or a weight is infinite or not a number.
+    NotFinite,
+    /// The output is absurd beside the input: above 1e9 times the largest input seen, above 1e15,
+    /// or above 100 times the largest input in a surplus of 1000 samples.
+    Overflow,
+    /// The inverse correlation matrix is no longer positive definite.
+    LostPositiveDefiniteness,
+}
+
+/// A filter has diverged.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("the filter diverged at sample {sample}: {message}")]
+pub struct Divergence {
+    /// Index of the input sample, from 0, in which it was seen.
+    pub sample: u64,
+    /// What was seen.
+    pub kind: DivergenceKind,
+    /// What was seen, in words, with the values.
+    pub message: String,
+}
+
+/// What a core or the watch finds wrong, before the filter adds when.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// What was seen.
+    pub kind: DivergenceKind,
+    /// What was seen, in words, with the values.
+    pub message: String,
+}
+
+/// Watches the words that enter and leave a core.
+#[derive(Clone, Debug)]
+pub(super) struct Watch {
+    input_max: f64,
+    suspects: u32,
+}
+
+impl Watch {
+    pub(super) fn new() -> Self {
+        Self {
+            input_max: 0.0,
+            suspects: 0,
+        }
+    }
+
+    pub(super) fn check_input(&mut self, input: f64) -> Result<(), Fault> {
+        if !input.is_finite() {
+            let message = format!("the input word is {input}");
+            return Err(Fault {
+                kind: DivergenceKind::NotFinite,
+                message,
+            });
+        }
+        self.input_max = self.input_max.max(input.abs());
+        Ok(())
+    }
+
+    pub(super) fn check_output(&mut self, output: Output) -> Result<(), Fault> {
+        let Output {
+            value_deg_per_h: value,
+            weight_sum,
+        } = output;
+        if !(value.is_finite() && weight_sum.is_finite()) {
+            let message = format!("the output is {value}, the sum of the weights {weight_sum}");
+            return Err(Fault {
+                kind: DivergenceKind::NotFinite,
+                message,
+            });
+        }
+        let magnitude = value.abs();
+        let input_max = self.input_max;
+        if magnitude <= SUSPECT_RATIO * input_max && magnitude <= OVERFLOW_ABSOLUTE {
+            self.suspects = self.suspects.saturating_sub(1);
+            return Ok(());
+        }
+        self.suspects += 1;
+        let message = if magnitude > OVERFLOW_RATIO * input_max || magnitude > OVERFLOW_ABSOLUTE {
+            format!("the output is {value:e} with no input above {input_max}")
+        } else if self.suspects >= SUSPECT_SAMPLES {
+            format!(
+                "the output, now {value:e}, keeps above {SUSPECT_RATIO} times the largest input, \
+                 {input_max}"
+            )
+        } else {
+            return Ok(());
+        };
+        Err(Fault {
+            kind: DivergenceKind::Overflow,
+            message,
+        })
+    }
+}

@@ -1,0 +1,156 @@
+//! What stands around the weights: delay line, desired signal and output register.
+
+use super::filter::Output;
+use crate::signal::FilterShape;
+
+/// What an adaptive filter aims at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Desired {
+    /// The current sample, `d = x[k]`.
+    Current,
+    /// The mean of the newest two samples, `d = (x[k] + x[k-1]) / 2`.
+    TwoSampleMean,
+}
+
+impl Desired {
+    /// Weights on the samples of age 0, 1, ...
+    #[must_use]
+    pub fn weights(self) -> &'static [f64] {
+        match self {
+            Self::Current => &[1.0],
+            Self::TwoSampleMean => &[0.5, 0.5],
+        }
+    }
+}
+
+/// When a filter's result appears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputRegister {
+    /// At the next sample tick: the output at sample k is `y[k-1]`, the first output is 0.
+    NextSample,
+    /// At the tick of the sample it was computed from.
+    Immediate,
+}
+
+impl OutputRegister {
+    /// Samples the register adds to the age of an output.
+    #[must_use]
+    pub fn samples(self) -> usize {
+        match self {
+            Self::NextSample => 1,
+            Self::Immediate => 0,
+        }
+    }
+}
+
+/// Front end and output register of an adaptive filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrontEndConfig {
+    /// Desired signal.
+    pub desired: Desired,
+    /// Samples by which the newest regressor lags the newest sample: 1 makes a one-step predictor
+    /// of `x[k]`, 0 lets the filter see the sample it aims at.
+    pub input_lag_samples: usize,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+}
+
+impl FrontEndConfig {
+    /// Which input samples a filter of `taps` weights behind this front end weighs.
+    #[must_use]
+    pub fn shape(&self, taps: usize) -> FilterShape {
+        let register_samples = self.output_register.samples();
+        FilterShape {
+            taps,
+            newest_age_samples: self.input_lag_samples + register_samples,
+            desired_weights: self.desired.weights().to_vec(),
+            register_samples,
+        }
+    }
+}
+
+/// The newest samples, newest first, zero before the first one.
+///
+/// Every sample is written twice, one length apart, so that the whole history is one slice
+/// wherever the head stands; no sample is ever moved.
+#[derive(Clone, Debug)]
+pub(super) struct DelayLine {
+    twice: Vec<f64>,
+    head: usize,
+}
+
+impl DelayLine {
+    fn new(length: usize) -> Self {
+        Self {
+            twice: vec![0.0; 2 * length],
+            head: 0,
+        }
+    }
+
+    fn push(&mut self, sample: f64) {
+        let length = self.twice.len() / 2;
+        self.head = if self.head == 0 { length } else { self.head } - 1;
+        self.twice[self.head] = sample;
+        self.twice[self.head + length] = sample;
+    }
+
+    fn newest_first(&self) -> &[f64] {
+        &self.twice[self.head..self.head + self.twice.len() / 2]
+    }
+}
+
+/// Delay line and desired signal with their state.
+#[derive(Clone, Debug)]
+pub(super) struct FrontEnd {
+    line: DelayLine,
+    desired: Desired,
+    lag: usize,
+    taps: usize,
+}
+
+impl FrontEnd {
+    pub(super) fn new(config: &FrontEndConfig, taps: usize) -> Self {
+        let lag = config.input_lag_samples;
+        Self {
+            line: DelayLine::new((lag + taps).max(config.desired.weights().len())),
+            desired: config.desired,
+            lag,
+            taps,
+        }
+    }
+
+    /// Takes a sample; returns the regressors, newest first, and the desired value.
+    pub(super) fn push(&mut self, sample: f64) -> (&[f64], f64) {
+        self.line.push(sample);
+        let history = self.line.newest_first();
+        let desired = match self.desired {
+            Desired::Current => history[0],
+            Desired::TwoSampleMean => 0.5 * (history[0] + history[1]),
+        };
+        (&history[self.lag..self.lag + self.taps], desired)
+    }
+}
+
+/// Output register with its state.
+#[derive(Clone, Debug)]
+pub(super) struct Register {
+    kind: OutputRegister,
+    held: Output,
+}
+
+impl Register {
+    pub(super) fn new(kind: OutputRegister) -> Self {
+        Self {
+            kind,
+            held: Output::RESET,
+        }
+    }
+
+    /// Takes the result of this sample; returns the word that is visible at its tick.
+    pub(super) fn clock(&mut self, result: Output) -> Output {
+        match self.kind {
+            OutputRegister::NextSample => std::mem::replace(&mut self.held, result),
+            OutputRegister::Immediate => result,
+        }
+    }
+}
