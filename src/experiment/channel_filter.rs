@@ -6,8 +6,8 @@
 //! first sample on and is free to adapt; its mean output differs by that rate times the gain.
 
 use crate::filters::{
-    Desired, Divergence, Filter, LmsConfig, LmsFilter, OutputRegister as Register, RlsConfig,
-    RlsFilter, UpdateSign as Sign,
+    Desired, Divergence, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation,
+    OutputRegister as Register, Rls, RlsConfig, UpdateSign as Sign,
 };
 use crate::scenario::{
     DesiredSignal, FilterConfig, FilterKind, LmsFilterConfig, OutputRegister, RlsFilterConfig,
@@ -22,8 +22,8 @@ pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
 pub(super) struct ChannelFilter {
     name: String,
     shape: FilterShape,
-    filter: Box<dyn Filter + Send>,
-    twin: Option<Box<dyn Filter + Send>>,
+    filter: Box<dyn Filter>,
+    twin: Option<Box<dyn Filter>>,
     output_deg_per_h: Vec<f64>,
     failure: Option<Divergence>,
     weight_sum_total: f64,
@@ -54,13 +54,12 @@ pub(super) struct FilterWords {
 impl ChannelFilter {
     /// The filter of `config`, with room for `samples` words.
     pub(super) fn new(config: &FilterConfig, samples: usize) -> Self {
-        let (filter, shape) = build(&config.kind);
-        let (twin, _) = build(&config.kind);
+        let filter = build(&config.kind);
         Self {
             name: config.name.clone(),
-            shape,
+            shape: filter.shape(),
             filter,
-            twin: Some(twin),
+            twin: Some(build(&config.kind)),
             output_deg_per_h: Vec::with_capacity(samples),
             failure: None,
             weight_sum_total: 0.0,
@@ -117,18 +116,10 @@ impl ChannelFilter {
     }
 }
 
-fn build(kind: &FilterKind) -> (Box<dyn Filter + Send>, FilterShape) {
+fn build(kind: &FilterKind) -> Box<dyn Filter> {
     match kind {
-        FilterKind::Rls(config) => {
-            let filter = RlsFilter::new(rls(config));
-            let shape = filter.shape();
-            (Box::new(filter), shape)
-        }
-        FilterKind::Lms(config) => {
-            let filter = LmsFilter::new(lms(config));
-            let shape = filter.shape();
-            (Box::new(filter), shape)
-        }
+        FilterKind::Rls(config) => Box::new(Rls::new(&rls(config))),
+        FilterKind::Lms(config) => Box::new(Lms::new(&lms(config))),
     }
 }
 
@@ -137,23 +128,35 @@ fn rls(config: &RlsFilterConfig) -> RlsConfig {
         taps: config.taps as usize,
         forgetting_factor: config.forgetting_factor,
         initial_inverse_correlation: config.initial_inverse_correlation,
-        desired: desired(config.desired),
-        input_lag_samples: config.input_lag_samples as usize,
-        output_register: register(config.output_register),
         update_sign: sign(config.update_sign),
+        front_end: front_end(config.desired, config.input_lag_samples, config.output_register),
     }
 }
 
 fn lms(config: &LmsFilterConfig) -> LmsConfig {
+    let regularisation_deg2_per_h2 = config.regularisation_deg2_per_h2;
     LmsConfig {
         taps: config.taps as usize,
         step_size: config.step_size,
-        normalised: config.normalised,
-        regularisation: config.regularisation_deg2_per_h2,
-        desired: desired(config.desired),
-        input_lag_samples: config.input_lag_samples as usize,
-        output_register: register(config.output_register),
+        normalisation: if config.normalised {
+            Normalisation::Energy { regularisation_deg2_per_h2 }
+        } else {
+            Normalisation::None
+        },
         update_sign: sign(config.update_sign),
+        front_end: front_end(config.desired, config.input_lag_samples, config.output_register),
+    }
+}
+
+fn front_end(
+    aim: DesiredSignal,
+    input_lag_samples: u32,
+    output_register: OutputRegister,
+) -> FrontEndConfig {
+    FrontEndConfig {
+        desired: desired(aim),
+        input_lag_samples: input_lag_samples as usize,
+        output_register: register(output_register),
     }
 }
 

@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-use crate::filters::{covariance_digits_warning, lms_step_bound};
+use crate::filters::{
+    constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
+};
 use crate::gyro;
 use crate::metrics::{self, Motion};
 use crate::scenario::{
@@ -233,8 +235,16 @@ impl Checker<'_> {
         if config.normalised || config.allow_unstable {
             return;
         }
-        let swings = matches!(self.resolved.scenario.turntable.motion, MotionConfig::Swing(_));
-        let bound = lms_step_bound(config.taps as usize, rate_max, swings);
+        let taps = config.taps as usize;
+        let scenario = &self.resolved.scenario;
+        let eigenvalue_max = match &scenario.turntable.motion {
+            MotionConfig::Swing(swing) => {
+                let phase_step_rad = TAU * swing.frequency_hz * gyro::sample_period_s(&scenario.gyro);
+                sine_eigenvalue_max(taps, rate_max, phase_step_rad, 0.0)
+            }
+            _ => constant_eigenvalue_max(taps, rate_max, 0.0),
+        };
+        let bound = lms_step_bound(eigenvalue_max);
         if config.step_size >= bound {
             self.complain(
                 &format!("filter[{index}].lms.step_size"),
