@@ -1,3 +1,12 @@
 //! Judges metrics against limits.
 //!
-//! Invariant: judges, does not compute.
+//! Invariant: judges, does not compute. A metric that is missing, unavailable or not a number never
+//! passes.
+
+mod judge;
+mod number;
+mod verdict;
+
+pub use judge::judge;
+pub(crate) use number::{estimate_text, limits_text, plain};
+pub use verdict::{Verdict, VerdictKind};

@@ -1,3 +1,26 @@
-//! Formats results: JSON, JUnit, SVG, CSV, text.
+//! Formats results: JSON, JUnit, SVG, CSV, text, NPY; and writes files so that none is ever half
+//! written.
 //!
-//! Invariant: formats, does not compute.
+//! Invariant: formats, does not compute. The same records give the same bytes: nothing here reads
+//! a clock, a host name or an environment variable.
+
+mod columns;
+mod csv;
+mod files;
+mod json;
+mod junit;
+mod plot;
+mod record;
+mod suite_table;
+mod summary;
+mod table;
+mod text;
+
+pub use csv::{allan_csv, psd_csv};
+pub use files::{FolderWriter, write_atomic, write_npy};
+pub use junit::junit_xml;
+pub use plot::{SVG_BYTES_MAX, plots};
+pub use record::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
+pub use suite_table::suite_text;
+pub use summary::{run_summary_json, suite_summary_json};
+pub use table::table_text;

@@ -1,0 +1,211 @@
+//! The rule: an interval against limits.
+
+use crate::gate::number::{estimate_text, limits_text, plain};
+use crate::gate::{Verdict, VerdictKind};
+use crate::metrics::{ChannelMetrics, Estimate, Metric};
+use crate::scenario::{GateConfig, GateDecision, InconclusivePolicy};
+
+/// Metric that exists only where a channel diverged.
+const DIVERGED_AT: &str = "diverged_at_s";
+
+/// Digits of the half width shown in reasons: one more than in tables, so that a near miss shows.
+const REASON_DIGITS: i32 = 3;
+
+/// Judges one gate.
+///
+/// Pass: the interval `[low, high]` lies inside `[min, max]`; fail: it is disjoint from it; else
+/// inconclusive, which is accepted only if the gate says `inconclusive = "allow"`. With
+/// `decide = "value"` the value alone is compared. With `relative_to` the metric is divided by the
+/// same metric of that channel, see [`ratio`]. A metric that is unknown, missing, unavailable or
+/// not finite, or that belongs to a failed channel, fails with the reason.
+#[must_use]
+pub fn judge(
+    gate: &GateConfig,
+    channels: &[(String, ChannelMetrics)],
+    location: Option<String>,
+) -> Verdict {
+    let mut verdict = Verdict {
+        metric: gate.metric.clone(),
+        kind: VerdictKind::Fail,
+        accepted: false,
+        value: None,
+        low: None,
+        high: None,
+        min: gate.min,
+        max: gate.max,
+        unit: String::new(),
+        relative_to: gate.relative_to.clone(),
+        reason: String::new(),
+        location,
+    };
+    match measured(gate, channels) {
+        Err(reason) => verdict.reason = reason,
+        Ok((quotient, unit)) => decide(&mut verdict, gate, &quotient, unit),
+    }
+    verdict.accepted = match verdict.kind {
+        VerdictKind::Pass => true,
+        VerdictKind::Fail => false,
+        VerdictKind::Inconclusive => gate.inconclusive == InconclusivePolicy::Allow,
+    };
+    verdict
+}
+
+/// What is judged: a value, and its interval unless that is unbounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Quotient {
+    value: f64,
+    interval: Option<(f64, f64)>,
+    confidence: f64,
+}
+
+/// The number a gate asks for, with its unit, or the reason why there is none.
+fn measured<'a>(
+    gate: &GateConfig,
+    channels: &'a [(String, ChannelMetrics)],
+) -> Result<(Quotient, &'a str), String> {
+    if gate.min.is_none() && gate.max.is_none() {
+        return Err("the gate has neither min nor max".to_owned());
+    }
+    let (channel, key) = gate
+        .metric
+        .rsplit_once('.')
+        .ok_or_else(|| format!("`{}` is not of the form <channel>.<metric>", gate.metric))?;
+    let metric = lookup(channel, key, channels)?;
+    let quotient = match &gate.relative_to {
+        None => Quotient {
+            value: metric.estimate.value,
+            interval: Some((metric.estimate.low, metric.estimate.high)),
+            confidence: metric.estimate.confidence,
+        },
+        Some(other) => ratio(&metric.estimate, &lookup(other, key, channels)?.estimate),
+    };
+    let in_order = quotient
+        .interval
+        .is_none_or(|(low, high)| low.is_finite() && high.is_finite() && low <= high);
+    if !quotient.value.is_finite() || !in_order {
+        return Err(format!(
+            "`{}` is not a finite value with a finite interval: {} in {:?}",
+            gate.metric, quotient.value, quotient.interval
+        ));
+    }
+    let unit = if gate.relative_to.is_some() {
+        "1"
+    } else {
+        metric.unit
+    };
+    Ok((quotient, unit))
+}
+
+/// The metric `key` of `channel`, or why there is none.
+fn lookup<'a>(
+    channel: &str,
+    key: &str,
+    channels: &'a [(String, ChannelMetrics)],
+) -> Result<&'a Metric, String> {
+    let (_, metrics) = channels
+        .iter()
+        .find(|(name, _)| name == channel)
+        .ok_or_else(|| format!("there is no channel `{channel}`"))?;
+    if let Some(metric) = metrics.metrics.get(key) {
+        return Ok(metric);
+    }
+    if let Some(failure) = &metrics.error {
+        return Err(format!(
+            "channel `{channel}` failed at sample {} ({}): {}",
+            failure.sample, failure.kind, failure.message
+        ));
+    }
+    if key == DIVERGED_AT {
+        return Err(format!("channel `{channel}` did not diverge"));
+    }
+    Err(match metrics.unavailable.get(key) {
+        Some(reason) => format!("`{channel}.{key}` is unavailable: {reason}"),
+        None => format!("`{channel}.{key}` was not measured in this run"),
+    })
+}
+
+/// Quotient of two estimates by interval arithmetic.
+///
+/// The interval is the hull of the four quotients of the ends: for positive values
+/// `[a.low / b.high, a.high / b.low]`. It takes no advantage of noise that both channels share, so
+/// it is wider than the true interval (at least 90 % coverage for two 95 % intervals by
+/// Bonferroni's inequality, usually far more). It is unbounded where the divisor's interval
+/// touches zero.
+fn ratio(numerator: &Estimate, denominator: &Estimate) -> Quotient {
+    let bounded = denominator.low > 0.0 || denominator.high < 0.0;
+    let interval = bounded.then(|| {
+        let ends = [
+            numerator.low / denominator.low,
+            numerator.low / denominator.high,
+            numerator.high / denominator.low,
+            numerator.high / denominator.high,
+        ];
+        let low = ends.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (low, high)
+    });
+    Quotient {
+        value: numerator.value / denominator.value,
+        interval,
+        confidence: numerator.confidence.min(denominator.confidence),
+    }
+}
+
+/// Compares and words the result.
+fn decide(verdict: &mut Verdict, gate: &GateConfig, quotient: &Quotient, unit: &str) {
+    let by_value = gate.decide == GateDecision::Value;
+    let judged = if by_value {
+        Some((quotient.value, quotient.value))
+    } else {
+        quotient.interval
+    };
+    let (min, max) = (
+        gate.min.unwrap_or(f64::NEG_INFINITY),
+        gate.max.unwrap_or(f64::INFINITY),
+    );
+    verdict.value = Some(quotient.value);
+    (verdict.low, verdict.high) = quotient.interval.unzip();
+    unit.clone_into(&mut verdict.unit);
+    verdict.kind = match judged {
+        Some((low, high)) if min <= low && high <= max => VerdictKind::Pass,
+        Some((low, high)) if high < min || max < low => VerdictKind::Fail,
+        _ => VerdictKind::Inconclusive,
+    };
+    verdict.reason = words(verdict, quotient, by_value);
+}
+
+/// `0.340 ±0.001 ms (95 % interval) lies inside [0.33, 0.35] ms`.
+fn words(verdict: &Verdict, quotient: &Quotient, by_value: bool) -> String {
+    let number = match quotient.interval {
+        Some((low, high)) => estimate_text(
+            &Estimate {
+                value: quotient.value,
+                low,
+                high,
+                confidence: quotient.confidence,
+            },
+            REASON_DIGITS,
+        ),
+        None => format!("{} (unbounded interval)", plain(quotient.value)),
+    };
+    let unit = match verdict.unit.as_str() {
+        "" | "1" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    let what = match &verdict.relative_to {
+        Some(other) => format!(" relative to {other}"),
+        None => String::new(),
+    };
+    let basis = if by_value {
+        "value alone".to_owned()
+    } else {
+        format!("{} % interval", plain(100.0 * quotient.confidence))
+    };
+    let relation = match verdict.kind {
+        VerdictKind::Pass => "lies inside",
+        VerdictKind::Fail => "lies outside",
+        VerdictKind::Inconclusive => "straddles a limit of",
+    };
+    let limits = limits_text(verdict.min, verdict.max);
+    format!("{number}{unit}{what} ({basis}) {relation} {limits}{unit}")
+}

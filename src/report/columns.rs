@@ -1,0 +1,152 @@
+//! Which metrics matter for which motion, and how they are headed.
+
+use crate::metrics::{ChannelMetrics, Metric};
+use crate::scenario::MotionConfig;
+use std::collections::BTreeSet;
+
+/// One column of the table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Column {
+    /// Metric key.
+    pub(crate) key: String,
+    /// Heading.
+    pub(crate) title: String,
+}
+
+const STATIC: &[(&str, &str)] = &[
+    ("angle_random_walk_deg_per_sqrt_h", "ARW"),
+    (
+        "angle_random_walk_over_dc_gain_deg_per_sqrt_h",
+        "ARW / DC gain",
+    ),
+    ("bias_stability_deg_per_h", "bias stability"),
+    (
+        "bias_stability_over_dc_gain_deg_per_h",
+        "bias stability / DC gain",
+    ),
+    ("bias_instability_deg_per_h", "bias instability"),
+    ("mean_deg_per_h", "mean"),
+    ("mean_error_deg_per_h", "mean error"),
+    ("mean_ratio", "mean / raw mean"),
+    ("dc_gain", "DC gain"),
+    ("dc_gain_adapted", "DC gain adapted"),
+    ("noise_std_deg_per_h", "noise std"),
+    ("noise_gain", "noise power gain"),
+];
+
+const SWING: &[(&str, &str)] = &[
+    ("delay_vs_raw_ms", "delay vs raw"),
+    ("delay_vs_raw_predicted_ms", "predicted"),
+    ("predicted_delay_vs_raw_ms", "predicted"),
+    ("delay_vs_truth_ms", "delay vs truth"),
+    ("amplitude_ratio", "amplitude ratio"),
+    ("harmonic_distortion_percent", "harmonic distortion"),
+    ("tracking_error_rms_deg_per_h", "tracking error rms"),
+    ("noise_std_deg_per_h", "noise std"),
+    ("noise_gain", "noise power gain"),
+    ("noise_delay_bound_noise_gain", "least at this delay"),
+    ("dc_gain", "DC gain"),
+];
+
+const STEPS: &[(&str, &str)] = &[
+    ("settling_time_s", "settling time"),
+    ("mean_deg_per_h", "mean"),
+    ("mean_error_deg_per_h", "mean error"),
+    ("mean_ratio", "mean / raw mean"),
+    ("scale_factor_error_ppm", "scale factor error"),
+    ("scale_factor_nonlinearity_ppm", "nonlinearity"),
+    ("scale_factor_asymmetry_ppm", "asymmetry"),
+    ("tracking_error_rms_deg_per_h", "tracking error rms"),
+    ("noise_std_deg_per_h", "noise std"),
+    ("noise_gain", "noise power gain"),
+    ("dc_gain", "DC gain"),
+];
+
+const STATIC_HEADLINE: &[&str] = &[
+    "angle_random_walk_deg_per_sqrt_h",
+    "bias_stability_deg_per_h",
+    "mean_deg_per_h",
+    "dc_gain",
+];
+const SWING_HEADLINE: &[&str] = &["delay_vs_raw_ms", "amplitude_ratio", "noise_std_deg_per_h"];
+const STEPS_HEADLINE: &[&str] = &[
+    "settling_time_s",
+    "mean_error_deg_per_h",
+    "scale_factor_error_ppm",
+    "noise_std_deg_per_h",
+];
+
+/// Metrics of every motion that stand last: how a channel failed, what a pipeline costs.
+const ALWAYS: &[(&str, &str)] = &[
+    ("diverged_at_s", "diverged at"),
+    ("latency_us", "latency"),
+    ("sample_period_us", "pipeline period"),
+];
+
+fn known(motion: &MotionConfig) -> &'static [(&'static str, &'static str)] {
+    match motion {
+        MotionConfig::Static(_) => STATIC,
+        MotionConfig::Swing(_) => SWING,
+        MotionConfig::Steps(_) | MotionConfig::Rotation(_) => STEPS,
+    }
+}
+
+/// Heading of a metric that has none of its own: its key without underscores.
+fn title_of(motion: &MotionConfig, key: &str) -> String {
+    known(motion)
+        .iter()
+        .chain(ALWAYS)
+        .find(|(other, _)| *other == key)
+        .map_or_else(|| key.replace('_', " "), |(_, title)| (*title).to_owned())
+}
+
+/// The columns that at least one channel fills, in a fixed order; any other prediction of theory
+/// stands behind the known ones.
+pub(crate) fn columns(motion: &MotionConfig, channels: &[(String, ChannelMetrics)]) -> Vec<Column> {
+    let present: BTreeSet<&str> = channels
+        .iter()
+        .flat_map(|(_, metrics)| metrics.metrics.keys())
+        .map(String::as_str)
+        .collect();
+    let mut keys: Vec<&str> = known(motion).iter().map(|(key, _)| *key).collect();
+    let predictions = present
+        .iter()
+        .copied()
+        .filter(|key| key.contains("predict"));
+    keys.extend(predictions);
+    keys.extend(ALWAYS.iter().map(|(key, _)| *key));
+    let mut seen = BTreeSet::new();
+    keys.into_iter()
+        .filter(|key| present.contains(key) && seen.insert(*key))
+        .map(|key| Column {
+            key: key.to_owned(),
+            title: title_of(motion, key),
+        })
+        .collect()
+}
+
+/// Unit of a column, with the averaging time where that defines the metric.
+pub(crate) fn unit_text(metric: &Metric) -> String {
+    let unit = if metric.unit == "1" { "" } else { metric.unit };
+    match metric.fields.get("averaging_time_s") {
+        Some(time) => format!("{unit}, {} s", crate::gate::plain(*time)),
+        None => unit.to_owned(),
+    }
+}
+
+/// The few figures of a channel that stand for it in the suite's table: heading, value and unit.
+pub(crate) fn headline(motion: &MotionConfig, metrics: &ChannelMetrics) -> Vec<(String, String)> {
+    let keys = match motion {
+        MotionConfig::Static(_) => STATIC_HEADLINE,
+        MotionConfig::Swing(_) => SWING_HEADLINE,
+        MotionConfig::Steps(_) | MotionConfig::Rotation(_) => STEPS_HEADLINE,
+    };
+    keys.iter()
+        .filter_map(|key| {
+            let metric = metrics.metrics.get(*key)?;
+            let value = crate::gate::estimate_text(&metric.estimate, 2);
+            let text = format!("{value} {}", unit_text(metric));
+            Some((title_of(motion, key), text.trim_end().to_owned()))
+        })
+        .collect()
+}

@@ -1,0 +1,166 @@
+//! What a report is made of, and how one run ended.
+
+use crate::gate::{Verdict, VerdictKind};
+use crate::metrics::{ChannelFailure, ChannelMetrics};
+use crate::report::columns::headline;
+use crate::scenario::Scenario;
+use crate::signal::GyroFacts;
+
+/// Everything the report of one run shows.
+#[derive(Clone, Debug)]
+pub struct RunReport<'a> {
+    /// Version of the tool.
+    pub tool_version: &'a str,
+    /// The resolved scenario.
+    pub scenario: &'a Scenario,
+    /// Its file, as the user named it: never an absolute path.
+    pub file: &'a str,
+    /// Digest of the resolved scenario.
+    pub digest: &'a str,
+    /// Point of a sweep: its index and the keys it sets.
+    pub sweep: Option<(usize, Vec<(String, String)>)>,
+    /// The gyro in closed form.
+    pub gyro: &'a GyroFacts,
+    /// Channels, `raw` first, then in the order of the file.
+    pub channels: &'a [(String, ChannelMetrics)],
+    /// Judged gates, in the order of the file.
+    pub verdicts: &'a [Verdict],
+    /// Warnings for people, e.g. a filter that loses its digits.
+    pub notes: &'a [String],
+}
+
+/// How a run ended, worst last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum RunStatus {
+    /// It ran and every gate was accepted.
+    Pass,
+    /// A gate was not accepted.
+    GateFailed,
+    /// A channel failed, and no gate expected it to.
+    ChannelFailed,
+    /// The run itself could not finish.
+    RunFailed,
+}
+
+impl RunStatus {
+    /// The word in files: `pass`, `gate_failed`, `channel_failed` or `run_failed`.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::GateFailed => "gate_failed",
+            Self::ChannelFailed => "channel_failed",
+            Self::RunFailed => "run_failed",
+        }
+    }
+}
+
+/// One channel, as the suite sees it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelOutcome {
+    /// Name.
+    pub name: String,
+    /// The figures that matter for this motion, formatted: title and value with unit.
+    pub headline: Vec<(String, String)>,
+    /// Why it failed, if it did.
+    pub failure: Option<ChannelFailure>,
+    /// Whether a gate on `<channel>.diverged_at_s` expects the failure.
+    pub expected_failure: bool,
+}
+
+/// One run, as the suite sees it: small enough to keep for every run of a large sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunOutcome {
+    /// Scenario name.
+    pub name: String,
+    /// Folder below the output folder, `/` between parts: `swing-5hz` or `power/0003`.
+    pub folder: String,
+    /// Scenario file, as the user named it.
+    pub file: String,
+    /// Channels, `raw` first.
+    pub channels: Vec<ChannelOutcome>,
+    /// Judged gates.
+    pub verdicts: Vec<Verdict>,
+    /// Why the run could not finish, if it could not.
+    pub error: Option<String>,
+}
+
+impl RunOutcome {
+    /// The outcome of a run that finished.
+    #[must_use]
+    pub fn from_report(report: &RunReport, folder: &str) -> Self {
+        let expects = |channel: &str| {
+            let metric = format!("{channel}.diverged_at_s");
+            report
+                .verdicts
+                .iter()
+                .any(|verdict| verdict.metric == metric)
+        };
+        let channels = report
+            .channels
+            .iter()
+            .map(|(name, metrics)| ChannelOutcome {
+                name: name.clone(),
+                headline: headline(&report.scenario.turntable.motion, metrics),
+                failure: metrics.error.clone(),
+                expected_failure: metrics.error.is_some() && expects(name),
+            })
+            .collect();
+        Self {
+            name: report.scenario.name.clone(),
+            folder: folder.to_owned(),
+            file: report.file.to_owned(),
+            channels,
+            verdicts: report.verdicts.to_vec(),
+            error: None,
+        }
+    }
+
+    /// The outcome of a run that could not finish.
+    #[must_use]
+    pub fn failed(name: &str, folder: &str, file: &str, error: String) -> Self {
+        Self {
+            name: name.to_owned(),
+            folder: folder.to_owned(),
+            file: file.to_owned(),
+            channels: Vec::new(),
+            verdicts: Vec::new(),
+            error: Some(error),
+        }
+    }
+
+    /// How the run ended.
+    #[must_use]
+    pub fn status(&self) -> RunStatus {
+        let unexpected =
+            |channel: &ChannelOutcome| channel.failure.is_some() && !channel.expected_failure;
+        if self.error.is_some() {
+            RunStatus::RunFailed
+        } else if self.channels.iter().any(unexpected) {
+            RunStatus::ChannelFailed
+        } else if self.verdicts.iter().any(|verdict| !verdict.accepted) {
+            RunStatus::GateFailed
+        } else {
+            RunStatus::Pass
+        }
+    }
+
+    /// Number of gates with the verdict `kind`.
+    #[must_use]
+    pub fn count(&self, kind: VerdictKind) -> usize {
+        self.verdicts
+            .iter()
+            .filter(|verdict| verdict.kind == kind)
+            .count()
+    }
+}
+
+/// A gate's place without what differs from machine to machine: an absolute path is cut down to
+/// its file name.
+pub(crate) fn portable_location(location: &str) -> &str {
+    if location.starts_with('/') || location.contains(":\\") {
+        location.rsplit(['/', '\\']).next().unwrap_or(location)
+    } else {
+        location
+    }
+}

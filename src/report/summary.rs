@@ -1,0 +1,269 @@
+//! `summary.json` of a run and of a suite.
+
+use crate::gate::{Verdict, VerdictKind};
+use crate::metrics::{ChannelMetrics, Metric};
+use crate::report::json::{number, object, pretty};
+use crate::report::record::portable_location;
+use crate::report::{RunOutcome, RunReport, RunStatus};
+use crate::scenario::{Fidelity, PublishedConfig};
+use crate::signal::GyroFacts;
+use serde_json::{Map, Value};
+
+/// Version of the layout of both files.
+const SCHEMA: u32 = 1;
+
+/// The text of `<scenario>/summary.json`.
+///
+/// Keys stand in a fixed order: those of the record as documented, metrics, curves and reasons by
+/// name, channels and gates as given.
+///
+/// # Panics
+/// If a number is not finite; see the metric named in the message.
+#[must_use]
+pub fn run_summary_json(report: &RunReport) -> String {
+    let channels: Map<String, Value> = report
+        .channels
+        .iter()
+        .map(|(name, metrics)| (name.clone(), channel(name, metrics)))
+        .collect();
+    let published = report.scenario.published.iter().map(published).collect();
+    let gates = report.verdicts.iter().map(gate).collect();
+    let mut root = object([
+        ("schema", SCHEMA.into()),
+        ("tool", tool(report.tool_version)),
+        ("scenario", scenario(report)),
+        ("gyro", gyro(report.gyro)),
+        ("channels", channels.into()),
+        ("published", Value::Array(published)),
+        ("gates", Value::Array(gates)),
+    ]);
+    if !report.notes.is_empty() {
+        root.insert("notes".to_owned(), report.notes.to_vec().into());
+    }
+    pretty(&root.into())
+}
+
+/// The text of the suite's `summary.json`: every run with its folder, verdict counts and status.
+///
+/// # Panics
+/// If a gate's number is not finite.
+#[must_use]
+pub fn suite_summary_json(tool_version: &str, runs: &[RunOutcome]) -> String {
+    let with = |status: RunStatus| runs.iter().filter(|run| run.status() == status).count();
+    let verdicts = |kind: VerdictKind| runs.iter().map(|run| run.count(kind)).sum::<usize>();
+    let totals = object([
+        ("runs", runs.len().into()),
+        ("passed", with(RunStatus::Pass).into()),
+        ("gate_failed", with(RunStatus::GateFailed).into()),
+        ("channel_failed", with(RunStatus::ChannelFailed).into()),
+        ("run_failed", with(RunStatus::RunFailed).into()),
+        ("gates_passed", verdicts(VerdictKind::Pass).into()),
+        ("gates_failed", verdicts(VerdictKind::Fail).into()),
+        (
+            "gates_inconclusive",
+            verdicts(VerdictKind::Inconclusive).into(),
+        ),
+    ]);
+    let root = object([
+        ("schema", SCHEMA.into()),
+        ("tool", tool(tool_version)),
+        ("runs", runs.iter().map(run_entry).collect()),
+        ("totals", totals.into()),
+    ]);
+    pretty(&root.into())
+}
+
+fn run_entry(run: &RunOutcome) -> Value {
+    let gates = object([
+        ("pass", run.count(VerdictKind::Pass).into()),
+        ("fail", run.count(VerdictKind::Fail).into()),
+        ("inconclusive", run.count(VerdictKind::Inconclusive).into()),
+    ]);
+    let mut entry = object([
+        ("name", run.name.as_str().into()),
+        ("folder", run.folder.as_str().into()),
+        ("file", run.file.as_str().into()),
+        ("status", run.status().as_str().into()),
+        ("gates", gates.into()),
+    ]);
+    let failed: Map<String, Value> = run
+        .channels
+        .iter()
+        .filter_map(|channel| {
+            let failure = channel.failure.as_ref()?;
+            let record = object([
+                ("kind", failure.kind.as_str().into()),
+                ("expected", channel.expected_failure.into()),
+                ("message", failure.message.as_str().into()),
+            ]);
+            Some((channel.name.clone(), record.into()))
+        })
+        .collect();
+    if !failed.is_empty() {
+        entry.insert("failed_channels".to_owned(), failed.into());
+    }
+    if let Some(error) = &run.error {
+        entry.insert("error".to_owned(), error.as_str().into());
+    }
+    entry.into()
+}
+
+fn tool(version: &str) -> Value {
+    object([("name", "fogbench".into()), ("version", version.into())]).into()
+}
+
+fn scenario(report: &RunReport) -> Value {
+    let scenario = report.scenario;
+    let fidelity = match scenario.fidelity {
+        Fidelity::Loop => "loop",
+        Fidelity::Rate => "rate",
+    };
+    let mut record = object([
+        ("name", scenario.name.as_str().into()),
+        ("file", report.file.into()),
+        ("digest", report.digest.into()),
+        ("seed", scenario.seed.into()),
+        ("repeats", scenario.repeats.into()),
+        ("fidelity", fidelity.into()),
+        ("duration_s", number(scenario.duration_s, "duration_s")),
+        ("warm_up_s", number(scenario.warm_up_s, "warm_up_s")),
+    ]);
+    if let Some(description) = &scenario.description {
+        record.insert("description".to_owned(), description.as_str().into());
+    }
+    if let Some((index, point)) = &report.sweep {
+        let point: Map<String, Value> = point
+            .iter()
+            .map(|(key, value)| (key.clone(), value.as_str().into()))
+            .collect();
+        let sweep = object([("index", (*index).into()), ("point", point.into())]);
+        record.insert("sweep".to_owned(), sweep.into());
+    }
+    record.into()
+}
+
+fn gyro(facts: &GyroFacts) -> Value {
+    let budget: Map<String, Value> = facts
+        .angle_random_walk_budget_deg_per_sqrt_h
+        .iter()
+        .map(|(source, value)| ((*source).to_owned(), number(*value, source)))
+        .collect();
+    let fields = [
+        ("scale_factor_s", facts.scale_factor_s),
+        ("transit_time_us", facts.transit_time_us),
+        ("proper_frequency_khz", facts.proper_frequency_khz),
+        ("output_rate_hz", facts.output_rate_hz),
+        ("loop_gain", facts.loop_gain),
+        ("loop_bandwidth_hz", facts.loop_bandwidth_hz),
+        ("delay_ms", facts.delay_ms),
+    ];
+    let mut record = object(fields.map(|(key, value)| (key, number(value, key))));
+    record.insert(
+        "angle_random_walk_budget_deg_per_sqrt_h".to_owned(),
+        budget.into(),
+    );
+    record.into()
+}
+
+fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
+    let mut record: Map<String, Value> = metrics
+        .metrics
+        .iter()
+        .map(|(key, metric)| (key.clone(), estimate(&format!("{name}.{key}"), metric)))
+        .collect();
+    if !metrics.curves.is_empty() {
+        let curves: Map<String, Value> = metrics
+            .curves
+            .iter()
+            .map(|(curve, columns)| {
+                let columns: Map<String, Value> = columns
+                    .iter()
+                    .map(|(column, values)| {
+                        let what = format!("{name}.curves.{curve}.{column}");
+                        let values = values.iter().map(|value| number(*value, &what));
+                        (column.clone(), values.collect())
+                    })
+                    .collect();
+                (curve.clone(), columns.into())
+            })
+            .collect();
+        record.insert("curves".to_owned(), curves.into());
+    }
+    if !metrics.unavailable.is_empty() {
+        let reasons: Map<String, Value> = metrics
+            .unavailable
+            .iter()
+            .map(|(key, reason)| (key.clone(), reason.as_str().into()))
+            .collect();
+        record.insert("unavailable".to_owned(), reasons.into());
+    }
+    if let Some(failure) = &metrics.error {
+        let error = object([
+            ("kind", failure.kind.as_str().into()),
+            ("sample", failure.sample.into()),
+            ("message", failure.message.as_str().into()),
+        ]);
+        record.insert("error".to_owned(), error.into());
+    }
+    record.into()
+}
+
+fn estimate(what: &str, metric: &Metric) -> Value {
+    let estimate = &metric.estimate;
+    let mut record = object([
+        ("value", number(estimate.value, what)),
+        ("low", number(estimate.low, what)),
+        ("high", number(estimate.high, what)),
+        ("confidence", number(estimate.confidence, what)),
+        ("unit", metric.unit.into()),
+    ]);
+    for (field, value) in &metric.fields {
+        record.insert((*field).to_owned(), number(*value, what));
+    }
+    record.into()
+}
+
+fn published(figure: &PublishedConfig) -> Value {
+    object([
+        ("metric", figure.metric.as_str().into()),
+        ("value", number(figure.value, &figure.metric)),
+        ("unit", figure.unit.as_str().into()),
+        ("source", figure.source.as_str().into()),
+    ])
+    .into()
+}
+
+fn gate(verdict: &Verdict) -> Value {
+    let mut record = object([
+        ("metric", verdict.metric.as_str().into()),
+        ("verdict", verdict.kind.as_str().into()),
+        ("accepted", verdict.accepted.into()),
+    ]);
+    let numbers = [
+        ("value", verdict.value),
+        ("low", verdict.low),
+        ("high", verdict.high),
+        ("min", verdict.min),
+        ("max", verdict.max),
+    ];
+    for (key, value) in numbers {
+        if let Some(value) = value {
+            record.insert(key.to_owned(), number(value, &verdict.metric));
+        }
+    }
+    let words = [
+        ("unit", Some(verdict.unit.as_str())),
+        ("relative_to", verdict.relative_to.as_deref()),
+        ("reason", Some(verdict.reason.as_str())),
+        (
+            "location",
+            verdict.location.as_deref().map(portable_location),
+        ),
+    ];
+    for (key, value) in words {
+        if let Some(value) = value.filter(|value| !value.is_empty()) {
+            record.insert(key.to_owned(), value.into());
+        }
+    }
+    record.into()
+}

@@ -1,0 +1,273 @@
+//! What `run` prints for one scenario.
+
+use crate::gate::{Verdict, VerdictKind, estimate_text, plain};
+use crate::metrics::{ChannelMetrics, Metric};
+use crate::report::RunReport;
+use crate::report::columns::{Column, columns, unit_text};
+use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
+use crate::scenario::{Fidelity, PublishedConfig};
+
+/// Digits of an interval's half width in tables.
+const DIGITS: i32 = 2;
+/// What stands where there is no number.
+const NOTHING: &str = "-";
+const INDENT: &str = "  ";
+
+/// The table of one run: budget, channels by metrics, published figures beside the simulated
+/// ones, gates, failures and notes. Lines are kept within `width` where words allow it.
+#[must_use]
+pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
+    let mut text = heading(report, width, colour);
+    text.push_str(&budget(report, width));
+    text.push_str(&channels(report, width, colour));
+    text.push_str(&failures(report, width, colour));
+    text.push_str(&published(report, colour));
+    text.push_str(&gates(report.verdicts, width, colour));
+    for note in report.notes {
+        let note = format!("{} {note}", toned("note:", Tone::Doubt, colour));
+        text.push_str(&wrapped(&note, INDENT, width));
+    }
+    text
+}
+
+fn heading(report: &RunReport, width: usize, colour: bool) -> String {
+    let scenario = report.scenario;
+    let model = match scenario.fidelity {
+        Fidelity::Loop => "loop model",
+        Fidelity::Rate => "rate model",
+    };
+    let mut text = format!(
+        "{}  {model}, {} s after {} s of warm-up, seed {}, {}\n",
+        toned(&scenario.name, Tone::Heading, colour),
+        plain(scenario.duration_s),
+        plain(scenario.warm_up_s),
+        scenario.seed,
+        report.file,
+    );
+    if let Some(description) = &scenario.description {
+        text.push_str(&wrapped(description, INDENT, width));
+    }
+    if let Some((index, point)) = &report.sweep {
+        let point: Vec<String> = point
+            .iter()
+            .map(|(key, value)| format!("{key} = {value}"))
+            .collect();
+        let line = format!("point {index:04}: {}", point.join(", "));
+        text.push_str(&wrapped(&line, INDENT, width));
+    }
+    text
+}
+
+fn budget(report: &RunReport, width: usize) -> String {
+    let terms: Vec<String> = report
+        .gyro
+        .angle_random_walk_budget_deg_per_sqrt_h
+        .iter()
+        .map(|(source, value)| format!("{source} {value:.5}"))
+        .collect();
+    let mut line = format!("ARW budget (theory), deg/sqrt(h): {}", terms.join(", "));
+    let raw = report.channels.iter().find(|(name, _)| name == "raw");
+    let key = "angle_random_walk_deg_per_sqrt_h";
+    if let Some(metric) = raw.and_then(|(_, metrics)| metrics.metrics.get(key)) {
+        line.push_str("; simulated raw ");
+        line.push_str(&estimate_text(&metric.estimate, DIGITS));
+    }
+    wrapped(&line, INDENT, width)
+}
+
+/// The channels, their columns broken into as many blocks as the width asks for.
+fn channels(report: &RunReport, width: usize, colour: bool) -> String {
+    let columns = columns(&report.scenario.turntable.motion, report.channels);
+    let names = column_of_names(report.channels, colour);
+    let mut text = String::new();
+    let mut block = vec![names.clone()];
+    let mut used = INDENT.len() + widest(&names);
+    for column in &columns {
+        let cells = column_cells(column, report.channels);
+        let more = widest(&cells) + 2;
+        if block.len() > 1 && used + more > width {
+            text.push_str(&block_lines(&block));
+            block = vec![names.clone()];
+            used = INDENT.len() + widest(&names);
+        }
+        used += more;
+        block.push(cells);
+    }
+    text.push_str(&block_lines(&block));
+    text
+}
+
+fn column_of_names(channels: &[(String, ChannelMetrics)], colour: bool) -> Vec<String> {
+    let names = channels.iter().map(|(name, metrics)| {
+        if metrics.error.is_some() {
+            toned(name, Tone::Bad, colour)
+        } else {
+            name.clone()
+        }
+    });
+    [toned("channel", Tone::Heading, colour), String::new()]
+        .into_iter()
+        .chain(names)
+        .collect()
+}
+
+/// Title, unit, then one cell per channel.
+fn column_cells(column: &Column, channels: &[(String, ChannelMetrics)]) -> Vec<String> {
+    let of = |metrics: &'_ ChannelMetrics| metrics.metrics.get(&column.key).cloned();
+    let unit = channels
+        .iter()
+        .find_map(|(_, metrics)| of(metrics))
+        .map(|metric| unit_text(&metric))
+        .unwrap_or_default();
+    let cells = channels.iter().map(|(_, metrics)| match of(metrics) {
+        Some(metric) => estimate_text(&metric.estimate, DIGITS),
+        None => NOTHING.to_owned(),
+    });
+    [column.title.clone(), unit]
+        .into_iter()
+        .chain(cells)
+        .collect()
+}
+
+fn widest(cells: &[String]) -> usize {
+    cells
+        .iter()
+        .map(|cell| visible_width(cell))
+        .max()
+        .unwrap_or(0)
+}
+
+fn block_lines(columns: &[Vec<String>]) -> String {
+    let mut grid = Grid::default();
+    let rows = columns.first().map_or(0, Vec::len);
+    for row in 0..rows {
+        grid.row(columns.iter().map(|cells| cells[row].clone()));
+    }
+    format!("\n{}", grid.lines(INDENT))
+}
+
+/// Channels that failed, then metrics of the table that a record could not support.
+fn failures(report: &RunReport, width: usize, colour: bool) -> String {
+    let mut text = String::new();
+    for (name, metrics) in report.channels {
+        if let Some(failure) = &metrics.error {
+            let line = format!(
+                "{} channel {name} at sample {} ({}): {}",
+                toned("FAILED", Tone::Bad, colour),
+                failure.sample,
+                failure.kind,
+                failure.message
+            );
+            text.push_str(&wrapped(&line, INDENT, width));
+        }
+        for (key, reason) in &metrics.unavailable {
+            let line = format!("unavailable {name}.{key}: {reason}");
+            text.push_str(&wrapped(&line, INDENT, width));
+        }
+    }
+    if text.is_empty() {
+        text
+    } else {
+        format!("\n{text}")
+    }
+}
+
+fn published(report: &RunReport, colour: bool) -> String {
+    if report.scenario.published.is_empty() {
+        return String::new();
+    }
+    let mut grid = Grid::default();
+    let heads = [
+        "published",
+        "unit",
+        "paper",
+        "simulated",
+        "interval",
+        "difference",
+        "source",
+    ];
+    grid.row(heads.map(|head| toned(head, Tone::Heading, colour)));
+    for figure in &report.scenario.published {
+        grid.row(published_row(figure, report.channels));
+    }
+    format!("\n{}", grid.lines(INDENT))
+}
+
+fn published_row(figure: &PublishedConfig, channels: &[(String, ChannelMetrics)]) -> [String; 7] {
+    let (value, interval, difference) = match simulated(figure, channels) {
+        Some(metric) => beside(figure, metric),
+        None => (
+            "not measured".to_owned(),
+            NOTHING.to_owned(),
+            NOTHING.to_owned(),
+        ),
+    };
+    [
+        figure.metric.clone(),
+        figure.unit.clone(),
+        figure.value.to_string(),
+        value,
+        interval,
+        difference,
+        figure.source.clone(),
+    ]
+}
+
+/// Simulated value, its interval, and simulated minus published, absolute and relative.
+fn beside(figure: &PublishedConfig, metric: &Metric) -> (String, String, String) {
+    let estimate = metric.estimate;
+    let value = plain(estimate.value);
+    let interval = if estimate.low < estimate.high {
+        format!("[{}, {}]", plain(estimate.low), plain(estimate.high))
+    } else {
+        NOTHING.to_owned()
+    };
+    if metric.unit != figure.unit && !(metric.unit == "1" && figure.unit.is_empty()) {
+        let units = format!("none: simulated in {}", metric.unit);
+        return (value, interval, units);
+    }
+    let difference = estimate.value - figure.value;
+    let sign = if difference < 0.0 { "" } else { "+" };
+    let mut text = format!("{sign}{}", plain(difference));
+    if figure.value != 0.0 {
+        let percent = 100.0 * difference / figure.value.abs();
+        text.push_str(&format!(" ({percent:+.1} %)"));
+    }
+    (value, interval, text)
+}
+
+fn simulated<'a>(
+    figure: &PublishedConfig,
+    channels: &'a [(String, ChannelMetrics)],
+) -> Option<&'a Metric> {
+    let (channel, key) = figure.metric.rsplit_once('.')?;
+    let (_, metrics) = channels.iter().find(|(name, _)| name == channel)?;
+    metrics.metrics.get(key)
+}
+
+/// One line per gate: `PASS  rls.delay_vs_raw_ms: 0.340 ms ... lies inside [0.33, 0.35] ms`.
+fn gates(verdicts: &[Verdict], width: usize, colour: bool) -> String {
+    if verdicts.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from("\n");
+    for verdict in verdicts {
+        text.push_str(&wrapped(&gate_line(verdict, colour), INDENT, width));
+    }
+    text
+}
+
+/// A gate in words, its place behind it unless it was accepted.
+pub(crate) fn gate_line(verdict: &Verdict, colour: bool) -> String {
+    let word = match (verdict.kind, verdict.accepted) {
+        (VerdictKind::Pass, _) => toned("PASS", Tone::Good, colour),
+        (VerdictKind::Fail, _) => toned("FAIL", Tone::Bad, colour),
+        (VerdictKind::Inconclusive, true) => toned("INCONCLUSIVE (allowed)", Tone::Doubt, colour),
+        (VerdictKind::Inconclusive, false) => toned("INCONCLUSIVE", Tone::Bad, colour),
+    };
+    let place = match &verdict.location {
+        Some(location) if !verdict.accepted => format!(" ({location})"),
+        _ => String::new(),
+    };
+    format!("{word} {}: {}{place}", verdict.metric, verdict.reason)
+}
