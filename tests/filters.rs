@@ -433,6 +433,17 @@ fn an_exhausted_matrix_is_reported_as_no_longer_definite() {
 }
 
 #[test]
+fn a_start_up_transient_is_no_divergence() {
+    // The first regressor is a thousandth of what it must predict: a weight of 1000 for a while.
+    let mut input = constant(1.0, 0.01, 20_000);
+    input[0] = 1e-3;
+    let (output, divergence) = run(&mut Rls::new(&predictor(1.0, 1e12)), &input);
+    assert_eq!(divergence, None);
+    let peak = output.iter().fold(0.0_f64, |max, word| max.max(word.abs()));
+    assert!(peak > 500.0, "the transient of {peak} is no challenge");
+}
+
+#[test]
 fn the_output_register_delays_by_exactly_one_sample() {
     let input = swing(1.0, 10.0, 0.005, 1000);
     let mut config = predictor(1.0, 1e4);

@@ -40,9 +40,9 @@ impl Turntable {
     /// Motion over the next output sample, rad/s; the rate at its end is truth at that stamp.
     ///
     /// The first call covers the time from 0 to T. Cubics join with equal rate and slope, except at
-    /// the steps of a staircase on an ideal table. Against the exact motion of angular frequency
-    /// `w` they err by at most `(w T)^4 / 384` of the amplitude inside a sample, by nothing at the
-    /// stamps.
+    /// the steps of a staircase on an ideal table. Against the exact sine of angular frequency `w`
+    /// an ideal table errs by nothing at the stamps and by at most `(w T)^4 / 384` of the amplitude
+    /// between them (2e-10 at 10 Hz and 4 kHz); a servo has its amplitude low by that much at most.
     pub fn next_segment(&mut self) -> MotionSegment {
         let mut motion = self.servo.follow(self.profile.next_segment());
         motion.rate_rad_per_s[0] += self.earth_rate;
