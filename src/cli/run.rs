@@ -9,10 +9,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::arguments::{Format, RunOptions};
 use super::exit::Exit;
 use super::{output, select};
-use crate::experiment::{
-    Observer, Plan, RunOutcome, RunStatus, SuiteError, SuiteOptions, SuiteOutcome, run_suite,
-};
-use crate::report;
+use crate::experiment::{Observer, Plan, SuiteError, SuiteOptions, run_suite};
+use crate::report::{self, RunOutcome, RunReport, RunStatus};
 
 /// Plans, runs, prints and judges.
 pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
@@ -24,38 +22,35 @@ pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
     let suite = SuiteOptions { output: options.output.clone(), threads: options.jobs };
     let result = run_suite(&plans, &suite, &progress);
     progress.bar.finish_and_clear();
-    let outcome = match result {
-        Ok(outcome) => outcome,
+    let runs = match result {
+        Ok(runs) => runs,
         Err(error) => {
             output::talk(&format!("error: {error}"));
             return Ok(match error {
                 SuiteError::Write { .. } => Exit::Io,
-                SuiteError::Threads { .. } | SuiteError::Gyro { .. } => Exit::Internal,
+                SuiteError::Threads { .. } => Exit::Internal,
             });
         }
     };
     progress.printed()?;
-    output::data(&closing(&outcome, options.format))?;
+    output::data(&closing(&runs, options.format))?;
     output::talk(&format!("results in {}", options.output.display()));
-    Ok(exit_of(&outcome))
+    Ok(exit_of(&runs))
 }
 
-/// The verdict of the whole suite.
-fn exit_of(outcome: &SuiteOutcome) -> Exit {
-    match outcome.status() {
-        RunStatus::Passed => Exit::Success,
-        RunStatus::GateFailed => Exit::GateFailed,
-        RunStatus::ChannelFailed => Exit::RunFailed,
+/// The verdict of the whole suite: the worst of its runs.
+fn exit_of(runs: &[RunOutcome]) -> Exit {
+    match runs.iter().map(RunOutcome::status).max() {
+        None | Some(RunStatus::Pass) => Exit::Success,
+        Some(RunStatus::GateFailed) => Exit::GateFailed,
+        Some(RunStatus::ChannelFailed | RunStatus::RunFailed) => Exit::RunFailed,
     }
 }
 
-fn closing(outcome: &SuiteOutcome, format: Format) -> String {
+fn closing(runs: &[RunOutcome], format: Format) -> String {
     match format {
-        Format::Text => {
-            let reports = outcome.reports();
-            report::suite_text(&reports, output::width(), output::colour())
-        }
-        Format::Json => report::suite_summary_json(&outcome.reports()),
+        Format::Text => report::suite_text(runs, output::width(), output::colour()),
+        Format::Json => report::suite_summary_json(env!("CARGO_PKG_VERSION"), runs),
         // Every run has been printed on its own line.
         Format::Jsonl => String::new(),
     }
@@ -91,15 +86,17 @@ impl Progress {
         Self { bar, format, pending: Mutex::new(pending) }
     }
 
-    fn text(&self, outcome: &RunOutcome) -> String {
+    fn text(&self, run: &RunReport) -> String {
         match self.format {
             Format::Text => {
-                let table =
-                    report::table_text(&outcome.report(), output::width(), output::colour());
+                let table = report::table_text(run, output::width(), output::colour());
                 format!("{table}\n")
             }
             Format::Json => String::new(),
-            Format::Jsonl => outcome.summary_line(),
+            Format::Jsonl => {
+                let document = report::run_summary_json(run);
+                format!("{}\n", document.lines().map(str::trim_start).collect::<String>())
+            }
         }
     }
 
@@ -115,8 +112,8 @@ impl Observer for Progress {
         self.bar.inc(whole(simulated_s));
     }
 
-    fn finished(&self, index: usize, outcome: &RunOutcome) {
-        let text = self.text(outcome);
+    fn finished(&self, index: usize, report: &RunReport) {
+        let text = self.text(report);
         let mut pending = self.pending.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         pending.texts.insert(index, text);
         let next = pending.next;

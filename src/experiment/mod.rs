@@ -4,12 +4,10 @@
 //! `plan`, so that `check` and `run` refuse the same files.
 
 mod channel_filter;
-mod outcome;
 mod plan;
 mod run;
 mod simulate;
 mod suite;
 
-pub use outcome::{RunOutcome, RunStatus, SuiteOutcome};
 pub use plan::{Plan, plan_suite};
 pub use suite::{Observer, SuiteError, SuiteOptions, run_suite};

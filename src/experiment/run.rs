@@ -1,61 +1,142 @@
 //! One scenario: its repeats, their measurement, the verdicts and the files.
 
+use std::io;
 use std::path::Path;
 
 use rayon::prelude::*;
 
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
-use super::outcome::RunOutcome;
 use super::plan::{DIVERGED_AT, Plan, motion};
 use super::simulate::{RecordLength, Simulation, simulate};
-use super::suite::{Observer, SuiteError};
+use super::suite::{Observer, SuiteError, VERSION};
 use crate::filters::Divergence;
 use crate::gate::judge;
 use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Motion, Record, Settings,
     aggregate, measure,
 };
-use crate::report::{self, FolderWriter};
+use crate::gyro::GyroError;
+use crate::report::{self, FolderWriter, RunOutcome, RunReport};
 use crate::scenario::{SamplesFormat, manifest_toml};
 use crate::signal::{FilterShape, RunSignals};
 
 /// Channels of one repeat with their metrics.
 type Channels = Vec<(String, ChannelMetrics)>;
 
-/// Runs `plan`, writes its folder under `output` and judges it.
+/// Runs `plan`, judges it and writes its folder under `output`.
 pub(super) fn run_scenario(
     plan: &Plan,
+    index: usize,
     output: &Path,
     observer: &dyn Observer,
 ) -> Result<RunOutcome, SuiteError> {
-    let scenario = &plan.resolved().scenario;
-    // The first repeat's records are kept for the plots and sample files; the others are dropped
-    // as soon as they are measured.
-    let (simulation, first) = run_repeat(plan, 0, observer)?;
-    let others: Vec<Channels> = (1..scenario.repeats)
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|repeat| run_repeat(plan, repeat, observer).map(|(_, channels)| channels))
-        .collect::<Result<_, _>>()?;
-    let channels = combine(first, others);
     let resolved = plan.resolved();
+    let scenario = &resolved.scenario;
+    let folder = resolved.folder();
+    let (simulation, channels) = match run_repeats(plan, observer) {
+        Ok(done) => done,
+        Err(error) => {
+            let (name, file) = (&scenario.name, &resolved.file);
+            return Ok(RunOutcome::failed(name, &folder, file, error.to_string()));
+        }
+    };
     let gates = scenario.gates.iter().enumerate();
-    let verdicts = gates
+    let verdicts: Vec<_> = gates
         .map(|(index, gate)| {
             let place = resolved.locate(&format!("gate[{index}].metric"));
             judge(gate, &channels, Some(place.to_string()))
         })
         .collect();
-    let outcome = RunOutcome::new(plan, channels, verdicts);
-    write_folder(plan, &outcome, &simulation, output)?;
-    Ok(outcome)
+    let report = RunReport {
+        tool_version: VERSION,
+        scenario,
+        file: &resolved.file,
+        digest: &resolved.digest,
+        sweep: resolved.sweep.as_ref().map(|point| (point.index, point.assignments.clone())),
+        gyro: plan.facts(),
+        channels: &channels,
+        verdicts: &verdicts,
+        notes: plan.warnings(),
+    };
+    let target = output.join(&folder);
+    write_folder(plan, &report, &simulation, &target)
+        .map_err(|source| SuiteError::Write { path: target, source })?;
+    observer.finished(index, &report);
+    Ok(RunOutcome::from_report(&report, &folder))
+}
+
+/// Runs every repeat; the records of the first are kept for the plots and the sample files, those
+/// of the others are dropped as soon as they are measured.
+fn run_repeats(
+    plan: &Plan,
+    observer: &dyn Observer,
+) -> Result<(Simulation, Channels), GyroError> {
+    let (simulation, first) = run_repeat(plan, 0, observer)?;
+    let others: Vec<Channels> = (1..plan.resolved().scenario.repeats)
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|repeat| run_repeat(plan, repeat, observer).map(|(_, channels)| channels))
+        .collect::<Result<_, _>>()?;
+    Ok((simulation, combine(first, others)))
+}
+
+/// Writes everything of one run beside its place and swaps it in whole.
+fn write_folder(
+    plan: &Plan,
+    report: &RunReport,
+    simulation: &Simulation,
+    target: &Path,
+) -> io::Result<()> {
+    let folder = FolderWriter::create(target)?;
+    folder.write("summary.json", report::run_summary_json(report).as_bytes())?;
+    folder.write("manifest.toml", manifest_toml(plan.resolved(), VERSION).as_bytes())?;
+    if let Some(csv) = report::allan_csv(report) {
+        folder.write("allan.csv", csv.as_bytes())?;
+    }
+    if let Some(csv) = report::psd_csv(report) {
+        folder.write("psd.csv", csv.as_bytes())?;
+    }
+    let signals = signals(plan, simulation);
+    for (name, svg) in report::plots(report, &signals) {
+        folder.write(&name, svg.as_bytes())?;
+    }
+    if report.scenario.output.samples == SamplesFormat::Npy {
+        write_samples(&folder, &signals)?;
+    }
+    folder.commit()
+}
+
+fn signals<'a>(plan: &Plan, simulation: &'a Simulation) -> RunSignals<'a> {
+    let raw = ("raw", simulation.raw_deg_per_h.as_slice());
+    let filters = simulation.filters.iter().filter_map(|filter| {
+        let words = filter.words.as_ref().ok()?;
+        Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
+    });
+    let sample_period_s = plan.sample_period_s();
+    RunSignals {
+        sample_period_s,
+        first_measured: RecordLength::new(&plan.resolved().scenario, sample_period_s).warm_up,
+        truth_deg_per_h: &simulation.truth_deg_per_h,
+        channels: std::iter::once(raw).chain(filters).collect(),
+    }
+}
+
+fn write_samples(folder: &FolderWriter, signals: &RunSignals) -> io::Result<()> {
+    for (name, words) in &signals.channels {
+        folder.write_npy(&format!("samples/{name}.npy"), words)?;
+    }
+    folder.write_npy("samples/truth.npy", signals.truth_deg_per_h)?;
+    let samples = signals.truth_deg_per_h.len() as u64;
+    let time_s: Vec<f64> =
+        (0..samples).map(|index| stamp_s(index, signals.sample_period_s)).collect();
+    folder.write_npy("samples/time_s.npy", &time_s)
 }
 
 fn run_repeat(
     plan: &Plan,
     repeat: u32,
     observer: &dyn Observer,
-) -> Result<(Simulation, Channels), SuiteError> {
+) -> Result<(Simulation, Channels), GyroError> {
     let scenario = &plan.resolved().scenario;
     let length = RecordLength::new(scenario, plan.sample_period_s());
     let simulation = simulate(scenario, length, repeat, observer)?;

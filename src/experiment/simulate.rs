@@ -5,7 +5,7 @@ use super::suite::Observer;
 use crate::gyro::{Gyro, GyroError};
 use crate::random::Streams;
 use crate::scenario::Scenario;
-use crate::turntable::Turntable;
+use crate::turntable::{Turntable, first_measured_index};
 use crate::units::rad_per_s_to_deg_per_h;
 
 /// Samples between two reports of progress.
@@ -30,7 +30,7 @@ impl RecordLength {
     pub(super) fn new(scenario: &Scenario, sample_period_s: f64) -> Self {
         let rate_hz = 1.0 / sample_period_s;
         Self {
-            warm_up: (scenario.warm_up_s * rate_hz).ceil() as usize,
+            warm_up: first_measured_index(scenario.warm_up_s, sample_period_s) as usize,
             measured: (scenario.duration_s * rate_hz).floor() as usize,
         }
     }

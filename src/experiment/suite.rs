@@ -6,10 +6,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::outcome::{RunOutcome, SuiteOutcome};
 use super::plan::Plan;
 use super::run::run_scenario;
-use crate::report;
+use crate::report::{self, RunOutcome, RunReport};
+
+/// Version of the program, as every result names it.
+pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// How a suite is run.
 #[derive(Clone, Debug)]
@@ -25,7 +27,7 @@ pub trait Observer: Sync {
     /// `simulated_s` more seconds of gyro time are done.
     fn advanced(&self, simulated_s: f64);
     /// Run `index` of the plan is done and its files stand in their place.
-    fn finished(&self, index: usize, outcome: &RunOutcome);
+    fn finished(&self, index: usize, report: &RunReport);
 }
 
 /// Why a suite stopped before its end.
@@ -61,17 +63,15 @@ pub fn run_suite(
     plans: &[Plan],
     options: &SuiteOptions,
     observer: &dyn Observer,
-) -> Result<SuiteOutcome, SuiteError> {
+) -> Result<Vec<RunOutcome>, SuiteError> {
     create_folder(&options.output)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().map_err(
         |error| SuiteError::Threads { threads: options.threads, message: error.to_string() },
     )?;
     let runs = pool.install(|| run_all(plans, options, observer))?;
-    let outcome = SuiteOutcome { runs };
-    let summaries = outcome.summaries();
-    write(&options.output.join("summary.json"), &report::suite_summary_json(&summaries))?;
-    write(&options.output.join("junit.xml"), &report::junit_xml(&summaries))?;
-    Ok(outcome)
+    write(&options.output.join("summary.json"), &report::suite_summary_json(VERSION, &runs))?;
+    write(&options.output.join("junit.xml"), &report::junit_xml(&runs))?;
+    Ok(runs)
 }
 
 /// Runs the plans longest first, so that the last core is not left alone with the longest run.
@@ -91,10 +91,9 @@ fn run_all(
             if stopped.load(Ordering::Relaxed) {
                 return (index, None);
             }
-            let result = run_scenario(&plans[index], &options.output, observer);
-            match &result {
-                Ok(outcome) => observer.finished(index, outcome),
-                Err(_) => stopped.store(true, Ordering::Relaxed),
+            let result = run_scenario(&plans[index], index, &options.output, observer);
+            if result.is_err() {
+                stopped.store(true, Ordering::Relaxed);
             }
             (index, Some(result))
         })
