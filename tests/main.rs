@@ -1,3 +1,6 @@
 //! The one integration-test binary.
 
+mod known_answers_gyro;
+#[path = "../benches/plain_loop.rs"]
+mod plain_loop;
 mod support;
