@@ -147,3 +147,14 @@ pub fn hz_to_khz(frequency_hz: f64) -> f64 {
 pub fn celsius_to_kelvin(temperature_c: f64) -> f64 {
     temperature_c + ZERO_CELSIUS_K
 }
+
+/// SI prefix pico.
+pub const PICO: f64 = 1e-12;
+/// SI prefix nano.
+pub const NANO: f64 = 1e-9;
+/// SI prefix micro.
+pub const MICRO: f64 = 1e-6;
+/// SI prefix milli.
+pub const MILLI: f64 = 1e-3;
+/// SI prefix kilo.
+pub const KILO: f64 = 1e3;

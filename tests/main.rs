@@ -5,5 +5,6 @@ mod cli;
 mod closed_loop;
 mod determinism;
 mod filters;
+mod known_answers_gyro;
 mod known_answers_turntable;
 mod support;

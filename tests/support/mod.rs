@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+pub(crate) mod reference_gyro;
+
 /// Asserts that `got` equals `want` within `rtol * |want| + atol`.
 #[track_caller]
 pub(crate) fn assert_close(got: f64, want: f64, rtol: f64, atol: f64) {

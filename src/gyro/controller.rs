@@ -1,0 +1,131 @@
+//! Digital controller: the loop's transfer function, gain and delay.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::gyro::error::GyroError;
+
+/// Largest latency the models hold, loop periods.
+pub(super) const LATENCY_PERIODS_MAX: u32 = 3;
+
+/// The integrating loop in its linear range.
+///
+/// `r[m+1] = r[m] + g e[m-d]` with `e = phi_s - r`: the transfer function from Sagnac phase to
+/// register is `H(z) = g z^-(1+d) / (1 - z^-1 + g z^-(1+d))`, unity at DC for any gain (type 1).
+///
+/// # Source
+/// Derived from the recursion above. Checked by known answers K5, K6 and K7 against the loop model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Controller {
+    /// Integrator gain g.
+    pub gain: f64,
+    /// Pipeline latency d, loop periods.
+    pub latency_periods: u32,
+    /// Loop period `T_L = 2 tau`, s.
+    pub loop_period_s: f64,
+}
+
+impl Controller {
+    /// The controller whose closed loop has the given -3 dB bandwidth, Hz.
+    ///
+    /// `|H|^2 = 1/2` at `theta = 2 pi f T_L` is the quadratic `g^2 - 2 g R - |1 - z^-1|^2 = 0` with
+    /// `R = cos((1 + d) theta) - cos(d theta)`; its only positive root is the gain.
+    ///
+    /// # Errors
+    /// [`GyroError::LatencyOutOfRange`], [`GyroError::BandwidthAboveNyquist`],
+    /// [`GyroError::UnstableLoop`] if the gain is not below the stability limit, and
+    /// [`GyroError::UnreachableBandwidth`] if the response with that gain falls below -3 dB at a
+    /// lower frequency already.
+    pub fn new(
+        bandwidth_hz: f64,
+        latency_periods: u32,
+        loop_period_s: f64,
+    ) -> Result<Self, GyroError> {
+        if latency_periods > LATENCY_PERIODS_MAX {
+            return Err(GyroError::LatencyOutOfRange { latency_periods });
+        }
+        let half_loop_rate_hz = 0.5 / loop_period_s;
+        if bandwidth_hz >= half_loop_rate_hz {
+            return Err(GyroError::BandwidthAboveNyquist {
+                bandwidth_hz,
+                half_loop_rate_hz,
+            });
+        }
+        let angle = TAU * bandwidth_hz * loop_period_s;
+        let gain = half_power_gain(angle, latency_periods);
+        let gain_limit = gain_limit(latency_periods);
+        if gain >= gain_limit {
+            return Err(GyroError::UnstableLoop {
+                bandwidth_hz,
+                gain,
+                gain_limit,
+                latency_periods,
+            });
+        }
+        // A gain crosses half power first at the least frequency whose own gain it is.
+        let is_first_crossing = (1..GRID)
+            .map(|step| angle * f64::from(step) / f64::from(GRID))
+            .all(|lower| half_power_gain(lower, latency_periods) < gain);
+        if !is_first_crossing {
+            return Err(GyroError::UnreachableBandwidth {
+                bandwidth_hz,
+                latency_periods,
+            });
+        }
+        Ok(Self {
+            gain,
+            latency_periods,
+            loop_period_s,
+        })
+    }
+
+    /// Complex response `H` at a frequency, as `(real, imaginary)`.
+    #[must_use]
+    pub fn response(&self, frequency_hz: f64) -> (f64, f64) {
+        let angle = TAU * frequency_hz * self.loop_period_s;
+        let delayed = angle * f64::from(1 + self.latency_periods);
+        let (numerator_re, numerator_im) = (self.gain * delayed.cos(), -self.gain * delayed.sin());
+        let (re, im) = (1.0 - angle.cos() + numerator_re, angle.sin() + numerator_im);
+        let power = re * re + im * im;
+        (
+            (numerator_re * re + numerator_im * im) / power,
+            (numerator_im * re - numerator_re * im) / power,
+        )
+    }
+
+    /// Delay of the register behind the Sagnac phase at low frequency, s.
+    ///
+    /// `T_L / g - tau / 2`: the first-order expansion of `1 / H`, whatever the latency, less half
+    /// a transit time because the pair that makes one error averages inputs at its start and at
+    /// its middle. The register is stamped when it is updated.
+    #[must_use]
+    pub fn delay_s(&self) -> f64 {
+        self.loop_period_s / self.gain - 0.25 * self.loop_period_s
+    }
+
+    /// Delay of a rate word that averages `periods` registers and is stamped with the last, s.
+    #[must_use]
+    pub fn word_delay_s(&self, periods: f64) -> f64 {
+        self.delay_s() + 0.5 * (periods - 1.0) * self.loop_period_s
+    }
+}
+
+/// Steps of the search for an earlier half-power crossing.
+const GRID: u32 = 512;
+
+/// Gain that puts half power at the loop angle `2 pi f T_L`.
+fn half_power_gain(angle: f64, latency_periods: u32) -> f64 {
+    let latency = f64::from(latency_periods);
+    let cross = ((1.0 + latency) * angle).cos() - (latency * angle).cos();
+    // |1 - z^-1|^2 as a sine: 2 - 2 cos would lose its digits at low bandwidth.
+    let chord = 2.0 * (0.5 * angle).sin();
+    cross + (cross * cross + chord * chord).sqrt()
+}
+
+/// Gain at which the loop with this latency starts to oscillate: `2 sin(pi / (2 (2 d + 1)))`.
+///
+/// # Source
+/// Derived: the root of `z^(d+1) - z^d + g` that first reaches the unit circle. Known answer K6.
+#[must_use]
+pub fn gain_limit(latency_periods: u32) -> f64 {
+    2.0 * (PI / (2.0 * f64::from(2 * latency_periods + 1))).sin()
+}

@@ -1,0 +1,107 @@
+//! The gyro as the rest of the bench sees it.
+
+use crate::gyro::coil::Coil;
+use crate::gyro::controller::Controller;
+use crate::gyro::detector::Detector;
+use crate::gyro::error::GyroError;
+use crate::gyro::loop_model::LoopModel;
+use crate::gyro::modulator::Modulator;
+use crate::gyro::noise_budget::NoiseBudget;
+use crate::gyro::rate_model::RateModel;
+use crate::random::Streams;
+use crate::scenario::{Fidelity, GyroConfig};
+use crate::signal::{GyroFacts, MotionSegment};
+use crate::units::{hz_to_khz, s_to_ms, s_to_us};
+
+/// A gyro: motion segments in, rate words out.
+#[derive(Clone, Debug)]
+pub struct Gyro {
+    model: Model,
+}
+
+#[derive(Clone, Debug)]
+enum Model {
+    Loop(Box<LoopModel>),
+    Rate(Box<RateModel>),
+}
+
+impl Gyro {
+    /// A gyro at rest in its first fringe, with the noise of `streams`.
+    ///
+    /// `simulated_time_s` is the length of the run, warm-up included; flicker is generated with
+    /// correlation times up to ten times as long.
+    ///
+    /// # Errors
+    /// Any [`GyroError`]: a bandwidth that the latency does not allow, no slope at the bias
+    /// point, a bias point beyond the converter's range, an odd output sample.
+    pub fn new(
+        config: &GyroConfig,
+        fidelity: Fidelity,
+        simulated_time_s: f64,
+        streams: &Streams,
+    ) -> Result<Self, GyroError> {
+        let model = match fidelity {
+            Fidelity::Loop => {
+                Model::Loop(Box::new(LoopModel::new(config, simulated_time_s, streams)?))
+            }
+            Fidelity::Rate => {
+                Model::Rate(Box::new(RateModel::new(config, simulated_time_s, streams)?))
+            }
+        };
+        Ok(Self { model })
+    }
+
+    /// Time between rate words, s.
+    #[must_use]
+    pub fn sample_period_s(&self) -> f64 {
+        match &self.model {
+            Model::Loop(model) => model.sample_period_s(),
+            Model::Rate(model) => model.sample_period_s(),
+        }
+    }
+
+    /// Rate word of the output sample over which the gyro moves as `segment`, deg/h.
+    ///
+    /// The word is stamped at the end of the segment.
+    pub fn next_word(&mut self, segment: &MotionSegment) -> f64 {
+        match &mut self.model {
+            Model::Loop(model) => model.next_word(segment),
+            Model::Rate(model) => model.next_word(segment),
+        }
+    }
+}
+
+/// Time between rate words of a configuration, s.
+#[must_use]
+pub fn sample_period_s(config: &GyroConfig) -> f64 {
+    let coil = Coil::new(&config.coil, &config.source);
+    f64::from(config.output.half_periods_per_sample) * coil.transit_time_s
+}
+
+/// What the gyro of a configuration is, in closed form.
+///
+/// # Errors
+/// Any [`GyroError`], as [`Gyro::new`].
+pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
+    let half_periods = config.output.half_periods_per_sample;
+    if half_periods < 2 || !half_periods.is_multiple_of(2) {
+        return Err(GyroError::OddOutputSample { half_periods });
+    }
+    let coil = Coil::new(&config.coil, &config.source);
+    let detector = Detector::new(config, &Modulator::new(&config.modulator))?;
+    let controller = Controller::new(
+        config.controller.loop_bandwidth_hz,
+        config.controller.loop_latency_periods,
+        coil.loop_period_s(),
+    )?;
+    Ok(GyroFacts {
+        scale_factor_s: coil.scale_factor_s,
+        transit_time_us: s_to_us(coil.transit_time_s),
+        proper_frequency_khz: hz_to_khz(coil.proper_frequency_hz()),
+        output_rate_hz: sample_period_s(config).recip(),
+        loop_gain: controller.gain,
+        loop_bandwidth_hz: config.controller.loop_bandwidth_hz,
+        delay_ms: s_to_ms(controller.word_delay_s(0.5 * f64::from(half_periods))),
+        angle_random_walk_budget_deg_per_sqrt_h: NoiseBudget::new(&detector, &coil).entries(),
+    })
+}

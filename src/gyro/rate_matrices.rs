@@ -1,0 +1,196 @@
+//! The linear loop over a whole output sample, as matrices.
+
+use crate::gyro::controller::Controller;
+
+/// Largest state: register and three delayed errors.
+const STATE: usize = 4;
+/// State and output together.
+const JOINT: usize = STATE + 1;
+
+/// One output sample of the linear loop: exact response to a cubic input and to white noise.
+///
+/// The state is `(r, e_1 .. e_d)`, the register and the errors not yet integrated. Over the
+/// `periods` of an output sample, with input polynomial c (rad) and unit white noise per period,
+///
+/// ```text
+/// (state', y) = transition state + input c + innovation z,      z: independent unit normals
+/// ```
+///
+/// where y is the mean of the register over the periods, taken after each update. Every column is
+/// found by running the recursion itself once; `innovation` is the Cholesky factor of the noise
+/// covariance `sum_k v_k v_k^T`, `v_k` being state and mean at the sample's end after a unit
+/// impulse k periods before its last.
+///
+/// # Source
+/// Derived: exact discretisation of a linear recursion over a block.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct RateMatrices {
+    state_count: usize,
+    transition: [[f64; STATE]; JOINT],
+    input: [[f64; 4]; JOINT],
+    innovation: [[f64; JOINT]; JOINT],
+}
+
+impl RateMatrices {
+    /// The matrices of a loop averaged over `periods` loop periods.
+    pub(super) fn new(controller: &Controller, periods: u32) -> Self {
+        let latency = controller.latency_periods as usize;
+        let state_count = latency + 1;
+        let recursion = Recursion {
+            gain: controller.gain,
+            latency,
+        };
+        let mut transition = [[0.0; STATE]; JOINT];
+        for column in 0..state_count {
+            let mut start = [0.0; STATE];
+            start[column] = 1.0;
+            let end = recursion.run(start, periods, |_| 0.0);
+            for (row, value) in transition.iter_mut().zip(end) {
+                row[column] = value;
+            }
+        }
+        let mut input = [[0.0; 4]; JOINT];
+        let halves = 2.0 * f64::from(periods);
+        for power in 0..4_i32 {
+            let end = recursion.run([0.0; STATE], periods, |period| {
+                let start = 2.0 * f64::from(period);
+                0.5 * ((start / halves).powi(power) + ((start + 1.0) / halves).powi(power))
+            });
+            for (row, value) in input.iter_mut().zip(end) {
+                row[power.unsigned_abs() as usize] = value;
+            }
+        }
+        Self {
+            state_count,
+            transition,
+            input,
+            innovation: cholesky(&recursion.noise_covariance(periods)),
+        }
+    }
+
+    /// Number of unit normals one sample takes.
+    pub(super) fn normal_count(&self) -> usize {
+        self.state_count + 1
+    }
+
+    /// Advances the state by one output sample and returns the mean register, rad.
+    ///
+    /// `phase_rad`: coefficients of the Sagnac phase in normalised time; `noise_rad`: standard
+    /// deviation of the error noise per loop period; `normal` draws a unit normal.
+    pub(super) fn advance(
+        &self,
+        state: &mut [f64; STATE],
+        phase_rad: &[f64; 4],
+        noise_rad: f64,
+        mut normal: impl FnMut() -> f64,
+    ) -> f64 {
+        let mut draws = [0.0; JOINT];
+        // The output's draw stands last, behind unused states, whose rows are zero.
+        for draw in &mut draws[..self.state_count] {
+            *draw = noise_rad * normal();
+        }
+        draws[STATE] = noise_rad * normal();
+        let mut joint = [0.0; JOINT];
+        for (row, value) in joint.iter_mut().enumerate() {
+            *value = dot(&self.transition[row], state)
+                + dot(&self.input[row], phase_rad)
+                + dot(&self.innovation[row], &draws);
+        }
+        state.copy_from_slice(&joint[..STATE]);
+        joint[STATE]
+    }
+}
+
+fn dot<const N: usize>(left: &[f64; N], right: &[f64; N]) -> f64 {
+    left.iter().zip(right).map(|(a, b)| a * b).sum()
+}
+
+/// The recursion `r += g e_(m-d)`, `e = input - r`.
+struct Recursion {
+    gain: f64,
+    latency: usize,
+}
+
+impl Recursion {
+    fn step(&self, state: &mut [f64; STATE], input: f64) {
+        let error = input - state[0];
+        let due = if self.latency == 0 {
+            error
+        } else {
+            state[self.latency]
+        };
+        for slot in (2..=self.latency).rev() {
+            state[slot] = state[slot - 1];
+        }
+        if self.latency > 0 {
+            state[1] = error;
+        }
+        state[0] += self.gain * due;
+    }
+
+    /// State at the end of `periods` periods and mean register over them.
+    fn run(
+        &self,
+        mut state: [f64; STATE],
+        periods: u32,
+        input: impl Fn(u32) -> f64,
+    ) -> [f64; JOINT] {
+        let mut sum = 0.0;
+        for period in 0..periods {
+            self.step(&mut state, input(period));
+            sum += state[0];
+        }
+        joined(&state, sum / f64::from(periods))
+    }
+
+    /// Covariance of end state and mean for unit white noise, one input per period.
+    fn noise_covariance(&self, periods: u32) -> [[f64; JOINT]; JOINT] {
+        let mut covariance = [[0.0; JOINT]; JOINT];
+        let mut state = [0.0; STATE];
+        let mut sum = 0.0;
+        // Running on after one impulse visits the responses of all impulses, the last period's first.
+        for age in 0..periods {
+            self.step(&mut state, if age == 0 { 1.0 } else { 0.0 });
+            sum += state[0];
+            let response = joined(&state, sum / f64::from(periods));
+            for (row, &left) in covariance.iter_mut().zip(&response) {
+                for (entry, &right) in row.iter_mut().zip(&response) {
+                    *entry += left * right;
+                }
+            }
+        }
+        covariance
+    }
+}
+
+fn joined(state: &[f64; STATE], mean: f64) -> [f64; JOINT] {
+    let mut joint = [0.0; JOINT];
+    joint[..STATE].copy_from_slice(state);
+    joint[STATE] = mean;
+    joint
+}
+
+/// Lower factor L with `L L^T` = the matrix, for a positive semi-definite matrix.
+///
+/// A pivot at rounding level is a combination of earlier rows (a delayed error that one short
+/// sample cannot reach, or an unused state): its column is left zero.
+fn cholesky(matrix: &[[f64; JOINT]; JOINT]) -> [[f64; JOINT]; JOINT] {
+    let mut factor = [[0.0; JOINT]; JOINT];
+    for column in 0..JOINT {
+        let rest = |row: usize, factor: &[[f64; JOINT]; JOINT]| {
+            let done: f64 = (0..column)
+                .map(|k| factor[row][k] * factor[column][k])
+                .sum();
+            matrix[row][column] - done
+        };
+        let pivot = rest(column, &factor);
+        if pivot <= 1e-12 * matrix[column][column] {
+            continue;
+        }
+        let root = pivot.sqrt();
+        for row in column..JOINT {
+            factor[row][column] = rest(row, &factor) / root;
+        }
+    }
+    factor
+}

@@ -1,0 +1,168 @@
+//! Slow noise of the rate: bias, flicker, rate random walk and ramp.
+
+use std::f64::consts::PI;
+
+use crate::random::{Stream, Streams};
+use crate::scenario::SlowNoiseConfig;
+use crate::units::{
+    deg_per_h_per_h_to_deg_per_h_per_s, deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s,
+    deg_per_h_to_rad_per_s,
+};
+
+/// Ratio of neighbouring correlation times of the flicker.
+const RATIO: f64 = 4.0;
+/// Shortest correlation time of the flicker in update intervals.
+///
+/// Sampling folds the spectrum above half the update rate down: a process of correlation time T
+/// sampled every D has the density `s^2 D coth(D / 2T)` at DC instead of `2 s^2 T`. With this
+/// value the folded excess of all processes equals what the left-out, shorter ones would have
+/// added, so that no white residue is left beside the flicker.
+const SHORTEST_CORRELATION_INTERVALS: f64 = 0.57;
+/// Longest correlation time of the flicker over the simulated time, at least.
+const LONGEST_CORRELATION_RECORDS: f64 = 10.0;
+/// Longest time between updates, s; one output sample if that is longer.
+const UPDATE_INTERVAL_S: f64 = 0.004;
+
+/// Generator of the slow noise, one value per output sample, in constant memory.
+///
+/// * Flicker of coefficient B (two-sided density `B^2 / (2 pi f)`, Allan deviation
+///   `B sqrt(2 ln 2 / pi) = 0.664 B`): a sum of Gauss-Markov processes with correlation times in
+///   the ratio `a = 4` and equal variances `B^2 ln(a) / pi`. Summing their densities
+///   `2 s^2 T / (1 + (2 pi f T)^2)` over all T gives `B^2 / (2 pi f)` with a ripple of
+///   `2 sech(pi^2 / ln a)` = 0.3 %. Each process starts from its stationary distribution and
+///   advances exactly over an update interval.
+/// * Rate random walk of coefficient K: a sum of independent normals of variance `K^2 D` per
+///   update interval D, from 0.
+/// * Ramp: `R t`, taken at the middle of an output sample. Bias: a constant.
+///
+/// Flicker and walk are held between updates (at most 4 ms, or one output sample).
+///
+/// # Source
+/// Terms as in IEEE Std 952, annex C. Superposition: derived; van der Ziel, Physica 16 (1950).
+#[derive(Clone, Debug)]
+pub struct SlowNoise {
+    bias_rad_per_s: f64,
+    ramp_rad_per_s_per_sample: f64,
+    flicker: Vec<GaussMarkov>,
+    flicker_stream: Stream,
+    walk_step_rad_per_s: f64,
+    walk_stream: Stream,
+    samples_per_update: u32,
+    samples_to_update: u32,
+    samples_done: u64,
+    flicker_rad_per_s: f64,
+    walk_rad_per_s: f64,
+}
+
+/// One Gauss-Markov process, exact at the update interval.
+#[derive(Clone, Copy, Debug)]
+struct GaussMarkov {
+    value: f64,
+    decay: f64,
+    innovation: f64,
+}
+
+impl SlowNoise {
+    /// The generator for output samples of `sample_period_s` over `simulated_time_s`.
+    #[must_use]
+    pub fn new(
+        config: &SlowNoiseConfig,
+        sample_period_s: f64,
+        simulated_time_s: f64,
+        streams: &Streams,
+    ) -> Self {
+        let samples_per_update = samples_per_update(sample_period_s);
+        let interval_s = f64::from(samples_per_update) * sample_period_s;
+        let mut flicker_stream = streams.stream("flicker");
+        let instability = deg_per_h_to_rad_per_s(config.bias_instability_deg_per_h);
+        let flicker = if instability > 0.0 {
+            let longest_s = LONGEST_CORRELATION_RECORDS * simulated_time_s.max(interval_s);
+            gauss_markov_ladder(instability, interval_s, longest_s, &mut flicker_stream)
+        } else {
+            Vec::new()
+        };
+        let walk_coefficient =
+            deg_per_h_to_rad_per_s(deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(
+                config.rate_random_walk_deg_per_h_per_sqrt_h,
+            ));
+        let ramp_rad_per_s_per_s = deg_per_h_to_rad_per_s(deg_per_h_per_h_to_deg_per_h_per_s(
+            config.rate_ramp_deg_per_h_per_h,
+        ));
+        Self {
+            bias_rad_per_s: deg_per_h_to_rad_per_s(config.bias_deg_per_h),
+            ramp_rad_per_s_per_sample: ramp_rad_per_s_per_s * sample_period_s,
+            flicker_rad_per_s: flicker.iter().map(|process| process.value).sum(),
+            flicker,
+            flicker_stream,
+            walk_step_rad_per_s: walk_coefficient * interval_s.sqrt(),
+            walk_stream: streams.stream("rate_random_walk"),
+            samples_per_update,
+            samples_to_update: samples_per_update,
+            samples_done: 0,
+            walk_rad_per_s: 0.0,
+        }
+    }
+
+    /// Slow noise over the next output sample, an equivalent input rate, rad/s.
+    pub fn next_rate_rad_per_s(&mut self) -> f64 {
+        if self.samples_to_update == 0 {
+            self.update();
+            self.samples_to_update = self.samples_per_update;
+        }
+        self.samples_to_update -= 1;
+        let middle = self.samples_done as f64 + 0.5;
+        self.samples_done += 1;
+        self.bias_rad_per_s
+            + self.ramp_rad_per_s_per_sample * middle
+            + self.flicker_rad_per_s
+            + self.walk_rad_per_s
+    }
+
+    fn update(&mut self) {
+        let mut sum = 0.0;
+        for process in &mut self.flicker {
+            process.value =
+                process.decay * process.value + process.innovation * self.flicker_stream.normal();
+            sum += process.value;
+        }
+        self.flicker_rad_per_s = sum;
+        if self.walk_step_rad_per_s > 0.0 {
+            self.walk_rad_per_s += self.walk_step_rad_per_s * self.walk_stream.normal();
+        }
+    }
+}
+
+/// Output samples between updates: as many as fit the update interval, at least one.
+fn samples_per_update(sample_period_s: f64) -> u32 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a quotient of positive times, floored; `as` saturates"
+    )]
+    let samples = (UPDATE_INTERVAL_S / sample_period_s).floor() as u32;
+    samples.max(1)
+}
+
+/// Processes of one variance with correlation times from below the interval to `longest_s`.
+fn gauss_markov_ladder(
+    instability: f64,
+    interval_s: f64,
+    longest_s: f64,
+    stream: &mut Stream,
+) -> Vec<GaussMarkov> {
+    let deviation = instability * (RATIO.ln() / PI).sqrt();
+    let mut processes = Vec::new();
+    let mut correlation_s = SHORTEST_CORRELATION_INTERVALS * interval_s;
+    loop {
+        let exponent = interval_s / correlation_s;
+        processes.push(GaussMarkov {
+            value: deviation * stream.normal(),
+            decay: (-exponent).exp(),
+            innovation: deviation * (-(-2.0 * exponent).exp_m1()).sqrt(),
+        });
+        if correlation_s >= longest_s {
+            return processes;
+        }
+        correlation_s *= RATIO;
+    }
+}
