@@ -7,4 +7,6 @@ mod determinism;
 mod filters;
 mod known_answers_gyro;
 mod known_answers_turntable;
+#[path = "../benches/plain_loop.rs"]
+mod plain_loop;
 mod support;
