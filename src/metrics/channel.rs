@@ -1,0 +1,214 @@
+//! From a record to the table of everything it supports.
+
+use super::autocovariance::LaggedProducts;
+use super::catalogue::{known_metrics, support};
+use super::estimate::{ChannelMetrics, Estimate};
+use super::interval;
+use super::psd::{log_binned, segment_samples, welch};
+use super::record::{FilterFacts, Motion, Record, Settings};
+use super::settling::{settling, tail_start};
+use super::steady::{
+    LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_steady, put_mean, put_mean_ratio,
+    put_noise_gain, put_noise_std,
+};
+use super::swing::{measure_swing, put_tracking_error};
+
+/// Fewest samples worth measuring.
+const SAMPLES_MIN: usize = 64;
+
+/// Points of the spectrum in the report.
+const SPECTRUM_POINTS_MAX: usize = 400;
+
+/// Measures one channel.
+///
+/// `filter` is `None` for raw, whose `record.channel_deg_per_h` is `record.raw_deg_per_h`. Every
+/// metric of the catalogue ends up in the table or, with the reason, among the unavailable ones;
+/// only `diverged_at_s` is left to the caller, who saw the failure. Intervals are 95 %.
+///
+/// # Panics
+/// If the three slices of the record differ in length.
+#[must_use]
+pub fn measure(
+    record: &Record,
+    settings: &Settings,
+    filter: Option<&FilterFacts>,
+) -> ChannelMetrics {
+    let samples = record.channel_deg_per_h.len();
+    assert!(
+        record.raw_deg_per_h.len() == samples && record.truth_deg_per_h.len() == samples,
+        "channel, raw and truth hold {samples}, {} and {} samples",
+        record.raw_deg_per_h.len(),
+        record.truth_deg_per_h.len()
+    );
+    let mut metrics = ChannelMetrics::default();
+    if let Err(reason) = measure_motion(record, settings, filter, &mut metrics) {
+        refuse_rest(&reason, &mut metrics);
+    }
+    if let Some(facts) = filter {
+        put_dc_gains(facts, &mut metrics);
+    }
+    explain_missing(record, settings, filter.is_some(), &mut metrics);
+    metrics
+}
+
+fn measure_motion(
+    record: &Record,
+    settings: &Settings,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) -> Result<(), String> {
+    let values = record.channel_deg_per_h;
+    if values.len() < SAMPLES_MIN {
+        return Err(format!(
+            "the record holds {} samples; metrics need {SAMPLES_MIN}",
+            values.len()
+        ));
+    }
+    if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+        return Err(format!("sample {index} of the record is not finite"));
+    }
+    let spectrum = welch(
+        values,
+        record.sample_period_s,
+        segment_samples(values.len()),
+    );
+    metrics.put_spectrum(log_binned(&spectrum, SPECTRUM_POINTS_MAX));
+    match settings.motion {
+        Motion::Steady => {
+            measure_steady(record, settings, filter, metrics);
+            Ok(())
+        }
+        Motion::Swing { frequency_hz } => measure_swing(record, frequency_hz, filter, metrics),
+        Motion::Steps {
+            last_step_index,
+            step_deg_per_h,
+        } => {
+            measure_steps(record, last_step_index, step_deg_per_h, filter, metrics);
+            Ok(())
+        }
+    }
+}
+
+/// Metrics of a staircase: settling after the last step, noise and means.
+///
+/// Mean and tracking error are those of the whole record; their intervals come from the truth-free
+/// differences of twenty blocks, so that the staircase itself does not widen them.
+fn measure_steps(
+    record: &Record,
+    last_step_index: usize,
+    step_deg_per_h: f64,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
+    let values = record.channel_deg_per_h;
+    match settling(
+        values,
+        last_step_index,
+        step_deg_per_h,
+        record.sample_period_s,
+    ) {
+        Ok(settled) => {
+            let metric = metrics.put("settling_time_s", Estimate::exact(settled.settling_time_s));
+            metric
+                .fields
+                .insert("band_deg_per_h", settled.band_deg_per_h);
+            metric.fields.insert("step_deg_per_h", step_deg_per_h);
+        }
+        Err(reason) => metrics.miss("settling_time_s", reason),
+    }
+    let errors: Vec<f64> = values
+        .iter()
+        .zip(record.truth_deg_per_h)
+        .map(|(rate, truth)| rate - truth)
+        .collect();
+    let error = interval::from_parts(
+        interval::mean(&errors),
+        &equal_block_means(&errors, RATIO_BLOCKS),
+    );
+    let truth = interval::mean(record.truth_deg_per_h);
+    let mean = Estimate::with_interval(error.value + truth, error.low + truth, error.high + truth);
+    put_mean(
+        mean,
+        truth,
+        values.len() as f64 * record.sample_period_s,
+        metrics,
+    );
+    let squares: Vec<f64> = errors.iter().map(|error| error * error).collect();
+    put_tracking_error(&equal_block_means(&squares, RATIO_BLOCKS), metrics);
+    let start = tail_start(values.len(), last_step_index.min(values.len()));
+    if values.len() - start < SAMPLES_MIN {
+        return;
+    }
+    let products = |series: &[f64]| {
+        let tail = &series[start..];
+        LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS)
+    };
+    let channel = products(values);
+    put_noise_std(&channel.autocovariance(), values.len() - start, metrics);
+    if filter.is_some() {
+        put_noise_gain(&channel, &products(record.raw_deg_per_h), metrics);
+        put_mean_ratio(
+            &equal_block_means(values, RATIO_BLOCKS),
+            &equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS),
+            metrics,
+        );
+    }
+}
+
+/// Enters the DC gains found by replay, which are exact up to rounding.
+fn put_dc_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
+    for (name, gain) in [
+        ("dc_gain", facts.dc_gain),
+        ("dc_gain_adapted", facts.dc_gain_adapted),
+    ] {
+        match gain {
+            Some(gain) => {
+                metrics
+                    .put(name, Estimate::exact(gain))
+                    .fields
+                    .insert("added_rate_deg_per_h", facts.added_rate_deg_per_h);
+            }
+            None => metrics.miss(name, "it was not determined for this filter"),
+        }
+    }
+}
+
+/// Gives one reason to everything that is still missing.
+fn refuse_rest(reason: &str, metrics: &mut ChannelMetrics) {
+    for known in known_metrics() {
+        let name = known.name;
+        if name != "diverged_at_s" && !metrics.metrics.contains_key(name) {
+            metrics.miss(name, reason);
+        }
+    }
+}
+
+/// Gives a reason to every metric of the catalogue that has neither a value nor a reason yet.
+fn explain_missing(
+    record: &Record,
+    settings: &Settings,
+    is_filter: bool,
+    metrics: &mut ChannelMetrics,
+) {
+    let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
+    for known in known_metrics() {
+        let name = known.name;
+        if name == "diverged_at_s"
+            || metrics.metrics.contains_key(name)
+            || metrics.unavailable.contains_key(name)
+        {
+            continue;
+        }
+        let reason = support(
+            name,
+            duration_s,
+            record.sample_period_s,
+            &settings.motion,
+            is_filter,
+            settings.bias_averaging_time_s,
+        )
+        .err()
+        .unwrap_or_else(|| "the record is too short for it".to_owned());
+        metrics.miss(name, reason);
+    }
+}

@@ -1,0 +1,453 @@
+//! Noise coefficients from an Allan variance curve.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::allan::{AllanPoint, NoiseType, degrees_of_freedom};
+use super::allan_covariance::correlation;
+use super::estimate::Estimate;
+use super::interval;
+
+/// `AVAR / B^2` of flicker noise, `2 ln 2 / pi`; its square root is the familiar 0.664.
+pub const FLICKER_ALLAN_VARIANCE: f64 = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;
+
+/// A term stays in the model while it exceeds this many of its standard errors (one-sided 95 %).
+const SIGNIFICANCE: f64 = 1.645;
+
+/// Rounds of reweighting with the fitted curve.
+const REWEIGHTINGS: usize = 4;
+
+/// Fewest points and least ratio of longest to shortest tau that a fit accepts.
+const POINTS_MIN: usize = 8;
+const TAU_RATIO_MIN: f64 = 8.0;
+
+/// The largest part of the record that an averaging time of the fit may be.
+pub const FIT_TAU_PER_RECORD_MAX: f64 = 1.0 / 9.0;
+
+/// Coefficients of the five classical noise terms of a rate, in deg/h and s; 0 = term left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NoiseCoefficients {
+    /// Angle quantisation Q, arcsec (1 arcsec = 1 deg/h times 1 s).
+    pub quantisation_arcsec: f64,
+    /// Angle random walk N, (deg/h) sqrt(s).
+    pub angle_random_walk_deg_per_h_sqrt_s: f64,
+    /// Bias instability B, deg/h.
+    pub bias_instability_deg_per_h: f64,
+    /// Rate random walk K, (deg/h)/sqrt(s).
+    pub rate_random_walk_deg_per_h_per_sqrt_s: f64,
+    /// Rate ramp R, (deg/h)/s.
+    pub rate_ramp_deg_per_h_per_s: f64,
+}
+
+impl NoiseCoefficients {
+    /// `3Q^2/tau^2 + N^2/tau + (2 ln2/pi) B^2 + K^2 tau/3 + R^2 tau^2/2`, (deg/h)^2.
+    ///
+    /// Source: IEEE Std 952-1997 annex C.
+    #[must_use]
+    pub fn allan_variance(&self, tau_s: f64) -> f64 {
+        let squares = [
+            self.angle_random_walk_deg_per_h_sqrt_s,
+            self.bias_instability_deg_per_h,
+            self.rate_random_walk_deg_per_h_per_sqrt_s,
+            self.rate_ramp_deg_per_h_per_s,
+            self.quantisation_arcsec,
+        ]
+        .map(|value| value * value);
+        let quantisation = 3.0 * squares[4] / (tau_s * tau_s);
+        let rest: f64 = (0..4).map(|term| squares[term] * basis(term, tau_s)).sum();
+        quantisation + rest
+    }
+}
+
+/// Terms of the fit, in the order of its columns: N^2, B^2, K^2, R^2 and the signed `1/tau^2`.
+const TERMS: usize = 5;
+const WHITE: usize = 0;
+const FLICKER: usize = 1;
+const WALK: usize = 2;
+const RAMP: usize = 3;
+const INVERSE_SQUARE: usize = 4;
+
+/// Allan variance of a unit coefficient of a term.
+fn basis(term: usize, tau_s: f64) -> f64 {
+    match term {
+        WHITE => 1.0 / tau_s,
+        FLICKER => FLICKER_ALLAN_VARIANCE,
+        WALK => tau_s / 3.0,
+        RAMP => tau_s * tau_s / 2.0,
+        _ => 1.0 / (tau_s * tau_s),
+    }
+}
+
+/// What a fit says about one coefficient.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Term {
+    /// The coefficient (not its square) with its 95 % interval.
+    Found(Estimate),
+    /// Left out, and why.
+    LeftOut(String),
+}
+
+impl Term {
+    /// The value, 0 if left out.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        match self {
+            Self::Found(estimate) => estimate.value,
+            Self::LeftOut(_) => 0.0,
+        }
+    }
+}
+
+/// A fitted noise model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoiseFit {
+    /// Q, arcsec.
+    pub quantisation_arcsec: Term,
+    /// N, (deg/h) sqrt(s).
+    pub angle_random_walk_deg_per_h_sqrt_s: Term,
+    /// B, deg/h.
+    pub bias_instability_deg_per_h: Term,
+    /// K, (deg/h)/sqrt(s).
+    pub rate_random_walk_deg_per_h_per_sqrt_s: Term,
+    /// R, (deg/h)/s.
+    pub rate_ramp_deg_per_h_per_s: Term,
+    /// Shortest and longest averaging time used, s.
+    pub tau_range_s: [f64; 2],
+    /// Coefficients of the columns N^2, B^2, K^2, R^2, `1/tau^2`.
+    squares: [f64; TERMS],
+}
+
+impl NoiseFit {
+    /// The coefficients as plain numbers, 0 where a term was left out.
+    #[must_use]
+    pub fn coefficients(&self) -> NoiseCoefficients {
+        NoiseCoefficients {
+            quantisation_arcsec: self.quantisation_arcsec.value(),
+            angle_random_walk_deg_per_h_sqrt_s: self.angle_random_walk_deg_per_h_sqrt_s.value(),
+            bias_instability_deg_per_h: self.bias_instability_deg_per_h.value(),
+            rate_random_walk_deg_per_h_per_sqrt_s: self
+                .rate_random_walk_deg_per_h_per_sqrt_s
+                .value(),
+            rate_ramp_deg_per_h_per_s: self.rate_ramp_deg_per_h_per_s.value(),
+        }
+    }
+
+    /// Fitted Allan deviation, deg/h, the signed `1/tau^2` term included; never below zero.
+    #[must_use]
+    pub fn deviation_deg_per_h(&self, tau_s: f64) -> f64 {
+        fitted_variance(&self.squares, tau_s).max(0.0).sqrt()
+    }
+}
+
+fn fitted_variance(squares: &[f64; TERMS], tau_s: f64) -> f64 {
+    (0..TERMS)
+        .map(|term| squares[term] * basis(term, tau_s))
+        .sum()
+}
+
+/// Averaging times a fit uses: from `tau_min_s` to a ninth of the record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitRange {
+    /// Shortest averaging time, s; shorter ones see the bandwidth of the channel.
+    pub tau_min_s: f64,
+    /// Longest averaging time, s.
+    pub tau_max_s: f64,
+}
+
+/// Fits the five noise terms to an Allan variance curve.
+///
+/// `AVAR = 3Q^2/tau^2 + N^2/tau + 0.4413 B^2 + K^2 tau/3 + R^2 tau^2/2` is linear in the squares;
+/// they are found by least squares weighted with `edf / 2 AVAR^2` (AVAR of the previous round of the
+/// fit, so that points which happen to lie low get no more say), N^2, B^2, K^2 and R^2 constrained
+/// to be non-negative. With so few terms the constrained optimum is found by trying every active
+/// set: the best feasible one is the exact solution.
+///
+/// The `1/tau^2` term is left free in sign. Noise whose correlation dies out within the shortest
+/// tau (a loop's bandwidth, a filter's taps) has `AVAR = N^2/tau - 3 sum k R(k) T^2/tau^2` exactly,
+/// so that a fit with positive Q only would put N low by as much as 2 % at ten samples. Q is
+/// reported when the term is significantly positive.
+///
+/// B, K and R are dropped one at a time, least significant first, until each that remains exceeds
+/// 1.645 of its standard errors. Standard errors come from the full covariance of the points, which
+/// overlap: see [`correlation`](super::allan_covariance::correlation). Each interval is a
+/// chi-square interval of the square with `2 (coefficient / standard error)^2` degrees of freedom.
+///
+/// # Errors
+/// The reason, in words, if fewer than eight points or less than a factor of eight in tau lie in
+/// range.
+///
+/// Source: IEEE Std 952-1997 annex C (model); derived: covariance, signed term.
+pub fn fit_noise(points: &[AllanPoint], range: FitRange) -> Result<NoiseFit, String> {
+    // A hair of slack keeps a point whose tau equals the limit up to rounding.
+    let used: Vec<AllanPoint> = points
+        .iter()
+        .copied()
+        .filter(|point| {
+            point.tau_s >= range.tau_min_s * (1.0 - 1e-9)
+                && point.tau_s <= range.tau_max_s * (1.0 + 1e-9)
+                && point.deviation_deg_per_h.value > 0.0
+        })
+        .collect();
+    let reach = match (used.first(), used.last()) {
+        (Some(first), Some(last)) => last.tau_s / first.tau_s,
+        _ => 0.0,
+    };
+    if used.len() < POINTS_MIN || reach < TAU_RATIO_MIN {
+        return Err(format!(
+            "the record offers {} averaging times between {:.4} s and a ninth of its length \
+             ({:.4} s); a fit needs at least {POINTS_MIN} over a factor of {TAU_RATIO_MIN}",
+            used.len(),
+            range.tau_min_s,
+            range.tau_max_s,
+        ));
+    }
+    let problem = Problem::new(&used);
+    let mut active = [true; TERMS];
+    loop {
+        let solution = problem.solve(&active);
+        let weakest = [FLICKER, WALK, RAMP]
+            .into_iter()
+            .filter(|&term| active[term])
+            .map(|term| (term, solution.significance(term)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        match weakest {
+            Some((term, significance)) if significance < SIGNIFICANCE => active[term] = false,
+            _ => return Ok(problem.report(&solution)),
+        }
+    }
+}
+
+/// Degrees of freedom of every point given a fitted mix of noise types.
+///
+/// The reciprocal is interpolated between the types' own reciprocals by their share of the Allan
+/// variance at that tau, so that a point where one type rules has exactly that type's number.
+#[must_use]
+pub fn mixed_degrees_of_freedom(
+    points: &[AllanPoint],
+    coefficients: &NoiseCoefficients,
+    angle_count: usize,
+) -> Vec<AllanPoint> {
+    let squares = [
+        coefficients.angle_random_walk_deg_per_h_sqrt_s,
+        coefficients.bias_instability_deg_per_h,
+        coefficients.rate_random_walk_deg_per_h_per_sqrt_s,
+        coefficients.rate_ramp_deg_per_h_per_s,
+    ]
+    .map(|value| value * value);
+    let types = [
+        NoiseType::White,
+        NoiseType::Flicker,
+        NoiseType::RandomWalk,
+        NoiseType::RandomWalk,
+    ];
+    let quantisation = coefficients.quantisation_arcsec.powi(2);
+    points
+        .iter()
+        .map(|point| {
+            let mut total = 0.0;
+            let mut reciprocal = 0.0;
+            let mut add = |variance: f64, noise: NoiseType| {
+                total += variance;
+                reciprocal +=
+                    variance / degrees_of_freedom(noise, angle_count, point.averaged_samples);
+            };
+            for (term, noise) in types.into_iter().enumerate() {
+                add(squares[term] * basis(term, point.tau_s), noise);
+            }
+            add(
+                3.0 * quantisation / (point.tau_s * point.tau_s),
+                NoiseType::Quantisation,
+            );
+            if total > 0.0 {
+                point.with_degrees_of_freedom(total / reciprocal)
+            } else {
+                *point
+            }
+        })
+        .collect()
+}
+
+/// The least-squares problem of one curve.
+struct Problem {
+    tau_s: Vec<f64>,
+    variance: Vec<f64>,
+    freedom: Vec<f64>,
+    /// Correlation matrix of the points.
+    correlation: DMatrix<f64>,
+}
+
+/// A constrained optimum and the covariance of its coefficients.
+struct Solution {
+    squares: [f64; TERMS],
+    standard_errors: [f64; TERMS],
+}
+
+impl Solution {
+    fn significance(&self, term: usize) -> f64 {
+        if self.squares[term] > 0.0 {
+            self.squares[term] / self.standard_errors[term]
+        } else {
+            0.0
+        }
+    }
+}
+
+impl Problem {
+    fn new(points: &[AllanPoint]) -> Self {
+        let tau_s: Vec<f64> = points.iter().map(|point| point.tau_s).collect();
+        let correlation = DMatrix::from_fn(tau_s.len(), tau_s.len(), |i, j| {
+            correlation(tau_s[i], tau_s[j])
+        });
+        Self {
+            variance: points.iter().map(AllanPoint::variance).collect(),
+            freedom: points
+                .iter()
+                .map(|point| point.degrees_of_freedom)
+                .collect(),
+            tau_s,
+            correlation,
+        }
+    }
+
+    /// Standard deviation of every point given the curve it scatters about.
+    fn standard_deviations(&self, curve: &[f64]) -> Vec<f64> {
+        curve
+            .iter()
+            .zip(&self.freedom)
+            .map(|(value, freedom)| value * (2.0 / freedom).sqrt())
+            .collect()
+    }
+
+    /// The non-negative optimum among the terms allowed, reweighted to its own curve.
+    fn solve(&self, allowed: &[bool; TERMS]) -> Solution {
+        let mut curve = self.variance.clone();
+        let mut best = ([0.0; TERMS], Vec::new());
+        for _ in 0..REWEIGHTINGS {
+            let deviations = self.standard_deviations(&curve);
+            best = self.best_active_set(allowed, &deviations);
+            for ((value, tau), measured) in curve.iter_mut().zip(&self.tau_s).zip(&self.variance) {
+                // The signed term can carry the curve below zero at the shortest tau of a poor
+                // fit; a weight needs a positive variance.
+                *value = fitted_variance(&best.0, *tau).max(0.1 * measured);
+            }
+        }
+        let (squares, columns) = best;
+        let standard_errors = self.standard_errors(&columns, &curve);
+        Solution {
+            squares,
+            standard_errors,
+        }
+    }
+
+    /// Rows divided by the standard deviation of their point.
+    fn weighted_design(&self, columns: &[usize], deviations: &[f64]) -> DMatrix<f64> {
+        DMatrix::from_fn(self.tau_s.len(), columns.len(), |row, column| {
+            basis(columns[column], self.tau_s[row]) / deviations[row]
+        })
+    }
+
+    /// Tries every subset of the allowed terms; the best one with non-negative squares wins.
+    fn best_active_set(
+        &self,
+        allowed: &[bool; TERMS],
+        deviations: &[f64],
+    ) -> ([f64; TERMS], Vec<usize>) {
+        let right = DVector::from_fn(self.tau_s.len(), |row, _| {
+            self.variance[row] / deviations[row]
+        });
+        let mut best: Option<(f64, [f64; TERMS], Vec<usize>)> = None;
+        for subset in 0_u32..(1 << INVERSE_SQUARE) {
+            let columns: Vec<usize> = (0..TERMS)
+                .filter(|&term| {
+                    allowed[term] && (term == INVERSE_SQUARE || subset & (1 << term) != 0)
+                })
+                .collect();
+            let design = self.weighted_design(&columns, deviations);
+            let Some(solved) = scaled_least_squares(&design, &right) else {
+                continue;
+            };
+            let feasible = columns
+                .iter()
+                .zip(solved.iter())
+                .all(|(&term, &value)| term == INVERSE_SQUARE || value >= 0.0);
+            let misfit = (&design * &solved - &right).norm_squared();
+            if feasible && best.as_ref().is_none_or(|(least, ..)| misfit < *least) {
+                let mut squares = [0.0; TERMS];
+                for (&term, &value) in columns.iter().zip(solved.iter()) {
+                    squares[term] = value;
+                }
+                best = Some((misfit, squares, columns));
+            }
+        }
+        best.map_or(([0.0; TERMS], Vec::new()), |(_, squares, columns)| {
+            (squares, columns)
+        })
+    }
+
+    /// Standard errors of the weighted least squares under the correlation of the points.
+    ///
+    /// With G the pseudo-inverse of the weighted design, the covariance is `G rho G^T`.
+    fn standard_errors(&self, columns: &[usize], curve: &[f64]) -> [f64; TERMS] {
+        let mut errors = [f64::INFINITY; TERMS];
+        let design = self.weighted_design(columns, &self.standard_deviations(curve));
+        let scales: Vec<f64> = design.column_iter().map(|column| column.norm()).collect();
+        let mut scaled = design;
+        for (mut column, scale) in scaled.column_iter_mut().zip(&scales) {
+            column /= *scale;
+        }
+        let Ok(inverse) = scaled.pseudo_inverse(1e-13) else {
+            return errors;
+        };
+        let covariance = &inverse * &self.correlation * inverse.transpose();
+        for (index, &term) in columns.iter().enumerate() {
+            errors[term] = covariance[(index, index)].max(0.0).sqrt() / scales[index];
+        }
+        errors
+    }
+
+    fn report(&self, solution: &Solution) -> NoiseFit {
+        let range = [self.tau_s[0], self.tau_s[self.tau_s.len() - 1]];
+        let term = |index: usize, factor: f64, name: &str| -> Term {
+            let square = solution.squares[index] * factor;
+            let significance = solution.significance(index);
+            if significance < SIGNIFICANCE {
+                return Term::LeftOut(format!(
+                    "the Allan variance between {:.4} s and {:.4} s does not need a {name} term \
+                     (it must exceed {SIGNIFICANCE} of its standard errors)",
+                    range[0], range[1],
+                ));
+            }
+            let squared = interval::variance(square, 2.0 * significance * significance);
+            Term::Found(Estimate::with_interval(
+                square.sqrt(),
+                squared.low.sqrt(),
+                squared.high.sqrt(),
+            ))
+        };
+        NoiseFit {
+            quantisation_arcsec: term(INVERSE_SQUARE, 1.0 / 3.0, "quantisation"),
+            angle_random_walk_deg_per_h_sqrt_s: term(WHITE, 1.0, "angle random walk"),
+            bias_instability_deg_per_h: term(FLICKER, 1.0, "bias instability"),
+            rate_random_walk_deg_per_h_per_sqrt_s: term(WALK, 1.0, "rate random walk"),
+            rate_ramp_deg_per_h_per_s: term(RAMP, 1.0, "rate ramp"),
+            tau_range_s: range,
+            squares: solution.squares,
+        }
+    }
+}
+
+/// Least squares by singular values with columns scaled to unit length; `None` without columns.
+fn scaled_least_squares(design: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    if design.ncols() == 0 {
+        return None;
+    }
+    let scales: Vec<f64> = design.column_iter().map(|column| column.norm()).collect();
+    let mut scaled = design.clone();
+    for (mut column, scale) in scaled.column_iter_mut().zip(&scales) {
+        column /= *scale;
+    }
+    let mut solved = scaled.svd(true, true).solve(right, 1e-13).ok()?;
+    for (value, scale) in solved.iter_mut().zip(&scales) {
+        *value /= scale;
+    }
+    Some(solved)
+}

@@ -1,0 +1,359 @@
+//! Metrics of a record at rest or at constant rate.
+
+use super::allan::{AllanPoint, overlapping_allan};
+use super::audit::{lags_needed, noise_delay_bound, noise_delay_bound_coloured, wiener_prediction};
+use super::autocovariance::{LaggedProducts, independent_samples};
+use super::bias;
+use super::catalogue::BLOCKS_MIN;
+use super::estimate::{ChannelMetrics, Estimate};
+use super::interval;
+use super::noise_fit::{
+    FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise, mixed_degrees_of_freedom,
+};
+use super::record::{FilterFacts, Record, Settings};
+use super::table::DEGREES_OF_FREEDOM;
+use crate::units;
+
+/// Blocks of time whose scatter gives the intervals of ratios.
+pub(crate) const RATIO_BLOCKS: usize = 20;
+
+/// Lags of the autocovariance, at least; correlation beyond counts as slow noise.
+pub(crate) const LAGS_MIN: usize = 24;
+
+/// Measures everything a steady record supports.
+pub(crate) fn measure_steady(
+    record: &Record,
+    settings: &Settings,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
+    let fit = measure_allan(record, settings, metrics);
+    measure_bias(record, settings, fit.as_ref(), metrics);
+    measure_mean(record, fit.as_ref(), metrics);
+    let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
+    let products = products_about_mean(record.channel_deg_per_h, lags);
+    put_noise_std(
+        &products.autocovariance(),
+        record.channel_deg_per_h.len(),
+        metrics,
+    );
+    if let Some(facts) = filter {
+        let raw = products_about_mean(record.raw_deg_per_h, lags);
+        put_noise_gain(&products, &raw, metrics);
+        measure_mean_ratio(record, metrics);
+        measure_predictions(record, facts, &raw, metrics);
+        put_over_dc_gain(facts.dc_gain, metrics);
+    }
+}
+
+/// Allan curve and noise coefficients.
+///
+/// The fit runs twice: with the degrees of freedom of white noise, then with those of the noise mix
+/// it found.
+fn measure_allan(
+    record: &Record,
+    settings: &Settings,
+    metrics: &mut ChannelMetrics,
+) -> Option<NoiseFit> {
+    let points = overlapping_allan(record.channel_deg_per_h, record.sample_period_s);
+    let samples = record.channel_deg_per_h.len();
+    let range = FitRange {
+        tau_min_s: settings.fit_tau_min_s,
+        tau_max_s: FIT_TAU_PER_RECORD_MAX * samples as f64 * record.sample_period_s,
+    };
+    let refined = fit_noise(&points, range).and_then(|first| {
+        let points = mixed_degrees_of_freedom(&points, &first.coefficients(), samples + 1);
+        fit_noise(&points, range).map(|fit| (points, fit))
+    });
+    match refined {
+        Ok((points, fit)) => {
+            enter_fit(&points, &fit, metrics);
+            Some(fit)
+        }
+        Err(reason) => {
+            metrics.put_allan_curve(&points, None);
+            for name in [
+                "angle_random_walk_deg_per_sqrt_h",
+                "bias_instability_deg_per_h",
+                "rate_random_walk_deg_per_h_per_sqrt_h",
+                "rate_ramp_deg_per_h_per_h",
+                "quantisation_arcsec",
+            ] {
+                metrics.miss(name, reason.as_str());
+            }
+            None
+        }
+    }
+}
+
+/// Enters a fit and the curve it was made from.
+pub(crate) fn enter_fit(points: &[AllanPoint], fit: &NoiseFit, metrics: &mut ChannelMetrics) {
+    metrics.put_noise_fit(fit);
+    metrics.put_allan_curve(points, Some(fit));
+}
+
+/// Bias stability at the fixed averaging times and at the scenario's.
+fn measure_bias(
+    record: &Record,
+    settings: &Settings,
+    fit: Option<&NoiseFit>,
+    metrics: &mut ChannelMetrics,
+) {
+    for (name, averaging_time_s) in [
+        ("bias_stability_1s_deg_per_h", 1.0),
+        ("bias_stability_10s_deg_per_h", 10.0),
+        ("bias_stability_100s_deg_per_h", 100.0),
+        ("bias_stability_deg_per_h", settings.bias_averaging_time_s),
+    ] {
+        let block = bias::samples_in(averaging_time_s, record.sample_period_s);
+        let means = bias::block_means(record.channel_deg_per_h, block);
+        if means.len() < BLOCKS_MIN {
+            let reason = format!(
+                "the record holds {} blocks of {averaging_time_s} s; a standard deviation with an \
+                 interval needs {BLOCKS_MIN}",
+                means.len()
+            );
+            metrics.miss(name, reason);
+            continue;
+        }
+        let freedom = fit.map_or(means.len() as f64 - 1.0, |fit| {
+            bias::effective_degrees_of_freedom(&fit.coefficients(), averaging_time_s, means.len())
+        });
+        let deviation = interval::sample_variance(&means).sqrt();
+        let metric = metrics.put(name, interval::deviation(deviation, freedom));
+        metric
+            .fields
+            .insert("averaging_time_s", block as f64 * record.sample_period_s);
+        metric.fields.insert("count", means.len() as f64);
+        metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
+    }
+}
+
+/// Mean and its error.
+///
+/// With a fit, the variance of the mean over T is the fitted Allan variance at T (half the mean
+/// square difference between the means of two such records in a row): `N^2/T` for white noise, and
+/// it does not vanish with T for slow noise. Without one, Student's t on ten block means.
+fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMetrics) {
+    let values = record.channel_deg_per_h;
+    let mean = interval::mean(values);
+    let duration_s = values.len() as f64 * record.sample_period_s;
+    let estimate = match fit {
+        Some(fit) if matches!(fit.angle_random_walk_deg_per_h_sqrt_s, Term::Found(_)) => {
+            let variance = fit.coefficients().allan_variance(duration_s);
+            Estimate::symmetric(mean, interval::NORMAL_QUANTILE * variance.sqrt())
+        }
+        _ => interval::from_parts(mean, &equal_block_means(values, 10)),
+    };
+    put_mean(
+        estimate,
+        interval::mean(record.truth_deg_per_h),
+        duration_s,
+        metrics,
+    );
+}
+
+/// Enters the mean and its error against the mean truth.
+pub(crate) fn put_mean(
+    mean: Estimate,
+    truth_deg_per_h: f64,
+    averaging_time_s: f64,
+    metrics: &mut ChannelMetrics,
+) {
+    metrics
+        .put("mean_deg_per_h", mean)
+        .fields
+        .insert("averaging_time_s", averaging_time_s);
+    let error = Estimate::with_interval(
+        mean.value - truth_deg_per_h,
+        mean.low - truth_deg_per_h,
+        mean.high - truth_deg_per_h,
+    );
+    metrics
+        .put("mean_error_deg_per_h", error)
+        .fields
+        .insert("averaging_time_s", averaging_time_s);
+}
+
+/// Means of `count` blocks of equal length that cover all values.
+pub(crate) fn equal_block_means(values: &[f64], count: usize) -> Vec<f64> {
+    let blocks = count.min(values.len());
+    (0..blocks)
+        .map(|block| {
+            let start = values.len() * block / blocks;
+            let end = values.len() * (block + 1) / blocks;
+            interval::mean(&values[start..end])
+        })
+        .collect()
+}
+
+fn products_about_mean(values: &[f64], lags: usize) -> LaggedProducts {
+    LaggedProducts::new(values, interval::mean(values), lags, RATIO_BLOCKS)
+}
+
+/// Standard deviation about the signal; correlated samples count for less in its interval.
+pub(crate) fn put_noise_std(autocovariance: &[f64], count: usize, metrics: &mut ChannelMetrics) {
+    let freedom = (independent_samples(autocovariance, count) - 1.0).max(1.0);
+    let metric = metrics.put(
+        "noise_std_deg_per_h",
+        interval::deviation(autocovariance[0].sqrt(), freedom),
+    );
+    metric.fields.insert("count", count as f64);
+    metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
+}
+
+/// Ratio of the variances about the signal; blocks leave numerator and denominator together.
+pub(crate) fn put_noise_gain(
+    channel: &LaggedProducts,
+    raw: &LaggedProducts,
+    metrics: &mut ChannelMetrics,
+) {
+    let raw_variance = raw.autocovariance()[0];
+    if raw_variance <= 0.0 {
+        metrics.miss("noise_gain", "the raw channel has no noise");
+        return;
+    }
+    let left_out: Vec<f64> = (0..raw.blocks())
+        .map(|block| {
+            channel.autocovariance_without(block)[0] / raw.autocovariance_without(block)[0]
+        })
+        .collect();
+    let value = channel.autocovariance()[0] / raw_variance;
+    metrics.put("noise_gain", interval::jackknife(value, &left_out));
+}
+
+/// Ratio of the means, if raw's mean can be told from zero.
+fn measure_mean_ratio(record: &Record, metrics: &mut ChannelMetrics) {
+    let channel = equal_block_means(record.channel_deg_per_h, RATIO_BLOCKS);
+    let raw = equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS);
+    put_mean_ratio(&channel, &raw, metrics);
+}
+
+/// Enters the ratio of the means of equally long blocks.
+pub(crate) fn put_mean_ratio(channel: &[f64], raw: &[f64], metrics: &mut ChannelMetrics) {
+    let raw_mean = interval::from_parts(interval::mean(raw), raw);
+    if raw_mean.low <= 0.0 && raw_mean.high >= 0.0 {
+        metrics.miss(
+            "mean_ratio",
+            format!(
+                "the raw mean, {:.4} deg/h, cannot be told from zero",
+                raw_mean.value
+            ),
+        );
+        return;
+    }
+    let (channel_sum, raw_sum): (f64, f64) = (channel.iter().sum(), raw.iter().sum());
+    let left_out: Vec<f64> = channel
+        .iter()
+        .zip(raw)
+        .map(|(own, other)| (channel_sum - own) / (raw_sum - other))
+        .collect();
+    metrics.put(
+        "mean_ratio",
+        interval::jackknife(channel_sum / raw_sum, &left_out),
+    );
+}
+
+/// Wiener prediction of the DC gain and the noise-delay bound at the predicted delay.
+fn measure_predictions(
+    record: &Record,
+    facts: &FilterFacts,
+    raw: &LaggedProducts,
+    metrics: &mut ChannelMetrics,
+) {
+    let mean_square = interval::mean(record.raw_deg_per_h).powi(2);
+    let predict = |autocovariance: &[f64]| {
+        let second_moment: Vec<f64> = autocovariance
+            .iter()
+            .map(|value| value + mean_square)
+            .collect();
+        let prediction = wiener_prediction(&facts.shape, &second_moment)?;
+        let delay_samples = prediction.delay_at_dc_samples();
+        let bound = noise_delay_bound_coloured(
+            facts.shape.taps,
+            facts.shape.newest_age_samples,
+            delay_samples,
+            autocovariance,
+        );
+        Some((prediction.dc_gain(), delay_samples, bound))
+    };
+    let parts: Vec<_> = (0..raw.blocks())
+        .filter_map(|block| predict(&raw.autocovariance_without(block)))
+        .collect();
+    let Some((dc_gain, delay_samples, bound)) = predict(&raw.autocovariance()) else {
+        metrics.miss("dc_gain_predicted", "the raw channel has no power");
+        metrics.miss(
+            "noise_delay_bound_noise_gain",
+            "the raw channel has no power",
+        );
+        return;
+    };
+    let gains: Vec<f64> = parts.iter().map(|part| part.0).collect();
+    metrics.put("dc_gain_predicted", interval::jackknife(dc_gain, &gains));
+    let bounds: Vec<f64> = parts.iter().filter_map(|part| part.2).collect();
+    put_bound(
+        bound.map(|bound| interval::jackknife(bound, &bounds)),
+        facts,
+        delay_samples,
+        record.sample_period_s,
+        metrics,
+    );
+}
+
+/// Enters the noise-delay bound with the delay it holds at and the white-noise figure beside it.
+pub(crate) fn put_bound(
+    bound: Option<Estimate>,
+    facts: &FilterFacts,
+    delay_samples: f64,
+    sample_period_s: f64,
+    metrics: &mut ChannelMetrics,
+) {
+    let Some(bound) = bound else {
+        metrics.miss(
+            "noise_delay_bound_noise_gain",
+            format!(
+                "no filter of {} taps and unit DC gain has a delay of {delay_samples:.3} samples",
+                facts.shape.taps
+            ),
+        );
+        return;
+    };
+    let metric = metrics.put("noise_delay_bound_noise_gain", bound);
+    metric
+        .fields
+        .insert("delay_ms", units::s_to_ms(delay_samples * sample_period_s));
+    if let Some(white) = noise_delay_bound(
+        facts.shape.taps,
+        facts.shape.newest_age_samples,
+        delay_samples,
+    ) {
+        metric.fields.insert("white_noise_gain", white);
+    }
+}
+
+/// What is left of the improvement once the scale factor is restored.
+pub(crate) fn put_over_dc_gain(dc_gain: Option<f64>, metrics: &mut ChannelMetrics) {
+    for (name, over) in [
+        (
+            "angle_random_walk_deg_per_sqrt_h",
+            "angle_random_walk_over_dc_gain_deg_per_sqrt_h",
+        ),
+        (
+            "bias_stability_deg_per_h",
+            "bias_stability_over_dc_gain_deg_per_h",
+        ),
+    ] {
+        match (metrics.metrics.get(name).cloned(), dc_gain) {
+            (Some(metric), Some(gain)) if gain > 1e-6 => {
+                let mut fields = metric.fields;
+                fields.insert("dc_gain", gain);
+                metrics.put(over, metric.estimate.scaled(1.0 / gain)).fields = fields;
+            }
+            (Some(_), Some(gain)) => {
+                metrics.miss(over, format!("the DC gain, {gain}, is not positive"));
+            }
+            (Some(_), None) => metrics.miss(over, "the DC gain of this filter is not known"),
+            (None, _) => metrics.miss(over, format!("the record does not give `{name}`")),
+        }
+    }
+}

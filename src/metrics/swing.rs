@@ -1,0 +1,206 @@
+//! Metrics of a swing record.
+
+use std::f64::consts::TAU;
+
+use super::audit::{lags_needed, noise_delay_bound_coloured, wiener_prediction};
+use super::autocovariance::LaggedProducts;
+use super::delay::{SwingClock, SwingFit, fit_swing};
+use super::estimate::{ChannelMetrics, Estimate, Metric};
+use super::interval;
+use super::record::{FilterFacts, Record};
+use super::steady::{LAGS_MIN, put_bound, put_mean, put_noise_gain, put_noise_std};
+use crate::units;
+
+/// The sine fits of one swing record.
+struct Fits {
+    channel: SwingFit,
+    raw: SwingFit,
+    truth: SwingFit,
+}
+
+/// Measures everything a swing record supports.
+///
+/// # Errors
+/// The reason, in words, if the record holds no three whole cycles.
+pub(crate) fn measure_swing(
+    record: &Record,
+    frequency_hz: f64,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) -> Result<(), String> {
+    let clock = SwingClock {
+        frequency_hz,
+        sample_period_s: record.sample_period_s,
+        first_stamp_s: record.first_stamp_s,
+    };
+    let fits = Fits {
+        channel: fit_swing(record.channel_deg_per_h, &clock)?,
+        raw: fit_swing(record.raw_deg_per_h, &clock)?,
+        truth: fit_swing(record.truth_deg_per_h, &clock)?,
+    };
+    let duration_s = fits.channel.samples() as f64 * record.sample_period_s;
+    put_mean(
+        fits.channel.offset(),
+        fits.truth.whole.offset,
+        duration_s,
+        metrics,
+    );
+    measure_sines(&fits, &clock, filter.is_some(), metrics);
+    measure_tracking(record, &fits, metrics);
+    let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
+    let channel = residual_products(&fits.channel, record.channel_deg_per_h, lags);
+    {
+        let residuals = fits.channel.residuals(record.channel_deg_per_h);
+        metrics.put(
+            "harmonic_distortion_percent",
+            fits.channel.harmonic_distortion_percent(&residuals),
+        );
+    }
+    put_noise_std(&channel.autocovariance(), fits.channel.samples(), metrics);
+    if let Some(facts) = filter {
+        let raw = residual_products(&fits.raw, record.raw_deg_per_h, lags);
+        put_noise_gain(&channel, &raw, metrics);
+        measure_mean_ratio(&fits, metrics);
+        measure_predictions(&fits, &clock, facts, &raw, metrics);
+        measure_bound(&fits, &clock, facts, &raw, metrics);
+    }
+    Ok(())
+}
+
+fn residual_products(fit: &SwingFit, values: &[f64], lags: usize) -> LaggedProducts {
+    LaggedProducts::new(&fit.residuals(values), 0.0, lags, fit.block_count())
+}
+
+/// Delays and amplitude ratio.
+fn measure_sines(fits: &Fits, clock: &SwingClock, is_filter: bool, metrics: &mut ChannelMetrics) {
+    let describe = |metric: &mut Metric| {
+        metric.fields.insert("frequency_hz", clock.frequency_hz);
+        metric.fields.insert("cycles", fits.channel.cycles as f64);
+    };
+    let in_ms = |delay_s: Estimate| delay_s.scaled(units::s_to_ms(1.0));
+    describe(metrics.put(
+        "delay_vs_truth_ms",
+        in_ms(fits.channel.delay_behind_s(&fits.truth)),
+    ));
+    let reference = if is_filter { &fits.raw } else { &fits.truth };
+    describe(metrics.put("amplitude_ratio", fits.channel.amplitude_over(reference)));
+    if is_filter {
+        describe(metrics.put(
+            "delay_vs_raw_ms",
+            in_ms(fits.channel.delay_behind_s(&fits.raw)),
+        ));
+    }
+}
+
+/// Root mean square difference from the truth, with Student's t on the sub-blocks' squares.
+fn measure_tracking(record: &Record, fits: &Fits, metrics: &mut ChannelMetrics) {
+    let errors: Vec<f64> = record.channel_deg_per_h[..fits.channel.samples()]
+        .iter()
+        .zip(record.truth_deg_per_h)
+        .map(|(rate, truth)| rate - truth)
+        .collect();
+    put_tracking_error(&fits.channel.block_mean_squares(&errors), metrics);
+}
+
+/// Enters the tracking error from its mean squares over equally long blocks.
+pub(crate) fn put_tracking_error(mean_squares: &[f64], metrics: &mut ChannelMetrics) {
+    let square = interval::from_parts(interval::mean(mean_squares), mean_squares);
+    let estimate = Estimate::with_interval(
+        square.value.sqrt(),
+        square.low.max(0.0).sqrt(),
+        square.high.sqrt(),
+    );
+    metrics.put("tracking_error_rms_deg_per_h", estimate);
+}
+
+/// Ratio of the offsets, if raw's offset can be told from zero.
+fn measure_mean_ratio(fits: &Fits, metrics: &mut ChannelMetrics) {
+    let raw = fits.raw.offset();
+    if raw.low <= 0.0 && raw.high >= 0.0 {
+        let reason = format!(
+            "the raw mean, {:.4} deg/h, cannot be told from zero",
+            raw.value
+        );
+        metrics.miss("mean_ratio", reason);
+    } else {
+        metrics.put("mean_ratio", fits.channel.offset_ratio(&fits.raw));
+    }
+}
+
+/// Wiener prediction for the fitted sine plus the measured noise: delay behind raw and DC gain.
+///
+/// Second moment by lag: `A^2/2 cos(w l T) + c^2 + R(l)`, A and c from the sine fit of raw, R the
+/// autocovariance of its residuals; the intervals are jackknifed over sub-blocks of R.
+fn measure_predictions(
+    fits: &Fits,
+    clock: &SwingClock,
+    facts: &FilterFacts,
+    raw: &LaggedProducts,
+    metrics: &mut ChannelMetrics,
+) {
+    let turns_per_sample = clock.frequency_hz * clock.sample_period_s;
+    let sine = &fits.raw.whole;
+    let predict = |autocovariance: &[f64]| {
+        let second_moment: Vec<f64> = autocovariance
+            .iter()
+            .enumerate()
+            .map(|(lag, noise)| {
+                let swing = sine.amplitude * sine.amplitude / 2.0
+                    * (TAU * turns_per_sample * lag as f64).cos();
+                swing + sine.offset * sine.offset + noise
+            })
+            .collect();
+        let prediction = wiener_prediction(&facts.shape, &second_moment)?;
+        let delay_s = prediction.delay_s(clock.frequency_hz, clock.sample_period_s);
+        let amplitude = prediction.amplitude(clock.frequency_hz, clock.sample_period_s);
+        Some((units::s_to_ms(delay_s), prediction.dc_gain(), amplitude))
+    };
+    let Some((delay_ms, dc_gain, amplitude)) = predict(&raw.autocovariance()) else {
+        metrics.miss("delay_predicted_ms", "the raw channel has no power");
+        metrics.miss("dc_gain_predicted", "the raw channel has no power");
+        return;
+    };
+    let parts: Vec<_> = (0..raw.blocks())
+        .filter_map(|block| predict(&raw.autocovariance_without(block)))
+        .collect();
+    let delays: Vec<f64> = parts.iter().map(|part| part.0).collect();
+    let gains: Vec<f64> = parts.iter().map(|part| part.1).collect();
+    let metric = metrics.put("delay_predicted_ms", interval::jackknife(delay_ms, &delays));
+    metric.fields.insert("frequency_hz", clock.frequency_hz);
+    metric.fields.insert("amplitude_ratio", amplitude);
+    metrics.put("dc_gain_predicted", interval::jackknife(dc_gain, &gains));
+}
+
+/// Noise-delay bound at the measured delay behind raw, for the measured colour of raw's noise.
+fn measure_bound(
+    fits: &Fits,
+    clock: &SwingClock,
+    facts: &FilterFacts,
+    raw: &LaggedProducts,
+    metrics: &mut ChannelMetrics,
+) {
+    let delay = fits
+        .channel
+        .delay_behind_s(&fits.raw)
+        .scaled(1.0 / clock.sample_period_s);
+    let autocovariance = raw.autocovariance();
+    let at = |delay_samples: f64| {
+        noise_delay_bound_coloured(
+            facts.shape.taps,
+            facts.shape.newest_age_samples,
+            delay_samples,
+            &autocovariance,
+        )
+    };
+    // The bound is a parabola in the delay: its extremes over the interval are at the ends unless
+    // the lowest point lies inside, which the value in the middle stands for.
+    let bound = at(delay.value).map(|value| {
+        let ends = [
+            at(delay.low).unwrap_or(value),
+            at(delay.high).unwrap_or(value),
+        ];
+        let low = ends[0].min(ends[1]).min(value);
+        Estimate::with_interval(value, low, ends[0].max(ends[1]).max(value))
+    });
+    put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
+}

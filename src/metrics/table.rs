@@ -1,0 +1,114 @@
+//! Filling a channel's table: units from the catalogue, fits and curves in their fixed form.
+
+use std::collections::BTreeMap;
+
+use super::allan::AllanPoint;
+use super::catalogue;
+use super::estimate::{ChannelMetrics, Estimate, Metric};
+use super::noise_fit::{NoiseFit, Term};
+use super::psd::Spectrum;
+use crate::units;
+
+/// Field of every metric whose interval is a chi-square one.
+pub(crate) const DEGREES_OF_FREEDOM: &str = "degrees_of_freedom";
+
+impl ChannelMetrics {
+    /// Enters a metric under its catalogue unit, and returns it for its defining fields.
+    pub(crate) fn put(&mut self, name: &'static str, estimate: Estimate) -> &mut Metric {
+        let unit = catalogue::find(name).map_or("1", |known| known.unit);
+        self.unavailable.remove(name);
+        self.metrics
+            .entry(name.to_owned())
+            .insert_entry(Metric::new(estimate, unit))
+            .into_mut()
+    }
+
+    /// Says why a metric is missing.
+    pub(crate) fn miss(&mut self, name: &str, reason: impl Into<String>) {
+        self.unavailable.insert(name.to_owned(), reason.into());
+    }
+
+    /// Enters the five fitted coefficients or the reasons for their absence.
+    pub(crate) fn put_noise_fit(&mut self, fit: &NoiseFit) {
+        type Conversion = fn(f64) -> f64;
+        let entries: [(&'static str, &Term, Conversion); 5] = [
+            (
+                "angle_random_walk_deg_per_sqrt_h",
+                &fit.angle_random_walk_deg_per_h_sqrt_s,
+                units::deg_per_h_sqrt_s_to_deg_per_sqrt_h,
+            ),
+            (
+                "bias_instability_deg_per_h",
+                &fit.bias_instability_deg_per_h,
+                std::convert::identity,
+            ),
+            (
+                "rate_random_walk_deg_per_h_per_sqrt_h",
+                &fit.rate_random_walk_deg_per_h_per_sqrt_s,
+                units::deg_per_h_per_sqrt_s_to_deg_per_h_per_sqrt_h,
+            ),
+            (
+                "rate_ramp_deg_per_h_per_h",
+                &fit.rate_ramp_deg_per_h_per_s,
+                units::deg_per_h_per_s_to_deg_per_h_per_h,
+            ),
+            (
+                "quantisation_arcsec",
+                &fit.quantisation_arcsec,
+                std::convert::identity,
+            ),
+        ];
+        for (name, term, convert) in entries {
+            match term {
+                Term::Found(estimate) => {
+                    let estimate = estimate.scaled(convert(1.0));
+                    let metric = self.put(name, estimate);
+                    metric.fields.insert("tau_min_s", fit.tau_range_s[0]);
+                    metric.fields.insert("tau_max_s", fit.tau_range_s[1]);
+                }
+                Term::LeftOut(reason) => {
+                    self.metrics.remove(name);
+                    self.miss(name, reason.as_str());
+                }
+            }
+        }
+    }
+
+    /// Enters the Allan curve with the fitted deviation (NaN-free: 0 where there is no fit).
+    pub(crate) fn put_allan_curve(&mut self, points: &[AllanPoint], fit: Option<&NoiseFit>) {
+        let column = |pick: &dyn Fn(&AllanPoint) -> f64| points.iter().map(pick).collect();
+        let mut curve: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+        curve.insert("tau_s".into(), column(&|point| point.tau_s));
+        curve.insert(
+            "deviation_deg_per_h".into(),
+            column(&|point| point.deviation_deg_per_h.value),
+        );
+        curve.insert(
+            "low_deg_per_h".into(),
+            column(&|point| point.deviation_deg_per_h.low),
+        );
+        curve.insert(
+            "high_deg_per_h".into(),
+            column(&|point| point.deviation_deg_per_h.high),
+        );
+        curve.insert("edf".into(), column(&|point| point.degrees_of_freedom));
+        if let Some(fit) = fit {
+            curve.insert(
+                "fitted_deg_per_h".into(),
+                column(&|point| fit.deviation_deg_per_h(point.tau_s)),
+            );
+        }
+        self.curves.insert("allan".into(), curve);
+    }
+
+    /// Enters the spectrum.
+    pub(crate) fn put_spectrum(&mut self, spectrum: Spectrum) {
+        let mut curve = BTreeMap::new();
+        curve.insert("frequency_hz".into(), spectrum.frequency_hz);
+        curve.insert(
+            "psd_deg2_per_h2_per_hz".into(),
+            spectrum.density_deg2_per_h2_per_hz,
+        );
+        self.curves.insert("psd".into(), curve);
+    }
+}
