@@ -154,7 +154,7 @@ struct Checker<'a> {
 
 impl Checker<'_> {
     fn complain(&mut self, key: &str, message: String) {
-        self.errors.push(ScenarioError::new(Some(self.resolved.locate(key)), message));
+        self.errors.push(ScenarioError::at(self.resolved.locate(key), message));
     }
 
     fn gyro(&mut self) -> Option<GyroFacts> {
@@ -263,17 +263,20 @@ impl Checker<'_> {
     fn metrics(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
         let motion = motion(scenario, 1.0 / facts.output_rate_hz);
-        let gates = scenario.gates.iter().enumerate();
-        let published = scenario.published.iter().enumerate();
-        let requested: Vec<(String, &str)> = gates
-            .map(|(index, gate)| (format!("gate[{index}].metric"), gate.metric.as_str()))
-            .chain(published.map(|(index, figure)| {
-                (format!("published[{index}].metric"), figure.metric.as_str())
-            }))
-            .collect();
-        for (key, metric) in requested {
+        let mut requested: Vec<(String, &str, &str)> = Vec::new();
+        for (index, gate) in scenario.gates.iter().enumerate() {
             // The reader has checked that there is a dot and that the channel exists.
-            let Some((channel, name)) = metric.rsplit_once('.') else { continue };
+            let Some((channel, name)) = gate.metric.rsplit_once('.') else { continue };
+            requested.push((format!("gate[{index}].metric"), channel, name));
+            if let Some(reference) = &gate.relative_to {
+                requested.push((format!("gate[{index}].relative_to"), reference, name));
+            }
+        }
+        for (index, figure) in scenario.published.iter().enumerate() {
+            let Some((channel, name)) = figure.metric.rsplit_once('.') else { continue };
+            requested.push((format!("published[{index}].metric"), channel, name));
+        }
+        for (key, channel, name) in requested {
             if name == DIVERGED_AT {
                 continue;
             }
@@ -286,7 +289,7 @@ impl Checker<'_> {
                 scenario.bias_averaging_time_s,
             );
             if let Err(reason) = supported {
-                self.complain(&key, format!("{key} = \"{metric}\": {reason}"));
+                self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
             }
         }
     }

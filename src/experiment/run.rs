@@ -12,7 +12,7 @@ use super::suite::{Observer, SuiteError, VERSION};
 use crate::filters::Divergence;
 use crate::gate::judge;
 use crate::metrics::{
-    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Motion, Record, Settings,
+    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings,
     aggregate, measure,
 };
 use crate::gyro::GyroError;
