@@ -1,3 +1,4 @@
 //! The one integration-test binary.
 
+mod known_answers_metrics;
 mod support;
