@@ -22,7 +22,7 @@ pub struct Settling {
     pub band_deg_per_h: f64,
     /// Rate settled at: mean of the last quarter, deg/h.
     pub final_deg_per_h: f64,
-    /// Standard deviation of the last quarter, deg/h.
+    /// Standard deviation of the last quarter about its own straight line, deg/h.
     pub noise_std_deg_per_h: f64,
 }
 
@@ -62,7 +62,7 @@ pub fn settling(
     let start = tail_start(samples, step_index);
     let tail = &rate_deg_per_h[start..];
     let target = interval::mean(tail);
-    let noise = interval::sample_variance(tail).sqrt();
+    let noise = deviation_about_line(tail);
     let band =
         (BAND_PER_STEP * step_deg_per_h.abs()).max(noise * noise_deviations(samples - step_index));
     let outside = rate_deg_per_h[step_index..]
@@ -78,6 +78,24 @@ pub fn settling(
         final_deg_per_h: target,
         noise_std_deg_per_h: noise,
     })
+}
+
+/// Standard deviation about the straight line through the values.
+///
+/// A rate that still creeps must not pass for noise and widen its own band.
+fn deviation_about_line(values: &[f64]) -> f64 {
+    let middle = (values.len() as f64 - 1.0) / 2.0;
+    let mean = interval::mean(values);
+    let (mut squares, mut cross, mut spread) = (0.0, 0.0, 0.0);
+    for (index, value) in values.iter().enumerate() {
+        let from_middle = index as f64 - middle;
+        let deviation = value - mean;
+        squares += deviation * deviation;
+        cross += from_middle * deviation;
+        spread += from_middle * from_middle;
+    }
+    let residual = (squares - cross * cross / spread.max(f64::MIN_POSITIVE)).max(0.0);
+    (residual / (values.len().max(3) - 2) as f64).sqrt()
 }
 
 /// Half width of the band in standard deviations for a number of samples.
