@@ -1,24 +1,71 @@
 //! Curves as CSV: one header line, one row per channel and point.
 
+use crate::metrics::ChannelMetrics;
 use crate::report::RunReport;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-/// Name of the Allan curve among a channel's curves.
-pub(crate) const ALLAN_CURVE: &str = "allan";
-/// Name of the spectrum among a channel's curves.
-pub(crate) const PSD_CURVE: &str = "psd";
+/// Names the Allan curve goes by among a channel's curves, the usual one first.
+const ALLAN_CURVES: [&str; 2] = ["allan", "allan_deviation"];
+/// Names the spectrum goes by.
+const PSD_CURVES: [&str; 2] = ["psd", "spectrum"];
+
+/// A curve: columns by name.
+pub(crate) type Curve = BTreeMap<String, Vec<f64>>;
+
+/// The Allan deviation of a channel.
+pub(crate) fn allan_curve(metrics: &ChannelMetrics) -> Option<&Curve> {
+    ALLAN_CURVES
+        .iter()
+        .find_map(|name| metrics.curves.get(*name))
+}
+
+/// The spectrum of a channel.
+pub(crate) fn psd_curve(metrics: &ChannelMetrics) -> Option<&Curve> {
+    PSD_CURVES.iter().find_map(|name| metrics.curves.get(*name))
+}
+
+/// The independent variable of a curve.
+pub(crate) fn abscissa(curve: &Curve) -> Option<&[f64]> {
+    column(curve, is_abscissa)
+}
+
+/// The dependent variable: the first column with the unit of a rate or of its density that is no
+/// end of an interval.
+pub(crate) fn ordinate(curve: &Curve) -> Option<&[f64]> {
+    column(curve, |name| {
+        is_rate(name) && !is_end(name, "low") && !is_end(name, "high")
+    })
+}
+
+/// The named end (`low` or `high`) of the dependent variable's interval.
+pub(crate) fn interval_end<'a>(curve: &'a Curve, end: &str) -> Option<&'a [f64]> {
+    column(curve, |name| is_rate(name) && is_end(name, end))
+}
+
+fn column(curve: &Curve, wanted: impl Fn(&str) -> bool) -> Option<&[f64]> {
+    let (_, values) = curve.iter().find(|(name, _)| wanted(name))?;
+    Some(values)
+}
+
+fn is_rate(column: &str) -> bool {
+    column.contains("per_h") || column.contains("per_hz")
+}
+
+fn is_end(column: &str, end: &str) -> bool {
+    column.split('_').any(|word| word == end)
+}
 
 /// The Allan deviation of every channel, or nothing if no channel has one.
 #[must_use]
 pub fn allan_csv(report: &RunReport) -> Option<String> {
-    curve_csv(report, ALLAN_CURVE)
+    curve_csv(report, allan_curve)
 }
 
 /// The one-sided power spectral density of every channel, or nothing if no channel has one.
 #[must_use]
 pub fn psd_csv(report: &RunReport) -> Option<String> {
-    curve_csv(report, PSD_CURVE)
+    curve_csv(report, psd_curve)
 }
 
 /// Columns of an independent variable: they stand first.
@@ -26,12 +73,12 @@ fn is_abscissa(column: &str) -> bool {
     column == "averaging_time_s" || column == "tau_s" || column == "frequency_hz"
 }
 
-fn curve_csv(report: &RunReport, curve: &str) -> Option<String> {
+fn curve_csv(report: &RunReport, curve: fn(&ChannelMetrics) -> Option<&Curve>) -> Option<String> {
     let curves = || {
         report
             .channels
             .iter()
-            .filter_map(|(name, metrics)| Some((name, metrics.curves.get(curve)?)))
+            .filter_map(|(name, metrics)| Some((name, curve(metrics)?)))
     };
     let columns: BTreeSet<(bool, &str)> = curves()
         .flat_map(|(_, columns)| columns.keys())

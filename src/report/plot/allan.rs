@@ -1,0 +1,148 @@
+//! `allan.svg`: overlapping Allan deviation with intervals, fitted lines and labelled markers.
+
+use super::axis::Axis;
+use super::panel::{Legend, Panel, WIDTH};
+use super::picture::{Dash, Picture, Shape, Stroke};
+use super::series::{extent, stroke_of};
+use crate::gate::estimate_text;
+use crate::metrics::ChannelMetrics;
+use crate::report::RunReport;
+use crate::report::csv::{abscissa, allan_curve, interval_end, ordinate};
+use crate::units::{
+    deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s, deg_per_sqrt_h_to_deg_per_h_sqrt_s,
+};
+
+/// The flicker floor of the Allan deviation over B: `sqrt(2 ln 2 / pi)` (IEEE Std 952-1997, C).
+const FLOOR_OVER_B: f64 = 0.664;
+
+/// A noise term read off its line: the line, and the point at which the standard reads it.
+struct Reading {
+    shape: Shape,
+    /// Exponent of tau along the line.
+    slope: f64,
+    /// Where the coefficient is read, s; the floor has no such place.
+    tau_s: Option<f64>,
+    /// The deviation there, deg/h.
+    deviation_deg_per_h: f64,
+    /// Symbol, value and unit.
+    text: String,
+}
+
+/// The Allan deviation of every channel that has one.
+pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+    let tables = || {
+        report
+            .channels
+            .iter()
+            .enumerate()
+            .filter_map(|(index, (name, metrics))| {
+                let table = allan_curve(metrics)?;
+                let (tau, deviation) = (abscissa(table)?, ordinate(table)?);
+                let low = interval_end(table, "low").unwrap_or(deviation);
+                let high = interval_end(table, "high").unwrap_or(deviation);
+                Some((index, name.as_str(), metrics, tau, [deviation, low, high]))
+            })
+    };
+    let positive = |value: &f64| *value > 0.0;
+    let tau = tables().flat_map(|(.., tau, _)| tau.iter().copied());
+    let read_at = tables().flat_map(|(_, _, metrics, ..)| readings(metrics));
+    let x = extent(
+        tau.chain(read_at.filter_map(|reading| reading.tau_s))
+            .filter(positive),
+    )?;
+    let drawn = tables().flat_map(|(.., curves)| curves.into_iter().flatten().copied());
+    let read = tables().flat_map(|(_, _, metrics, ..)| readings(metrics));
+    let levels = drawn.chain(read.map(|reading| reading.deviation_deg_per_h));
+    let y = extent(levels.filter(positive))?;
+
+    let mut picture = Picture::new(WIDTH, 700.0);
+    let title = format!("{}: overlapping Allan deviation", report.scenario.name);
+    picture.heading((90.0, 28.0), &title, 18.0);
+    let x = Axis::log(x, 0.01, "averaging time τ [s]");
+    let y = Axis::log(y, 0.04, "Allan deviation σ(τ) [deg/h]");
+    let panel = Panel::new(&mut picture, (56.0, 640.0), x, y);
+    let mut legend = Legend::new(56.0);
+    for (index, name, metrics, tau, [deviation, low, high]) in tables() {
+        let stroke = stroke_of(index);
+        let band: Vec<(f64, f64, f64)> = (0..tau.len())
+            .filter_map(|at| Some((tau[at], *low.get(at)?, *high.get(at)?)))
+            .filter(|(_, low, high)| *low > 0.0 && *high > 0.0)
+            .collect();
+        panel.band(&mut picture, &band, stroke.colour, 0.22);
+        let line: Vec<(f64, f64)> = tau.iter().copied().zip(deviation.iter().copied()).collect();
+        panel.line(&mut picture, &line, stroke);
+        legend.line(&mut picture, stroke, name);
+        for reading in readings(metrics) {
+            draw_reading(&mut picture, &panel, &reading, stroke);
+            legend.marker(&mut picture, (reading.shape, stroke.colour), &reading.text);
+        }
+        legend.space();
+    }
+    legend.text(
+        &mut picture,
+        "bands: 95 % interval; thin lines: fitted terms",
+    );
+    legend.text(&mut picture, "circle: σ(1 s) of the -1/2 line is the ARW");
+    legend.text(&mut picture, "square: the flat line is 0.664 B");
+    legend.text(&mut picture, "triangle: σ(3 s) of the +1/2 line is K");
+    Some(picture)
+}
+
+/// The fitted terms of a channel.
+fn readings(metrics: &ChannelMetrics) -> Vec<Reading> {
+    let read = |key: &str, symbol: &str, unit: &str| {
+        let metric = metrics.metrics.get(key)?;
+        let text = estimate_text(&metric.estimate, 2);
+        let value = metric.estimate.value;
+        (value > 0.0).then(|| (value, format!("{symbol} {text} {unit}")))
+    };
+    let walk = read("angle_random_walk_deg_per_sqrt_h", "ARW", "deg/sqrt(h)");
+    let floor = read("bias_instability_deg_per_h", "B", "deg/h");
+    let rate_walk = read(
+        "rate_random_walk_deg_per_h_per_sqrt_h",
+        "K",
+        "deg/h/sqrt(h)",
+    );
+    let walk = walk.map(|(value, text)| Reading {
+        shape: Shape::Circle,
+        slope: -0.5,
+        tau_s: Some(1.0),
+        deviation_deg_per_h: deg_per_sqrt_h_to_deg_per_h_sqrt_s(value),
+        text,
+    });
+    let floor = floor.map(|(value, text)| Reading {
+        shape: Shape::Square,
+        slope: 0.0,
+        tau_s: None,
+        deviation_deg_per_h: FLOOR_OVER_B * value,
+        text,
+    });
+    // K sqrt(tau / 3) at tau = 3 s is K in (deg/h)/sqrt(s).
+    let rate_walk = rate_walk.map(|(value, text)| Reading {
+        shape: Shape::Triangle,
+        slope: 0.5,
+        tau_s: Some(3.0),
+        deviation_deg_per_h: deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(value),
+        text,
+    });
+    [walk, floor, rate_walk].into_iter().flatten().collect()
+}
+
+/// The line of a term over the whole frame, and its marker.
+fn draw_reading(picture: &mut Picture, panel: &Panel, reading: &Reading, stroke: Stroke) {
+    let (low, high) = panel.x_range();
+    // The floor has no averaging time of its own: its marker stands where floors are looked for.
+    let tau_s = reading
+        .tau_s
+        .unwrap_or_else(|| high.powf(0.85) * low.powf(0.15));
+    let level = |tau: f64| reading.deviation_deg_per_h * (tau / tau_s).powf(reading.slope);
+    let thin = Stroke {
+        width: 1.0,
+        dash: Dash::Dotted,
+        opacity: 0.8,
+        ..stroke
+    };
+    panel.line(picture, &[(low, level(low)), (high, level(high))], thin);
+    let at = (tau_s, reading.deviation_deg_per_h);
+    panel.marker(picture, at, reading.shape, stroke.colour);
+}
