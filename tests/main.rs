@@ -10,5 +10,4 @@ mod known_answers_metrics;
 mod known_answers_turntable;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
-mod report;
 mod support;
