@@ -1,6 +1,7 @@
 //! The one integration-test binary.
 
 mod known_answers_gyro;
+mod known_answers_gyro_noise;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
 mod support;

@@ -1,5 +1,6 @@
 //! Helpers shared by the integration tests.
 
+pub(crate) mod gyro_cases;
 pub(crate) mod reference_gyro;
 
 /// Asserts that `got` equals `want` within `rtol * |want| + atol`.
