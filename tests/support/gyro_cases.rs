@@ -28,3 +28,18 @@ pub(crate) fn budget_of(config: &GyroConfig, source: &str) -> f64 {
         .expect("a source of the budget")
         .1
 }
+
+/// Overlapping Allan deviation at an averaging factor (written apart from the library; NIST SP 1065, eq. 11, as angles).
+pub(crate) fn allan_deviation(rates: &[f64], factor: usize) -> f64 {
+    let mut angles = vec![0.0];
+    let mut sum = 0.0;
+    for rate in rates {
+        sum += rate;
+        angles.push(sum);
+    }
+    let terms = angles.len() - 2 * factor;
+    let squares: f64 = (0..terms)
+        .map(|k| (angles[k + 2 * factor] - 2.0 * angles[k + factor] + angles[k]).powi(2))
+        .sum();
+    (squares / (2.0 * (factor * factor * terms) as f64)).sqrt()
+}
