@@ -215,6 +215,15 @@ fn the_loop_gain_gives_the_asked_bandwidth_exactly() {
             assert!(re * re + im * im > 0.5);
         }
     }
+    // The gain grows with the bandwidth up to the last stable one: the crossing is the first.
+    for latency in 0..=3 {
+        let gains = (1..600).map_while(|step| {
+            let bandwidth_hz = 100.0 * f64::from(step);
+            let controller = Controller::new(bandwidth_hz, latency, loop_period_s);
+            controller.ok().map(|controller| controller.gain)
+        });
+        assert!(gains.is_sorted_by(|lower, upper| lower < upper));
+    }
     // Gains and -3 dB frequencies without latency, to the digits of the table they come from.
     for (gain, bandwidth_hz) in [(0.05, 1042.4), (0.1, 2142.7), (0.5, 14685.0)] {
         let controller = Controller::new(bandwidth_hz, 0, loop_period_s).unwrap();

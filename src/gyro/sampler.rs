@@ -247,7 +247,7 @@ impl ExactSampler {
         Self {
             fringe: Fringe::new(mean, mean * detector.visibility, modulator),
             dark: detector.dark_current_a * units_per_a,
-            // The variance in units^2 is 2 e I ... in A^2 times units^2/A^2, and I = level / units.
+            // 2 e I is linear in the current: one factor of the unit converts I, one remains.
             shot_variance_per_level: count
                 * detector.half_period_variance_a2(shot_density_per_a, transit_time_s)
                 * units_per_a,
