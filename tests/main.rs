@@ -8,6 +8,8 @@ mod filters;
 mod known_answers_gyro;
 mod known_answers_metrics;
 mod known_answers_turntable;
+mod known_answers_gyro_noise;
+mod known_answers_slow_noise;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
 mod support;

@@ -32,17 +32,6 @@ pub enum GyroError {
         /// Latency in loop periods.
         latency_periods: u32,
     },
-    /// The response falls below -3 dB before the asked bandwidth.
-    #[error(
-        "loop bandwidth {bandwidth_hz} Hz cannot be reached at a latency of {latency_periods} periods: \
-         the response crosses -3 dB at a lower frequency first"
-    )]
-    UnreachableBandwidth {
-        /// Bandwidth asked for, Hz.
-        bandwidth_hz: f64,
-        /// Latency in loop periods.
-        latency_periods: u32,
-    },
     /// Latency beyond what the model holds.
     #[error("loop latency of {latency_periods} periods is out of range: expected 0 to 3")]
     LatencyOutOfRange {

@@ -69,6 +69,24 @@ impl Gyro {
             Model::Rate(model) => model.next_word(segment),
         }
     }
+
+    /// Half periods in which the converter was beyond its range; 0 for the rate model, which has none.
+    #[must_use]
+    pub fn saturated_half_periods(&self) -> u64 {
+        match &self.model {
+            Model::Loop(model) => model.saturated_half_periods(),
+            Model::Rate(_) => 0,
+        }
+    }
+
+    /// Half periods with a phase error beyond a quarter turn; 0 for the rate model, which is linear.
+    #[must_use]
+    pub fn unlocked_half_periods(&self) -> u64 {
+        match &self.model {
+            Model::Loop(model) => model.unlocked_half_periods(),
+            Model::Rate(_) => 0,
+        }
+    }
 }
 
 /// Time between rate words of a configuration, s.

@@ -111,25 +111,28 @@ impl Fringe {
     }
 }
 
-/// Converter in its own steps: clamps to the codes and rounds.
+/// Converter in its own steps: clamps to the codes, counting that in `saturated`, and rounds.
 #[inline(always)]
-fn convert(level: f64, level_max: f64, is_saturated: &mut bool) -> f64 {
+fn convert(level: f64, level_max: f64, saturated: &mut u64) -> f64 {
     // A branch, not a minimum and a maximum: it is predicted and adds no latency to the loop.
     if (0.0..=level_max).contains(&level) {
         round_whole(level)
     } else {
-        clamp_level(level, level_max, is_saturated)
+        clamp_level(level, level_max, saturated)
     }
 }
 
 #[cold]
 #[inline(never)]
-fn clamp_level(level: f64, level_max: f64, is_saturated: &mut bool) -> f64 {
-    *is_saturated = true;
+fn clamp_level(level: f64, level_max: f64, saturated: &mut u64) -> f64 {
+    *saturated += 1;
     round_whole(level.clamp(0.0, level_max))
 }
 
 /// One normal and one rounding per half period, for all sources and samples together.
+///
+/// The normal is drawn where it is used: the processor draws it while it waits for the loop's own
+/// chain of operations, which is faster than drawing a block ahead (by a fifth when measured).
 #[derive(Clone, Debug)]
 pub(super) struct CombinedSampler<const ROUNDED: bool> {
     fringe: Fringe,
@@ -140,7 +143,7 @@ pub(super) struct CombinedSampler<const ROUNDED: bool> {
 }
 
 impl<const ROUNDED: bool> CombinedSampler<ROUNDED> {
-    /// The sampler, and its slope in levels per radian.
+    /// The sampler of a detection chain.
     pub(super) fn new(
         detector: &Detector,
         modulator: &Modulator,
@@ -172,10 +175,7 @@ impl<const ROUNDED: bool> Sampler for CombinedSampler<ROUNDED> {
         let noise = self.noise_levels * self.stream.normal();
         let level = self.fringe.level::<PLUS>(error_codes, &mut self.faults) + noise;
         if ROUNDED {
-            let mut is_saturated = false;
-            let converted = convert(level, self.level_max, &mut is_saturated);
-            self.faults.saturated += u64::from(is_saturated);
-            converted
+            convert(level, self.level_max, &mut self.faults.saturated)
         } else {
             level
         }
@@ -247,7 +247,7 @@ impl ExactSampler {
         Self {
             fringe: Fringe::new(mean, mean * detector.visibility, modulator),
             dark: detector.dark_current_a * units_per_a,
-            // The variance in units^2 is 2 e I ... in A^2 times units^2/A^2, and I = level / units.
+            // 2 e I is linear in the current: one factor of the unit converts I, one remains.
             shot_variance_per_level: count
                 * detector.half_period_variance_a2(shot_density_per_a, transit_time_s)
                 * units_per_a,
@@ -280,7 +280,7 @@ impl Sampler for ExactSampler {
     fn sample<const PLUS: bool>(&mut self, error_codes: f64) -> f64 {
         let light = self.fringe.level::<PLUS>(error_codes, &mut self.faults);
         let mut sum = 0.0;
-        let mut is_saturated = false;
+        let mut saturated = 0;
         for _ in 0..self.samples {
             let mut level = light;
             if self.rin > 0.0 {
@@ -298,12 +298,12 @@ impl Sampler for ExactSampler {
                 level += self.amplifier * self.amplifier_stream.normal();
             }
             sum += if self.is_rounded {
-                convert(level, self.level_max, &mut is_saturated)
+                convert(level, self.level_max, &mut saturated)
             } else {
                 level
             };
         }
-        self.faults.saturated += u64::from(is_saturated);
+        self.faults.saturated += u64::from(saturated > 0);
         sum * self.mean_scale
     }
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+pub(crate) mod gyro_cases;
 pub(crate) mod reference_gyro;
 
 /// Asserts that `got` equals `want` within `rtol * |want| + atol`.

@@ -1,0 +1,127 @@
+//! Known answers of the slow noise: flicker, rate random walk and ramp.
+
+use fogbench::gyro::{RateModel, SlowNoise};
+use fogbench::random::Streams;
+use fogbench::signal::MotionSegment;
+use fogbench::units::rad_per_s_to_deg_per_h;
+use std::f64::consts::PI;
+
+use crate::support::assert_close;
+use crate::support::gyro_cases::{allan_deviation, budget_of};
+use crate::support::reference_gyro::reference_gyro;
+
+/// Slow noise alone, deg/h, at a sample period.
+fn slow_noise(coefficients: [f64; 3], sample_period_s: f64, count: usize, seed: u64) -> Vec<f64> {
+    let mut config = reference_gyro().slow_noise;
+    [
+        config.bias_instability_deg_per_h,
+        config.rate_random_walk_deg_per_h_per_sqrt_h,
+        config.rate_ramp_deg_per_h_per_h,
+    ] = coefficients;
+    let time_s = count as f64 * sample_period_s;
+    let mut noise = SlowNoise::new(&config, sample_period_s, time_s, &Streams::new(seed, 0));
+    (0..count)
+        .map(|_| rad_per_s_to_deg_per_h(noise.next_rate_rad_per_s()))
+        .collect()
+}
+
+#[test]
+fn known_answer_k19_flicker_has_a_flat_allan_deviation() {
+    const COUNT: usize = 1 << 17;
+    let runs: Vec<Vec<f64>> = (0..20)
+        .map(|seed| slow_noise([1.0, 0.0, 0.0], 0.01, COUNT, seed))
+        .collect();
+    let flat = (2.0 * 2.0_f64.ln() / PI).sqrt();
+    let mean_at = |factor: usize| {
+        let variance = runs
+            .iter()
+            .map(|run| allan_deviation(run, factor).powi(2))
+            .sum::<f64>();
+        (variance / 20.0).sqrt()
+    };
+    // Degrees of freedom of flicker are near those of white noise: 20 runs of 2^17 / m clusters
+    // give 0.2 % at m = 16 and 1.6 % at m = 1024.
+    for factor in [16, 32, 64, 128, 256, 512, 1024] {
+        assert_close(mean_at(factor), flat, 0.03, 0.0);
+    }
+    // Down to four updates no white residue stands beside it.
+    assert_close(mean_at(4), flat, 0.03, 0.0);
+}
+
+#[test]
+fn flicker_stays_flat_over_the_record_at_the_output_rate() {
+    // 3989 Hz: 15 samples per update. Decades from 60 ms to 60 s.
+    let words: Vec<Vec<f64>> = (0..6)
+        .map(|seed| slow_noise([1.0, 0.0, 0.0], 2.506_6e-4, 1 << 21, 100 + seed))
+        .collect();
+    let flat = (2.0 * 2.0_f64.ln() / PI).sqrt();
+    for factor in [256, 2048, 16_384] {
+        let variance: f64 = words
+            .iter()
+            .map(|run| allan_deviation(run, factor).powi(2))
+            .sum();
+        // edf 1.5 x 6 x 128 at the longest: 2.1 %.
+        assert_close((variance / 6.0).sqrt(), flat, 0.05, 0.0);
+    }
+}
+
+#[test]
+fn known_answer_k20_walk_and_ramp_have_their_allan_slopes() {
+    let coefficient = 6.0;
+    let count = 1 << 16;
+    let factor = 64;
+    let runs = 10;
+    // Walk: AVAR = K^2 tau / 3, K in (deg/h)/sqrt(s) = 6 / 60.
+    let variance: f64 = (0..runs)
+        .map(|seed| {
+            let words = slow_noise([0.0, coefficient, 0.0], 0.01, count, seed);
+            allan_deviation(&words, factor).powi(2)
+        })
+        .sum::<f64>()
+        / f64::from(10_u32);
+    let want = (coefficient / 60.0_f64).powi(2) * 0.64 / 3.0;
+    // Ten runs of 1024 clusters: 1.4 % of the variance; 4 of them.
+    assert_close(variance, want, 0.06, 0.0);
+    // Ramp: ADEV = R tau / sqrt(2), R in (deg/h)/s.
+    let words = slow_noise([0.0, 0.0, 3600.0], 0.01, 4096, 1);
+    assert_close(
+        allan_deviation(&words, factor),
+        0.64 / 2.0_f64.sqrt(),
+        1e-9,
+        0.0,
+    );
+    assert_close(words[99], 0.995, 1e-9, 0.0);
+}
+
+#[test]
+fn bias_stability_of_the_default_mix_is_the_sum_of_its_parts() {
+    // 36 means of 100 s: white noise N / sqrt(100 s) and flicker 1.083 B, in quadrature.
+    let mut config = reference_gyro();
+    config.slow_noise.bias_instability_deg_per_h = 0.045;
+    config.slow_noise.rate_random_walk_deg_per_h_per_sqrt_h = 0.005;
+    config.output.half_periods_per_sample = 1 << 14;
+    let per_block = 1558; // 99.98 s
+    let repeats = 200;
+    let mut sum = 0.0;
+    for repeat in 0..repeats {
+        let streams = Streams::new(9, repeat);
+        let mut model = RateModel::new(&config, 3600.0, &streams).unwrap();
+        let rest = MotionSegment::constant(0.0);
+        let means: Vec<f64> = (0..36)
+            .map(|_| {
+                (0..per_block).map(|_| model.next_word(&rest)).sum::<f64>() / f64::from(per_block)
+            })
+            .collect();
+        let mean = means.iter().sum::<f64>() / 36.0;
+        sum += means
+            .iter()
+            .map(|value| (value - mean).powi(2))
+            .sum::<f64>()
+            / 35.0;
+    }
+    let white = budget_of(&config, "total") * 6.0;
+    let want = white.hypot(1.083 * 0.045);
+    assert_close(want, 0.0606, 0.0, 1e-4);
+    // White means alone would err by sqrt(1 / 2 / 35 / 200) = 0.85 %; flicker's few slow modes double it.
+    assert_close((sum / 200.0).sqrt(), want, 0.04, 0.0);
+}
