@@ -13,3 +13,5 @@ mod known_answers_slow_noise;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
 mod support;
+
+mod report;

@@ -107,7 +107,7 @@ mod tests {
         );
         assert_eq!(
             estimate_text(&Estimate::symmetric(2e-9, 1e-10), 2),
-            "2.00e-9 [1.90e-9, 2.10e-9]"
+            "2.000e-9 [1.900e-9, 2.100e-9]"
         );
     }
 

@@ -29,6 +29,7 @@ const STATIC: &[(&str, &str)] = &[
     ("mean_error_deg_per_h", "mean error"),
     ("mean_ratio", "mean / raw mean"),
     ("dc_gain", "DC gain"),
+    ("dc_gain_predicted", "DC gain predicted"),
     ("dc_gain_adapted", "DC gain adapted"),
     ("noise_std_deg_per_h", "noise std"),
     ("noise_gain", "noise power gain"),
@@ -36,8 +37,7 @@ const STATIC: &[(&str, &str)] = &[
 
 const SWING: &[(&str, &str)] = &[
     ("delay_vs_raw_ms", "delay vs raw"),
-    ("delay_vs_raw_predicted_ms", "predicted"),
-    ("predicted_delay_vs_raw_ms", "predicted"),
+    ("delay_predicted_ms", "predicted"),
     ("delay_vs_truth_ms", "delay vs truth"),
     ("amplitude_ratio", "amplitude ratio"),
     ("harmonic_distortion_percent", "harmonic distortion"),

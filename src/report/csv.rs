@@ -38,6 +38,11 @@ pub(crate) fn ordinate(curve: &Curve) -> Option<&[f64]> {
     })
 }
 
+/// The fitted curve over the same points, where a fit was possible.
+pub(crate) fn fitted(curve: &Curve) -> Option<&[f64]> {
+    column(curve, |name| name.starts_with("fitted"))
+}
+
 /// The named end (`low` or `high`) of the dependent variable's interval.
 pub(crate) fn interval_end<'a>(curve: &'a Curve, end: &str) -> Option<&'a [f64]> {
     column(curve, |name| is_rate(name) && is_end(name, end))

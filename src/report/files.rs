@@ -19,6 +19,9 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
 ///
 /// # Errors
 /// Whatever the file system says; the old file then stands untouched.
+///
+/// # Panics
+/// Never: the name of the number format is a constant.
 pub fn write_npy(path: &Path, values: &[f64]) -> io::Result<()> {
     write_atomic_with(path, |file| {
         let word = "<f8"

@@ -7,7 +7,7 @@ use super::series::{extent, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::ChannelMetrics;
 use crate::report::RunReport;
-use crate::report::csv::{abscissa, allan_curve, interval_end, ordinate};
+use crate::report::csv::{abscissa, allan_curve, fitted, interval_end, ordinate};
 use crate::units::{
     deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s, deg_per_sqrt_h_to_deg_per_h_sqrt_s,
 };
@@ -71,6 +71,11 @@ pub(super) fn picture(report: &RunReport) -> Option<Picture> {
         panel.band(&mut picture, &band, stroke.colour, 0.22);
         let line: Vec<(f64, f64)> = tau.iter().copied().zip(deviation.iter().copied()).collect();
         panel.line(&mut picture, &line, stroke);
+        if let Some(fit) = allan_curve(metrics).and_then(fitted) {
+            let fit: Vec<(f64, f64)> = tau.iter().copied().zip(fit.iter().copied()).collect();
+            let thin = Stroke::solid(stroke.colour, 0.75);
+            panel.line(&mut picture, &fit, thin);
+        }
         legend.line(&mut picture, stroke, name);
         for reading in readings(metrics) {
             draw_reading(&mut picture, &panel, &reading, stroke);
@@ -80,7 +85,7 @@ pub(super) fn picture(report: &RunReport) -> Option<Picture> {
     }
     legend.text(
         &mut picture,
-        "bands: 95 % interval; thin lines: fitted terms",
+        "bands: 95 % interval; thin: fit, dotted: its terms",
     );
     legend.text(&mut picture, "circle: σ(1 s) of the -1/2 line is the ARW");
     legend.text(&mut picture, "square: the flat line is 0.664 B");

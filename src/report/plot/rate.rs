@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::panel::{Legend, Panel, WIDTH};
-use super::picture::Picture;
+use super::picture::{Picture, Point};
 use super::series::{Series, columns, extent, index, real, series, truth_stroke};
 use crate::report::RunReport;
 use crate::scenario::MotionConfig;
@@ -137,7 +137,7 @@ impl Drawing<'_> {
             .collect();
         let is_quiet = truth
             .iter()
-            .all(|column| column.high - column.low < 0.2 * (panel_span(&truth)));
+            .all(|column| column.high - column.low < 0.2 * panel_span(&truth));
         if is_quiet {
             panel.line(picture, &line, truth_stroke());
         }
@@ -198,7 +198,7 @@ impl Drawing<'_> {
         picture: &mut Picture,
         frame: (f64, f64),
         x: Axis,
-        line_of: &dyn Fn(&[f64]) -> Vec<(f64, f64)>,
+        line_of: &dyn Fn(&[f64]) -> Vec<Point>,
     ) {
         let truth = line_of(self.truth);
         let lines: Vec<_> = self

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::panel::{Legend, Panel, WIDTH};
-use super::picture::Picture;
+use super::picture::{Picture, Point};
 use super::series::{extent, real, stroke_of};
 use crate::report::RunReport;
 use crate::report::csv::{abscissa, ordinate, psd_curve};
@@ -12,7 +12,7 @@ const STEPS_PER_DECADE: f64 = 60.0;
 
 /// The spectrum of every channel that has one.
 pub(super) fn picture(report: &RunReport) -> Option<Picture> {
-    let curves: Vec<(usize, &str, Vec<(f64, f64)>)> = report
+    let curves: Vec<(usize, &str, Vec<Point>)> = report
         .channels
         .iter()
         .enumerate()

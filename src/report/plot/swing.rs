@@ -56,8 +56,8 @@ pub(super) fn picture(
     overlay(&mut picture, &fold, truth, &channels);
     zoom(&mut picture, &fold, truth, &channels);
     let mut legend = Legend::new(426.0);
-    legend.text(&mut picture, "below: mean of");
-    legend.text(&mut picture, &format!("{} cycles around the", fold.cycles));
+    let average = format!("below: mean of {} cycles around the", fold.cycles);
+    legend.text(&mut picture, &average);
     legend.text(&mut picture, "rising zero crossing of the true rate;");
     legend.text(&mut picture, "arrows: fitted delays of the table");
     Some(picture)
@@ -237,7 +237,7 @@ fn arrows(picture: &mut Picture, panel: &Panel, channels: &[&Series], (low, high
             _ => (0.0, end_ms, "truth"),
         };
         row += 1.0;
-        let y = low * (0.12 + 0.09 * row).min(0.92);
+        let y = low * (0.34 + 0.11 * row).min(0.95);
         let thin = Stroke {
             dash: Dash::Dotted,
             ..Stroke::solid(channel.stroke.colour, 1.0)

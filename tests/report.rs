@@ -1,0 +1,377 @@
+//! Gates and reports, on a small run with every kind of record.
+
+use crate::support::run;
+use fogbench::gate::{Verdict, VerdictKind, judge};
+use fogbench::metrics::ChannelMetrics;
+use fogbench::report::{
+    FolderWriter, RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, allan_csv, junit_xml, plots,
+    psd_csv, run_summary_json, suite_summary_json, suite_text, table_text, write_atomic,
+};
+use fogbench::scenario::{GateConfig, GateDecision, InconclusivePolicy, Scenario};
+use fogbench::signal::{GyroFacts, RunSignals};
+
+fn gate(metric: &str, min: Option<f64>, max: Option<f64>) -> GateConfig {
+    GateConfig {
+        metric: metric.to_owned(),
+        min,
+        max,
+        relative_to: None,
+        decide: GateDecision::Interval,
+        inconclusive: InconclusivePolicy::Fail,
+    }
+}
+
+fn verdict(gate: &GateConfig) -> Verdict {
+    judge(gate, &run::channels(), None)
+}
+
+#[test]
+fn a_gate_passes_fails_or_stays_undecided_by_its_interval() {
+    let kind = |min, max| verdict(&gate("rls.delay_vs_raw_ms", min, max)).kind;
+    assert_eq!(kind(Some(0.33), Some(0.35)), VerdictKind::Pass);
+    assert_eq!(kind(Some(0.342), None), VerdictKind::Fail);
+    assert_eq!(kind(None, Some(0.338)), VerdictKind::Fail);
+    assert_eq!(kind(Some(0.3395), Some(0.35)), VerdictKind::Inconclusive);
+    let passed = verdict(&gate("rls.delay_vs_raw_ms", Some(0.33), Some(0.35)));
+    assert!(passed.accepted);
+    assert_eq!(
+        passed.reason,
+        "0.34000 ±0.00100 ms (95 % interval) lies inside [0.33, 0.35] ms"
+    );
+}
+
+#[test]
+fn an_undecided_gate_is_accepted_only_where_it_says_so() {
+    let mut straddles = gate("rls.delay_vs_raw_ms", Some(0.3395), None);
+    assert!(!verdict(&straddles).accepted);
+    straddles.inconclusive = InconclusivePolicy::Allow;
+    let allowed = verdict(&straddles);
+    assert_eq!(allowed.kind, VerdictKind::Inconclusive);
+    assert!(allowed.accepted);
+    straddles.decide = GateDecision::Value;
+    assert_eq!(verdict(&straddles).kind, VerdictKind::Pass);
+}
+
+#[test]
+fn a_relative_gate_judges_the_widest_ratio() {
+    let metric = "rls.angle_random_walk_deg_per_sqrt_h";
+    let mut ratio = gate(metric, Some(0.48), Some(0.51));
+    ratio.relative_to = Some("lms".to_owned());
+    let judged = verdict(&ratio);
+    assert_eq!(judged.kind, VerdictKind::Pass);
+    let (low, high) = (judged.low.unwrap(), judged.high.unwrap());
+    crate::support::assert_close(low, 0.002_87 / 0.005_97, 1e-12, 0.0);
+    crate::support::assert_close(high, 0.002_93 / 0.005_84, 1e-12, 0.0);
+    assert_eq!(judged.unit, "1");
+
+    // A divisor that may be zero leaves the ratio unbounded.
+    let mut channels = run::channels();
+    let divisor = channels[1]
+        .1
+        .metrics
+        .get_mut("angle_random_walk_deg_per_sqrt_h");
+    divisor.unwrap().estimate.low = -1e-9;
+    let unbounded = judge(&ratio, &channels, None);
+    assert_eq!(unbounded.kind, VerdictKind::Inconclusive);
+    assert_eq!((unbounded.low, unbounded.high), (None, None));
+}
+
+#[test]
+fn a_gate_without_a_number_fails_and_says_why() {
+    let why = |metric: &str| {
+        let judged = verdict(&gate(metric, Some(f64::MIN), Some(f64::MAX)));
+        assert_eq!((judged.kind, judged.accepted), (VerdictKind::Fail, false));
+        judged.reason
+    };
+    assert!(why("nobody.dc_gain").contains("no channel `nobody`"));
+    assert!(why("raw.settling_time_s").contains("not measured"));
+    assert!(why("rls.rate_random_walk_deg_per_h_per_sqrt_h").contains("record is too short"));
+    assert!(why("bad.dc_gain").contains("failed at sample 5984"));
+    assert!(why("rls.diverged_at_s").contains("did not diverge"));
+    assert!(why("dc_gain").contains("<channel>.<metric>"));
+    assert!(
+        verdict(&gate("rls.dc_gain", None, None))
+            .reason
+            .contains("neither")
+    );
+}
+
+#[test]
+fn divergence_can_be_expected() {
+    let judged = verdict(&gate("bad.diverged_at_s", Some(1.0), Some(2.0)));
+    assert_eq!(judged.kind, VerdictKind::Pass);
+}
+
+/// The parts that a report borrows.
+struct Fixture {
+    scenario: Scenario,
+    gyro: GyroFacts,
+    channels: Vec<(String, ChannelMetrics)>,
+    verdicts: Vec<Verdict>,
+}
+
+impl Fixture {
+    fn new(motion: &str, gates: &[GateConfig]) -> Self {
+        let channels = run::channels();
+        let place = || Some("/home/somebody/x.toml:12".to_owned());
+        Self {
+            scenario: run::scenario(motion),
+            gyro: run::gyro(),
+            verdicts: gates
+                .iter()
+                .map(|gate| judge(gate, &channels, place()))
+                .collect(),
+            channels,
+        }
+    }
+
+    fn usual() -> Self {
+        let mut undecided = gate("rls.delay_vs_raw_ms", Some(0.3395), None);
+        undecided.inconclusive = InconclusivePolicy::Allow;
+        let gates = [
+            gate("rls.delay_vs_raw_ms", Some(0.33), Some(0.35)),
+            gate("lms.dc_gain", None, Some(0.5)),
+            undecided,
+        ];
+        Self::new("static = {}", &gates)
+    }
+
+    fn report(&self) -> RunReport<'_> {
+        RunReport {
+            tool_version: "0.1.0",
+            scenario: &self.scenario,
+            file: "scenarios/fixture.toml",
+            digest: "d1",
+            sweep: Some((
+                3,
+                vec![("gyro.source.power_uw".to_owned(), "0.87".to_owned())],
+            )),
+            gyro: &self.gyro,
+            channels: &self.channels,
+            verdicts: &self.verdicts,
+            notes: &[],
+        }
+    }
+}
+
+#[test]
+fn a_summary_has_the_documented_shape() {
+    let fixture = Fixture::usual();
+    let text = run_summary_json(&fixture.report());
+    assert!(text.ends_with("}\n") && !text.contains("null") && !text.contains("/home"));
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let keys: Vec<&String> = json.as_object().unwrap().keys().collect();
+    let documented = [
+        "schema",
+        "tool",
+        "scenario",
+        "gyro",
+        "channels",
+        "published",
+        "gates",
+    ];
+    assert_eq!(keys, documented);
+    assert_eq!(json["schema"], 1);
+    assert_eq!(json["scenario"]["fidelity"], "loop");
+    assert_eq!(json["scenario"]["sweep"]["index"], 3);
+    let budget = &json["gyro"]["angle_random_walk_budget_deg_per_sqrt_h"];
+    assert_eq!(budget["total"], 0.006);
+    let channels: Vec<&String> = json["channels"].as_object().unwrap().keys().collect();
+    assert_eq!(channels, ["raw", "lms", "rls", "bad"]);
+    assert_eq!(
+        json["channels"]["rls"]["bias_stability_deg_per_h"],
+        serde_json::json!({"value": 0.0606, "low": 0.0495, "high": 0.0782, "confidence": 0.95,
+            "unit": "deg/h", "averaging_time_s": 100.0, "count": 36.0})
+    );
+    assert_eq!(json["channels"]["raw"]["curves"]["allan"]["tau_s"][1], 1.0);
+    assert_eq!(json["channels"]["bad"]["error"]["sample"], 5984);
+    assert!(json["channels"]["rls"]["unavailable"].is_object());
+    assert_eq!(json["published"][0]["source"], "paper, section 4.2");
+    assert_eq!(json["gates"][0]["verdict"], "pass");
+    assert_eq!(json["gates"][0]["max"], 0.35);
+    assert_eq!(json["gates"][1]["verdict"], "fail");
+}
+
+#[test]
+#[should_panic(expected = "raw.noise_gain reached the report as inf")]
+fn a_number_that_is_not_finite_cannot_be_written() {
+    let mut fixture = Fixture::usual();
+    let metric = fixture.channels[0].1.metrics.get_mut("noise_gain").unwrap();
+    metric.estimate.high = f64::INFINITY;
+    let _ = run_summary_json(&fixture.report());
+}
+
+#[test]
+fn a_run_ends_by_its_worst_part() {
+    let fixture = Fixture::usual();
+    let mut outcome = RunOutcome::from_report(&fixture.report(), "fixture/0003");
+    assert_eq!(outcome.status(), RunStatus::ChannelFailed);
+    outcome.channels.pop();
+    assert_eq!(outcome.status(), RunStatus::GateFailed);
+    outcome.verdicts.remove(1);
+    assert_eq!(outcome.status(), RunStatus::Pass);
+
+    let expected = [gate("bad.diverged_at_s", Some(1.0), Some(2.0))];
+    let fixture = Fixture::new("static = {}", &expected);
+    let outcome = RunOutcome::from_report(&fixture.report(), "fixture");
+    assert_eq!(outcome.status(), RunStatus::Pass);
+}
+
+fn suite() -> Vec<RunOutcome> {
+    let fixture = Fixture::usual();
+    let bare = Fixture::new("static = {}", &[]);
+    let mut quiet = RunOutcome::from_report(&bare.report(), "quiet");
+    quiet.channels.pop();
+    vec![
+        RunOutcome::from_report(&fixture.report(), "fixture"),
+        quiet,
+        RunOutcome::failed("broken", "broken", "b.toml", "no <space> left".to_owned()),
+    ]
+}
+
+#[test]
+fn junit_has_a_case_for_every_gate_and_failure_and_repeats_to_the_byte() {
+    let xml = junit_xml(&suite());
+    assert_eq!(xml, junit_xml(&suite()));
+    for attribute in ["timestamp=", "time=", "uuid=", "hostname=", "/home"] {
+        assert!(!xml.contains(attribute), "{attribute} in {xml}");
+    }
+    assert_eq!(xml.matches("<testsuite ").count(), 3);
+    // Three times `run`, one failed channel, three gates.
+    assert_eq!(xml.matches("<testcase ").count(), 7);
+    assert_eq!(xml.matches("<error ").count(), 2);
+    assert_eq!(xml.matches("<failure ").count(), 1);
+    assert_eq!(xml.matches("<skipped ").count(), 1);
+    assert!(xml.contains("lies outside &lt;= 0.5") && xml.contains("no &lt;space&gt; left"));
+    // Every tag that opens closes.
+    let mut depth = 0_i32;
+    for tag in xml.split('<').skip(1).filter(|tag| !tag.starts_with('?')) {
+        let tag = tag.split('>').next().unwrap();
+        depth += match (tag.starts_with('/'), tag.ends_with('/')) {
+            (true, _) => -1,
+            (false, true) => 0,
+            (false, false) => 1,
+        };
+        assert!(depth >= 0);
+    }
+    assert_eq!(depth, 0);
+}
+
+#[test]
+fn the_suite_is_counted() {
+    let json: serde_json::Value =
+        serde_json::from_str(&suite_summary_json("0.1.0", &suite())).unwrap();
+    assert_eq!(json["runs"][0]["status"], "channel_failed");
+    assert_eq!(json["runs"][1]["status"], "pass");
+    assert_eq!(json["runs"][2]["status"], "run_failed");
+    assert_eq!(json["totals"]["gates_inconclusive"], 1);
+    let text = suite_text(&suite(), 100, false);
+    let last = text.lines().last().unwrap();
+    assert!(last.starts_with("FAIL  3 runs: 1 passed"), "{last}");
+}
+
+#[test]
+fn a_table_shows_published_figures_beside_the_simulated_ones() {
+    let fixture = Fixture::usual();
+    let text = table_text(&fixture.report(), 100, false);
+    assert!(!text.contains('\u{1b}'));
+    let row = text
+        .lines()
+        .find(|line| line.contains("paper, section 4.2"))
+        .unwrap();
+    assert!(row.contains("0.25") && row.contains("0.34") && row.contains("+0.09 (+36.0 %)"));
+    assert!(text.contains("simulated raw 0.006012 ±0.000062"), "{text}");
+    assert!(text.contains("FAILED channel bad") && text.contains("FAIL lms.dc_gain"));
+    assert!(table_text(&fixture.report(), 100, true).contains("\u{1b}[32mPASS\u{1b}[0m"));
+}
+
+#[test]
+fn curves_become_one_row_per_channel_and_point() {
+    let fixture = Fixture::usual();
+    let csv = allan_csv(&fixture.report()).unwrap();
+    let head = "channel,tau_s,deviation_deg_per_h,high_deg_per_h,low_deg_per_h";
+    assert_eq!(csv.lines().next().unwrap(), head);
+    assert_eq!(csv.lines().nth(2).unwrap(), "raw,1.0,0.36,0.37,0.35");
+    assert!(psd_csv(&fixture.report()).is_none());
+}
+
+#[test]
+fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
+    const COUNT: usize = 2_000_000;
+    let motion =
+        "swing = { rate_amplitude_deg_per_s = 1.0, frequency_hz = 5.0, soft_start_s = 1.0 }";
+    let fixture = Fixture::new(motion, &[]);
+    let period_s = 1.0 / 3989.45;
+    // A sine plus steps of plus or minus 40 deg/h in a fixed disorder.
+    let delayed = |delay_s: f64, jump: f64| -> Vec<f64> {
+        (0..COUNT)
+            .map(|index| {
+                let time = (index + 1) as f64 * period_s - delay_s;
+                let sign = if index * index % 7 < 3 { jump } else { -jump };
+                3600.0 * (std::f64::consts::TAU * 5.0 * time).sin() + sign
+            })
+            .collect()
+    };
+    let (truth, raw, lms) = (delayed(0.0, 0.0), delayed(2e-4, 40.0), delayed(6e-4, 20.0));
+    let signals = RunSignals {
+        sample_period_s: period_s,
+        first_measured: 4000,
+        truth_deg_per_h: &truth,
+        channels: vec![("raw", &raw), ("lms", &lms), ("rls", &raw), ("bad", &raw)],
+    };
+    let pictures = plots(&fixture.report(), &signals);
+    let names: Vec<&str> = pictures.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["rate.svg", "allan.svg", "swing.svg"]);
+    for (name, svg) in &pictures {
+        assert!(
+            svg.len() <= SVG_BYTES_MAX && svg.ends_with("</svg>\n"),
+            "{name}"
+        );
+        assert!(
+            !svg.contains("NaN") && svg.contains("stroke-dasharray"),
+            "{name}"
+        );
+    }
+    assert!(pictures[2].1.contains("behind raw"));
+    assert_eq!(pictures, plots(&fixture.report(), &signals));
+}
+
+#[test]
+fn a_folder_is_swapped_whole_or_not_at_all() {
+    let root = tempfile::tempdir().unwrap();
+    let target = root.path().join("run");
+    let first = FolderWriter::create(&target).unwrap();
+    first.write("summary.json", b"old").unwrap();
+    first.write("gone.txt", b"x").unwrap();
+    first.commit().unwrap();
+
+    let failing = FolderWriter::create(&target).unwrap();
+    failing.write("summary.json", b"half").unwrap();
+    assert!(failing.write("summary.json/impossible", b"").is_err());
+    drop(failing);
+    assert_eq!(std::fs::read(target.join("summary.json")).unwrap(), b"old");
+
+    let second = FolderWriter::create(&target).unwrap();
+    second.write_npy("samples/raw.npy", &[1.0, -2.5]).unwrap();
+    second.commit().unwrap();
+    assert!(!target.join("gone.txt").exists());
+    let npy = std::fs::read(target.join("samples/raw.npy")).unwrap();
+    assert!(npy.starts_with(b"\x93NUMPY"));
+    assert!(npy.ends_with(&[1.0_f64.to_le_bytes(), (-2.5_f64).to_le_bytes()].concat()));
+    let left: Vec<_> = std::fs::read_dir(root.path()).unwrap().collect();
+    assert_eq!(left.len(), 1, "{left:?}");
+}
+
+#[test]
+fn a_swap_cut_short_is_mended() {
+    let root = tempfile::tempdir().unwrap();
+    let old = root.path().join(".run.old");
+    std::fs::create_dir(&old).unwrap();
+    std::fs::write(old.join("kept"), b"old").unwrap();
+    drop(FolderWriter::create(&root.path().join("run")).unwrap());
+    assert_eq!(std::fs::read(root.path().join("run/kept")).unwrap(), b"old");
+    let file = root.path().join("a.json");
+    write_atomic(&file, b"1").unwrap();
+    write_atomic(&file, b"2").unwrap();
+    assert_eq!(std::fs::read(&file).unwrap(), b"2");
+}
