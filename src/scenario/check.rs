@@ -1,0 +1,395 @@
+//! Checks of single keys: known, of the right type, inside the range, present.
+
+use super::error::ScenarioError;
+use super::schema::{self, Child, Group, Key, Kind, Presence, join};
+use super::source::{Mark, Sources};
+use super::tree::{Node, Table, Value};
+
+/// The version of the file format this build reads.
+const SCHEMA_VERSION: i64 = 1;
+
+/// Walks a tree and gathers complaints.
+pub(crate) struct Checker<'a> {
+    sources: &'a Sources,
+    errors: Vec<ScenarioError>,
+}
+
+/// A table under check.
+#[derive(Clone, Copy)]
+struct Place<'a> {
+    schema_path: &'a str,
+    shown_path: &'a str,
+    mark: Mark,
+}
+
+/// The place of the root: the first byte of the scenario's own file.
+fn root_place(root: Mark) -> Place<'static> {
+    Place {
+        schema_path: "",
+        shown_path: "",
+        mark: root,
+    }
+}
+
+/// Refuses unknown keys, wrong types and values out of range; turns whole numbers given for
+/// binary64 keys into binary64.
+pub(crate) fn check_values(root: &mut Table, mark: Mark, sources: &Sources) -> Vec<ScenarioError> {
+    if let Some(error) = wrong_version(root, sources, mark) {
+        return vec![error];
+    }
+    let mut checker = Checker {
+        sources,
+        errors: Vec::new(),
+    };
+    checker.table(root_place(mark), root);
+    checker.errors
+}
+
+/// Refuses missing required keys and missing choices, after defaults have been filled in.
+pub(crate) fn check_presence(root: &Table, mark: Mark, sources: &Sources) -> Vec<ScenarioError> {
+    let mut checker = Checker {
+        sources,
+        errors: Vec::new(),
+    };
+    checker.presence(root_place(mark), root);
+    checker.errors
+}
+
+/// Refuses a file that gives two alternatives of one group.
+pub(crate) fn check_contradictions(
+    root: &Table,
+    mark: Mark,
+    sources: &Sources,
+) -> Vec<ScenarioError> {
+    let mut checker = Checker {
+        sources,
+        errors: Vec::new(),
+    };
+    checker.contradictions(root_place(mark), root);
+    checker.errors
+}
+
+/// A complaint if the file is written for another version of the format.
+fn wrong_version(root: &Table, sources: &Sources, mark: Mark) -> Option<ScenarioError> {
+    let node = root.get("schema")?;
+    match node.value {
+        Value::Integer(version) if version != SCHEMA_VERSION => Some(sources.error(
+            node.mark.unwrap_or(mark),
+            format!(
+                "schema = {version} is not supported: this build reads schema {SCHEMA_VERSION}"
+            ),
+        )),
+        _ => None,
+    }
+}
+
+impl Checker<'_> {
+    fn complain(&mut self, mark: Mark, message: String) {
+        self.errors.push(self.sources.error(mark, message));
+    }
+
+    fn table(&mut self, place: Place<'_>, table: &mut Table) {
+        for (name, node) in table.iter_mut() {
+            let shown = join(place.shown_path, name);
+            let below = join(place.schema_path, name);
+            let mark = node.mark.unwrap_or(place.mark);
+            let inner = Place {
+                schema_path: &below,
+                shown_path: &shown,
+                mark,
+            };
+            match schema::child(place.schema_path, name) {
+                None => self.unknown(place, name, mark),
+                Some(Child::Leaf(key)) => self.leaf(key, inner, node),
+                Some(Child::Table) => match &mut node.value {
+                    Value::Table(table) => self.table(inner, table),
+                    other => self.not_a_table(inner, other, &format!("[{shown}]")),
+                },
+                Some(Child::Tables) => self.tables(inner, node),
+            }
+        }
+    }
+
+    fn tables(&mut self, place: Place<'_>, node: &mut Node) {
+        let Value::Array(elements) = &mut node.value else {
+            let header = format!("[[{}]]", place.shown_path);
+            return self.not_a_table(place, &node.value, &header);
+        };
+        for (index, element) in elements.iter_mut().enumerate() {
+            let shown = format!("{}[{index}]", place.shown_path);
+            let inner = Place {
+                schema_path: &format!("{}[]", place.schema_path),
+                shown_path: &shown,
+                mark: element.mark.unwrap_or(place.mark),
+            };
+            match &mut element.value {
+                Value::Table(table) => self.table(inner, table),
+                other => self.not_a_table(inner, other, &format!("[[{}]]", place.shown_path)),
+            }
+        }
+    }
+
+    fn not_a_table(&mut self, place: Place<'_>, value: &Value, header: &str) {
+        let message = format!(
+            "{} has the wrong type: expected a table, written {header}, got {}",
+            place.shown_path,
+            value.type_name()
+        );
+        self.complain(place.mark, message);
+    }
+
+    fn unknown(&mut self, place: Place<'_>, name: &str, mark: Mark) {
+        let shown = join(place.shown_path, name);
+        self.complain(mark, unknown_key(place.schema_path, &shown, name));
+    }
+
+    fn leaf(&mut self, key: &Key, place: Place<'_>, node: &mut Node) {
+        if let Err(message) = check_leaf(key, place.shown_path, node) {
+            self.complain(place.mark, message);
+        }
+    }
+
+    fn presence(&mut self, place: Place<'_>, table: &Table) {
+        let group = Group::of_table(place.schema_path);
+        if let Some(group) = group
+            && !group
+                .alternatives
+                .iter()
+                .any(|name| table.contains_key(*name))
+        {
+            let message = format!(
+                "{} needs exactly one {}: {}",
+                place.shown_path,
+                group.noun,
+                choices(group, place.shown_path)
+            );
+            self.complain(place.mark, message);
+        }
+        for (name, child) in schema::children(place.schema_path) {
+            let shown = join(place.shown_path, name);
+            let below = join(place.schema_path, name);
+            let node = table.get(name);
+            let mark = node.and_then(|node| node.mark).unwrap_or(place.mark);
+            match (child, node) {
+                (Child::Leaf(key), None) if key.presence == Presence::Required => {
+                    let message = format!(
+                        "{shown} is required: expected {} ({})",
+                        key.expected(),
+                        key.doc.trim_end_matches('.')
+                    );
+                    self.complain(mark, message);
+                }
+                (Child::Table, Some(node)) => {
+                    let inner = Place {
+                        schema_path: &below,
+                        shown_path: &shown,
+                        mark,
+                    };
+                    if let Some(table) = node.as_table() {
+                        self.presence(inner, table);
+                    }
+                }
+                (Child::Tables, Some(node)) => self.presence_in_tables(&below, &shown, mark, node),
+                _ => {}
+            }
+        }
+    }
+
+    fn presence_in_tables(&mut self, below: &str, shown: &str, mark: Mark, node: &Node) {
+        for (index, element) in node.as_array().unwrap_or_default().iter().enumerate() {
+            let inner = Place {
+                schema_path: &format!("{below}[]"),
+                shown_path: &format!("{shown}[{index}]"),
+                mark: element.mark.unwrap_or(mark),
+            };
+            if let Some(table) = element.as_table() {
+                self.presence(inner, table);
+            }
+        }
+    }
+
+    fn contradictions(&mut self, place: Place<'_>, table: &Table) {
+        if let Some(group) = Group::of_table(place.schema_path) {
+            let mut given: Vec<(Mark, &str)> = group
+                .alternatives
+                .iter()
+                .filter_map(|name| Some((table.get(*name)?.mark?, *name)))
+                .collect();
+            given.sort_unstable();
+            if let [(_, first), .., (mark, last)] = given[..] {
+                let message = format!(
+                    "{} contradicts {}: give exactly one {}: {}",
+                    join(place.shown_path, last),
+                    join(place.shown_path, first),
+                    group.noun,
+                    choices(group, place.shown_path)
+                );
+                self.complain(mark, message);
+            }
+        }
+        for (name, node) in table {
+            let mark = node.mark.unwrap_or(place.mark);
+            let shown = join(place.shown_path, name);
+            let below = join(place.schema_path, name);
+            if let Some(table) = node.as_table() {
+                let inner = Place {
+                    schema_path: &below,
+                    shown_path: &shown,
+                    mark,
+                };
+                self.contradictions(inner, table);
+            }
+            for (index, element) in node.as_array().unwrap_or_default().iter().enumerate() {
+                if let Some(table) = element.as_table() {
+                    let inner = Place {
+                        schema_path: &format!("{below}[]"),
+                        shown_path: &format!("{shown}[{index}]"),
+                        mark: element.mark.unwrap_or(mark),
+                    };
+                    self.contradictions(inner, table);
+                }
+            }
+        }
+    }
+}
+
+/// The alternatives of a group as they are written in a file.
+fn choices(group: &Group, shown_path: &str) -> String {
+    let paths: Vec<String> = group
+        .alternatives
+        .iter()
+        .map(|name| join(shown_path, name))
+        .collect();
+    paths.join(", ")
+}
+
+/// The complaint about a key that nobody knows.
+pub(crate) fn unknown_key(schema_path: &str, shown: &str, name: &str) -> String {
+    match schema::nearest(schema_path, name) {
+        (nearest, true) => format!("unknown key {shown}: did you mean {nearest}?"),
+        (nearest, false) => format!("unknown key {shown}: the nearest known key is {nearest}"),
+    }
+}
+
+/// Checks one value and converts whole numbers where binary64 is asked for.
+fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), String> {
+    let is_allowed = match (key.kind, &mut node.value) {
+        (Kind::Float(range), value) => check_float(key, shown, range, value)?,
+        (Kind::Integer(range), Value::Integer(value)) => range.contains(*value),
+        (Kind::Floats(range), Value::Array(values)) => {
+            for (index, node) in values.iter_mut().enumerate() {
+                let shown = format!("{shown}[{index}]");
+                if !check_float(key, &shown, range, &mut node.value)? {
+                    return Err(out_of_range(key, &shown, &node.value));
+                }
+            }
+            if values.is_empty() {
+                return Err(format!("{shown} is empty: expected {}", key.expected()));
+            }
+            true
+        }
+        (Kind::Name, Value::Text(name)) => is_name(name),
+        (Kind::Choice(words), Value::Text(word)) => words.contains(&word.as_str()),
+        (Kind::EmptyTable, Value::Table(table)) => {
+            if let Some(name) = table.keys().next() {
+                let unknown = join(shown, name);
+                return Err(format!(
+                    "unknown key {unknown}: {shown} is a table without keys"
+                ));
+            }
+            true
+        }
+        (Kind::Text, Value::Text(text)) => !text.trim().is_empty(),
+        (Kind::Boolean, Value::Boolean(_)) => true,
+        (_, value) => return Err(wrong_type(key, shown, value)),
+    };
+    if is_allowed {
+        Ok(())
+    } else {
+        Err(out_of_range(key, shown, &node.value))
+    }
+}
+
+/// Whether a number is inside a range; converts it to binary64.
+fn check_float(
+    key: &Key,
+    shown: &str,
+    range: schema::Range,
+    value: &mut Value,
+) -> Result<bool, String> {
+    let number = match *value {
+        Value::Float(number) => number,
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "whole numbers beyond 2^53 are outside every range that has a bound"
+        )]
+        Value::Integer(number) => number as f64,
+        ref other => return Err(wrong_type(key, shown, other)),
+    };
+    if !number.is_finite() {
+        return Err(format!(
+            "{shown} = {} is not a finite number: allowed {}",
+            value.to_toml(),
+            key.allowed()
+        ));
+    }
+    if range.contains(number) {
+        *value = Value::Float(number);
+        return Ok(true);
+    }
+    Ok(false)
+}
+
+/// Whether a text is a valid name of a scenario or channel.
+fn is_name(name: &str) -> bool {
+    let is_first = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit();
+    let is_rest = |c: u8| is_first(c) || c == b'_' || c == b'-';
+    match name.as_bytes() {
+        [first, rest @ ..] => {
+            is_first(*first) && rest.len() < 64 && rest.iter().all(|c| is_rest(*c))
+        }
+        [] => false,
+    }
+}
+
+/// The complaint about a value outside the allowed ones.
+fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
+    let text = value.to_toml();
+    match (key.kind, value) {
+        (Kind::Choice(words), Value::Text(word)) => {
+            let near = words
+                .iter()
+                .min_by_key(|known| strsim::damerau_levenshtein(known, word))
+                .filter(|known| strsim::damerau_levenshtein(known, word) <= 2.max(known.len() / 3));
+            let hint =
+                near.map_or_else(String::new, |known| format!(" (did you mean \"{known}\"?)"));
+            format!(
+                "{shown} = {text} is unknown: expected {}{hint}",
+                key.expected()
+            )
+        }
+        (Kind::Name, _) => format!(
+            "{shown} = {text} is not a valid name: allowed {}",
+            key.allowed()
+        ),
+        (Kind::Text, _) => format!("{shown} = {text} is empty: expected text"),
+        _ => format!(
+            "{shown} = {} is out of range: allowed {}",
+            key.with_unit(&text),
+            key.allowed()
+        ),
+    }
+}
+
+/// The complaint about a value of another type.
+fn wrong_type(key: &Key, shown: &str, value: &Value) -> String {
+    let text = match value {
+        Value::Array(_) | Value::Table(_) => String::new(),
+        scalar => format!(" {}", scalar.to_toml()),
+    };
+    format!(
+        "{shown} has the wrong type: expected {}, got {}{text}",
+        key.expected(),
+        value.type_name()
+    )
+}

@@ -1,0 +1,192 @@
+//! Checks across values that need no physics beyond the transit time of the coil.
+
+use crate::units::SPEED_OF_LIGHT_M_PER_S;
+
+use super::config::MotionConfig;
+use super::error::ScenarioError;
+use super::resolved::Resolved;
+
+/// Channel names that mean something else.
+const RESERVED: [&str; 3] = ["raw", "truth", "time_s"];
+
+/// Fewest output samples per cycle of a swing.
+const SAMPLES_PER_CYCLE_MIN: f64 = 8.0;
+
+/// Relative slack when times are compared, so that `3 x 0.1 s` fits into 0.3 s.
+const TIME_SLACK: f64 = 1e-9;
+
+/// Every complaint about a scenario whose single values are all in order.
+pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
+    let mut checks = Checks {
+        resolved,
+        errors: Vec::new(),
+    };
+    checks.names();
+    checks.motion();
+    checks.gates();
+    checks.published();
+    checks.errors
+}
+
+struct Checks<'a> {
+    resolved: &'a Resolved,
+    errors: Vec<ScenarioError>,
+}
+
+impl Checks<'_> {
+    fn complain(&mut self, key_path: &str, message: String) {
+        let location = self.resolved.locate(key_path);
+        self.errors.push(ScenarioError::at(location, message));
+    }
+
+    fn names(&mut self) {
+        let scenario = &self.resolved.scenario;
+        if RESERVED.contains(&scenario.name.as_str()) {
+            self.complain("name", reserved("name", &scenario.name));
+        }
+        for (index, filter) in scenario.filters.iter().enumerate() {
+            let path = format!("filter[{index}].name");
+            if RESERVED.contains(&filter.name.as_str()) {
+                self.complain(&path, reserved(&path, &filter.name));
+            }
+            let earlier = scenario.filters[..index]
+                .iter()
+                .position(|other| other.name == filter.name);
+            if let Some(earlier) = earlier {
+                let message = format!(
+                    "{path} = \"{}\" is the name of filter[{earlier}] already: give each channel its own",
+                    filter.name
+                );
+                self.complain(&path, message);
+            }
+        }
+    }
+
+    fn motion(&mut self) {
+        let scenario = &self.resolved.scenario;
+        match &scenario.turntable.motion {
+            MotionConfig::Static(_) => {}
+            MotionConfig::Swing(swing) => {
+                self.soft_start("turntable.swing.soft_start_s", swing.soft_start_s);
+                self.swing_frequency(swing.frequency_hz);
+            }
+            MotionConfig::Rotation(rotation) => {
+                self.soft_start("turntable.rotation.soft_start_s", rotation.soft_start_s);
+            }
+            MotionConfig::Steps(steps) => {
+                let count = steps.rates_deg_per_s.len();
+                let count_f64 = u32::try_from(count).map_or(f64::INFINITY, f64::from);
+                let needed_s = count_f64 * steps.dwell_s;
+                if needed_s > scenario.duration_s * (1.0 + TIME_SLACK) {
+                    let message = format!(
+                        "turntable.steps.dwell_s = {:?} s is too long: {count} rates take {needed_s:?} s, \
+                         but duration_s = {:?} s",
+                        steps.dwell_s, scenario.duration_s
+                    );
+                    self.complain("turntable.steps.dwell_s", message);
+                }
+            }
+        }
+    }
+
+    fn soft_start(&mut self, path: &str, soft_start_s: f64) {
+        let warm_up_s = self.resolved.scenario.warm_up_s;
+        if soft_start_s > warm_up_s {
+            let message = format!(
+                "{path} = {soft_start_s:?} s is longer than the warm-up: allowed [0, warm_up_s = {warm_up_s:?}] s"
+            );
+            let blamed = if self.resolved.is_written(path) {
+                path
+            } else {
+                "warm_up_s"
+            };
+            self.complain(blamed, message);
+        }
+    }
+
+    fn swing_frequency(&mut self, frequency_hz: f64) {
+        let gyro = &self.resolved.scenario.gyro;
+        // A half modulation period is the transit time n L / c of the coil.
+        let half_period_s = gyro.coil.group_index * gyro.coil.length_m / SPEED_OF_LIGHT_M_PER_S;
+        let output_rate_hz = 1.0 / (half_period_s * f64::from(gyro.output.half_periods_per_sample));
+        let frequency_hz_max = output_rate_hz / SAMPLES_PER_CYCLE_MIN;
+        if frequency_hz > frequency_hz_max {
+            let message = format!(
+                "turntable.swing.frequency_hz = {frequency_hz:?} Hz is too fast: allowed up to \
+                 {frequency_hz_max:.6} Hz, 8 samples a cycle at the output rate of {output_rate_hz:.6} Hz"
+            );
+            self.complain("turntable.swing.frequency_hz", message);
+        }
+    }
+
+    fn gates(&mut self) {
+        let scenario = &self.resolved.scenario;
+        for (index, gate) in scenario.gates.iter().enumerate() {
+            let path = |key: &str| format!("gate[{index}].{key}");
+            self.metric(&path("metric"), &gate.metric);
+            match (gate.min, gate.max) {
+                (None, None) => {
+                    let message = format!("gate[{index}] has no limit: give min, max or both");
+                    self.complain(&format!("gate[{index}]"), message);
+                }
+                (Some(min), Some(max)) if min > max => {
+                    let message = format!(
+                        "{} = {min:?} is greater than {} = {max:?}",
+                        path("min"),
+                        path("max")
+                    );
+                    self.complain(&path("min"), message);
+                }
+                _ => {}
+            }
+            if let Some(channel) = &gate.relative_to {
+                let path = path("relative_to");
+                self.channel(&path, channel, channel);
+            }
+        }
+    }
+
+    fn published(&mut self) {
+        for (index, published) in self.resolved.scenario.published.iter().enumerate() {
+            self.metric(&format!("published[{index}].metric"), &published.metric);
+        }
+    }
+
+    /// Checks `<channel>.<metric>`.
+    fn metric(&mut self, path: &str, metric: &str) {
+        match metric.rsplit_once('.') {
+            Some((channel, name)) if !channel.is_empty() && !name.is_empty() => {
+                self.channel(path, metric, channel);
+            }
+            _ => {
+                let message = format!(
+                    "{path} = \"{metric}\" names no channel: expected <channel>.<metric>, \
+                     as in raw.angle_random_walk_deg_per_sqrt_h"
+                );
+                self.complain(path, message);
+            }
+        }
+    }
+
+    fn channel(&mut self, path: &str, written: &str, channel: &str) {
+        let filters = &self.resolved.scenario.filters;
+        if channel == "raw" || filters.iter().any(|filter| filter.name == channel) {
+            return;
+        }
+        let mut known = vec!["raw"];
+        known.extend(filters.iter().map(|filter| filter.name.as_str()));
+        let message = format!(
+            "{path} = \"{written}\": there is no channel {channel}: expected one of {}",
+            known.join(", ")
+        );
+        self.complain(path, message);
+    }
+}
+
+/// The complaint about a reserved name.
+fn reserved(path: &str, name: &str) -> String {
+    format!(
+        "{path} = \"{name}\" is a reserved name: {} have a meaning of their own",
+        RESERVED.join(", ")
+    )
+}

@@ -1,0 +1,117 @@
+//! The JSON Schema of the scenario file, for editors.
+
+use serde_json::{Map, Value, json};
+
+use super::defaults::default_of;
+use super::schema::{self, Child, Group, Key, Kind, join};
+use super::tree;
+
+/// JSON Schema (draft-07) of a scenario file, generated from the key table.
+///
+/// No key is required: a file may inherit it.
+#[must_use]
+pub fn json_schema() -> Value {
+    let mut schema = object("");
+    let head = json!({
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "fogbench scenario",
+    });
+    let mut document = match head {
+        Value::Object(head) => head,
+        _ => Map::new(),
+    };
+    document.append(&mut schema);
+    Value::Object(document)
+}
+
+/// Schema of a table.
+fn object(schema_path: &str) -> Map<String, Value> {
+    let mut properties = Map::new();
+    for (name, child) in schema::children(schema_path) {
+        let below = join(schema_path, name);
+        let value = match child {
+            Child::Leaf(key) => leaf(key),
+            Child::Table => Value::Object(object(&below)),
+            Child::Tables => {
+                json!({"type": "array", "items": Value::Object(object(&format!("{below}[]")))})
+            }
+        };
+        properties.insert(name.to_owned(), value);
+    }
+    let mut schema = Map::new();
+    schema.insert("type".to_owned(), json!("object"));
+    schema.insert("additionalProperties".to_owned(), json!(false));
+    if let Some(group) = Group::of_table(schema_path)
+        && group.alternatives.len() > 1
+    {
+        schema.insert("not".to_owned(), json!({"anyOf": pairs(group)}));
+    }
+    schema.insert("properties".to_owned(), Value::Object(properties));
+    schema
+}
+
+/// Every two alternatives of a group, which may not stand together.
+fn pairs(group: &Group) -> Vec<Value> {
+    let mut pairs = Vec::new();
+    for (index, first) in group.alternatives.iter().enumerate() {
+        for second in &group.alternatives[index + 1..] {
+            pairs.push(json!({"required": [first, second]}));
+        }
+    }
+    pairs
+}
+
+/// Schema of a key.
+fn leaf(key: &Key) -> Value {
+    let mut schema = match key.kind {
+        Kind::Float(range) => number(range),
+        Kind::Floats(range) => {
+            json!({"type": "array", "minItems": 1, "items": number(range)})
+        }
+        Kind::Integer(range) => {
+            let mut schema = json!({"type": "integer", "minimum": range.min, "maximum": range.max});
+            if range.is_even {
+                schema["multipleOf"] = json!(2);
+            }
+            schema
+        }
+        Kind::Boolean => json!({"type": "boolean"}),
+        Kind::Text => json!({"type": "string", "minLength": 1}),
+        Kind::Name => json!({"type": "string", "pattern": "^[a-z0-9][a-z0-9_-]{0,63}$"}),
+        Kind::Choice(words) => json!({"type": "string", "enum": words}),
+        Kind::EmptyTable => {
+            json!({"type": "object", "additionalProperties": false, "properties": {}})
+        }
+        Kind::Matrix => json!({"type": "object", "minProperties": 1}),
+    };
+    schema["description"] = json!(format!("{} {}", key.doc, key.line()));
+    if let Some(default) = default_of(key.path).and_then(plain) {
+        schema["default"] = default;
+    }
+    schema
+}
+
+/// Schema of a number.
+fn number(range: schema::Range) -> Value {
+    let mut schema = json!({"type": "number"});
+    match range.low() {
+        Some((low, true)) => schema["exclusiveMinimum"] = json!(low),
+        Some((low, false)) => schema["minimum"] = json!(low),
+        None => {}
+    }
+    if let Some(high) = range.high() {
+        schema["maximum"] = json!(high);
+    }
+    schema
+}
+
+/// A scalar default in JSON.
+fn plain(value: &tree::Value) -> Option<Value> {
+    match value {
+        tree::Value::Text(text) => Some(json!(text)),
+        tree::Value::Integer(number) => Some(json!(number)),
+        tree::Value::Float(number) => Some(json!(number)),
+        tree::Value::Boolean(is_set) => Some(json!(is_set)),
+        _ => None,
+    }
+}

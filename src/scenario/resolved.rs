@@ -1,0 +1,197 @@
+//! A scenario with every value settled, and where each of them was written.
+
+use std::sync::Arc;
+
+use serde::Deserialize;
+
+use super::address::{self, nearest_mark};
+use super::check::{check_presence, check_values};
+use super::config::Scenario;
+use super::cross;
+use super::defaults::fill;
+use super::emit::to_toml;
+use super::error::{Location, ScenarioError};
+use super::source::{Mark, Sources};
+use super::tree::{Node, Table, Value};
+
+/// A file that a scenario was read from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InputFile {
+    /// Path below the working directory; the file name alone if it stands elsewhere.
+    pub file: String,
+    /// BLAKE3 of its bytes, hexadecimal.
+    pub digest: String,
+}
+
+/// One point of a sweep.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SweepPoint {
+    /// Index of the point, from 0; the last key of the matrix varies fastest.
+    pub index: usize,
+    /// Number of points.
+    pub count: usize,
+    /// Keys as the matrix writes them, with their values in TOML.
+    pub assignments: Vec<(String, String)>,
+}
+
+/// One run, ready to be carried out.
+#[derive(Clone, Debug)]
+pub struct Resolved {
+    /// Its configuration.
+    pub scenario: Scenario,
+    /// The scenario's own file: path below the working directory, else the file name alone.
+    pub file: String,
+    /// BLAKE3 of [`Resolved::to_toml`], hexadecimal.
+    pub digest: String,
+    /// Every file it was read from, the innermost base first.
+    pub inputs: Vec<InputFile>,
+    /// Which point of a sweep it is; `None` without a matrix.
+    pub sweep: Option<SweepPoint>,
+    /// Every value, defaults included.
+    tree: Table,
+    /// What the marks of the tree point into.
+    sources: Arc<Sources>,
+    /// Beginning of the scenario's own file.
+    root_mark: Mark,
+}
+
+/// Equality of the run; where its values were written does not count.
+impl PartialEq for Resolved {
+    fn eq(&self, other: &Self) -> bool {
+        self.scenario == other.scenario
+            && self.file == other.file
+            && self.digest == other.digest
+            && self.inputs == other.inputs
+            && self.sweep == other.sweep
+    }
+}
+
+/// What a scenario is resolved from.
+#[derive(Clone, Debug)]
+pub(crate) struct Draft {
+    /// Merged values, without defaults.
+    pub(crate) root: Table,
+    /// Beginning of the scenario's own file.
+    pub(crate) root_mark: Mark,
+    /// What the marks point into.
+    pub(crate) sources: Arc<Sources>,
+    /// Label of the scenario's own file.
+    pub(crate) file: String,
+    /// Files it was read from.
+    pub(crate) inputs: Vec<InputFile>,
+    /// Which point of a sweep it is.
+    pub(crate) sweep: Option<SweepPoint>,
+}
+
+impl Draft {
+    /// Checks every value, fills in the defaults and checks across values.
+    ///
+    /// # Errors
+    /// Every complaint about the scenario.
+    pub(crate) fn resolve(mut self) -> Result<Resolved, Vec<ScenarioError>> {
+        let mut errors = check_values(&mut self.root, self.root_mark, &self.sources);
+        if errors.is_empty() || !self.is_other_version() {
+            fill(&mut self.root);
+            errors.extend(check_presence(&self.root, self.root_mark, &self.sources));
+        }
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        let scenario = Scenario::deserialize(plain_table(&self.root)).map_err(|error| {
+            let message = format!(
+                "the scenario does not fit its configuration: {}",
+                error.message()
+            );
+            vec![self.sources.error(self.root_mark, message)]
+        })?;
+        let text = to_toml(&self.root, "");
+        let resolved = Resolved {
+            scenario,
+            file: self.file,
+            digest: blake3::hash(text.as_bytes()).to_hex().to_string(),
+            inputs: self.inputs,
+            sweep: self.sweep,
+            tree: self.root,
+            sources: self.sources,
+            root_mark: self.root_mark,
+        };
+        let errors = cross::check(&resolved);
+        if errors.is_empty() {
+            Ok(resolved)
+        } else {
+            Err(errors)
+        }
+    }
+
+    /// Whether the file is written for another version of the format.
+    fn is_other_version(&self) -> bool {
+        let version = self.root.get("schema").map(|node| &node.value);
+        !matches!(version, None | Some(Value::Integer(1)))
+    }
+}
+
+impl Resolved {
+    /// Folder of the run below the output folder: `<name>`, or `<name>/<nnnn>` in a sweep.
+    #[must_use]
+    pub fn folder(&self) -> String {
+        match &self.sweep {
+            None => self.scenario.name.clone(),
+            Some(point) => format!("{}/{:04}", self.scenario.name, point.index),
+        }
+    }
+
+    /// The resolved scenario in its canonical spelling: every key, defaults included.
+    ///
+    /// The text is a scenario file of its own and resolves to the same values.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        to_toml(&self.tree, "")
+    }
+
+    /// Where a key was written, e.g. `gate[2].metric` or `filter[0].lms.step_size`.
+    ///
+    /// A key that comes from the defaults is placed at its nearest ancestor in the file; a path
+    /// that leads nowhere at the beginning of the file.
+    #[must_use]
+    pub fn locate(&self, key_path: &str) -> Location {
+        let path = address::parse(key_path).unwrap_or_default();
+        let mark = nearest_mark(&self.tree, &path).unwrap_or(self.root_mark);
+        self.sources.locate(mark)
+    }
+
+    /// Whether a key was written by somebody rather than filled in.
+    pub(crate) fn is_written(&self, key_path: &str) -> bool {
+        address::parse(key_path)
+            .ok()
+            .and_then(|path| address::get(&self.tree, &path)?.mark)
+            .is_some()
+    }
+
+    /// The value of a key in TOML.
+    pub(crate) fn value_toml(&self, path: &[address::Step]) -> Option<String> {
+        address::get(&self.tree, path).map(|node| node.value.to_toml())
+    }
+
+    /// The canonical text as a table of a larger document.
+    pub(crate) fn to_toml_below(&self, prefix: &str) -> String {
+        to_toml(&self.tree, prefix)
+    }
+}
+
+/// A checked tree as plain TOML.
+fn plain_table(table: &Table) -> toml::Table {
+    let convert = |(key, node): (&String, &Node)| (key.clone(), plain(node));
+    table.iter().map(convert).collect()
+}
+
+/// A checked value as plain TOML.
+fn plain(node: &Node) -> toml::Value {
+    match &node.value {
+        Value::Text(text) | Value::Other(text) => toml::Value::String(text.clone()),
+        Value::Integer(number) => toml::Value::Integer(*number),
+        Value::Float(number) => toml::Value::Float(*number),
+        Value::Boolean(is_set) => toml::Value::Boolean(*is_set),
+        Value::Array(nodes) => toml::Value::Array(nodes.iter().map(plain).collect()),
+        Value::Table(table) => toml::Value::Table(plain_table(table)),
+    }
+}

@@ -1,0 +1,323 @@
+//! What a scenario file may hold: types of the key table and questions asked of it.
+//!
+//! Paths are dotted; an element of an array of tables is written `[]`, as in `filter[].rls.taps`.
+
+use std::fmt::{self, Write as _};
+
+use super::keys::{GROUPS, KEYS};
+
+/// One key of a scenario file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Key {
+    /// Schema path.
+    pub(crate) path: &'static str,
+    /// Type and range.
+    pub(crate) kind: Kind,
+    /// Unit as printed; empty for a number without unit and for everything that is no number.
+    pub(crate) unit: &'static str,
+    /// What happens when it is absent.
+    pub(crate) presence: Presence,
+    /// One line for people.
+    pub(crate) doc: &'static str,
+}
+
+/// Type and allowed values of a key.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
+    /// Binary64; whole numbers are accepted and converted.
+    Float(Range),
+    /// Whole number.
+    Integer(Integers),
+    /// `true` or `false`.
+    Boolean,
+    /// Any text.
+    Text,
+    /// Name of a scenario or channel.
+    Name,
+    /// One of a list of words.
+    Choice(&'static [&'static str]),
+    /// Non-empty array of binary64.
+    Floats(Range),
+    /// A table that holds no keys (an alternative with nothing to set).
+    EmptyTable,
+    /// The table of swept keys.
+    Matrix,
+}
+
+/// What happens when a key is absent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Presence {
+    /// Its value in `reference.toml` stands.
+    Defaulted,
+    /// The file is refused.
+    Required,
+    /// The thing it describes is absent.
+    Optional,
+}
+
+/// Interval of binary64 values; each end may be open.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Range {
+    low: f64,
+    is_low_open: bool,
+    high: f64,
+}
+
+impl Range {
+    /// Every finite number.
+    pub(crate) const ANY: Self = Self::closed(f64::NEG_INFINITY, f64::INFINITY);
+
+    /// `[low, high]`.
+    pub(crate) const fn closed(low: f64, high: f64) -> Self {
+        Self {
+            low,
+            is_low_open: false,
+            high,
+        }
+    }
+
+    /// `(low, high]`.
+    pub(crate) const fn above(low: f64, high: f64) -> Self {
+        Self {
+            low,
+            is_low_open: true,
+            high,
+        }
+    }
+
+    /// Whether a value is finite and inside.
+    pub(crate) fn contains(&self, value: f64) -> bool {
+        let is_above = if self.is_low_open {
+            value > self.low
+        } else {
+            value >= self.low
+        };
+        value.is_finite() && is_above && value <= self.high
+    }
+
+    /// Lower end and whether it is open; `None` if unbounded.
+    pub(crate) fn low(&self) -> Option<(f64, bool)> {
+        self.low.is_finite().then_some((self.low, self.is_low_open))
+    }
+
+    /// Upper end (always closed); `None` if unbounded.
+    pub(crate) fn high(&self) -> Option<f64> {
+        self.high.is_finite().then_some(self.high)
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.low.is_infinite() {
+            return f.write_str("any finite number");
+        }
+        let bracket = if self.is_low_open { '(' } else { '[' };
+        write!(f, "{bracket}{}, {}]", number(self.low), number(self.high))
+    }
+}
+
+/// A bound without a trailing `.0`.
+fn number(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
+/// Closed interval of whole numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Integers {
+    /// Least value.
+    pub(crate) min: i64,
+    /// Greatest value.
+    pub(crate) max: i64,
+    /// Whether odd values are refused.
+    pub(crate) is_even: bool,
+}
+
+impl Integers {
+    /// Whether a value is inside (and even, if asked).
+    pub(crate) fn contains(&self, value: i64) -> bool {
+        (self.min..=self.max).contains(&value) && !(self.is_even && value % 2 != 0)
+    }
+}
+
+impl fmt::Display for Integers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let even = if self.is_even { "even " } else { "" };
+        write!(f, "{even}{}..={}", self.min, self.max)
+    }
+}
+
+/// Alternatives of a table, of which a file gives at most one and a resolved run has exactly one.
+///
+/// A later source that gives one replaces whichever an earlier source gave. The one that stands
+/// live in `reference.toml` is the default; a group without such needs a choice.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Group {
+    /// Schema path of the table the alternatives stand in.
+    pub(crate) table: &'static str,
+    /// What they are alternatives of.
+    pub(crate) noun: &'static str,
+    /// Names of the alternatives.
+    pub(crate) alternatives: &'static [&'static str],
+}
+
+impl Group {
+    /// The group whose alternatives stand in a table.
+    pub(crate) fn of_table(schema_path: &str) -> Option<&'static Self> {
+        GROUPS.iter().find(|group| group.table == schema_path)
+    }
+}
+
+/// What a name inside a table stands for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Child {
+    /// A value.
+    Leaf(&'static Key),
+    /// A table.
+    Table,
+    /// An array of tables.
+    Tables,
+}
+
+/// Names a table may hold, in the order of the key table.
+pub(crate) fn children(schema_path: &str) -> Vec<(&'static str, Child)> {
+    let mut found: Vec<(&'static str, Child)> = Vec::new();
+    for key in KEYS {
+        let Some(rest) = inside(schema_path, key.path) else {
+            continue;
+        };
+        let (name, child) = match rest.split_once('.') {
+            None => (rest, Child::Leaf(key)),
+            Some((name, _)) => match name.strip_suffix("[]") {
+                None => (name, Child::Table),
+                Some(name) => (name, Child::Tables),
+            },
+        };
+        if found.iter().all(|(known, _)| *known != name) {
+            found.push((name, child));
+        }
+    }
+    found
+}
+
+/// What a name inside a table stands for; `None` if unknown.
+pub(crate) fn child(schema_path: &str, name: &str) -> Option<Child> {
+    children(schema_path)
+        .into_iter()
+        .find(|(known, _)| *known == name)
+        .map(|(_, child)| child)
+}
+
+/// The rest of `path` below the table at `schema_path`.
+fn inside(schema_path: &str, path: &'static str) -> Option<&'static str> {
+    if schema_path.is_empty() {
+        return Some(path);
+    }
+    path.strip_prefix(schema_path)?.strip_prefix('.')
+}
+
+/// `parent.name`, or `name` at the root.
+pub(crate) fn join(parent: &str, name: &str) -> String {
+    if parent.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{parent}.{name}")
+    }
+}
+
+/// The known path nearest to an unknown one, and whether it is near enough to be what was meant.
+///
+/// Distance is that of Damerau and Levenshtein between the last names; a candidate in another
+/// table counts one more, so that a slip in a name beats a slip in its place.
+pub(crate) fn nearest(schema_path: &str, name: &str) -> (String, bool) {
+    let mut candidates: Vec<&'static str> = Vec::new();
+    for key in KEYS {
+        let ends = key.path.match_indices('.').map(|(at, _)| at);
+        for end in ends.chain([key.path.len()]) {
+            let path = &key.path[..end];
+            if !candidates.contains(&path) {
+                candidates.push(path);
+            }
+        }
+    }
+    let scored = candidates.into_iter().map(|path| {
+        let path = path.strip_suffix("[]").unwrap_or(path);
+        let (parent, last) = path.rsplit_once('.').unwrap_or(("", path));
+        let elsewhere = usize::from(parent != schema_path);
+        let distance = strsim::damerau_levenshtein(last, name);
+        (distance + elsewhere, distance, path)
+    });
+    let (_, distance, path) = scored
+        .min_by_key(|(score, ..)| *score)
+        .expect("the key table is not empty");
+    let is_near = distance <= 2.max(name.chars().count() / 3);
+    (path.to_owned(), is_near)
+}
+
+impl Key {
+    /// Allowed values with the unit, as error messages print them.
+    pub(crate) fn allowed(&self) -> String {
+        let range = match self.kind {
+            Kind::Float(range) | Kind::Floats(range) => range.to_string(),
+            Kind::Integer(range) => range.to_string(),
+            Kind::Boolean => "true or false".to_owned(),
+            Kind::Text => "text".to_owned(),
+            Kind::Name => "[a-z0-9][a-z0-9_-]{0,63}".to_owned(),
+            Kind::Choice(words) => quoted(words),
+            Kind::EmptyTable => "a table without keys".to_owned(),
+            Kind::Matrix => "a table of arrays".to_owned(),
+        };
+        self.with_unit(&range)
+    }
+
+    /// Type, allowed values and unit, as type errors print them.
+    pub(crate) fn expected(&self) -> String {
+        match self.kind {
+            Kind::Float(_) => format!("a number, {}", self.allowed()),
+            Kind::Integer(_) => format!("a whole number, {}", self.allowed()),
+            Kind::Choice(_) => format!("one of {}", self.allowed()),
+            Kind::Floats(_) => format!("an array of numbers, each {}", self.allowed()),
+            Kind::Name => format!("a name {}", self.allowed()),
+            _ => self.allowed(),
+        }
+    }
+
+    /// A value's text followed by the unit, if there is one.
+    pub(crate) fn with_unit(&self, text: &str) -> String {
+        if self.unit.is_empty() {
+            text.to_owned()
+        } else {
+            format!("{text} {}", self.unit)
+        }
+    }
+
+    /// Type, unit, range and presence: the fixed line above the key in `reference.toml`.
+    pub(crate) fn line(&self) -> String {
+        let mut line = match self.kind {
+            Kind::Float(range) => format!("Number {range}"),
+            Kind::Floats(range) => format!("Array of numbers {range}"),
+            Kind::Integer(range) => format!("Integer {range}"),
+            Kind::Boolean => "Boolean true or false".to_owned(),
+            Kind::Text => "Text".to_owned(),
+            Kind::Name => format!("Name {}", self.allowed()),
+            Kind::Choice(words) => format!("Choice {}", quoted(words)),
+            Kind::EmptyTable => "Table without keys".to_owned(),
+            Kind::Matrix => "Table of arrays, quoted key = values".to_owned(),
+        };
+        if !self.unit.is_empty() {
+            let _ = write!(line, "; unit {}", self.unit);
+        }
+        line.push_str(match self.presence {
+            Presence::Defaulted => "; default.",
+            Presence::Required => "; required.",
+            Presence::Optional => "; optional.",
+        });
+        line
+    }
+}
+
+/// Words in quotes, separated by commas.
+fn quoted(words: &[&str]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+    quoted.join(", ")
+}

@@ -1,0 +1,327 @@
+//! From paths to resolved runs: discovery, the `extends` chain, `--set` and sweeps.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::address::{self, Step};
+use super::check::check_contradictions;
+use super::error::{Location, ScenarioError};
+use super::manifest;
+use super::matrix;
+use super::resolved::{Draft, InputFile, Resolved};
+use super::source::{Mark, Sources, label_path, shown_path};
+use super::tree::{Node, Table, Value, merge, parse_document, parse_value};
+
+/// Reads, resolves and checks every run of a suite; empty if the folders hold nothing to run.
+///
+/// A folder gives every `*.toml` below it that has a `name` of its own, in the order of their
+/// paths; files without one are bases. A named file must have a name or be a manifest. Each of
+/// `sets` is `key=value` and applies to every scenario after the files.
+///
+/// # Errors
+/// Every complaint about every file, in order, each once.
+pub fn load_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
+    let mut runs = Vec::new();
+    let mut errors = Vec::new();
+    for file in discover(paths, &mut errors) {
+        match load_file(&file, sets) {
+            Ok(more) => runs.extend(more),
+            Err(more) => errors.extend(more),
+        }
+    }
+    errors.extend(name_clashes(&runs));
+    if errors.is_empty() {
+        return Ok(runs);
+    }
+    let mut unique: Vec<ScenarioError> = Vec::new();
+    for error in errors {
+        if !unique.contains(&error) {
+            unique.push(error);
+        }
+    }
+    Err(unique)
+}
+
+/// The files to load, each once.
+fn discover(paths: &[PathBuf], errors: &mut Vec<ScenarioError>) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            let mut found = Vec::new();
+            walk(path, &mut found, errors);
+            found.sort();
+            files.extend(found.into_iter().filter(|file| is_scenario(file)));
+        } else if path.exists() {
+            files.push(path.clone());
+        } else {
+            errors.push(ScenarioError::at(
+                Location::of_file(shown_path(path)),
+                "no such file or folder",
+            ));
+        }
+    }
+    let mut seen: Vec<PathBuf> = Vec::new();
+    files.retain(|file| {
+        let identity = identity(file);
+        let is_new = !seen.contains(&identity);
+        seen.push(identity);
+        is_new
+    });
+    files
+}
+
+/// Gathers the `*.toml` below a folder; hidden entries and linked folders are passed over.
+fn walk(folder: &Path, found: &mut Vec<PathBuf>, errors: &mut Vec<ScenarioError>) {
+    let complain = |error: std::io::Error| {
+        ScenarioError::at(
+            Location::of_file(shown_path(folder)),
+            format!("cannot read the folder: {error}"),
+        )
+    };
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) => return errors.push(complain(error)),
+    };
+    for entry in entries {
+        let entry = match entry {
+            Ok(entry) => entry,
+            Err(error) => {
+                errors.push(complain(error));
+                continue;
+            }
+        };
+        if entry.file_name().to_string_lossy().starts_with('.') {
+            continue;
+        }
+        let path = entry.path();
+        if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            walk(&path, found, errors);
+        } else if path
+            .extension()
+            .is_some_and(|extension| extension == "toml")
+            && path.is_file()
+        {
+            found.push(path);
+        }
+    }
+}
+
+/// Whether a file of a folder is to be run; one that cannot be parsed is kept for its error.
+fn is_scenario(file: &Path) -> bool {
+    let Ok(text) = fs::read_to_string(file) else {
+        return true;
+    };
+    parse_document(0, &text).map_or(true, |root| root.contains_key("name"))
+}
+
+/// What makes two paths the same file.
+fn identity(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+/// Loads one file with all points of its sweep.
+fn load_file(file: &Path, sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
+    let mut draft = load_draft(file)?;
+    let matrix = draft.root.remove("matrix");
+    let set_paths = apply_sets(&mut draft, sets)?;
+    match matrix {
+        None => Ok(vec![draft.resolve()?]),
+        Some(matrix) => matrix::expand(&draft, &matrix, &set_paths),
+    }
+}
+
+/// Reads a file and its bases, or a manifest.
+fn load_draft(file: &Path) -> Result<Draft, Vec<ScenarioError>> {
+    let mut chain = Chain::default();
+    let (root, source) = chain.read(file, None)?;
+    if manifest::is_manifest(&root) {
+        return manifest::read(root, source, chain.sources);
+    }
+    let root = chain.merge_bases(file, root, source)?;
+    if !chain.errors.is_empty() {
+        return Err(chain.errors);
+    }
+    chain.inputs.reverse();
+    Ok(Draft {
+        root,
+        root_mark: Mark { source, start: 0 },
+        sources: Arc::new(chain.sources),
+        file: label_path(file),
+        inputs: chain.inputs,
+        sweep: None,
+    })
+}
+
+/// A file and its bases, as far as they have been read.
+#[derive(Default)]
+struct Chain {
+    sources: Sources,
+    /// The scenario's own file first.
+    inputs: Vec<InputFile>,
+    /// Files read so far, to find cycles.
+    open: Vec<PathBuf>,
+    errors: Vec<ScenarioError>,
+}
+
+impl Chain {
+    /// Reads and parses one file; `extends` is the mark of the key that names it.
+    fn read(
+        &mut self,
+        file: &Path,
+        extends: Option<Mark>,
+    ) -> Result<(Table, usize), Vec<ScenarioError>> {
+        let shown = shown_path(file);
+        let bytes = fs::read(file).map_err(|error| {
+            let message = match error.kind() {
+                std::io::ErrorKind::NotFound => "no such file".to_owned(),
+                _ => format!("cannot read the file: {error}"),
+            };
+            vec![match extends {
+                None => ScenarioError::at(Location::of_file(shown.clone()), message),
+                Some(mark) => self
+                    .sources
+                    .error(mark, format!("extends {shown}: {message}")),
+            }]
+        })?;
+        self.inputs.push(InputFile {
+            file: label_path(file),
+            digest: blake3::hash(&bytes).to_hex().to_string(),
+        });
+        self.open.push(identity(file));
+        let text = String::from_utf8(bytes).map_err(|_| {
+            let location = Location::of_file(shown.clone());
+            vec![ScenarioError::at(location, "the file is not UTF-8 text")]
+        })?;
+        let source = self.sources.add_file(shown, text.clone());
+        let root = parse_document(source, &text).map_err(|error| {
+            let mark = Mark {
+                source,
+                start: error.start,
+            };
+            vec![self.sources.error(mark, error.message)]
+        })?;
+        Ok((root, source))
+    }
+
+    /// Merges a file onto the bases it extends.
+    fn merge_bases(
+        &mut self,
+        file: &Path,
+        mut root: Table,
+        source: usize,
+    ) -> Result<Table, Vec<ScenarioError>> {
+        let start = Mark { source, start: 0 };
+        let contradictions = check_contradictions(&root, start, &self.sources);
+        self.errors.extend(contradictions);
+        let Some(extends) = root.remove("extends") else {
+            return Ok(root);
+        };
+        let mark = extends.mark.unwrap_or(start);
+        let Some(base) = extends.as_text() else {
+            let message = format!(
+                "extends has the wrong type: expected the path of a file, got {}",
+                extends.value.type_name()
+            );
+            self.errors.push(self.sources.error(mark, message));
+            return Ok(root);
+        };
+        let path = file.parent().unwrap_or(Path::new("")).join(base);
+        if self.open.contains(&identity(&path)) {
+            let message = format!(
+                "extends = \"{base}\" closes a cycle: {} is being extended already",
+                shown_path(&path)
+            );
+            self.errors.push(self.sources.error(mark, message));
+            return Err(std::mem::take(&mut self.errors));
+        }
+        let (base_root, base_source) = self.read(&path, Some(mark)).map_err(|mut errors| {
+            errors.splice(0..0, std::mem::take(&mut self.errors));
+            errors
+        })?;
+        let mut merged = self.merge_bases(&path, base_root, base_source)?;
+        // The name is the scenario's own: two files may build on one that can be run itself.
+        merged.remove("name");
+        merge("", &mut merged, root);
+        Ok(merged)
+    }
+}
+
+/// Applies the `--set` arguments in order; returns the paths they set.
+fn apply_sets(draft: &mut Draft, sets: &[String]) -> Result<Vec<Vec<Step>>, Vec<ScenarioError>> {
+    let mut sources = Sources::clone(&draft.sources);
+    let mut paths = Vec::new();
+    let mut errors = Vec::new();
+    for argument in sets {
+        let source = sources.add_set(argument);
+        let mark = Mark { source, start: 0 };
+        match apply_set(&mut draft.root, argument, mark) {
+            Ok(path) => paths.push(path),
+            Err(message) => errors.push(sources.error(mark, message)),
+        }
+    }
+    let mark = draft.root_mark;
+    errors.extend(check_contradictions(&draft.root, mark, &sources));
+    draft.sources = Arc::new(sources);
+    if errors.is_empty() {
+        Ok(paths)
+    } else {
+        Err(errors)
+    }
+}
+
+/// Applies one `--set` argument.
+fn apply_set(root: &mut Table, argument: &str, mark: Mark) -> Result<Vec<Step>, String> {
+    let Some((key, value)) = argument.split_once('=') else {
+        return Err("expected key=value, as in gyro.coil.length_m=800".to_owned());
+    };
+    let (path, leaf) = address::resolve(root, key.trim())?;
+    if leaf.is_some_and(|leaf| matches!(leaf.path, "extends" | "matrix")) {
+        return Err(format!("{key} cannot be set: write it into a file"));
+    }
+    let mut node = set_value(value.trim(), mark)?;
+    node.remark(Some(mark));
+    address::assign(root, &path, node, mark)?;
+    Ok(path)
+}
+
+/// The value of a `--set` argument: TOML, or a bare word as text.
+fn set_value(text: &str, mark: Mark) -> Result<Node, String> {
+    match parse_value(mark.source, text) {
+        Ok(node) => Ok(node),
+        Err(_) if !text.is_empty() && !text.starts_with(['"', '\'', '[', '{']) => Ok(Node {
+            value: Value::Text(text.to_owned()),
+            mark: Some(mark),
+        }),
+        Err(error) => Err(format!("{} in the value", error.message)),
+    }
+}
+
+/// Complaints about runs that would write the same folder, or a scenario beside a sweep in it.
+fn name_clashes(runs: &[Resolved]) -> Vec<ScenarioError> {
+    let mut first: BTreeMap<&str, &Resolved> = BTreeMap::new();
+    let mut folders: BTreeMap<String, &Resolved> = BTreeMap::new();
+    let mut errors = Vec::new();
+    for run in runs {
+        let earlier = *first.entry(&run.scenario.name).or_insert(run);
+        let twin = folders.get(&run.folder()).copied();
+        folders.entry(run.folder()).or_insert(run);
+        let is_same_sweep =
+            earlier.file == run.file && earlier.sweep.is_some() == run.sweep.is_some();
+        let clash = match twin {
+            Some(twin) => Some(twin),
+            None if std::ptr::eq(earlier, run) || is_same_sweep => None,
+            None => Some(earlier),
+        };
+        if let Some(other) = clash {
+            let message = format!(
+                "name = \"{}\" is the name of the scenario at {} already: give each scenario its own",
+                run.scenario.name,
+                other.locate("name")
+            );
+            errors.push(ScenarioError::at(run.locate("name"), message));
+        }
+    }
+    errors
+}

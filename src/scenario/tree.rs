@@ -1,0 +1,236 @@
+//! A TOML document as a tree of values that know where they were written.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::schema::{Group, join};
+use super::source::Mark;
+
+/// Keys and values of a table.
+pub(crate) type Table = BTreeMap<String, Node>;
+
+/// A value and where to point when it is wrong: its key, or itself inside an array.
+///
+/// Values filled in from `reference.toml` have no mark.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Node {
+    pub(crate) value: Value,
+    pub(crate) mark: Option<Mark>,
+}
+
+/// A TOML value.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Value {
+    Text(String),
+    Integer(i64),
+    /// A whole number beyond 64 bits, or a date: nothing here accepts them.
+    Other(String),
+    Float(f64),
+    Boolean(bool),
+    Array(Vec<Node>),
+    Table(Table),
+}
+
+impl Node {
+    /// The value as a table.
+    pub(crate) fn as_table(&self) -> Option<&Table> {
+        match &self.value {
+            Value::Table(table) => Some(table),
+            _ => None,
+        }
+    }
+
+    /// The value as a table to change.
+    pub(crate) fn as_table_mut(&mut self) -> Option<&mut Table> {
+        match &mut self.value {
+            Value::Table(table) => Some(table),
+            _ => None,
+        }
+    }
+
+    /// The value as an array.
+    pub(crate) fn as_array(&self) -> Option<&[Node]> {
+        match &self.value {
+            Value::Array(array) => Some(array),
+            _ => None,
+        }
+    }
+
+    /// The value as an array to change.
+    pub(crate) fn as_array_mut(&mut self) -> Option<&mut Vec<Node>> {
+        match &mut self.value {
+            Value::Array(array) => Some(array),
+            _ => None,
+        }
+    }
+
+    /// The value as text.
+    pub(crate) fn as_text(&self) -> Option<&str> {
+        match &self.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Gives every value of the tree the same mark.
+    pub(crate) fn remark(&mut self, mark: Option<Mark>) {
+        self.mark = mark;
+        match &mut self.value {
+            Value::Array(array) => array.iter_mut().for_each(|node| node.remark(mark)),
+            Value::Table(table) => table.values_mut().for_each(|node| node.remark(mark)),
+            _ => {}
+        }
+    }
+}
+
+impl Value {
+    /// What it is, with an article.
+    pub(crate) fn type_name(&self) -> &'static str {
+        match self {
+            Self::Text(_) => "a string",
+            Self::Integer(_) => "a whole number",
+            Self::Other(_) => "a date or a number beyond 64 bits",
+            Self::Float(_) => "a number with a fraction",
+            Self::Boolean(_) => "a boolean",
+            Self::Array(_) => "an array",
+            Self::Table(_) => "a table",
+        }
+    }
+
+    /// The value in TOML, on one line.
+    pub(crate) fn to_toml(&self) -> String {
+        match self {
+            Self::Text(text) => toml::Value::String(text.clone()).to_string(),
+            Self::Integer(value) => value.to_string(),
+            Self::Other(text) => text.clone(),
+            Self::Float(value) if value.is_nan() => "nan".to_owned(),
+            Self::Float(value) => format!("{value:?}"),
+            Self::Boolean(value) => value.to_string(),
+            Self::Array(array) => {
+                let items: Vec<String> = array.iter().map(|node| node.value.to_toml()).collect();
+                format!("[{}]", items.join(", "))
+            }
+            Self::Table(table) => {
+                let items: Vec<String> = table
+                    .iter()
+                    .map(|(key, node)| format!("{key} = {}", node.value.to_toml()))
+                    .collect();
+                format!("{{ {} }}", items.join(", "))
+            }
+        }
+    }
+}
+
+/// A complaint of the TOML parser and the byte it is about.
+pub(crate) struct SyntaxError {
+    pub(crate) message: String,
+    pub(crate) start: usize,
+}
+
+impl SyntaxError {
+    fn new(error: &toml::de::Error) -> Self {
+        Self {
+            message: format!("syntax error: {}", error.message()),
+            start: error.span().map_or(0, |span| span.start),
+        }
+    }
+}
+
+/// Parses a document.
+///
+/// # Errors
+/// The parser's first complaint.
+pub(crate) fn parse_document(source: usize, text: &str) -> Result<Table, SyntaxError> {
+    let parsed = DeTable::parse(text).map_err(|error| SyntaxError::new(&error))?;
+    Ok(table(source, parsed.into_inner()))
+}
+
+/// Parses one value; every part of it points at the source as a whole.
+///
+/// # Errors
+/// The parser's first complaint.
+pub(crate) fn parse_value(source: usize, text: &str) -> Result<Node, SyntaxError> {
+    let parsed = DeValue::parse(text).map_err(|error| SyntaxError::new(&error))?;
+    Ok(node(source, None, parsed))
+}
+
+/// Converts a table, pointing at its keys.
+fn table(source: usize, parsed: DeTable<'_>) -> Table {
+    parsed
+        .into_iter()
+        .map(|(key, value)| {
+            let span = key.span();
+            (
+                key.into_inner().into_owned(),
+                node(source, Some(span), value),
+            )
+        })
+        .collect()
+}
+
+/// Converts a value, pointing at its key if it has one.
+fn node(source: usize, key: Option<Range<usize>>, parsed: Spanned<DeValue<'_>>) -> Node {
+    let start = key.map_or(parsed.span().start, |span| span.start);
+    let value = match parsed.into_inner() {
+        DeValue::String(text) => Value::Text(text.into_owned()),
+        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
+            .map_or_else(|_| Value::Other(number.to_string()), Value::Integer),
+        DeValue::Float(number) => number
+            .as_str()
+            .parse()
+            .map_or_else(|_| Value::Other(number.to_string()), Value::Float),
+        DeValue::Boolean(value) => Value::Boolean(value),
+        DeValue::Datetime(date) => Value::Other(date.to_string()),
+        DeValue::Array(array) => Value::Array(
+            array
+                .into_iter()
+                .map(|item| node(source, None, item))
+                .collect(),
+        ),
+        DeValue::Table(inner) => Value::Table(table(source, inner)),
+    };
+    Node {
+        value,
+        mark: Some(Mark { source, start }),
+    }
+}
+
+/// Merges a later table into an earlier one: tables deeply, everything else replaced.
+///
+/// In a table of alternatives ([`Group`]) an alternative of the later table removes those of the
+/// earlier one that the later does not give.
+pub(crate) fn merge(schema_path: &str, base: &mut Table, over: Table) {
+    if let Some(group) = Group::of_table(schema_path) {
+        let is_given = |name: &&str| over.contains_key(*name);
+        if group.alternatives.iter().any(|name| is_given(&name)) {
+            for name in group.alternatives.iter().filter(|name| !is_given(name)) {
+                base.remove(*name);
+            }
+        }
+    }
+    for (key, node) in over {
+        match base.get_mut(&key) {
+            Some(existing) => merge_node(&join(schema_path, &key), existing, node),
+            None => {
+                base.insert(key, node);
+            }
+        }
+    }
+}
+
+/// Merges a later value into an earlier one.
+pub(crate) fn merge_node(schema_path: &str, base: &mut Node, over: Node) {
+    match (&mut base.value, over.value) {
+        (Value::Table(earlier), Value::Table(later)) => {
+            merge(schema_path, earlier, later);
+            base.mark = over.mark.or(base.mark);
+        }
+        (earlier, later) => {
+            *earlier = later;
+            base.mark = over.mark;
+        }
+    }
+}
