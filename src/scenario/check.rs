@@ -321,7 +321,7 @@ fn check_float(
         Value::Float(number) => number,
         #[expect(
             clippy::cast_precision_loss,
-            reason = "whole numbers beyond 2^53 are outside every range that has a bound"
+            reason = "a whole number beyond 2^53 rounds as it would if written with a fraction"
         )]
         Value::Integer(number) => number as f64,
         ref other => return Err(wrong_type(key, shown, other)),
