@@ -105,9 +105,10 @@ pub(crate) fn resolve(
                 let index = element_index(&name, elements, &selector)?;
                 path.push(Step::Index(index));
                 let table = elements[index].as_table();
-                if let (Some(Step::Key(next)), Some(kind)) =
-                    (rest.peek(), table.and_then(|table| kind_of(&schema_path, table)))
-                    && schema::child(&schema_path, next).is_none()
+                if let (Some(Step::Key(next)), Some(kind)) = (
+                    rest.peek(),
+                    table.and_then(|table| kind_of(&schema_path, table)),
+                ) && schema::child(&schema_path, next).is_none()
                 {
                     schema_path = join(&schema_path, kind);
                     path.push(Step::Key(kind.to_owned()));
@@ -139,7 +140,10 @@ fn element_index(array: &str, elements: &[Node], selector: &Step) -> Result<usiz
             });
             position.ok_or_else(|| match names[..] {
                 [] => format!("there is no {array} named {name}: give an index, as in {array}[0]"),
-                _ => format!("there is no {array} named {name}: expected one of {}", names.join(", ")),
+                _ => format!(
+                    "there is no {array} named {name}: expected one of {}",
+                    names.join(", ")
+                ),
             })
         }
     }
@@ -231,8 +235,9 @@ pub(crate) fn get<'a>(root: &'a Table, path: &[Step]) -> Option<&'a Node> {
     let Step::Key(first) = first else {
         return None;
     };
-    rest.iter().try_fold(root.get(first)?, |node, step| match step {
-        Step::Key(name) => node.as_table()?.get(name),
-        Step::Index(index) => node.as_array()?.get(*index),
-    })
+    rest.iter()
+        .try_fold(root.get(first)?, |node, step| match step {
+            Step::Key(name) => node.as_table()?.get(name),
+            Step::Index(index) => node.as_array()?.get(*index),
+        })
 }

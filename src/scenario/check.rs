@@ -75,7 +75,9 @@ fn wrong_version(root: &Table, sources: &Sources, mark: Mark) -> Option<Scenario
     match node.value {
         Value::Integer(version) if version != SCHEMA_VERSION => Some(sources.error(
             node.mark.unwrap_or(mark),
-            format!("schema = {version} is not supported: this build reads schema {SCHEMA_VERSION}"),
+            format!(
+                "schema = {version} is not supported: this build reads schema {SCHEMA_VERSION}"
+            ),
         )),
         _ => None,
     }
@@ -150,7 +152,10 @@ impl Checker<'_> {
     fn presence(&mut self, place: Place<'_>, table: &Table) {
         let group = Group::of_table(place.schema_path);
         if let Some(group) = group
-            && !group.alternatives.iter().any(|name| table.contains_key(*name))
+            && !group
+                .alternatives
+                .iter()
+                .any(|name| table.contains_key(*name))
         {
             let message = format!(
                 "{} needs exactly one {}: {}",
@@ -288,7 +293,9 @@ fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), String> {
         (Kind::EmptyTable, Value::Table(table)) => {
             if let Some(name) = table.keys().next() {
                 let unknown = join(shown, name);
-                return Err(format!("unknown key {unknown}: {shown} is a table without keys"));
+                return Err(format!(
+                    "unknown key {unknown}: {shown} is a table without keys"
+                ));
             }
             true
         }
@@ -314,7 +321,7 @@ fn check_float(
         Value::Float(number) => number,
         #[expect(
             clippy::cast_precision_loss,
-            reason = "whole numbers beyond 2^53 are outside every range that has a bound"
+            reason = "a whole number beyond 2^53 rounds as it would if written with a fraction"
         )]
         Value::Integer(number) => number as f64,
         ref other => return Err(wrong_type(key, shown, other)),
@@ -338,7 +345,9 @@ fn is_name(name: &str) -> bool {
     let is_first = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit();
     let is_rest = |c: u8| is_first(c) || c == b'_' || c == b'-';
     match name.as_bytes() {
-        [first, rest @ ..] => is_first(*first) && rest.len() < 64 && rest.iter().all(|c| is_rest(*c)),
+        [first, rest @ ..] => {
+            is_first(*first) && rest.len() < 64 && rest.iter().all(|c| is_rest(*c))
+        }
         [] => false,
     }
 }
@@ -352,10 +361,17 @@ fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
                 .iter()
                 .min_by_key(|known| strsim::damerau_levenshtein(known, word))
                 .filter(|known| strsim::damerau_levenshtein(known, word) <= 2.max(known.len() / 3));
-            let hint = near.map_or_else(String::new, |known| format!(" (did you mean \"{known}\"?)"));
-            format!("{shown} = {text} is unknown: expected {}{hint}", key.expected())
+            let hint =
+                near.map_or_else(String::new, |known| format!(" (did you mean \"{known}\"?)"));
+            format!(
+                "{shown} = {text} is unknown: expected {}{hint}",
+                key.expected()
+            )
         }
-        (Kind::Name, _) => format!("{shown} = {text} is not a valid name: allowed {}", key.allowed()),
+        (Kind::Name, _) => format!(
+            "{shown} = {text} is not a valid name: allowed {}",
+            key.allowed()
+        ),
         (Kind::Text, _) => format!("{shown} = {text} is empty: expected text"),
         _ => format!(
             "{shown} = {} is out of range: allowed {}",

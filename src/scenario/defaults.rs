@@ -73,14 +73,21 @@ fn gather(schema_path: &str, table: &Table, values: &mut BTreeMap<String, Value>
             Some(Child::Leaf(key)) if key.presence == Presence::Defaulted => {
                 let mut node = node.clone();
                 if let (schema::Kind::Float(_), Value::Integer(_)) = (key.kind, &node.value) {
-                    unreachable!("reference.toml writes {path} with a fraction, which a test asserts")
+                    unreachable!(
+                        "reference.toml writes {path} with a fraction, which a test asserts"
+                    )
                 }
                 node.remark(None);
                 values.entry(path).or_insert(node.value);
             }
             Some(Child::Table) => gather(&path, node.as_table().unwrap_or(&Table::new()), values),
             Some(Child::Tables) => {
-                for table in node.as_array().unwrap_or_default().iter().filter_map(Node::as_table) {
+                for table in node
+                    .as_array()
+                    .unwrap_or_default()
+                    .iter()
+                    .filter_map(Node::as_table)
+                {
                     gather(&format!("{path}[]"), table, values);
                 }
             }

@@ -14,17 +14,17 @@ pub(crate) fn to_toml(root: &Table, prefix: &str) -> String {
 }
 
 /// Writes the values of a table, then the tables inside it.
-fn table(text: &mut String, schema_path: &str, written_path: &str, table_: &Table) {
+fn table(text: &mut String, schema_path: &str, written_path: &str, values: &Table) {
     let children = schema::children(schema_path);
     for (name, child) in &children {
-        if let (Child::Leaf(_), Some(node)) = (child, table_.get(*name))
+        if let (Child::Leaf(_), Some(node)) = (child, values.get(*name))
             && node.as_table().is_none()
         {
             text.push_str(&format!("{name} = {}\n", node.value.to_toml()));
         }
     }
     for (name, child) in &children {
-        let Some(node) = table_.get(*name) else {
+        let Some(node) = values.get(*name) else {
             continue;
         };
         let below = join(schema_path, name);

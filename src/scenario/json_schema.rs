@@ -69,8 +69,7 @@ fn leaf(key: &Key) -> Value {
             json!({"type": "array", "minItems": 1, "items": number(range)})
         }
         Kind::Integer(range) => {
-            let mut schema =
-                json!({"type": "integer", "minimum": range.min, "maximum": range.max});
+            let mut schema = json!({"type": "integer", "minimum": range.min, "maximum": range.max});
             if range.is_even {
                 schema["multipleOf"] = json!(2);
             }

@@ -87,7 +87,10 @@ pub(crate) fn read(
         mark,
     }) = root.remove("scenario")
     else {
-        return fail(None, "the manifest is damaged: there is no table [scenario]".to_owned());
+        return fail(
+            None,
+            "the manifest is damaged: there is no table [scenario]".to_owned(),
+        );
     };
     Ok(Draft {
         root: scenario,

@@ -37,7 +37,9 @@ pub(crate) fn expand(
     let Some(count) = count else {
         let message = format!("matrix has too many points: allowed 1..={POINTS_MAX}");
         return Err(vec![
-            draft.sources.error(matrix.mark.unwrap_or(draft.root_mark), message),
+            draft
+                .sources
+                .error(matrix.mark.unwrap_or(draft.root_mark), message),
         ]);
     };
     let mut points = Vec::with_capacity(count);
@@ -125,7 +127,11 @@ fn axes(
             "matrix is empty: expected keys and their values, as in \"gyro.source.power_uw\" = [0.5, 1.0]",
         ));
     }
-    if errors.is_empty() { Ok(axes) } else { Err(errors) }
+    if errors.is_empty() {
+        Ok(axes)
+    } else {
+        Err(errors)
+    }
 }
 
 /// Checks one swept key.
@@ -140,19 +146,24 @@ fn axis(
     let Some(key) = key else {
         return Err(format!("{written} is a table: sweep the keys inside it"));
     };
-    if matches!(key.path, "schema" | "name" | "extends" | "matrix" | "description") {
+    if matches!(
+        key.path,
+        "schema" | "name" | "extends" | "matrix" | "description"
+    ) {
         return Err(format!("{written} cannot be swept"));
     }
     if let Some(other) = earlier.iter().find(|other| other.path == path) {
         return Err(format!("{written} is swept by {} already", other.written));
     }
     if set_paths.contains(&path) {
-        return Err(format!("{written} is swept here and given by --set: leave one of them out"));
+        return Err(format!(
+            "{written} is swept here and given by --set: leave one of them out"
+        ));
     }
     match &node.value {
-        Value::Array(values) if values.is_empty() => {
-            Err(format!("{written} has no values: expected a non-empty array"))
-        }
+        Value::Array(values) if values.is_empty() => Err(format!(
+            "{written} has no values: expected a non-empty array"
+        )),
         Value::Array(values) => Ok((path, values.clone())),
         other => Err(format!(
             "{written} has the wrong type: expected an array of values, got {}",

@@ -98,7 +98,10 @@ impl Draft {
             return Err(errors);
         }
         let scenario = Scenario::deserialize(plain_table(&self.root)).map_err(|error| {
-            let message = format!("the scenario does not fit its configuration: {}", error.message());
+            let message = format!(
+                "the scenario does not fit its configuration: {}",
+                error.message()
+            );
             vec![self.sources.error(self.root_mark, message)]
         })?;
         let text = to_toml(&self.root, "");

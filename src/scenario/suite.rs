@@ -98,7 +98,11 @@ fn walk(folder: &Path, found: &mut Vec<PathBuf>, errors: &mut Vec<ScenarioError>
         let path = entry.path();
         if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
             walk(&path, found, errors);
-        } else if path.extension().is_some_and(|extension| extension == "toml") && path.is_file() {
+        } else if path
+            .extension()
+            .is_some_and(|extension| extension == "toml")
+            && path.is_file()
+        {
             found.push(path);
         }
     }
@@ -119,35 +123,42 @@ fn identity(path: &Path) -> PathBuf {
 
 /// Loads one file with all points of its sweep.
 fn load_file(file: &Path, sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
-    let mut draft = load_draft(file)?;
+    let (mut draft, mut errors) = load_draft(file)?;
     let matrix = draft.root.remove("matrix");
-    let set_paths = apply_sets(&mut draft, sets)?;
-    match matrix {
-        None => Ok(vec![draft.resolve()?]),
+    let set_paths = apply_sets(&mut draft, sets, &mut errors);
+    let runs = match matrix {
+        None => draft.resolve().map(|run| vec![run]),
         Some(matrix) => matrix::expand(&draft, &matrix, &set_paths),
+    };
+    match runs {
+        Ok(runs) if errors.is_empty() => Ok(runs),
+        Ok(_) => Err(errors),
+        Err(more) => {
+            errors.extend(more);
+            Err(errors)
+        }
     }
 }
 
-/// Reads a file and its bases, or a manifest.
-fn load_draft(file: &Path) -> Result<Draft, Vec<ScenarioError>> {
+/// Reads a file and its bases, or a manifest, with the complaints that do not hinder more checks.
+fn load_draft(file: &Path) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
     let mut chain = Chain::default();
     let (root, source) = chain.read(file, None)?;
     if manifest::is_manifest(&root) {
-        return manifest::read(root, source, chain.sources);
+        let draft = manifest::read(root, source, chain.sources)?;
+        return Ok((draft, Vec::new()));
     }
     let root = chain.merge_bases(file, root, source)?;
-    if !chain.errors.is_empty() {
-        return Err(chain.errors);
-    }
     chain.inputs.reverse();
-    Ok(Draft {
+    let draft = Draft {
         root,
         root_mark: Mark { source, start: 0 },
         sources: Arc::new(chain.sources),
         file: label_path(file),
         inputs: chain.inputs,
         sweep: None,
-    })
+    };
+    Ok((draft, chain.errors))
 }
 
 /// A file and its bases, as far as they have been read.
@@ -176,7 +187,9 @@ impl Chain {
             };
             vec![match extends {
                 None => ScenarioError::at(Location::of_file(shown.clone()), message),
-                Some(mark) => self.sources.error(mark, format!("extends {shown}: {message}")),
+                Some(mark) => self
+                    .sources
+                    .error(mark, format!("extends {shown}: {message}")),
             }]
         })?;
         self.inputs.push(InputFile {
@@ -243,10 +256,13 @@ impl Chain {
 }
 
 /// Applies the `--set` arguments in order; returns the paths they set.
-fn apply_sets(draft: &mut Draft, sets: &[String]) -> Result<Vec<Vec<Step>>, Vec<ScenarioError>> {
+fn apply_sets(
+    draft: &mut Draft,
+    sets: &[String],
+    errors: &mut Vec<ScenarioError>,
+) -> Vec<Vec<Step>> {
     let mut sources = Sources::clone(&draft.sources);
     let mut paths = Vec::new();
-    let mut errors = Vec::new();
     for argument in sets {
         let source = sources.add_set(argument);
         let mark = Mark { source, start: 0 };
@@ -255,10 +271,9 @@ fn apply_sets(draft: &mut Draft, sets: &[String]) -> Result<Vec<Vec<Step>>, Vec<
             Err(message) => errors.push(sources.error(mark, message)),
         }
     }
-    let mark = draft.root_mark;
-    errors.extend(check_contradictions(&draft.root, mark, &sources));
+    errors.extend(check_contradictions(&draft.root, draft.root_mark, &sources));
     draft.sources = Arc::new(sources);
-    if errors.is_empty() { Ok(paths) } else { Err(errors) }
+    paths
 }
 
 /// Applies one `--set` argument.

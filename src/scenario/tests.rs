@@ -79,9 +79,15 @@ fn reference_documents_every_key_with_its_exact_unit_and_range() {
             .filter(|(path, _)| path == key.path)
             .map(|(_, comment)| comment)
             .collect();
-        assert!(!comments.is_empty(), "{} is not in reference.toml", key.path);
         assert!(
-            comments.iter().any(|comment| comment.lines().next() == Some(line.as_str())),
+            !comments.is_empty(),
+            "{} is not in reference.toml",
+            key.path
+        );
+        assert!(
+            comments
+                .iter()
+                .any(|comment| comment.lines().next() == Some(line.as_str())),
             "the comment above {} must begin with: {line}",
             key.path
         );
@@ -124,7 +130,11 @@ fn each_alternative_of_the_reference_validates_when_enabled() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("base.toml"), reference_toml()).unwrap();
         let file = folder.path().join("x.toml");
-        let extends = if base.starts_with("extends") { "" } else { "extends = \"base.toml\"\n" };
+        let extends = if base.starts_with("extends") {
+            ""
+        } else {
+            "extends = \"base.toml\"\n"
+        };
         std::fs::write(&file, format!("{least}{extends}{base}")).unwrap();
         if let Err(errors) = load_suite(&[file], &[]) {
             panic!("{block}\n{errors:?}");
@@ -147,7 +157,11 @@ fn an_alternative_that_breaks_a_range_is_refused() {
 fn every_group_stands_in_a_table_that_knows_its_alternatives() {
     for group in GROUPS {
         for name in group.alternatives {
-            assert!(schema::child(group.table, name).is_some(), "{}.{name}", group.table);
+            assert!(
+                schema::child(group.table, name).is_some(),
+                "{}.{name}",
+                group.table
+            );
         }
     }
 }
@@ -162,7 +176,10 @@ fn a_chosen_alternative_replaces_the_default_one_and_brings_its_own_defaults() {
     };
     assert_eq!(swing.soft_start_s.to_bits(), 1.0_f64.to_bits());
     assert!(swing.rate_amplitude_deg_per_s.is_none());
-    assert!(matches!(run.scenario.turntable.servo, ServoConfig::SecondOrder(_)));
+    assert!(matches!(
+        run.scenario.turntable.servo,
+        ServoConfig::SecondOrder(_)
+    ));
     assert_eq!(run.scenario.fidelity, Fidelity::Loop);
     assert!(!run.to_toml().contains("static"));
 }
@@ -173,7 +190,10 @@ fn suggestions_prefer_the_same_table_and_say_when_nothing_is_near() {
         schema::nearest("gyro.coil", "lenght_m"),
         ("gyro.coil.length_m".to_owned(), true)
     );
-    assert_eq!(schema::nearest("gyro", "length_m"), ("gyro.coil.length_m".to_owned(), true));
+    assert_eq!(
+        schema::nearest("gyro", "length_m"),
+        ("gyro.coil.length_m".to_owned(), true)
+    );
     assert!(!schema::nearest("", "completely_different").1);
 }
 
@@ -195,7 +215,11 @@ fn json_schema_follows_the_key_table() {
                 Some(name) => &at["properties"][name]["items"],
             };
         }
-        assert!(at["description"].as_str().unwrap().contains(key.unit), "{}", key.path);
+        assert!(
+            at["description"].as_str().unwrap().contains(key.unit),
+            "{}",
+            key.path
+        );
     }
 }
 
@@ -257,12 +281,5 @@ proptest! {
             }
         }
         prop_assert!(base.keys().chain(over.keys()).all(|key| both.contains_key(key)));
-    }
-}
-
-#[test]
-fn print_lines() {
-    for key in KEYS {
-        println!("LINE\t{}\t{}", key.path, key.line());
     }
 }

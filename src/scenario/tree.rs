@@ -204,8 +204,8 @@ fn node(source: usize, key: Option<Range<usize>>, parsed: Spanned<DeValue<'_>>) 
 /// earlier one that the later does not give.
 pub(crate) fn merge(schema_path: &str, base: &mut Table, over: Table) {
     if let Some(group) = Group::of_table(schema_path) {
-        let is_given = |name: &&str| over.contains_key(*name);
-        if group.alternatives.iter().any(|name| is_given(&name)) {
+        let is_given = |name: &str| over.contains_key(name);
+        if group.alternatives.iter().any(|name| is_given(name)) {
             for name in group.alternatives.iter().filter(|name| !is_given(name)) {
                 base.remove(*name);
             }
