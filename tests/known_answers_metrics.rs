@@ -772,3 +772,20 @@ fn slow_noise_is_fitted_and_its_intervals_cover_the_truth() {
         0.0,
     );
 }
+
+#[test]
+fn a_noise_free_record_has_no_noise_gain_and_no_false_numbers() {
+    let raw = vec![8.1; 20_000];
+    let record = Record {
+        channel_deg_per_h: &raw,
+        raw_deg_per_h: &raw,
+        truth_deg_per_h: &raw,
+        sample_period_s: PERIOD_S,
+        first_stamp_s: 0.0,
+    };
+    let metrics = measure(&record, &settings(Motion::Steady), Some(&facts()));
+    every_metric_is_answered(&metrics);
+    assert!(metrics.unavailable.contains_key("noise_gain"));
+    assert!(value(&metrics, "noise_std_deg_per_h") < 1e-9);
+    assert_close(value(&metrics, "mean_ratio"), 1.0, 1e-12, 0.0);
+}

@@ -93,8 +93,8 @@ fn measure_motion(
 
 /// Metrics of a staircase: settling after the last step, noise and means.
 ///
-/// Mean and tracking error are those of the whole record; their intervals come from the truth-free
-/// differences of twenty blocks, so that the staircase itself does not widen them.
+/// Mean and tracking error are those of the whole record; their intervals come from twenty
+/// blocks of the differences from the truth, so that the staircase itself does not widen them.
 fn measure_steps(
     record: &Record,
     last_step_index: usize,
@@ -148,7 +148,8 @@ fn measure_steps(
     let channel = products(values);
     put_noise_std(&channel.autocovariance(), values.len() - start, metrics);
     if filter.is_some() {
-        put_noise_gain(&channel, &products(record.raw_deg_per_h), metrics);
+        let level = interval::mean(&record.raw_deg_per_h[start..]).abs();
+        put_noise_gain(&channel, &products(record.raw_deg_per_h), level, metrics);
         put_mean_ratio(
             &equal_block_means(values, RATIO_BLOCKS),
             &equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS),

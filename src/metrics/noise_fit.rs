@@ -139,9 +139,10 @@ pub struct FitRange {
 ///
 /// B, K and R are dropped one at a time, least significant first, until each that remains exceeds
 /// 1.645 of its standard errors; if none remains, B^2 stays as a floor that is fitted but not
-/// reported, so that the interval of N knows of slow noise too faint to be seen. Standard errors come from the full covariance of the points, which
-/// overlap: see [`correlation`](super::allan_covariance::correlation). Each interval is a
-/// chi-square interval of the square with `2 (coefficient / standard error)^2` degrees of freedom.
+/// reported, so that the interval of N knows of slow noise too faint to be seen (the price: N is low
+/// by up to 0.4 of its standard error on purely white noise). Standard errors come from the full
+/// covariance of the points, which overlap and repeat each other. Each interval is a chi-square
+/// interval of the square with `2 (square / standard error)^2` degrees of freedom.
 ///
 /// # Errors
 /// The reason, in words, if fewer than eight points or less than a factor of eight in tau lie in

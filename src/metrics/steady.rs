@@ -42,7 +42,8 @@ pub(crate) fn measure_steady(
     );
     if let Some(facts) = filter {
         let raw = products_about_mean(record.raw_deg_per_h, lags);
-        put_noise_gain(&products, &raw, metrics);
+        let level = interval::mean(record.raw_deg_per_h).abs();
+        put_noise_gain(&products, &raw, level, metrics);
         measure_mean_ratio(record, metrics);
         measure_predictions(record, facts, &raw, metrics);
         for (name, over) in [
@@ -214,13 +215,16 @@ pub(crate) fn put_noise_std(autocovariance: &[f64], count: usize, metrics: &mut 
 }
 
 /// Ratio of the variances about the signal; blocks leave numerator and denominator together.
+///
+/// `raw_level_deg_per_h` is the size of raw's samples: scatter below 1e-12 of it is rounding.
 pub(crate) fn put_noise_gain(
     channel: &LaggedProducts,
     raw: &LaggedProducts,
+    raw_level_deg_per_h: f64,
     metrics: &mut ChannelMetrics,
 ) {
     let raw_variance = raw.autocovariance()[0];
-    if raw_variance <= 0.0 {
+    if raw_variance.sqrt() <= 1e-12 * raw_level_deg_per_h || raw_variance <= 0.0 {
         metrics.miss("noise_gain", "the raw channel has no noise");
         return;
     }

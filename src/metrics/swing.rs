@@ -59,7 +59,8 @@ pub(crate) fn measure_swing(
     if let Some(facts) = filter {
         let residuals = fits.raw.residuals(record.raw_deg_per_h);
         let raw = LaggedProducts::new(&residuals, 0.0, lags, fits.raw.block_count());
-        put_noise_gain(&channel, &raw, metrics);
+        let level = fits.raw.whole.amplitude + fits.raw.whole.offset.abs();
+        put_noise_gain(&channel, &raw, level, metrics);
         measure_mean_ratio(&fits, metrics);
         measure_predictions(&fits, &clock, facts, &raw, metrics);
         measure_bound(&fits, &clock, facts, &raw, metrics);
