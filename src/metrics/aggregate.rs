@@ -3,11 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::allan::AllanPoint;
-use super::catalogue;
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
 use super::noise_fit::{FitRange, fit_noise};
-use super::steady::{enter_fit, put_over_dc_gain};
+use super::steady::{WALK_OVER_DC_GAIN, enter_fit, put_over_dc_gain};
 use super::table::DEGREES_OF_FREEDOM;
 
 /// From this many repeats on, Student's t on their scatter gives the interval; below, the intervals
@@ -186,19 +185,12 @@ fn pool_allan(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
             metric.fields.insert("repeats", count);
         }
     }
-    let over = "angle_random_walk_over_dc_gain_deg_per_sqrt_h";
-    if let Some(gain) = pooled
+    let gain = pooled
         .metrics
         .get("dc_gain")
-        .map(|gain| gain.estimate.value)
-        && pooled.metrics.contains_key(over)
-        && catalogue::find(over).is_some()
-    {
-        let stability = "bias_stability_over_dc_gain_deg_per_h";
-        let kept = pooled.metrics.get(stability).cloned();
-        put_over_dc_gain(Some(gain), pooled);
-        if let Some(kept) = kept {
-            pooled.metrics.insert(stability.to_owned(), kept);
-        }
+        .map(|gain| gain.estimate.value);
+    if gain.is_some() && pooled.metrics.contains_key(WALK_OVER_DC_GAIN) {
+        pooled.metrics.remove(WALK_OVER_DC_GAIN);
+        put_over_dc_gain(FITTED[0], WALK_OVER_DC_GAIN, gain, pooled);
     }
 }

@@ -1,7 +1,7 @@
 //! From a record to the table of everything it supports.
 
 use super::autocovariance::LaggedProducts;
-use super::catalogue::{known_metrics, support};
+use super::catalogue::known_metrics;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
 use super::psd::{log_binned, segment_samples, welch};
@@ -11,6 +11,7 @@ use super::steady::{
     LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_steady, put_mean, put_mean_ratio,
     put_noise_gain, put_noise_std,
 };
+use super::support::support;
 use super::swing::{measure_swing, put_tracking_error};
 
 /// Fewest samples worth measuring.
@@ -47,6 +48,7 @@ pub fn measure(
     if let Some(facts) = filter {
         put_dc_gains(facts, &mut metrics);
     }
+    drop_not_finite(&mut metrics);
     explain_missing(record, settings, filter.is_some(), &mut metrics);
     metrics
 }
@@ -91,8 +93,8 @@ fn measure_motion(
 
 /// Metrics of a staircase: settling after the last step, noise and means.
 ///
-/// Mean and tracking error are those of the whole record; their intervals come from the truth-free
-/// differences of twenty blocks, so that the staircase itself does not widen them.
+/// Mean and tracking error are those of the whole record; their intervals come from twenty
+/// blocks of the differences from the truth, so that the staircase itself does not widen them.
 fn measure_steps(
     record: &Record,
     last_step_index: usize,
@@ -146,7 +148,8 @@ fn measure_steps(
     let channel = products(values);
     put_noise_std(&channel.autocovariance(), values.len() - start, metrics);
     if filter.is_some() {
-        put_noise_gain(&channel, &products(record.raw_deg_per_h), metrics);
+        let level = interval::mean(&record.raw_deg_per_h[start..]).abs();
+        put_noise_gain(&channel, &products(record.raw_deg_per_h), level, metrics);
         put_mean_ratio(
             &equal_block_means(values, RATIO_BLOCKS),
             &equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS),
@@ -170,6 +173,25 @@ fn put_dc_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
             }
             None => metrics.miss(name, "it was not determined for this filter"),
         }
+    }
+}
+
+/// Moves what came out as not a number (a ratio to nothing) to the unavailable metrics.
+fn drop_not_finite(metrics: &mut ChannelMetrics) {
+    let finite = |estimate: &Estimate| {
+        [estimate.value, estimate.low, estimate.high]
+            .iter()
+            .all(|value| value.is_finite())
+    };
+    let dropped: Vec<String> = metrics
+        .metrics
+        .iter()
+        .filter(|(_, metric)| !finite(&metric.estimate))
+        .map(|(name, _)| name.clone())
+        .collect();
+    for name in dropped {
+        metrics.metrics.remove(&name);
+        metrics.miss(&name, "the record gives no finite number");
     }
 }
 

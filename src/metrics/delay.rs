@@ -207,7 +207,7 @@ impl SwingFit {
         interval::from_parts(self.whole.offset, &parts)
     }
 
-    /// Ratio of the offsets to another fit's, with its jackknife-free Student t interval.
+    /// Offset over a reference's, with the Student t interval of the sub-blocks.
     #[must_use]
     pub fn offset_ratio(&self, reference: &Self) -> Estimate {
         // The reference's mean offset divides every part, so that a part near zero cannot blow up.

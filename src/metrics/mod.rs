@@ -11,6 +11,7 @@
 mod aggregate;
 mod allan;
 mod allan_covariance;
+mod allan_least_squares;
 mod audit;
 mod autocovariance;
 mod bias;
@@ -24,6 +25,7 @@ mod psd;
 mod record;
 mod settling;
 mod steady;
+mod support;
 mod swing;
 mod table;
 
@@ -36,7 +38,7 @@ pub use audit::{
     wiener_prediction,
 };
 pub use bias::{block_means, effective_degrees_of_freedom, expected_bias_stability, samples_in};
-pub use catalogue::{Applies, KnownMetric, known_metrics, support};
+pub use catalogue::{Applies, KnownMetric, known_metrics};
 pub use channel::measure;
 pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
@@ -47,3 +49,4 @@ pub use noise_fit::{
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
 pub use record::{FilterFacts, Motion, Record, Settings};
 pub use settling::{Settling, settling};
+pub use support::support;

@@ -1,9 +1,9 @@
 //! Noise coefficients from an Allan variance curve.
 
-use nalgebra::{DMatrix, DVector};
-
 use super::allan::{AllanPoint, NoiseType, degrees_of_freedom};
-use super::allan_covariance::correlation;
+use super::allan_least_squares::{
+    FLICKER, INVERSE_SQUARE, Problem, RAMP, Solution, TERMS, WALK, WHITE, basis, fitted_variance,
+};
 use super::estimate::Estimate;
 use super::interval;
 
@@ -12,9 +12,6 @@ pub const FLICKER_ALLAN_VARIANCE: f64 = 2.0 * std::f64::consts::LN_2 / std::f64:
 
 /// A term stays in the model while it exceeds this many of its standard errors (one-sided 95 %).
 const SIGNIFICANCE: f64 = 1.645;
-
-/// Rounds of reweighting with the fitted curve.
-const REWEIGHTINGS: usize = 4;
 
 /// Fewest points and least ratio of longest to shortest tau that a fit accepts.
 const POINTS_MIN: usize = 8;
@@ -58,25 +55,6 @@ impl NoiseCoefficients {
     }
 }
 
-/// Terms of the fit, in the order of its columns: N^2, B^2, K^2, R^2 and the signed `1/tau^2`.
-const TERMS: usize = 5;
-const WHITE: usize = 0;
-const FLICKER: usize = 1;
-const WALK: usize = 2;
-const RAMP: usize = 3;
-const INVERSE_SQUARE: usize = 4;
-
-/// Allan variance of a unit coefficient of a term.
-fn basis(term: usize, tau_s: f64) -> f64 {
-    match term {
-        WHITE => 1.0 / tau_s,
-        FLICKER => FLICKER_ALLAN_VARIANCE,
-        WALK => tau_s / 3.0,
-        RAMP => tau_s * tau_s / 2.0,
-        _ => 1.0 / (tau_s * tau_s),
-    }
-}
-
 /// What a fit says about one coefficient.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Term {
@@ -117,17 +95,16 @@ pub struct NoiseFit {
 }
 
 impl NoiseFit {
-    /// The coefficients as plain numbers, 0 where a term was left out.
+    /// The coefficients as plain numbers, those included that are too faint to be reported.
     #[must_use]
     pub fn coefficients(&self) -> NoiseCoefficients {
+        let root = |term: usize| self.squares[term].max(0.0).sqrt();
         NoiseCoefficients {
-            quantisation_arcsec: self.quantisation_arcsec.value(),
-            angle_random_walk_deg_per_h_sqrt_s: self.angle_random_walk_deg_per_h_sqrt_s.value(),
-            bias_instability_deg_per_h: self.bias_instability_deg_per_h.value(),
-            rate_random_walk_deg_per_h_per_sqrt_s: self
-                .rate_random_walk_deg_per_h_per_sqrt_s
-                .value(),
-            rate_ramp_deg_per_h_per_s: self.rate_ramp_deg_per_h_per_s.value(),
+            quantisation_arcsec: root(INVERSE_SQUARE) / 3.0_f64.sqrt(),
+            angle_random_walk_deg_per_h_sqrt_s: root(WHITE),
+            bias_instability_deg_per_h: root(FLICKER),
+            rate_random_walk_deg_per_h_per_sqrt_s: root(WALK),
+            rate_ramp_deg_per_h_per_s: root(RAMP),
         }
     }
 
@@ -136,12 +113,6 @@ impl NoiseFit {
     pub fn deviation_deg_per_h(&self, tau_s: f64) -> f64 {
         fitted_variance(&self.squares, tau_s).max(0.0).sqrt()
     }
-}
-
-fn fitted_variance(squares: &[f64; TERMS], tau_s: f64) -> f64 {
-    (0..TERMS)
-        .map(|term| squares[term] * basis(term, tau_s))
-        .sum()
 }
 
 /// Averaging times a fit uses: from `tau_min_s` to a ninth of the record.
@@ -167,9 +138,11 @@ pub struct FitRange {
 /// reported when the term is significantly positive.
 ///
 /// B, K and R are dropped one at a time, least significant first, until each that remains exceeds
-/// 1.645 of its standard errors. Standard errors come from the full covariance of the points, which
-/// overlap: see [`correlation`](super::allan_covariance::correlation). Each interval is a
-/// chi-square interval of the square with `2 (coefficient / standard error)^2` degrees of freedom.
+/// 1.645 of its standard errors; if none remains, B^2 stays as a floor that is fitted but not
+/// reported, so that the interval of N knows of slow noise too faint to be seen (the price: N is low
+/// by up to 0.4 of its standard error on purely white noise). Standard errors come from the full
+/// covariance of the points, which overlap and repeat each other. Each interval is a chi-square
+/// interval of the square with `2 (square / standard error)^2` degrees of freedom.
 ///
 /// # Errors
 /// The reason, in words, if fewer than eight points or less than a factor of eight in tau lie in
@@ -211,9 +184,12 @@ pub fn fit_noise(points: &[AllanPoint], range: FitRange) -> Result<NoiseFit, Str
             .min_by(|a, b| a.1.total_cmp(&b.1));
         match weakest {
             Some((term, significance)) if significance < SIGNIFICANCE => active[term] = false,
-            _ => return Ok(problem.report(&solution)),
+            _ => break,
         }
     }
+    active[FLICKER] |= !active[WALK] && !active[RAMP];
+    let range = [used[0].tau_s, used[used.len() - 1].tau_s];
+    Ok(report(range, &problem.solve(&active)))
 }
 
 /// Degrees of freedom of every point given a fitted mix of noise types.
@@ -266,188 +242,32 @@ pub fn mixed_degrees_of_freedom(
         .collect()
 }
 
-/// The least-squares problem of one curve.
-struct Problem {
-    tau_s: Vec<f64>,
-    variance: Vec<f64>,
-    freedom: Vec<f64>,
-    /// Correlation matrix of the points.
-    correlation: DMatrix<f64>,
-}
-
-/// A constrained optimum and the covariance of its coefficients.
-struct Solution {
-    squares: [f64; TERMS],
-    standard_errors: [f64; TERMS],
-}
-
-impl Solution {
-    fn significance(&self, term: usize) -> f64 {
-        if self.squares[term] > 0.0 {
-            self.squares[term] / self.standard_errors[term]
-        } else {
-            0.0
+/// Puts a solution into words and intervals.
+fn report(range: [f64; 2], solution: &Solution) -> NoiseFit {
+    let term = |index: usize, factor: f64, name: &str| -> Term {
+        let square = solution.squares[index] * factor;
+        let significance = solution.significance(index);
+        if significance < SIGNIFICANCE {
+            return Term::LeftOut(format!(
+                "the Allan variance between {:.4} s and {:.4} s does not need a {name} term \
+                 (it must exceed {SIGNIFICANCE} of its standard errors)",
+                range[0], range[1],
+            ));
         }
+        let squared = interval::variance(square, 2.0 * significance * significance);
+        Term::Found(Estimate::with_interval(
+            square.sqrt(),
+            squared.low.sqrt(),
+            squared.high.sqrt(),
+        ))
+    };
+    NoiseFit {
+        quantisation_arcsec: term(INVERSE_SQUARE, 1.0 / 3.0, "quantisation"),
+        angle_random_walk_deg_per_h_sqrt_s: term(WHITE, 1.0, "angle random walk"),
+        bias_instability_deg_per_h: term(FLICKER, 1.0, "bias instability"),
+        rate_random_walk_deg_per_h_per_sqrt_s: term(WALK, 1.0, "rate random walk"),
+        rate_ramp_deg_per_h_per_s: term(RAMP, 1.0, "rate ramp"),
+        tau_range_s: range,
+        squares: solution.squares,
     }
-}
-
-impl Problem {
-    fn new(points: &[AllanPoint]) -> Self {
-        let tau_s: Vec<f64> = points.iter().map(|point| point.tau_s).collect();
-        let correlation = DMatrix::from_fn(tau_s.len(), tau_s.len(), |i, j| {
-            correlation(tau_s[i], tau_s[j])
-        });
-        Self {
-            variance: points.iter().map(AllanPoint::variance).collect(),
-            freedom: points
-                .iter()
-                .map(|point| point.degrees_of_freedom)
-                .collect(),
-            tau_s,
-            correlation,
-        }
-    }
-
-    /// Standard deviation of every point given the curve it scatters about.
-    fn standard_deviations(&self, curve: &[f64]) -> Vec<f64> {
-        curve
-            .iter()
-            .zip(&self.freedom)
-            .map(|(value, freedom)| value * (2.0 / freedom).sqrt())
-            .collect()
-    }
-
-    /// The non-negative optimum among the terms allowed, reweighted to its own curve.
-    fn solve(&self, allowed: &[bool; TERMS]) -> Solution {
-        let mut curve = self.variance.clone();
-        let mut best = ([0.0; TERMS], Vec::new());
-        for _ in 0..REWEIGHTINGS {
-            let deviations = self.standard_deviations(&curve);
-            best = self.best_active_set(allowed, &deviations);
-            for ((value, tau), measured) in curve.iter_mut().zip(&self.tau_s).zip(&self.variance) {
-                // The signed term can carry the curve below zero at the shortest tau of a poor
-                // fit; a weight needs a positive variance.
-                *value = fitted_variance(&best.0, *tau).max(0.1 * measured);
-            }
-        }
-        let (squares, columns) = best;
-        let standard_errors = self.standard_errors(&columns, &curve);
-        Solution {
-            squares,
-            standard_errors,
-        }
-    }
-
-    /// Rows divided by the standard deviation of their point.
-    fn weighted_design(&self, columns: &[usize], deviations: &[f64]) -> DMatrix<f64> {
-        DMatrix::from_fn(self.tau_s.len(), columns.len(), |row, column| {
-            basis(columns[column], self.tau_s[row]) / deviations[row]
-        })
-    }
-
-    /// Tries every subset of the allowed terms; the best one with non-negative squares wins.
-    fn best_active_set(
-        &self,
-        allowed: &[bool; TERMS],
-        deviations: &[f64],
-    ) -> ([f64; TERMS], Vec<usize>) {
-        let right = DVector::from_fn(self.tau_s.len(), |row, _| {
-            self.variance[row] / deviations[row]
-        });
-        let mut best: Option<(f64, [f64; TERMS], Vec<usize>)> = None;
-        for subset in 0_u32..(1 << INVERSE_SQUARE) {
-            let columns: Vec<usize> = (0..TERMS)
-                .filter(|&term| {
-                    allowed[term] && (term == INVERSE_SQUARE || subset & (1 << term) != 0)
-                })
-                .collect();
-            let design = self.weighted_design(&columns, deviations);
-            let Some(solved) = scaled_least_squares(&design, &right) else {
-                continue;
-            };
-            let feasible = columns
-                .iter()
-                .zip(solved.iter())
-                .all(|(&term, &value)| term == INVERSE_SQUARE || value >= 0.0);
-            let misfit = (&design * &solved - &right).norm_squared();
-            if feasible && best.as_ref().is_none_or(|(least, ..)| misfit < *least) {
-                let mut squares = [0.0; TERMS];
-                for (&term, &value) in columns.iter().zip(solved.iter()) {
-                    squares[term] = value;
-                }
-                best = Some((misfit, squares, columns));
-            }
-        }
-        best.map_or(([0.0; TERMS], Vec::new()), |(_, squares, columns)| {
-            (squares, columns)
-        })
-    }
-
-    /// Standard errors of the weighted least squares under the correlation of the points.
-    ///
-    /// With G the pseudo-inverse of the weighted design, the covariance is `G rho G^T`.
-    fn standard_errors(&self, columns: &[usize], curve: &[f64]) -> [f64; TERMS] {
-        let mut errors = [f64::INFINITY; TERMS];
-        let design = self.weighted_design(columns, &self.standard_deviations(curve));
-        let scales: Vec<f64> = design.column_iter().map(|column| column.norm()).collect();
-        let mut scaled = design;
-        for (mut column, scale) in scaled.column_iter_mut().zip(&scales) {
-            column /= *scale;
-        }
-        let Ok(inverse) = scaled.pseudo_inverse(1e-13) else {
-            return errors;
-        };
-        let covariance = &inverse * &self.correlation * inverse.transpose();
-        for (index, &term) in columns.iter().enumerate() {
-            errors[term] = covariance[(index, index)].max(0.0).sqrt() / scales[index];
-        }
-        errors
-    }
-
-    fn report(&self, solution: &Solution) -> NoiseFit {
-        let range = [self.tau_s[0], self.tau_s[self.tau_s.len() - 1]];
-        let term = |index: usize, factor: f64, name: &str| -> Term {
-            let square = solution.squares[index] * factor;
-            let significance = solution.significance(index);
-            if significance < SIGNIFICANCE {
-                return Term::LeftOut(format!(
-                    "the Allan variance between {:.4} s and {:.4} s does not need a {name} term \
-                     (it must exceed {SIGNIFICANCE} of its standard errors)",
-                    range[0], range[1],
-                ));
-            }
-            let squared = interval::variance(square, 2.0 * significance * significance);
-            Term::Found(Estimate::with_interval(
-                square.sqrt(),
-                squared.low.sqrt(),
-                squared.high.sqrt(),
-            ))
-        };
-        NoiseFit {
-            quantisation_arcsec: term(INVERSE_SQUARE, 1.0 / 3.0, "quantisation"),
-            angle_random_walk_deg_per_h_sqrt_s: term(WHITE, 1.0, "angle random walk"),
-            bias_instability_deg_per_h: term(FLICKER, 1.0, "bias instability"),
-            rate_random_walk_deg_per_h_per_sqrt_s: term(WALK, 1.0, "rate random walk"),
-            rate_ramp_deg_per_h_per_s: term(RAMP, 1.0, "rate ramp"),
-            tau_range_s: range,
-            squares: solution.squares,
-        }
-    }
-}
-
-/// Least squares by singular values with columns scaled to unit length; `None` without columns.
-fn scaled_least_squares(design: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
-    if design.ncols() == 0 {
-        return None;
-    }
-    let scales: Vec<f64> = design.column_iter().map(|column| column.norm()).collect();
-    let mut scaled = design.clone();
-    for (mut column, scale) in scaled.column_iter_mut().zip(&scales) {
-        column /= *scale;
-    }
-    let mut solved = scaled.svd(true, true).solve(right, 1e-13).ok()?;
-    for (value, scale) in solved.iter_mut().zip(&scales) {
-        *value /= scale;
-    }
-    Some(solved)
 }

@@ -38,7 +38,11 @@ pub fn segment_samples(record_samples: usize) -> usize {
 /// A record shorter than one segment, or a segment shorter than four samples, gives an empty
 /// spectrum.
 ///
-/// Source: Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70.
+/// # Panics
+/// Never: the transform's buffers are made by its own plan.
+///
+/// # Source
+/// Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70.
 #[must_use]
 pub fn welch(rate_deg_per_h: &[f64], sample_period_s: f64, segment_samples: usize) -> Spectrum {
     let length = segment_samples;

@@ -4,18 +4,21 @@ use super::allan::{AllanPoint, overlapping_allan};
 use super::audit::{lags_needed, noise_delay_bound, noise_delay_bound_coloured, wiener_prediction};
 use super::autocovariance::{LaggedProducts, independent_samples};
 use super::bias;
-use super::catalogue::BLOCKS_MIN;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
 use super::noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise, mixed_degrees_of_freedom,
 };
 use super::record::{FilterFacts, Record, Settings};
+use super::support::BLOCKS_MIN;
 use super::table::DEGREES_OF_FREEDOM;
 use crate::units;
 
 /// Blocks of time whose scatter gives the intervals of ratios.
 pub(crate) const RATIO_BLOCKS: usize = 20;
+
+/// Angle random walk over the DC gain.
+pub(crate) const WALK_OVER_DC_GAIN: &str = "angle_random_walk_over_dc_gain_deg_per_sqrt_h";
 
 /// Lags of the autocovariance, at least; correlation beyond counts as slow noise.
 pub(crate) const LAGS_MIN: usize = 24;
@@ -39,10 +42,19 @@ pub(crate) fn measure_steady(
     );
     if let Some(facts) = filter {
         let raw = products_about_mean(record.raw_deg_per_h, lags);
-        put_noise_gain(&products, &raw, metrics);
+        let level = interval::mean(record.raw_deg_per_h).abs();
+        put_noise_gain(&products, &raw, level, metrics);
         measure_mean_ratio(record, metrics);
         measure_predictions(record, facts, &raw, metrics);
-        put_over_dc_gain(facts.dc_gain, metrics);
+        for (name, over) in [
+            ("angle_random_walk_deg_per_sqrt_h", WALK_OVER_DC_GAIN),
+            (
+                "bias_stability_deg_per_h",
+                "bias_stability_over_dc_gain_deg_per_h",
+            ),
+        ] {
+            put_over_dc_gain(name, over, facts.dc_gain, metrics);
+        }
     }
 }
 
@@ -203,13 +215,16 @@ pub(crate) fn put_noise_std(autocovariance: &[f64], count: usize, metrics: &mut 
 }
 
 /// Ratio of the variances about the signal; blocks leave numerator and denominator together.
+///
+/// `raw_level_deg_per_h` is the size of raw's samples: scatter below 1e-12 of it is rounding.
 pub(crate) fn put_noise_gain(
     channel: &LaggedProducts,
     raw: &LaggedProducts,
+    raw_level_deg_per_h: f64,
     metrics: &mut ChannelMetrics,
 ) {
     let raw_variance = raw.autocovariance()[0];
-    if raw_variance <= 0.0 {
+    if raw_variance.sqrt() <= 1e-12 * raw_level_deg_per_h || raw_variance <= 0.0 {
         metrics.miss("noise_gain", "the raw channel has no noise");
         return;
     }
@@ -331,29 +346,24 @@ pub(crate) fn put_bound(
     }
 }
 
-/// What is left of the improvement once the scale factor is restored.
-pub(crate) fn put_over_dc_gain(dc_gain: Option<f64>, metrics: &mut ChannelMetrics) {
-    for (name, over) in [
-        (
-            "angle_random_walk_deg_per_sqrt_h",
-            "angle_random_walk_over_dc_gain_deg_per_sqrt_h",
-        ),
-        (
-            "bias_stability_deg_per_h",
-            "bias_stability_over_dc_gain_deg_per_h",
-        ),
-    ] {
-        match (metrics.metrics.get(name).cloned(), dc_gain) {
-            (Some(metric), Some(gain)) if gain > 1e-6 => {
-                let mut fields = metric.fields;
-                fields.insert("dc_gain", gain);
-                metrics.put(over, metric.estimate.scaled(1.0 / gain)).fields = fields;
-            }
-            (Some(_), Some(gain)) => {
-                metrics.miss(over, format!("the DC gain, {gain}, is not positive"));
-            }
-            (Some(_), None) => metrics.miss(over, "the DC gain of this filter is not known"),
-            (None, _) => metrics.miss(over, format!("the record does not give `{name}`")),
+/// Enters one metric divided by the DC gain: what is left of the improvement once the scale factor
+/// is restored.
+pub(crate) fn put_over_dc_gain(
+    name: &'static str,
+    over: &'static str,
+    dc_gain: Option<f64>,
+    metrics: &mut ChannelMetrics,
+) {
+    match (metrics.metrics.get(name).cloned(), dc_gain) {
+        (Some(metric), Some(gain)) if gain > 1e-6 => {
+            let mut fields = metric.fields;
+            fields.insert("dc_gain", gain);
+            metrics.put(over, metric.estimate.scaled(1.0 / gain)).fields = fields;
         }
+        (Some(_), Some(gain)) => {
+            metrics.miss(over, format!("the DC gain, {gain}, is not positive"));
+        }
+        (Some(_), None) => metrics.miss(over, "the DC gain of this filter is not known"),
+        (None, _) => metrics.miss(over, format!("the record does not give `{name}`")),
     }
 }

@@ -48,27 +48,24 @@ pub(crate) fn measure_swing(
     measure_sines(&fits, &clock, filter.is_some(), metrics);
     measure_tracking(record, &fits, metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
-    let channel = residual_products(&fits.channel, record.channel_deg_per_h, lags);
-    {
-        let residuals = fits.channel.residuals(record.channel_deg_per_h);
-        metrics.put(
-            "harmonic_distortion_percent",
-            fits.channel.harmonic_distortion_percent(&residuals),
-        );
-    }
+    let residuals = fits.channel.residuals(record.channel_deg_per_h);
+    metrics.put(
+        "harmonic_distortion_percent",
+        fits.channel.harmonic_distortion_percent(&residuals),
+    );
+    let channel = LaggedProducts::new(&residuals, 0.0, lags, fits.channel.block_count());
+    drop(residuals);
     put_noise_std(&channel.autocovariance(), fits.channel.samples(), metrics);
     if let Some(facts) = filter {
-        let raw = residual_products(&fits.raw, record.raw_deg_per_h, lags);
-        put_noise_gain(&channel, &raw, metrics);
+        let residuals = fits.raw.residuals(record.raw_deg_per_h);
+        let raw = LaggedProducts::new(&residuals, 0.0, lags, fits.raw.block_count());
+        let level = fits.raw.whole.amplitude + fits.raw.whole.offset.abs();
+        put_noise_gain(&channel, &raw, level, metrics);
         measure_mean_ratio(&fits, metrics);
         measure_predictions(&fits, &clock, facts, &raw, metrics);
         measure_bound(&fits, &clock, facts, &raw, metrics);
     }
     Ok(())
-}
-
-fn residual_products(fit: &SwingFit, values: &[f64], lags: usize) -> LaggedProducts {
-    LaggedProducts::new(&fit.residuals(values), 0.0, lags, fit.block_count())
 }
 
 /// Delays and amplitude ratio.

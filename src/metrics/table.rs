@@ -17,10 +17,10 @@ impl ChannelMetrics {
     pub(crate) fn put(&mut self, name: &'static str, estimate: Estimate) -> &mut Metric {
         let unit = catalogue::find(name).map_or("1", |known| known.unit);
         self.unavailable.remove(name);
+        self.metrics.remove(name);
         self.metrics
             .entry(name.to_owned())
-            .insert_entry(Metric::new(estimate, unit))
-            .into_mut()
+            .or_insert_with(|| Metric::new(estimate, unit))
     }
 
     /// Says why a metric is missing.
@@ -74,7 +74,7 @@ impl ChannelMetrics {
         }
     }
 
-    /// Enters the Allan curve with the fitted deviation (NaN-free: 0 where there is no fit).
+    /// Enters the Allan curve with the fitted deviation; that column is absent without a fit.
     pub(crate) fn put_allan_curve(&mut self, points: &[AllanPoint], fit: Option<&NoiseFit>) {
         let column = |pick: &dyn Fn(&AllanPoint) -> f64| points.iter().map(pick).collect();
         let mut curve: BTreeMap<String, Vec<f64>> = BTreeMap::new();
