@@ -1,6 +1,17 @@
 //! The one integration-test binary.
 
+mod architecture;
+mod cli;
+mod closed_loop;
+mod determinism;
+mod filters;
+mod known_answers_gyro;
+mod known_answers_gyro_noise;
+mod known_answers_metrics;
+mod known_answers_slow_noise;
+mod known_answers_turntable;
+#[path = "../benches/plain_loop.rs"]
+mod plain_loop;
+mod report;
 mod scenario_errors;
 mod support;
-
-mod report;
