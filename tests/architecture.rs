@@ -15,20 +15,37 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("filters", &["signal"]),
     ("metrics", &["units", "signal"]),
     ("gate", &["metrics", "scenario"]),
-    ("report", &["units", "metrics", "gate", "scenario", "signal"]),
+    (
+        "report",
+        &["units", "metrics", "gate", "scenario", "signal"],
+    ),
     (
         "experiment",
         &[
-            "units", "random", "signal", "scenario", "turntable", "gyro", "fpga", "filters",
-            "metrics", "gate", "report",
+            "units",
+            "random",
+            "signal",
+            "scenario",
+            "turntable",
+            "gyro",
+            "fpga",
+            "filters",
+            "metrics",
+            "gate",
+            "report",
         ],
     ),
-    ("cli", &["units", "experiment", "gate", "report", "scenario", "fpga"]),
+    (
+        "cli",
+        &["units", "experiment", "gate", "report", "scenario", "fpga"],
+    ),
 ];
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    let mut entries: Vec<_> =
-        fs::read_dir(folder).expect("a source folder is readable").flatten().collect();
+    let mut entries: Vec<_> = fs::read_dir(folder)
+        .expect("a source folder is readable")
+        .flatten()
+        .collect();
     entries.sort_by_key(std::fs::DirEntry::path);
     for entry in entries {
         let path = entry.path();
@@ -42,22 +59,36 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
 
 fn sources() -> Vec<PathBuf> {
     let mut found = Vec::new();
-    rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut found);
+    rust_files(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
+        &mut found,
+    );
     found
 }
 
 fn module_of(path: &Path) -> String {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let inside = path.strip_prefix(source).expect("every source lies under src");
-    let first = inside.components().next().expect("a path has a first component");
-    Path::new(first.as_os_str()).file_stem().expect("a name").to_string_lossy().into_owned()
+    let inside = path
+        .strip_prefix(source)
+        .expect("every source lies under src");
+    let first = inside
+        .components()
+        .next()
+        .expect("a path has a first component");
+    Path::new(first.as_os_str())
+        .file_stem()
+        .expect("a name")
+        .to_string_lossy()
+        .into_owned()
 }
 
 /// Modules of the crate that a line of code names: `crate::a::b` and `crate::{a::b, c}`.
 fn imported(line: &str) -> Vec<String> {
     let code = line.split("//").next().unwrap_or_default();
     let name = |text: &str| -> String {
-        text.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect()
+        text.chars()
+            .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
+            .collect()
     };
     let mut modules = Vec::new();
     for rest in code.split("crate::").skip(1) {
@@ -100,14 +131,24 @@ fn modules_import_only_what_the_table_allows() {
             complaints.push(format!("{}:{line}: {complaint}", path.display()));
         }
     }
-    assert!(complaints.is_empty(), "forbidden imports:\n{}", complaints.join("\n"));
+    assert!(
+        complaints.is_empty(),
+        "forbidden imports:\n{}",
+        complaints.join("\n")
+    );
 }
 
 #[test]
 fn a_forbidden_import_is_found() {
     let found = forbidden_imports("turntable", "use crate::units;\nuse crate::gyro::Gyro;\n");
-    assert_eq!(found, vec![(2, "`turntable` may not import `gyro`".to_owned())]);
-    assert_eq!(forbidden_imports("filters", "use crate::{signal::A, scenario::B};").len(), 1);
+    assert_eq!(
+        found,
+        vec![(2, "`turntable` may not import `gyro`".to_owned())]
+    );
+    assert_eq!(
+        forbidden_imports("filters", "use crate::{signal::A, scenario::B};").len(),
+        1
+    );
     assert!(forbidden_imports("gate", "// use crate::gyro::Gyro;").is_empty());
 }
 
@@ -145,7 +186,10 @@ fn plotters_is_used_by_the_report_alone() {
 fn source_files_stay_under_400_lines_without_their_tests() {
     for path in sources() {
         let text = fs::read_to_string(&path).expect("a source file is readable");
-        let lines = text.lines().take_while(|line| *line != "#[cfg(test)]").count();
+        let lines = text
+            .lines()
+            .take_while(|line| *line != "#[cfg(test)]")
+            .count();
         assert!(lines <= 400, "{} has {lines} lines", path.display());
     }
 }

@@ -25,7 +25,11 @@ fn documented_commands_print_what_the_snapshots_hold() {
 fn a_passing_run_exits_0_and_writes_the_contracted_files() {
     let folder = scratch();
     let gate = "[[gate]]\nmetric = \"raw.mean_deg_per_h\"\nmin = 5.0\nmax = 12.0\n";
-    write(folder.path(), "a.toml", &format!("{SHORT}{gate}[output]\nsamples = \"npy\"\n"));
+    write(
+        folder.path(),
+        "a.toml",
+        &format!("{SHORT}{gate}[output]\nsamples = \"npy\"\n"),
+    );
     let output = fogbench(folder.path(), &["run", "a.toml"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let names: Vec<String> = tree(&folder.path().join("output"))
@@ -43,11 +47,20 @@ fn a_passing_run_exits_0_and_writes_the_contracted_files() {
         "short/summary.json",
         "summary.json",
     ] {
-        assert!(names.iter().any(|found| found == name), "{name} is missing from {names:?}");
+        assert!(
+            names.iter().any(|found| found == name),
+            "{name} is missing from {names:?}"
+        );
     }
-    assert!(names.iter().any(|name| name.ends_with(".svg")), "no picture in {names:?}");
+    assert!(
+        names.iter().any(|name| name.ends_with(".svg")),
+        "no picture in {names:?}"
+    );
     let text = stdout(&output);
-    assert!(text.contains("short") && text.contains("raw.mean_deg_per_h"), "{text}");
+    assert!(
+        text.contains("short") && text.contains("raw.mean_deg_per_h"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -72,7 +85,11 @@ fn an_inconclusive_gate_fails_unless_it_is_allowed() {
     assert_eq!(code(&fogbench(folder.path(), &["run", "a.toml"])), 1);
     let verdict = summary(&folder.path().join("output"), "short")["gates"][0]["verdict"].clone();
     assert_eq!(verdict, "inconclusive");
-    write(folder.path(), "a.toml", &format!("{SHORT}{gate}inconclusive = \"allow\"\n"));
+    write(
+        folder.path(),
+        "a.toml",
+        &format!("{SHORT}{gate}inconclusive = \"allow\"\n"),
+    );
     assert_eq!(code(&fogbench(folder.path(), &["run", "a.toml"])), 0);
 }
 
@@ -85,8 +102,14 @@ fn a_diverging_channel_exits_3_unless_a_gate_expects_it() {
     assert_eq!(code(&output), 3, "{}", stdout(&output));
     let run = summary(&folder.path().join("output"), "short");
     assert_eq!(run["channels"]["wrong"]["error"]["kind"], "diverged");
-    assert!(run["channels"]["wrong"]["mean_deg_per_h"].is_null(), "a diverged channel has numbers");
-    assert!(field(&run, "raw.mean_deg_per_h", "value").is_finite(), "raw goes on");
+    assert!(
+        run["channels"]["wrong"]["mean_deg_per_h"].is_null(),
+        "a diverged channel has numbers"
+    );
+    assert!(
+        field(&run, "raw.mean_deg_per_h", "value").is_finite(),
+        "raw goes on"
+    );
     let gate = "[[gate]]\nmetric = \"wrong.diverged_at_s\"\nmax = 3.0\n";
     write(folder.path(), "a.toml", &format!("{SHORT}{filter}{gate}"));
     let output = fogbench(folder.path(), &["run", "a.toml"]);
@@ -99,11 +122,18 @@ fn a_bad_file_exits_2_before_anything_runs_and_earlier_results_stay() {
     write(folder.path(), "good.toml", SHORT);
     assert_eq!(code(&fogbench(folder.path(), &["run", "good.toml"])), 0);
     let before = tree(&folder.path().join("output"));
-    write(folder.path(), "bad.toml", "schema = 1\nname = \"bad\"\nduration_s = -1.0\n");
+    write(
+        folder.path(),
+        "bad.toml",
+        "schema = 1\nname = \"bad\"\nduration_s = -1.0\n",
+    );
     let output = fogbench(folder.path(), &["run", "good.toml", "bad.toml"]);
     assert_eq!(code(&output), 2);
     let talk = stderr(&output);
-    assert!(talk.contains("bad.toml:3:") && talk.contains("duration_s = -1"), "{talk}");
+    assert!(
+        talk.contains("bad.toml:3:") && talk.contains("duration_s = -1"),
+        "{talk}"
+    );
     assert!(stdout(&output).is_empty(), "nothing may run");
     assert_eq!(before, tree(&folder.path().join("output")));
 }
@@ -116,7 +146,10 @@ fn a_gate_that_the_duration_can_never_support_exits_2() {
     let output = fogbench(folder.path(), &["check", "a.toml"]);
     assert_eq!(code(&output), 2);
     let talk = stderr(&output);
-    assert!(talk.contains("a.toml:7:") && talk.contains("bias_stability_100s_deg_per_h"), "{talk}");
+    assert!(
+        talk.contains("a.toml:7:") && talk.contains("bias_stability_100s_deg_per_h"),
+        "{talk}"
+    );
 }
 
 #[test]
@@ -126,7 +159,11 @@ fn an_unknown_metric_in_a_gate_names_the_nearest_one() {
     write(folder.path(), "a.toml", &format!("{SHORT}{gate}"));
     let output = fogbench(folder.path(), &["check", "a.toml"]);
     assert_eq!(code(&output), 2);
-    assert!(stderr(&output).contains("mean_deg_per_h"), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("mean_deg_per_h"),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]
@@ -137,7 +174,11 @@ fn an_unstable_step_is_refused_unless_it_is_asked_for() {
     let output = fogbench(folder.path(), &["check", "a.toml"]);
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("unstable"), "{}", stderr(&output));
-    write(folder.path(), "a.toml", &format!("{SHORT}{filter}allow_unstable = true\n"));
+    write(
+        folder.path(),
+        "a.toml",
+        &format!("{SHORT}{filter}allow_unstable = true\n"),
+    );
     assert_eq!(code(&fogbench(folder.path(), &["check", "a.toml"])), 0);
 }
 
@@ -152,7 +193,10 @@ fn nothing_selected_exits_4() {
 #[test]
 fn wrong_usage_exits_2() {
     let folder = scratch();
-    assert_eq!(code(&fogbench(folder.path(), &["run", "--no-such-option"])), 2);
+    assert_eq!(
+        code(&fogbench(folder.path(), &["run", "--no-such-option"])),
+        2
+    );
     assert_eq!(code(&fogbench(folder.path(), &["run", "missing.toml"])), 2);
 }
 
@@ -160,7 +204,11 @@ fn wrong_usage_exits_2() {
 fn an_output_folder_that_cannot_be_made_exits_74() {
     let folder = scratch();
     write(folder.path(), "a.toml", SHORT);
-    write(folder.path(), "taken", "a file stands where the folder should");
+    write(
+        folder.path(),
+        "taken",
+        "a file stands where the folder should",
+    );
     let output = fogbench(folder.path(), &["run", "a.toml", "-o", "taken"]);
     assert_eq!(code(&output), 74, "{}", stderr(&output));
 }
@@ -170,10 +218,17 @@ fn a_manifest_repeats_its_run_to_the_byte() {
     let folder = scratch();
     let filter = "[[filter]]\nname = \"rls\"\n[filter.rls]\ntaps = 3\n";
     let samples = "[output]\nsamples = \"npy\"\n";
-    write(folder.path(), "in/a.toml", &format!("{SHORT}{samples}{filter}"));
+    write(
+        folder.path(),
+        "in/a.toml",
+        &format!("{SHORT}{samples}{filter}"),
+    );
     let arguments = ["run", "in/a.toml", "--set", "seed=5", "-o", "first"];
     assert_eq!(code(&fogbench(folder.path(), &arguments)), 0);
-    let output = fogbench(folder.path(), &["run", "first/short/manifest.toml", "-o", "second"]);
+    let output = fogbench(
+        folder.path(),
+        &["run", "first/short/manifest.toml", "-o", "second"],
+    );
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let (first, second) = (folder.path().join("first"), folder.path().join("second"));
     assert_eq!(names_and_bytes(&first), names_and_bytes(&second));
@@ -181,7 +236,10 @@ fn a_manifest_repeats_its_run_to_the_byte() {
 
 fn names_and_bytes(folder: &Path) -> Vec<(String, String)> {
     let named = |(path, bytes): &(std::path::PathBuf, Vec<u8>)| {
-        (path.to_string_lossy().into_owned(), String::from_utf8_lossy(bytes).into_owned())
+        (
+            path.to_string_lossy().into_owned(),
+            String::from_utf8_lossy(bytes).into_owned(),
+        )
     };
     tree(folder).iter().map(named).collect()
 }
@@ -194,9 +252,16 @@ fn a_sweep_writes_one_folder_per_point_and_its_points_share_the_noise() {
     let output = fogbench(folder.path(), &["run", "a.toml"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let results = folder.path().join("output");
-    let (one, two) = (summary(&results, "short/0000"), summary(&results, "short/0001"));
+    let (one, two) = (
+        summary(&results, "short/0000"),
+        summary(&results, "short/0001"),
+    );
     let bits = |run| field(run, "raw.mean_deg_per_h", "value").to_bits();
-    assert_eq!(bits(&one), bits(&two), "the points of a sweep draw the same noise");
+    assert_eq!(
+        bits(&one),
+        bits(&two),
+        "the points of a sweep draw the same noise"
+    );
     let listed = stdout(&fogbench(folder.path(), &["list", "a.toml"]));
     assert_eq!(listed.lines().count(), 2, "{listed}");
 }
@@ -205,7 +270,10 @@ fn a_sweep_writes_one_folder_per_point_and_its_points_share_the_noise() {
 fn expanded_scenarios_can_be_read_back() {
     let folder = scratch();
     let path = repository("scenarios/paper/swing-5hz.toml");
-    let expanded = stdout(&fogbench(folder.path(), &["expand", &path.to_string_lossy()]));
+    let expanded = stdout(&fogbench(
+        folder.path(),
+        &["expand", &path.to_string_lossy()],
+    ));
     write(folder.path(), "expanded.toml", &expanded);
     let again = fogbench(folder.path(), &["expand", "expanded.toml"]);
     assert_eq!(code(&again), 0, "{}", stderr(&again));
@@ -230,5 +298,8 @@ fn the_schema_is_json_and_knows_the_keys() {
     let folder = scratch();
     let text = stdout(&fogbench(folder.path(), &["schema"]));
     let schema: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    assert!(schema["properties"]["gyro"]["properties"]["coil"].is_object(), "{text}");
+    assert!(
+        schema["properties"]["gyro"]["properties"]["coil"].is_object(),
+        "{text}"
+    );
 }

@@ -32,11 +32,24 @@ fn delays_under_swing_are_the_predicted_ones() {
         let run = run(scenario, &[]);
         let lms = field(&run, "lms.delay_vs_raw_ms", "value");
         assert_close(lms, 1.5 * SAMPLE_PERIOD_MS, 0.0, 0.002);
-        assert_close(lms, field(&run, "lms.delay_predicted_ms", "value"), 0.0, 0.002);
+        assert_close(
+            lms,
+            field(&run, "lms.delay_predicted_ms", "value"),
+            0.0,
+            0.002,
+        );
         let rls = field(&run, "rls.delay_vs_raw_ms", "value");
         let allowed = 0.002 + half_width(&run, "rls.delay_vs_raw_ms");
-        assert!(allowed < 0.004, "{scenario}: the interval is too wide to test with: {allowed}");
-        assert_close(rls, field(&run, "rls.delay_predicted_ms", "value"), 0.0, allowed);
+        assert!(
+            allowed < 0.004,
+            "{scenario}: the interval is too wide to test with: {allowed}"
+        );
+        assert_close(
+            rls,
+            field(&run, "rls.delay_predicted_ms", "value"),
+            0.0,
+            allowed,
+        );
         assert_close(rls, rls_ms, 0.0, allowed);
     }
 }
@@ -63,7 +76,11 @@ fn bias_stability_of_many_hours_is_the_predicted_one() {
 fn the_noise_ratio_of_the_rls_filter_is_its_dc_gain() {
     let run = run("static-25c-ratio", &[]);
     let noise = |channel: &str| {
-        field(&run, &format!("{channel}.angle_random_walk_deg_per_sqrt_h"), "value")
+        field(
+            &run,
+            &format!("{channel}.angle_random_walk_deg_per_sqrt_h"),
+            "value",
+        )
     };
     let gain = field(&run, "rls.dc_gain", "value");
     assert_close(noise("rls") / noise("raw"), gain, 0.01, 0.0);
@@ -103,6 +120,9 @@ fn an_hour_with_three_channels_stays_under_1_gb() {
     // The rate model makes as many samples as the loop model, sooner.
     let arguments = ["run", path.as_str(), "-j", "2", "--set", "fidelity=rate"];
     let peak = peak_memory_kb(&arguments, folder.path());
-    assert!(peak > 300_000, "an hour of four records cannot fit into {peak} kB: not measured");
+    assert!(
+        peak > 300_000,
+        "an hour of four records cannot fit into {peak} kB: not measured"
+    );
     assert!(peak < 1_000_000, "peak resident memory {peak} kB");
 }

@@ -22,7 +22,10 @@ fn one_and_two_threads_write_the_same_bytes() {
         let output = fogbench(folder.path(), &["run", "set", "-j", jobs, "-o", jobs]);
         assert_eq!(code(&output), 0, "{}", stderr(&output));
     }
-    let (one, two) = (tree(&folder.path().join("1")), tree(&folder.path().join("2")));
+    let (one, two) = (
+        tree(&folder.path().join("1")),
+        tree(&folder.path().join("2")),
+    );
     assert!(one.len() > 20, "{} files", one.len());
     for ((path, first), (other, second)) in one.iter().zip(&two) {
         assert_eq!(path, other);
@@ -35,7 +38,11 @@ fn one_and_two_threads_write_the_same_bytes() {
 fn another_seed_gives_other_bytes() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let text = "schema = 1\nname = \"a\"\nduration_s = 1.0\nwarm_up_s = 0.0\n";
-    write(folder.path(), "a.toml", &format!("{text}[output]\nsamples = \"npy\"\n"));
+    write(
+        folder.path(),
+        "a.toml",
+        &format!("{text}[output]\nsamples = \"npy\"\n"),
+    );
     let words = |seed: &str| {
         let set = format!("seed={seed}");
         fogbench(folder.path(), &["run", "a.toml", "--set", &set, "-o", seed]);

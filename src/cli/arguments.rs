@@ -10,7 +10,12 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// Exit codes: 0 all well, 1 a gate failed, 2 usage or scenario error, 3 a channel failed,
 /// 4 nothing selected, 70 internal error, 74 input/output error.
 #[derive(Debug, Parser)]
-#[command(name = "fogbench", version, propagate_version = true, arg_required_else_help = true)]
+#[command(
+    name = "fogbench",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true
+)]
 pub(super) struct Arguments {
     /// What to do.
     #[command(subcommand)]

@@ -17,8 +17,14 @@ pub(super) fn check(options: &SelectOptions) -> io::Result<Exit> {
             output::talk(&format!("warning: {warning}"));
         }
     }
-    let files: std::collections::BTreeSet<_> =
-        plans.iter().map(|plan| plan.resolved().file.as_str()).collect();
-    output::data(&format!("{} runs of {} files are sound\n", plans.len(), files.len()))?;
+    let files: std::collections::BTreeSet<_> = plans
+        .iter()
+        .map(|plan| plan.resolved().file.as_str())
+        .collect();
+    output::data(&format!(
+        "{} runs of {} files are sound\n",
+        plans.len(),
+        files.len()
+    ))?;
     Ok(Exit::Success)
 }

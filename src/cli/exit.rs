@@ -45,7 +45,11 @@ pub(super) fn usage(error: &clap::Error) -> ExitCode {
     if error.print().is_err() {
         return Exit::Io.code();
     }
-    if wrong { Exit::Usage.code() } else { Exit::Success.code() }
+    if wrong {
+        Exit::Usage.code()
+    } else {
+        Exit::Success.code()
+    }
 }
 
 /// A reader that closed its end has seen enough: that is no failure. Anything else is.

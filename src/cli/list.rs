@@ -22,7 +22,10 @@ pub(super) fn list(options: &ListOptions) -> io::Result<Exit> {
             let rows: Vec<_> = plans.iter().map(row).collect();
             format!("{:#}\n", serde_json::Value::from(rows))
         }
-        Format::Jsonl => plans.iter().map(|plan| format!("{}\n", row(plan))).collect(),
+        Format::Jsonl => plans
+            .iter()
+            .map(|plan| format!("{}\n", row(plan)))
+            .collect(),
     };
     output::data(&text)?;
     Ok(Exit::Success)
@@ -43,7 +46,11 @@ fn row(plan: &Plan) -> serde_json::Value {
 }
 
 fn text(plans: &[Plan]) -> String {
-    let width = plans.iter().map(|plan| plan.resolved().folder().len()).max().unwrap_or(0);
+    let width = plans
+        .iter()
+        .map(|plan| plan.resolved().folder().len())
+        .max()
+        .unwrap_or(0);
     let mut text = String::new();
     for plan in plans {
         let resolved = plan.resolved();

@@ -26,5 +26,8 @@ pub(super) fn colour() -> bool {
 /// Width of tables in columns: `COLUMNS` where it is set, else 100.
 pub(super) fn width() -> usize {
     const DEFAULT_COLUMNS: usize = 100;
-    std::env::var("COLUMNS").ok().and_then(|text| text.parse().ok()).unwrap_or(DEFAULT_COLUMNS)
+    std::env::var("COLUMNS")
+        .ok()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(DEFAULT_COLUMNS)
 }

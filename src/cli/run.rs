@@ -19,7 +19,10 @@ pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
         Err(exit) => return Ok(exit),
     };
     let progress = Progress::new(&plans, options.format);
-    let suite = SuiteOptions { output: options.output.clone(), threads: options.jobs };
+    let suite = SuiteOptions {
+        output: options.output.clone(),
+        threads: options.jobs,
+    };
     let result = run_suite(&plans, &suite, &progress);
     progress.bar.finish_and_clear();
     let runs = match result {
@@ -82,8 +85,16 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style);
         }
-        let pending = Pending { next: 0, texts: BTreeMap::new(), failure: None };
-        Self { bar, format, pending: Mutex::new(pending) }
+        let pending = Pending {
+            next: 0,
+            texts: BTreeMap::new(),
+            failure: None,
+        };
+        Self {
+            bar,
+            format,
+            pending: Mutex::new(pending),
+        }
     }
 
     fn text(&self, run: &RunReport) -> String {
@@ -95,14 +106,20 @@ impl Progress {
             Format::Json => String::new(),
             Format::Jsonl => {
                 let document = report::run_summary_json(run);
-                format!("{}\n", document.lines().map(str::trim_start).collect::<String>())
+                format!(
+                    "{}\n",
+                    document.lines().map(str::trim_start).collect::<String>()
+                )
             }
         }
     }
 
     /// The first failure to print, if any.
     fn printed(&self) -> io::Result<()> {
-        let mut pending = self.pending.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut pending = self
+            .pending
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         pending.failure.take().map_or(Ok(()), Err)
     }
 }
@@ -114,7 +131,10 @@ impl Observer for Progress {
 
     fn finished(&self, index: usize, report: &RunReport) {
         let text = self.text(report);
-        let mut pending = self.pending.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut pending = self
+            .pending
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         pending.texts.insert(index, text);
         let next = pending.next;
         let mut ready = String::new();

@@ -83,7 +83,10 @@ impl ChannelFilter {
             }
         };
         self.output_deg_per_h.push(output.value_deg_per_h);
-        let twin = self.twin.as_mut().map(|twin| twin.step(word_deg_per_h + ADDED_RATE_DEG_PER_H));
+        let twin = self
+            .twin
+            .as_mut()
+            .map(|twin| twin.step(word_deg_per_h + ADDED_RATE_DEG_PER_H));
         match twin {
             Some(Ok(twin)) if is_measured => {
                 self.twin_difference_total += twin.value_deg_per_h - output.value_deg_per_h;
@@ -99,7 +102,10 @@ impl ChannelFilter {
 
     /// Ends the run.
     pub(super) fn finish(self) -> FinishedFilter {
-        #[expect(clippy::cast_precision_loss, reason = "sample counts are far below 2^53")]
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "sample counts are far below 2^53"
+        )]
         let measured = self.measured as f64;
         let mean = |total: f64| (self.measured > 0).then(|| total / measured);
         let words = match self.failure {
@@ -112,7 +118,11 @@ impl ChannelFilter {
                 output_deg_per_h: self.output_deg_per_h,
             }),
         };
-        FinishedFilter { name: self.name, shape: self.shape, words }
+        FinishedFilter {
+            name: self.name,
+            shape: self.shape,
+            words,
+        }
     }
 }
 
@@ -129,7 +139,11 @@ fn rls(config: &RlsFilterConfig) -> RlsConfig {
         forgetting_factor: config.forgetting_factor,
         initial_inverse_correlation: config.initial_inverse_correlation,
         update_sign: sign(config.update_sign),
-        front_end: front_end(config.desired, config.input_lag_samples, config.output_register),
+        front_end: front_end(
+            config.desired,
+            config.input_lag_samples,
+            config.output_register,
+        ),
     }
 }
 
@@ -139,12 +153,18 @@ fn lms(config: &LmsFilterConfig) -> LmsConfig {
         taps: config.taps as usize,
         step_size: config.step_size,
         normalisation: if config.normalised {
-            Normalisation::Energy { regularisation_deg2_per_h2 }
+            Normalisation::Energy {
+                regularisation_deg2_per_h2,
+            }
         } else {
             Normalisation::None
         },
         update_sign: sign(config.update_sign),
-        front_end: front_end(config.desired, config.input_lag_samples, config.output_register),
+        front_end: front_end(
+            config.desired,
+            config.input_lag_samples,
+            config.output_register,
+        ),
     }
 }
 

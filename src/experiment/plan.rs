@@ -51,7 +51,12 @@ impl Plan {
     /// Channels in order, `raw` first.
     #[must_use]
     pub fn channel_names(&self) -> Vec<&str> {
-        let filters = self.resolved.scenario.filters.iter().map(|filter| filter.name.as_str());
+        let filters = self
+            .resolved
+            .scenario
+            .filters
+            .iter()
+            .map(|filter| filter.name.as_str());
         std::iter::once("raw").chain(filters).collect()
     }
 
@@ -101,20 +106,34 @@ pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<S
             Err(found) => errors.extend(found),
         }
     }
-    if errors.is_empty() { Ok(plans) } else { Err(errors) }
+    if errors.is_empty() {
+        Ok(plans)
+    } else {
+        Err(errors)
+    }
 }
 
 fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
-    let mut checker = Checker { resolved: &resolved, errors: Vec::new(), warnings: Vec::new() };
+    let mut checker = Checker {
+        resolved: &resolved,
+        errors: Vec::new(),
+        warnings: Vec::new(),
+    };
     let facts = checker.gyro();
     if let Some(facts) = &facts {
         checker.record_length(facts);
         checker.filters(facts);
         checker.metrics(facts);
     }
-    let Checker { errors, warnings, .. } = checker;
+    let Checker {
+        errors, warnings, ..
+    } = checker;
     match facts {
-        Some(facts) if errors.is_empty() => Ok(Plan { resolved, facts, warnings }),
+        Some(facts) if errors.is_empty() => Ok(Plan {
+            resolved,
+            facts,
+            warnings,
+        }),
         _ => Err(errors),
     }
 }
@@ -123,7 +142,9 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
 pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
     match &scenario.turntable.motion {
         MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
-        MotionConfig::Swing(swing) => Motion::Swing { frequency_hz: swing.frequency_hz },
+        MotionConfig::Swing(swing) => Motion::Swing {
+            frequency_hz: swing.frequency_hz,
+        },
         MotionConfig::Steps(steps) => {
             let rates = &steps.rates_deg_per_s;
             let last_step_index = step_indices(steps, 0.0, sample_period_s)
@@ -133,7 +154,10 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
                 [.., before, last] => last - before,
                 _ => 0.0,
             };
-            Motion::Steps { last_step_index, step_deg_per_h: deg_per_s_to_deg_per_h(rise) }
+            Motion::Steps {
+                last_step_index,
+                step_deg_per_h: deg_per_s_to_deg_per_h(rise),
+            }
         }
     }
 }
@@ -154,7 +178,8 @@ struct Checker<'a> {
 
 impl Checker<'_> {
     fn complain(&mut self, key: &str, message: String) {
-        self.errors.push(ScenarioError::at(self.resolved.locate(key), message));
+        self.errors
+            .push(ScenarioError::at(self.resolved.locate(key), message));
     }
 
     fn gyro(&mut self) -> Option<GyroFacts> {
@@ -213,7 +238,8 @@ impl Checker<'_> {
                     let warning = covariance_digits_warning(delta, config.taps as usize, peak);
                     if let Some(text) = warning {
                         let place = resolved.locate(&format!("filter[{index}].rls"));
-                        self.warnings.push(format!("{place}: filter `{}`: {text}", filter.name));
+                        self.warnings
+                            .push(format!("{place}: filter `{}`: {text}", filter.name));
                     }
                 }
             }
@@ -239,7 +265,8 @@ impl Checker<'_> {
         let scenario = &self.resolved.scenario;
         let eigenvalue_max = match &scenario.turntable.motion {
             MotionConfig::Swing(swing) => {
-                let phase_step_rad = TAU * swing.frequency_hz * gyro::sample_period_s(&scenario.gyro);
+                let phase_step_rad =
+                    TAU * swing.frequency_hz * gyro::sample_period_s(&scenario.gyro);
                 sine_eigenvalue_max(taps, rate_max, phase_step_rad, 0.0)
             }
             _ => constant_eigenvalue_max(taps, rate_max, 0.0),
@@ -266,14 +293,18 @@ impl Checker<'_> {
         let mut requested: Vec<(String, &str, &str)> = Vec::new();
         for (index, gate) in scenario.gates.iter().enumerate() {
             // The reader has checked that there is a dot and that the channel exists.
-            let Some((channel, name)) = gate.metric.rsplit_once('.') else { continue };
+            let Some((channel, name)) = gate.metric.rsplit_once('.') else {
+                continue;
+            };
             requested.push((format!("gate[{index}].metric"), channel, name));
             if let Some(reference) = &gate.relative_to {
                 requested.push((format!("gate[{index}].relative_to"), reference, name));
             }
         }
         for (index, figure) in scenario.published.iter().enumerate() {
-            let Some((channel, name)) = figure.metric.rsplit_once('.') else { continue };
+            let Some((channel, name)) = figure.metric.rsplit_once('.') else {
+                continue;
+            };
             requested.push((format!("published[{index}].metric"), channel, name));
         }
         for (key, channel, name) in requested {

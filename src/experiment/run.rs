@@ -7,15 +7,15 @@ use rayon::prelude::*;
 
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use super::plan::{DIVERGED_AT, Plan, motion};
-use super::simulate::{RecordLength, Simulation, simulate};
+use super::simulate::{Faults, RecordLength, Simulation, simulate};
 use super::suite::{Observer, SuiteError, VERSION};
 use crate::filters::Divergence;
 use crate::gate::judge;
-use crate::metrics::{
-    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings,
-    aggregate, measure,
-};
 use crate::gyro::GyroError;
+use crate::metrics::{
+    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings, aggregate,
+    measure,
+};
 use crate::report::{self, FolderWriter, RunOutcome, RunReport};
 use crate::scenario::{SamplesFormat, manifest_toml};
 use crate::signal::{FilterShape, RunSignals};
@@ -33,7 +33,7 @@ pub(super) fn run_scenario(
     let resolved = plan.resolved();
     let scenario = &resolved.scenario;
     let folder = resolved.folder();
-    let (simulation, channels) = match run_repeats(plan, observer) {
+    let (simulation, channels, faults) = match run_repeats(plan, observer) {
         Ok(done) => done,
         Err(error) => {
             let (name, file) = (&scenario.name, &resolved.file);
@@ -47,20 +47,26 @@ pub(super) fn run_scenario(
             judge(gate, &channels, Some(place.to_string()))
         })
         .collect();
+    let notes = [plan.warnings().to_vec(), faults.notes()].concat();
     let report = RunReport {
         tool_version: VERSION,
         scenario,
         file: &resolved.file,
         digest: &resolved.digest,
-        sweep: resolved.sweep.as_ref().map(|point| (point.index, point.assignments.clone())),
+        sweep: resolved
+            .sweep
+            .as_ref()
+            .map(|point| (point.index, point.assignments.clone())),
         gyro: plan.facts(),
         channels: &channels,
         verdicts: &verdicts,
-        notes: plan.warnings(),
+        notes: &notes,
     };
     let target = output.join(&folder);
-    write_folder(plan, &report, &simulation, &target)
-        .map_err(|source| SuiteError::Write { path: target, source })?;
+    write_folder(plan, &report, &simulation, &target).map_err(|source| SuiteError::Write {
+        path: target,
+        source,
+    })?;
     observer.finished(index, &report);
     Ok(RunOutcome::from_report(&report, &folder))
 }
@@ -70,14 +76,21 @@ pub(super) fn run_scenario(
 fn run_repeats(
     plan: &Plan,
     observer: &dyn Observer,
-) -> Result<(Simulation, Channels), GyroError> {
+) -> Result<(Simulation, Channels, Faults), GyroError> {
     let (simulation, first) = run_repeat(plan, 0, observer)?;
-    let others: Vec<Channels> = (1..plan.resolved().scenario.repeats)
+    let others: Vec<(Faults, Channels)> = (1..plan.resolved().scenario.repeats)
         .into_par_iter()
         .with_max_len(1)
-        .map(|repeat| run_repeat(plan, repeat, observer).map(|(_, channels)| channels))
+        .map(|repeat| {
+            run_repeat(plan, repeat, observer)
+                .map(|(simulation, channels)| (simulation.faults, channels))
+        })
         .collect::<Result<_, _>>()?;
-    Ok((simulation, combine(first, others)))
+    let faults = others
+        .iter()
+        .fold(simulation.faults, |sum, (faults, _)| sum.plus(*faults));
+    let others = others.into_iter().map(|(_, channels)| channels).collect();
+    Ok((simulation, combine(first, others), faults))
 }
 
 /// Writes everything of one run beside its place and swaps it in whole.
@@ -89,7 +102,10 @@ fn write_folder(
 ) -> io::Result<()> {
     let folder = FolderWriter::create(target)?;
     folder.write("summary.json", report::run_summary_json(report).as_bytes())?;
-    folder.write("manifest.toml", manifest_toml(plan.resolved(), VERSION).as_bytes())?;
+    folder.write(
+        "manifest.toml",
+        manifest_toml(plan.resolved(), VERSION).as_bytes(),
+    )?;
     if let Some(csv) = report::allan_csv(report) {
         folder.write("allan.csv", csv.as_bytes())?;
     }
@@ -127,8 +143,9 @@ fn write_samples(folder: &FolderWriter, signals: &RunSignals) -> io::Result<()> 
     }
     folder.write_npy("samples/truth.npy", signals.truth_deg_per_h)?;
     let samples = signals.truth_deg_per_h.len() as u64;
-    let time_s: Vec<f64> =
-        (0..samples).map(|index| stamp_s(index, signals.sample_period_s)).collect();
+    let time_s: Vec<f64> = (0..samples)
+        .map(|index| stamp_s(index, signals.sample_period_s))
+        .collect();
     folder.write_npy("samples/time_s.npy", &time_s)
 }
 
@@ -152,8 +169,16 @@ fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) ->
         bias_averaging_time_s: scenario.bias_averaging_time_s,
         fit_tau_min_s: plan.fit_tau_min_s(),
     };
-    let cut = &Cut { simulation, length, sample_period_s, settings };
-    let raw = ("raw".to_owned(), cut.measure(&simulation.raw_deg_per_h, None));
+    let cut = &Cut {
+        simulation,
+        length,
+        sample_period_s,
+        settings,
+    };
+    let raw = (
+        "raw".to_owned(),
+        cut.measure(&simulation.raw_deg_per_h, None),
+    );
     let filters: Channels = simulation
         .filters
         .par_iter()
@@ -207,7 +232,10 @@ fn filter_facts(shape: &FilterShape, words: &FilterWords) -> FilterFacts {
 fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
     let mut channel = ChannelMetrics::default();
     let at_s = stamp_s(divergence.sample, sample_period_s);
-    channel.metrics.insert(DIVERGED_AT.to_owned(), Metric::new(Estimate::exact(at_s), "s"));
+    channel.metrics.insert(
+        DIVERGED_AT.to_owned(),
+        Metric::new(Estimate::exact(at_s), "s"),
+    );
     channel.error = Some(ChannelFailure {
         kind: "diverged".to_owned(),
         sample: divergence.sample,
@@ -218,7 +246,10 @@ fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
 
 /// Stamp of sample `index`, s from the start of the warm-up.
 fn stamp_s(index: u64, sample_period_s: f64) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "sample counts are far below 2^53")]
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "sample counts are far below 2^53"
+    )]
     let ordinal = (index + 1) as f64;
     ordinal * sample_period_s
 }
@@ -232,8 +263,10 @@ fn combine(first: Channels, others: Vec<Channels>) -> Channels {
     repeats.extend(others);
     let names: Vec<String> = repeats[0].iter().map(|(name, _)| name.clone()).collect();
     let combined = names.into_iter().enumerate().map(|(index, name)| {
-        let tables: Vec<ChannelMetrics> =
-            repeats.iter().map(|channels| channels[index].1.clone()).collect();
+        let tables: Vec<ChannelMetrics> = repeats
+            .iter()
+            .map(|channels| channels[index].1.clone())
+            .collect();
         let failed = tables.iter().find(|table| table.error.is_some());
         let table = failed.cloned().unwrap_or_else(|| aggregate(&tables));
         (name, table)

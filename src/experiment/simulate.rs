@@ -49,6 +49,45 @@ pub(super) struct Simulation {
     pub(super) raw_deg_per_h: Vec<f64>,
     /// The filters, in the order of the file.
     pub(super) filters: Vec<FinishedFilter>,
+    /// Half modulation periods in which the gyro did not work as meant.
+    pub(super) faults: Faults,
+}
+
+/// Half modulation periods in which the gyro did not work as meant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Faults {
+    /// The converter was driven beyond its range.
+    pub(super) saturated: u64,
+    /// The phase error was beyond +-pi/2, where the loop pushes the wrong way.
+    pub(super) unlocked: u64,
+}
+
+impl Faults {
+    /// Sum over repeats.
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            saturated: self.saturated + other.saturated,
+            unlocked: self.unlocked + other.unlocked,
+        }
+    }
+
+    /// What the reader of a report must know.
+    pub(super) fn notes(self) -> Vec<String> {
+        let sentences = [
+            (
+                self.saturated,
+                "the converter (gyro.adc) was driven beyond its range",
+            ),
+            (
+                self.unlocked,
+                "the loop was out of lock: its error was beyond a quarter fringe",
+            ),
+        ];
+        let happened = sentences.iter().filter(|(count, _)| *count > 0);
+        happened
+            .map(|(count, what)| format!("{what} in {count} half modulation periods"))
+            .collect()
+    }
 }
 
 /// Runs repeat `repeat` of `scenario`.
@@ -89,10 +128,17 @@ pub(super) fn simulate(
         truth_deg_per_h: truth,
         raw_deg_per_h: raw,
         filters: filters.into_iter().map(ChannelFilter::finish).collect(),
+        faults: Faults {
+            saturated: gyro.saturated_half_periods(),
+            unlocked: gyro.unlocked_half_periods(),
+        },
     })
 }
 
-#[expect(clippy::cast_precision_loss, reason = "sample counts are far below 2^53")]
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "sample counts are far below 2^53"
+)]
 fn count(samples: usize) -> f64 {
     samples as f64
 }

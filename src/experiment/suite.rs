@@ -65,11 +65,18 @@ pub fn run_suite(
     observer: &dyn Observer,
 ) -> Result<Vec<RunOutcome>, SuiteError> {
     create_folder(&options.output)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().map_err(
-        |error| SuiteError::Threads { threads: options.threads, message: error.to_string() },
-    )?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads)
+        .build()
+        .map_err(|error| SuiteError::Threads {
+            threads: options.threads,
+            message: error.to_string(),
+        })?;
     let runs = pool.install(|| run_all(plans, options, observer))?;
-    write(&options.output.join("summary.json"), &report::suite_summary_json(VERSION, &runs))?;
+    write(
+        &options.output.join("summary.json"),
+        &report::suite_summary_json(VERSION, &runs),
+    )?;
     write(&options.output.join("junit.xml"), &report::junit_xml(&runs))?;
     Ok(runs)
 }
@@ -110,11 +117,15 @@ fn run_all(
 }
 
 fn create_folder(path: &Path) -> Result<(), SuiteError> {
-    std::fs::create_dir_all(path)
-        .map_err(|source| SuiteError::Write { path: path.to_owned(), source })
+    std::fs::create_dir_all(path).map_err(|source| SuiteError::Write {
+        path: path.to_owned(),
+        source,
+    })
 }
 
 fn write(path: &Path, text: &str) -> Result<(), SuiteError> {
-    report::write_atomic(path, text.as_bytes())
-        .map_err(|source| SuiteError::Write { path: path.to_owned(), source })
+    report::write_atomic(path, text.as_bytes()).map_err(|source| SuiteError::Write {
+        path: path.to_owned(),
+        source,
+    })
 }

@@ -2,6 +2,9 @@
 
 use crate::metrics::Estimate;
 
+/// Relative half width below which an interval is rounding noise and is not shown.
+const EXACT: f64 = 1e-9;
+
 /// Decimals that show `size` with `digits` significant digits.
 fn decimals(size: f64, digits: i32) -> usize {
     #[expect(
@@ -50,11 +53,11 @@ pub(crate) fn estimate_text(estimate: &Estimate, digits: i32) -> String {
         value, low, high, ..
     } = *estimate;
     let half_width = 0.5 * (high - low);
-    if !half_width.is_finite() || half_width <= 0.0 {
+    let largest = value.abs().max(low.abs()).max(high.abs());
+    if !half_width.is_finite() || half_width <= EXACT * largest {
         return plain(value);
     }
     let skew = (0.5 * (high + low) - value).abs();
-    let largest = value.abs().max(low.abs()).max(high.abs());
     if wants_exponent(largest) {
         let spread = decimals(half_width / largest, digits);
         return format!("{value:.spread$e} [{low:.spread$e}, {high:.spread$e}]");

@@ -33,6 +33,7 @@ const STATIC: &[(&str, &str)] = &[
     ("dc_gain_adapted", "DC gain adapted"),
     ("noise_std_deg_per_h", "noise std"),
     ("noise_gain", "noise power gain"),
+    ("noise_delay_bound_noise_gain", "least at this delay"),
 ];
 
 const SWING: &[(&str, &str)] = &[
@@ -123,6 +124,11 @@ pub(crate) fn columns(motion: &MotionConfig, channels: &[(String, ChannelMetrics
             title: title_of(motion, key),
         })
         .collect()
+}
+
+/// Whether the table of this motion has a column for the metric.
+pub(crate) fn matters(motion: &MotionConfig, key: &str) -> bool {
+    known(motion).iter().any(|(column, _)| *column == key)
 }
 
 /// Unit of a column, with the averaging time where that defines the metric.

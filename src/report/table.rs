@@ -1,9 +1,11 @@
 //! What `run` prints for one scenario.
 
+use std::collections::BTreeMap;
+
 use crate::gate::{Verdict, VerdictKind, estimate_text, plain};
-use crate::metrics::{ChannelMetrics, Metric};
+use crate::metrics::{ChannelMetrics, Metric, known_metrics};
 use crate::report::RunReport;
-use crate::report::columns::{Column, columns, unit_text};
+use crate::report::columns::{Column, columns, matters, unit_text};
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::scenario::{Fidelity, PublishedConfig};
 
@@ -160,16 +162,37 @@ fn failures(report: &RunReport, width: usize, colour: bool) -> String {
             );
             text.push_str(&wrapped(&line, INDENT, width));
         }
-        for (key, reason) in &metrics.unavailable {
-            let line = format!("unavailable {name}.{key}: {reason}");
-            text.push_str(&wrapped(&line, INDENT, width));
-        }
+    }
+    for ((key, reason), names) in missing(report) {
+        let line = format!("no {key} for {}: {reason}", names.join(", "));
+        text.push_str(&wrapped(&line, INDENT, width));
     }
     if text.is_empty() {
         text
     } else {
         format!("\n{text}")
     }
+}
+
+/// Metrics that this table would show and the record could not support, with the reason and the
+/// channels concerned; what is not defined for a motion or a channel is left to the JSON.
+fn missing<'a>(report: &'a RunReport) -> BTreeMap<(&'a str, &'a str), Vec<&'a str>> {
+    let motion = &report.scenario.turntable.motion;
+    let mut missing: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
+    for (name, metrics) in report.channels {
+        for (key, reason) in &metrics.unavailable {
+            let compares = key.contains("_over_") || is_for_filters_only(key);
+            if matters(motion, key) && !compares {
+                missing.entry((key, reason)).or_default().push(name);
+            }
+        }
+    }
+    missing
+}
+
+fn is_for_filters_only(key: &str) -> bool {
+    let known = known_metrics().iter().find(|known| known.name == key);
+    known.is_some_and(|known| known.filters_only)
 }
 
 fn published(report: &RunReport, colour: bool) -> String {

@@ -11,6 +11,8 @@ mod cross;
 mod defaults;
 mod emit;
 mod error;
+mod filter_config;
+mod gyro_config;
 mod json_schema;
 mod keys;
 mod manifest;
@@ -22,15 +24,21 @@ mod suite;
 mod tree;
 
 pub use config::{
-    AdcConfig, CoilConfig, ControllerConfig, DesiredSignal, DetectorConfig, Fidelity, FilterConfig,
-    FilterKind, GateConfig, GateDecision, GyroConfig, InconclusivePolicy, LmsFilterConfig,
-    ModulatorConfig, MotionConfig, NoiseConfig, NoiseDraw, OutputConfig, OutputRegister, Pipeline,
-    PublishedConfig, RateOutputConfig, RlsFilterConfig, RotationConfig, SamplesFormat, Scenario,
-    SecondOrderServoConfig, ServoConfig, SiteConfig, SlowNoiseConfig, SoakConfig, SourceConfig,
-    StaticConfig, StepsConfig, SwingConfig, TemperatureConfig, TurntableConfig, UpdateSign,
+    Fidelity, GateConfig, GateDecision, InconclusivePolicy, MotionConfig, OutputConfig,
+    PublishedConfig, RotationConfig, SamplesFormat, Scenario, SecondOrderServoConfig, ServoConfig,
+    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 pub use defaults::reference_toml;
 pub use error::{Location, ScenarioError};
+pub use filter_config::{
+    DesiredSignal, FilterConfig, FilterKind, LmsFilterConfig, OutputRegister, Pipeline,
+    RlsFilterConfig, UpdateSign,
+};
+pub use gyro_config::{
+    AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
+    NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SoakConfig, SourceConfig,
+    TemperatureConfig,
+};
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};

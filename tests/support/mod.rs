@@ -35,7 +35,10 @@ pub(crate) fn fogbench(folder: &Path, arguments: &[&str]) -> Output {
 
 /// Exit code of a finished program.
 pub(crate) fn code(output: &Output) -> i32 {
-    output.status.code().expect("the program was not killed by a signal")
+    output
+        .status
+        .code()
+        .expect("the program was not killed by a signal")
 }
 
 /// Standard output as text.
@@ -59,7 +62,10 @@ pub(crate) fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
 /// Every file below `folder`, as (path below it, bytes), sorted.
 pub(crate) fn tree(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     fn walk(root: &Path, folder: &Path, files: &mut Vec<(PathBuf, Vec<u8>)>) {
-        for entry in std::fs::read_dir(folder).expect("a readable folder").flatten() {
+        for entry in std::fs::read_dir(folder)
+            .expect("a readable folder")
+            .flatten()
+        {
             let path = entry.path();
             if path.is_dir() {
                 walk(root, &path, files);

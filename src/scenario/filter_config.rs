@@ -1,0 +1,109 @@
+//! The configuration of the filters: names are the keys of the scenario file, units included.
+
+use serde::Deserialize;
+
+/// One filter channel.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct FilterConfig {
+    /// Channel name.
+    pub name: String,
+    /// Kind and settings (`[filter.rls]` or `[filter.lms]`).
+    #[serde(flatten)]
+    pub kind: FilterKind,
+}
+
+/// Kind of a filter and its settings.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FilterKind {
+    /// Recursive least squares.
+    Rls(RlsFilterConfig),
+    /// Least mean squares, normalised or not.
+    Lms(LmsFilterConfig),
+}
+
+/// Recursive least squares.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RlsFilterConfig {
+    /// Number of weights p.
+    pub taps: u32,
+    /// Forgetting factor alpha, (0, 1].
+    pub forgetting_factor: f64,
+    /// Initial inverse correlation delta, (deg/h)^-2.
+    pub initial_inverse_correlation: f64,
+    /// Desired signal.
+    pub desired: DesiredSignal,
+    /// Samples by which the regressors lag the desired signal's newest sample.
+    pub input_lag_samples: u32,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+    /// Sign of the weight update.
+    pub update_sign: UpdateSign,
+    /// Arithmetic.
+    pub pipeline: Pipeline,
+}
+
+/// Least mean squares.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LmsFilterConfig {
+    /// Number of weights N.
+    pub taps: u32,
+    /// Step size mu.
+    pub step_size: f64,
+    /// Whether the step is divided by the input's energy (NLMS).
+    pub normalised: bool,
+    /// Added to the energy (normalised form), (deg/h)^2.
+    pub regularisation_deg2_per_h2: f64,
+    /// Run an un-normalised step beyond its stability bound.
+    pub allow_unstable: bool,
+    /// Desired signal.
+    pub desired: DesiredSignal,
+    /// Samples by which the regressors lag the desired signal's newest sample.
+    pub input_lag_samples: u32,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+    /// Sign of the weight update.
+    pub update_sign: UpdateSign,
+    /// Arithmetic.
+    pub pipeline: Pipeline,
+}
+
+/// What an adaptive filter aims at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DesiredSignal {
+    /// The current sample.
+    Current,
+    /// The mean of the newest two samples.
+    TwoSampleMean,
+}
+
+/// When a filter's result appears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OutputRegister {
+    /// At the next sample tick.
+    NextSample,
+    /// As soon as it is computed.
+    Immediate,
+}
+
+/// Sign before the error term of the weight update.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum UpdateSign {
+    /// Plus: the form that converges.
+    Corrected,
+    /// Minus, as the paper's equations (6) and (9) print it: diverges.
+    AsPrinted,
+}
+
+/// Arithmetic of a filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Pipeline {
+    /// The textbook recursion.
+    Textbook,
+}

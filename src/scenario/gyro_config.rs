@@ -1,0 +1,175 @@
+//! The configuration of the gyro: names are the keys of the scenario file, units included.
+
+use serde::Deserialize;
+
+/// The gyro.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GyroConfig {
+    /// Fibre coil.
+    pub coil: CoilConfig,
+    /// Light source.
+    pub source: SourceConfig,
+    /// Phase modulator and its converter.
+    pub modulator: ModulatorConfig,
+    /// Photodetector and amplifier.
+    pub detector: DetectorConfig,
+    /// Analogue-to-digital converter.
+    pub adc: AdcConfig,
+    /// Feedback loop.
+    pub controller: ControllerConfig,
+    /// Fast noise sources and how they are drawn.
+    pub noise: NoiseConfig,
+    /// Slow noise of the rate.
+    pub slow_noise: SlowNoiseConfig,
+    /// Temperature.
+    pub temperature: TemperatureConfig,
+    /// Rate word.
+    pub output: RateOutputConfig,
+}
+
+/// Fibre coil.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CoilConfig {
+    /// Fibre length, m.
+    pub length_m: f64,
+    /// Mean coil diameter, mm.
+    pub diameter_mm: f64,
+    /// Group index of the fibre; sets the transit time, not the scale factor.
+    pub group_index: f64,
+}
+
+/// Light source and interferometer.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SourceConfig {
+    /// Mean vacuum wavelength, nm.
+    pub wavelength_nm: f64,
+    /// Mean detected power P0 over a fringe, uW (half of the fringe maximum).
+    pub power_uw: f64,
+    /// Full width at half maximum of the Gaussian spectrum, nm.
+    pub linewidth_nm: f64,
+    /// Degree of polarisation at the detector, 0..1.
+    pub polarisation_degree: f64,
+    /// Fringe visibility V, 0..1.
+    pub visibility: f64,
+}
+
+/// Phase modulator.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModulatorConfig {
+    /// Two-state square-wave modulation depth `phi_m`, deg.
+    pub depth_deg: f64,
+    /// Bits of the ramp converter over 2 pi; 0 = ideal.
+    pub dac_bits: u32,
+}
+
+/// Photodetector, transimpedance amplifier and gate.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DetectorConfig {
+    /// Responsivity, A/W.
+    pub responsivity_a_per_w: f64,
+    /// Dark current, nA.
+    pub dark_current_na: f64,
+    /// Transimpedance, kOhm.
+    pub transimpedance_kohm: f64,
+    /// Voltage gain after the transimpedance stage.
+    pub post_gain: f64,
+    /// Amplifier voltage noise, nV/sqrt(Hz).
+    pub voltage_noise_nv_per_sqrt_hz: f64,
+    /// Amplifier current noise, pA/sqrt(Hz).
+    pub current_noise_pa_per_sqrt_hz: f64,
+    /// Fraction of each half period that is gated into the demodulator.
+    pub gate_duty: f64,
+}
+
+/// Analogue-to-digital converter.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AdcConfig {
+    /// Bits; 0 = ideal (no quantisation, no saturation).
+    pub bits: u32,
+    /// Range, V: codes cover 0 .. range.
+    pub range_v: f64,
+    /// Samples averaged per half period.
+    pub samples_per_half_period: u32,
+}
+
+/// Digital controller.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ControllerConfig {
+    /// Closed-loop -3 dB bandwidth, Hz; sets the integrator gain.
+    pub loop_bandwidth_hz: f64,
+    /// Pipeline latency in modulation periods, 0..=3.
+    pub loop_latency_periods: u32,
+}
+
+/// Fast noise sources.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoiseConfig {
+    /// Shot noise of the photocurrent.
+    pub shot: bool,
+    /// Thermal (Johnson) noise of the transimpedance.
+    pub thermal: bool,
+    /// Amplifier voltage and current noise.
+    pub amplifier: bool,
+    /// Relative intensity noise of the source.
+    pub rin: bool,
+    /// How the noise is drawn.
+    pub draw: NoiseDraw,
+}
+
+/// How fast noise is drawn in the loop model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NoiseDraw {
+    /// One normal per half period with the variance of all sources.
+    Combined,
+    /// Every source and every ADC sample drawn on its own.
+    Exact,
+}
+
+/// Slow noise of the rate.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SlowNoiseConfig {
+    /// Constant bias, deg/h.
+    pub bias_deg_per_h: f64,
+    /// Flicker (bias instability) coefficient B, deg/h.
+    pub bias_instability_deg_per_h: f64,
+    /// Rate random walk coefficient K, deg/h/sqrt(h).
+    pub rate_random_walk_deg_per_h_per_sqrt_h: f64,
+    /// Rate ramp R, deg/h/h.
+    pub rate_ramp_deg_per_h_per_h: f64,
+}
+
+/// Temperature: exactly one profile.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TemperatureConfig {
+    /// Constant temperature.
+    Soak(SoakConfig),
+}
+
+/// Constant temperature.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SoakConfig {
+    /// Temperature of everything, deg C.
+    pub temperature_c: f64,
+}
+
+/// Rate word.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RateOutputConfig {
+    /// Half modulation periods averaged into one rate word (even).
+    pub half_periods_per_sample: u32,
+    /// Least significant bit of the rate word, deg/s, rounded without carry; 0 = not rounded.
+    pub rate_lsb_deg_per_s: f64,
+}
