@@ -5,6 +5,7 @@
 //! the unperturbed run. *Adapted*: a twin filter runs on the same words plus a small rate from the
 //! first sample on and is free to adapt; its mean output differs by that rate times the gain.
 
+use super::simulate::RecordLength;
 use crate::filters::{
     Desired, Divergence, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation,
     OutputRegister as Register, Rls, RlsConfig, UpdateSign as Sign,
@@ -25,6 +26,7 @@ pub(super) struct ChannelFilter {
     filter: Box<dyn Filter>,
     twin: Option<Box<dyn Filter>>,
     output_deg_per_h: Vec<f64>,
+    warm_up_samples: usize,
     failure: Option<Divergence>,
     weight_sum_total: f64,
     twin_difference_total: f64,
@@ -52,15 +54,16 @@ pub(super) struct FilterWords {
 }
 
 impl ChannelFilter {
-    /// The filter of `config`, with room for `samples` words.
-    pub(super) fn new(config: &FilterConfig, samples: usize) -> Self {
+    /// The filter of `config`, with room for a record of this length.
+    pub(super) fn new(config: &FilterConfig, length: RecordLength) -> Self {
         let filter = build(&config.kind);
         Self {
             name: config.name.clone(),
             shape: filter.shape(),
             filter,
             twin: Some(build(&config.kind)),
-            output_deg_per_h: Vec::with_capacity(samples),
+            output_deg_per_h: Vec::with_capacity(length.total()),
+            warm_up_samples: length.warm_up,
             failure: None,
             weight_sum_total: 0.0,
             twin_difference_total: 0.0,
@@ -68,26 +71,26 @@ impl ChannelFilter {
         }
     }
 
-    /// Filters one word; `is_measured` says whether it lies after the warm-up.
-    #[inline]
-    pub(super) fn step(&mut self, word_deg_per_h: f64, is_measured: bool) {
-        if self.failure.is_some() {
-            return;
-        }
-        let output = match self.filter.step(word_deg_per_h) {
-            Ok(output) => output,
-            Err(divergence) => {
-                self.failure = Some(divergence);
-                self.output_deg_per_h = Vec::new();
+    /// Filters the next words of the record.
+    pub(super) fn take(&mut self, words_deg_per_h: &[f64]) {
+        for &word in words_deg_per_h {
+            if self.failure.is_some() {
                 return;
             }
-        };
+            if let Err(divergence) = self.step(word) {
+                self.failure = Some(divergence);
+                self.output_deg_per_h = Vec::new();
+            }
+        }
+    }
+
+    #[inline]
+    fn step(&mut self, word_deg_per_h: f64) -> Result<(), Divergence> {
+        let is_measured = self.output_deg_per_h.len() >= self.warm_up_samples;
+        let output = self.filter.step(word_deg_per_h)?;
         self.output_deg_per_h.push(output.value_deg_per_h);
-        let twin = self
-            .twin
-            .as_mut()
-            .map(|twin| twin.step(word_deg_per_h + ADDED_RATE_DEG_PER_H));
-        match twin {
+        let twin = self.twin.as_mut();
+        match twin.map(|twin| twin.step(word_deg_per_h + ADDED_RATE_DEG_PER_H)) {
             Some(Ok(twin)) if is_measured => {
                 self.twin_difference_total += twin.value_deg_per_h - output.value_deg_per_h;
             }
@@ -98,6 +101,7 @@ impl ChannelFilter {
             self.weight_sum_total += output.weight_sum;
             self.measured += 1;
         }
+        Ok(())
     }
 
     /// Ends the run.

@@ -175,16 +175,18 @@ fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) ->
         sample_period_s,
         settings,
     };
-    let raw = (
-        "raw".to_owned(),
-        cut.measure(&simulation.raw_deg_per_h, None),
+    let (raw, filters) = rayon::join(
+        || cut.measure(&simulation.raw_deg_per_h, None),
+        || -> Channels {
+            let filters = simulation.filters.par_iter();
+            filters
+                .map(|filter| (filter.name.clone(), cut.measure_filter(filter)))
+                .collect()
+        },
     );
-    let filters: Channels = simulation
-        .filters
-        .par_iter()
-        .map(|filter| (filter.name.clone(), cut.measure_filter(filter)))
-        .collect();
-    std::iter::once(raw).chain(filters).collect()
+    std::iter::once(("raw".to_owned(), raw))
+        .chain(filters)
+        .collect()
 }
 
 /// The measured part of a simulation and how to measure it.

@@ -1,5 +1,7 @@
 //! One repeat of one scenario: motion to gyro to filters, sample by sample, into records.
 
+use rayon::prelude::*;
+
 use super::channel_filter::{ChannelFilter, FinishedFilter};
 use super::suite::Observer;
 use crate::gyro::{Gyro, GyroError};
@@ -8,8 +10,8 @@ use crate::scenario::Scenario;
 use crate::turntable::{Turntable, first_measured_index};
 use crate::units::rad_per_s_to_deg_per_h;
 
-/// Samples between two reports of progress.
-const PROGRESS_SAMPLES: usize = 1 << 16;
+/// Samples of one block: long against the cost of handing it over, short against the caches.
+const BLOCK_SAMPLES: usize = 1 << 14;
 
 /// How many samples the warm-up and the measured record hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,48 +93,83 @@ impl Faults {
 }
 
 /// Runs repeat `repeat` of `scenario`.
+///
+/// The gyro makes the next block while the filters work on the one before, so that two threads
+/// share even a single run; every word depends on the words before it alone.
 pub(super) fn simulate(
     scenario: &Scenario,
     length: RecordLength,
     repeat: u32,
     observer: &dyn Observer,
 ) -> Result<Simulation, GyroError> {
-    let streams = Streams::new(scenario.seed, u64::from(repeat));
-    let simulated_s = scenario.warm_up_s + scenario.duration_s;
-    let mut gyro = Gyro::new(&scenario.gyro, scenario.fidelity, simulated_s, &streams)?;
-    let sample_period_s = gyro.sample_period_s();
-    let mut table = Turntable::new(&scenario.turntable, scenario.warm_up_s, sample_period_s);
+    let mut source = Source::new(scenario, length, repeat)?;
     let mut filters: Vec<_> = scenario
         .filters
         .iter()
-        .map(|config| ChannelFilter::new(config, length.total()))
+        .map(|config| ChannelFilter::new(config, length))
         .collect();
-    let mut truth = Vec::with_capacity(length.total());
     let mut raw = Vec::with_capacity(length.total());
-    let block_s = sample_period_s * count(PROGRESS_SAMPLES);
-    for index in 0..length.total() {
-        let segment = table.next_segment();
-        let word = gyro.next_word(&segment);
-        truth.push(rad_per_s_to_deg_per_h(segment.rate_at(1.0)));
-        raw.push(word);
-        let measured = index >= length.warm_up;
-        for filter in &mut filters {
-            filter.step(word, measured);
-        }
-        if (index + 1) % PROGRESS_SAMPLES == 0 {
-            observer.advanced(block_s);
-        }
+    let mut block = source.next_block();
+    while !block.is_empty() {
+        let (next, ()) = rayon::join(
+            || source.next_block(),
+            || {
+                filters
+                    .par_iter_mut()
+                    .for_each(|filter| filter.take(&block))
+            },
+        );
+        raw.extend_from_slice(&block);
+        observer.advanced(source.sample_period_s * count(block.len()));
+        block = next;
     }
-    observer.advanced(sample_period_s * count(length.total() % PROGRESS_SAMPLES));
     Ok(Simulation {
-        truth_deg_per_h: truth,
+        truth_deg_per_h: source.truth_deg_per_h,
         raw_deg_per_h: raw,
         filters: filters.into_iter().map(ChannelFilter::finish).collect(),
         faults: Faults {
-            saturated: gyro.saturated_half_periods(),
-            unlocked: gyro.unlocked_half_periods(),
+            saturated: source.gyro.saturated_half_periods(),
+            unlocked: source.gyro.unlocked_half_periods(),
         },
     })
+}
+
+/// Table and gyro: where the words come from.
+struct Source {
+    table: Turntable,
+    gyro: Gyro,
+    sample_period_s: f64,
+    truth_deg_per_h: Vec<f64>,
+    samples: usize,
+}
+
+impl Source {
+    fn new(scenario: &Scenario, length: RecordLength, repeat: u32) -> Result<Self, GyroError> {
+        let streams = Streams::new(scenario.seed, u64::from(repeat));
+        let simulated_s = scenario.warm_up_s + scenario.duration_s;
+        let gyro = Gyro::new(&scenario.gyro, scenario.fidelity, simulated_s, &streams)?;
+        let sample_period_s = gyro.sample_period_s();
+        Ok(Self {
+            table: Turntable::new(&scenario.turntable, scenario.warm_up_s, sample_period_s),
+            gyro,
+            sample_period_s,
+            truth_deg_per_h: Vec::with_capacity(length.total()),
+            samples: length.total(),
+        })
+    }
+
+    /// The next rate words, deg/h; empty when the record is complete.
+    fn next_block(&mut self) -> Vec<f64> {
+        let left = self.samples - self.truth_deg_per_h.len();
+        let mut words = Vec::with_capacity(left.min(BLOCK_SAMPLES));
+        for _ in 0..left.min(BLOCK_SAMPLES) {
+            let segment = self.table.next_segment();
+            words.push(self.gyro.next_word(&segment));
+            self.truth_deg_per_h
+                .push(rad_per_s_to_deg_per_h(segment.rate_at(1.0)));
+        }
+        words
+    }
 }
 
 #[expect(
