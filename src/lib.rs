@@ -1,15 +1,24 @@
-//! Closed-loop fibre-optic-gyro and rate-turntable testbench.
+#![doc = include_str!("../README.md")]
 
 pub mod random;
 pub mod signal;
 pub mod units;
 
-pub mod cli;
-pub mod experiment;
-pub mod filters;
-pub mod gate;
-pub mod gyro;
-pub mod metrics;
-pub mod report;
+// In the order of the data flow.
 pub mod scenario;
+
 pub mod turntable;
+
+pub mod gyro;
+
+pub mod filters;
+
+pub mod metrics;
+
+pub mod gate;
+
+pub mod report;
+
+pub mod experiment;
+
+pub mod cli;

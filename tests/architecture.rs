@@ -4,14 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Module, and the modules of the crate it may import.
-const IMPORTS: &[(&str, &[&str])] = &[
+pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("random", &["units"]),
     ("signal", &["units"]),
     ("scenario", &["units"]),
     ("turntable", &["units", "signal", "random", "scenario"]),
     ("gyro", &["units", "signal", "random", "scenario"]),
-    ("fpga", &[]),
     ("filters", &["signal"]),
     ("metrics", &["units", "signal"]),
     ("gate", &["metrics", "scenario"]),
@@ -28,7 +27,6 @@ const IMPORTS: &[(&str, &[&str])] = &[
             "scenario",
             "turntable",
             "gyro",
-            "fpga",
             "filters",
             "metrics",
             "gate",
@@ -37,7 +35,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ),
     (
         "cli",
-        &["units", "experiment", "gate", "report", "scenario", "fpga"],
+        &["units", "experiment", "gate", "report", "scenario"],
     ),
 ];
 

@@ -12,6 +12,7 @@ mod known_answers_slow_noise;
 mod known_answers_turntable;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
+mod readme;
 mod report;
 mod scenario_errors;
 mod support;

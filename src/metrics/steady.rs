@@ -133,9 +133,9 @@ fn measure_bias(
         });
         let deviation = interval::sample_variance(&means).sqrt();
         let metric = metrics.put(name, interval::deviation(deviation, freedom));
-        metric
-            .fields
-            .insert("averaging_time_s", block as f64 * record.sample_period_s);
+        // The time asked for; the nearest whole number of samples is what was averaged.
+        metric.fields.insert("averaging_time_s", averaging_time_s);
+        metric.fields.insert("block_samples", block as f64);
         metric.fields.insert("count", means.len() as f64);
         metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
     }

@@ -47,6 +47,7 @@ const SWING: &[(&str, &str)] = &[
     ("noise_gain", "noise power gain"),
     ("noise_delay_bound_noise_gain", "least at this delay"),
     ("dc_gain", "DC gain"),
+    ("dc_gain_predicted", "DC gain predicted"),
 ];
 
 const STEPS: &[(&str, &str)] = &[
