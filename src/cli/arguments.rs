@@ -76,9 +76,10 @@ pub(super) struct RunOptions {
     /// Folder for the results
     #[arg(short, long, value_name = "DIR", default_value = "output")]
     pub(super) output: PathBuf,
-    /// Threads, 0 = one per core; the results do not depend on it
-    #[arg(short, long, value_name = "N", default_value_t = 0)]
-    pub(super) jobs: usize,
+    /// Threads, 0 = one per core, at most 256; the results do not depend on it
+    #[arg(short, long, value_name = "N", default_value_t = 0,
+          value_parser = clap::value_parser!(u16).range(0..=256))]
+    pub(super) jobs: u16,
     /// Form of the results on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(super) format: Format,

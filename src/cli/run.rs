@@ -21,7 +21,7 @@ pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
     let progress = Progress::new(&plans, options.format);
     let suite = SuiteOptions {
         output: options.output.clone(),
-        threads: options.jobs,
+        threads: usize::from(options.jobs),
     };
     let result = run_suite(&plans, &suite, &progress);
     progress.bar.finish_and_clear();
