@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use fogbench::experiment::{Observer, Plan, SuiteOptions, plan_suite, run_suite};
-use fogbench::report::RunReport;
+use fogbench::report::{RunOutcome, RunReport};
 
 /// Runs of each thread count.
 const ROUNDS: usize = 5;
@@ -19,6 +19,7 @@ struct Silent;
 impl Observer for Silent {
     fn advanced(&self, _simulated_s: f64) {}
     fn finished(&self, _index: usize, _report: &RunReport) {}
+    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
 }
 
 fn plans(files: &[&str], sets: &[&str]) -> Vec<Plan> {

@@ -15,4 +15,5 @@ mod plain_loop;
 mod readme;
 mod report;
 mod scenario_errors;
+mod suite;
 mod support;

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::arguments::{Format, RunOptions};
 use super::exit::Exit;
 use super::{output, select};
-use crate::experiment::{Observer, Plan, SuiteError, SuiteOptions, run_suite};
+use crate::experiment::{Observer, Plan, SuiteError, SuiteOptions, SuiteOutcome, run_suite};
 use crate::report::{self, RunOutcome, RunReport, RunStatus};
 
 /// Plans, runs, prints and judges.
@@ -25,8 +25,8 @@ pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
     };
     let result = run_suite(&plans, &suite, &progress);
     progress.bar.finish_and_clear();
-    let runs = match result {
-        Ok(runs) => runs,
+    let outcome = match result {
+        Ok(outcome) => outcome,
         Err(error) => {
             output::talk(&format!("error: {error}"));
             return Ok(match error {
@@ -36,14 +36,17 @@ pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
         }
     };
     progress.printed()?;
-    output::data(&closing(&runs, options.format))?;
+    output::data(&closing(&outcome.runs, options.format))?;
     output::talk(&format!("results in {}", options.output.display()));
-    Ok(exit_of(&runs))
+    Ok(exit_of(&outcome))
 }
 
 /// The verdict of the whole suite: the worst of its runs.
-fn exit_of(runs: &[RunOutcome]) -> Exit {
-    match runs.iter().map(RunOutcome::status).max() {
+fn exit_of(suite: &SuiteOutcome) -> Exit {
+    if suite.broken {
+        return Exit::Internal;
+    }
+    match suite.runs.iter().map(RunOutcome::status).max() {
         None | Some(RunStatus::Pass) => Exit::Success,
         Some(RunStatus::GateFailed) => Exit::GateFailed,
         Some(RunStatus::ChannelFailed | RunStatus::RunFailed) => Exit::RunFailed,
@@ -114,6 +117,26 @@ impl Progress {
         }
     }
 
+    /// Prints every text whose predecessors have all been printed.
+    fn print_in_turn(&self, index: usize, text: String) {
+        let mut pending = self
+            .pending
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        pending.texts.insert(index, text);
+        let mut ready = String::new();
+        let mut next = pending.next;
+        while let Some(text) = pending.texts.remove(&next) {
+            ready.push_str(&text);
+            next += 1;
+        }
+        pending.next = next;
+        if pending.failure.is_none() && !ready.is_empty() {
+            let result = self.bar.suspend(|| output::data(&ready));
+            pending.failure = result.err();
+        }
+    }
+
     /// The first failure to print, if any.
     fn printed(&self) -> io::Result<()> {
         let mut pending = self
@@ -130,24 +153,14 @@ impl Observer for Progress {
     }
 
     fn finished(&self, index: usize, report: &RunReport) {
-        let text = self.text(report);
-        let mut pending = self
-            .pending
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        pending.texts.insert(index, text);
-        let next = pending.next;
-        let mut ready = String::new();
-        let mut following = next;
-        while let Some(text) = pending.texts.remove(&following) {
-            ready.push_str(&text);
-            following += 1;
-        }
-        pending.next = following;
-        if pending.failure.is_none() && !ready.is_empty() {
-            let result = self.bar.suspend(|| output::data(&ready));
-            pending.failure = result.err();
-        }
+        self.print_in_turn(index, self.text(report));
+    }
+
+    fn failed(&self, index: usize, outcome: &RunOutcome) {
+        let reason = outcome.error.as_deref().unwrap_or_default();
+        self.bar
+            .suspend(|| output::talk(&format!("error: {}: {reason}", outcome.folder)));
+        self.print_in_turn(index, String::new());
     }
 }
 

@@ -10,4 +10,4 @@ mod simulate;
 mod suite;
 
 pub use plan::{Plan, plan_suite};
-pub use suite::{Observer, SuiteError, SuiteOptions, run_suite};
+pub use suite::{Observer, SuiteError, SuiteOptions, SuiteOutcome, run_suite};

@@ -106,6 +106,8 @@ pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<S
             Err(found) => errors.extend(found),
         }
     }
+    // By folder, so that the order of the arguments leaves no trace in the results.
+    plans.sort_by_cached_key(|plan: &Plan| plan.resolved.folder());
     if errors.is_empty() {
         Ok(plans)
     } else {

@@ -1,6 +1,8 @@
 //! Many runs at once: the thread pool, the order of results and the files of the whole suite.
 
+use std::any::Any;
 use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,6 +14,9 @@ use crate::report::{self, RunOutcome, RunReport};
 
 /// Version of the program, as every result names it.
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The suite's own files.
+const SUITE_FILES: [&str; 2] = ["summary.json", "junit.xml"];
 
 /// How a suite is run.
 #[derive(Clone, Debug)]
@@ -28,6 +33,17 @@ pub trait Observer: Sync {
     fn advanced(&self, simulated_s: f64);
     /// Run `index` of the plan is done and its files stand in their place.
     fn finished(&self, index: usize, report: &RunReport);
+    /// Run `index` of the plan could not finish and has written nothing.
+    fn failed(&self, index: usize, outcome: &RunOutcome);
+}
+
+/// What came of a suite.
+#[derive(Clone, Debug)]
+pub struct SuiteOutcome {
+    /// Runs in the order of the plans.
+    pub runs: Vec<RunOutcome>,
+    /// Whether a run was stopped by a broken invariant, which is a defect of the program.
+    pub broken: bool,
 }
 
 /// Why a suite stopped before its end.
@@ -54,7 +70,9 @@ pub enum SuiteError {
 /// Runs every plan and writes `options.output`.
 ///
 /// Results come back in the order of `plans`, whatever the order of completion; every file depends
-/// on its scenario, seed and the version of the program alone.
+/// on its scenario, seed and the version of the program alone. The suite's own files are removed
+/// first and written last, so that an interrupted suite leaves no verdict of an earlier one. A run
+/// that breaks an invariant fails by itself; the others go on.
 ///
 /// # Errors
 /// [`SuiteError`] if a file cannot be written or the threads cannot be started. Folders of runs
@@ -63,8 +81,11 @@ pub fn run_suite(
     plans: &[Plan],
     options: &SuiteOptions,
     observer: &dyn Observer,
-) -> Result<Vec<RunOutcome>, SuiteError> {
+) -> Result<SuiteOutcome, SuiteError> {
     create_folder(&options.output)?;
+    for name in SUITE_FILES {
+        remove(&options.output.join(name))?;
+    }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build()
@@ -72,13 +93,14 @@ pub fn run_suite(
             threads: options.threads,
             message: error.to_string(),
         })?;
-    let runs = pool.install(|| run_all(plans, options, observer))?;
+    let (runs, broken) = pool.install(|| run_all(plans, options, observer))?;
+    let [summary, junit] = SUITE_FILES;
     write(
-        &options.output.join("summary.json"),
+        &options.output.join(summary),
         &report::suite_summary_json(VERSION, &runs),
     )?;
-    write(&options.output.join("junit.xml"), &report::junit_xml(&runs))?;
-    Ok(runs)
+    write(&options.output.join(junit), &report::junit_xml(&runs))?;
+    Ok(SuiteOutcome { runs, broken })
 }
 
 /// Runs the plans longest first, so that the last core is not left alone with the longest run.
@@ -86,34 +108,59 @@ fn run_all(
     plans: &[Plan],
     options: &SuiteOptions,
     observer: &dyn Observer,
-) -> Result<Vec<RunOutcome>, SuiteError> {
+) -> Result<(Vec<RunOutcome>, bool), SuiteError> {
     let mut order: Vec<usize> = (0..plans.len()).collect();
     order.sort_by(|&a, &b| plans[b].cost().total_cmp(&plans[a].cost()));
     let stopped = AtomicBool::new(false);
+    let broken = AtomicBool::new(false);
     // One item at a time, so that a thread takes the next longest run when it is free.
-    let results: Vec<_> = order
+    let mut results: Vec<_> = order
         .par_iter()
         .with_max_len(1)
+        .filter(|_| !stopped.load(Ordering::Relaxed))
         .map(|&index| {
-            if stopped.load(Ordering::Relaxed) {
-                return (index, None);
+            let run = || run_scenario(&plans[index], index, &options.output, observer);
+            let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
+                broken.store(true, Ordering::Relaxed);
+                Ok(broken_run(&plans[index], &*panic))
+            });
+            match &result {
+                Ok(outcome) if outcome.error.is_some() => observer.failed(index, outcome),
+                Ok(_) => {}
+                Err(_) => stopped.store(true, Ordering::Relaxed),
             }
-            let result = run_scenario(&plans[index], index, &options.output, observer);
-            if result.is_err() {
-                stopped.store(true, Ordering::Relaxed);
-            }
-            (index, Some(result))
+            (index, result)
         })
         .collect();
-    let mut ordered = results;
-    ordered.sort_by_key(|(index, _)| *index);
-    let mut runs = Vec::with_capacity(plans.len());
-    for (_, result) in ordered {
-        if let Some(result) = result {
-            runs.push(result?);
-        }
+    results.sort_by_key(|(index, _)| *index);
+    let runs: Result<Vec<_>, _> = results.into_iter().map(|(_, result)| result).collect();
+    Ok((runs?, broken.load(Ordering::Relaxed)))
+}
+
+/// The outcome of a run that broke an invariant, with what the panic said.
+fn broken_run(plan: &Plan, panic: &(dyn Any + Send)) -> RunOutcome {
+    let message = panic
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| panic.downcast_ref::<&str>().copied())
+        .unwrap_or("no message");
+    let resolved = plan.resolved();
+    RunOutcome::failed(
+        &resolved.scenario.name,
+        &resolved.folder(),
+        &resolved.file,
+        format!("internal error, please report it: {message}"),
+    )
+}
+
+fn remove(path: &Path) -> Result<(), SuiteError> {
+    match std::fs::remove_file(path) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(SuiteError::Write {
+            path: path.to_owned(),
+            source,
+        }),
+        _ => Ok(()),
     }
-    Ok(runs)
 }
 
 fn create_folder(path: &Path) -> Result<(), SuiteError> {
