@@ -16,8 +16,9 @@ const REASON_DIGITS: i32 = 3;
 /// Pass: the interval `[low, high]` lies inside `[min, max]`; fail: it is disjoint from it; else
 /// inconclusive, which is accepted only if the gate says `inconclusive = "allow"`. With
 /// `decide = "value"` the value alone is compared. With `relative_to` the metric is divided by the
-/// same metric of that channel, see [`ratio`]. A metric that is unknown, missing, unavailable or
-/// not finite, or that belongs to a failed channel, fails with the reason.
+/// same metric of that channel; the interval of the ratio holds the quotients of all ends. A metric
+/// that is unknown, missing, unavailable or not finite, or that belongs to a failed channel, fails
+/// with the reason.
 #[must_use]
 pub fn judge(
     gate: &GateConfig,
