@@ -303,3 +303,24 @@ fn the_schema_is_json_and_knows_the_keys() {
         "{text}"
     );
 }
+
+#[test]
+fn a_published_figure_in_another_unit_exits_2() {
+    let folder = scratch();
+    let published = |metric: &str, unit: &str| {
+        let head = format!("[[published]]\nmetric = \"{metric}\"\nvalue = 1.0\n");
+        let text = format!("{SHORT}{head}unit = \"{unit}\"\nsource = \"a book\"\n");
+        write(folder.path(), "a.toml", &text);
+        fogbench(folder.path(), &["check", "a.toml"])
+    };
+    let output = published("raw.mean_deg_per_h", "deg/s");
+    assert_eq!(code(&output), 2);
+    assert_eq!(
+        stderr(&output),
+        "error: a.toml:9:1: published[0].unit = \"deg/s\" is not the unit of mean_deg_per_h: \
+         give the value in \"deg/h\"\n"
+    );
+    let output = published("raw.mean_deg_per_h", "deg/h");
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert_eq!(stdout(&output), "1 run of 1 file is sound\n");
+}

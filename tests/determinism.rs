@@ -51,3 +51,50 @@ fn another_seed_gives_other_bytes() {
     assert_ne!(words("1"), words("2"));
     assert_eq!(words("1"), words("1"));
 }
+
+#[test]
+fn the_way_a_path_is_typed_does_not_reach_the_results() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let text = "schema = 1\nname = \"a\"\nextends = \"../base/b.toml\"\nduration_s = 1.0\n\
+                warm_up_s = 0.0\n[[gate]]\nmetric = \"raw.mean_deg_per_h\"\nmin = 0.0\n\
+                [[filter]]\nname = \"rls\"\n[filter.rls]\ninitial_inverse_correlation = 1e6\n";
+    let file = write(folder.path(), "in/a.toml", text);
+    write(folder.path(), "base/b.toml", "fidelity = \"rate\"\n");
+    let (top, inside) = (folder.path(), folder.path().join("in"));
+    let absolute = file.to_string_lossy();
+    let cases = [
+        (top, "in/a.toml"),
+        (top, "./base/../in/a.toml"),
+        (top, "in"),
+        (inside.as_path(), "a.toml"),
+        (inside.as_path(), &absolute),
+        (std::path::Path::new("/"), &absolute),
+    ];
+    let mut results = Vec::new();
+    for (index, (start, path)) in cases.into_iter().enumerate() {
+        let target = top.join(format!("out{index}"));
+        let output = fogbench(start, &["run", path, "-o", &target.to_string_lossy()]);
+        assert_eq!(code(&output), 0, "{path}: {}", stderr(&output));
+        results.push(tree(&target));
+    }
+    let manifest = top.join("out0/a/manifest.toml");
+    let target = top.join("again");
+    let arguments = [
+        "run",
+        &manifest.to_string_lossy(),
+        "-o",
+        &target.to_string_lossy(),
+    ];
+    assert_eq!(code(&fogbench(top, &arguments)), 0);
+    results.push(tree(&target));
+    for (index, result) in results.iter().enumerate() {
+        assert_eq!(results[0].len(), result.len());
+        for ((path, first), (other, bytes)) in results[0].iter().zip(result) {
+            assert_eq!(path, other);
+            assert!(first == bytes, "case {index}: {} differs", path.display());
+        }
+    }
+    let summary = crate::support::summary(&top.join("out0"), "a");
+    assert_eq!(summary["gates"][0]["location"], "a.toml:7:1");
+    assert!(summary["notes"].is_array(), "the case has a warning too");
+}

@@ -74,6 +74,31 @@ fn a_relative_gate_judges_the_widest_ratio() {
     let unbounded = judge(&ratio, &channels, None);
     assert_eq!(unbounded.kind, VerdictKind::Inconclusive);
     assert_eq!((unbounded.low, unbounded.high), (None, None));
+
+    // A divisor that is zero leaves no ratio at all.
+    let divisor = channels[1]
+        .1
+        .metrics
+        .get_mut("angle_random_walk_deg_per_sqrt_h");
+    divisor.unwrap().estimate = fogbench::metrics::Estimate::exact(0.0);
+    let judged = judge(&ratio, &channels, None);
+    assert_eq!((judged.kind, judged.value), (VerdictKind::Fail, None));
+    assert_eq!(
+        judged.reason,
+        "`lms.angle_random_walk_deg_per_sqrt_h` is 0, so that the ratio to it has no value"
+    );
+}
+
+#[test]
+fn a_value_without_an_interval_does_not_claim_one() {
+    let judged = verdict(&gate("bad.diverged_at_s", Some(1.0), Some(2.0)));
+    assert!(
+        judged
+            .reason
+            .contains(" (no interval) lies inside [1, 2] s"),
+        "{}",
+        judged.reason
+    );
 }
 
 #[test]
@@ -268,6 +293,11 @@ fn the_suite_is_counted() {
     let text = suite_text(&suite(), 100, false);
     let last = text.lines().last().unwrap();
     assert!(last.starts_with("FAIL  3 runs: 1 passed"), "{last}");
+    // The message of a failed channel stands below the grid and within the width.
+    assert!(text.contains("\n  bad failed at sample 5984: "), "{text}");
+    let narrow = suite_text(&suite(), 40, false);
+    let message = narrow.split("bad failed").nth(1).unwrap();
+    assert!(message.lines().next().unwrap().len() <= 28, "{narrow}");
 }
 
 #[test]

@@ -88,7 +88,7 @@ fn syntax_error_points_at_its_column() {
 fn duplicate_key_is_a_syntax_error() {
     let got = complaints("seed = 1\nseed = 2\n");
     assert!(
-        got[0].starts_with("x.toml:5:1: syntax error: duplicate key"),
+        got[0].starts_with("x.toml:5:1: syntax error: duplicate key seed"),
         "{got:?}"
     );
 }
@@ -187,6 +187,47 @@ fn numbers_that_are_not_finite_are_refused() {
 }
 
 #[test]
+fn numbers_that_do_not_fit_are_told_from_infinity() {
+    assert_eq!(
+        complaints("[gyro.source]\npower_uw = 1e400\n"),
+        [
+            "x.toml:5:1: gyro.source.power_uw = 1e400 is beyond the range of binary64: \
+          allowed (0, 100000] uW"
+        ]
+    );
+    assert_eq!(
+        complaints("seed = 18446744073709551616\n"),
+        [
+            "x.toml:4:1: seed = 18446744073709551616 is beyond 64 bits with sign: \
+          allowed 0..=9223372036854775807"
+        ]
+    );
+}
+
+#[test]
+fn wrong_elements_of_an_array_are_blamed_where_they_stand() {
+    let steps = |rates: &str| {
+        complaints(&format!(
+            "[turntable.steps]\nrates_deg_per_s = {rates}\ndwell_s = 1\n"
+        ))
+    };
+    assert_eq!(
+        steps("[0.0,\n  \"fast\"]"),
+        [
+            "x.toml:6:3: turntable.steps.rates_deg_per_s[1] has the wrong type: \
+          expected a number, [-2000, 2000] deg/s, got a string \"fast\""
+        ]
+    );
+    assert_eq!(
+        steps("[0.0, 1, 3e3]"),
+        [
+            "x.toml:5:28: turntable.steps.rates_deg_per_s[2] = 3000.0 deg/s is out of range: \
+          allowed [-2000, 2000] deg/s"
+        ]
+    );
+}
+
+#[test]
 fn zero_duration_is_out_of_range() {
     let text = "name = \"x\"\nduration_s = 0.0\n";
     let got = Suite::new(&[("x.toml", text)]).complaints(&["x.toml"], &[]);
@@ -242,6 +283,18 @@ fn set_values_are_blamed_on_the_argument() {
 }
 
 #[test]
+fn sweeps_and_bases_cannot_be_set() {
+    assert_eq!(
+        complaints_of_set("", &["matrix.seed=[1,2]", "extends=y.toml"]),
+        [
+            "--set matrix.seed=[1,2]: matrix.seed cannot be set: \
+             write the sweep into a file, or give one value, as in seed=2",
+            "--set extends=y.toml: extends cannot be set: write it into a file",
+        ]
+    );
+}
+
+#[test]
 fn set_addresses_a_filter_by_name_and_by_index() {
     let filters =
         "[[filter]]\nname = \"fast\"\n[filter.rls]\n[[filter]]\nname = \"slow\"\n[filter.lms]\n";
@@ -288,6 +341,9 @@ fn cycle_in_extends_is_refused_where_it_closes() {
 fn missing_files_are_named() {
     let got = complaints("extends = \"nowhere.toml\"\n");
     assert_eq!(got, ["x.toml:4:1: extends nowhere.toml: no such file"]);
+    let suite = Suite::new(&[("s/x.toml", &scenario("extends = \".\"\n"))]);
+    let got = suite.complaints(&["s/x.toml"], &[]);
+    assert_eq!(got, ["s/x.toml:4:1: extends s: it is a folder, not a file"]);
     let suite = Suite::new(&[]);
     assert_eq!(
         suite.complaints(&["none.toml"], &[]),
@@ -603,6 +659,60 @@ fn a_manifest_repeats_its_run() {
 }
 
 #[test]
+fn a_changed_manifest_is_its_own_origin() {
+    let text =
+        scenario("[matrix]\nseed = [4, 5]\n[[gate]]\nmetric = \"raw.noise_gain\"\nmax = 1\n");
+    let suite = Suite::new(&[("x.toml", &text)]);
+    let run = suite.load(&["x.toml"], &[]).unwrap().remove(1);
+    let manifest = manifest_toml(&run, env!("CARGO_PKG_VERSION"));
+    let load = |text: &str, sets: &[&str]| {
+        fs::write(suite.path("m.toml"), text).unwrap();
+        suite.load(&["m.toml"], sets).unwrap().remove(0)
+    };
+    // Setting what stands there already changes nothing, and the place of the gate is kept.
+    let same = load(&manifest, &["duration_s=20"]);
+    assert_eq!(same, run);
+    assert_eq!(same.gate_place(0), "x.toml:7:1");
+    let set = load(&manifest, &["duration_s=10"]);
+    let edited = load(
+        &manifest.replace("duration_s = 20.0", "duration_s = 10.0"),
+        &[],
+    );
+    for changed in [&set, &edited] {
+        assert_eq!(changed.file, "m.toml");
+        assert_eq!(changed.inputs.len(), 1);
+        assert_eq!(changed.inputs[0].file, "m.toml");
+        assert_eq!(
+            changed.folder(),
+            "x/0001",
+            "its swept key has its value still"
+        );
+    }
+    let digest = |text: &str| blake3::hash(text.as_bytes()).to_hex().to_string();
+    assert_eq!(set.inputs[0].digest, digest(&manifest));
+    assert_ne!(edited.inputs[0].digest, set.inputs[0].digest);
+    assert_eq!(load(&manifest, &["seed=6"]).sweep, None);
+    // The manifest of the changed run is true of itself.
+    let again = load(&manifest_toml(&set, env!("CARGO_PKG_VERSION")), &[]);
+    assert_eq!(again, set);
+}
+
+#[test]
+fn a_manifest_of_another_version_of_the_tool_warns() {
+    let run = run("", &[]);
+    let suite = Suite::new(&[("m.toml", &manifest_toml(&run, "0.0.1"))]);
+    let again = suite.load(&["m.toml"], &[]).unwrap().remove(0);
+    assert_eq!(again.warnings.len(), 1);
+    assert!(
+        again.warnings[0].starts_with("m.toml was written by fogbench 0.0.1, this is "),
+        "{:?}",
+        again.warnings
+    );
+    let suite = Suite::new(&[("m.toml", &manifest_toml(&run, env!("CARGO_PKG_VERSION")))]);
+    assert!(suite.load(&["m.toml"], &[]).unwrap()[0].warnings.is_empty());
+}
+
+#[test]
 fn manifests_of_other_versions_or_damaged_ones_are_refused() {
     let suite = Suite::new(&[("m.toml", "manifest = 2\n"), ("n.toml", "manifest = 1\n")]);
     assert_eq!(
@@ -658,8 +768,32 @@ fn files_below_the_working_directory_are_shown_by_their_relative_path() {
     );
     let sets = ["name=x", "duration_s=1"].map(str::to_owned);
     let runs = load_suite(&[base], &sets).unwrap();
-    assert_eq!(runs[0].file, "scenarios/base/fog70.toml");
+    assert_eq!(runs[0].shown_file(), "scenarios/base/fog70.toml");
+    assert_eq!(runs[0].file, "fog70.toml", "results do not name the folder");
     assert_eq!(runs[0].inputs[0].file, runs[0].file);
+}
+
+#[test]
+fn inputs_are_labelled_as_seen_from_the_folder_of_the_scenario() {
+    let extends = |base: &str| scenario(&format!("extends = \"{base}\"\n"));
+    let suite = Suite::new(&[
+        ("a/base.toml", "extends = \"./more/./b.toml\"\n"),
+        ("a/more/b.toml", "extends = \"../../c/c.toml\"\n"),
+        ("c/c.toml", "seed = 2\n"),
+        ("a/x.toml", &extends("more/../base.toml")),
+    ]);
+    let labels = |run: &Resolved| -> Vec<String> {
+        run.inputs.iter().map(|input| input.file.clone()).collect()
+    };
+    let run = suite.load(&["a/x.toml"], &[]).unwrap().remove(0);
+    assert_eq!(
+        labels(&run),
+        ["../c/c.toml", "more/b.toml", "base.toml", "x.toml"]
+    );
+    let absolute = extends(&suite.path("c/c.toml").to_string_lossy());
+    fs::write(suite.path("y.toml"), absolute).unwrap();
+    let run = suite.load(&["y.toml"], &[]).unwrap().remove(0);
+    assert_eq!(labels(&run), ["c.toml", "y.toml"], "no absolute path");
 }
 
 /// The worked example of the documentation.
@@ -714,7 +848,7 @@ fn the_worked_example_loads() {
     assert_eq!(runs.len(), 3);
     assert_eq!(runs[2].folder(), "swing-5hz/0002");
     assert_eq!(
-        runs[0].inputs[0].file, "fog70.toml",
+        runs[0].inputs[0].file, "../base/fog70.toml",
         "the innermost base comes first"
     );
 }

@@ -19,12 +19,19 @@ pub(super) fn check(options: &SelectOptions) -> io::Result<Exit> {
     }
     let files: std::collections::BTreeSet<_> = plans
         .iter()
-        .map(|plan| plan.resolved().file.as_str())
+        .map(|plan| plan.resolved().shown_file())
         .collect();
+    let verb = if plans.len() == 1 { "is" } else { "are" };
     output::data(&format!(
-        "{} runs of {} files are sound\n",
-        plans.len(),
-        files.len()
+        "{} of {} {verb} sound\n",
+        counted(plans.len(), "run"),
+        counted(files.len(), "file")
     ))?;
     Ok(Exit::Success)
+}
+
+/// A number and its noun, in the plural unless there is one.
+fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
 }

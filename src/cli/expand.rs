@@ -18,7 +18,12 @@ pub(super) fn expand(options: &SelectOptions) -> io::Result<Exit> {
         let resolved = plan.resolved();
         let gap = if index == 0 { "" } else { "\n" };
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{gap}# {} ({})", resolved.folder(), resolved.file);
+        let _ = writeln!(
+            text,
+            "{gap}# {} ({})",
+            resolved.folder(),
+            resolved.shown_file()
+        );
         text.push_str(&resolved.to_toml());
     }
     output::data(&text)?;

@@ -36,7 +36,7 @@ fn row(plan: &Plan) -> serde_json::Value {
     let scenario = &resolved.scenario;
     json!({
         "folder": resolved.folder(),
-        "file": resolved.file,
+        "file": resolved.shown_file(),
         "duration_s": scenario.duration_s,
         "repeats": scenario.repeats,
         "channels": plan.channel_names(),
@@ -60,13 +60,14 @@ fn text(plans: &[Plan]) -> String {
         } else {
             String::new()
         };
+        let file = resolved.shown_file();
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
             "{:width$}  {repeats}{} s  {}",
             resolved.folder(),
             scenario.duration_s,
-            scenario.description.as_deref().unwrap_or(&resolved.file),
+            scenario.description.as_deref().unwrap_or(&file),
         );
     }
     text

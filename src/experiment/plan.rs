@@ -119,7 +119,7 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
     let mut checker = Checker {
         resolved: &resolved,
         errors: Vec::new(),
-        warnings: Vec::new(),
+        warnings: resolved.warnings.clone(),
     };
     let facts = checker.gyro();
     if let Some(facts) = &facts {
@@ -239,9 +239,9 @@ impl Checker<'_> {
                     let delta = config.initial_inverse_correlation;
                     let warning = covariance_digits_warning(delta, config.taps as usize, peak);
                     if let Some(text) = warning {
-                        let place = resolved.locate(&format!("filter[{index}].rls"));
+                        // No place: warnings stand in the results, which name no folder.
                         self.warnings
-                            .push(format!("{place}: filter `{}`: {text}", filter.name));
+                            .push(format!("filter `{}`: {text}", filter.name));
                     }
                 }
             }
@@ -288,6 +288,26 @@ impl Checker<'_> {
         }
     }
 
+    /// Refuses a published figure in another unit than the simulated one beside which it is shown.
+    fn published_unit(&mut self, index: usize, metric: &str, given: &str) {
+        let known = metrics::known_metrics().iter();
+        // A metric that nobody knows is refused with its nearest known one elsewhere.
+        let Some(known) = known.into_iter().find(|known| known.name == metric) else {
+            return;
+        };
+        let is_bare = known.unit == "1" && given.is_empty();
+        if given != known.unit && !is_bare {
+            let key = format!("published[{index}].unit");
+            self.complain(
+                &key,
+                format!(
+                    "{key} = \"{given}\" is not the unit of {metric}: give the value in \"{}\"",
+                    known.unit
+                ),
+            );
+        }
+    }
+
     /// Refuses gates and published figures that this record can never support.
     fn metrics(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
@@ -308,6 +328,7 @@ impl Checker<'_> {
                 continue;
             };
             requested.push((format!("published[{index}].metric"), channel, name));
+            self.published_unit(index, name, &figure.unit);
         }
         for (key, channel, name) in requested {
             if name == DIVERGED_AT {

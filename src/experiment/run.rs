@@ -42,10 +42,7 @@ pub(super) fn run_scenario(
     };
     let gates = scenario.gates.iter().enumerate();
     let verdicts: Vec<_> = gates
-        .map(|(index, gate)| {
-            let place = resolved.locate(&format!("gate[{index}].metric"));
-            judge(gate, &channels, Some(place.to_string()))
-        })
+        .map(|(index, gate)| judge(gate, &channels, Some(resolved.gate_place(index))))
         .collect();
     let notes = [plan.warnings().to_vec(), faults.notes()].concat();
     let report = RunReport {

@@ -1,6 +1,6 @@
 //! The rule: an interval against limits.
 
-use crate::gate::number::{estimate_text, limits_text, plain};
+use crate::gate::number::{estimate_text, is_exact, limits_text, plain};
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelMetrics, Estimate, Metric};
 use crate::scenario::{GateConfig, GateDecision, InconclusivePolicy};
@@ -78,15 +78,26 @@ fn measured<'a>(
             interval: Some((metric.estimate.low, metric.estimate.high)),
             confidence: metric.estimate.confidence,
         },
-        Some(other) => ratio(&metric.estimate, &lookup(other, key, channels)?.estimate),
+        Some(other) => {
+            let divisor = &lookup(other, key, channels)?.estimate;
+            if divisor.value == 0.0 {
+                return Err(format!(
+                    "`{other}.{key}` is 0, so that the ratio to it has no value"
+                ));
+            }
+            ratio(&metric.estimate, divisor)
+        }
     };
     let in_order = quotient
         .interval
         .is_none_or(|(low, high)| low.is_finite() && high.is_finite() && low <= high);
     if !quotient.value.is_finite() || !in_order {
+        let interval = quotient
+            .interval
+            .map_or_else(String::new, |(low, high)| format!(" in [{low}, {high}]"));
         return Err(format!(
-            "`{}` is not a finite value with a finite interval: {} in {:?}",
-            gate.metric, quotient.value, quotient.interval
+            "`{}` is not a finite value with a finite interval: {}{interval}",
+            gate.metric, quotient.value
         ));
     }
     let unit = if gate.relative_to.is_some() {
@@ -177,16 +188,14 @@ fn decide(verdict: &mut Verdict, gate: &GateConfig, quotient: &Quotient, unit: &
 
 /// `0.340 ±0.001 ms (95 % interval) lies inside [0.33, 0.35] ms`.
 fn words(verdict: &Verdict, quotient: &Quotient, by_value: bool) -> String {
-    let number = match quotient.interval {
-        Some((low, high)) => estimate_text(
-            &Estimate {
-                value: quotient.value,
-                low,
-                high,
-                confidence: quotient.confidence,
-            },
-            REASON_DIGITS,
-        ),
+    let estimate = quotient.interval.map(|(low, high)| Estimate {
+        value: quotient.value,
+        low,
+        high,
+        confidence: quotient.confidence,
+    });
+    let number = match &estimate {
+        Some(estimate) => estimate_text(estimate, REASON_DIGITS),
         None => format!("{} (unbounded interval)", plain(quotient.value)),
     };
     let unit = match verdict.unit.as_str() {
@@ -199,6 +208,8 @@ fn words(verdict: &Verdict, quotient: &Quotient, by_value: bool) -> String {
     };
     let basis = if by_value {
         "value alone".to_owned()
+    } else if estimate.as_ref().is_some_and(is_exact) {
+        "no interval".to_owned()
     } else {
         format!("{} % interval", plain(100.0 * quotient.confidence))
     };

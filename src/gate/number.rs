@@ -44,6 +44,15 @@ fn trimmed(text: &str) -> &str {
     }
 }
 
+/// Whether an interval is empty, or mere rounding noise about the value.
+pub(super) fn is_exact(estimate: &Estimate) -> bool {
+    let Estimate {
+        value, low, high, ..
+    } = *estimate;
+    let largest = value.abs().max(low.abs()).max(high.abs());
+    0.5 * (high - low) <= EXACT * largest
+}
+
 /// An estimate with as many digits as its interval supports (`digits` of the half width).
 ///
 /// `v +-h` where the interval is symmetric to a tenth of its half width, else `v [low, high]`; the
@@ -54,7 +63,7 @@ pub(crate) fn estimate_text(estimate: &Estimate, digits: i32) -> String {
     } = *estimate;
     let half_width = 0.5 * (high - low);
     let largest = value.abs().max(low.abs()).max(high.abs());
-    if !half_width.is_finite() || half_width <= EXACT * largest {
+    if !half_width.is_finite() || is_exact(estimate) {
         return plain(value);
     }
     let skew = (0.5 * (high + low) - value).abs();

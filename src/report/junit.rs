@@ -1,8 +1,8 @@
 //! JUnit XML in the dialect of Jenkins.
 
 use crate::gate::{Verdict, VerdictKind, limits_text};
-use crate::report::record::portable_location;
 use crate::report::{ChannelOutcome, RunOutcome};
+use crate::scenario::portable_place;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// The text of `output/junit.xml`: one suite per run; one case that it ran, one per failed channel
@@ -81,11 +81,7 @@ fn gate(run: &RunOutcome, verdict: &Verdict) -> TestCase {
     };
     let message = format!("{}: {}", verdict.kind.as_str(), verdict.reason);
     let text = match &verdict.location {
-        Some(location) => format!(
-            "{}: {} {message}",
-            portable_location(location),
-            verdict.metric
-        ),
+        Some(location) => format!("{}: {} {message}", portable_place(location), verdict.metric),
         None => format!("{} {message}", verdict.metric),
     };
     let status = match (verdict.kind, verdict.accepted) {

@@ -13,7 +13,7 @@ pub struct RunReport<'a> {
     pub tool_version: &'a str,
     /// The resolved scenario.
     pub scenario: &'a Scenario,
-    /// Its file, as the user named it: never an absolute path.
+    /// Name of its file, without the folder.
     pub file: &'a str,
     /// Digest of the resolved scenario.
     pub digest: &'a str,
@@ -75,7 +75,7 @@ pub struct RunOutcome {
     pub name: String,
     /// Folder below the output folder, `/` between parts: `swing-5hz` or `power/0003`.
     pub folder: String,
-    /// Scenario file, as the user named it.
+    /// Name of the scenario file, without the folder.
     pub file: String,
     /// Channels, `raw` first.
     pub channels: Vec<ChannelOutcome>,
@@ -152,15 +152,5 @@ impl RunOutcome {
             .iter()
             .filter(|verdict| verdict.kind == kind)
             .count()
-    }
-}
-
-/// A gate's place without what differs from machine to machine: an absolute path is cut down to
-/// its file name.
-pub(crate) fn portable_location(location: &str) -> &str {
-    if location.starts_with('/') || location.contains(":\\") {
-        location.rsplit(['/', '\\']).next().unwrap_or(location)
-    } else {
-        location
     }
 }

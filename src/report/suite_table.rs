@@ -36,6 +36,7 @@ fn run_text(run: &RunOutcome, width: usize, colour: bool) -> String {
         text.push_str(&wrapped(error, INDENT, width));
     }
     let mut grid = Grid::default();
+    let mut messages = String::new();
     for channel in &run.channels {
         let mut cells = vec![channel.name.clone()];
         match &channel.failure {
@@ -45,11 +46,13 @@ fn run_text(run: &RunOutcome, width: usize, colour: bool) -> String {
                 } else {
                     ("FAILED", Tone::Bad)
                 };
-                let word = toned(word, tone, colour);
-                cells.push(format!(
-                    "{word} at sample {}: {}",
-                    failure.sample, failure.message
-                ));
+                cells.push(toned(word, tone, colour));
+                // A message among the cells would push the other rows' columns apart.
+                let message = format!(
+                    "{} failed at sample {}: {}",
+                    channel.name, failure.sample, failure.message
+                );
+                messages.push_str(&wrapped(&message, INDENT, width));
             }
             None => cells.extend(
                 channel
@@ -61,6 +64,7 @@ fn run_text(run: &RunOutcome, width: usize, colour: bool) -> String {
         grid.row(cells);
     }
     text.push_str(&grid.lines(INDENT));
+    text.push_str(&messages);
     let mut grid = Grid::default();
     for verdict in &run.verdicts {
         grid.row(gate_cells(verdict, colour));

@@ -3,9 +3,8 @@
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelMetrics, Metric};
 use crate::report::json::{number, object, pretty};
-use crate::report::record::portable_location;
 use crate::report::{RunOutcome, RunReport, RunStatus};
-use crate::scenario::{Fidelity, PublishedConfig};
+use crate::scenario::{Fidelity, PublishedConfig, portable_place};
 use crate::signal::GyroFacts;
 use serde_json::{Map, Value};
 
@@ -255,10 +254,7 @@ fn gate(verdict: &Verdict) -> Value {
         ("unit", Some(verdict.unit.as_str())),
         ("relative_to", verdict.relative_to.as_deref()),
         ("reason", Some(verdict.reason.as_str())),
-        (
-            "location",
-            verdict.location.as_deref().map(portable_location),
-        ),
+        ("location", verdict.location.as_deref().map(portable_place)),
     ];
     for (key, value) in words {
         if let Some(value) = value.filter(|value| !value.is_empty()) {

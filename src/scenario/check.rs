@@ -1,7 +1,8 @@
 //! Checks of single keys: known, of the right type, inside the range, present.
 
 use super::error::ScenarioError;
-use super::schema::{self, Child, Group, Key, Kind, Presence, join};
+use super::leaf::check_leaf;
+use super::schema::{self, Child, Group, Key, Presence, join};
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
 
@@ -144,8 +145,8 @@ impl Checker<'_> {
     }
 
     fn leaf(&mut self, key: &Key, place: Place<'_>, node: &mut Node) {
-        if let Err(message) = check_leaf(key, place.shown_path, node) {
-            self.complain(place.mark, message);
+        if let Err(fault) = check_leaf(key, place.shown_path, node) {
+            self.complain(fault.mark.unwrap_or(place.mark), fault.message);
         }
     }
 
@@ -269,127 +270,4 @@ pub(crate) fn unknown_key(schema_path: &str, shown: &str, name: &str) -> String 
         (nearest, true) => format!("unknown key {shown}: did you mean {nearest}?"),
         (nearest, false) => format!("unknown key {shown}: the nearest known key is {nearest}"),
     }
-}
-
-/// Checks one value and converts whole numbers where binary64 is asked for.
-fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), String> {
-    let is_allowed = match (key.kind, &mut node.value) {
-        (Kind::Float(range), value) => check_float(key, shown, range, value)?,
-        (Kind::Integer(range), Value::Integer(value)) => range.contains(*value),
-        (Kind::Floats(range), Value::Array(values)) => {
-            for (index, node) in values.iter_mut().enumerate() {
-                let shown = format!("{shown}[{index}]");
-                if !check_float(key, &shown, range, &mut node.value)? {
-                    return Err(out_of_range(key, &shown, &node.value));
-                }
-            }
-            if values.is_empty() {
-                return Err(format!("{shown} is empty: expected {}", key.expected()));
-            }
-            true
-        }
-        (Kind::Name, Value::Text(name)) => is_name(name),
-        (Kind::Choice(words), Value::Text(word)) => words.contains(&word.as_str()),
-        (Kind::EmptyTable, Value::Table(table)) => {
-            if let Some(name) = table.keys().next() {
-                let unknown = join(shown, name);
-                return Err(format!(
-                    "unknown key {unknown}: {shown} is a table without keys"
-                ));
-            }
-            true
-        }
-        (Kind::Text, Value::Text(text)) => !text.trim().is_empty(),
-        (Kind::Boolean, Value::Boolean(_)) => true,
-        (_, value) => return Err(wrong_type(key, shown, value)),
-    };
-    if is_allowed {
-        Ok(())
-    } else {
-        Err(out_of_range(key, shown, &node.value))
-    }
-}
-
-/// Whether a number is inside a range; converts it to binary64.
-fn check_float(
-    key: &Key,
-    shown: &str,
-    range: schema::Range,
-    value: &mut Value,
-) -> Result<bool, String> {
-    let number = match *value {
-        Value::Float(number) => number,
-        #[expect(
-            clippy::cast_precision_loss,
-            reason = "a whole number beyond 2^53 rounds as it would if written with a fraction"
-        )]
-        Value::Integer(number) => number as f64,
-        ref other => return Err(wrong_type(key, shown, other)),
-    };
-    if !number.is_finite() {
-        return Err(format!(
-            "{shown} = {} is not a finite number: allowed {}",
-            value.to_toml(),
-            key.allowed()
-        ));
-    }
-    if range.contains(number) {
-        *value = Value::Float(number);
-        return Ok(true);
-    }
-    Ok(false)
-}
-
-/// Whether a text is a valid name of a scenario or channel.
-fn is_name(name: &str) -> bool {
-    let is_first = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit();
-    let is_rest = |c: u8| is_first(c) || c == b'_' || c == b'-';
-    match name.as_bytes() {
-        [first, rest @ ..] => {
-            is_first(*first) && rest.len() < 64 && rest.iter().all(|c| is_rest(*c))
-        }
-        [] => false,
-    }
-}
-
-/// The complaint about a value outside the allowed ones.
-fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
-    let text = value.to_toml();
-    match (key.kind, value) {
-        (Kind::Choice(words), Value::Text(word)) => {
-            let near = words
-                .iter()
-                .min_by_key(|known| strsim::damerau_levenshtein(known, word))
-                .filter(|known| strsim::damerau_levenshtein(known, word) <= 2.max(known.len() / 3));
-            let hint =
-                near.map_or_else(String::new, |known| format!(" (did you mean \"{known}\"?)"));
-            format!(
-                "{shown} = {text} is unknown: expected {}{hint}",
-                key.expected()
-            )
-        }
-        (Kind::Name, _) => format!(
-            "{shown} = {text} is not a valid name: allowed {}",
-            key.allowed()
-        ),
-        (Kind::Text, _) => format!("{shown} = {text} is empty: expected text"),
-        _ => format!(
-            "{shown} = {} is out of range: allowed {}",
-            key.with_unit(&text),
-            key.allowed()
-        ),
-    }
-}
-
-/// The complaint about a value of another type.
-fn wrong_type(key: &Key, shown: &str, value: &Value) -> String {
-    let text = match value {
-        Value::Array(_) | Value::Table(_) => String::new(),
-        scalar => format!(" {}", scalar.to_toml()),
-    };
-    format!(
-        "{shown} has the wrong type: expected {}, got {}{text}",
-        key.expected(),
-        value.type_name()
-    )
 }

@@ -7,7 +7,7 @@ use super::error::ScenarioError;
 use super::resolved::Resolved;
 
 /// Channel names that mean something else.
-const RESERVED: [&str; 3] = ["raw", "truth", "time_s"];
+pub(crate) const RESERVED: [&str; 3] = ["raw", "truth", "time_s"];
 
 /// Fewest output samples per cycle of a swing.
 const SAMPLES_PER_CYCLE_MIN: f64 = 8.0;

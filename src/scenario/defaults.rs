@@ -101,6 +101,21 @@ pub(crate) fn default_of(schema_path: &str) -> Option<&'static Value> {
     defaults().values.get(schema_path)
 }
 
+/// Whether a group without a choice takes one that stands live in the reference.
+pub(crate) fn has_default_alternative(group: &Group) -> bool {
+    let live = group
+        .table
+        .split('.')
+        .try_fold(&defaults().live, |table, name| table.get(name)?.as_table());
+    let stands = |live: &Table| {
+        group
+            .alternatives
+            .iter()
+            .any(|name| live.contains_key(*name))
+    };
+    live.is_some_and(stands)
+}
+
 /// Fills every absent defaulted key and table of a tree; chosen alternatives stay, and a group
 /// without a choice takes the alternative that stands live in the reference.
 pub(crate) fn fill(root: &mut Table) {

@@ -34,6 +34,15 @@ impl fmt::Display for Location {
     }
 }
 
+/// A place as results carry it: the file name without its folder, which differs from machine to
+/// machine and with the way a path is typed; a `--set` argument as it is.
+pub(crate) fn portable_place(place: &str) -> &str {
+    if place.starts_with("--set ") {
+        return place;
+    }
+    place.rsplit(['/', '\\']).next().unwrap_or(place)
+}
+
 /// One complaint about a scenario.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
 #[error("{}{message}", prefix(.location.as_ref()))]

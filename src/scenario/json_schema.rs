@@ -2,13 +2,16 @@
 
 use serde_json::{Map, Value, json};
 
-use super::defaults::default_of;
-use super::schema::{self, Child, Group, Key, Kind, join};
+use super::cross::RESERVED;
+use super::defaults::{default_of, has_default_alternative};
+use super::schema::{self, Child, Group, Key, Kind, Presence, join};
 use super::tree;
 
 /// JSON Schema (draft-07) of a scenario file, generated from the key table.
 ///
-/// No key is required: a file may inherit it.
+/// In a base, or a file that builds on one, no key of a plain table is required and a choice may be
+/// left open, as the other file may give it. A file with a `name` that extends nothing must be
+/// complete, and so must every element of an array of tables, as arrays are replaced whole.
 #[must_use]
 pub fn json_schema() -> Value {
     let mut schema = object("");
@@ -21,6 +24,11 @@ pub fn json_schema() -> Value {
         _ => Map::new(),
     };
     document.append(&mut schema);
+    document.insert(
+        "if".to_owned(),
+        json!({"required": ["name"], "not": {"required": ["extends"]}}),
+    );
+    document.insert("then".to_owned(), complete("").into());
     Value::Object(document)
 }
 
@@ -33,7 +41,7 @@ fn object(schema_path: &str) -> Map<String, Value> {
             Child::Leaf(key) => leaf(key),
             Child::Table => Value::Object(object(&below)),
             Child::Tables => {
-                json!({"type": "array", "items": Value::Object(object(&format!("{below}[]")))})
+                json!({"type": "array", "items": element(&format!("{below}[]"))})
             }
         };
         properties.insert(name.to_owned(), value);
@@ -48,6 +56,59 @@ fn object(schema_path: &str) -> Map<String, Value> {
     }
     schema.insert("properties".to_owned(), Value::Object(properties));
     schema
+}
+
+/// Schema of an element of an array of tables, which is always complete.
+fn element(schema_path: &str) -> Value {
+    let mut schema = object(schema_path);
+    // One rule says it all: the weaker one would only double the complaint of an editor.
+    if Group::of_table(schema_path).is_some() {
+        schema.remove("not");
+    }
+    for (keyword, rule) in complete(schema_path) {
+        if keyword != "properties" {
+            schema.insert(keyword, rule);
+        }
+    }
+    if schema_path == "gate[]" {
+        let limits = json!([{"required": ["min"]}, {"required": ["max"]}]);
+        schema.insert("anyOf".to_owned(), limits);
+    }
+    schema.into()
+}
+
+/// What a table needs in order to be complete: its required keys, a choice where there is no
+/// default one, and the same of the tables inside it, if they are there.
+fn complete(schema_path: &str) -> Map<String, Value> {
+    let mut required = Vec::new();
+    let mut properties = Map::new();
+    for (name, child) in schema::children(schema_path) {
+        match child {
+            Child::Leaf(key) if key.presence == Presence::Required => required.push(name),
+            Child::Table => {
+                let inner = complete(&join(schema_path, name));
+                if !inner.is_empty() {
+                    properties.insert(name.to_owned(), inner.into());
+                }
+            }
+            Child::Leaf(_) | Child::Tables => {}
+        }
+    }
+    let mut rules = Map::new();
+    if !required.is_empty() {
+        rules.insert("required".to_owned(), json!(required));
+    }
+    if let Some(group) = Group::of_table(schema_path)
+        && !has_default_alternative(group)
+    {
+        let choices = group.alternatives.iter();
+        let choices: Vec<Value> = choices.map(|name| json!({"required": [name]})).collect();
+        rules.insert("oneOf".to_owned(), choices.into());
+    }
+    if !properties.is_empty() {
+        rules.insert("properties".to_owned(), properties.into());
+    }
+    rules
 }
 
 /// Every two alternatives of a group, which may not stand together.
@@ -77,7 +138,12 @@ fn leaf(key: &Key) -> Value {
         }
         Kind::Boolean => json!({"type": "boolean"}),
         Kind::Text => json!({"type": "string", "minLength": 1}),
-        Kind::Name => json!({"type": "string", "pattern": "^[a-z0-9][a-z0-9_-]{0,63}$"}),
+        Kind::FreeText => json!({"type": "string"}),
+        Kind::Name => json!({
+            "type": "string",
+            "pattern": "^[a-z0-9][a-z0-9_-]{0,63}$",
+            "not": {"enum": RESERVED},
+        }),
         Kind::Choice(words) => json!({"type": "string", "enum": words}),
         Kind::EmptyTable => {
             json!({"type": "object", "additionalProperties": false, "properties": {}})

@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
-use super::error::ScenarioError;
-use super::resolved::{Draft, InputFile, Resolved, SweepPoint};
+use super::error::{ScenarioError, portable_place};
+use super::resolved::{Draft, InputFile, Recorded, Resolved, SweepPoint};
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
 
 /// The version of the manifest this build reads and writes.
 const MANIFEST_VERSION: i64 = 1;
+
+/// The version of this build.
+const TOOL_VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Whether a document is a manifest rather than a scenario.
 pub(crate) fn is_manifest(root: &Table) -> bool {
@@ -17,15 +20,25 @@ pub(crate) fn is_manifest(root: &Table) -> bool {
 
 /// The manifest of a run: tool, origin, digests of its input files and every resolved value.
 ///
-/// Given to `run` as a scenario, it resolves to an equal [`Resolved`].
+/// Given to `run` as a scenario, it resolves to an equal [`Resolved`]. The origin is a record of
+/// one resolved scenario, named by its digest: once a value has been changed, in the file or by
+/// `--set`, the manifest itself is the origin of what it gives.
 #[must_use]
 pub fn manifest_toml(resolved: &Resolved, tool_version: &str) -> String {
     let text = |text: &str| Value::Text(text.to_owned()).to_toml();
     let mut manifest = format!(
-        "manifest = {MANIFEST_VERSION}\n\n[tool]\nname = \"fogbench\"\nversion = {}\n\n[origin]\nfile = {}\n",
+        "manifest = {MANIFEST_VERSION}\n\n[tool]\nname = \"fogbench\"\nversion = {}\n\n[origin]\nfile = {}\ndigest = {}\n",
         text(tool_version),
-        text(&resolved.file)
+        text(&resolved.file),
+        text(&resolved.digest)
     );
+    let gates = 0..resolved.scenario.gates.len();
+    let places: Vec<String> = gates
+        .map(|index| text(portable_place(&resolved.gate_place(index))))
+        .collect();
+    if !places.is_empty() {
+        manifest.push_str(&format!("gates = [{}]\n", places.join(", ")));
+    }
     if let Some(point) = &resolved.sweep {
         manifest.push_str(&format!(
             "\n[origin.sweep]\nindex = {}\ncount = {}\n",
@@ -59,6 +72,7 @@ pub(crate) fn read(
     mut root: Table,
     source: usize,
     sources: Sources,
+    inputs: Vec<InputFile>,
 ) -> Result<Draft, Vec<ScenarioError>> {
     let start = Mark { source, start: 0 };
     let fail = |mark: Option<Mark>, message: String| {
@@ -76,12 +90,11 @@ pub(crate) fn read(
         }
         None => return fail(None, "manifest is required".to_owned()),
     }
-    let Some(record) = record(&root) else {
-        let message = "the manifest is damaged: expected [origin] file, [[input]] file and digest, \
-                       as this tool writes them";
+    let Some((version, recorded)) = record(&root) else {
+        let message = "the manifest is damaged: expected [tool] version, [origin] file and digest, \
+                       [[input]] file and digest, as this tool writes them";
         return fail(None, message.to_owned());
     };
-    let (file, inputs, sweep) = record;
     let Some(Node {
         value: Value::Table(scenario),
         mark,
@@ -92,20 +105,40 @@ pub(crate) fn read(
             "the manifest is damaged: there is no table [scenario]".to_owned(),
         );
     };
+    let file = inputs.first().map(|input| input.file.clone());
+    let file = file.unwrap_or_default();
+    let warnings = other_version(&file, &version).into_iter().collect();
     Ok(Draft {
         root: scenario,
         root_mark: mark.unwrap_or(start),
         sources: Arc::new(sources),
         file,
         inputs,
-        sweep,
+        recorded: Some(recorded),
+        warnings,
     })
 }
 
-/// Origin, inputs and sweep point; `None` if any part is not as this tool writes it.
-fn record(root: &Table) -> Option<(String, Vec<InputFile>, Option<SweepPoint>)> {
+/// A warning if another version of the tool wrote the manifest.
+fn other_version(file: &str, version: &str) -> Option<String> {
+    (version != TOOL_VERSION).then(|| {
+        format!(
+            "{file} was written by fogbench {version}, this is {TOOL_VERSION}: the run need not \
+             repeat to the byte"
+        )
+    })
+}
+
+/// Version of the tool and origin; `None` if any part is not as this tool writes it.
+fn record(root: &Table) -> Option<(String, Recorded)> {
+    let version = text(root.get("tool")?.as_table()?, "version")?;
     let origin = root.get("origin")?.as_table()?;
-    let file = text(origin, "file")?;
+    let gate_places = origin
+        .get("gates")
+        .map_or(Some(&[][..]), Node::as_array)?
+        .iter()
+        .map(|node| node.as_text().map(str::to_owned))
+        .collect::<Option<Vec<_>>>()?;
     let inputs = root
         .get("input")
         .map_or(Some(&[][..]), Node::as_array)?
@@ -122,7 +155,14 @@ fn record(root: &Table) -> Option<(String, Vec<InputFile>, Option<SweepPoint>)> 
         None => None,
         Some(node) => Some(sweep_point(node.as_table()?)?),
     };
-    Some((file, inputs, sweep))
+    let recorded = Recorded {
+        digest: text(origin, "digest")?,
+        file: text(origin, "file")?,
+        inputs,
+        sweep,
+        gate_places,
+    };
+    Some((version, recorded))
 }
 
 /// The sweep point of a manifest.

@@ -15,6 +15,7 @@ mod filter_config;
 mod gyro_config;
 mod json_schema;
 mod keys;
+mod leaf;
 mod manifest;
 mod matrix;
 mod resolved;
@@ -29,6 +30,7 @@ pub use config::{
     SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 pub use defaults::reference_toml;
+pub(crate) use error::portable_place;
 pub use error::{Location, ScenarioError};
 pub use filter_config::{
     DesiredSignal, FilterConfig, FilterKind, LmsFilterConfig, OutputRegister, Pipeline,

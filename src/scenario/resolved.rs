@@ -17,7 +17,8 @@ use super::tree::{Node, Table, Value};
 /// A file that a scenario was read from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputFile {
-    /// Path below the working directory; the file name alone if it stands elsewhere.
+    /// Path as seen from the scenario's own folder, with forward slashes; the file name alone
+    /// where `extends` gives an absolute path.
     pub file: String,
     /// BLAKE3 of its bytes, hexadecimal.
     pub digest: String,
@@ -39,7 +40,8 @@ pub struct SweepPoint {
 pub struct Resolved {
     /// Its configuration.
     pub scenario: Scenario,
-    /// The scenario's own file: path below the working directory, else the file name alone.
+    /// Name of the scenario's own file, without its folder, so that results do not depend on how
+    /// a path was typed.
     pub file: String,
     /// BLAKE3 of [`Resolved::to_toml`], hexadecimal.
     pub digest: String,
@@ -47,6 +49,10 @@ pub struct Resolved {
     pub inputs: Vec<InputFile>,
     /// Which point of a sweep it is; `None` without a matrix.
     pub sweep: Option<SweepPoint>,
+    /// What is allowed but worth saying about how it was read.
+    pub warnings: Vec<String>,
+    /// Where its gates were written, if a manifest records that.
+    gate_places: Vec<String>,
     /// Every value, defaults included.
     tree: Table,
     /// What the marks of the tree point into.
@@ -75,12 +81,29 @@ pub(crate) struct Draft {
     pub(crate) root_mark: Mark,
     /// What the marks point into.
     pub(crate) sources: Arc<Sources>,
-    /// Label of the scenario's own file.
+    /// Name of the scenario's own file.
     pub(crate) file: String,
     /// Files it was read from.
     pub(crate) inputs: Vec<InputFile>,
-    /// Which point of a sweep it is.
+    /// What a manifest says about the origin of its scenario.
+    pub(crate) recorded: Option<Recorded>,
+    /// What is worth saying about how it was read.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// The origin of a resolved scenario, as a manifest records it.
+#[derive(Clone, Debug)]
+pub(crate) struct Recorded {
+    /// Digest of the scenario that the record is true of.
+    pub(crate) digest: String,
+    /// Name of the scenario's own file.
+    pub(crate) file: String,
+    /// Files it was read from.
+    pub(crate) inputs: Vec<InputFile>,
+    /// Which point of a sweep it was.
     pub(crate) sweep: Option<SweepPoint>,
+    /// Where its gates were written.
+    pub(crate) gate_places: Vec<String>,
 }
 
 impl Draft {
@@ -105,12 +128,29 @@ impl Draft {
             vec![self.sources.error(self.root_mark, message)]
         })?;
         let text = to_toml(&self.root, "");
+        let digest = blake3::hash(text.as_bytes()).to_hex().to_string();
+        let origin = match self.recorded {
+            Some(recorded) if recorded.digest == digest => recorded,
+            // The record is of another scenario: what was read now is the origin. A sweep point
+            // stays one as long as the swept keys have their values.
+            recorded => Recorded {
+                digest,
+                file: self.file,
+                inputs: self.inputs,
+                sweep: recorded
+                    .and_then(|recorded| recorded.sweep)
+                    .filter(|point| holds(&self.root, point)),
+                gate_places: Vec::new(),
+            },
+        };
         let resolved = Resolved {
             scenario,
-            file: self.file,
-            digest: blake3::hash(text.as_bytes()).to_hex().to_string(),
-            inputs: self.inputs,
-            sweep: self.sweep,
+            file: origin.file,
+            digest: origin.digest,
+            inputs: origin.inputs,
+            sweep: origin.sweep,
+            warnings: self.warnings,
+            gate_places: origin.gate_places,
             tree: self.root,
             sources: self.sources,
             root_mark: self.root_mark,
@@ -159,6 +199,21 @@ impl Resolved {
         self.sources.locate(mark)
     }
 
+    /// Where the metric of a gate was written: `file:line:column`, or the `--set` argument.
+    ///
+    /// In a run repeated from its manifest it is the place in the original file.
+    #[must_use]
+    pub fn gate_place(&self, index: usize) -> String {
+        let here = || self.locate(&format!("gate[{index}].metric")).to_string();
+        self.gate_places.get(index).cloned().unwrap_or_else(here)
+    }
+
+    /// The scenario's own file as messages show it, the folder included.
+    #[must_use]
+    pub fn shown_file(&self) -> String {
+        self.sources.locate(self.root_mark).file
+    }
+
     /// Whether a key was written by somebody rather than filled in.
     pub(crate) fn is_written(&self, key_path: &str) -> bool {
         address::parse(key_path)
@@ -178,6 +233,16 @@ impl Resolved {
     }
 }
 
+/// Whether the swept keys of a point have the values of the point.
+fn holds(root: &Table, point: &SweepPoint) -> bool {
+    point.assignments.iter().all(|(key, value)| {
+        address::resolve(root, key)
+            .ok()
+            .and_then(|(path, _)| address::get(root, &path))
+            .is_some_and(|node| node.value.to_toml() == *value)
+    })
+}
+
 /// A checked tree as plain TOML.
 fn plain_table(table: &Table) -> toml::Table {
     let convert = |(key, node): (&String, &Node)| (key.clone(), plain(node));
@@ -187,7 +252,9 @@ fn plain_table(table: &Table) -> toml::Table {
 /// A checked value as plain TOML.
 fn plain(node: &Node) -> toml::Value {
     match &node.value {
-        Value::Text(text) | Value::Other(text) => toml::Value::String(text.clone()),
+        Value::Text(text) | Value::Beyond(text, _) | Value::Date(text) => {
+            toml::Value::String(text.clone())
+        }
         Value::Integer(number) => toml::Value::Integer(*number),
         Value::Float(number) => toml::Value::Float(*number),
         Value::Boolean(is_set) => toml::Value::Boolean(*is_set),

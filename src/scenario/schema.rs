@@ -32,6 +32,8 @@ pub(crate) enum Kind {
     Boolean,
     /// Any text.
     Text,
+    /// Any text, also none.
+    FreeText,
     /// Name of a scenario or channel.
     Name,
     /// One of a list of words.
@@ -261,7 +263,7 @@ impl Key {
             Kind::Float(range) | Kind::Floats(range) => range.to_string(),
             Kind::Integer(range) => range.to_string(),
             Kind::Boolean => "true or false".to_owned(),
-            Kind::Text => "text".to_owned(),
+            Kind::Text | Kind::FreeText => "text".to_owned(),
             Kind::Name => "[a-z0-9][a-z0-9_-]{0,63}".to_owned(),
             Kind::Choice(words) => quoted(words),
             Kind::EmptyTable => "a table without keys".to_owned(),
@@ -298,7 +300,7 @@ impl Key {
             Kind::Floats(range) => format!("Array of numbers {range}"),
             Kind::Integer(range) => format!("Integer {range}"),
             Kind::Boolean => "Boolean true or false".to_owned(),
-            Kind::Text => "Text".to_owned(),
+            Kind::Text | Kind::FreeText => "Text".to_owned(),
             Kind::Name => format!("Name {}", self.allowed()),
             Kind::Choice(words) => format!("Choice {}", quoted(words)),
             Kind::EmptyTable => "Table without keys".to_owned(),

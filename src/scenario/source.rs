@@ -73,18 +73,7 @@ impl Sources {
 
 /// A path without `.` and `..`, absolute, without asking the file system about links.
 fn absolute(path: &Path) -> PathBuf {
-    let start = std::env::current_dir().unwrap_or_default();
-    let mut clean = PathBuf::new();
-    for component in start.join(path).components() {
-        match component {
-            Component::CurDir => {}
-            Component::ParentDir => {
-                clean.pop();
-            }
-            other => clean.push(other),
-        }
-    }
-    clean
+    clean(&std::env::current_dir().unwrap_or_default().join(path))
 }
 
 /// The path below the working directory with forward slashes; `None` outside it.
@@ -97,15 +86,57 @@ fn below_working_directory(path: &Path) -> Option<String> {
 
 /// The path as error messages show it: below the working directory, else in full.
 pub(crate) fn shown_path(path: &Path) -> String {
-    below_working_directory(path).unwrap_or_else(|| absolute(path).to_string_lossy().into_owned())
+    match below_working_directory(path) {
+        Some(inside) if inside.is_empty() => ".".to_owned(),
+        Some(inside) => inside,
+        None => absolute(path).to_string_lossy().into_owned(),
+    }
 }
 
-/// The path as results carry it, never absolute: below the working directory, else the file name.
-pub(crate) fn label_path(path: &Path) -> String {
-    below_working_directory(path).unwrap_or_else(|| {
-        path.file_name().map_or_else(
-            || "scenario.toml".to_owned(),
-            |name| name.to_string_lossy().into_owned(),
-        )
-    })
+/// A path without `.` and without `..` behind a name, without asking the file system about links.
+fn clean(path: &Path) -> PathBuf {
+    let mut clean = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir if clean.file_name().is_some() => {
+                clean.pop();
+            }
+            other => clean.push(other),
+        }
+    }
+    clean
+}
+
+/// The path of an input as seen from the scenario's own folder.
+///
+/// It is made from the `extends` keys alone, never from the working directory or the way in which
+/// a path was typed, so that the same files always carry the same labels.
+#[derive(Clone, Debug)]
+pub(crate) struct Label(PathBuf);
+
+impl Label {
+    /// The label of the scenario's own file: its name.
+    pub(crate) fn of_scenario(path: &Path) -> Self {
+        Self(path.file_name().map(PathBuf::from).unwrap_or_default())
+    }
+
+    /// The label of the file that a labelled one extends.
+    pub(crate) fn of_base(&self, extends: &str) -> Self {
+        let folder = self.0.parent().unwrap_or(Path::new(""));
+        Self(clean(&folder.join(extends)))
+    }
+
+    /// The label as results carry it: forward slashes; the file name alone of an absolute path.
+    pub(crate) fn text(&self) -> String {
+        if self.0.has_root() {
+            let name = self.0.file_name().unwrap_or_default();
+            return name.to_string_lossy().into_owned();
+        }
+        let parts = self.0.components();
+        let parts: Vec<_> = parts
+            .map(|part| part.as_os_str().to_string_lossy())
+            .collect();
+        parts.join("/")
+    }
 }

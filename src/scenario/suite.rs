@@ -11,7 +11,7 @@ use super::error::{Location, ScenarioError};
 use super::manifest;
 use super::matrix;
 use super::resolved::{Draft, InputFile, Resolved};
-use super::source::{Mark, Sources, label_path, shown_path};
+use super::source::{Label, Mark, Sources, shown_path};
 use super::tree::{Node, Table, Value, merge, parse_document, parse_value};
 
 /// Reads, resolves and checks every run of a suite; empty if the folders hold nothing to run.
@@ -125,6 +125,10 @@ fn identity(path: &Path) -> PathBuf {
 fn load_file(file: &Path, sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
     let (mut draft, mut errors) = load_draft(file)?;
     let matrix = draft.root.remove("matrix");
+    if matrix.is_some() {
+        // A sweep over a manifest is an experiment of its own.
+        draft.recorded = None;
+    }
     let set_paths = apply_sets(&mut draft, sets, &mut errors);
     let runs = match matrix {
         None => draft.resolve().map(|run| vec![run]),
@@ -143,20 +147,22 @@ fn load_file(file: &Path, sets: &[String]) -> Result<Vec<Resolved>, Vec<Scenario
 /// Reads a file and its bases, or a manifest, with the complaints that do not hinder more checks.
 fn load_draft(file: &Path) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
     let mut chain = Chain::default();
-    let (root, source) = chain.read(file, None)?;
+    let label = Label::of_scenario(file);
+    let (root, source) = chain.read(file, &label, None)?;
     if manifest::is_manifest(&root) {
-        let draft = manifest::read(root, source, chain.sources)?;
+        let draft = manifest::read(root, source, chain.sources, chain.inputs)?;
         return Ok((draft, Vec::new()));
     }
-    let root = chain.merge_bases(file, root, source)?;
+    let root = chain.merge_bases(file, &label, root, source)?;
     chain.inputs.reverse();
     let draft = Draft {
         root,
         root_mark: Mark { source, start: 0 },
         sources: Arc::new(chain.sources),
-        file: label_path(file),
+        file: label.text(),
         inputs: chain.inputs,
-        sweep: None,
+        recorded: None,
+        warnings: Vec::new(),
     };
     Ok((draft, chain.errors))
 }
@@ -177,12 +183,14 @@ impl Chain {
     fn read(
         &mut self,
         file: &Path,
+        label: &Label,
         extends: Option<Mark>,
     ) -> Result<(Table, usize), Vec<ScenarioError>> {
         let shown = shown_path(file);
         let bytes = fs::read(file).map_err(|error| {
             let message = match error.kind() {
                 std::io::ErrorKind::NotFound => "no such file".to_owned(),
+                _ if file.is_dir() => "it is a folder, not a file".to_owned(),
                 _ => format!("cannot read the file: {error}"),
             };
             vec![match extends {
@@ -193,7 +201,7 @@ impl Chain {
             }]
         })?;
         self.inputs.push(InputFile {
-            file: label_path(file),
+            file: label.text(),
             digest: blake3::hash(&bytes).to_hex().to_string(),
         });
         self.open.push(identity(file));
@@ -216,6 +224,7 @@ impl Chain {
     fn merge_bases(
         &mut self,
         file: &Path,
+        label: &Label,
         mut root: Table,
         source: usize,
     ) -> Result<Table, Vec<ScenarioError>> {
@@ -243,11 +252,14 @@ impl Chain {
             self.errors.push(self.sources.error(mark, message));
             return Err(std::mem::take(&mut self.errors));
         }
-        let (base_root, base_source) = self.read(&path, Some(mark)).map_err(|mut errors| {
-            errors.splice(0..0, std::mem::take(&mut self.errors));
-            errors
-        })?;
-        let mut merged = self.merge_bases(&path, base_root, base_source)?;
+        let base_label = label.of_base(base);
+        let (base_root, base_source) =
+            self.read(&path, &base_label, Some(mark))
+                .map_err(|mut errors| {
+                    errors.splice(0..0, std::mem::take(&mut self.errors));
+                    errors
+                })?;
+        let mut merged = self.merge_bases(&path, &base_label, base_root, base_source)?;
         // The name is the scenario's own: two files may build on one that can be run itself.
         merged.remove("name");
         merge("", &mut merged, root);
@@ -281,10 +293,17 @@ fn apply_set(root: &mut Table, argument: &str, mark: Mark) -> Result<Vec<Step>, 
     let Some((key, value)) = argument.split_once('=') else {
         return Err("expected key=value, as in gyro.coil.length_m=800".to_owned());
     };
-    let (path, leaf) = address::resolve(root, key.trim())?;
-    if leaf.is_some_and(|leaf| matches!(leaf.path, "extends" | "matrix")) {
-        return Err(format!("{key} cannot be set: write it into a file"));
+    let key = key.trim();
+    match key.split('.').next() {
+        Some("extends") => return Err("extends cannot be set: write it into a file".to_owned()),
+        Some("matrix") => {
+            return Err(format!(
+                "{key} cannot be set: write the sweep into a file, or give one value, as in seed=2"
+            ));
+        }
+        _ => {}
     }
+    let (path, _) = address::resolve(root, key)?;
     let mut node = set_value(value.trim(), mark)?;
     node.remark(Some(mark));
     address::assign(root, &path, node, mark)?;
@@ -312,8 +331,8 @@ fn name_clashes(runs: &[Resolved]) -> Vec<ScenarioError> {
         let earlier = *first.entry(&run.scenario.name).or_insert(run);
         let twin = folders.get(&run.folder()).copied();
         folders.entry(run.folder()).or_insert(run);
-        let is_same_sweep =
-            earlier.file == run.file && earlier.sweep.is_some() == run.sweep.is_some();
+        let is_same_sweep = earlier.shown_file() == run.shown_file()
+            && earlier.sweep.is_some() == run.sweep.is_some();
         let clash = match twin {
             Some(twin) => Some(twin),
             None if std::ptr::eq(earlier, run) || is_same_sweep => None,

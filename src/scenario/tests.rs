@@ -224,6 +224,30 @@ fn json_schema_follows_the_key_table() {
 }
 
 #[test]
+fn json_schema_asks_for_what_the_reader_asks_for() {
+    let document = super::json_schema();
+    let items = |name: &str| &document["properties"][name]["items"];
+    let required = |name: &str| serde_json::json!({"required": [name]});
+    assert_eq!(
+        items("gate")["anyOf"],
+        serde_json::json!([required("min"), required("max")])
+    );
+    assert_eq!(
+        items("filter")["oneOf"],
+        serde_json::json!([required("rls"), required("lms")])
+    );
+    let reserved = serde_json::json!({"enum": ["raw", "truth", "time_s"]});
+    assert_eq!(document["properties"]["name"]["not"], reserved);
+    assert_eq!(items("filter")["properties"]["name"]["not"], reserved);
+    // A file that extends another may leave the choice to it; one that does not may not.
+    let open = &document["properties"]["turntable"]["properties"]["swing"];
+    let closed = &document["then"]["properties"]["turntable"]["properties"]["swing"];
+    assert!(open["oneOf"].is_null() && open["not"].is_object());
+    assert_eq!(closed["oneOf"].as_array().unwrap().len(), 2);
+    assert_eq!(document["if"]["not"], required("extends"));
+}
+
+#[test]
 fn leaves_of_the_key_table_are_no_tables() {
     for key in KEYS {
         let is_prefix = |other: &&Key| other.path.starts_with(&format!("{}.", key.path));

@@ -26,12 +26,33 @@ pub(crate) struct Node {
 pub(crate) enum Value {
     Text(String),
     Integer(i64),
-    /// A whole number beyond 64 bits, or a date: nothing here accepts them.
-    Other(String),
+    /// A number that does not fit into its type: nothing here accepts it.
+    Beyond(String, NumberType),
+    /// A date: nothing here accepts it.
+    Date(String),
     Float(f64),
     Boolean(bool),
     Array(Vec<Node>),
     Table(Table),
+}
+
+/// How a number is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NumberType {
+    /// 64 bits with sign.
+    Whole,
+    /// Binary64.
+    Float,
+}
+
+impl NumberType {
+    /// What a number that does not fit is.
+    pub(crate) fn overflow(self) -> &'static str {
+        match self {
+            Self::Whole => "beyond 64 bits with sign",
+            Self::Float => "beyond the range of binary64",
+        }
+    }
 }
 
 impl Node {
@@ -92,7 +113,9 @@ impl Value {
         match self {
             Self::Text(_) => "a string",
             Self::Integer(_) => "a whole number",
-            Self::Other(_) => "a date or a number beyond 64 bits",
+            Self::Beyond(_, NumberType::Whole) => "a whole number beyond 64 bits",
+            Self::Beyond(_, NumberType::Float) => "a number beyond binary64",
+            Self::Date(_) => "a date",
             Self::Float(_) => "a number with a fraction",
             Self::Boolean(_) => "a boolean",
             Self::Array(_) => "an array",
@@ -105,7 +128,7 @@ impl Value {
         match self {
             Self::Text(text) => toml::Value::String(text.clone()).to_string(),
             Self::Integer(value) => value.to_string(),
-            Self::Other(text) => text.clone(),
+            Self::Beyond(text, _) | Self::Date(text) => text.clone(),
             Self::Float(value) if value.is_nan() => "nan".to_owned(),
             Self::Float(value) => format!("{value:?}"),
             Self::Boolean(value) => value.to_string(),
@@ -124,6 +147,9 @@ impl Value {
     }
 }
 
+/// What the TOML parser calls a key given twice.
+const DUPLICATE: &str = "duplicate key";
+
 /// A complaint of the TOML parser and the byte it is about.
 pub(crate) struct SyntaxError {
     pub(crate) message: String,
@@ -131,10 +157,18 @@ pub(crate) struct SyntaxError {
 }
 
 impl SyntaxError {
-    fn new(error: &toml::de::Error) -> Self {
+    fn new(error: &toml::de::Error, text: &str) -> Self {
+        let span = error.span().unwrap_or_default();
+        let mut message = format!("syntax error: {}", error.message());
+        // The parser marks the second of the keys without naming it.
+        if error.message() == DUPLICATE
+            && let Some(key) = text.get(span.clone())
+        {
+            message.push_str(&format!(" {}", key.trim()));
+        }
         Self {
-            message: format!("syntax error: {}", error.message()),
-            start: error.span().map_or(0, |span| span.start),
+            message,
+            start: span.start,
         }
     }
 }
@@ -144,7 +178,7 @@ impl SyntaxError {
 /// # Errors
 /// The parser's first complaint.
 pub(crate) fn parse_document(source: usize, text: &str) -> Result<Table, SyntaxError> {
-    let parsed = DeTable::parse(text).map_err(|error| SyntaxError::new(&error))?;
+    let parsed = DeTable::parse(text).map_err(|error| SyntaxError::new(&error, text))?;
     Ok(table(source, parsed.into_inner()))
 }
 
@@ -153,7 +187,7 @@ pub(crate) fn parse_document(source: usize, text: &str) -> Result<Table, SyntaxE
 /// # Errors
 /// The parser's first complaint.
 pub(crate) fn parse_value(source: usize, text: &str) -> Result<Node, SyntaxError> {
-    let parsed = DeValue::parse(text).map_err(|error| SyntaxError::new(&error))?;
+    let parsed = DeValue::parse(text).map_err(|error| SyntaxError::new(&error, text))?;
     Ok(node(source, None, parsed))
 }
 
@@ -177,13 +211,13 @@ fn node(source: usize, key: Option<Range<usize>>, parsed: Spanned<DeValue<'_>>) 
     let value = match parsed.into_inner() {
         DeValue::String(text) => Value::Text(text.into_owned()),
         DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
-            .map_or_else(|_| Value::Other(number.to_string()), Value::Integer),
-        DeValue::Float(number) => number
-            .as_str()
-            .parse()
-            .map_or_else(|_| Value::Other(number.to_string()), Value::Float),
+            .map_or_else(
+                |_| Value::Beyond(number.to_string(), NumberType::Whole),
+                Value::Integer,
+            ),
+        DeValue::Float(number) => float(number.as_str()),
         DeValue::Boolean(value) => Value::Boolean(value),
-        DeValue::Datetime(date) => Value::Other(date.to_string()),
+        DeValue::Datetime(date) => Value::Date(date.to_string()),
         DeValue::Array(array) => Value::Array(
             array
                 .into_iter()
@@ -195,6 +229,16 @@ fn node(source: usize, key: Option<Range<usize>>, parsed: Spanned<DeValue<'_>>) 
     Node {
         value,
         mark: Some(Mark { source, start }),
+    }
+}
+
+/// A number with a fraction; one that rounds to infinity without being written so does not fit.
+fn float(text: &str) -> Value {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() || !text.contains(|c: char| c.is_ascii_digit()) => {
+            Value::Float(number)
+        }
+        _ => Value::Beyond(text.to_owned(), NumberType::Float),
     }
 }
 

@@ -1,0 +1,189 @@
+//! Checks of single values: type and range.
+
+use super::schema::{self, Key, Kind, join};
+use super::source::Mark;
+use super::tree::{Node, Value};
+
+/// What is wrong with a value, and where if not at its key.
+pub(crate) struct Fault {
+    pub(crate) mark: Option<Mark>,
+    pub(crate) message: String,
+}
+
+impl From<String> for Fault {
+    fn from(message: String) -> Self {
+        Self {
+            mark: None,
+            message,
+        }
+    }
+}
+
+/// Checks one value and converts whole numbers where binary64 is asked for.
+pub(crate) fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), Fault> {
+    let is_allowed = match (key.kind, &mut node.value) {
+        (Kind::Float(range), value) => check_float(key, shown, range, value)?,
+        (Kind::Integer(range), Value::Integer(value)) => range.contains(*value),
+        (Kind::Floats(range), Value::Array(values)) => {
+            if values.is_empty() {
+                return Err(format!("{shown} is empty: expected {}", key.expected()).into());
+            }
+            check_elements(key, shown, range, values)?;
+            true
+        }
+        (Kind::Name, Value::Text(name)) => is_name(name),
+        (Kind::Choice(words), Value::Text(word)) => words.contains(&word.as_str()),
+        (Kind::EmptyTable, Value::Table(table)) => {
+            if let Some(name) = table.keys().next() {
+                let unknown = join(shown, name);
+                return Err(
+                    format!("unknown key {unknown}: {shown} is a table without keys").into(),
+                );
+            }
+            true
+        }
+        (Kind::Text, Value::Text(text)) => !text.trim().is_empty(),
+        (Kind::FreeText, Value::Text(_)) | (Kind::Boolean, Value::Boolean(_)) => true,
+        (_, value) => return Err(wrong_type(key, shown, value).into()),
+    };
+    if is_allowed {
+        Ok(())
+    } else {
+        Err(out_of_range(key, shown, &node.value).into())
+    }
+}
+
+/// Checks the numbers of an array; the first wrong one is blamed where it stands.
+fn check_elements(
+    key: &Key,
+    shown: &str,
+    range: schema::Range,
+    values: &mut [Node],
+) -> Result<(), Fault> {
+    for (index, node) in values.iter_mut().enumerate() {
+        let shown = format!("{shown}[{index}]");
+        let mark = node.mark;
+        let is_allowed = check_float(key, &shown, range, &mut node.value)
+            .map_err(|message| Fault { mark, message })?;
+        if !is_allowed {
+            let message = out_of_range(key, &shown, &node.value);
+            return Err(Fault { mark, message });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a number is inside a range; converts it to binary64.
+fn check_float(
+    key: &Key,
+    shown: &str,
+    range: schema::Range,
+    value: &mut Value,
+) -> Result<bool, String> {
+    let number = match *value {
+        Value::Float(number) => number,
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "a whole number beyond 2^53 rounds as it would if written with a fraction"
+        )]
+        Value::Integer(number) => number as f64,
+        ref other => return Err(wrong_element(key, shown, other)),
+    };
+    if !number.is_finite() {
+        return Err(format!(
+            "{shown} = {} is not a finite number: allowed {}",
+            value.to_toml(),
+            key.allowed()
+        ));
+    }
+    if range.contains(number) {
+        *value = Value::Float(number);
+        return Ok(true);
+    }
+    Ok(false)
+}
+
+/// Whether a text is a valid name of a scenario or channel.
+fn is_name(name: &str) -> bool {
+    let is_first = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit();
+    let is_rest = |c: u8| is_first(c) || c == b'_' || c == b'-';
+    match name.as_bytes() {
+        [first, rest @ ..] => {
+            is_first(*first) && rest.len() < 64 && rest.iter().all(|c| is_rest(*c))
+        }
+        [] => false,
+    }
+}
+
+/// The complaint about a value outside the allowed ones.
+fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
+    let text = value.to_toml();
+    match (key.kind, value) {
+        (Kind::Choice(words), Value::Text(word)) => {
+            let near = words
+                .iter()
+                .min_by_key(|known| strsim::damerau_levenshtein(known, word))
+                .filter(|known| strsim::damerau_levenshtein(known, word) <= 2.max(known.len() / 3));
+            let hint =
+                near.map_or_else(String::new, |known| format!(" (did you mean \"{known}\"?)"));
+            format!(
+                "{shown} = {text} is unknown: expected {}{hint}",
+                key.expected()
+            )
+        }
+        (Kind::Name, _) => format!(
+            "{shown} = {text} is not a valid name: allowed {}",
+            key.allowed()
+        ),
+        (Kind::Text, _) => format!("{shown} = {text} is empty: expected text"),
+        _ => format!(
+            "{shown} = {} is out of range: allowed {}",
+            key.with_unit(&text),
+            key.allowed()
+        ),
+    }
+}
+
+/// The complaint about a value that is no number where one is expected, alone or in an array.
+fn wrong_element(key: &Key, shown: &str, value: &Value) -> String {
+    match key.kind {
+        Kind::Floats(_) if !matches!(value, Value::Beyond(..)) => format!(
+            "{shown} has the wrong type: expected a number, {}, got {}{}",
+            key.allowed(),
+            value.type_name(),
+            scalar_text(value)
+        ),
+        _ => wrong_type(key, shown, value),
+    }
+}
+
+/// The complaint about a value of another type.
+fn wrong_type(key: &Key, shown: &str, value: &Value) -> String {
+    let is_number = matches!(
+        key.kind,
+        Kind::Float(_) | Kind::Floats(_) | Kind::Integer(_)
+    );
+    if let Value::Beyond(text, number_type) = value
+        && is_number
+    {
+        return format!(
+            "{shown} = {text} is {}: allowed {}",
+            number_type.overflow(),
+            key.allowed()
+        );
+    }
+    format!(
+        "{shown} has the wrong type: expected {}, got {}{}",
+        key.expected(),
+        value.type_name(),
+        scalar_text(value)
+    )
+}
+
+/// A blank and the value, if it is short enough to be shown.
+fn scalar_text(value: &Value) -> String {
+    match value {
+        Value::Array(_) | Value::Table(_) => String::new(),
+        scalar => format!(" {}", scalar.to_toml()),
+    }
+}
