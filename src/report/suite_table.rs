@@ -111,10 +111,11 @@ fn totals(runs: &[RunOutcome], colour: bool) -> String {
         ("FAIL", Tone::Bad)
     };
     format!(
-        "{}  {} runs: {} passed, {} with a failed gate, {} with a failed channel, {} failed; \
+        "{}  {} run{}: {} passed, {} with a failed gate, {} with a failed channel, {} failed; \
          {} gates: {} passed, {} failed, {} inconclusive\n",
         toned(word, tone, colour),
         runs.len(),
+        if runs.len() == 1 { "" } else { "s" },
         passed,
         with(RunStatus::GateFailed),
         with(RunStatus::ChannelFailed),
