@@ -6,6 +6,7 @@ mod closed_loop;
 mod determinism;
 mod filters;
 mod known_answers_gyro;
+mod known_answers_gyro_limits;
 mod known_answers_gyro_noise;
 mod known_answers_metrics;
 mod known_answers_slow_noise;

@@ -1,20 +1,20 @@
 //! From scenario files to checked plans: the checks that need physics or metrics.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::PathBuf;
 
 use crate::filters::{
     constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
 };
-use crate::gyro;
+use crate::gyro::{self, MotionExtremes};
 use crate::metrics::{self, Motion};
 use crate::scenario::{
     Fidelity, FilterKind, LmsFilterConfig, MotionConfig, Resolved, SamplesFormat, Scenario,
-    ScenarioError, load_suite,
+    ScenarioError, ServoConfig, load_suite,
 };
 use crate::signal::GyroFacts;
 use crate::turntable::{command_rate_max_rad_per_s, earth_rate_rad_per_s, step_indices};
-use crate::units::{deg_per_s_to_deg_per_h, rad_per_s_to_deg_per_h};
+use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
 /// Metric that turns the divergence of a channel into an expected result.
 pub(super) const DIVERGED_AT: &str = "diverged_at_s";
@@ -123,6 +123,7 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
     };
     let facts = checker.gyro();
     if let Some(facts) = &facts {
+        checker.gyro_limits();
         checker.record_length(facts);
         checker.filters(facts);
         checker.metrics(facts);
@@ -171,6 +172,41 @@ fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
     earth + rad_per_s_to_deg_per_h(commanded)
 }
 
+/// The hardest motion on the input axis; the loop starts from zero rate, the servo settled.
+fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
+    let earth = earth_rate_rad_per_s(&scenario.turntable.site).abs();
+    let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
+    let (jump, acceleration) = match &scenario.turntable.motion {
+        MotionConfig::Static(_) => (0.0, 0.0),
+        MotionConfig::Swing(swing) => (0.0, TAU * swing.frequency_hz * commanded),
+        MotionConfig::Rotation(rotation) => {
+            let soft_start_s = rotation.soft_start_s.min(scenario.warm_up_s);
+            if soft_start_s > 0.0 {
+                (0.0, FRAC_PI_2 * commanded / soft_start_s)
+            } else {
+                (commanded, 0.0)
+            }
+        }
+        MotionConfig::Steps(steps) => {
+            let rates = &steps.rates_deg_per_s;
+            let first = rates.first().map_or(0.0, |rate| rate.abs());
+            let rises = rates.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            let rise = deg_per_s_to_rad_per_s(rises.fold(0.0, f64::max));
+            let first = deg_per_s_to_rad_per_s(first);
+            match &scenario.turntable.servo {
+                ServoConfig::Ideal(_) => (rise.max(first), 0.0),
+                // The slope of the step response of a second-order servo stays below wn.
+                ServoConfig::SecondOrder(servo) => (first, TAU * servo.natural_frequency_hz * rise),
+            }
+        }
+    };
+    MotionExtremes {
+        rate_rad_per_s: earth + commanded,
+        jump_rad_per_s: earth + jump,
+        acceleration_rad_per_s2: acceleration,
+    }
+}
+
 /// Collects every complaint about one run.
 struct Checker<'a> {
     resolved: &'a Resolved,
@@ -188,6 +224,16 @@ impl Checker<'_> {
         gyro::facts(&self.resolved.scenario.gyro)
             .map_err(|error| self.complain("gyro", format!("gyro: {error}")))
             .ok()
+    }
+
+    /// Refuses what the gyro model cannot represent, and warns where its budget does not hold.
+    fn gyro_limits(&mut self) {
+        let scenario = &self.resolved.scenario;
+        let extremes = motion_extremes(scenario);
+        match gyro::cautions(&scenario.gyro, scenario.fidelity, &extremes) {
+            Ok(cautions) => self.warnings.extend(cautions),
+            Err(error) => self.complain(error.key(), format!("{}: {error}", error.key())),
+        }
     }
 
     fn record_length(&mut self, facts: &GyroFacts) {

@@ -64,4 +64,76 @@ pub enum GyroError {
         /// Half periods per sample asked for.
         half_periods: u32,
     },
+    /// The rate model is asked for rates beyond its fringe.
+    #[error(
+        "up to {rate_deg_per_s:.3} deg/s on the input axis, but fidelity = \"rate\" holds within \
+         +-{limit_deg_per_s:.3} deg/s: beyond a Sagnac phase of pi the fringe onto which the loop locks \
+         depends on its history; use fidelity = \"loop\""
+    )]
+    RateBeyondFringe {
+        /// Largest rate, bias included, deg/s.
+        rate_deg_per_s: f64,
+        /// Rate of a Sagnac phase of pi, deg/s.
+        limit_deg_per_s: f64,
+    },
+    /// The rate model is asked for a motion under which the loop loses its slope.
+    #[error(
+        "the motion drives the phase error to {phase_error_rad:.3} rad, but fidelity = \"rate\" is linear: \
+         beyond pi/2 the loop pulls the less the further it is off, beyond pi it locks onto another \
+         fringe; use fidelity = \"loop\", a smaller step or a slower motion"
+    )]
+    PhaseErrorBeyondSlope {
+        /// Largest phase error, rad.
+        phase_error_rad: f64,
+    },
+    /// The rate model is asked for a converter whose rounding is not white noise.
+    #[error(
+        "{noise_lsb:.3} LSB of noise per sample at the converter, but fidelity = \"rate\" counts rounding \
+         as white noise, which takes {limit_lsb:.3} LSB: the slope of this converter lies between \
+         {slope_min:.3} and {slope_max:.3} of nominal; use fidelity = \"loop\" with \
+         gyro.noise.draw = \"exact\", more bits, or bits = 0"
+    )]
+    ConverterTooCoarse {
+        /// Noise of one sample, converter steps.
+        noise_lsb: f64,
+        /// Least noise at which rounding counts as white, converter steps.
+        limit_lsb: f64,
+        /// Slope of the mean level at a code, nominal 1.
+        slope_min: f64,
+        /// Slope of the mean level between two codes, nominal 1.
+        slope_max: f64,
+    },
+    /// The rate model is asked for a ramp converter whose rounding it leaves out.
+    #[error(
+        "the ramp converter steps by {step_rad:.3e} rad, up to {rounding_deg_per_h:.3} deg/h rms per word \
+         beside {noise_deg_per_h:.3} deg/h of white noise, but fidelity = \"rate\" leaves its rounding \
+         out; use fidelity = \"loop\", more bits, or dac_bits = 0"
+    )]
+    RampTooCoarse {
+        /// Phase of one code, rad.
+        step_rad: f64,
+        /// Largest standard deviation of a word from rounding, deg/h.
+        rounding_deg_per_h: f64,
+        /// Standard deviation of a word of white noise, deg/h.
+        noise_deg_per_h: f64,
+    },
+}
+
+impl GyroError {
+    /// Scenario key at which the error is to be mended.
+    #[must_use]
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::BandwidthAboveNyquist { .. } | Self::UnstableLoop { .. } => {
+                "gyro.controller.loop_bandwidth_hz"
+            }
+            Self::LatencyOutOfRange { .. } => "gyro.controller.loop_latency_periods",
+            Self::NoSlope { .. } => "gyro.modulator.depth_deg",
+            Self::ConverterRange { .. } => "gyro.adc.range_v",
+            Self::OddOutputSample { .. } => "gyro.output.half_periods_per_sample",
+            Self::RateBeyondFringe { .. } | Self::PhaseErrorBeyondSlope { .. } => "turntable",
+            Self::ConverterTooCoarse { .. } => "gyro.adc.bits",
+            Self::RampTooCoarse { .. } => "gyro.modulator.dac_bits",
+        }
+    }
 }

@@ -13,7 +13,8 @@
 //!
 //! Two models share every part above: [`LoopModel`] runs each half modulation period;
 //! [`RateModel`] advances the same loop, linearised, by one output sample at a time with the same
-//! mean, bandwidth, delay and noise colour. [`Gyro`] is either of them.
+//! mean, bandwidth, delay and noise colour. [`Gyro`] is either of them; [`cautions`] says where
+//! their assumptions end.
 //!
 //! Symbols: `tau` = transit time of the coil = half modulation period, `T_L = 2 tau` = loop
 //! period, `Ks` = Sagnac scale factor, `g` = integrator gain, `d` = pipeline latency in loop
@@ -24,6 +25,7 @@ mod controller;
 mod detector;
 mod error;
 mod instrument;
+mod limits;
 mod loop_kernel;
 mod loop_model;
 mod modulator;
@@ -40,6 +42,7 @@ pub use controller::{Controller, gain_limit};
 pub use detector::{CurrentNoise, Detector};
 pub use error::GyroError;
 pub use instrument::{Gyro, facts, sample_period_s};
+pub use limits::{MotionExtremes, cautions};
 pub use loop_model::LoopModel;
 pub use modulator::{Modulator, optimum_depth_rad};
 pub use noise_budget::NoiseBudget;

@@ -22,6 +22,15 @@ const SHORTEST_CORRELATION_INTERVALS: f64 = 0.57;
 const LONGEST_CORRELATION_RECORDS: f64 = 10.0;
 /// Longest time between updates, s; one output sample if that is longer.
 const UPDATE_INTERVAL_S: f64 = 0.004;
+/// Most output samples between updates: flicker is flat from four updates on, so from 16 samples.
+const UPDATE_SAMPLES_MAX: f64 = 4.0;
+/// A process is redrawn at least this often in its correlation time (or at every update).
+///
+/// Held over an interval h, its covariance is the exact one at multiples of h and linear between:
+/// with `h = T / 8` it errs by at most `(h / T)^2 / 8` = 0.2 % of the variance.
+const HOLDS_PER_CORRELATION: f64 = 8.0;
+/// Most updates over which a process is held, so that no slow one makes visible steps.
+const HOLD_UPDATES_MAX: u32 = 256;
 
 /// Generator of the slow noise, one value per output sample, in constant memory.
 ///
@@ -30,12 +39,15 @@ const UPDATE_INTERVAL_S: f64 = 0.004;
 ///   the ratio `a = 4` and equal variances `B^2 ln(a) / pi`. Summing their densities
 ///   `2 s^2 T / (1 + (2 pi f T)^2)` over all T gives `B^2 / (2 pi f)` with a ripple of
 ///   `2 sech(pi^2 / ln a)` = 0.3 %. Each process starts from its stationary distribution and
-///   advances exactly over an update interval.
+///   advances exactly over the updates it is held: all at every update for the fast ones, an
+///   eighth of the correlation time or less for the slow ones, so that an update takes 3.4 normals
+///   however long the record.
 /// * Rate random walk of coefficient K: a sum of independent normals of variance `K^2 D` per
 ///   update interval D, from 0.
 /// * Ramp: `R t`, taken at the middle of an output sample. Bias: a constant.
 ///
-/// Flicker and walk are held between updates (at most 4 ms, or one output sample).
+/// Flicker and walk are held between updates: four output samples, fewer where these are longer
+/// than a millisecond. The Allan deviation of the flicker is flat from 16 samples on.
 ///
 /// # Source
 /// Terms as in IEEE Std 952, annex C. Superposition: derived; van der Ziel, Physica 16 (1950).
@@ -49,17 +61,20 @@ pub struct SlowNoise {
     walk_stream: Stream,
     samples_per_update: u32,
     samples_to_update: u32,
+    updates_done: u32,
     samples_done: u64,
     flicker_rad_per_s: f64,
     walk_rad_per_s: f64,
 }
 
-/// One Gauss-Markov process, exact at the update interval.
+/// One Gauss-Markov process, exact at the instants at which it is redrawn.
 #[derive(Clone, Copy, Debug)]
 struct GaussMarkov {
     value: f64,
     decay: f64,
     innovation: f64,
+    /// Updates over which the value is held, a power of two.
+    hold_updates: u32,
 }
 
 impl SlowNoise {
@@ -98,6 +113,7 @@ impl SlowNoise {
             walk_stream: streams.stream("rate_random_walk"),
             samples_per_update,
             samples_to_update: samples_per_update,
+            updates_done: 0,
             samples_done: 0,
             walk_rad_per_s: 0.0,
         }
@@ -119,10 +135,14 @@ impl SlowNoise {
     }
 
     fn update(&mut self) {
+        // All holds divide the longest, a power of two: the count may wrap.
+        self.updates_done = self.updates_done.wrapping_add(1);
         let mut sum = 0.0;
         for process in &mut self.flicker {
-            process.value =
-                process.decay * process.value + process.innovation * self.flicker_stream.normal();
+            if self.updates_done.is_multiple_of(process.hold_updates) {
+                process.value = process.decay * process.value
+                    + process.innovation * self.flicker_stream.normal();
+            }
             sum += process.value;
         }
         self.flicker_rad_per_s = sum;
@@ -132,15 +152,17 @@ impl SlowNoise {
     }
 }
 
-/// Output samples between updates: as many as fit the update interval, at least one.
+/// Output samples between updates: as many as fit the update interval, one to four.
 fn samples_per_update(sample_period_s: f64) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a quotient of positive times, floored; `as` saturates"
+        reason = "a whole number between one and four"
     )]
-    let samples = (UPDATE_INTERVAL_S / sample_period_s).floor() as u32;
-    samples.max(1)
+    let samples = (UPDATE_INTERVAL_S / sample_period_s)
+        .floor()
+        .clamp(1.0, UPDATE_SAMPLES_MAX) as u32;
+    samples
 }
 
 /// Processes of one variance with correlation times from below the interval to `longest_s`.
@@ -154,15 +176,28 @@ fn gauss_markov_ladder(
     let mut processes = Vec::new();
     let mut correlation_s = SHORTEST_CORRELATION_INTERVALS * interval_s;
     loop {
-        let exponent = interval_s / correlation_s;
+        let hold_updates = hold_updates(correlation_s / interval_s);
+        let exponent = f64::from(hold_updates) * interval_s / correlation_s;
         processes.push(GaussMarkov {
             value: deviation * stream.normal(),
             decay: (-exponent).exp(),
             innovation: deviation * (-(-2.0 * exponent).exp_m1()).sqrt(),
+            hold_updates,
         });
         if correlation_s >= longest_s {
             return processes;
         }
         correlation_s *= RATIO;
     }
+}
+
+/// Updates over which a process of a correlation time (in updates) is held.
+fn hold_updates(correlation_updates: f64) -> u32 {
+    let mut hold = 1;
+    while hold < HOLD_UPDATES_MAX
+        && f64::from(2 * hold) * HOLDS_PER_CORRELATION <= correlation_updates
+    {
+        hold *= 2;
+    }
+    hold
 }
