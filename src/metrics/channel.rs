@@ -11,11 +11,8 @@ use super::steady::{
     LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_steady, put_mean, put_mean_ratio,
     put_noise_gain, put_noise_std,
 };
-use super::support::support;
+use super::support::{SAMPLES_MIN, support};
 use super::swing::{measure_swing, put_tracking_error};
-
-/// Fewest samples worth measuring.
-const SAMPLES_MIN: usize = 64;
 
 /// Points of the spectrum in the report.
 const SPECTRUM_POINTS_MAX: usize = 400;

@@ -73,7 +73,17 @@ fn measure_allan(
         tau_min_s: settings.fit_tau_min_s,
         tau_max_s: FIT_TAU_PER_RECORD_MAX * samples as f64 * record.sample_period_s,
     };
-    let refined = fit_noise(&points, range).and_then(|first| {
+    let varies = record
+        .channel_deg_per_h
+        .windows(2)
+        .any(|two| two[0] < two[1] || two[1] < two[0]);
+    let constant = || Err("the output does not vary over the record".to_owned());
+    let first = if varies {
+        fit_noise(&points, range)
+    } else {
+        constant()
+    };
+    let refined = first.and_then(|first| {
         let points = mixed_degrees_of_freedom(&points, &first.coefficients(), samples + 1);
         fit_noise(&points, range).map(|fit| (points, fit))
     });
