@@ -458,6 +458,7 @@ fn facts() -> FilterFacts {
         shape: shape(10, 1, vec![0.5, 0.5]),
         dc_gain: Some(0.8),
         dc_gain_adapted: None,
+        mean_weights: None,
         added_rate_deg_per_h: 1.0,
     }
 }

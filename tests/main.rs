@@ -10,6 +10,7 @@ mod known_answers_gyro_noise;
 mod known_answers_metrics;
 mod known_answers_slow_noise;
 mod known_answers_turntable;
+mod metrics_intervals;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
 mod readme;

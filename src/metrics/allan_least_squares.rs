@@ -52,6 +52,12 @@ pub(crate) struct Solution {
 }
 
 impl Solution {
+    /// Standard errors of the coefficients, 0 where a term is not in the model.
+    pub(crate) fn standard_errors(&self) -> [f64; TERMS] {
+        self.standard_errors
+            .map(|error| if error.is_finite() { error } else { 0.0 })
+    }
+
     /// Coefficient over its standard error, 0 where it is not positive.
     pub(crate) fn significance(&self, term: usize) -> f64 {
         if self.squares[term] > 0.0 {
