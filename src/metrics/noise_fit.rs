@@ -17,6 +17,10 @@ const SIGNIFICANCE: f64 = 1.645;
 /// differences at the longest of them scatter with a long upper tail.
 const STEEP_SIGNIFICANCE: f64 = 3.0;
 
+/// By how much a walk must fit better than flicker to replace it, in the weighted sum of squares of
+/// points that repeat each other: an hour of flicker reaches it in less than one record of 300.
+const WALK_IMPROVEMENT: f64 = 25.0;
+
 /// Standard errors added to the slow terms where a prediction must not trust a lucky record.
 const CAUTION: f64 = 0.5;
 
@@ -170,9 +174,10 @@ pub struct FitRange {
 /// so that a fit with positive Q only would put N low by as much as 2 % at ten samples. Q is
 /// reported when the term is significantly positive.
 ///
-/// B, K and R are dropped one at a time, least significant first, until each that remains exceeds
-/// 1.645 of its standard errors; if none remains, B^2 stays as a floor that is fitted but not
-/// reported, so that the interval of N knows of slow noise too faint to be seen (the price: N is low
+/// R, then K are dropped unless they exceed 3 of their standard errors beside the gentler terms; a
+/// walk takes the place of B only where it fits far better. B is reported from 1.645 on; below, B^2
+/// stays as a floor that is fitted but not reported, so that the interval of N knows of slow noise
+/// too faint to be seen (the price: N is low
 /// by up to 0.4 of its standard error on purely white noise). Standard errors come from the full
 /// covariance of the points, which overlap and repeat each other. Each interval is a chi-square
 /// interval of the square with `2 (square / standard error)^2` degrees of freedom.
@@ -218,6 +223,17 @@ fn choose_terms(problem: &Problem) -> [bool; TERMS] {
     // R first, then K: each must be needed although the gentler ones may explain the same times.
     for term in [RAMP, WALK] {
         active[term] = problem.solve(&active).significance(term) >= STEEP_SIGNIFICANCE;
+    }
+    if !active[WALK] && !active[RAMP] {
+        // Without B a walk has a smaller standard error; it may take B's place where flicker fits
+        // the points far worse than it does.
+        let mut walking = active;
+        (walking[FLICKER], walking[WALK]) = (false, true);
+        if problem.improvement(&active, &walking) > WALK_IMPROVEMENT
+            && problem.solve(&walking).significance(WALK) >= STEEP_SIGNIFICANCE
+        {
+            return walking;
+        }
     }
     let steep = active[WALK] || active[RAMP];
     if steep && problem.solve(&active).significance(FLICKER) < SIGNIFICANCE {
