@@ -12,7 +12,7 @@ use crate::support::records::{
     PERIOD_S, every_metric_is_answered, facts, settings, shape, value, white,
 };
 
-/// Raw at rest or swinging about 8.47 deg/h; the filter scales every sample by `gain`.
+/// What `measure` says of a channel beside its raw record, the true rate being 8.47 deg/h.
 fn measured(
     raw: &[f64],
     channel: &[f64],
