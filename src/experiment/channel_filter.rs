@@ -29,6 +29,7 @@ pub(super) struct ChannelFilter {
     warm_up_samples: usize,
     failure: Option<Divergence>,
     weight_sum_total: f64,
+    weight_totals: Vec<f64>,
     twin_difference_total: f64,
     measured: u64,
 }
@@ -51,6 +52,8 @@ pub(super) struct FilterWords {
     pub(super) dc_gain: Option<f64>,
     /// The same with the filter free to adapt to the added rate; none if the twin failed.
     pub(super) dc_gain_adapted: Option<f64>,
+    /// Time mean of every weight over the measured record, as left by each sample.
+    pub(super) mean_weights: Option<Vec<f64>>,
 }
 
 impl ChannelFilter {
@@ -60,12 +63,13 @@ impl ChannelFilter {
         Self {
             name: config.name.clone(),
             shape: filter.shape(),
-            filter,
             twin: Some(build(&config.kind)),
             output_deg_per_h: Vec::with_capacity(length.total()),
             warm_up_samples: length.warm_up,
             failure: None,
             weight_sum_total: 0.0,
+            weight_totals: vec![0.0; filter.weights().len()],
+            filter,
             twin_difference_total: 0.0,
             measured: 0,
         }
@@ -99,6 +103,9 @@ impl ChannelFilter {
         }
         if is_measured {
             self.weight_sum_total += output.weight_sum;
+            for (total, weight) in self.weight_totals.iter_mut().zip(self.filter.weights()) {
+                *total += weight;
+            }
             self.measured += 1;
         }
         Ok(())
@@ -116,6 +123,11 @@ impl ChannelFilter {
             Some(divergence) => Err(divergence),
             None => Ok(FilterWords {
                 dc_gain: mean(self.weight_sum_total),
+                mean_weights: self
+                    .weight_totals
+                    .iter()
+                    .map(|&total| mean(total))
+                    .collect(),
                 dc_gain_adapted: self.twin.as_ref().and_then(|_| {
                     mean(self.twin_difference_total).map(|gain| gain / ADDED_RATE_DEG_PER_H)
                 }),

@@ -223,6 +223,7 @@ fn filter_facts(shape: &FilterShape, words: &FilterWords) -> FilterFacts {
         shape: shape.clone(),
         dc_gain: words.dc_gain,
         dc_gain_adapted: words.dc_gain_adapted,
+        mean_weights: words.mean_weights.clone(),
         added_rate_deg_per_h: ADDED_RATE_DEG_PER_H,
     }
 }

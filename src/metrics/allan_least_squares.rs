@@ -52,6 +52,12 @@ pub(crate) struct Solution {
 }
 
 impl Solution {
+    /// Standard errors of the coefficients, 0 where a term is not in the model.
+    pub(crate) fn standard_errors(&self) -> [f64; TERMS] {
+        self.standard_errors
+            .map(|error| if error.is_finite() { error } else { 0.0 })
+    }
+
     /// Coefficient over its standard error, 0 where it is not positive.
     pub(crate) fn significance(&self, term: usize) -> f64 {
         if self.squares[term] > 0.0 {
@@ -95,7 +101,7 @@ impl Problem {
         let mut best = [0.0; TERMS];
         for _ in 0..REWEIGHTINGS {
             let deviations = self.standard_deviations(&curve);
-            best = self.best_active_set(allowed, &deviations);
+            best = self.best_active_set(allowed, &deviations).1;
             for ((value, tau), measured) in curve.iter_mut().zip(&self.tau_s).zip(&self.variance) {
                 // The signed term can carry the curve below zero at the shortest tau of a poor
                 // fit; a weight needs a positive variance.
@@ -119,8 +125,22 @@ impl Problem {
         })
     }
 
+    /// Drop of the weighted sum of squares from one model to another, both weighted with the curve
+    /// of the first: how much better the second explains what the first is supposed to have made.
+    pub(crate) fn improvement(&self, first: &[bool; TERMS], second: &[bool; TERMS]) -> f64 {
+        let squares = self.solve(first).squares;
+        let curve: Vec<f64> = self
+            .tau_s
+            .iter()
+            .zip(&self.variance)
+            .map(|(tau, measured)| fitted_variance(&squares, *tau).max(0.01 * measured))
+            .collect();
+        let deviations = self.standard_deviations(&curve);
+        self.best_active_set(first, &deviations).0 - self.best_active_set(second, &deviations).0
+    }
+
     /// Tries every subset of the allowed terms; the best one with non-negative squares wins.
-    fn best_active_set(&self, allowed: &[bool; TERMS], deviations: &[f64]) -> [f64; TERMS] {
+    fn best_active_set(&self, allowed: &[bool; TERMS], deviations: &[f64]) -> (f64, [f64; TERMS]) {
         let right = DVector::from_fn(self.tau_s.len(), |row, _| {
             self.variance[row] / deviations[row]
         });
@@ -148,7 +168,7 @@ impl Problem {
                 best = Some((misfit, squares));
             }
         }
-        best.map_or([0.0; TERMS], |(_, squares)| squares)
+        best.unwrap_or((f64::INFINITY, [0.0; TERMS]))
     }
 
     /// Standard errors of the weighted least squares under the correlation of the points.

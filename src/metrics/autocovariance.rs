@@ -30,8 +30,10 @@ impl LaggedProducts {
                 deviations.clear();
                 deviations.extend(values[start..reach].iter().map(|value| value - centre));
                 for lag in 0..=largest_lag {
-                    let pairs = (end - start).min(deviations.len().saturating_sub(lag));
-                    sums[block][lag] += dot(&deviations[..pairs], &deviations[lag..lag + pairs]);
+                    // The last block of a short record may hold fewer samples than the lag.
+                    let later = deviations.get(lag..).unwrap_or_default();
+                    let pairs = (end - start).min(later.len());
+                    sums[block][lag] += dot(&deviations[..pairs], &later[..pairs]);
                     counts[block][lag] += pairs;
                 }
                 start = end;
@@ -113,6 +115,21 @@ mod tests {
                 .sum::<f64>()
                 / (values.len() - lag) as f64;
             assert!((got - plain).abs() < 1e-9 * plain.abs().max(1.0));
+        }
+    }
+
+    #[test]
+    fn a_record_shorter_than_its_blocks_and_lags_has_products_where_pairs_exist() {
+        for count in 1..60_u8 {
+            let values: Vec<f64> = (0..count).map(f64::from).collect();
+            let covariance = LaggedProducts::new(&values, 0.0, 24, 20).autocovariance();
+            for (lag, got) in covariance.into_iter().enumerate() {
+                let pairs: Vec<f64> = (lag..values.len())
+                    .map(|later| values[later] * values[later - lag])
+                    .collect();
+                let plain = pairs.iter().sum::<f64>() / pairs.len().max(1) as f64;
+                assert!((got - plain).abs() < 1e-9 * plain.max(1.0), "{count} {lag}");
+            }
         }
     }
 

@@ -121,13 +121,13 @@ const CATALOGUE: &[KnownMetric] = &[
         "mean_deg_per_h",
         "deg/h",
         Applies::Always,
-        "mean over the record (over whole cycles in a swing)",
+        "mean over the record; in a swing the offset of the sine fit over whole cycles",
     ),
     any(
         "mean_error_deg_per_h",
         "deg/h",
         Applies::Always,
-        "mean over the record minus the mean of the true rate",
+        "the mean minus that of the true rate",
     ),
     any(
         "noise_std_deg_per_h",
@@ -172,6 +172,12 @@ const CATALOGUE: &[KnownMetric] = &[
         "angle random walk once the scale factor is restored",
     ),
     filter(
+        "weight_noise_ratio",
+        "1",
+        Applies::Steady,
+        "Allan deviation at averaging_time_s over DC gain times raw's: 1 when the weights stand still",
+    ),
+    filter(
         "bias_stability_over_dc_gain_deg_per_h",
         "deg/h",
         Applies::Steady,
@@ -181,7 +187,7 @@ const CATALOGUE: &[KnownMetric] = &[
         "noise_delay_bound_noise_gain",
         "1",
         Applies::SteadyOrSwing,
-        "least noise gain any filter of as many taps has at this delay with unit DC gain",
+        "least noise gain any fixed filter of as many taps has at this delay with unit DC gain",
     ),
     filter(
         "delay_vs_raw_ms",
@@ -211,7 +217,7 @@ const CATALOGUE: &[KnownMetric] = &[
         "harmonic_distortion_percent",
         "%",
         Applies::Swing,
-        "harmonics 2 to 5 over the fundamental, noise power subtracted",
+        "root sum of squares of harmonics 2 to 5 over the fundamental, noise power subtracted",
     ),
     any(
         "tracking_error_rms_deg_per_h",

@@ -28,6 +28,7 @@ mod steady;
 mod support;
 mod swing;
 mod table;
+mod weight_noise;
 
 pub use aggregate::aggregate;
 pub use allan::{

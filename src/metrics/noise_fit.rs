@@ -10,8 +10,23 @@ use super::interval;
 /// `AVAR / B^2` of flicker noise, `2 ln 2 / pi`; its square root is the familiar 0.664.
 pub const FLICKER_ALLAN_VARIANCE: f64 = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;
 
-/// A term stays in the model while it exceeds this many of its standard errors (one-sided 95 %).
+/// N, Q and B stay in the model while they exceed this many of their standard errors.
 const SIGNIFICANCE: f64 = 1.645;
+
+/// K and R must exceed this many: B explains the same averaging times, and the few independent
+/// differences at the longest of them scatter with a long upper tail.
+const STEEP_SIGNIFICANCE: f64 = 3.0;
+
+/// By how much a walk must fit better than flicker to replace it, in the weighted sum of squares of
+/// points that repeat each other: an hour of flicker reaches it in less than one record of 300.
+const WALK_IMPROVEMENT: f64 = 25.0;
+
+/// Standard errors added to the slow terms where a prediction must not trust a lucky record.
+const CAUTION: f64 = 0.5;
+
+/// Variance of the mean of a record over `B^2`, flicker with correlation times up to `m` records:
+/// `(ln m + 3/2 - gamma) / pi` for m = 100.
+const FLICKER_MEAN_VARIANCE: f64 = 1.760;
 
 /// Fewest points and least ratio of longest to shortest tau that a fit accepts.
 const POINTS_MIN: usize = 8;
@@ -92,6 +107,8 @@ pub struct NoiseFit {
     pub tau_range_s: [f64; 2],
     /// Coefficients of the columns N^2, B^2, K^2, R^2, `1/tau^2`.
     squares: [f64; TERMS],
+    /// Standard errors of the same, 0 where a term is not in the model.
+    standard_errors: [f64; TERMS],
 }
 
 impl NoiseFit {
@@ -106,6 +123,26 @@ impl NoiseFit {
             rate_random_walk_deg_per_h_per_sqrt_s: root(WALK),
             rate_ramp_deg_per_h_per_s: root(RAMP),
         }
+    }
+
+    /// Variance of the mean over a record of this length about the true rate, (deg/h)^2.
+    ///
+    /// `N^2/T + 1.76 B^2 + K^2 T/3 + R^2 T^2/4`, the slow squares each raised by half a standard error:
+    /// a record that does not show flicker bounds it, it does not rule it out. Flicker has no
+    /// variance of its own; `1.76 = (ln 100 + 3/2 - gamma)/pi` counts drift that is correlated over
+    /// up to a hundred records, what is slower still being the bias itself. The walk starts at zero
+    /// with the record, the ramp too.
+    ///
+    /// Source: derived, flicker as a superposition of Gauss-Markov processes of equal variance per
+    /// octave of correlation time (van der Ziel, Physica 16 (1950)).
+    #[must_use]
+    pub fn mean_variance(&self, duration_s: f64) -> f64 {
+        let cautious =
+            |term: usize| self.squares[term].max(0.0) + CAUTION * self.standard_errors[term];
+        self.squares[WHITE].max(0.0) / duration_s
+            + FLICKER_MEAN_VARIANCE * cautious(FLICKER)
+            + cautious(WALK) * duration_s / 3.0
+            + cautious(RAMP) * duration_s * duration_s / 4.0
     }
 
     /// Fitted Allan deviation, deg/h, the signed `1/tau^2` term included; never below zero.
@@ -137,9 +174,10 @@ pub struct FitRange {
 /// so that a fit with positive Q only would put N low by as much as 2 % at ten samples. Q is
 /// reported when the term is significantly positive.
 ///
-/// B, K and R are dropped one at a time, least significant first, until each that remains exceeds
-/// 1.645 of its standard errors; if none remains, B^2 stays as a floor that is fitted but not
-/// reported, so that the interval of N knows of slow noise too faint to be seen (the price: N is low
+/// R, then K are dropped unless they exceed 3 of their standard errors beside the gentler terms; a
+/// walk takes the place of B only where it fits far better. B is reported from 1.645 on; below, B^2
+/// stays as a floor that is fitted but not reported, so that the interval of N knows of slow noise
+/// too faint to be seen (the price: N is low
 /// by up to 0.4 of its standard error on purely white noise). Standard errors come from the full
 /// covariance of the points, which overlap and repeat each other. Each interval is a chi-square
 /// interval of the square with `2 (square / standard error)^2` degrees of freedom.
@@ -174,22 +212,34 @@ pub fn fit_noise(points: &[AllanPoint], range: FitRange) -> Result<NoiseFit, Str
         ));
     }
     let problem = Problem::new(&used);
-    let mut active = [true; TERMS];
-    loop {
-        let solution = problem.solve(&active);
-        let weakest = [FLICKER, WALK, RAMP]
-            .into_iter()
-            .filter(|&term| active[term])
-            .map(|term| (term, solution.significance(term)))
-            .min_by(|a, b| a.1.total_cmp(&b.1));
-        match weakest {
-            Some((term, significance)) if significance < SIGNIFICANCE => active[term] = false,
-            _ => break,
-        }
-    }
-    active[FLICKER] |= !active[WALK] && !active[RAMP];
+    let active = choose_terms(&problem);
     let range = [used[0].tau_s, used[used.len() - 1].tau_s];
     Ok(report(range, &problem.solve(&active)))
+}
+
+/// The terms the points ask for.
+fn choose_terms(problem: &Problem) -> [bool; TERMS] {
+    let mut active = [true; TERMS];
+    // R first, then K: each must be needed although the gentler ones may explain the same times.
+    for term in [RAMP, WALK] {
+        active[term] = problem.solve(&active).significance(term) >= STEEP_SIGNIFICANCE;
+    }
+    if !active[WALK] && !active[RAMP] {
+        // Without B a walk has a smaller standard error; it may take B's place where flicker fits
+        // the points far worse than it does.
+        let mut walking = active;
+        (walking[FLICKER], walking[WALK]) = (false, true);
+        if problem.improvement(&active, &walking) > WALK_IMPROVEMENT
+            && problem.solve(&walking).significance(WALK) >= STEEP_SIGNIFICANCE
+        {
+            return walking;
+        }
+    }
+    let steep = active[WALK] || active[RAMP];
+    if steep && problem.solve(&active).significance(FLICKER) < SIGNIFICANCE {
+        active[FLICKER] = false;
+    }
+    active
 }
 
 /// Degrees of freedom of every point given a fitted mix of noise types.
@@ -247,10 +297,15 @@ fn report(range: [f64; 2], solution: &Solution) -> NoiseFit {
     let term = |index: usize, factor: f64, name: &str| -> Term {
         let square = solution.squares[index] * factor;
         let significance = solution.significance(index);
-        if significance < SIGNIFICANCE {
+        let needed = if index == WALK || index == RAMP {
+            STEEP_SIGNIFICANCE
+        } else {
+            SIGNIFICANCE
+        };
+        if significance < needed {
             return Term::LeftOut(format!(
                 "the Allan variance between {:.4} s and {:.4} s does not need a {name} term \
-                 (it must exceed {SIGNIFICANCE} of its standard errors)",
+                 (it must exceed {needed} of its standard errors)",
                 range[0], range[1],
             ));
         }
@@ -269,5 +324,6 @@ fn report(range: [f64; 2], solution: &Solution) -> NoiseFit {
         rate_ramp_deg_per_h_per_s: term(RAMP, 1.0, "rate ramp"),
         tau_range_s: range,
         squares: solution.squares,
+        standard_errors: solution.standard_errors(),
     }
 }

@@ -47,8 +47,28 @@ pub struct FilterFacts {
     pub dc_gain: Option<f64>,
     /// The same with the filter free to adapt.
     pub dc_gain_adapted: Option<f64>,
+    /// Time mean of every weight over the measured record, newest sample first.
+    pub mean_weights: Option<Vec<f64>>,
     /// The added rate, deg/h.
     pub added_rate_deg_per_h: f64,
+}
+
+impl FilterFacts {
+    /// Delay at DC of the mean weights, samples: `sum age w / sum w`, the register included; `None`
+    /// without weights or DC gain.
+    #[must_use]
+    pub fn mean_delay_at_dc_samples(&self) -> Option<f64> {
+        let weights = self.mean_weights.as_ref()?;
+        let newest = self.shape.newest_age_samples;
+        let (first_moment, sum) = weights
+            .iter()
+            .enumerate()
+            .fold((0.0, 0.0), |(moment, sum), (tap, weight)| {
+                (moment + (newest + tap) as f64 * weight, sum + weight)
+            });
+        let delay = first_moment / sum;
+        delay.is_finite().then_some(delay)
+    }
 }
 
 /// How to measure.

@@ -13,6 +13,9 @@ const BAND_NOISE_DEVIATIONS: f64 = 5.0;
 /// Probability that noise alone leaves the band once in the record.
 const FALSE_EXIT_PROBABILITY: f64 = 0.01;
 
+/// Fewest samples after the last step of which settling is told.
+pub(crate) const STEP_SAMPLES_MIN: usize = 16;
+
 /// What a step record shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settling {
@@ -53,9 +56,9 @@ pub fn settling(
     sample_period_s: f64,
 ) -> Result<Settling, String> {
     let samples = rate_deg_per_h.len();
-    if samples < step_index + 16 {
+    if samples < step_index + STEP_SAMPLES_MIN {
         return Err(format!(
-            "{} samples follow the last step; settling needs 16",
+            "{} samples follow the last step; settling needs {STEP_SAMPLES_MIN}",
             samples.saturating_sub(step_index)
         ));
     }

@@ -12,6 +12,7 @@ use super::noise_fit::{
 use super::record::{FilterFacts, Record, Settings};
 use super::support::BLOCKS_MIN;
 use super::table::DEGREES_OF_FREEDOM;
+use super::weight_noise::measure_weight_noise;
 use crate::units;
 
 /// Blocks of time whose scatter gives the intervals of ratios.
@@ -45,6 +46,7 @@ pub(crate) fn measure_steady(
         let level = interval::mean(record.raw_deg_per_h).abs();
         put_noise_gain(&products, &raw, level, metrics);
         measure_mean_ratio(record, metrics);
+        measure_weight_noise(record, facts.dc_gain, metrics);
         measure_predictions(record, facts, &raw, metrics);
         for (name, over) in [
             ("angle_random_walk_deg_per_sqrt_h", WALK_OVER_DC_GAIN),
@@ -73,7 +75,17 @@ fn measure_allan(
         tau_min_s: settings.fit_tau_min_s,
         tau_max_s: FIT_TAU_PER_RECORD_MAX * samples as f64 * record.sample_period_s,
     };
-    let refined = fit_noise(&points, range).and_then(|first| {
+    let varies = record
+        .channel_deg_per_h
+        .windows(2)
+        .any(|two| two[0] < two[1] || two[1] < two[0]);
+    let constant = || Err("the output does not vary over the record".to_owned());
+    let first = if varies {
+        fit_noise(&points, range)
+    } else {
+        constant()
+    };
+    let refined = first.and_then(|first| {
         let points = mixed_degrees_of_freedom(&points, &first.coefficients(), samples + 1);
         fit_noise(&points, range).map(|fit| (points, fit))
     });
@@ -152,7 +164,7 @@ fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMe
     let duration_s = values.len() as f64 * record.sample_period_s;
     let estimate = match fit {
         Some(fit) if matches!(fit.angle_random_walk_deg_per_h_sqrt_s, Term::Found(_)) => {
-            let variance = fit.coefficients().allan_variance(duration_s);
+            let variance = fit.mean_variance(duration_s);
             Estimate::symmetric(mean, interval::NORMAL_QUANTILE * variance.sqrt())
         }
         _ => interval::from_parts(mean, &equal_block_means(values, 10)),
@@ -269,7 +281,10 @@ pub(crate) fn put_mean_ratio(channel: &[f64], raw: &[f64], metrics: &mut Channel
     );
 }
 
-/// Wiener prediction of the DC gain and the noise-delay bound at the predicted delay.
+/// Wiener prediction of the DC gain, and the noise-delay bound at the delay of the mean weights.
+///
+/// Without mean weights the bound is taken at the predicted delay. It holds for fixed weights; ones
+/// that keep adapting to the noise itself can go below.
 fn measure_predictions(
     record: &Record,
     facts: &FilterFacts,
@@ -277,13 +292,14 @@ fn measure_predictions(
     metrics: &mut ChannelMetrics,
 ) {
     let mean_square = interval::mean(record.raw_deg_per_h).powi(2);
+    let ran = facts.mean_delay_at_dc_samples();
     let predict = |autocovariance: &[f64]| {
         let second_moment: Vec<f64> = autocovariance
             .iter()
             .map(|value| value + mean_square)
             .collect();
         let prediction = wiener_prediction(&facts.shape, &second_moment)?;
-        let delay_samples = prediction.delay_at_dc_samples();
+        let delay_samples = ran.unwrap_or_else(|| prediction.delay_at_dc_samples());
         let bound = noise_delay_bound_coloured(
             facts.shape.taps,
             facts.shape.newest_age_samples,

@@ -4,6 +4,7 @@ use super::catalogue::{Applies, KnownMetric, find, known_metrics};
 use super::delay::{CYCLES_MIN, SwingClock};
 use super::interval::round_to_count;
 use super::record::Motion;
+use super::settling::{STEP_SAMPLES_MIN, tail_start};
 
 /// The name that is fewest edits away.
 fn nearest(name: &str) -> &'static str {
@@ -28,6 +29,12 @@ fn edit_distance(a: &str, b: &str) -> usize {
     }
     row[b.len()]
 }
+
+/// Fewest samples worth measuring.
+pub(crate) const SAMPLES_MIN: usize = 64;
+
+/// Metrics that do not rest on the words of the record.
+const INDEPENDENT: [&str; 3] = ["dc_gain", "dc_gain_adapted", "diverged_at_s"];
 
 /// Fewest blocks of which a bias stability is given.
 pub(crate) const BLOCKS_MIN: usize = 5;
@@ -85,12 +92,54 @@ pub fn support(
             "`{metric}` needs a record of at least {needed_s} s; this one has {duration_s} s"
         ));
     }
+    if INDEPENDENT.contains(&metric) {
+        return Ok(());
+    }
+    let samples = samples_in_record(duration_s, sample_period_s);
+    if samples < SAMPLES_MIN {
+        return Err(format!(
+            "`{metric}` needs a record of at least {SAMPLES_MIN} samples; {duration_s} s hold \
+             {samples}"
+        ));
+    }
     match motion {
         Motion::Swing { frequency_hz } => {
-            check_cycles(metric, duration_s, sample_period_s, *frequency_hz)
+            check_cycles(metric, samples, sample_period_s, *frequency_hz)
         }
-        _ => Ok(()),
+        Motion::Steps {
+            last_step_index, ..
+        } => check_tail(metric, samples, *last_step_index),
+        Motion::Steady => Ok(()),
     }
+}
+
+/// Whole samples in a duration; a duration made from a count gives that count back.
+fn samples_in_record(duration_s: f64, sample_period_s: f64) -> usize {
+    round_to_count((duration_s / sample_period_s * (1.0 + 1e-12)).floor())
+}
+
+/// Whether enough samples follow the last step.
+fn check_tail(metric: &str, samples: usize, last_step_index: usize) -> Result<(), String> {
+    let after = samples.saturating_sub(last_step_index);
+    let (found, needed) = match metric {
+        "settling_time_s" => (after, STEP_SAMPLES_MIN),
+        "noise_std_deg_per_h" | "noise_gain" => (
+            samples.saturating_sub(tail_start(samples, last_step_index)),
+            SAMPLES_MIN,
+        ),
+        _ => return Ok(()),
+    };
+    if found >= needed {
+        return Ok(());
+    }
+    let part = if found == after {
+        "after the last step"
+    } else {
+        "in the last quarter after the last step"
+    };
+    Err(format!(
+        "`{metric}` needs {needed} samples {part}; there are {found}"
+    ))
 }
 
 fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
@@ -120,7 +169,7 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
 
 fn check_cycles(
     metric: &str,
-    duration_s: f64,
+    samples: usize,
     sample_period_s: f64,
     frequency_hz: f64,
 ) -> Result<(), String> {
@@ -129,16 +178,14 @@ fn check_cycles(
         sample_period_s,
         first_stamp_s: 0.0,
     };
-    let samples = round_to_count((duration_s / sample_period_s).floor());
     let cycles = clock.whole_cycles(samples);
-    let independent = ["dc_gain", "dc_gain_adapted", "diverged_at_s"].contains(&metric);
-    if cycles < CYCLES_MIN && !independent {
+    if cycles < CYCLES_MIN {
         return Err(format!(
-            "`{metric}` needs {CYCLES_MIN} whole cycles of {frequency_hz} Hz; {duration_s} s hold \
-             {cycles}"
+            "`{metric}` needs {CYCLES_MIN} whole cycles of {frequency_hz} Hz; {samples} samples \
+             hold {cycles}"
         ));
     }
-    if frequency_hz * sample_period_s > 0.25 && !independent {
+    if frequency_hz * sample_period_s > 0.25 {
         return Err(format!(
             "`{metric}` needs four samples per cycle of {frequency_hz} Hz"
         ));
@@ -160,6 +207,45 @@ mod tests {
     fn a_misspelt_metric_is_answered_with_the_nearest() {
         let answer = ask("delay_vs_row_ms", 20.0, &Motion::Steady, true).unwrap_err();
         assert!(answer.contains("`delay_vs_raw_ms`"), "{answer}");
+    }
+
+    #[test]
+    fn a_record_of_fewer_samples_than_measure_needs_supports_no_metric_of_its_words() {
+        for known in known_metrics() {
+            for motion in [
+                Motion::Steady,
+                Motion::Swing {
+                    frequency_hz: 900.0,
+                },
+                Motion::Steps {
+                    last_step_index: 0,
+                    step_deg_per_h: 1.0,
+                },
+            ] {
+                let short = ask(known.name, 63.0 * PERIOD_S, &motion, true);
+                let refused = short.is_err() || INDEPENDENT.contains(&known.name);
+                assert!(refused, "{} {motion:?}", known.name);
+            }
+        }
+        let mean = |samples: f64| ask("mean_deg_per_h", samples * PERIOD_S, &Motion::Steady, false);
+        assert!(mean(64.0).is_ok() && mean(63.99).is_err());
+    }
+
+    #[test]
+    fn noise_after_a_step_needs_its_quarter() {
+        let after = |samples: f64| {
+            let motion = Motion::Steps {
+                last_step_index: 100,
+                step_deg_per_h: 1.0,
+            };
+            ask(
+                "noise_std_deg_per_h",
+                (100.0 + samples) * PERIOD_S,
+                &motion,
+                false,
+            )
+        };
+        assert!(after(256.0).is_ok() && after(250.0).is_err());
     }
 
     #[test]

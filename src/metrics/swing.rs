@@ -96,12 +96,8 @@ fn measure_tracking(record: &Record, fits: &Fits, metrics: &mut ChannelMetrics) 
         .zip(record.truth_deg_per_h)
         .map(|(rate, truth)| rate - truth)
         .collect();
-    put_tracking_error(&fits.channel.block_mean_squares(&errors), metrics);
-}
-
-/// Enters the tracking error from its mean squares over equally long blocks.
-pub(crate) fn put_tracking_error(mean_squares: &[f64], metrics: &mut ChannelMetrics) {
-    let square = interval::from_parts(interval::mean(mean_squares), mean_squares);
+    let mean_squares = fits.channel.block_mean_squares(&errors);
+    let square = interval::from_parts(interval::mean(&mean_squares), &mean_squares);
     let estimate = Estimate::with_interval(
         square.value.sqrt(),
         square.low.max(0.0).sqrt(),
@@ -180,24 +176,27 @@ fn measure_bound(
         .channel
         .delay_behind_s(&fits.raw)
         .scaled(1.0 / clock.sample_period_s);
-    let autocovariance = raw.autocovariance();
-    let at = |delay_samples: f64| {
+    let at = |delay_samples: f64, autocovariance: &[f64]| {
         noise_delay_bound_coloured(
             facts.shape.taps,
             facts.shape.newest_age_samples,
             delay_samples,
-            &autocovariance,
+            autocovariance,
         )
     };
+    let autocovariance = raw.autocovariance();
+    let left_out: Vec<f64> = (0..raw.blocks())
+        .filter_map(|block| at(delay.value, &raw.autocovariance_without(block)))
+        .collect();
     // The bound is a parabola in the delay: its extremes over the interval are at the ends unless
-    // the lowest point lies inside, which the value in the middle stands for.
-    let bound = at(delay.value).map(|value| {
-        let ends = [
-            at(delay.low).unwrap_or(value),
-            at(delay.high).unwrap_or(value),
-        ];
-        let low = ends[0].min(ends[1]).min(value);
-        Estimate::with_interval(value, low, ends[0].max(ends[1]).max(value))
+    // the lowest point lies inside, which the value in the middle stands for. The scatter of the
+    // autocovariance adds in quadrature; the two are nearly independent.
+    let bound = at(delay.value, &autocovariance).map(|value| {
+        let ends = [delay.low, delay.high].map(|end| at(end, &autocovariance).unwrap_or(value));
+        let colour = interval::jackknife(value, &left_out).high - value;
+        let below = (value - ends[0].min(ends[1])).max(0.0).hypot(colour);
+        let above = (ends[0].max(ends[1]) - value).max(0.0).hypot(colour);
+        Estimate::with_interval(value, (value - below).max(0.0), value + above)
     });
     put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
 }

@@ -19,6 +19,7 @@ const STATIC: &[(&str, &str)] = &[
         "angle_random_walk_over_dc_gain_deg_per_sqrt_h",
         "ARW / DC gain",
     ),
+    ("weight_noise_ratio", "weight noise"),
     ("bias_stability_deg_per_h", "bias stability"),
     (
         "bias_stability_over_dc_gain_deg_per_h",

@@ -1,5 +1,7 @@
 //! Helpers shared by the integration tests.
 
+pub(crate) mod records;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

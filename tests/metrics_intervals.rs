@@ -1,0 +1,139 @@
+//! Whether the intervals of the metrics hold the truth as often as they say.
+
+use fogbench::metrics::{ChannelMetrics, Motion, Record, Settings, measure};
+use fogbench::random::Streams;
+
+/// White noise of deviation 0.36 deg/h at 1 s plus flicker of coefficient B, deg/h.
+///
+/// Flicker: Gauss-Markov processes of variance `B^2 ln 4 / pi`, correlation times in the ratio 4
+/// from half a sample to ten records or more, each started from its stationary distribution.
+fn gyro_noise(seed: u64, count: usize, period_s: f64, flicker_deg_per_h: f64) -> Vec<f64> {
+    let streams = Streams::new(seed, 0);
+    let mut values = vec![0.0; count];
+    streams.stream("white").fill_normal(&mut values);
+    for value in &mut values {
+        *value *= 0.36 / period_s.sqrt();
+    }
+    let deviation = flicker_deg_per_h * (4.0_f64.ln() / std::f64::consts::PI).sqrt();
+    let mut stream = streams.stream("flicker");
+    let mut correlation: f64 = 0.57;
+    loop {
+        let decay = (-1.0 / correlation).exp();
+        let innovation = (1.0 - decay * decay).sqrt();
+        let mut state = stream.normal();
+        for value in &mut values {
+            *value += deviation * state;
+            state = decay * state + innovation * stream.normal();
+        }
+        if correlation > 10.0 * count as f64 {
+            return values;
+        }
+        correlation *= 4.0;
+    }
+}
+
+fn measured(values: &[f64], period_s: f64) -> ChannelMetrics {
+    let truth = vec![0.0; values.len()];
+    let record = Record {
+        channel_deg_per_h: values,
+        raw_deg_per_h: values,
+        truth_deg_per_h: &truth,
+        sample_period_s: period_s,
+        first_stamp_s: 0.0,
+    };
+    let settings = Settings {
+        motion: Motion::Steady,
+        bias_averaging_time_s: 10.0,
+        fit_tau_min_s: period_s,
+    };
+    measure(&record, &settings, None)
+}
+
+struct MeanTrial {
+    covered: u64,
+    /// Mean half width over 1.96 standard deviations of the mean that the runs show.
+    width: f64,
+    found: [u64; 3],
+}
+
+fn try_means(runs: u64, count: usize, period_s: f64, flicker_deg_per_h: f64) -> MeanTrial {
+    let mut trial = MeanTrial {
+        covered: 0,
+        width: 0.0,
+        found: [0; 3],
+    };
+    let mut square = 0.0;
+    for seed in 0..runs {
+        let metrics = measured(
+            &gyro_noise(seed, count, period_s, flicker_deg_per_h),
+            period_s,
+        );
+        let error = metrics.metrics["mean_error_deg_per_h"].estimate;
+        trial.covered += u64::from(error.low <= 0.0 && 0.0 <= error.high);
+        trial.width += (error.high - error.low) / 2.0 / runs as f64;
+        square += error.value * error.value / runs as f64;
+        for (found, name) in trial.found.iter_mut().zip([
+            "bias_instability_deg_per_h",
+            "rate_random_walk_deg_per_h_per_sqrt_h",
+            "rate_ramp_deg_per_h_per_h",
+        ]) {
+            *found += u64::from(metrics.metrics.contains_key(name));
+        }
+    }
+    trial.width /= 1.96 * square.sqrt();
+    trial
+}
+
+#[test]
+fn mean_error_intervals_hold_the_true_rate_with_flicker_and_without() {
+    const RUNS: u64 = 300;
+    // Widest mean half width in units of 1.96 standard deviations that the runs show. A record
+    // without flicker cannot know that there is none: its interval is several times what white
+    // noise alone would need. Where flicker is found the price is small.
+    for (flicker, count, period_s, widest) in [
+        (0.0, 600, 0.1, 6.0),
+        (0.0, 1200, 0.5, 6.0),
+        (0.0, 3600, 1.0, 6.0),
+        (0.045, 600, 0.1, 4.0),
+        (0.045, 1200, 0.5, 2.0),
+        (0.045, 3600, 1.0, 1.6),
+    ] {
+        let trial = try_means(RUNS, count, period_s, flicker);
+        let text = format!(
+            "B {flicker}, {count} x {period_s} s: {} of {RUNS}, width {:.2}, B, K, R found {:?}",
+            trial.covered, trial.width, trial.found
+        );
+        assert!(10 * trial.covered >= 9 * RUNS, "{text}");
+        assert!(trial.width < widest, "{text}");
+        // Neither a walk nor a ramp is there.
+        assert!(trial.found[1] + trial.found[2] <= RUNS / 100, "{text}");
+        if flicker <= 0.0 {
+            assert!(trial.found[0] <= RUNS / 20, "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_walk_that_is_there_is_found() {
+    const RUNS: u64 = 60;
+    let k = 0.02;
+    let (mut found, mut covered) = (0, 0);
+    for seed in 0..RUNS {
+        let mut values = gyro_noise(seed, 3600, 1.0, 0.045);
+        let mut stream = Streams::new(seed, 1).stream("walk");
+        let mut walk = 0.0;
+        for value in &mut values {
+            walk += k * stream.normal();
+            *value += walk;
+        }
+        let metrics = measured(&values, 1.0);
+        if let Some(metric) = metrics.metrics.get("rate_random_walk_deg_per_h_per_sqrt_h") {
+            found += 1;
+            let truth = 60.0 * k;
+            covered += u64::from(metric.estimate.low <= truth && truth <= metric.estimate.high);
+        }
+    }
+    // Such a walk rules all averaging times beyond 30 s (287 of 300 such records showed it).
+    assert!(10 * found >= 8 * RUNS, "{found} of {RUNS}");
+    assert!(10 * covered >= 8 * found, "{covered} of {found}");
+}

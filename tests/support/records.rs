@@ -1,0 +1,83 @@
+//! Records and settings that the tests of the metrics share.
+
+use std::f64::consts::TAU;
+
+use fogbench::metrics::{ChannelMetrics, FilterFacts, Motion, Settings, SwingClock};
+use fogbench::random::Streams;
+use fogbench::signal::FilterShape;
+
+/// Sample period of the gyro under test, s.
+pub(crate) const PERIOD_S: f64 = 64.0 * 3.916_576e-6;
+
+pub(crate) fn white(seed: u64, count: usize, deviation: f64) -> Vec<f64> {
+    let mut values = vec![0.0; count];
+    Streams::new(seed, 0)
+        .stream("white")
+        .fill_normal(&mut values);
+    for value in &mut values {
+        *value *= deviation;
+    }
+    values
+}
+
+/// Samples of `offset + amplitude cos(2 pi f (t - delay))` at the stamps of a clock.
+pub(crate) fn sine(clock: &SwingClock, count: usize, amplitude: f64, delay_s: f64) -> Vec<f64> {
+    (0..count)
+        .map(|k| {
+            let time_s = clock.first_stamp_s + k as f64 * clock.sample_period_s;
+            8.47 + amplitude * (TAU * ((time_s - delay_s) * clock.frequency_hz).fract()).cos()
+        })
+        .collect()
+}
+
+pub(crate) fn shape(
+    taps: usize,
+    newest_age_samples: usize,
+    desired_weights: Vec<f64>,
+) -> FilterShape {
+    FilterShape {
+        taps,
+        newest_age_samples,
+        desired_weights,
+        register_samples: 1,
+    }
+}
+
+pub(crate) fn facts() -> FilterFacts {
+    FilterFacts {
+        shape: shape(10, 1, vec![0.5, 0.5]),
+        dc_gain: Some(0.8),
+        dc_gain_adapted: None,
+        mean_weights: None,
+        added_rate_deg_per_h: 1.0,
+    }
+}
+
+pub(crate) fn settings(motion: Motion) -> Settings {
+    Settings {
+        motion,
+        bias_averaging_time_s: 2.0,
+        fit_tau_min_s: 10.0 * PERIOD_S,
+    }
+}
+
+pub(crate) fn value(metrics: &ChannelMetrics, name: &str) -> f64 {
+    metrics.metrics[name].estimate.value
+}
+
+pub(crate) fn every_metric_is_answered(metrics: &ChannelMetrics) {
+    for known in fogbench::metrics::known_metrics() {
+        let answered = metrics.metrics.contains_key(known.name)
+            != metrics.unavailable.contains_key(known.name);
+        assert!(
+            answered != (known.name == "diverged_at_s"),
+            "{}",
+            known.name
+        );
+    }
+    for (name, metric) in &metrics.metrics {
+        let estimate = metric.estimate;
+        let ordered = estimate.low <= estimate.value && estimate.value <= estimate.high;
+        assert!(ordered && estimate.high.is_finite(), "{name}: {estimate:?}");
+    }
+}
