@@ -24,7 +24,8 @@ fn documented_commands_print_what_the_snapshots_hold() {
 #[test]
 fn a_passing_run_exits_0_and_writes_the_contracted_files() {
     let folder = scratch();
-    let gate = "[[gate]]\nmetric = \"raw.mean_deg_per_h\"\nmin = 5.0\nmax = 12.0\n";
+    let gate =
+        "[[gate]]\nmetric = \"raw.mean_deg_per_h\"\nmin = 5.0\nmax = 12.0\ndecide = \"value\"\n";
     write(
         folder.path(),
         "a.toml",

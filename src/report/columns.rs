@@ -137,6 +137,7 @@ pub(crate) fn matters(motion: &MotionConfig, key: &str) -> bool {
 pub(crate) fn unit_text(metric: &Metric) -> String {
     let unit = if metric.unit == "1" { "" } else { metric.unit };
     match metric.fields.get("averaging_time_s") {
+        Some(time) if unit.is_empty() => format!("{} s", crate::gate::plain(*time)),
         Some(time) => format!("{unit}, {} s", crate::gate::plain(*time)),
         None => unit.to_owned(),
     }
