@@ -7,6 +7,7 @@ pub mod units;
 pub mod cli;
 pub mod experiment;
 pub mod filters;
+pub mod fpga;
 pub mod gate;
 pub mod gyro;
 pub mod metrics;

@@ -1,3 +1,6 @@
 //! The one integration-test binary.
 
+mod bit_exact;
+mod cycle_exact;
+mod fpga_health;
 mod support;
