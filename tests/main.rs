@@ -4,3 +4,4 @@ mod bit_exact;
 mod cycle_exact;
 mod fpga_health;
 mod support;
+mod timing;

@@ -19,5 +19,6 @@ pub mod lms;
 pub mod memory;
 pub mod probe;
 pub mod rls;
+pub mod timing;
 
 pub use error::FpgaError;
