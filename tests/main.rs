@@ -3,5 +3,6 @@
 mod bit_exact;
 mod cycle_exact;
 mod fpga_health;
+mod rtl;
 mod support;
 mod timing;

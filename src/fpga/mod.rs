@@ -12,6 +12,7 @@
 //! * [`probe`], [`trace`]: test points and per-clock records. [`export`]: vectors, waveforms, RTL.
 
 pub mod error;
+pub mod export;
 pub mod float_unit;
 pub mod front_end;
 pub mod health;
@@ -20,5 +21,6 @@ pub mod memory;
 pub mod probe;
 pub mod rls;
 pub mod timing;
+pub mod trace;
 
 pub use error::FpgaError;

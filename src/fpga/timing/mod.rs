@@ -19,6 +19,7 @@ pub use latency::{
     Bound, PRESETS, Preset, RlsLoad, UnitTiming, Units, lms_stalled_clocks, stalled_clocks,
 };
 pub use schedule::{ScheduleReport, ScheduleSettings, schedule_clocks};
+pub(super) use table::check_clock;
 pub use table::{Basis, Design, TimingRow, table};
 pub use usage::{StateClocks, Usage, measure_lms, measure_rls};
 

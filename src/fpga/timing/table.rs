@@ -138,7 +138,7 @@ pub fn table(
 }
 
 /// Refuses clocks that are not finite and positive.
-pub(super) fn check_clock(clock_mhz: f64) -> Result<(), FpgaError> {
+pub(in crate::fpga) fn check_clock(clock_mhz: f64) -> Result<(), FpgaError> {
     if clock_mhz > 0.0 && clock_mhz.is_finite() {
         Ok(())
     } else {
