@@ -6,3 +6,4 @@ mod fpga_health;
 mod rtl;
 mod support;
 mod timing;
+mod waveform;
