@@ -29,7 +29,7 @@ fn settings(tap_count: usize, alpha: f64, division: Division) -> RlsSettings {
 }
 
 fn config<F: Fp>(tap_count: usize, alpha: f64, division: Division) -> RlsConfig<F> {
-    RlsConfig::new(settings(tap_count, alpha, division)).unwrap()
+    RlsConfig::new(settings(tap_count, alpha, division)).expect("settings are in range")
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn rls(tap_count: usize) -> RlsPipeline<f64> {
             division: Division::Reciprocal,
             update_sign: UpdateSign::Corrected,
         })
-        .unwrap(),
+        .expect("settings are in range"),
     )
 }
 
@@ -33,7 +33,7 @@ fn lms(tap_count: usize, normalised: bool) -> LmsPipeline<f64> {
             desired: DesiredSource::MeanOfTwoNewest,
             update_sign: UpdateSign::Corrected,
         })
-        .unwrap(),
+        .expect("settings are in range"),
     )
 }
 

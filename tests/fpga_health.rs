@@ -16,7 +16,7 @@ fn watch<F: Fp>(signal: &[f64], alpha: f64, order: UpdateOrder) -> HealthMonitor
         division: Division::Reciprocal,
         update_sign: UpdateSign::Corrected,
     })
-    .unwrap();
+    .expect("settings are in range");
     let mut engine = RlsEngine::with_order(config, order);
     let mut front_end = FrontEnd::one_step_predictor();
     let mut monitor = HealthMonitor::new(1000.0);

@@ -23,7 +23,7 @@ fn units(name: &str) -> Units {
     PRESETS
         .iter()
         .find(|preset| preset.name == name)
-        .unwrap()
+        .expect("a known preset")
         .units
 }
 
@@ -36,7 +36,7 @@ fn usage(tap_count: usize, division: Division) -> fogbench::fpga::timing::Usage 
             division,
             update_sign: UpdateSign::Corrected,
         })
-        .unwrap(),
+        .expect("settings are in range"),
     )
 }
 

@@ -18,7 +18,7 @@ fn config() -> RlsConfig<f64> {
         division: Division::Reciprocal,
         update_sign: UpdateSign::Corrected,
     })
-    .unwrap()
+    .expect("settings are in range")
 }
 
 fn settings(pipeline: PipelineConfig<f64>) -> ExportSettings<f64> {
@@ -41,7 +41,7 @@ fn records(pairs: &[Pair<f64>], window: Window) -> Vec<ClockRecord<f64>> {
 
 /// A signal's values as text (bits, or a number), one per time in ps.
 fn values(path: &Path, scopes: &[&str], name: &str, times: &[u64]) -> Vec<String> {
-    let mut wave = wellen::simple::read(path).unwrap();
+    let mut wave = wellen::simple::read(path).expect("a readable waveform");
     let variable = wave
         .hierarchy()
         .lookup_var(scopes, name)
@@ -51,15 +51,15 @@ fn values(path: &Path, scopes: &[&str], name: &str, times: &[u64]) -> Vec<String
     let table = wave.time_table().to_vec();
     let changes: Vec<(u64, String)> = wave
         .get_signal(signal)
-        .unwrap()
+        .expect("a loaded signal")
         .iter_changes()
         .map(|(index, value)| {
             let text = match value {
                 wellen::SignalValueRef::Real(number) => format!("{:016x}", number.to_bits()),
                 wellen::SignalValueRef::String(text) => text.to_string(),
-                other => other.to_bit_string().unwrap(),
+                other => other.to_bit_string().expect("a vector of bits"),
             };
-            (table[usize::try_from(index).unwrap()], text)
+            (table[usize::try_from(index).expect("an index fits")], text)
         })
         .collect();
     times
@@ -73,6 +73,32 @@ fn values(path: &Path, scopes: &[&str], name: &str, times: &[u64]) -> Vec<String
         .collect()
 }
 
+type Show = fn(&ClockRecord<f64>) -> String;
+
+fn word(word: f64) -> String {
+    format!("{:064b}", word.to_bits())
+}
+
+fn bit(high: bool) -> String {
+    u8::from(high).to_string()
+}
+
+/// Scopes, names and expected texts of signals of every kind.
+#[rustfmt::skip]
+const COLUMNS: [(&[&str], &str, Show); 11] = [
+    (&["rls"], "p", |r| word(r.registers.product)),
+    (&["rls"], "acc_real", |r| format!("{:016x}", r.registers.accumulator.to_bits())),
+    (&["rls"], "y", |r| word(r.registers.output)),
+    (&["rls"], "out_valid", |r| bit(r.ports.output_valid)),
+    (&["rls", "ctrl"], "state", |r| format!("{:04b}", r.registers.state)),
+    (&["rls", "ramb"], "addr", |r| format!("{:013b}", r.ramb.address)),
+    (&["rls", "ramb"], "we", |r| bit(r.ramb.write.is_some())),
+    (&["rls", "ramb"], "wdata", |r| word(r.ramb.write.unwrap_or(0.0))),
+    (&["rls", "mul"], "q", |r| word(r.multiplier.map_or(0.0, |unit| unit.q))),
+    (&["rls", "add"], "sub", |r| bit(r.adder.is_some_and(|unit| unit.subtracts))),
+    (&["rls", "div"], "done", |r| bit(r.divider.is_some())),
+];
+
 #[test]
 fn vcd_and_fst_hold_the_words_of_every_clock() {
     let pairs = predictor_pairs::<f64>("rocking", 6);
@@ -81,99 +107,31 @@ fn vcd_and_fst_hold_the_words_of_every_clock() {
         clock_count: 300,
     };
     let dir = tempfile::tempdir().unwrap();
-    let files = write_waveform(
-        dir.path(),
-        &settings(PipelineConfig::Rls(config())),
-        &pairs,
-        window,
-    )
-    .unwrap();
+    let settings = settings(PipelineConfig::Rls(config()));
+    let files = write_waveform(dir.path(), &settings, &pairs, window).unwrap();
     let records = records(&pairs, window);
     assert_eq!(records.len(), 300);
     // A clock of 40 MHz lasts 25,000 ps; values appear with its rising edge.
     let times: Vec<u64> = records.iter().map(|record| 25_000 * record.clock).collect();
-    let word = |word: f64| format!("{:064b}", word.to_bits());
-    let number = |word: f64| format!("{:016x}", word.to_bits());
-    let bit = |high: bool| u8::from(high).to_string();
-    type Column = (
-        &'static [&'static str],
-        &'static str,
-        Box<dyn Fn(&ClockRecord<f64>) -> String>,
-    );
-    let columns: Vec<Column> = vec![
-        (&["rls"], "p", Box::new(move |r| word(r.registers.product))),
-        (
-            &["rls"],
-            "acc_real",
-            Box::new(move |r| number(r.registers.accumulator)),
-        ),
-        (&["rls"], "y", Box::new(move |r| word(r.registers.output))),
-        (
-            &["rls"],
-            "out_valid",
-            Box::new(move |r| bit(r.ports.output_valid)),
-        ),
-        (
-            &["rls", "ctrl"],
-            "state",
-            Box::new(|r| format!("{:04b}", r.registers.state)),
-        ),
-        (
-            &["rls", "ramb"],
-            "addr",
-            Box::new(|r| format!("{:013b}", r.ramb.address)),
-        ),
-        (
-            &["rls", "ramb"],
-            "we",
-            Box::new(move |r| bit(r.ramb.write.is_some())),
-        ),
-        (
-            &["rls", "ramb"],
-            "wdata",
-            Box::new(move |r| word(r.ramb.write.unwrap_or(0.0))),
-        ),
-        (
-            &["rls", "mul"],
-            "q",
-            Box::new(move |r| word(r.multiplier.map_or(0.0, |unit| unit.q))),
-        ),
-        (
-            &["rls", "add"],
-            "sub",
-            Box::new(move |r| bit(r.adder.is_some_and(|u| u.subtracts))),
-        ),
-        (
-            &["rls", "div"],
-            "done",
-            Box::new(move |r| bit(r.divider.is_some())),
-        ),
-    ];
     for path in &files[..2] {
-        for (scopes, name, want) in &columns {
-            let want: Vec<String> = records.iter().map(want).collect();
+        for (scopes, name, show) in COLUMNS {
+            let want: Vec<String> = records.iter().map(show).collect();
             let got = values(path, scopes, name, &times);
             assert_eq!(got, want, "{} {name}", path.display());
         }
-        let clock = values(
-            path,
-            &["rls"],
-            "clk",
-            &[times[0], times[0] + 12_500, times[1]],
-        );
-        assert_eq!(clock, ["1", "0", "1"]);
+        let instants = [times[0], times[0] + 12_500, times[1]];
+        assert_eq!(values(path, &["rls"], "clk", &instants), ["1", "0", "1"]);
     }
-    let ascii = |name: &str| {
-        format!("{name:>11}")
-            .bytes()
-            .map(|byte| format!("{byte:08b}"))
-            .collect::<String>()
-    };
+    // The FST holds the names as ASCII, eight bits a character.
     let names = values(&files[0], &["rls", "ctrl"], "state_name", &times);
     let vectors = values(&files[1], &["rls", "ctrl"], "state_name", &times);
     for (record, (name, vector)) in records.iter().zip(names.iter().zip(vectors)) {
+        let ascii: String = format!("{:>11}", record.registers.state_name)
+            .bytes()
+            .map(|byte| format!("{byte:08b}"))
+            .collect();
         assert_eq!(name, record.registers.state_name);
-        assert_eq!(vector, ascii(record.registers.state_name));
+        assert_eq!(vector, ascii);
     }
 }
 
@@ -183,7 +141,7 @@ fn a_waveform_of_other_samples_is_told_apart() {
     let pairs = predictor_pairs::<f64>("rocking", 3);
     let mut other = pairs.clone();
     other[1].desired = f64::from_bits(other[1].desired.to_bits() ^ 1);
-    let dir = tempfile::tempdir().unwrap();
+    let dir = tempfile::tempdir().expect("a temporary folder");
     let settings = settings(PipelineConfig::Rls(config()));
     let files = write_waveform(dir.path(), &settings, &other, Window::ALL).unwrap();
     let records = records(&pairs, Window::ALL);
@@ -213,7 +171,7 @@ fn lms_waveforms_open_and_an_empty_window_is_refused() {
     });
     let settings = settings(PipelineConfig::Lms(config.unwrap()));
     let pairs = predictor_pairs::<f64>("white", 3);
-    let dir = tempfile::tempdir().unwrap();
+    let dir = tempfile::tempdir().expect("a temporary folder");
     let files = write_waveform(dir.path(), &settings, &pairs, Window::ALL).unwrap();
     for path in &files[..2] {
         // Clock 0 idles, clock 1 loads, clocks 2 to 11 form the energy.

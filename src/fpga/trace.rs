@@ -190,8 +190,11 @@ pub const CSV_HEADER: &str = "cyc,state,ra_addr,ra_we,ra_wdata,rb_addr,rb_we,rb_
 /// A word as fixed-width lower-case hexadecimal, the form `$readmemh` reads.
 #[must_use]
 pub fn hex<F: Fp>(word: F) -> String {
-    let digits = usize::try_from(F::WIDTH / 4).expect("a width fits");
-    format!("{:0digits$x}", word.to_bits())
+    if F::WIDTH == 64 {
+        format!("{:016x}", word.to_bits())
+    } else {
+        format!("{:08x}", word.to_bits())
+    }
 }
 
 /// Writes one record as a line of the trace.

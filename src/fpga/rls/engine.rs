@@ -266,9 +266,9 @@ impl<F: Fp, const P: usize> FixedCore<F, P> {
     #[inline]
     fn product_with_line(&self) -> [F; P] {
         let mut sums = [F::ZERO; P];
-        for j in 0..P {
-            for i in 0..P {
-                sums[i] = sums[i].add(self.line[j].mul(self.inverse[j][i]));
+        for (l_j, row) in self.line.iter().zip(&self.inverse) {
+            for (sum, r_ji) in sums.iter_mut().zip(row) {
+                *sum = sum.add(l_j.mul(*r_ji));
             }
         }
         sums
@@ -282,8 +282,8 @@ impl<F: Fp, const P: usize> FixedCore<F, P> {
         self.line[0] = pair.input;
         let t = self.product_with_line();
         let mut denominator = config.alpha;
-        for j in 0..P {
-            denominator = denominator.add(self.line[j].mul(t[j]));
+        for (l_j, t_j) in self.line.iter().zip(&t) {
+            denominator = denominator.add(l_j.mul(*t_j));
         }
         match config.division {
             Division::Reciprocal => {

@@ -88,18 +88,33 @@ module fp_sim #(
         end
     endfunction
 
-    real x, z, r;
-    reg [63:0] bits;
-    always @* begin
-        x = $bitstoreal(widen({{(64 - W){1'b0}}, a}));
-        z = $bitstoreal(widen({{(64 - W){1'b0}}, b}));
-        if (OPERATION == 1) r = x * z;
-        else if (OPERATION == 2) r = x / z;
-        else if (sub) r = x - z;
-        else r = x + z;
-        bits = narrow($realtobits(r));
-        q = bits[W-1:0];
-    end
+    generate
+        if (W == 64 && FTZ == 0) begin : plain
+            // The same without conversions, for speed.
+            reg [63:0] bits;
+            always @* begin
+                if (OPERATION == 1) bits = $realtobits($bitstoreal(a) * $bitstoreal(b));
+                else if (OPERATION == 2) bits = $realtobits($bitstoreal(a) / $bitstoreal(b));
+                else if (sub) bits = $realtobits($bitstoreal(a) - $bitstoreal(b));
+                else bits = $realtobits($bitstoreal(a) + $bitstoreal(b));
+                if (&bits[62:52] && |bits[51:0]) bits = 64'h7ff8_0000_0000_0000;
+                q = bits;
+            end
+        end else begin : converted
+            real x, z, r;
+            reg [63:0] bits;
+            always @* begin
+                x = $bitstoreal(widen({{(64 - W){1'b0}}, a}));
+                z = $bitstoreal(widen({{(64 - W){1'b0}}, b}));
+                if (OPERATION == 1) r = x * z;
+                else if (OPERATION == 2) r = x / z;
+                else if (sub) r = x - z;
+                else r = x + z;
+                bits = narrow($realtobits(r));
+                q = bits[W-1:0];
+            end
+        end
+    endgenerate
 endmodule
 
 module fp_add #(parameter W = 64, parameter FTZ = 0) (
