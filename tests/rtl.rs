@@ -186,6 +186,27 @@ fn rtl_of_lms_and_nlms_has_the_words_and_every_clock_of_the_model() {
 }
 
 #[test]
+fn rtl_runs_under_verilator_where_it_is_installed() {
+    // Half a minute of C++ compilation: in CI only.
+    let is_ci = std::env::var("CI").is_ok_and(|value| value == "true");
+    if !is_ci || Command::new("verilator").arg("-V").output().is_err() {
+        eprintln!("skipped: runs in CI with verilator only");
+        return;
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let pairs = predictor_pairs::<f64>("rocking", 2000);
+    let pipeline = rls(4, 0.99, Division::Reciprocal);
+    write_rtl(dir.path(), &settings(pipeline, 100), &pairs).unwrap();
+    let output = Command::new("sh")
+        .arg(dir.path().join("run.sh"))
+        .arg("verilator")
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && text.contains("PASS"), "{text}");
+}
+
+#[test]
 fn a_wrong_vector_fails_and_is_named() {
     if !available(&["iverilog", "vvp"]) {
         return;

@@ -18,6 +18,7 @@
 //! Checked by `rtl`, `waveform`.
 
 mod rtl;
+mod signals;
 mod vectors;
 mod waveform;
 
