@@ -315,3 +315,44 @@ fn yosys_maps_the_control_machines() {
         );
     }
 }
+
+/// The arithmetic units as ports only: what a user replaces by units of their own.
+const BLACK_BOXES: &str = "\
+(* blackbox *) module fp_add #(parameter W = 64, parameter FTZ = 0)
+    (input [W-1:0] a, input [W-1:0] b, input sub, output [W-1:0] q); endmodule
+(* blackbox *) module fp_mul #(parameter W = 64, parameter FTZ = 0)
+    (input [W-1:0] a, input [W-1:0] b, output [W-1:0] q); endmodule
+(* blackbox *) module fp_div #(parameter W = 64, parameter FTZ = 0)
+    (input [W-1:0] a, input [W-1:0] b, output [W-1:0] q); endmodule
+";
+
+#[test]
+fn yosys_maps_the_datapaths_onto_distributed_memory() {
+    let is_ci = std::env::var("CI").is_ok_and(|value| value == "true");
+    if !is_ci || !available(&["yosys"]) {
+        eprintln!("skipped: runs in CI only");
+        return;
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/fpga/export/rtl");
+    let dir = tempfile::tempdir().unwrap();
+    let boxes = dir.path().join("boxes.v");
+    fs::write(&boxes, BLACK_BOXES).unwrap();
+    for name in ["rls", "lms"] {
+        let file = |suffix: &str| root.join(suffix).display().to_string();
+        let script = format!(
+            "read_verilog {} {} {} {}; synth_xilinx -flatten -top {name}_core; \
+             select -assert-count 1 t:fp_add; select -assert-count 1 t:fp_mul; stat",
+            boxes.display(),
+            file(&format!("{name}_core.v")),
+            file(&format!("{name}_ctrl.v")),
+            file("ram_sp.v"),
+        );
+        let output = Command::new("yosys")
+            .args(["-p", &script])
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{text}");
+        assert!(text.contains("RAM32M") && text.contains("FDRE"), "{text}");
+    }
+}

@@ -124,6 +124,7 @@ impl<F: Fp> LmsPipeline<F> {
         }
     }
 
+    /// Ring slot of tap j: `(HEAD - j) mod N`.
     #[inline]
     fn slot(&self, j: usize) -> usize {
         let head = self.registers.head;
@@ -148,6 +149,7 @@ impl<F: Fp> LmsPipeline<F> {
         word
     }
 
+    /// L_loading: the oldest slot of the ring takes the new word; the adder is free for `x + XP`.
     #[inline]
     fn load(&mut self, input: Option<Pair<F>>, probe: &mut impl Probe<F>) {
         let Some(pair) = input else {
@@ -193,6 +195,7 @@ impl<F: Fp> LmsPipeline<F> {
         }
     }
 
+    /// LL_reading: `L'L`, both factors from one read of RAMA, started at the regularisation.
     #[inline]
     fn accumulate_energy(&mut self, probe: &mut impl Probe<F>) {
         let l_j = self.read_a(self.slot(self.registers.j), probe);
@@ -200,6 +203,7 @@ impl<F: Fp> LmsPipeline<F> {
         self.accumulate(l_j, l_j, first, LmsState::LlWriting, probe);
     }
 
+    /// Out_reading: `W'L`, started at `+0`.
     #[inline]
     fn accumulate_output(&mut self, probe: &mut impl Probe<F>) {
         let l_j = self.read_a(self.slot(self.registers.j), probe);
@@ -207,11 +211,13 @@ impl<F: Fp> LmsPipeline<F> {
         self.accumulate(l_j, w_j, F::ZERO, LmsState::OutWriting, probe);
     }
 
+    /// The last sum of a dot product, in its writing clock.
     #[inline]
     fn last_sum(&self, probe: &mut impl Probe<F>) -> F {
         add(probe, self.registers.accumulator, self.registers.product)
     }
 
+    /// Out_writing: the result is registered and the desired word halved.
     #[inline]
     fn write_output(&mut self, probe: &mut impl Probe<F>) {
         self.registers.output = self.last_sum(probe);
@@ -222,6 +228,7 @@ impl<F: Fp> LmsPipeline<F> {
         self.registers.state = LmsState::Err;
     }
 
+    /// ERR: the error, and for NLMS the step over the energy, which the divider forms meanwhile.
     #[inline]
     fn form_error(&mut self, probe: &mut impl Probe<F>) {
         self.registers.error = subtract(probe, self.registers.desired, self.registers.output);
@@ -232,6 +239,7 @@ impl<F: Fp> LmsPipeline<F> {
         self.registers.state = LmsState::Gain;
     }
 
+    /// GAIN: error times step, once per sample rather than once per tap.
     #[inline]
     fn scale_error(&mut self, probe: &mut impl Probe<F>) {
         let factor = if self.config.is_normalised() {
@@ -243,6 +251,7 @@ impl<F: Fp> LmsPipeline<F> {
         self.registers.state = LmsState::LmwReading;
     }
 
+    /// LMW_reading: `L_j * e` while `W_j` is latched.
     #[inline]
     fn weight_read(&mut self, probe: &mut impl Probe<F>) {
         let l_j = self.read_a(self.slot(self.registers.j), probe);
@@ -251,6 +260,7 @@ impl<F: Fp> LmsPipeline<F> {
         self.registers.state = LmsState::LmwWriting;
     }
 
+    /// LMW_writing: the new weight; after the last one the next sample is loaded at once.
     #[inline]
     fn weight_write(&mut self, next_waits: bool, probe: &mut impl Probe<F>) {
         let LmsRegisters {

@@ -45,6 +45,7 @@ mod config;
 mod engine;
 mod pipeline;
 mod state;
+mod steps;
 
 pub use config::{Division, RlsConfig, RlsSettings};
 pub(crate) use config::{check_positive, check_tap_count};
