@@ -6,8 +6,8 @@
 //! denominator) and starts every one whose operands are ready, whose unit is free and whose
 //! memory ports are free, reads in the starting clock, writes in the last one. Elements of R and
 //! W are read into a latch before they are corrected, as the paper's register RR does;
-//! accumulators and latches are not counted, so the length is a bound on what a controller with
-//! enough of them can reach.
+//! accumulators and latches are not counted: a controller reaches this length only with enough
+//! of them.
 
 use super::latency::{Bound, RlsLoad, Units};
 use crate::fpga::error::FpgaError;

@@ -69,8 +69,8 @@
     initial begin
         if (!$value$plusargs("VEC_DIR=%s", dir)) dir = ".";
         if ($test$plusargs("WAVES")) begin
-            $dumpfile("simulated.vcd");
-            $dumpvars;
+            $dumpfile({dir, "/simulated.vcd"});
+            $dumpvars(0, dut);
         end
         $readmemh({dir, "/in.hex"}, in_words);
         $readmemh({dir, "/y.hex"}, y_words);
