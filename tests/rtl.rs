@@ -111,12 +111,12 @@ fn rtl_of_every_setup_has_the_words_and_every_clock_of_the_model() {
     }
 }
 
-#[test]
-fn rtl_of_every_tap_count_has_the_words_of_the_model() {
+/// All set-ups of the given tap counts.
+fn check_tap_counts(tap_counts: &[usize]) {
     if !available(&["iverilog", "vvp"]) {
         return;
     }
-    for tap_count in [1, 2, 3, 5, 8] {
+    for tap_count in tap_counts {
         for Setup {
             name,
             alpha,
@@ -124,9 +124,20 @@ fn rtl_of_every_tap_count_has_the_words_of_the_model() {
         } in SETUPS
         {
             let pairs = predictor_pairs::<f64>(name, sample_count(10_000, 20));
-            export_and_run(rls(tap_count, alpha, division), &pairs, 10);
+            export_and_run(rls(*tap_count, alpha, division), &pairs, 10);
         }
     }
+}
+
+#[test]
+fn rtl_of_one_to_five_taps_has_the_words_of_the_model() {
+    check_tap_counts(&[1, 2, 3, 5]);
+}
+
+// Apart from the others because its clocks are more than half of all: the two run side by side.
+#[test]
+fn rtl_of_eight_taps_has_the_words_of_the_model() {
+    check_tap_counts(&[8]);
 }
 
 #[test]
