@@ -1,10 +1,13 @@
 //! The one integration-test binary.
 
 mod architecture;
+mod bit_exact;
 mod cli;
 mod closed_loop;
+mod cycle_exact;
 mod determinism;
 mod filters;
+mod fpga_health;
 mod known_answers_gyro;
 mod known_answers_gyro_noise;
 mod known_answers_metrics;
@@ -14,5 +17,8 @@ mod known_answers_turntable;
 mod plain_loop;
 mod readme;
 mod report;
+mod rtl;
 mod scenario_errors;
 mod support;
+mod timing;
+mod waveform;
