@@ -459,6 +459,7 @@ fn facts() -> FilterFacts {
         dc_gain: Some(0.8),
         dc_gain_adapted: None,
         added_rate_deg_per_h: 1.0,
+        latency_s: 0.0,
     }
 }
 

@@ -87,7 +87,7 @@ pub fn support(
     }
     match motion {
         Motion::Swing { frequency_hz } => {
-            check_cycles(metric, duration_s, sample_period_s, *frequency_hz)
+            check_cycles(known, duration_s, sample_period_s, *frequency_hz)
         }
         _ => Ok(()),
     }
@@ -96,7 +96,7 @@ pub fn support(
 fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
     let fits = matches!(
         (known.applies, motion),
-        (Applies::Always, _)
+        (Applies::Always | Applies::Pipeline, _)
             | (Applies::Steady | Applies::SteadyOrSwing, Motion::Steady)
             | (
                 Applies::Swing | Applies::SteadyOrSwing | Applies::Moving,
@@ -108,7 +108,7 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
         return Ok(());
     }
     let wanted = match known.applies {
-        Applies::Always => "any motion",
+        Applies::Always | Applies::Pipeline => "any motion",
         Applies::Steady => "a table at rest or at constant rate",
         Applies::Swing => "a swing",
         Applies::Steps => "steps",
@@ -119,7 +119,7 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
 }
 
 fn check_cycles(
-    metric: &str,
+    known: &KnownMetric,
     duration_s: f64,
     sample_period_s: f64,
     frequency_hz: f64,
@@ -131,7 +131,9 @@ fn check_cycles(
     };
     let samples = round_to_count((duration_s / sample_period_s).floor());
     let cycles = clock.whole_cycles(samples);
-    let independent = ["dc_gain", "dc_gain_adapted", "diverged_at_s"].contains(&metric);
+    let metric = known.name;
+    let independent = known.applies == Applies::Pipeline
+        || ["dc_gain", "dc_gain_adapted", "diverged_at_s"].contains(&metric);
     if cycles < CYCLES_MIN && !independent {
         return Err(format!(
             "`{metric}` needs {CYCLES_MIN} whole cycles of {frequency_hz} Hz; {duration_s} s hold \
