@@ -5,6 +5,7 @@
 
 mod channel_filter;
 mod pipeline_check;
+mod pipeline_export;
 mod pipeline_filter;
 mod pipeline_metrics;
 mod pipeline_settings;
@@ -13,6 +14,7 @@ mod run;
 mod simulate;
 mod suite;
 
+pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{CoreSettings, PipelineSettings, PipelineTiming};
 pub use plan::{Plan, plan_suite};

@@ -95,7 +95,7 @@ impl<F: Fp> PipelineFilter<F> {
             front_end: settings.front_end(),
             weights: vec![0.0; engine.weights().len()],
             engine,
-            register: Register::new(settings.output_register),
+            register: Register::new(settings.register()),
             watch: Watch::new(),
             shape: settings.shape(),
             monitor: Monitor::new(settings.tap_count(), warm_up_samples),

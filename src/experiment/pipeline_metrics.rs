@@ -1,8 +1,8 @@
 //! What a hardware pipeline adds to its channel's table, and what must be said of it.
 
 use super::channel_filter::{FinishedFilter, FinishedPipeline};
-use crate::filters::OutputRegister;
 use crate::metrics::{ChannelMetrics, Estimate};
+use crate::scenario::OutputRegister;
 use crate::units::us_to_s;
 
 /// Metrics of the matrix of recursive least squares.

@@ -4,7 +4,7 @@
 //! that knows both vocabularies.
 
 use super::pipeline_filter::{HardwareFilter, PipelineFilter};
-use crate::filters::{Desired as BenchDesired, FrontEndConfig, OutputRegister};
+use crate::filters::{Desired as BenchDesired, FrontEndConfig, OutputRegister as BenchRegister};
 use crate::fpga::FpgaError;
 use crate::fpga::export::PipelineConfig;
 use crate::fpga::float_unit::Fp;
@@ -15,8 +15,7 @@ use crate::fpga::rls::{Division, RlsConfig, RlsSettings, UpdateOrder};
 use crate::fpga::timing::{Usage, measure_lms, measure_rls, sample_period_us, sample_rate_max_khz};
 use crate::scenario::{
     DesiredSignal, Division as DivisionKey, FilterKind, LmsFilterConfig, NumberFormat,
-    OutputRegister as RegisterKey, Pipeline, RlsFilterConfig, UpdateOrder as OrderKey,
-    UpdateSign as SignKey,
+    OutputRegister, Pipeline, RlsFilterConfig, UpdateOrder as OrderKey, UpdateSign as SignKey,
 };
 use crate::signal::FilterShape;
 
@@ -82,6 +81,8 @@ macro_rules! with_word {
         }
     };
 }
+pub(super) use with_word;
+
 impl PipelineSettings {
     /// The hardware of a filter of a scenario; none if its arithmetic is the textbook's.
     #[must_use]
@@ -169,7 +170,15 @@ impl PipelineSettings {
         FrontEnd::new(self.desired, self.input_lag_samples)
     }
 
-    /// The same in the terms of the bench.
+    /// The output register in the terms of the bench.
+    pub(super) fn register(&self) -> BenchRegister {
+        match self.output_register {
+            OutputRegister::NextSample => BenchRegister::NextSample,
+            OutputRegister::Immediate => BenchRegister::Immediate,
+        }
+    }
+
+    /// Regressors, aim and register in the terms of the bench.
     pub(super) fn shape(&self) -> FilterShape {
         let front_end = FrontEndConfig {
             desired: match self.desired {
@@ -177,7 +186,7 @@ impl PipelineSettings {
                 Desired::MeanOfTwoNewest => BenchDesired::TwoSampleMean,
             },
             input_lag_samples: self.input_lag_samples,
-            output_register: self.output_register,
+            output_register: self.register(),
         };
         front_end.shape(self.tap_count())
     }
@@ -202,7 +211,7 @@ fn rls(config: &RlsFilterConfig) -> PipelineSettings {
         core: CoreSettings::Rls(settings, order),
         desired: desired(config.desired),
         input_lag_samples: config.input_lag_samples as usize,
-        output_register: register(config.output_register),
+        output_register: config.output_register,
         format: config.number_format,
         clock_mhz: config.clock_mhz,
     }
@@ -228,7 +237,7 @@ fn lms(config: &LmsFilterConfig) -> PipelineSettings {
         core: CoreSettings::Lms(settings),
         desired,
         input_lag_samples,
-        output_register: register(config.output_register),
+        output_register: config.output_register,
         format: config.number_format,
         clock_mhz: config.clock_mhz,
     }
@@ -245,12 +254,5 @@ fn sign(sign: SignKey) -> UpdateSign {
     match sign {
         SignKey::Corrected => UpdateSign::Corrected,
         SignKey::AsPrinted => UpdateSign::AsPrinted,
-    }
-}
-
-fn register(register: RegisterKey) -> OutputRegister {
-    match register {
-        RegisterKey::NextSample => OutputRegister::NextSample,
-        RegisterKey::Immediate => OutputRegister::Immediate,
     }
 }
