@@ -3,6 +3,7 @@
 mod architecture;
 mod bit_exact;
 mod cli;
+mod cli_fpga;
 mod closed_loop;
 mod cycle_exact;
 mod determinism;
@@ -13,6 +14,7 @@ mod known_answers_gyro_noise;
 mod known_answers_metrics;
 mod known_answers_slow_noise;
 mod known_answers_turntable;
+mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
 mod readme;
