@@ -11,6 +11,8 @@ pub mod turntable;
 
 pub mod gyro;
 
+pub mod fpga;
+
 pub mod filters;
 
 pub mod metrics;

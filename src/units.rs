@@ -136,6 +136,13 @@ pub fn s_to_us(time_s: f64) -> f64 {
     time_s * 1e6
 }
 
+/// Time, us -> s.
+#[inline]
+#[must_use]
+pub fn us_to_s(time_us: f64) -> f64 {
+    time_us * 1e-6
+}
+
 /// Converts a frequency from Hz to kHz.
 #[must_use]
 pub fn hz_to_khz(frequency_hz: f64) -> f64 {

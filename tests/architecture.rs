@@ -11,6 +11,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ("scenario", &["units"]),
     ("turntable", &["units", "signal", "random", "scenario"]),
     ("gyro", &["units", "signal", "random", "scenario"]),
+    ("fpga", &[]),
     ("filters", &["signal"]),
     ("metrics", &["units", "signal"]),
     ("gate", &["metrics", "scenario"]),
@@ -27,6 +28,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "scenario",
             "turntable",
             "gyro",
+            "fpga",
             "filters",
             "metrics",
             "gate",
@@ -35,7 +37,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ),
     (
         "cli",
-        &["units", "experiment", "gate", "report", "scenario"],
+        &["units", "experiment", "gate", "report", "scenario", "fpga"],
     ),
 ];
 

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::hardware_arguments::{ExportOptions, TimingOptions};
+
 /// Closed-loop fibre-optic-gyro and rate-turntable testbench.
 ///
 /// Runs TOML scenarios through turntable, gyro, denoising filters and metrics, and judges them.
@@ -35,6 +37,10 @@ pub(super) enum Command {
     List(ListOptions),
     /// Print the JSON Schema of scenario files
     Schema,
+    /// Print clocks, units and sample rates of a filter in hardware
+    Timing(TimingOptions),
+    /// Write golden vectors, waveforms or RTL of a hardware pipeline into a folder
+    Export(ExportOptions),
 }
 
 /// Which scenarios.

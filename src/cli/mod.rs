@@ -6,11 +6,15 @@ mod arguments;
 mod check;
 mod exit;
 mod expand;
+mod export;
+mod hardware_arguments;
 mod list;
 mod output;
 mod run;
 mod schema;
 mod select;
+mod stimulus;
+mod timing;
 
 use std::process::ExitCode;
 
@@ -38,6 +42,8 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Expand(options) => expand::expand(options),
         Command::List(options) => list::list(options),
         Command::Schema => schema::schema(),
+        Command::Timing(options) => timing::timing(options),
+        Command::Export(options) => export::export(options),
     };
     result.unwrap_or_else(exit::io_failure)
 }

@@ -5,9 +5,11 @@
 //! the unperturbed run. *Adapted*: a twin filter runs on the same words plus a small rate from the
 //! first sample on and is free to adapt; its mean output differs by that rate times the gain.
 
+use super::pipeline_filter::{HardwareFilter, HealthSummary};
+use super::pipeline_settings::{PipelineSettings, PipelineTiming};
 use super::simulate::RecordLength;
 use crate::filters::{
-    Desired, Divergence, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation,
+    Desired, Divergence, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, Output,
     OutputRegister as Register, Rls, RlsConfig, UpdateSign as Sign,
 };
 use crate::scenario::{
@@ -22,9 +24,10 @@ pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
 /// A filter channel while it runs.
 pub(super) struct ChannelFilter {
     name: String,
+    settings: Option<PipelineSettings>,
     shape: FilterShape,
-    filter: Box<dyn Filter>,
-    twin: Option<Box<dyn Filter>>,
+    filter: Arithmetic,
+    twin: Option<Arithmetic>,
     output_deg_per_h: Vec<f64>,
     warm_up_samples: usize,
     failure: Option<Divergence>,
@@ -42,6 +45,20 @@ pub(super) struct FinishedFilter {
     pub(super) shape: FilterShape,
     /// The words, or why there are none.
     pub(super) words: Result<FilterWords, Divergence>,
+    /// The hardware, if it is one.
+    pub(super) pipeline: Option<FinishedPipeline>,
+}
+
+/// What is known of a hardware pipeline after its run.
+pub(super) struct FinishedPipeline {
+    /// Its constants.
+    pub(super) settings: PipelineSettings,
+    /// Its clocks, counted.
+    pub(super) timing: PipelineTiming,
+    /// Its matrix, if it has one.
+    pub(super) health: Option<HealthSummary>,
+    /// What is said of a matrix that forgetting has wound up.
+    pub(super) wind_up: Option<String>,
 }
 
 /// What a filter that did not fail has made.
@@ -56,20 +73,61 @@ pub(super) struct FilterWords {
     pub(super) mean_weights: Option<Vec<f64>>,
 }
 
+/// Whose arithmetic makes the words.
+enum Arithmetic {
+    Textbook(Box<dyn Filter>),
+    Hardware(Box<dyn HardwareFilter>),
+}
+
+impl Arithmetic {
+    fn new(kind: &FilterKind, length: RecordLength) -> Self {
+        if let Some(settings) = PipelineSettings::of(kind) {
+            let filter = settings.filter(length.warm_up as u64);
+            return Self::Hardware(filter.expect(CHECKED));
+        }
+        Self::Textbook(match kind {
+            FilterKind::Rls(config) => Box::new(Rls::new(&rls(config))),
+            FilterKind::Lms(config) => Box::new(Lms::new(&lms(config))),
+        })
+    }
+
+    fn as_filter(&self) -> &dyn Filter {
+        match self {
+            Self::Textbook(filter) => filter.as_ref(),
+            Self::Hardware(filter) => filter.as_ref(),
+        }
+    }
+
+    #[inline]
+    fn step(&mut self, word_deg_per_h: f64) -> Result<Output, Divergence> {
+        match self {
+            Self::Textbook(filter) => filter.step(word_deg_per_h),
+            Self::Hardware(filter) => filter.step(word_deg_per_h),
+        }
+    }
+}
+
+/// Why a pipeline's constants cannot be wrong here.
+const CHECKED: &str = "the plan has refused what the pipeline refuses";
+
 impl ChannelFilter {
     /// The filter of `config`, with room for a record of this length.
+    ///
+    /// # Panics
+    /// If the hardware refuses its constants, which the plan has checked.
     pub(super) fn new(config: &FilterConfig, length: RecordLength) -> Self {
-        let filter = build(&config.kind);
+        let filter = Arithmetic::new(&config.kind, length);
         Self {
             name: config.name.clone(),
-            shape: filter.shape(),
-            twin: Some(build(&config.kind)),
+            settings: PipelineSettings::of(&config.kind),
+            shape: filter.as_filter().shape(),
+            weight_totals: vec![0.0; filter.as_filter().weights().len()],
+            filter,
+            twin: Some(Arithmetic::new(&config.kind, length)),
             output_deg_per_h: Vec::with_capacity(length.total()),
             warm_up_samples: length.warm_up,
             failure: None,
             weight_sum_total: 0.0,
-            weight_totals: vec![0.0; filter.weights().len()],
-            filter,
             twin_difference_total: 0.0,
             measured: 0,
         }
@@ -103,7 +161,11 @@ impl ChannelFilter {
         }
         if is_measured {
             self.weight_sum_total += output.weight_sum;
-            for (total, weight) in self.weight_totals.iter_mut().zip(self.filter.weights()) {
+            for (total, weight) in self
+                .weight_totals
+                .iter_mut()
+                .zip(self.filter.as_filter().weights())
+            {
                 *total += weight;
             }
             self.measured += 1;
@@ -112,7 +174,8 @@ impl ChannelFilter {
     }
 
     /// Ends the run.
-    pub(super) fn finish(self) -> FinishedFilter {
+    pub(super) fn finish(mut self) -> FinishedFilter {
+        let pipeline = self.finish_pipeline();
         #[expect(
             clippy::cast_precision_loss,
             reason = "sample counts are far below 2^53"
@@ -138,14 +201,21 @@ impl ChannelFilter {
             name: self.name,
             shape: self.shape,
             words,
+            pipeline,
         }
     }
-}
 
-fn build(kind: &FilterKind) -> Box<dyn Filter> {
-    match kind {
-        FilterKind::Rls(config) => Box::new(Rls::new(&rls(config))),
-        FilterKind::Lms(config) => Box::new(Lms::new(&lms(config))),
+    fn finish_pipeline(&mut self) -> Option<FinishedPipeline> {
+        let (Arithmetic::Hardware(filter), Some(settings)) = (&mut self.filter, self.settings)
+        else {
+            return None;
+        };
+        Some(FinishedPipeline {
+            settings,
+            timing: settings.timing().expect(CHECKED),
+            health: filter.health(),
+            wind_up: filter.wind_up().map(|warning| warning.to_string()),
+        })
     }
 }
 

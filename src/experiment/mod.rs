@@ -4,10 +4,18 @@
 //! `plan`, so that `check` and `run` refuse the same files.
 
 mod channel_filter;
+mod pipeline_check;
+mod pipeline_export;
+mod pipeline_filter;
+mod pipeline_metrics;
+mod pipeline_settings;
 mod plan;
 mod run;
 mod simulate;
 mod suite;
 
+pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
+pub use pipeline_filter::{HardwareFilter, HealthSummary};
+pub use pipeline_settings::{CoreSettings, PipelineSettings, PipelineTiming};
 pub use plan::{Plan, plan_suite};
 pub use suite::{Observer, SuiteError, SuiteOptions, SuiteOutcome, run_suite};

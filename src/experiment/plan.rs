@@ -3,14 +3,16 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::PathBuf;
 
+use super::pipeline_check;
+use super::pipeline_settings::PipelineSettings;
 use crate::filters::{
     constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
 };
 use crate::gyro::{self, MotionExtremes};
 use crate::metrics::{self, Motion};
 use crate::scenario::{
-    Fidelity, FilterKind, LmsFilterConfig, MotionConfig, Resolved, SamplesFormat, Scenario,
-    ScenarioError, ServoConfig, load_suite,
+    Fidelity, FilterKind, LmsFilterConfig, MotionConfig, Pipeline, Resolved, SamplesFormat,
+    Scenario, ScenarioError, ServoConfig, load_suite,
 };
 use crate::signal::GyroFacts;
 use crate::turntable::{command_rate_max_rad_per_s, earth_rate_rad_per_s, step_indices};
@@ -277,11 +279,14 @@ impl Checker<'_> {
     fn filters(&mut self, facts: &GyroFacts) {
         let resolved = self.resolved;
         let rate_max = rate_deg_per_h_max(&resolved.scenario);
+        let peak = rate_max + PEAK_SIGMAS * self.noise_std_deg_per_h(facts);
         for (index, filter) in resolved.scenario.filters.iter().enumerate() {
+            if let Some(settings) = PipelineSettings::of(&filter.kind) {
+                self.pipeline(index, &settings, peak, facts);
+            }
             match &filter.kind {
                 FilterKind::Lms(config) => self.lms(index, config, rate_max),
-                FilterKind::Rls(config) => {
-                    let peak = rate_max + PEAK_SIGMAS * self.noise_std_deg_per_h(facts);
+                FilterKind::Rls(config) if config.pipeline == Pipeline::Textbook => {
                     let delta = config.initial_inverse_correlation;
                     let warning = covariance_digits_warning(delta, config.taps as usize, peak);
                     if let Some(text) = warning {
@@ -290,7 +295,27 @@ impl Checker<'_> {
                             .push(format!("filter `{}`: {text}", filter.name));
                     }
                 }
+                FilterKind::Rls(_) => {}
             }
+        }
+    }
+
+    /// Refuses hardware that cannot be or cannot keep up; warns of digits lost at the start.
+    fn pipeline(
+        &mut self,
+        index: usize,
+        settings: &PipelineSettings,
+        peak_deg_per_h: f64,
+        facts: &GyroFacts,
+    ) {
+        let path = format!("filter[{index}].{}", pipeline_check::kind(settings));
+        if let Err((key, message)) = pipeline_check::check(settings, &path, facts.output_rate_hz) {
+            self.complain(&key, message);
+        } else if let Some(warning) = settings.digits_warning(peak_deg_per_h) {
+            let place = self.resolved.locate(&path);
+            let name = &self.resolved.scenario.filters[index].name;
+            self.warnings
+                .push(format!("{place}: filter `{name}`: {warning}"));
         }
     }
 
@@ -388,7 +413,8 @@ impl Checker<'_> {
                 channel != "raw",
                 scenario.bias_averaging_time_s,
             );
-            if let Err(reason) = supported {
+            let lack = pipeline_check::lacks(&scenario.filters, channel, name).map(str::to_owned);
+            if let Some(reason) = supported.err().or(lack) {
                 self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
             }
         }

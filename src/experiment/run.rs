@@ -6,6 +6,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
+use super::pipeline_metrics;
 use super::plan::{DIVERGED_AT, Plan, motion};
 use super::simulate::{Faults, RecordLength, Simulation, simulate};
 use super::suite::{Observer, SuiteError, VERSION};
@@ -18,7 +19,7 @@ use crate::metrics::{
 };
 use crate::report::{self, FolderWriter, RunOutcome, RunReport};
 use crate::scenario::{SamplesFormat, manifest_toml};
-use crate::signal::{FilterShape, RunSignals};
+use crate::signal::RunSignals;
 
 /// Channels of one repeat with their metrics.
 type Channels = Vec<(String, ChannelMetrics)>;
@@ -44,7 +45,12 @@ pub(super) fn run_scenario(
     let verdicts: Vec<_> = gates
         .map(|(index, gate)| judge(gate, &channels, Some(resolved.gate_place(index))))
         .collect();
-    let notes = [plan.warnings().to_vec(), faults.notes()].concat();
+    let sample_period_s = plan.sample_period_s();
+    let filters = simulation.filters.iter();
+    let pipelines: Vec<String> = filters
+        .flat_map(|filter| pipeline_metrics::notes(filter, sample_period_s))
+        .collect();
+    let notes = [plan.warnings().to_vec(), faults.notes(), pipelines].concat();
     let report = RunReport {
         tool_version: VERSION,
         scenario,
@@ -208,27 +214,32 @@ impl Cut<'_> {
     }
 
     fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
-        match &filter.words {
+        let mut metrics = match &filter.words {
             Ok(words) => {
-                let facts = filter_facts(&filter.shape, words);
+                let facts = filter_facts(filter, words);
                 self.measure(&words.output_deg_per_h, Some(&facts))
             }
             Err(divergence) => diverged(divergence, self.sample_period_s),
+        };
+        if let Some(pipeline) = &filter.pipeline {
+            pipeline_metrics::enter(pipeline, self.sample_period_s, &mut metrics);
         }
+        metrics
     }
 }
 
-fn filter_facts(shape: &FilterShape, words: &FilterWords) -> FilterFacts {
+fn filter_facts(filter: &FinishedFilter, words: &FilterWords) -> FilterFacts {
     FilterFacts {
-        shape: shape.clone(),
+        shape: filter.shape.clone(),
         dc_gain: words.dc_gain,
         dc_gain_adapted: words.dc_gain_adapted,
         mean_weights: words.mean_weights.clone(),
         added_rate_deg_per_h: ADDED_RATE_DEG_PER_H,
+        latency_s: pipeline_metrics::latency_s(filter.pipeline.as_ref()),
     }
 }
 
-/// A channel that failed has no numbers but the instant of its failure.
+/// A channel that failed has no numbers of its record but the instant of its failure.
 fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
     let mut channel = ChannelMetrics::default();
     let at_s = stamp_s(divergence.sample, sample_period_s);

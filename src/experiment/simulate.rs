@@ -134,6 +134,20 @@ pub(super) fn simulate(
     })
 }
 
+/// The first rate words of the first repeat, deg/h, warm-up included.
+pub(super) fn first_words(scenario: &Scenario, samples: usize) -> Result<Vec<f64>, GyroError> {
+    let length = RecordLength {
+        warm_up: 0,
+        measured: samples,
+    };
+    let mut source = Source::new(scenario, length, 0)?;
+    let mut words = Vec::with_capacity(samples);
+    while words.len() < samples {
+        words.extend(source.next_block());
+    }
+    Ok(words)
+}
+
 /// Table and gyro: where the words come from.
 struct Source {
     table: Turntable,

@@ -27,6 +27,8 @@ pub enum DivergenceKind {
     Overflow,
     /// The inverse correlation matrix is no longer positive definite.
     LostPositiveDefiniteness,
+    /// The inverse correlation matrix is no longer symmetric.
+    LostSymmetry,
 }
 
 /// A filter has diverged.
@@ -51,21 +53,27 @@ pub struct Fault {
 }
 
 /// Watches the words that enter and leave a core.
-#[derive(Clone, Debug)]
-pub(super) struct Watch {
+#[derive(Clone, Debug, Default)]
+pub struct Watch {
     input_max: f64,
     suspects: u32,
 }
 
 impl Watch {
-    pub(super) fn new() -> Self {
+    /// A watch that has seen nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
         Self {
             input_max: 0.0,
             suspects: 0,
         }
     }
 
-    pub(super) fn check_input(&mut self, input: f64) -> Result<(), Fault> {
+    /// Checks a word that enters.
+    ///
+    /// # Errors
+    /// [`DivergenceKind::NotFinite`].
+    pub fn check_input(&mut self, input: f64) -> Result<(), Fault> {
         if !input.is_finite() {
             let message = format!("the input word is {input}");
             return Err(Fault {
@@ -77,7 +85,11 @@ impl Watch {
         Ok(())
     }
 
-    pub(super) fn check_output(&mut self, output: Output) -> Result<(), Fault> {
+    /// Checks a result that leaves.
+    ///
+    /// # Errors
+    /// [`DivergenceKind::NotFinite`] or [`DivergenceKind::Overflow`].
+    pub fn check_output(&mut self, output: Output) -> Result<(), Fault> {
         let Output {
             value_deg_per_h: value,
             weight_sum,

@@ -133,13 +133,15 @@ impl FrontEnd {
 
 /// Output register with its state.
 #[derive(Clone, Debug)]
-pub(super) struct Register {
+pub struct Register {
     kind: OutputRegister,
     held: Output,
 }
 
 impl Register {
-    pub(super) fn new(kind: OutputRegister) -> Self {
+    /// A register after reset.
+    #[must_use]
+    pub fn new(kind: OutputRegister) -> Self {
         Self {
             kind,
             held: Output::RESET,
@@ -147,7 +149,7 @@ impl Register {
     }
 
     /// Takes the result of this sample; returns the word that is visible at its tick.
-    pub(super) fn clock(&mut self, result: Output) -> Output {
+    pub fn clock(&mut self, result: Output) -> Output {
         match self.kind {
             OutputRegister::NextSample => std::mem::replace(&mut self.held, result),
             OutputRegister::Immediate => result,

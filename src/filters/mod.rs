@@ -27,9 +27,9 @@ mod stability;
 mod update_sign;
 
 pub use adaptive::{AdaptiveFilter, Core};
-pub use divergence::{Divergence, DivergenceKind, Fault};
+pub use divergence::{Divergence, DivergenceKind, Fault, Watch};
 pub use filter::{Filter, Output};
-pub use front_end::{Desired, FrontEndConfig, OutputRegister};
+pub use front_end::{Desired, FrontEndConfig, OutputRegister, Register};
 pub use lms::{Lms, LmsConfig, LmsCore, Normalisation};
 pub use rls::{Rls, RlsConfig, RlsCore};
 pub use stability::{

@@ -15,7 +15,12 @@ pub enum Applies {
     SteadyOrSwing,
     /// Swing or steps.
     Moving,
+    /// Every record of a filter that is a hardware pipeline.
+    Pipeline,
 }
+
+/// Why other channels lack the metrics of pipelines.
+pub(crate) const PIPELINE_ONLY: &str = "only a filter with pipeline = \"fpga\" has it";
 
 /// One entry of the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -236,6 +241,54 @@ const CATALOGUE: &[KnownMetric] = &[
         "s",
         Applies::Always,
         "time at which the channel failed, from the start of the warm-up; absent if it did not",
+    ),
+    filter(
+        "predicted_failure_s",
+        "s",
+        Applies::Pipeline,
+        "time to failure ln(0.01/eps)/(1-alpha) of the gain-first update, in samples and s",
+    ),
+    filter(
+        "clocks_per_sample",
+        "1",
+        Applies::Pipeline,
+        "clocks from one accepted sample to the next, back to back, counted on the model",
+    ),
+    filter(
+        "sample_period_us",
+        "us",
+        Applies::Pipeline,
+        "time of these clocks",
+    ),
+    filter(
+        "latency_us",
+        "us",
+        Applies::Pipeline,
+        "from accepting a sample to its result, counted on the model",
+    ),
+    filter(
+        "sample_rate_max_khz",
+        "kHz",
+        Applies::Pipeline,
+        "largest sample rate the pipeline keeps up with, 1/sample_period_us",
+    ),
+    filter(
+        "asymmetry_max",
+        "1",
+        Applies::Pipeline,
+        "largest difference of mirrored elements of the inverse correlation matrix over its largest",
+    ),
+    filter(
+        "smallest_pivot",
+        "1",
+        Applies::Pipeline,
+        "smallest Cholesky pivot of that matrix over its largest diagonal element",
+    ),
+    filter(
+        "condition_number",
+        "1",
+        Applies::Pipeline,
+        "largest ratio of the extreme eigenvalues of that matrix",
     ),
 ];
 

@@ -1,7 +1,7 @@
 //! From a record to the table of everything it supports.
 
 use super::autocovariance::LaggedProducts;
-use super::catalogue::known_metrics;
+use super::catalogue::{Applies, PIPELINE_ONLY, known_metrics};
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
 use super::psd::{log_binned, segment_samples, welch};
@@ -21,7 +21,8 @@ const SPECTRUM_POINTS_MAX: usize = 400;
 ///
 /// `filter` is `None` for raw, whose `record.channel_deg_per_h` is `record.raw_deg_per_h`. Every
 /// metric of the catalogue ends up in the table or, with the reason, among the unavailable ones;
-/// only `diverged_at_s` is left to the caller, who saw the failure. Intervals are 95 %.
+/// `diverged_at_s` and the metrics of pipelines are left to the caller, who saw the failure and
+/// knows the hardware. Intervals are 95 %.
 ///
 /// # Panics
 /// If the three slices of the record differ in length.
@@ -200,7 +201,8 @@ fn drop_not_finite(metrics: &mut ChannelMetrics) {
 fn refuse_rest(reason: &str, metrics: &mut ChannelMetrics) {
     for known in known_metrics() {
         let name = known.name;
-        if name != "diverged_at_s" && !metrics.metrics.contains_key(name) {
+        let is_own = name == "diverged_at_s" || known.applies == Applies::Pipeline;
+        if !is_own && !metrics.metrics.contains_key(name) {
             metrics.miss(name, reason);
         }
     }
@@ -231,7 +233,10 @@ fn explain_missing(
             settings.bias_averaging_time_s,
         )
         .err()
-        .unwrap_or_else(|| "the record is too short for it".to_owned());
+        .unwrap_or_else(|| match known.applies {
+            Applies::Pipeline => PIPELINE_ONLY.to_owned(),
+            _ => "the record is too short for it".to_owned(),
+        });
         metrics.miss(name, reason);
     }
 }

@@ -18,7 +18,7 @@ const SIGNIFICANCE: f64 = 1.645;
 const STEEP_SIGNIFICANCE: f64 = 3.0;
 
 /// By how much a walk must fit better than flicker to replace it, in the weighted sum of squares of
-/// points that repeat each other: an hour of flicker reaches it in less than one record of 300.
+/// points that repeat each other; of 300 hours of flicker at the default budget none then reports K.
 const WALK_IMPROVEMENT: f64 = 25.0;
 
 /// Standard errors added to the slow terms where a prediction must not trust a lucky record.

@@ -51,6 +51,9 @@ pub struct FilterFacts {
     pub mean_weights: Option<Vec<f64>>,
     /// The added rate, deg/h.
     pub added_rate_deg_per_h: f64,
+    /// How long after their sample's stamp the outputs appear, s: the latency of a pipeline whose
+    /// result is used at once; 0 where a register holds it until the next stamp.
+    pub latency_s: f64,
 }
 
 impl FilterFacts {

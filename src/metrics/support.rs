@@ -92,7 +92,7 @@ pub fn support(
             "`{metric}` needs a record of at least {needed_s} s; this one has {duration_s} s"
         ));
     }
-    if INDEPENDENT.contains(&metric) {
+    if INDEPENDENT.contains(&metric) || known.applies == Applies::Pipeline {
         return Ok(());
     }
     let samples = samples_in_record(duration_s, sample_period_s);
@@ -145,7 +145,7 @@ fn check_tail(metric: &str, samples: usize, last_step_index: usize) -> Result<()
 fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
     let fits = matches!(
         (known.applies, motion),
-        (Applies::Always, _)
+        (Applies::Always | Applies::Pipeline, _)
             | (Applies::Steady | Applies::SteadyOrSwing, Motion::Steady)
             | (
                 Applies::Swing | Applies::SteadyOrSwing | Applies::Moving,
@@ -157,7 +157,7 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
         return Ok(());
     }
     let wanted = match known.applies {
-        Applies::Always => "any motion",
+        Applies::Always | Applies::Pipeline => "any motion",
         Applies::Steady => "a table at rest or at constant rate",
         Applies::Swing => "a swing",
         Applies::Steps => "steps",

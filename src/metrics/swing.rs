@@ -45,7 +45,7 @@ pub(crate) fn measure_swing(
         duration_s,
         metrics,
     );
-    measure_sines(&fits, &clock, filter.is_some(), metrics);
+    measure_sines(&fits, &clock, filter, metrics);
     measure_tracking(record, &fits, metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let residuals = fits.channel.residuals(record.channel_deg_per_h);
@@ -68,24 +68,42 @@ pub(crate) fn measure_swing(
     Ok(())
 }
 
-/// Delays and amplitude ratio.
-fn measure_sines(fits: &Fits, clock: &SwingClock, is_filter: bool, metrics: &mut ChannelMetrics) {
+/// Delays and amplitude ratio. A pipeline's latency is part of its delays.
+fn measure_sines(
+    fits: &Fits,
+    clock: &SwingClock,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
+    let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
     let describe = |metric: &mut Metric| {
         metric.fields.insert("frequency_hz", clock.frequency_hz);
         metric.fields.insert("cycles", fits.channel.cycles as f64);
     };
-    let in_ms = |delay_s: Estimate| delay_s.scaled(units::s_to_ms(1.0));
-    describe(metrics.put(
-        "delay_vs_truth_ms",
-        in_ms(fits.channel.delay_behind_s(&fits.truth)),
-    ));
-    let reference = if is_filter { &fits.raw } else { &fits.truth };
+    let mut put_delay = |name, reference| {
+        let delay_s = later(fits.channel.delay_behind_s(reference), latency_s);
+        let metric = metrics.put(name, delay_s.scaled(units::s_to_ms(1.0)));
+        describe(metric);
+        if latency_s > 0.0 {
+            let latency_us = units::s_to_us(latency_s);
+            metric.fields.insert("latency_us", latency_us);
+        }
+    };
+    put_delay("delay_vs_truth_ms", &fits.truth);
+    if filter.is_some() {
+        put_delay("delay_vs_raw_ms", &fits.raw);
+    }
+    let reference = filter.map_or(&fits.truth, |_| &fits.raw);
     describe(metrics.put("amplitude_ratio", fits.channel.amplitude_over(reference)));
-    if is_filter {
-        describe(metrics.put(
-            "delay_vs_raw_ms",
-            in_ms(fits.channel.delay_behind_s(&fits.raw)),
-        ));
+}
+
+/// A delay and the known time after it at which the value appears.
+fn later(delay_s: Estimate, latency_s: f64) -> Estimate {
+    Estimate {
+        value: delay_s.value + latency_s,
+        low: delay_s.low + latency_s,
+        high: delay_s.high + latency_s,
+        confidence: delay_s.confidence,
     }
 }
 
@@ -144,7 +162,8 @@ fn measure_predictions(
             })
             .collect();
         let prediction = wiener_prediction(&facts.shape, &second_moment)?;
-        let delay_s = prediction.delay_s(clock.frequency_hz, clock.sample_period_s);
+        let delay_s =
+            prediction.delay_s(clock.frequency_hz, clock.sample_period_s) + facts.latency_s;
         let amplitude = prediction.amplitude(clock.frequency_hz, clock.sample_period_s);
         Some((units::s_to_ms(delay_s), prediction.dc_gain(), amplitude))
     };
@@ -165,6 +184,9 @@ fn measure_predictions(
 }
 
 /// Noise-delay bound at the measured delay behind raw, for the measured colour of raw's noise.
+///
+/// A pipeline's latency makes the samples as much older as it delays the output, so the bound takes
+/// neither into account.
 fn measure_bound(
     fits: &Fits,
     clock: &SwingClock,

@@ -81,6 +81,7 @@ const STEPS_HEADLINE: &[&str] = &[
 
 /// Metrics of every motion that stand last: how a channel failed, what a pipeline costs.
 const ALWAYS: &[(&str, &str)] = &[
+    ("predicted_failure_s", "predicted failure"),
     ("diverged_at_s", "diverged at"),
     ("latency_us", "latency"),
     ("sample_period_us", "pipeline period"),

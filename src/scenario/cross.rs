@@ -2,8 +2,11 @@
 
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
+use super::address;
 use super::config::MotionConfig;
+use super::defaults::default_of;
 use super::error::ScenarioError;
+use super::filter_config::{FilterKind, Pipeline};
 use super::resolved::Resolved;
 
 /// Channel names that mean something else.
@@ -15,6 +18,10 @@ const SAMPLES_PER_CYCLE_MIN: f64 = 8.0;
 /// Relative slack when times are compared, so that `3 x 0.1 s` fits into 0.3 s.
 const TIME_SLACK: f64 = 1e-9;
 
+/// Keys that only a hardware pipeline of either kind reads.
+const RLS_HARDWARE_KEYS: &[&str] = &["number_format", "clock_mhz", "division", "update_order"];
+const LMS_HARDWARE_KEYS: &[&str] = &["number_format", "clock_mhz"];
+
 /// Every complaint about a scenario whose single values are all in order.
 pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     let mut checks = Checks {
@@ -22,6 +29,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
         errors: Vec::new(),
     };
     checks.names();
+    checks.hardware_keys();
     checks.motion();
     checks.gates();
     checks.published();
@@ -58,6 +66,35 @@ impl Checks<'_> {
                     filter.name
                 );
                 self.complain(&path, message);
+            }
+        }
+    }
+
+    /// A hardware key that would change something must not stand where nothing reads it.
+    fn hardware_keys(&mut self) {
+        for (index, filter) in self.resolved.scenario.filters.iter().enumerate() {
+            let (kind, pipeline, keys) = match &filter.kind {
+                FilterKind::Rls(config) => ("rls", config.pipeline, RLS_HARDWARE_KEYS),
+                FilterKind::Lms(config) => ("lms", config.pipeline, LMS_HARDWARE_KEYS),
+            };
+            if pipeline == Pipeline::Fpga {
+                continue;
+            }
+            for key in keys {
+                let path = format!("filter[{index}].{kind}.{key}");
+                let value = address::parse(&path)
+                    .ok()
+                    .and_then(|steps| self.resolved.value_toml(&steps));
+                let default = default_of(&format!("filter[].{kind}.{key}"));
+                if let Some(value) = value
+                    && default.is_some_and(|default| default.to_toml() != value)
+                {
+                    let message = format!(
+                        "{path} = {value} has no effect: pipeline = \"textbook\" has no hardware; \
+                         set pipeline = \"fpga\" or leave the key out"
+                    );
+                    self.complain(&path, message);
+                }
             }
         }
     }

@@ -42,6 +42,14 @@ pub struct RlsFilterConfig {
     pub update_sign: UpdateSign,
     /// Arithmetic.
     pub pipeline: Pipeline,
+    /// Words of the hardware.
+    pub number_format: NumberFormat,
+    /// Clock of the hardware, MHz.
+    pub clock_mhz: f64,
+    /// Where the hardware divides.
+    pub division: Division,
+    /// Order of the products in the update of the inverse correlation matrix.
+    pub update_order: UpdateOrder,
 }
 
 /// Least mean squares.
@@ -68,6 +76,10 @@ pub struct LmsFilterConfig {
     pub update_sign: UpdateSign,
     /// Arithmetic.
     pub pipeline: Pipeline,
+    /// Words of the hardware.
+    pub number_format: NumberFormat,
+    /// Clock of the hardware, MHz.
+    pub clock_mhz: f64,
 }
 
 /// What an adaptive filter aims at.
@@ -106,4 +118,43 @@ pub enum UpdateSign {
 pub enum Pipeline {
     /// The textbook recursion.
     Textbook,
+    /// The pipeline of the hardware: every bit and every clock.
+    Fpga,
+}
+
+/// Words of a hardware pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum NumberFormat {
+    /// IEEE 754 binary64.
+    #[serde(rename = "binary64")]
+    Binary64,
+    /// IEEE 754 binary32.
+    #[serde(rename = "binary32")]
+    Binary32,
+    /// binary64 whose subnormal numbers count as zero.
+    #[serde(rename = "binary64-ftz")]
+    Binary64FlushToZero,
+    /// binary32 whose subnormal numbers count as zero.
+    #[serde(rename = "binary32-ftz")]
+    Binary32FlushToZero,
+}
+
+/// Where a hardware pipeline divides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Division {
+    /// Once per sample; the products are multiplied by the reciprocal.
+    Reciprocal,
+    /// Once for each element of the matrix.
+    Elementwise,
+}
+
+/// Order of the products in the update of the inverse correlation matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum UpdateOrder {
+    /// `(t_i t_j) r`, the hardware's: the matrix stays symmetric to the last bit.
+    Schedule,
+    /// `(t_i r) t_j`, the gain vector first: fails below a forgetting factor of 1.
+    GainFirst,
 }

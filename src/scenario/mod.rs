@@ -33,8 +33,8 @@ pub use defaults::reference_toml;
 pub(crate) use error::portable_place;
 pub use error::{Location, ScenarioError};
 pub use filter_config::{
-    DesiredSignal, FilterConfig, FilterKind, LmsFilterConfig, OutputRegister, Pipeline,
-    RlsFilterConfig, UpdateSign,
+    DesiredSignal, Division, FilterConfig, FilterKind, LmsFilterConfig, NumberFormat,
+    OutputRegister, Pipeline, RlsFilterConfig, UpdateOrder, UpdateSign,
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,

@@ -8,6 +8,7 @@ use std::process::{Command, Output};
 pub(crate) mod gyro_cases;
 pub(crate) mod reference_gyro;
 pub(crate) mod run;
+pub(crate) mod stimulus;
 
 /// Asserts that `got` equals `want` within `rtol * |want| + atol`.
 #[track_caller]

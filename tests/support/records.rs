@@ -50,6 +50,7 @@ pub(crate) fn facts() -> FilterFacts {
         dc_gain_adapted: None,
         mean_weights: None,
         added_rate_deg_per_h: 1.0,
+        latency_s: 0.0,
     }
 }
 

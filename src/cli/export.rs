@@ -1,0 +1,121 @@
+//! `fogbench export`: golden vectors, waveforms and RTL of a hardware pipeline.
+
+use std::io;
+use std::path::Path;
+
+use super::exit::Exit;
+use super::hardware_arguments::{ExportKind, ExportOptions};
+use super::{output, stimulus};
+use crate::experiment::{
+    CoreSettings, ExportForm, PipelineSettings, Stimulus, export_pipeline, plan_suite,
+    scenario_stimulus,
+};
+use crate::fpga::FpgaError;
+use crate::fpga::rls::UpdateOrder;
+
+/// Writes the folder and says what stands in it.
+pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
+    let (settings, stimulus) = match prepare(options) {
+        Ok(prepared) => prepared,
+        Err(complaints) => {
+            for complaint in complaints {
+                output::talk(&format!("error: {complaint}"));
+            }
+            return Ok(Exit::Usage);
+        }
+    };
+    let form = match options.what {
+        ExportKind::Vectors => ExportForm::Vectors,
+        ExportKind::Waveform => ExportForm::Waveform,
+        ExportKind::Rtl => ExportForm::Rtl,
+    };
+    let samples = stimulus.words.len();
+    let written = export_pipeline(
+        &options.folder,
+        form,
+        &settings,
+        stimulus,
+        options.trace_samples,
+    );
+    match written {
+        Ok(files) => {
+            let names: String = files
+                .iter()
+                .map(|file| format!("{}\n", file.display()))
+                .collect();
+            output::data(&names)?;
+            output::talk(&format!("{samples} samples"));
+            if form == ExportForm::Rtl {
+                let script = options.folder.join("run.sh");
+                output::talk(&format!("simulate with: sh {}", script.display()));
+            }
+            Ok(Exit::Success)
+        }
+        Err(error) => {
+            output::talk(&format!("error: {error}"));
+            Ok(match error {
+                FpgaError::Write { .. } => Exit::Io,
+                _ => Exit::Usage,
+            })
+        }
+    }
+}
+
+/// Pipeline and stimulus, both checked before anything is written.
+fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Vec<String>> {
+    let one = |complaint: String| vec![complaint];
+    if options.samples == 0 {
+        return Err(one("--samples 0: expected at least 1".to_owned()));
+    }
+    let mut settings = options.filter.settings();
+    let stimulus = match (&options.stimulus, &options.scenario) {
+        (Some(path), _) => Stimulus {
+            words: stimulus::read(path, options.samples).map_err(one)?,
+            codes: None,
+        },
+        (None, Some(path)) => {
+            let (found, stimulus) = from_scenario(path, options)?;
+            settings = found.unwrap_or(settings);
+            stimulus
+        }
+        (None, None) => return Err(one("give --scenario or --stimulus".to_owned())),
+    };
+    if let CoreSettings::Rls(_, UpdateOrder::GainFirst) = settings.core {
+        let complaint = "update_order = \"gain-first\" has no hardware to export: use \"schedule\"";
+        return Err(one(complaint.to_owned()));
+    }
+    settings.timing().map_err(|error| one(error.to_string()))?;
+    Ok((settings, stimulus))
+}
+
+fn from_scenario(
+    path: &Path,
+    options: &ExportOptions,
+) -> Result<(Option<PipelineSettings>, Stimulus), Vec<String>> {
+    let plans = plan_suite(&[path.to_path_buf()], &[])
+        .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    let [plan] = plans.as_slice() else {
+        return Err(vec![format!(
+            "{}: holds {} runs: expected one",
+            path.display(),
+            plans.len()
+        )]);
+    };
+    let settings = match &options.name {
+        None => None,
+        Some(name) => {
+            let filters = &plan.resolved().scenario.filters;
+            let filter = filters.iter().find(|filter| filter.name == *name);
+            let settings = filter.and_then(|filter| PipelineSettings::of(&filter.kind));
+            Some(settings.ok_or_else(|| {
+                vec![format!(
+                    "{}: there is no filter `{name}` with pipeline = \"fpga\"",
+                    path.display()
+                )]
+            })?)
+        }
+    };
+    let stimulus =
+        scenario_stimulus(plan, options.samples).map_err(|error| vec![error.to_string()])?;
+    Ok((settings, stimulus))
+}

@@ -1,0 +1,208 @@
+//! What may be said of a hardware pipeline on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::arguments::Format;
+use crate::experiment::{CoreSettings, PipelineSettings};
+use crate::fpga::front_end::{Desired, UpdateSign};
+use crate::fpga::lms::{DesiredSource, LmsSettings};
+use crate::fpga::rls::{Division, RlsSettings, UpdateOrder};
+use crate::fpga::timing::{UnitTiming, Units};
+use crate::scenario::{NumberFormat, OutputRegister};
+
+/// Kind of filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Kind {
+    /// Recursive least squares
+    Rls,
+    /// Least mean squares
+    Lms,
+    /// Least mean squares, the step divided by the energy of the input
+    Nlms,
+}
+
+/// Where recursive least squares divides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum DivisionOption {
+    /// Once per sample
+    Reciprocal,
+    /// Once for each element of the matrix
+    Elementwise,
+}
+
+/// Words of the hardware.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum FormatOption {
+    /// IEEE 754 binary64
+    Binary64,
+    /// IEEE 754 binary32
+    Binary32,
+    /// binary64, subnormal numbers flushed to zero
+    Binary64Ftz,
+    /// binary32, subnormal numbers flushed to zero
+    Binary32Ftz,
+}
+
+/// The filter and its constants.
+#[derive(Args, Debug)]
+pub(super) struct FilterOptions {
+    /// Kind of filter
+    #[arg(long, value_enum, default_value_t = Kind::Rls)]
+    pub(super) kind: Kind,
+    /// Number of weights, 1 to 64
+    #[arg(long, value_name = "P", default_value_t = 4)]
+    pub(super) taps: usize,
+    /// Clock of the hardware, MHz
+    #[arg(long, value_name = "F", default_value_t = 40.0)]
+    pub(super) clock_mhz: f64,
+    /// Where recursive least squares divides
+    #[arg(long, value_enum, default_value_t = DivisionOption::Reciprocal)]
+    pub(super) division: DivisionOption,
+    /// Forgetting factor alpha, (0, 1]
+    #[arg(long, value_name = "A", default_value_t = 1.0)]
+    pub(super) forgetting_factor: f64,
+    /// Initial inverse correlation, in the inverse square of the words' unit
+    #[arg(long, value_name = "D", default_value_t = 7.716e-4)]
+    pub(super) initial_inverse_correlation: f64,
+    /// Step size of least mean squares
+    #[arg(long, value_name = "MU", default_value_t = 0.8)]
+    pub(super) step_size: f64,
+    /// Added to the energy of the input (nlms), in the square of the words' unit
+    #[arg(long, value_name = "E", default_value_t = 1.0)]
+    pub(super) regularisation: f64,
+    /// Words of the hardware
+    #[arg(long, value_enum, default_value_t = FormatOption::Binary64)]
+    pub(super) number_format: FormatOption,
+}
+
+impl FilterOptions {
+    /// The pipeline: the paper's front end for its kind.
+    pub(super) fn settings(&self) -> PipelineSettings {
+        let update_sign = UpdateSign::Corrected;
+        let (core, desired, input_lag_samples) = match self.kind {
+            Kind::Rls => {
+                let settings = RlsSettings {
+                    tap_count: self.taps,
+                    forgetting_factor: self.forgetting_factor,
+                    initial_inverse_correlation: self.initial_inverse_correlation,
+                    division: self.division(),
+                    update_sign,
+                };
+                let core = CoreSettings::Rls(settings, UpdateOrder::Schedule);
+                (core, Desired::Current, 1)
+            }
+            Kind::Lms | Kind::Nlms => {
+                let core = CoreSettings::Lms(LmsSettings {
+                    tap_count: self.taps,
+                    step_size: self.step_size,
+                    regularisation: (self.kind == Kind::Nlms).then_some(self.regularisation),
+                    desired: DesiredSource::MeanOfTwoNewest,
+                    update_sign,
+                });
+                (core, Desired::MeanOfTwoNewest, 0)
+            }
+        };
+        PipelineSettings {
+            core,
+            desired,
+            input_lag_samples,
+            output_register: OutputRegister::NextSample,
+            format: match self.number_format {
+                FormatOption::Binary64 => NumberFormat::Binary64,
+                FormatOption::Binary32 => NumberFormat::Binary32,
+                FormatOption::Binary64Ftz => NumberFormat::Binary64FlushToZero,
+                FormatOption::Binary32Ftz => NumberFormat::Binary32FlushToZero,
+            },
+            clock_mhz: self.clock_mhz,
+        }
+    }
+
+    /// Division mode in the terms of the hardware.
+    pub(super) fn division(&self) -> Division {
+        match self.division {
+            DivisionOption::Reciprocal => Division::Reciprocal,
+            DivisionOption::Elementwise => Division::Element,
+        }
+    }
+}
+
+/// Options of `timing`.
+#[derive(Args, Debug)]
+pub(super) struct TimingOptions {
+    #[command(flatten)]
+    pub(super) filter: FilterOptions,
+    /// Clocks of an addition
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    adder_latency: u64,
+    /// Clocks of a multiplication
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    multiplier_latency: u64,
+    /// Clocks of a division
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    divider_latency: u64,
+    /// Clocks between two operations of a unit; at most its latency counts
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    initiation_interval: u64,
+    /// Accesses of each memory per clock in the interleaved model, 1 or 2
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) ram_ports: u64,
+    /// Form of the result
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+}
+
+impl TimingOptions {
+    /// The three units.
+    pub(super) fn units(&self) -> Units {
+        let unit = |latency_clocks: u64| UnitTiming {
+            latency_clocks,
+            interval_clocks: self.initiation_interval.min(latency_clocks),
+        };
+        Units {
+            adder: unit(self.adder_latency),
+            multiplier: unit(self.multiplier_latency),
+            divider: unit(self.divider_latency),
+        }
+    }
+}
+
+/// What `export` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ExportKind {
+    /// Stimulus, response, memories, parameters and per-clock trace
+    Vectors,
+    /// VCD and FST of the first samples
+    Waveform,
+    /// Verilog with a self-checking testbench, its vectors and a script
+    Rtl,
+}
+
+/// Options of `export`.
+#[derive(Args, Debug)]
+pub(super) struct ExportOptions {
+    /// What to write
+    #[arg(value_enum)]
+    pub(super) what: ExportKind,
+    /// Folder to write into
+    #[arg(value_name = "DIR")]
+    pub(super) folder: PathBuf,
+    /// Scenario whose gyro gives the stimulus
+    #[arg(long, value_name = "FILE", required_unless_present = "stimulus")]
+    pub(super) scenario: Option<PathBuf>,
+    /// Filter of the scenario to export; without it the options below describe one
+    #[arg(long = "filter", value_name = "NAME", requires = "scenario")]
+    pub(super) name: Option<String>,
+    /// Recorded stimulus: one column of numbers, NPY or text
+    #[arg(long, value_name = "FILE", conflicts_with = "scenario")]
+    pub(super) stimulus: Option<PathBuf>,
+    /// Samples to export [default: 1000, or all of a shorter file]
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    pub(super) samples: usize,
+    /// Samples of which every clock is traced or drawn
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub(super) trace_samples: usize,
+    #[command(flatten)]
+    pub(super) filter: FilterOptions,
+}

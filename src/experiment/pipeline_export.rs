@@ -1,0 +1,117 @@
+//! Exports of hardware pipelines with a stimulus from a scenario or a recorded file.
+
+use std::path::{Path, PathBuf};
+
+use super::pipeline_settings::{PipelineSettings, with_word};
+use super::plan::Plan;
+use super::simulate::first_words;
+use crate::fpga::FpgaError;
+use crate::fpga::export::{
+    ExportSettings, IntegerCodes, stimulus_pairs, write_rtl, write_vectors, write_waveform,
+};
+use crate::fpga::float_unit::Fp;
+use crate::fpga::front_end::Desired;
+use crate::fpga::trace::Window;
+use crate::gyro::GyroError;
+use crate::units::deg_per_h_to_deg_per_s;
+
+/// What is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExportForm {
+    /// Stimulus, response, memories, parameters, trace.
+    Vectors,
+    /// VCD and FST of the traced samples.
+    Waveform,
+    /// Verilog with a self-checking testbench and its vectors.
+    Rtl,
+}
+
+/// A sample stream in front of the front end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stimulus {
+    /// Samples, in the unit of the pipeline's constants.
+    pub words: Vec<f64>,
+    /// The gyro's integer codes behind them, if they have any.
+    pub codes: Option<IntegerCodes>,
+}
+
+/// The first rate words of a scenario's gyro, warm-up included, deg/h, and their integer codes.
+///
+/// # Errors
+/// What the gyro refuses.
+pub fn scenario_stimulus(plan: &Plan, samples: usize) -> Result<Stimulus, GyroError> {
+    let scenario = &plan.resolved().scenario;
+    let words = first_words(scenario, samples)?;
+    let lsb = scenario.gyro.output.rate_lsb_deg_per_s;
+    let codes = (lsb > 0.0).then(|| IntegerCodes {
+        codes: words.iter().map(|word| code(*word, lsb)).collect(),
+        lsb,
+        unit: "deg/s".to_owned(),
+    });
+    Ok(Stimulus { words, codes })
+}
+
+/// The integer that a rate word is a multiple of the least significant bit by.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the cast saturates; the reader keeps rates within 2000 deg/s"
+)]
+fn code(word_deg_per_h: f64, lsb_deg_per_s: f64) -> i32 {
+    (deg_per_h_to_deg_per_s(word_deg_per_h) / lsb_deg_per_s).round() as i32
+}
+
+/// Writes the folder; returns its files. The update is in the schedule's order, the hardware's.
+///
+/// # Errors
+/// Constants or stimulus that the pipeline refuses, and files that cannot be written.
+pub fn export_pipeline(
+    folder: &Path,
+    form: ExportForm,
+    settings: &PipelineSettings,
+    stimulus: Stimulus,
+    trace_samples: usize,
+) -> Result<Vec<PathBuf>, FpgaError> {
+    with_word!(settings.format, F => {
+        export::<F>(folder, form, settings, stimulus, trace_samples)
+    })
+}
+
+fn export<F: Fp>(
+    folder: &Path,
+    form: ExportForm,
+    settings: &PipelineSettings,
+    stimulus: Stimulus,
+    trace_samples: usize,
+) -> Result<Vec<PathBuf>, FpgaError> {
+    let pairs = stimulus_pairs(&stimulus.words, &mut settings.front_end::<F>())?;
+    let export = ExportSettings {
+        pipeline: settings.constants::<F>()?,
+        clock_mhz: settings.clock_mhz,
+        front_end: front_end_words(settings),
+        trace_samples: trace_samples.min(pairs.len()),
+        codes: stimulus.codes,
+    };
+    match form {
+        ExportForm::Vectors => write_vectors(folder, &export, &pairs),
+        ExportForm::Rtl => write_rtl(folder, &export, &pairs),
+        ExportForm::Waveform => {
+            let samples = export.trace_samples as u64;
+            let window = Window {
+                first_clock: 0,
+                clock_count: 1 + samples * export.pipeline.clocks_per_sample() as u64,
+            };
+            write_waveform(folder, &export, &pairs, window)
+        }
+    }
+}
+
+fn front_end_words(settings: &PipelineSettings) -> String {
+    let desired = match settings.desired {
+        Desired::Current => "the newest sample",
+        Desired::MeanOfTwoNewest => "the mean of the two newest samples",
+    };
+    format!(
+        "x: the sample {} samples ago; d: {desired}",
+        settings.input_lag_samples
+    )
+}

@@ -1,0 +1,115 @@
+//! What a hardware pipeline adds to its channel's table, and what must be said of it.
+
+use super::channel_filter::{FinishedFilter, FinishedPipeline};
+use crate::metrics::{ChannelMetrics, Estimate};
+use crate::scenario::OutputRegister;
+use crate::units::us_to_s;
+
+/// Metrics of the matrix of recursive least squares.
+pub(super) const MATRIX_METRICS: [&str; 3] =
+    ["asymmetry_max", "smallest_pivot", "condition_number"];
+/// Theory's time to failure of the gain-first order.
+pub(super) const PREDICTED_FAILURE: &str = "predicted_failure_s";
+
+/// How long after their sample's stamp the outputs of a filter appear, s.
+///
+/// A register that holds the result until the next stamp hides the latency altogether: the plan has
+/// made sure that the result is there by then.
+pub(super) fn latency_s(pipeline: Option<&FinishedPipeline>) -> f64 {
+    match pipeline {
+        Some(pipeline) if pipeline.settings.output_register == OutputRegister::Immediate => {
+            us_to_s(pipeline.timing.latency_us)
+        }
+        _ => 0.0,
+    }
+}
+
+/// Enters clocks, times and health.
+pub(super) fn enter(
+    pipeline: &FinishedPipeline,
+    sample_period_s: f64,
+    metrics: &mut ChannelMetrics,
+) {
+    let timing = &pipeline.timing;
+    for (name, value) in [
+        ("clocks_per_sample", whole(timing.usage.clocks_per_sample)),
+        ("sample_period_us", timing.sample_period_us),
+        ("latency_us", timing.latency_us),
+        ("sample_rate_max_khz", timing.sample_rate_max_khz),
+    ] {
+        let metric = metrics.put(name, Estimate::exact(value));
+        metric
+            .fields
+            .insert("clock_mhz", pipeline.settings.clock_mhz);
+    }
+    match &pipeline.health {
+        Some(health) => {
+            for (name, value) in MATRIX_METRICS.into_iter().zip([
+                health.asymmetry_max,
+                health.smallest_pivot,
+                health.condition_number,
+            ]) {
+                if value.is_finite() {
+                    let metric = metrics.put(name, Estimate::exact(value));
+                    metric.fields.insert("count", whole(health.looks));
+                } else {
+                    metrics.miss(name, "the matrix is not positive definite");
+                }
+            }
+        }
+        None => {
+            for name in MATRIX_METRICS {
+                metrics.miss(name, "the filter has no finite inverse correlation matrix");
+            }
+        }
+    }
+    match pipeline.settings.failure_samples() {
+        Some(samples) => {
+            let metric = metrics.put(
+                PREDICTED_FAILURE,
+                Estimate::exact(samples * sample_period_s),
+            );
+            metric.fields.insert("samples", samples);
+        }
+        None => metrics.miss(
+            PREDICTED_FAILURE,
+            "only the gain-first order is expected to fail",
+        ),
+    }
+}
+
+/// What the reader of a report must know of this filter.
+pub(super) fn notes(filter: &FinishedFilter, sample_period_s: f64) -> Vec<String> {
+    let Some(pipeline) = &filter.pipeline else {
+        return Vec::new();
+    };
+    let name = &filter.name;
+    let mut notes = Vec::new();
+    if let Some(samples) = pipeline.settings.failure_samples() {
+        let observed = match &filter.words {
+            Ok(_) => "it has not failed in this run".to_owned(),
+            Err(divergence) => format!(
+                "it failed after {} samples ({:.3} s)",
+                divergence.sample + 1,
+                whole(divergence.sample + 1) * sample_period_s
+            ),
+        };
+        notes.push(format!(
+            "filter `{name}`: theory gives the gain-first order ln(0.01/eps)/(1-alpha) = \
+             {samples:.0} samples ({:.3} s); {observed}",
+            samples * sample_period_s
+        ));
+    }
+    if let Some(warning) = &pipeline.wind_up {
+        notes.push(format!("filter `{name}`: {warning}"));
+    }
+    notes
+}
+
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "clock, sample and look counts are far below 2^53"
+)]
+fn whole(count: u64) -> f64 {
+    count as f64
+}

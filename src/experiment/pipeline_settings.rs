@@ -1,0 +1,258 @@
+//! From a filter of a scenario to the constants of its hardware pipeline.
+//!
+//! The scenario says `elementwise`, the hardware [`Division::Element`]: this is the only place
+//! that knows both vocabularies.
+
+use super::pipeline_filter::{HardwareFilter, PipelineFilter};
+use crate::filters::{Desired as BenchDesired, FrontEndConfig, OutputRegister as BenchRegister};
+use crate::fpga::FpgaError;
+use crate::fpga::export::PipelineConfig;
+use crate::fpga::float_unit::Fp;
+use crate::fpga::front_end::{Desired, FrontEnd, UpdateSign};
+use crate::fpga::health::{Warning, gain_first_failure_samples, initial_digits_warning};
+use crate::fpga::lms::{DesiredSource, LmsConfig, LmsSettings};
+use crate::fpga::rls::{Division, RlsConfig, RlsSettings, UpdateOrder};
+use crate::fpga::timing::{Usage, measure_lms, measure_rls, sample_period_us, sample_rate_max_khz};
+use crate::scenario::{
+    DesiredSignal, Division as DivisionKey, FilterKind, LmsFilterConfig, NumberFormat,
+    OutputRegister, Pipeline, RlsFilterConfig, UpdateOrder as OrderKey, UpdateSign as SignKey,
+};
+use crate::signal::FilterShape;
+
+/// What is done with the words, in plain numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CoreSettings {
+    /// Recursive least squares and the order of its update.
+    Rls(RlsSettings, UpdateOrder),
+    /// Least mean squares, normalised or not.
+    Lms(LmsSettings),
+}
+
+/// A hardware pipeline with its front end, before any check.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PipelineSettings {
+    /// The filter.
+    pub core: CoreSettings,
+    /// What the filter is asked to reproduce.
+    pub desired: Desired,
+    /// Samples by which the regressors lag the newest sample.
+    pub input_lag_samples: usize,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+    /// Words.
+    pub format: NumberFormat,
+    /// Clock, MHz.
+    pub clock_mhz: f64,
+}
+
+/// What one sample costs, counted on the running model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PipelineTiming {
+    /// Clocks, states, ports and units of one back-to-back sample.
+    pub usage: Usage,
+    /// Time of all clocks of a sample, us.
+    pub sample_period_us: f64,
+    /// From the accepting clock to the result, us.
+    pub latency_us: f64,
+    /// `1 / sample_period_us`, kHz.
+    pub sample_rate_max_khz: f64,
+}
+
+/// Runs `$body` with `$word` standing for the word type of a [`NumberFormat`].
+macro_rules! with_word {
+    ($format:expr, $word:ident => $body:expr) => {
+        match $format {
+            $crate::scenario::NumberFormat::Binary64 => {
+                type $word = f64;
+                $body
+            }
+            $crate::scenario::NumberFormat::Binary32 => {
+                type $word = f32;
+                $body
+            }
+            $crate::scenario::NumberFormat::Binary64FlushToZero => {
+                type $word = $crate::fpga::float_unit::FlushToZero<f64>;
+                $body
+            }
+            $crate::scenario::NumberFormat::Binary32FlushToZero => {
+                type $word = $crate::fpga::float_unit::FlushToZero<f32>;
+                $body
+            }
+        }
+    };
+}
+pub(super) use with_word;
+
+impl PipelineSettings {
+    /// The hardware of a filter of a scenario; none if its arithmetic is the textbook's.
+    #[must_use]
+    pub fn of(kind: &FilterKind) -> Option<Self> {
+        match kind {
+            FilterKind::Rls(config) if config.pipeline == Pipeline::Fpga => Some(rls(config)),
+            FilterKind::Lms(config) if config.pipeline == Pipeline::Fpga => Some(lms(config)),
+            _ => None,
+        }
+    }
+
+    /// Number of weights.
+    #[must_use]
+    pub fn tap_count(&self) -> usize {
+        match &self.core {
+            CoreSettings::Rls(settings, _) => settings.tap_count,
+            CoreSettings::Lms(settings) => settings.tap_count,
+        }
+    }
+
+    /// Rounds the constants to the word format, checks them and counts one sample's clocks.
+    ///
+    /// # Errors
+    /// What the pipeline refuses: tap count, forgetting factor, initial inverse correlation, step
+    /// or regularisation out of range in the word format.
+    pub fn timing(&self) -> Result<PipelineTiming, FpgaError> {
+        let usage = with_word!(self.format, F => match self.constants::<F>()? {
+            PipelineConfig::Rls(config) => measure_rls(config),
+            PipelineConfig::Lms(config) => measure_lms(config),
+        });
+        let clock_mhz = self.clock_mhz;
+        Ok(PipelineTiming {
+            sample_period_us: sample_period_us(usage.clocks_per_sample, clock_mhz),
+            latency_us: sample_period_us(usage.latency_clocks, clock_mhz),
+            sample_rate_max_khz: sample_rate_max_khz(usage.clocks_per_sample, clock_mhz),
+            usage,
+        })
+    }
+
+    /// Warns if the first updates cost the words their digits, for inputs up to `input_max`.
+    #[must_use]
+    pub fn digits_warning(&self, input_max: f64) -> Option<Warning> {
+        let CoreSettings::Rls(settings, _) = &self.core else {
+            return None;
+        };
+        let (delta, taps) = (settings.initial_inverse_correlation, settings.tap_count);
+        with_word!(self.format, F => initial_digits_warning::<F>(delta, taps, input_max))
+    }
+
+    /// Samples after which theory expects the gain-first order to fail; none for the others.
+    #[must_use]
+    pub fn failure_samples(&self) -> Option<f64> {
+        match &self.core {
+            CoreSettings::Rls(settings, UpdateOrder::GainFirst) => {
+                let alpha = settings.forgetting_factor;
+                with_word!(self.format, F => gain_first_failure_samples::<F>(alpha))
+            }
+            _ => None,
+        }
+    }
+
+    /// The filter in front of the bench, bit for bit the hardware's.
+    ///
+    /// * `warm_up_samples`: samples before the record; health is summed up from there on.
+    ///
+    /// # Errors
+    /// As [`Self::timing`].
+    pub fn filter(&self, warm_up_samples: u64) -> Result<Box<dyn HardwareFilter>, FpgaError> {
+        with_word!(self.format, F => {
+            let constants = self.constants::<F>()?;
+            Ok(Box::new(PipelineFilter::new(self, constants, warm_up_samples)))
+        })
+    }
+
+    /// The constants in the word format.
+    pub(super) fn constants<F: Fp>(&self) -> Result<PipelineConfig<F>, FpgaError> {
+        match self.core {
+            CoreSettings::Rls(settings, _) => RlsConfig::new(settings).map(PipelineConfig::Rls),
+            CoreSettings::Lms(settings) => LmsConfig::new(settings).map(PipelineConfig::Lms),
+        }
+    }
+
+    /// The hold registers in front of the core.
+    pub(super) fn front_end<F: Fp>(&self) -> FrontEnd<F> {
+        FrontEnd::new(self.desired, self.input_lag_samples)
+    }
+
+    /// The output register in the terms of the bench.
+    pub(super) fn register(&self) -> BenchRegister {
+        match self.output_register {
+            OutputRegister::NextSample => BenchRegister::NextSample,
+            OutputRegister::Immediate => BenchRegister::Immediate,
+        }
+    }
+
+    /// Regressors, aim and register in the terms of the bench.
+    pub(super) fn shape(&self) -> FilterShape {
+        let front_end = FrontEndConfig {
+            desired: match self.desired {
+                Desired::Current => BenchDesired::Current,
+                Desired::MeanOfTwoNewest => BenchDesired::TwoSampleMean,
+            },
+            input_lag_samples: self.input_lag_samples,
+            output_register: self.register(),
+        };
+        front_end.shape(self.tap_count())
+    }
+}
+
+fn rls(config: &RlsFilterConfig) -> PipelineSettings {
+    let settings = RlsSettings {
+        tap_count: config.taps as usize,
+        forgetting_factor: config.forgetting_factor,
+        initial_inverse_correlation: config.initial_inverse_correlation,
+        division: match config.division {
+            DivisionKey::Reciprocal => Division::Reciprocal,
+            DivisionKey::Elementwise => Division::Element,
+        },
+        update_sign: sign(config.update_sign),
+    };
+    let order = match config.update_order {
+        OrderKey::Schedule => UpdateOrder::Schedule,
+        OrderKey::GainFirst => UpdateOrder::GainFirst,
+    };
+    PipelineSettings {
+        core: CoreSettings::Rls(settings, order),
+        desired: desired(config.desired),
+        input_lag_samples: config.input_lag_samples as usize,
+        output_register: config.output_register,
+        format: config.number_format,
+        clock_mhz: config.clock_mhz,
+    }
+}
+
+fn lms(config: &LmsFilterConfig) -> PipelineSettings {
+    let desired = desired(config.desired);
+    let input_lag_samples = config.input_lag_samples as usize;
+    let settings = LmsSettings {
+        tap_count: config.taps as usize,
+        step_size: config.step_size,
+        regularisation: config
+            .normalised
+            .then_some(config.regularisation_deg2_per_h2),
+        // The core forms the mean of the two words it holds; behind a lag they are not the newest.
+        desired: match input_lag_samples {
+            0 => DesiredSource::of(desired),
+            _ => DesiredSource::Port,
+        },
+        update_sign: sign(config.update_sign),
+    };
+    PipelineSettings {
+        core: CoreSettings::Lms(settings),
+        desired,
+        input_lag_samples,
+        output_register: config.output_register,
+        format: config.number_format,
+        clock_mhz: config.clock_mhz,
+    }
+}
+
+fn desired(desired: DesiredSignal) -> Desired {
+    match desired {
+        DesiredSignal::Current => Desired::Current,
+        DesiredSignal::TwoSampleMean => Desired::MeanOfTwoNewest,
+    }
+}
+
+fn sign(sign: SignKey) -> UpdateSign {
+    match sign {
+        SignKey::Corrected => UpdateSign::Corrected,
+        SignKey::AsPrinted => UpdateSign::AsPrinted,
+    }
+}

@@ -1,0 +1,73 @@
+//! What can be wrong with a pipeline's settings or with the files written for it.
+
+use std::path::PathBuf;
+
+/// Error of the pipeline models and their exports.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FpgaError {
+    /// The tap count does not fit the memories' address ranges.
+    #[error("tap count {value} is out of range: expected 1 to 64")]
+    TapCount {
+        /// Refused value.
+        value: usize,
+    },
+    /// A numeric setting lies outside its range, or leaves it when rounded to the word format.
+    #[error("{name} = {value} is out of range: expected {range} in {format}")]
+    OutOfRange {
+        /// Setting.
+        name: &'static str,
+        /// Refused value.
+        value: f64,
+        /// Allowed range, in words.
+        range: &'static str,
+        /// Word format in which the range is checked.
+        format: &'static str,
+    },
+    /// A count of clocks, ports or samples lies outside its range.
+    #[error("{name} = {value} is out of range: expected {range}")]
+    CountOutOfRange {
+        /// Setting.
+        name: &'static str,
+        /// Refused value.
+        value: u64,
+        /// Allowed range, in words.
+        range: &'static str,
+    },
+    /// A stimulus holds a value that is not a finite number.
+    #[error("stimulus sample {index} is {value}: expected a finite number")]
+    NonFiniteStimulus {
+        /// Index of the sample.
+        index: usize,
+        /// Refused value.
+        value: f64,
+    },
+    /// Two sequences that belong together differ in length.
+    #[error("{name} holds {got} values: expected {want}, one per sample")]
+    Length {
+        /// Sequence.
+        name: &'static str,
+        /// Its length.
+        got: usize,
+        /// The length it must have.
+        want: usize,
+    },
+    /// The waveform or the vectors could not be written.
+    #[error("cannot write {path}: {message}")]
+    Write {
+        /// File.
+        path: PathBuf,
+        /// Cause.
+        message: String,
+    },
+}
+
+impl FpgaError {
+    /// Wraps the cause of a failed write with the file it happened to.
+    pub(crate) fn write(path: &std::path::Path, cause: impl std::fmt::Display) -> Self {
+        Self::Write {
+            path: path.to_path_buf(),
+            message: cause.to_string(),
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Exports: golden vectors, waveforms, and RTL with a self-checking testbench.
+//!
+//! Every export simulates the clock-by-clock pipeline over the given pairs, back to back from
+//! reset. One folder holds everything and runs from anywhere.
+//!
+//! | file | contents |
+//! |---|---|
+//! | `params.json` | every constant with its bits, and every choice that changes bits |
+//! | `in.hex`, `y.hex` | x then d of each sample; the filtered words. One word a line |
+//! | `ram_init.hex`, `ram_final.hex` | RAMA, then RAMB |
+//! | `in_codes.hex` | the gyro's integer codes, i32, if given (their LSB in `params.json`) |
+//! | `trace.csv` | per clock: state, memory ports, registers ([`crate::fpga::trace`]) |
+//! | `wave.vcd`, `wave.fst`, `states.gtkwfilter` | a window of clocks with readable states |
+//! | `*.v`, `*.vh`, `run.sh`, `test_pipeline.py` | RTL, testbench, script, cocotb test |
+//!
+//! Hexadecimal files end in a newline: some simulators drop the last word otherwise.
+//!
+//! Checked by `rtl`, `waveform`.
+
+mod rtl;
+mod signals;
+mod vectors;
+mod waveform;
+
+pub use rtl::write_rtl;
+pub use vectors::{ExportSettings, IntegerCodes, PipelineConfig, stimulus_pairs, write_vectors};
+pub use waveform::write_waveform;

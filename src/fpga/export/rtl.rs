@@ -1,0 +1,52 @@
+//! The RTL folder: sources, testbench, vectors and a script that runs from anywhere.
+
+use std::path::{Path, PathBuf};
+
+use super::vectors::{ExportSettings, PipelineConfig, write_text, write_vectors};
+use crate::fpga::error::FpgaError;
+use crate::fpga::float_unit::Fp;
+use crate::fpga::front_end::Pair;
+
+/// Sources of both pipelines.
+const SHARED: [(&str, &str); 5] = [
+    ("fp_sim.v", include_str!("rtl/fp_sim.v")),
+    ("ram_sp.v", include_str!("rtl/ram_sp.v")),
+    ("tb_body.vh", include_str!("rtl/tb_body.vh")),
+    ("run.sh", include_str!("rtl/run.sh")),
+    ("test_pipeline.py", include_str!("rtl/test_pipeline.py")),
+];
+
+const RLS: [(&str, &str); 3] = [
+    ("rls_ctrl.v", include_str!("rtl/rls_ctrl.v")),
+    ("rls_core.v", include_str!("rtl/rls_core.v")),
+    ("tb_rls.v", include_str!("rtl/tb_rls.v")),
+];
+
+const LMS: [(&str, &str); 3] = [
+    ("lms_ctrl.v", include_str!("rtl/lms_ctrl.v")),
+    ("lms_core.v", include_str!("rtl/lms_core.v")),
+    ("tb_lms.v", include_str!("rtl/tb_lms.v")),
+];
+
+/// Writes vectors, RTL, testbench, run script and cocotb test; returns the files.
+///
+/// `sh DIR/run.sh` runs the testbench under Icarus Verilog, `sh DIR/run.sh verilator` under
+/// Verilator; both end non-zero at the first difference.
+///
+/// # Errors
+/// As [`write_vectors`].
+pub fn write_rtl<F: Fp>(
+    dir: &Path,
+    settings: &ExportSettings<F>,
+    pairs: &[Pair<F>],
+) -> Result<Vec<PathBuf>, FpgaError> {
+    let mut files = write_vectors(dir, settings, pairs)?;
+    let own = match settings.pipeline {
+        PipelineConfig::Rls(_) => RLS,
+        PipelineConfig::Lms(_) => LMS,
+    };
+    for (name, text) in SHARED.into_iter().chain(own) {
+        files.push(write_text(dir, name, text)?);
+    }
+    Ok(files)
+}

@@ -1,0 +1,26 @@
+//! Bit- and clock-exact models of the filter pipelines in the FPGA.
+//!
+//! Bits in, bits out: this module imports nothing of the crate, converts no units and knows no
+//! gyro. Each filter exists twice, as a pipeline that advances clock by clock over explicit
+//! memories and registers, and as a clock-less engine with the same words. They share neither
+//! control nor storage, and the tests hold them together to the last bit.
+//!
+//! * [`float_unit`]: number formats and their rounding; [`memory`]: single-port RAM.
+//! * [`front_end`]: from a sample stream to the pairs a core takes.
+//! * [`rls`], [`lms`]: the pipelines and their clock-less engines.
+//! * [`health`]: what goes wrong inside and when. [`timing`]: clocks, units, rates.
+//! * [`probe`], [`trace`]: test points and per-clock records. [`export`]: vectors, waveforms, RTL.
+
+pub mod error;
+pub mod export;
+pub mod float_unit;
+pub mod front_end;
+pub mod health;
+pub mod lms;
+pub mod memory;
+pub mod probe;
+pub mod rls;
+pub mod timing;
+pub mod trace;
+
+pub use error::FpgaError;

@@ -1,0 +1,152 @@
+//! Table 1: three ways to build the filter.
+
+use super::{sample_period_us, sample_rate_max_khz};
+use crate::fpga::error::FpgaError;
+use crate::fpga::rls::{Division, check_tap_count};
+
+/// Way of building the filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Design {
+    /// Everything at once, one clock per sample.
+    Parallel,
+    /// One operation at a time: read, operate, write.
+    Serial,
+    /// The alternate-storage multiply-accumulate pipeline.
+    Pipeline,
+}
+
+impl Design {
+    /// Name in tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Parallel => "parallel",
+            Self::Serial => "serial",
+            Self::Pipeline => "pipeline",
+        }
+    }
+}
+
+/// Where the numbers of a row come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// The paper's formulas.
+    Paper,
+    /// Operations counted from the equations as they must be computed.
+    Counted,
+}
+
+impl Basis {
+    /// Name in tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Counted => "counted",
+        }
+    }
+}
+
+/// One row of Table 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimingRow {
+    /// Way of building the filter.
+    pub design: Design,
+    /// Origin of the numbers.
+    pub basis: Basis,
+    /// Clocks per sample.
+    pub clocks: u64,
+    /// Multipliers.
+    pub multipliers: u64,
+    /// Dividers.
+    pub dividers: u64,
+    /// Adders.
+    pub adders: u64,
+    /// Time per sample in us at the given clock.
+    pub sample_period_us: f64,
+    /// Largest sample rate in kHz at the given clock. The parallel row takes its one clock at
+    /// its word; a chain of multiplies, adds and a divide does not settle in 25 ns.
+    pub sample_rate_max_khz: f64,
+}
+
+/// Table 1 for any tap count: the paper's formulas, then the honest count.
+///
+/// Paper: parallel 1 clock, `1+2p+3p^2` multipliers, `2-p+2p^2` adders, 1 divider; serial
+/// `9+3p+15p^2` clocks; pipeline `4+6p+5p^2` clocks; one unit of each kind in the last two. Its
+/// serial count is three clocks per multiply or add of its parallel count, without the division.
+///
+/// Counted, reciprocal division: `4p^2+3p` multiplications (`p^2` more when forgetting),
+/// `3p^2+p` additions, 1 division. Element division: `p^2` divisions instead of `p^2` of the
+/// multiplications. Serial: three clocks for each of them, the division included.
+///
+/// * `forgets`: whether alpha differs from 1; `clock_mhz`: > 0, finite.
+///
+/// # Errors
+/// [`FpgaError::TapCount`], [`FpgaError::OutOfRange`] for the clock.
+pub fn table(
+    tap_count: usize,
+    division: Division,
+    forgets: bool,
+    clock_mhz: f64,
+) -> Result<[TimingRow; 6], FpgaError> {
+    check_tap_count(tap_count)?;
+    check_clock(clock_mhz)?;
+    let p = tap_count as u64;
+    let squared = p * p;
+    let (mut multiplies, divides) = match division {
+        Division::Reciprocal => (4 * squared + 3 * p, 1),
+        Division::Element => (3 * squared + 3 * p, squared),
+    };
+    if forgets {
+        multiplies += squared;
+    }
+    let additions = 3 * squared + p;
+    let paper_multiplies = 1 + 2 * p + 3 * squared;
+    let paper_additions = 2 + 2 * squared - p;
+    let pipeline = 4 + 6 * p + 5 * squared;
+    let row = |design, basis, clocks, [multipliers, dividers, adders]: [u64; 3]| TimingRow {
+        design,
+        basis,
+        clocks,
+        multipliers,
+        dividers,
+        adders,
+        sample_period_us: sample_period_us(clocks, clock_mhz),
+        sample_rate_max_khz: sample_rate_max_khz(clocks, clock_mhz),
+    };
+    let paper_serial = 3 * (paper_multiplies + paper_additions);
+    let counted_serial = 3 * (multiplies + additions + divides);
+    let one_each = [1, 1, 1];
+    Ok([
+        row(
+            Design::Parallel,
+            Basis::Paper,
+            1,
+            [paper_multiplies, 1, paper_additions],
+        ),
+        row(Design::Serial, Basis::Paper, paper_serial, one_each),
+        row(Design::Pipeline, Basis::Paper, pipeline, one_each),
+        row(
+            Design::Parallel,
+            Basis::Counted,
+            1,
+            [multiplies, divides, additions],
+        ),
+        row(Design::Serial, Basis::Counted, counted_serial, one_each),
+        row(Design::Pipeline, Basis::Counted, pipeline, one_each),
+    ])
+}
+
+/// Refuses clocks that are not finite and positive.
+pub(in crate::fpga) fn check_clock(clock_mhz: f64) -> Result<(), FpgaError> {
+    if clock_mhz > 0.0 && clock_mhz.is_finite() {
+        Ok(())
+    } else {
+        Err(FpgaError::OutOfRange {
+            name: "clock",
+            value: clock_mhz,
+            range: "> 0 MHz and finite",
+            format: "binary64",
+        })
+    }
+}

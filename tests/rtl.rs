@@ -1,0 +1,369 @@
+//! The exported RTL under Icarus Verilog: same words, same trace, same memories.
+//!
+//! Without `iverilog` and `vvp` the tests print that they are skipped; with `CI=true` in the
+//! environment that is a failure.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use fogbench::fpga::export::{
+    ExportSettings, IntegerCodes, PipelineConfig, stimulus_pairs, write_rtl,
+};
+use fogbench::fpga::float_unit::{FlushToZero, Fp};
+use fogbench::fpga::front_end::{FrontEnd, Pair, UpdateSign};
+use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsSettings};
+use fogbench::fpga::rls::{Division, RlsConfig, RlsSettings};
+
+use crate::support::stimulus::{SETUPS, Setup, predictor_pairs, samples};
+
+/// Whether the programs are here; panics under CI=true if not.
+fn available(programs: &[&str]) -> bool {
+    let missing = programs
+        .iter()
+        .find(|program| Command::new(program).arg("-V").output().is_err());
+    let Some(program) = missing else {
+        return true;
+    };
+    let is_ci = std::env::var("CI").is_ok_and(|value| value == "true");
+    assert!(!is_ci, "{program} is needed under CI=true");
+    eprintln!("skipped: {program} is not installed");
+    false
+}
+
+/// Samples per set-up: everything in CI (some minutes of Icarus), or as many as
+/// `FOGBENCH_RTL_SAMPLES` says, else enough to notice a fault.
+fn sample_count(in_ci: usize, elsewhere: usize) -> usize {
+    if let Ok(text) = std::env::var("FOGBENCH_RTL_SAMPLES") {
+        let most: usize = text.parse().expect("FOGBENCH_RTL_SAMPLES is a count");
+        in_ci.min(most)
+    } else if std::env::var("CI").is_ok_and(|value| value == "true") {
+        in_ci
+    } else {
+        elsewhere
+    }
+}
+
+fn rls<F: Fp>(tap_count: usize, alpha: f64, division: Division) -> PipelineConfig<F> {
+    PipelineConfig::Rls(
+        RlsConfig::new(RlsSettings {
+            tap_count,
+            forgetting_factor: alpha,
+            initial_inverse_correlation: 1e4,
+            division,
+            update_sign: UpdateSign::Corrected,
+        })
+        .expect("settings are in range"),
+    )
+}
+
+fn settings<F: Fp>(pipeline: PipelineConfig<F>, trace_samples: usize) -> ExportSettings<F> {
+    ExportSettings {
+        pipeline,
+        clock_mhz: 40.0,
+        front_end: "one-step predictor: x = previous sample, d = sample".to_string(),
+        trace_samples,
+        codes: None,
+    }
+}
+
+fn run_script(dir: &Path) -> Output {
+    // From another directory, so that a dependence on the current one shows.
+    Command::new("sh")
+        .arg(dir.join("run.sh"))
+        .current_dir("/")
+        .output()
+        .expect("the program runs")
+}
+
+#[track_caller]
+fn assert_passes(dir: &Path) {
+    let output = run_script(dir);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success() && text.contains("PASS"),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+fn export_and_run<F: Fp>(pipeline: PipelineConfig<F>, pairs: &[Pair<F>], trace_samples: usize) {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    write_rtl(dir.path(), &settings(pipeline, trace_samples), pairs)
+        .expect("the folder is writable");
+    assert_passes(dir.path());
+}
+
+#[test]
+fn rtl_of_every_setup_has_the_words_and_every_clock_of_the_model() {
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    let traced = sample_count(1000, 50);
+    for Setup {
+        name,
+        alpha,
+        division,
+    } in SETUPS
+    {
+        let pairs = predictor_pairs::<f64>(name, sample_count(10_000, 200));
+        export_and_run(rls(4, alpha, division), &pairs, traced);
+    }
+}
+
+/// All set-ups of the given tap counts.
+fn check_tap_counts(tap_counts: &[usize]) {
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    for tap_count in tap_counts {
+        for Setup {
+            name,
+            alpha,
+            division,
+        } in SETUPS
+        {
+            let pairs = predictor_pairs::<f64>(name, sample_count(10_000, 20));
+            export_and_run(rls(*tap_count, alpha, division), &pairs, 10);
+        }
+    }
+}
+
+#[test]
+fn rtl_of_one_to_five_taps_has_the_words_of_the_model() {
+    check_tap_counts(&[1, 2, 3, 5]);
+}
+
+// Apart from the others because its clocks are more than half of all: the two run side by side.
+#[test]
+fn rtl_of_eight_taps_has_the_words_of_the_model() {
+    check_tap_counts(&[8]);
+}
+
+#[test]
+fn rtl_of_every_number_format_has_the_words_of_the_model() {
+    fn check<F: Fp>() {
+        let pairs = predictor_pairs::<F>("rocking", 100);
+        export_and_run(rls(4, 0.99, Division::Reciprocal), &pairs, 100);
+        // Small desired words bring subnormals, large inputs overflow.
+        let scale = if F::WIDTH == 64 { 1e-309 } else { 1e-39 };
+        let mut pairs = predictor_pairs::<F>("white", 60);
+        for pair in &mut pairs {
+            pair.desired = F::from_f64(pair.desired.to_f64() * scale);
+        }
+        pairs[50].input = F::from_f64(1.0 / scale);
+        export_and_run(rls(3, 1.0, Division::Element), &pairs, 60);
+    }
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    check::<f64>();
+    check::<f32>();
+    check::<FlushToZero<f64>>();
+    check::<FlushToZero<f32>>();
+}
+
+#[test]
+fn a_nan_takes_the_same_way_through_the_rtl() {
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    let mut pairs = predictor_pairs::<f64>("white", 8);
+    pairs[3].input = f64::NAN;
+    export_and_run(rls(4, 1.0, Division::Reciprocal), &pairs, 8);
+}
+
+#[test]
+fn rtl_of_lms_and_nlms_has_the_words_and_every_clock_of_the_model() {
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    for regularisation in [None, Some(1e-3)] {
+        for desired in [DesiredSource::MeanOfTwoNewest, DesiredSource::Port] {
+            for tap_count in [1, 10] {
+                let config = LmsConfig::new(LmsSettings {
+                    tap_count,
+                    step_size: 0.1,
+                    regularisation,
+                    desired,
+                    update_sign: UpdateSign::Corrected,
+                });
+                let pairs = predictor_pairs::<f64>("rocking", sample_count(10_000, 200));
+                let traced = sample_count(1000, 50);
+                export_and_run(PipelineConfig::Lms(config.unwrap()), &pairs, traced);
+            }
+        }
+    }
+}
+
+#[test]
+fn rtl_runs_under_verilator_where_it_is_installed() {
+    // Half a minute of C++ compilation: in CI only.
+    let is_ci = std::env::var("CI").is_ok_and(|value| value == "true");
+    if !is_ci || Command::new("verilator").arg("-V").output().is_err() {
+        eprintln!("skipped: runs in CI with verilator only");
+        return;
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let pairs = predictor_pairs::<f64>("rocking", 2000);
+    let pipeline = rls(4, 0.99, Division::Reciprocal);
+    write_rtl(dir.path(), &settings(pipeline, 100), &pairs).unwrap();
+    let output = Command::new("sh")
+        .arg(dir.path().join("run.sh"))
+        .arg("verilator")
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && text.contains("PASS"), "{text}");
+}
+
+#[test]
+fn a_wrong_vector_fails_and_is_named() {
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let pairs = predictor_pairs::<f64>("white", 5);
+    let pipeline = rls(4, 1.0, Division::Reciprocal);
+    for (file, place) in [
+        ("y.hex", "y"),
+        ("trace.csv", "ra_wdata"),
+        ("ram_final.hex", "final RAM"),
+    ] {
+        write_rtl(dir.path(), &settings(pipeline, 5), &pairs).unwrap();
+        assert_passes(dir.path());
+        // The last hexadecimal digit of the last word, or of the first word loaded, is changed.
+        let path = dir.path().join(file);
+        let text = fs::read_to_string(&path).unwrap();
+        let wrong = if file == "trace.csv" {
+            text.replacen("1,1,0,1,0000000000000000", "1,1,0,1,0000000000000001", 1)
+        } else {
+            let (head, last) = text.trim_end().rsplit_once('\n').unwrap();
+            let flipped = u64::from_str_radix(last, 16).unwrap() ^ 1;
+            format!("{head}\n{flipped:016x}\n")
+        };
+        assert_ne!(wrong, text);
+        fs::write(&path, wrong).unwrap();
+        let output = run_script(dir.path());
+        let printed = String::from_utf8_lossy(&output.stdout);
+        assert!(!output.status.success(), "{file}: {printed}");
+        for word in ["MISMATCH clock", "state", place, "expected", "got"] {
+            assert!(printed.contains(word), "{file}: no {word} in {printed}");
+        }
+    }
+}
+
+#[test]
+fn hexadecimal_files_are_complete_and_parameters_name_every_choice() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let signal = samples("static", 7);
+    let codes: Vec<i32> = (0..7).map(|k| 3 - k).collect();
+    let pairs = stimulus_pairs::<f64>(&signal, &mut FrontEnd::one_step_predictor()).unwrap();
+    let mut settings = settings(rls(4, 0.99, Division::Reciprocal), 2);
+    settings.codes = Some(IntegerCodes {
+        codes,
+        lsb: 1e-4,
+        unit: "deg/s".to_string(),
+    });
+    write_rtl(dir.path(), &settings, &pairs).unwrap();
+    let read = |name: &str| fs::read_to_string(dir.path().join(name)).unwrap();
+    for (name, lines) in [
+        ("in.hex", 14),
+        ("y.hex", 7),
+        ("ram_init.hex", 32),
+        ("ram_final.hex", 32),
+        ("in_codes.hex", 7),
+        ("trace.csv", 1 + 1 + 2 * 108),
+    ] {
+        let text = read(name);
+        assert_eq!(text.lines().count(), lines, "{name}");
+        assert!(text.ends_with('\n'), "{name}");
+    }
+    assert_eq!(read("in_codes.hex").lines().last(), Some("fffffffd"));
+    let first = u64::from_str_radix(read("in.hex").lines().nth(2).unwrap(), 16).unwrap();
+    assert_eq!(first, signal[0].to_bits());
+    let json: serde_json::Value = serde_json::from_str(&read("params.json")).unwrap();
+    assert_eq!(json["filter"], "rls");
+    assert_eq!(json["clocks_per_sample"], 108);
+    assert_eq!(json["latency_clocks"], 99);
+    assert_eq!(json["alpha_bits"], "3fefae147ae147ae");
+    assert_eq!(json["code_lsb"], 1e-4);
+    assert_eq!(json["subnormals"], "kept");
+    settings.codes.as_mut().unwrap().codes.pop();
+    let refused = write_rtl(dir.path(), &settings, &pairs).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "integer codes holds 6 values: expected 7, one per sample"
+    );
+    let refused = stimulus_pairs::<f64>(&[0.0, f64::INFINITY], &mut FrontEnd::one_step_predictor());
+    assert_eq!(
+        refused.unwrap_err().to_string(),
+        "stimulus sample 1 is inf: expected a finite number"
+    );
+}
+
+#[test]
+fn yosys_maps_the_control_machines() {
+    if !available(&["yosys"]) {
+        return;
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/fpga/export/rtl");
+    for (name, parameter) in [("rls_ctrl", "P"), ("lms_ctrl", "N")] {
+        let script = format!(
+            "read_verilog -sv {}; chparam -set {parameter} 4 {name}; \
+             synth_ice40 -top {name}; select -assert-none t:$_DLATCH_*; stat",
+            root.join(format!("{name}.v")).display()
+        );
+        let output = Command::new("yosys")
+            .args(["-p", &script])
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{text}");
+        assert!(
+            text.contains("SB_LUT4") && text.contains("SB_DFF"),
+            "{text}"
+        );
+    }
+}
+
+/// The arithmetic units as ports only: what a user replaces by units of their own.
+const BLACK_BOXES: &str = "\
+(* blackbox *) module fp_add #(parameter W = 64, parameter FTZ = 0)
+    (input [W-1:0] a, input [W-1:0] b, input sub, output [W-1:0] q); endmodule
+(* blackbox *) module fp_mul #(parameter W = 64, parameter FTZ = 0)
+    (input [W-1:0] a, input [W-1:0] b, output [W-1:0] q); endmodule
+(* blackbox *) module fp_div #(parameter W = 64, parameter FTZ = 0)
+    (input [W-1:0] a, input [W-1:0] b, output [W-1:0] q); endmodule
+";
+
+#[test]
+fn yosys_maps_the_datapaths_onto_distributed_memory() {
+    let is_ci = std::env::var("CI").is_ok_and(|value| value == "true");
+    if !is_ci || !available(&["yosys"]) {
+        eprintln!("skipped: runs in CI only");
+        return;
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/fpga/export/rtl");
+    let dir = tempfile::tempdir().unwrap();
+    let boxes = dir.path().join("boxes.v");
+    fs::write(&boxes, BLACK_BOXES).unwrap();
+    for name in ["rls", "lms"] {
+        let file = |suffix: &str| root.join(suffix).display().to_string();
+        let script = format!(
+            "read_verilog {} {} {} {}; synth_xilinx -flatten -top {name}_core; \
+             select -assert-count 1 t:fp_add; select -assert-count 1 t:fp_mul; stat",
+            boxes.display(),
+            file(&format!("{name}_core.v")),
+            file(&format!("{name}_ctrl.v")),
+            file("ram_sp.v"),
+        );
+        let output = Command::new("yosys")
+            .args(["-p", &script])
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{text}");
+        assert!(text.contains("RAM32M") && text.contains("FDRE"), "{text}");
+    }
+}
