@@ -245,7 +245,7 @@ fn verilator_rate(dir: &Path) -> Option<f64> {
                 "bench_top.v",
                 "rls_core.v",
                 "rls_ctrl.v",
-                "ram_sp.v",
+                "sp_ram.v",
                 "fp_sim.v",
                 "main.cpp",
             ])
