@@ -167,6 +167,8 @@
     reg [W-1:0]        row_ra_data, row_rb_data, row_p, row_acc, row_rr, row_den, row_y, row_e;
     reg [W-1:0]        row_rcp, row_d;
     reg [8*CHARS-1:0]  line;
+    // What follows the column E; a short one, because each row passes through it.
+    reg [8*128-1:0]    rest;
 
     // Idle rows do not count: a pause between samples is not part of the schedule.
     task read_row;
@@ -179,8 +181,8 @@
                     row_rb, row_rb_we, row_rb_data,
                     row_p, row_acc, row_rr, row_den, row_y, row_e);
                 row_extra = 0;
-                if (scanned == 14 && $fgets(line, trace_file) != 0)
-                    row_extra = $sscanf(line, ",%h,%h,%d,%d,%d", row_rcp, row_d, row_head,
+                if (scanned == 14 && $fgets(rest, trace_file) != 0)
+                    row_extra = $sscanf(rest, ",%h,%h,%d,%d,%d", row_rcp, row_d, row_head,
                                         row_i, row_j);
             end
             if (scanned != 14) begin
