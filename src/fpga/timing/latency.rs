@@ -145,7 +145,9 @@ impl Bound {
 /// RFR = p^2(2Lm+La+s) + max(0, Ld-Lm)      element division: p^2(Lm+Ld+La+s)
 /// T   = 1 + p*mac + mac + RFR + p*mac + mac + La + p(Lm+La)
 /// ```
-/// with `s` the clocks of the product with `1/alpha`. One clock each gives `4+6p+5p^2`.
+/// with `s` the clocks of the product with `1/alpha`: none at alpha = 1, and none if adder and
+/// multiplier take one clock each, however slow the divider is, because the RTL then chains
+/// subtraction and product. One clock each gives `4+6p+5p^2`.
 ///
 /// # Errors
 /// [`FpgaError::TapCount`], [`FpgaError::CountOutOfRange`].
