@@ -156,8 +156,8 @@ module bench_top(
     input clk, input rst, input in_valid, output in_ready, input [63:0] x, input [63:0] d,
     output out_valid, output [63:0] y
 );
-    rls_core #(.P(`FB_P), .W(64), .ONE(`FB_ONE), .ALPHA(`FB_ALPHA), .IALPHA(`FB_IALPHA),
-        .DELTA(`FB_DELTA)) core (.*);
+    rls_core #(.P(`VEC_TAPS), .ALPHA(`VEC_ALPHA), .IALPHA(`VEC_IALPHA), .DELTA(`VEC_DELTA),
+        .DIV_ELEM(`VEC_DIV_ELEM)) core (.*);
 endmodule
 "#;
 
@@ -209,14 +209,20 @@ fn output_of(command: &mut Command) -> Option<String> {
 
 /// Clocks per second of the testbench under Icarus, compilation left out.
 fn icarus_rate(dir: &Path, clocks: f64) -> Option<f64> {
-    output_of(Command::new("sh").arg(dir.join("run.sh")))?;
-    let start = Instant::now();
     output_of(
-        Command::new("vvp")
-            .arg("-n")
-            .arg(dir.join("build/tb.vvp"))
-            .arg(format!("+VEC_DIR={}", dir.display())),
+        Command::new("iverilog")
+            .args(["-g2012", "-Wno-timescale", "-s", "tb_rls", "-o", "tb.vvp"])
+            .args([
+                "tb_rls.v",
+                "rls_core.v",
+                "rls_ctrl.v",
+                "sp_ram.v",
+                "fp_sim.v",
+            ])
+            .current_dir(dir),
     )?;
+    let start = Instant::now();
+    output_of(Command::new("vvp").args(["-n", "tb.vvp"]).current_dir(dir))?;
     Some(clocks / start.elapsed().as_secs_f64())
 }
 
@@ -245,7 +251,7 @@ fn verilator_rate(dir: &Path) -> Option<f64> {
                 "bench_top.v",
                 "rls_core.v",
                 "rls_ctrl.v",
-                "ram_sp.v",
+                "sp_ram.v",
                 "fp_sim.v",
                 "main.cpp",
             ])

@@ -12,8 +12,10 @@ use fogbench::fpga::export::{
 };
 use fogbench::fpga::float_unit::{FlushToZero, Fp};
 use fogbench::fpga::front_end::{FrontEnd, Pair, UpdateSign};
-use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsSettings};
-use fogbench::fpga::rls::{Division, RlsConfig, RlsSettings};
+use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsEngine, LmsSettings};
+use fogbench::fpga::rls::{Division, RlsConfig, RlsEngine, RlsSettings};
+use fogbench::fpga::timing::{RlsLoad, UnitTiming, Units, lms_stalled_clocks, stalled_clocks};
+use fogbench::fpga::trace::hex;
 
 use crate::support::stimulus::{SETUPS, Setup, predictor_pairs, samples};
 
@@ -25,23 +27,26 @@ fn available(programs: &[&str]) -> bool {
     let Some(program) = missing else {
         return true;
     };
-    let is_ci = std::env::var("CI").is_ok_and(|value| value == "true");
-    assert!(!is_ci, "{program} is needed under CI=true");
+    assert!(!is_ci(), "{program} is needed under CI=true");
     eprintln!("skipped: {program} is not installed");
     false
 }
 
-/// Samples per set-up: everything in CI (some minutes of Icarus), or as many as
-/// `FOGBENCH_RTL_SAMPLES` says, else enough to notice a fault.
+/// Samples per set-up: everything in CI (some minutes of Icarus, which simulates about 65,000
+/// clocks per second), or at most `FOGBENCH_RTL_SAMPLES`; elsewhere enough to notice a fault.
 fn sample_count(in_ci: usize, elsewhere: usize) -> usize {
     if let Ok(text) = std::env::var("FOGBENCH_RTL_SAMPLES") {
         let most: usize = text.parse().expect("FOGBENCH_RTL_SAMPLES is a count");
         in_ci.min(most)
-    } else if std::env::var("CI").is_ok_and(|value| value == "true") {
+    } else if is_ci() {
         in_ci
     } else {
         elsewhere
     }
+}
+
+fn is_ci() -> bool {
+    std::env::var("CI").is_ok_and(|value| value == "true")
 }
 
 fn rls<F: Fp>(tap_count: usize, alpha: f64, division: Division) -> PipelineConfig<F> {
@@ -51,6 +56,23 @@ fn rls<F: Fp>(tap_count: usize, alpha: f64, division: Division) -> PipelineConfi
             forgetting_factor: alpha,
             initial_inverse_correlation: 1e4,
             division,
+            update_sign: UpdateSign::Corrected,
+        })
+        .expect("settings are in range"),
+    )
+}
+
+fn lms(
+    tap_count: usize,
+    regularisation: Option<f64>,
+    desired: DesiredSource,
+) -> PipelineConfig<f64> {
+    PipelineConfig::Lms(
+        LmsConfig::new(LmsSettings {
+            tap_count,
+            step_size: 0.1,
+            regularisation,
+            desired,
             update_sign: UpdateSign::Corrected,
         })
         .expect("settings are in range"),
@@ -67,31 +89,62 @@ fn settings<F: Fp>(pipeline: PipelineConfig<F>, trace_samples: usize) -> ExportS
     }
 }
 
-fn run_script(dir: &Path) -> Output {
+/// Runs the folder's script with variables of the environment and plusargs of the testbench.
+fn run_with(dir: &Path, variables: &[(&str, &str)], plusargs: &[&str]) -> Output {
     // From another directory, so that a dependence on the current one shows.
     Command::new("sh")
         .arg(dir.join("run.sh"))
+        .args(plusargs)
+        .envs(variables.iter().copied())
         .current_dir("/")
         .output()
         .expect("the program runs")
 }
 
+fn text_of(output: &Output) -> String {
+    let error = String::from_utf8_lossy(&output.stderr);
+    String::from_utf8_lossy(&output.stdout).into_owned() + &error
+}
+
+/// Asserts success and returns what the testbench prints about the run.
 #[track_caller]
-fn assert_passes(dir: &Path) {
-    let output = run_script(dir);
-    let text = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        output.status.success() && text.contains("PASS"),
-        "{text}{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+fn assert_passes_with(dir: &Path, variables: &[(&str, &str)], plusargs: &[&str]) -> String {
+    let output = run_with(dir, variables, plusargs);
+    let text = text_of(&output);
+    assert!(output.status.success() && text.contains("PASS"), "{text}");
+    text
+}
+
+#[track_caller]
+fn assert_passes(dir: &Path) -> String {
+    assert_passes_with(dir, &[], &[])
+}
+
+/// Words of the clock-less engine, as a vector file: the third opinion beside pipeline and RTL.
+fn words_at_once<F: Fp>(pipeline: PipelineConfig<F>, pairs: &[Pair<F>]) -> String {
+    let mut outputs = Vec::new();
+    match pipeline {
+        PipelineConfig::Rls(config) => RlsEngine::new(config).run(pairs, &mut outputs),
+        PipelineConfig::Lms(config) => LmsEngine::new(config).run(pairs, &mut outputs),
+    }
+    outputs.iter().map(|word| hex(*word) + "\n").collect()
 }
 
 fn export_and_run<F: Fp>(pipeline: PipelineConfig<F>, pairs: &[Pair<F>], trace_samples: usize) {
     let dir = tempfile::tempdir().expect("a temporary folder");
     write_rtl(dir.path(), &settings(pipeline, trace_samples), pairs)
         .expect("the folder is writable");
-    assert_passes(dir.path());
+    let by_clock = fs::read_to_string(dir.path().join("y.hex")).expect("the words are written");
+    assert!(by_clock == words_at_once(pipeline, pairs), "{pipeline:?}");
+    let report = assert_passes(dir.path());
+    let rows = trace_samples.min(pairs.len()) * pipeline.clocks_per_sample();
+    let samples = pairs.len();
+    for part in [
+        format!(" {samples} samples,"),
+        format!(" {rows} trace rows;"),
+    ] {
+        assert!(report.contains(&part), "no {part} in {report}");
+    }
 }
 
 #[test]
@@ -99,14 +152,14 @@ fn rtl_of_every_setup_has_the_words_and_every_clock_of_the_model() {
     if !available(&["iverilog", "vvp"]) {
         return;
     }
-    let traced = sample_count(1000, 50);
+    let traced = sample_count(1000, 20);
     for Setup {
         name,
         alpha,
         division,
     } in SETUPS
     {
-        let pairs = predictor_pairs::<f64>(name, sample_count(10_000, 200));
+        let pairs = predictor_pairs::<f64>(name, sample_count(10_000, 50));
         export_and_run(rls(4, alpha, division), &pairs, traced);
     }
 }
@@ -124,7 +177,7 @@ fn check_tap_counts(tap_counts: &[usize]) {
         } in SETUPS
         {
             let pairs = predictor_pairs::<f64>(name, sample_count(10_000, 20));
-            export_and_run(rls(*tap_count, alpha, division), &pairs, 10);
+            export_and_run(rls(*tap_count, alpha, division), &pairs, 0);
         }
     }
 }
@@ -179,28 +232,102 @@ fn rtl_of_lms_and_nlms_has_the_words_and_every_clock_of_the_model() {
         return;
     }
     for regularisation in [None, Some(1e-3)] {
-        for desired in [DesiredSource::MeanOfTwoNewest, DesiredSource::Port] {
-            for tap_count in [1, 10] {
-                let config = LmsConfig::new(LmsSettings {
-                    tap_count,
-                    step_size: 0.1,
-                    regularisation,
-                    desired,
-                    update_sign: UpdateSign::Corrected,
-                });
-                let pairs = predictor_pairs::<f64>("rocking", sample_count(10_000, 200));
-                let traced = sample_count(1000, 50);
-                export_and_run(PipelineConfig::Lms(config.unwrap()), &pairs, traced);
-            }
+        for (tap_count, desired, most) in [
+            (10, DesiredSource::MeanOfTwoNewest, 10_000),
+            (10, DesiredSource::Port, 1000),
+            (1, DesiredSource::Port, 1000),
+        ] {
+            let count = sample_count(most, 60);
+            let pairs = predictor_pairs::<f64>("rocking", count);
+            let traced = sample_count(1000, 60);
+            export_and_run(lms(tap_count, regularisation, desired), &pairs, traced);
         }
     }
+}
+
+/// `period n` of the testbench's report.
+fn reported_period(report: &str) -> u64 {
+    let (_, after) = report.split_once("period ").expect("a period is printed");
+    let (digits, _) = after.split_once(',').expect("a comma follows");
+    digits.parse().expect("a number of clocks")
+}
+
+#[test]
+fn a_slow_divider_keeps_every_word_and_takes_the_clocks_of_the_timing_model() {
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    let pairs = predictor_pairs::<f64>("rocking", 6);
+    let units = |latency_clocks| Units {
+        divider: UnitTiming::iterative(latency_clocks),
+        ..Units::ONE_CLOCK
+    };
+    let dir = tempfile::tempdir().unwrap();
+    for (division, alpha) in [
+        (Division::Reciprocal, 1.0),
+        (Division::Reciprocal, 0.99),
+        (Division::Element, 1.0),
+        (Division::Element, 0.99),
+    ] {
+        write_rtl(dir.path(), &settings(rls(4, alpha, division), 6), &pairs).unwrap();
+        for latency in [10, 56] {
+            let variable = latency.to_string();
+            let report = assert_passes_with(dir.path(), &[("DIV_LATENCY", &variable)], &[]);
+            let load = RlsLoad {
+                tap_count: 4,
+                division,
+                forgets: alpha < 1.0,
+            };
+            let want = stalled_clocks(load, units(latency)).unwrap();
+            assert_eq!(reported_period(&report), want, "{division:?}, {latency}");
+        }
+    }
+    let nlms = lms(10, Some(1e-3), DesiredSource::MeanOfTwoNewest);
+    write_rtl(dir.path(), &settings(nlms, 6), &pairs).unwrap();
+    for latency in [10, 56] {
+        let variable = latency.to_string();
+        let report = assert_passes_with(dir.path(), &[("DIV_LATENCY", &variable)], &[]);
+        let want = lms_stalled_clocks(10, true, units(latency)).unwrap();
+        assert_eq!(reported_period(&report), want, "NLMS, {latency}");
+    }
+}
+
+#[test]
+fn pauses_a_withdrawn_strobe_and_a_black_box_change_no_word() {
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    let pairs = predictor_pairs::<f64>("white", 12);
+    let dir = tempfile::tempdir().unwrap();
+    let pipeline = rls(4, 0.99, Division::Reciprocal);
+    write_rtl(dir.path(), &settings(pipeline, 12), &pairs).unwrap();
+    let report = assert_passes_with(dir.path(), &[], &["+GAP=150", "+GAP_SEED=7", "+WITHDRAW"]);
+    assert!(!report.contains(" 2 idle;"), "no pause in {report}");
+    assert_passes_with(dir.path(), &[("BLACK_BOX", "1")], &["+GAP=3"]);
+}
+
+#[test]
+fn a_missing_simulator_and_missing_vectors_have_exit_codes_of_their_own() {
+    let dir = tempfile::tempdir().unwrap();
+    let pairs = predictor_pairs::<f64>("white", 2);
+    let pipeline = rls(2, 1.0, Division::Reciprocal);
+    write_rtl(dir.path(), &settings(pipeline, 0), &pairs).unwrap();
+    let missing = run_with(dir.path(), &[("SIM", "no-such-iverilog")], &[]);
+    assert_eq!(missing.status.code(), Some(127), "{}", text_of(&missing));
+    fs::remove_file(dir.path().join("params.vh")).unwrap();
+    let missing = run_with(dir.path(), &[], &[]);
+    assert_eq!(missing.status.code(), Some(2), "{}", text_of(&missing));
+    let refused = write_rtl(dir.path(), &settings(pipeline, 0), &[]).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "number of samples to export = 0 is out of range: expected at least 1"
+    );
 }
 
 #[test]
 fn rtl_runs_under_verilator_where_it_is_installed() {
     // Half a minute of C++ compilation: in CI only.
-    let is_ci = std::env::var("CI").is_ok_and(|value| value == "true");
-    if !is_ci || Command::new("verilator").arg("-V").output().is_err() {
+    if !is_ci() || Command::new("verilator").arg("-V").output().is_err() {
         eprintln!("skipped: runs in CI with verilator only");
         return;
     }
@@ -208,13 +335,7 @@ fn rtl_runs_under_verilator_where_it_is_installed() {
     let pairs = predictor_pairs::<f64>("rocking", 2000);
     let pipeline = rls(4, 0.99, Division::Reciprocal);
     write_rtl(dir.path(), &settings(pipeline, 100), &pairs).unwrap();
-    let output = Command::new("sh")
-        .arg(dir.path().join("run.sh"))
-        .arg("verilator")
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success() && text.contains("PASS"), "{text}");
+    assert_passes_with(dir.path(), &[("SIM", "verilator")], &[]);
 }
 
 #[test]
@@ -225,13 +346,14 @@ fn a_wrong_vector_fails_and_is_named() {
     let dir = tempfile::tempdir().expect("a temporary folder");
     let pairs = predictor_pairs::<f64>("white", 5);
     let pipeline = rls(4, 1.0, Division::Reciprocal);
+    write_rtl(dir.path(), &settings(pipeline, 5), &pairs).unwrap();
+    assert_passes(dir.path());
     for (file, place) in [
         ("y.hex", "y"),
         ("trace.csv", "ra_wdata"),
-        ("ram_final.hex", "final RAM"),
+        ("ram_final.hex", "RAMB[23]"),
     ] {
         write_rtl(dir.path(), &settings(pipeline, 5), &pairs).unwrap();
-        assert_passes(dir.path());
         // The last hexadecimal digit of the last word, or of the first word loaded, is changed.
         let path = dir.path().join(file);
         let text = fs::read_to_string(&path).unwrap();
@@ -244,10 +366,10 @@ fn a_wrong_vector_fails_and_is_named() {
         };
         assert_ne!(wrong, text);
         fs::write(&path, wrong).unwrap();
-        let output = run_script(dir.path());
-        let printed = String::from_utf8_lossy(&output.stdout);
-        assert!(!output.status.success(), "{file}: {printed}");
-        for word in ["MISMATCH clock", "state", place, "expected", "got"] {
+        let output = run_with(dir.path(), &[], &[]);
+        let printed = text_of(&output);
+        assert_eq!(output.status.code(), Some(1), "{file}: {printed}");
+        for word in ["MISMATCH", "clock", "state", place, "expected", "got"] {
             assert!(printed.contains(word), "{file}: no {word} in {printed}");
         }
     }
@@ -302,28 +424,41 @@ fn hexadecimal_files_are_complete_and_parameters_name_every_choice() {
     );
 }
 
+/// Number of cells of the statistics whose type starts with `kind`.
+fn cells(statistics: &str, kind: &str) -> usize {
+    let lines = statistics.lines().map(str::split_whitespace);
+    lines
+        .filter_map(|mut words| Some((words.next()?, words.next()?.parse::<usize>().ok()?)))
+        .filter(|(name, _)| name.starts_with(kind))
+        .map(|(_, count)| count)
+        .sum()
+}
+
 #[test]
-fn yosys_maps_the_control_machines() {
+fn yosys_maps_the_control_machines_onto_an_ice40() {
     if !available(&["yosys"]) {
         return;
     }
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/fpga/export/rtl");
-    for (name, parameter) in [("rls_ctrl", "P"), ("lms_ctrl", "N")] {
+    // Flip-flops: state 4, phase 1, row 2, column 2, ring slot 2, element address 5; LMS: state 4,
+    // tap 4, ring slot 4. The look-up tables depend a little on the version of yosys.
+    for (name, parameter, flip_flops, tables) in [
+        ("rls_ctrl", "P 4", 16, 70..=95),
+        ("lms_ctrl", "N 10", 12, 45..=70),
+    ] {
         let script = format!(
-            "read_verilog -sv {}; chparam -set {parameter} 4 {name}; \
-             synth_ice40 -top {name}; select -assert-none t:$_DLATCH_*; stat",
+            "read_verilog {}; chparam -set {parameter} {name}; synth_ice40 -top {name}; \
+             select -assert-none t:$_DLATCH_*; tee -o /dev/stderr stat",
             root.join(format!("{name}.v")).display()
         );
         let output = Command::new("yosys")
-            .args(["-p", &script])
+            .args(["-q", "-p", &script])
             .output()
             .unwrap();
-        let text = String::from_utf8_lossy(&output.stdout);
+        let text = text_of(&output);
         assert!(output.status.success(), "{text}");
-        assert!(
-            text.contains("SB_LUT4") && text.contains("SB_DFF"),
-            "{text}"
-        );
+        assert_eq!(cells(&text, "SB_DFF"), flip_flops, "{text}");
+        assert!(tables.contains(&cells(&text, "SB_LUT4")), "{text}");
     }
 }
 
@@ -333,14 +468,14 @@ const BLACK_BOXES: &str = "\
     (input [W-1:0] a, input [W-1:0] b, input sub, output [W-1:0] q); endmodule
 (* blackbox *) module fp_mul #(parameter W = 64, parameter FTZ = 0)
     (input [W-1:0] a, input [W-1:0] b, output [W-1:0] q); endmodule
-(* blackbox *) module fp_div #(parameter W = 64, parameter FTZ = 0)
-    (input [W-1:0] a, input [W-1:0] b, output [W-1:0] q); endmodule
+(* blackbox *) module fp_div #(parameter W = 64, parameter FTZ = 0, parameter LATENCY = 1)
+    (input clk, input rst, input req, input [W-1:0] a, input [W-1:0] b, output done,
+     output [W-1:0] q); endmodule
 ";
 
 #[test]
 fn yosys_maps_the_datapaths_onto_distributed_memory() {
-    let is_ci = std::env::var("CI").is_ok_and(|value| value == "true");
-    if !is_ci || !available(&["yosys"]) {
+    if !is_ci() || !available(&["yosys"]) {
         eprintln!("skipped: runs in CI only");
         return;
     }
@@ -356,7 +491,7 @@ fn yosys_maps_the_datapaths_onto_distributed_memory() {
             boxes.display(),
             file(&format!("{name}_core.v")),
             file(&format!("{name}_ctrl.v")),
-            file("ram_sp.v"),
+            file("sp_ram.v"),
         );
         let output = Command::new("yosys")
             .args(["-p", &script])

@@ -160,6 +160,11 @@ fn stalled_clocks_match_the_rtl_and_the_worked_table() {
         (clocks(Division::Reciprocal), clocks(Division::Element)),
         (165, 1020)
     );
+    // Forgetting costs a slow divider's owner nothing: the product with 1/alpha stays chained.
+    for division in [Division::Reciprocal, Division::Element] {
+        let clocks = |forgets| stalled_clocks(load(division, forgets), units("divider-10"));
+        assert_eq!(clocks(true).unwrap(), clocks(false).unwrap());
+    }
     assert_close(sample_rate_max_khz(2247, 40.0), 17.801_513, 1e-7, 0.0);
 }
 

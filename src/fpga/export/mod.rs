@@ -11,12 +11,15 @@
 //! | `in_codes.hex` | the gyro's integer codes, i32, if given (their LSB in `params.json`) |
 //! | `trace.csv` | per clock: state, memory ports, registers ([`crate::fpga::trace`]) |
 //! | `wave.vcd`, `wave.fst`, `states.gtkwfilter` | a window of clocks with readable states |
-//! | `*.v`, `*.vh`, `run.sh`, `test_pipeline.py` | RTL, testbench, script, cocotb test |
+//! | `params.vh` | the same for the testbench, as Verilog macros |
+//! | `*.v`, `*.vh`, `run.sh`, `test_cocotb.py` | RTL, testbench, script, cocotb test |
+//! | `README.txt` | how to run it, every format, how to put in units or a core of one's own |
 //!
 //! Hexadecimal files end in a newline: some simulators drop the last word otherwise.
 //!
 //! Checked by `rtl`, `waveform`.
 
+mod params;
 mod rtl;
 mod signals;
 mod vectors;

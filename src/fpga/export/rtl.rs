@@ -7,13 +7,15 @@ use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
 
-/// Sources of both pipelines.
-const SHARED: [(&str, &str); 5] = [
+/// Files of both pipelines.
+const SHARED: [(&str, &str); 7] = [
+    ("README.txt", include_str!("rtl/README.txt")),
     ("fp_sim.v", include_str!("rtl/fp_sim.v")),
-    ("ram_sp.v", include_str!("rtl/ram_sp.v")),
-    ("tb_body.vh", include_str!("rtl/tb_body.vh")),
+    ("sp_ram.v", include_str!("rtl/sp_ram.v")),
+    ("tb_common.vh", include_str!("rtl/tb_common.vh")),
+    ("tb_defaults.vh", include_str!("rtl/tb_defaults.vh")),
     ("run.sh", include_str!("rtl/run.sh")),
-    ("test_pipeline.py", include_str!("rtl/test_pipeline.py")),
+    ("test_cocotb.py", include_str!("rtl/test_cocotb.py")),
 ];
 
 const RLS: [(&str, &str); 3] = [
@@ -30,8 +32,8 @@ const LMS: [(&str, &str); 3] = [
 
 /// Writes vectors, RTL, testbench, run script and cocotb test; returns the files.
 ///
-/// `sh DIR/run.sh` runs the testbench under Icarus Verilog, `sh DIR/run.sh verilator` under
-/// Verilator; both end non-zero at the first difference.
+/// `sh DIR/run.sh` runs the testbench under Icarus Verilog, with `SIM=verilator` under Verilator;
+/// both end non-zero at the first difference. `README.txt` in the folder states the rest.
 ///
 /// # Errors
 /// As [`write_vectors`].

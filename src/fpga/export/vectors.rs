@@ -5,17 +5,14 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use super::params::{params_json, params_vh};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::{FrontEnd, Pair, UpdateSign};
-use crate::fpga::lms::{
-    DesiredSource, LmsConfig, LmsPipeline, lms_clocks_per_sample, lms_latency_clocks,
-};
+use crate::fpga::front_end::{FrontEnd, Pair};
+use crate::fpga::lms::{LmsConfig, LmsPipeline, lms_clocks_per_sample, lms_latency_clocks};
 use crate::fpga::probe::Probe;
-use crate::fpga::rls::{
-    Division, RlsConfig, RlsPipeline, rls_clocks_per_sample, rls_latency_clocks,
-};
-use crate::fpga::trace::{CSV_HEADER, Recorder, Window, hex, write_csv_line};
+use crate::fpga::rls::{RlsConfig, RlsPipeline, rls_clocks_per_sample, rls_latency_clocks};
+use crate::fpga::trace::{CSV_HEADER, ClockRecord, Recorder, Window, hex, write_csv_line};
 
 /// The pipeline to export.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,18 +149,19 @@ pub(super) fn simulate<F: Fp, Q: Probe<F>>(
 /// Writes stimulus, response, memory images, trace and parameters; returns the files.
 ///
 /// # Errors
-/// [`FpgaError::Length`] if the codes are not one per pair, [`FpgaError::Write`] if a file
-/// cannot be written.
+/// [`FpgaError::CountOutOfRange`] without pairs, [`FpgaError::Length`] if the codes are not one
+/// per pair, [`FpgaError::OutOfRange`] for the clock, [`FpgaError::Write`] if a file cannot be
+/// written.
 pub fn write_vectors<F: Fp>(
     dir: &Path,
     settings: &ExportSettings<F>,
     pairs: &[Pair<F>],
 ) -> Result<Vec<PathBuf>, FpgaError> {
-    check_codes(settings, pairs.len())?;
+    check_counts(settings, pairs.len())?;
     crate::fpga::timing::check_clock(settings.clock_mhz)?;
     fs::create_dir_all(dir).map_err(|cause| FpgaError::write(dir, cause))?;
     let trace_path = dir.join("trace.csv");
-    let (simulation, trace_clocks) = write_trace(&trace_path, settings, pairs)?;
+    let (simulation, trace_rows) = write_trace(&trace_path, settings, pairs)?;
 
     let stimulus: Vec<F> = pairs
         .iter()
@@ -186,14 +184,21 @@ pub fn write_vectors<F: Fp>(
         }
         files.push(write_text(dir, "in_codes.hex", &text)?);
     }
-    let json = params_json(settings, pairs.len(), trace_clocks);
+    let json = params_json(settings, pairs.len(), trace_rows);
     files.push(write_text(dir, "params.json", &json)?);
-    let header = params_vh(settings, pairs.len(), trace_clocks);
+    let header = params_vh(settings, pairs.len(), trace_rows);
     files.push(write_text(dir, "params.vh", &header)?);
     Ok(files)
 }
 
-fn check_codes<F>(settings: &ExportSettings<F>, want: usize) -> Result<(), FpgaError> {
+fn check_counts<F>(settings: &ExportSettings<F>, want: usize) -> Result<(), FpgaError> {
+    if want == 0 {
+        return Err(FpgaError::CountOutOfRange {
+            name: "number of samples to export",
+            value: 0,
+            range: "at least 1",
+        });
+    }
     match &settings.codes {
         Some(codes) if codes.codes.len() != want => Err(FpgaError::Length {
             name: "integer codes",
@@ -211,7 +216,8 @@ pub(super) fn write_text(dir: &Path, name: &str, text: &str) -> Result<PathBuf, 
     Ok(path)
 }
 
-/// Simulates while streaming the trace to its file; returns the clocks written.
+/// Simulates while streaming the trace to its file; returns the clocks written that do not idle,
+/// which are those a testbench compares.
 fn write_trace<F: Fp>(
     path: &Path,
     settings: &ExportSettings<F>,
@@ -220,11 +226,11 @@ fn write_trace<F: Fp>(
     let failed = |cause: std::io::Error| FpgaError::write(path, cause);
     let mut out = BufWriter::new(File::create(path).map_err(failed)?);
     writeln!(out, "{CSV_HEADER}").map_err(failed)?;
-    let mut clocks = 0;
+    let mut rows = 0;
     let mut outcome = Ok(());
     let window = settings.window(settings.trace_samples);
-    let mut recorder = Recorder::new(window, |record: &_| {
-        clocks += 1;
+    let mut recorder = Recorder::new(window, |record: &ClockRecord<F>| {
+        rows += u64::from(record.registers.state != 0);
         if outcome.is_ok() {
             outcome = write_csv_line(&mut out, record);
         }
@@ -232,125 +238,5 @@ fn write_trace<F: Fp>(
     let simulation = simulate(&settings.pipeline, pairs, &mut recorder);
     recorder.finish();
     outcome.and_then(|()| out.flush()).map_err(failed)?;
-    Ok((simulation, clocks))
-}
-
-/// Constants common to both parameter files: name and word.
-fn constants<F: Fp>(pipeline: &PipelineConfig<F>) -> Vec<(&'static str, F)> {
-    match pipeline {
-        PipelineConfig::Rls(config) => vec![
-            ("ONE", F::ONE),
-            ("ALPHA", config.alpha()),
-            ("IALPHA", config.inverse_alpha()),
-            ("DELTA", config.delta()),
-        ],
-        PipelineConfig::Lms(config) => vec![
-            ("ONE", F::ONE),
-            ("HALF", F::from_f64(0.5)),
-            ("MU", config.step_size()),
-            ("EPS", config.regularisation().unwrap_or(F::ZERO)),
-        ],
-    }
-}
-
-/// Settings common to both parameter files: name and number.
-fn choices<F: Fp>(pipeline: &PipelineConfig<F>) -> Vec<(&'static str, usize)> {
-    let (mut choices, sign) = match pipeline {
-        PipelineConfig::Rls(config) => {
-            let element = usize::from(config.division() == Division::Element);
-            let choices = vec![("P", config.tap_count()), ("ELEM", element)];
-            (choices, config.update_sign())
-        }
-        PipelineConfig::Lms(config) => {
-            let mean = usize::from(config.desired() == DesiredSource::MeanOfTwoNewest);
-            let choices = vec![
-                ("N", config.tap_count()),
-                ("NORMALISED", usize::from(config.is_normalised())),
-                ("MEAN", mean),
-            ];
-            (choices, config.update_sign())
-        }
-    };
-    choices.push(("AS_PRINTED", usize::from(sign == UpdateSign::AsPrinted)));
-    choices.push(("FTZ", usize::from(F::FLUSHES_SUBNORMALS)));
-    choices
-}
-
-/// Verilog definitions for the testbench.
-fn params_vh<F: Fp>(settings: &ExportSettings<F>, samples: usize, trace_clocks: u64) -> String {
-    let mut text = String::from("// Parameters of this export.\n");
-    let mut define = |name: &str, value: String| {
-        writeln!(text, "`define FB_{name} {value}").expect("writing to a string cannot fail");
-    };
-    define("W", F::WIDTH.to_string());
-    for (name, value) in choices(&settings.pipeline) {
-        define(name, value.to_string());
-    }
-    for (name, word) in constants(&settings.pipeline) {
-        define(name, format!("{}'h{}", F::WIDTH, hex(word)));
-    }
-    define("SAMPLES", samples.to_string());
-    define("TRACE_CLOCKS", trace_clocks.to_string());
-    text
-}
-
-/// Parameters for people and programs: numbers, their bits, and the choices behind the bits.
-fn params_json<F: Fp>(settings: &ExportSettings<F>, samples: usize, trace_clocks: u64) -> String {
-    let mut fields: Vec<(String, String)> = Vec::new();
-    let quote = |text: &str| format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""));
-    let mut add = |name: &str, value: String| fields.push((name.to_string(), value));
-    let filter = match &settings.pipeline {
-        PipelineConfig::Rls(_) => "rls",
-        PipelineConfig::Lms(_) => "lms",
-    };
-    add("filter", quote(filter));
-    add("format", quote(F::NAME));
-    add(
-        "rounding",
-        quote("nearest, ties to even, every operation alone"),
-    );
-    add("fused_multiply_add", "false".to_string());
-    add(
-        "subnormals",
-        quote(if F::FLUSHES_SUBNORMALS {
-            "flushed"
-        } else {
-            "kept"
-        }),
-    );
-    add("word_bits", F::WIDTH.to_string());
-    for (name, value) in choices(&settings.pipeline) {
-        add(&name.to_lowercase(), value.to_string());
-    }
-    if filter == "rls" {
-        add("alpha_first", "true".to_string());
-        add("update_order", quote("(t_i * t_j) first"));
-        add("gain", quote("R L with the updated R"));
-    }
-    for (name, word) in constants(&settings.pipeline) {
-        let name = name.to_lowercase();
-        add(&name, format!("{:e}", word.to_f64()));
-        add(&format!("{name}_bits"), quote(&hex(word)));
-    }
-    add("front_end", quote(&settings.front_end));
-    add("clock_mhz", format!("{}", settings.clock_mhz));
-    add(
-        "clocks_per_sample",
-        settings.pipeline.clocks_per_sample().to_string(),
-    );
-    add(
-        "latency_clocks",
-        settings.pipeline.latency_clocks().to_string(),
-    );
-    add("samples", samples.to_string());
-    add("trace_clocks", trace_clocks.to_string());
-    if let Some(codes) = &settings.codes {
-        add("code_lsb", format!("{:e}", codes.lsb));
-        add("code_unit", quote(&codes.unit));
-    }
-    let lines: Vec<String> = fields
-        .iter()
-        .map(|(name, value)| format!("  \"{name}\": {value}"))
-        .collect();
-    format!("{{\n{}\n}}\n", lines.join(",\n"))
+    Ok((simulation, rows))
 }

@@ -10,6 +10,7 @@ use fst_writer::{
 };
 use vcd::{IdCode, TimescaleUnit, VarType};
 
+use super::params::half_period_ps;
 use super::signals::{Kind, Sheet, Value};
 use super::vectors::{ExportSettings, PipelineConfig, simulate, write_text};
 use crate::fpga::error::FpgaError;
@@ -252,16 +253,6 @@ fn dump<F: Fp>(
         sink.clock_line(false)?;
     }
     Ok(())
-}
-
-/// Half a clock period in whole picoseconds, at least one.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a positive finite period; the cast saturates for clocks of absurd length"
-)]
-fn half_period_ps(clock_mhz: f64) -> u64 {
-    ((5e5 / clock_mhz).round() as u64).max(1)
 }
 
 /// State codes and names in the form GTKWave's translate filter reads.

@@ -79,16 +79,15 @@ impl Units {
         self.divider.check("divider latency")
     }
 
-    fn are_one_clock(self) -> bool {
-        [self.adder, self.multiplier, self.divider]
-            .iter()
-            .all(|unit| unit.latency_clocks == 1)
+    /// Whether subtraction and product with `1/alpha` fit one clock, as in the RTL.
+    fn chain(self) -> bool {
+        self.adder.latency_clocks == 1 && self.multiplier.latency_clocks == 1
     }
 
     /// Clocks by which the product with `1/alpha` lengthens an element's update: none if it is
     /// wired away (alpha = 1) or chained behind the subtraction within one clock.
     pub(super) fn forgetting_clocks(self, forgets: bool) -> u64 {
-        if forgets && !self.are_one_clock() {
+        if forgets && !self.chain() {
             self.multiplier.latency_clocks
         } else {
             0
@@ -146,7 +145,9 @@ impl Bound {
 /// RFR = p^2(2Lm+La+s) + max(0, Ld-Lm)      element division: p^2(Lm+Ld+La+s)
 /// T   = 1 + p*mac + mac + RFR + p*mac + mac + La + p(Lm+La)
 /// ```
-/// with `s` the clocks of the product with `1/alpha`. One clock each gives `4+6p+5p^2`.
+/// with `s` the clocks of the product with `1/alpha`: none at alpha = 1, and none if adder and
+/// multiplier take one clock each, however slow the divider is, because the RTL then chains
+/// subtraction and product. One clock each gives `4+6p+5p^2`.
 ///
 /// # Errors
 /// [`FpgaError::TapCount`], [`FpgaError::CountOutOfRange`].

@@ -1,136 +1,215 @@
-// Behavioural floating-point units: one clock, combinational, round to nearest even, no fusion.
-// For simulation only; replace them by your vendor's or an open-source unit of the same ports.
+// Behavioural floating-point units for simulation: fp_add, fp_mul, fp_div.
 //
-// W = 64 is IEEE 754 binary64, W = 32 binary32. FTZ = 1 reads subnormal operands as zero and
-// returns zero for subnormal results, with their sign. NaNs leave in the canonical form.
-// binary32 results go through binary64: rounding twice is harmless there, since 53 >= 2*24 + 2.
-`timescale 1ns/1ps
+// These three modules are the place for a vendor's or an open unit. What the pipelines need:
+//   fp_add, fp_mul  q = RN(a op b) within the clock (combinational);
+//   fp_div          q = RN(a / b); a and b are held while req is up; done rises in the clock in
+//                   which q is right, LATENCY clocks counted from the rise of req.
+// RN = round to nearest, ties to even. W = 64 is IEEE 754 binary64, W = 32 binary32. Every NaN
+// leaves as the canonical quiet NaN (sign 0, top fraction bit 1), as vendor units do. FTZ = 1
+// replaces subnormal operands and results by a zero of the same sign, as most vendor units do.
+//
+// binary32 is computed in binary64 and rounded again. For + - * / that double rounding is
+// harmless, because 53 >= 2*24 + 2 (Figueroa, SIGNUM Newsletter 30(3), 1995).
+`default_nettype none
 
-module fp_sim #(
-    parameter W = 64,
+// What the three units share. One file for all of them, so that it can be exchanged as a whole.
+/* verilator lint_off DECLFILENAME */
+module fp_unit #(
+    parameter W   = 64,
     parameter FTZ = 0,
-    parameter OPERATION = 0             // 0 add or subtract, 1 multiply, 2 divide
+    parameter OP  = 0               // 0 a+b, 1 a*b, 2 a/b
 ) (
+    input  wire         enable,     // q is +0 without
+    input  wire         negate,     // negates b first: a-b
     input  wire [W-1:0] a,
     input  wire [W-1:0] b,
-    input  wire         sub,
     output reg  [W-1:0] q
 );
-    // 2^-149, the smallest binary32 subnormal, is a normal binary64.
-    localparam [63:0] TINY = 64'h36a0_0000_0000_0000;
+    localparam EB = W == 64 ? 11 : 8;           // exponent bits
+    localparam FB = W - 1 - EB;                 // fraction bits
 
-    function [63:0] widen(input [63:0] v);
-        reg [10:0] exponent;
-        reg [31:0] fraction;
-        reg [63:0] magnitude;
+    // Both branches of the width tests below have to elaborate; only one is ever used.
+    /* verilator lint_off WIDTH */
+    /* verilator lint_off SELRANGE */
+
+    function [W-1:0] flush(input [W-1:0] word);
+        flush = FTZ != 0 && word[W-2:FB] == {EB{1'b0}} ? {word[W-1], {(W-1){1'b0}}} : word;
+    endfunction
+
+    function [W-1:0] canonical(input [W-1:0] word);
+        canonical = word[W-2:FB] == {EB{1'b1}} && word[FB-1:0] != {FB{1'b0}}
+                  ? {1'b0, {(EB+1){1'b1}}, {(FB-1){1'b0}}} : word;
+    endfunction
+
+    // Bits of the equal binary64 number: exact.
+    function [63:0] widen(input [31:0] word);
+        reg [10:0] e;
+        reg [23:0] f;
         begin
-            if (W == 64) begin
-                widen = v;
-                if (FTZ != 0 && v[62:52] == 0) widen = {v[63], 63'd0};
-            end else begin
-                fraction = {9'd0, v[22:0]};
-                exponent = {3'd0, v[30:23]} + 11'd896;
-                if (v[30:23] == 8'hff)
-                    widen = {v[31], 11'h7ff, v[22:0], 29'd0};
-                else if (v[30:23] != 0)
-                    widen = {v[31], exponent, v[22:0], 29'd0};
-                else if (FTZ != 0 || v[22:0] == 0)
-                    widen = {v[31], 63'd0};
-                else begin
-                    magnitude = $realtobits($itor(fraction) * $bitstoreal(TINY));
-                    widen = {v[31], magnitude[62:0]};
+            e = word[30:23] + 11'd896;
+            f = {1'b0, word[22:0]};
+            if (word[30:23] == 8'hff) e = 11'h7ff;
+            else if (word[30:0] == 31'd0) e = 11'd0;
+            else if (word[30:23] == 8'h00) begin
+                e = 11'd897;                    // subnormal: normalise
+                while (!f[23]) begin
+                    f = f << 1;
+                    e = e - 11'd1;
                 end
+            end
+            widen = {word[31], e, f[22:0], 29'd0};
+        end
+    endfunction
+
+    // Nearest binary32 of a binary64 number, ties to even.
+    function [31:0] narrow(input [63:0] word);
+        integer      e, shift;
+        reg   [53:0] f, kept, rest, half;
+        begin
+            e = word[62:52] - 896;
+            f = {1'b0, word[62:52] != 11'd0, word[51:0]};
+            if (word[62:52] == 11'h7ff)
+                narrow = {word[63], 8'hff, word[51:0] != 52'd0, 22'd0};
+            else begin
+                shift = e > 0 ? 29 : 30 - e;    // results below 2^-126 lose more bits
+                if (shift > 54) shift = 54;
+                if (e < 1) e = 1;
+                kept = f >> shift;
+                rest = f - (kept << shift);
+                half = 54'd1 << (shift - 1);
+                if (rest > half || (rest == half && kept[0])) kept = kept + 54'd1;
+                // A carry out of the fraction raises the exponent, also from subnormal.
+                kept = kept + (e - 1 << 23);
+                if (kept >= 54'h7f800000) kept = 54'h7f800000;
+                narrow = {word[63], kept[30:0]};
             end
         end
     endfunction
 
-    function [63:0] narrow(input [63:0] v);
-        reg [52:0] significand;
-        reg [31:0] rounded;
-        reg guard, sticky;
-        integer shift;
-        begin
-            if (W == 64) begin
-                narrow = v;
-                if (v[62:52] == 11'h7ff && v[51:0] != 0) narrow = 64'h7ff8_0000_0000_0000;
-                else if (FTZ != 0 && v[62:52] == 0) narrow = {v[63], 63'd0};
-            end else begin
-                rounded = 0;
-                if (v[62:52] == 11'h7ff)
-                    rounded = (v[51:0] != 0) ? 32'h7fc0_0000 : {v[63], 8'hff, 23'd0};
-                else begin
-                    significand = {1'b1, v[51:0]};
-                    shift = 897 - v[62:52];
-                    if (shift <= 0) begin
-                        // Normal: the rounding carry may run into the exponent, up to infinity.
-                        rounded = {1'b0, 8'd1, v[51:29]} + ((0 - shift) << 23);
-                        guard = v[28];
-                        sticky = |v[27:0];
-                        if (v[62:52] >= 1151) begin
-                            rounded = 32'h7f80_0000;
-                            guard = 0;
-                            sticky = 0;
-                        end
-                    end else if (shift <= 24) begin
-                        rounded = significand >> (29 + shift);
-                        guard = significand[28 + shift];
-                        sticky = |(significand & ((53'd1 << (28 + shift)) - 53'd1));
-                    end else begin
-                        guard = 0;
-                        sticky = 0;
-                    end
-                    if (guard && (sticky || rounded[0])) rounded = rounded + 1;
-                    if (FTZ != 0 && rounded[30:23] == 0) rounded = 0;
-                    rounded[31] = v[63];
-                end
-                narrow = {32'd0, rounded};
-            end
-        end
+    function real value(input [W-1:0] word);
+        value = $bitstoreal(W == 64 ? word : widen(word));
+    endfunction
+
+    function [W-1:0] bits(input real number);
+        bits = W == 64 ? $realtobits(number) : narrow($realtobits(number));
     endfunction
 
     generate
         if (W == 64 && FTZ == 0) begin : plain
-            // The same without conversions, for speed.
-            reg [63:0] bits;
+            // The same without the conversions, which do nothing here: twice as fast.
+            reg [63:0] r;
             always @* begin
-                if (OPERATION == 1) bits = $realtobits($bitstoreal(a) * $bitstoreal(b));
-                else if (OPERATION == 2) bits = $realtobits($bitstoreal(a) / $bitstoreal(b));
-                else if (sub) bits = $realtobits($bitstoreal(a) - $bitstoreal(b));
-                else bits = $realtobits($bitstoreal(a) + $bitstoreal(b));
-                if (&bits[62:52] && |bits[51:0]) bits = 64'h7ff8_0000_0000_0000;
-                q = bits;
+                r = 64'd0;
+                if (enable)
+                    case (OP)
+                        0: if (negate) r = $realtobits($bitstoreal(a) - $bitstoreal(b));
+                           else        r = $realtobits($bitstoreal(a) + $bitstoreal(b));
+                        1:             r = $realtobits($bitstoreal(a) * $bitstoreal(b));
+                        default:       r = $realtobits($bitstoreal(a) / $bitstoreal(b));
+                    endcase
+                if (&r[62:52] && |r[51:0]) r = 64'h7ff8000000000000;
+                q = r;
             end
         end else begin : converted
-            real x, z, r;
-            reg [63:0] bits;
+            reg [W-1:0] fa, fb;
             always @* begin
-                x = $bitstoreal(widen({{(64 - W){1'b0}}, a}));
-                z = $bitstoreal(widen({{(64 - W){1'b0}}, b}));
-                if (OPERATION == 1) r = x * z;
-                else if (OPERATION == 2) r = x / z;
-                else if (sub) r = x - z;
-                else r = x + z;
-                bits = narrow($realtobits(r));
-                q = bits[W-1:0];
+                fa = flush(a);
+                fb = flush({b[W-1] ^ negate, b[W-2:0]});
+                q  = {W{1'b0}};
+                if (enable)
+                    case (OP)
+                        0:       q = flush(canonical(bits(value(fa) + value(fb))));
+                        1:       q = flush(canonical(bits(value(fa) * value(fb))));
+                        default: q = flush(canonical(bits(value(fa) / value(fb))));
+                    endcase
             end
         end
     endgenerate
+
+    /* verilator lint_on SELRANGE */
+    /* verilator lint_on WIDTH */
+
+`ifdef WAVE
+    real a_real, b_real, q_real;
+    always @* a_real = value(a);
+    always @* b_real = value(b);
+    always @* q_real = value(q);
+`endif
 endmodule
 
-module fp_add #(parameter W = 64, parameter FTZ = 0) (
-    input wire [W-1:0] a, input wire [W-1:0] b, input wire sub, output wire [W-1:0] q
+// q = a + b, or a - b if sub.
+module fp_add #(
+    parameter W   = 64,
+    parameter FTZ = 0
+) (
+    input  wire [W-1:0] a,
+    input  wire [W-1:0] b,
+    input  wire         sub,
+    output wire [W-1:0] q
 );
-    fp_sim #(.W(W), .FTZ(FTZ), .OPERATION(0)) unit (.a(a), .b(b), .sub(sub), .q(q));
+    fp_unit #(.W(W), .FTZ(FTZ), .OP(0)) unit (
+        .enable(1'b1), .negate(sub), .a(a), .b(b), .q(q));
+`ifdef WAVE
+    /* verilator lint_off UNUSED */
+    real a_real, b_real, q_real;
+    /* verilator lint_on UNUSED */
+    always @(unit.a_real) a_real = unit.a_real;
+    always @(unit.b_real) b_real = unit.b_real;
+    always @(unit.q_real) q_real = unit.q_real;
+`endif
 endmodule
 
-module fp_mul #(parameter W = 64, parameter FTZ = 0) (
-    input wire [W-1:0] a, input wire [W-1:0] b, output wire [W-1:0] q
+// q = a * b.
+module fp_mul #(
+    parameter W   = 64,
+    parameter FTZ = 0
+) (
+    input  wire [W-1:0] a,
+    input  wire [W-1:0] b,
+    output wire [W-1:0] q
 );
-    fp_sim #(.W(W), .FTZ(FTZ), .OPERATION(1)) unit (.a(a), .b(b), .sub(1'b0), .q(q));
+    fp_unit #(.W(W), .FTZ(FTZ), .OP(1)) unit (
+        .enable(1'b1), .negate(1'b0), .a(a), .b(b), .q(q));
+`ifdef WAVE
+    /* verilator lint_off UNUSED */
+    real a_real, b_real, q_real;
+    /* verilator lint_on UNUSED */
+    always @(unit.a_real) a_real = unit.a_real;
+    always @(unit.b_real) b_real = unit.b_real;
+    always @(unit.q_real) q_real = unit.q_real;
+`endif
 endmodule
 
-module fp_div #(parameter W = 64, parameter FTZ = 0) (
-    input wire [W-1:0] a, input wire [W-1:0] b, output wire [W-1:0] q
+// q = a / b, right when done; LATENCY clocks, 1 = combinational.
+module fp_div #(
+    parameter W       = 64,
+    parameter FTZ     = 0,
+    parameter LATENCY = 1
+) (
+    input  wire         clk,
+    input  wire         rst,
+    input  wire         req,
+    input  wire [W-1:0] a,
+    input  wire [W-1:0] b,
+    output wire         done,
+    output wire [W-1:0] q
 );
-    fp_sim #(.W(W), .FTZ(FTZ), .OPERATION(2)) unit (.a(a), .b(b), .sub(1'b0), .q(q));
+    reg [15:0] waited;
+    always @(posedge clk)
+        if (rst | ~req | done) waited <= 16'd0;
+        else waited <= waited + 16'd1;
+    assign done = req & ({16'd0, waited} == LATENCY - 1);
+
+    fp_unit #(.W(W), .FTZ(FTZ), .OP(2)) unit (
+        .enable(done), .negate(1'b0), .a(a), .b(b), .q(q));
+`ifdef WAVE
+    /* verilator lint_off UNUSED */
+    real a_real, b_real, q_real;
+    /* verilator lint_on UNUSED */
+    always @(unit.a_real) a_real = unit.a_real;
+    always @(unit.b_real) b_real = unit.b_real;
+    always @(unit.q_real) q_real = unit.q_real;
+`endif
 endmodule
+
+`default_nettype wire

@@ -1,110 +1,138 @@
-// LMS and NLMS pipeline on the structure of the RLS pipeline.
-`timescale 1ns/1ps
+// LMS or NLMS filter core on the structure of the RLS pipeline.
+//
+//              +--------------------------------------------------------+
+//  x, d ------>| RAMA  N words        L (ring)                          |
+//  in_valid -->| RAMB  N words        W                                 |---> out_valid
+//  in_ready <--| one multiplier, one adder, one divider (NLMS)          |---> y
+//              | registers P ACC RR DEN RCP D E Y XP; control lms_ctrl  |
+//              +--------------------------------------------------------+
+//
+// Word for word, with RN after every operation and j ascending:
+//   d    = (x + XP) * 0.5 with XP the previous x; D_PORT: the port d as it is
+//   den  = ((EPS + L_0*L_0) + L_1*L_1) + ...        NLMS
+//   y    = ((+0 + L_0*W_0) + ...                    weights before the update
+//   g    = (d - y) * MU                             NLMS: (d - y) * (MU/den)
+//   W_j  = W_j + L_j*g                              UPDATE_SUB: the sign the paper prints
+//
+// Reset: registers +0, DEN 1. The memories keep their contents under rst; they start at +0. y is
+// right from the clock with out_valid until the next one.
+`default_nettype none
 
 module lms_core #(
-    parameter N = 10,
-    parameter W = 64,
-    parameter FTZ = 0,
-    parameter NORMALISED = 0,
-    parameter MEAN = 1,                 // 1: d = (x + previous x) * 0.5; 0: the port d
-    parameter AS_PRINTED = 0,           // 1: W - mu*e*L as the paper prints it (diverges)
-    parameter [W-1:0] ONE = 0,
-    parameter [W-1:0] HALF = 0,
-    parameter [W-1:0] MU = 0,
-    parameter [W-1:0] EPS = 0
+    parameter         N           = 10,                     // taps, 1 to 64
+    parameter         W           = 64,                     // bits of a word: 64 or 32
+    // The binary64 defaults do not fit W = 32, which comes with constants of its own.
+    /* verilator lint_off WIDTH */
+    parameter [W-1:0] MU          = 64'h3fe999999999999a,   // step size
+    parameter [W-1:0] EPS         = 64'h3ff0000000000000,   // NLMS: added to L'L
+    /* verilator lint_on WIDTH */
+    parameter         NLMS        = 0,      // 1: normalised
+    parameter         D_PORT      = 0,      // 1: desired word from port d, not the mean
+    parameter         UPDATE_SUB  = 0,      // 1: W - L*g, as printed; diverges
+    parameter         FTZ         = 0,      // 1: units flush subnormals
+    parameter         DIV_LATENCY = 1       // clocks of the divider
 ) (
     input  wire         clk,
     input  wire         rst,
-    input  wire         in_valid,
+    input  wire         in_valid,   // hold x, d and in_valid until in_ready
     output wire         in_ready,
-    input  wire [W-1:0] x,
-    input  wire [W-1:0] d,
-    output wire         out_valid,
-    output wire [W-1:0] y
+    input  wire [W-1:0] x,          // regressor word
+    input  wire [W-1:0] d,          // desired word, used with D_PORT only
+    output wire         out_valid,  // one clock
+    output wire [W-1:0] y           // filtered word
 );
-    localparam CW = (N > 1) ? $clog2(N) : 1;
-    localparam [3:0] L_LOADING = 1, LL_READING = 2, LL_WRITING = 3, OUT_READING = 4,
-                     OUT_WRITING = 5, ERR = 6, GAIN = 7, LMW_READING = 8, LMW_WRITING = 9;
+    localparam AB = N > 1 ? $clog2(N) : 1;
+    /* verilator lint_off WIDTH */
+    localparam [W-1:0] ONE  = W == 64 ? 64'h3ff0000000000000 : 64'h3f800000;
+    localparam [W-1:0] HALF = W == 64 ? 64'h3fe0000000000000 : 64'h3f000000;
+    /* verilator lint_on WIDTH */
 
-    wire [3:0] state;
-    wire [CW-1:0] i, j, head, ra_addr, rb_addr;
-    wire ra_we, rb_we;
-    lms_ctrl #(.N(N), .NORMALISED(NORMALISED)) ctrl (
+    wire          ra_we, rb_we, p_en, acc_en, acc_first, acc_eps, rr_en, den_en, rcp_en;
+    wire          d_en, d_half, e_en, e_gain, y_en, div_req, div_done;
+    wire [AB-1:0] ra_addr, rb_addr;
+    wire [2:0]    mul_sel;
+    wire [1:0]    add_sel;
+    /* verilator lint_off UNUSED */
+    wire [3:0]    state;      // for the eye and the testbench
+    /* verilator lint_on UNUSED */
+    wire [W-1:0]  ra_rdata, rb_rdata, mul_q, add_q, div_q;
+    reg  [W-1:0]  p, acc, rr, den, rcp, dd, ee, yy, xp;
+
+    lms_ctrl #(.N(N), .NLMS(NLMS)) ctrl (
         .clk(clk), .rst(rst), .in_valid(in_valid), .in_ready(in_ready), .out_valid(out_valid),
-        .state(state), .i(i), .j(j), .head(head),
-        .ra_addr(ra_addr), .ra_we(ra_we), .rb_addr(rb_addr), .rb_we(rb_we)
-    );
+        .div_req(div_req), .div_done(div_done), .state(state),
+        .ra_addr(ra_addr), .ra_we(ra_we), .rb_addr(rb_addr), .rb_we(rb_we),
+        .mul_sel(mul_sel), .add_sel(add_sel), .p_en(p_en), .acc_en(acc_en),
+        .acc_first(acc_first), .acc_eps(acc_eps), .rr_en(rr_en), .den_en(den_en),
+        .rcp_en(rcp_en), .d_en(d_en), .d_half(d_half), .e_en(e_en), .e_gain(e_gain), .y_en(y_en));
 
-    wire [W-1:0] ra_rdata, rb_rdata, ra_wdata, rb_wdata, add_q, mul_q, div_q;
-    ram_sp #(.W(W), .DEPTH(N), .AW(CW)) rama (
-        .clk(clk), .we(ra_we), .addr(ra_addr), .wdata(ra_wdata), .rdata(ra_rdata)
-    );
-    ram_sp #(.W(W), .DEPTH(N), .AW(CW)) ramb (
-        .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_wdata), .rdata(rb_rdata)
-    );
+    sp_ram #(.W(W), .DEPTH(N), .AW(AB)) rama (
+        .clk(clk), .we(ra_we), .addr(ra_addr), .wdata(x), .rdata(ra_rdata));
 
-    reg [W-1:0] p, acc, rr, den, rcp, dd, ee, yy, xp;
+    sp_ram #(.W(W), .DEPTH(N), .AW(AB)) ramb (
+        .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(add_q), .rdata(rb_rdata));
+
+    wire [W-1:0] gain = NLMS != 0 ? rcp : MU;
+    fp_mul #(.W(W), .FTZ(FTZ)) mul (
+        .a(mul_sel == 3'd3 ? dd : mul_sel == 3'd4 ? ee : ra_rdata),
+        .b(mul_sel == 3'd0 ? rb_rdata : mul_sel == 3'd1 ? ra_rdata : mul_sel == 3'd2 ? ee
+         : mul_sel == 3'd3 ? HALF : gain),
+        .q(mul_q));
+
+    fp_add #(.W(W), .FTZ(FTZ)) add (
+        .a(add_sel == 2'd0 ? acc : add_sel == 2'd1 ? rr : add_sel == 2'd2 ? dd : x),
+        .b(add_sel == 2'd2 ? yy : add_sel == 2'd3 ? xp : p),
+        .sub(add_sel == 2'd2 || (add_sel == 2'd1 && UPDATE_SUB != 0)),
+        .q(add_q));
+
+    fp_div #(.W(W), .FTZ(FTZ), .LATENCY(DIV_LATENCY)) div (
+        .clk(clk), .rst(rst), .req(div_req), .a(MU), .b(den), .done(div_done), .q(div_q));
+
+    always @(posedge clk)
+        if (rst) begin
+            p   <= {W{1'b0}};
+            acc <= {W{1'b0}};
+            rr  <= {W{1'b0}};
+            den <= ONE;
+            rcp <= {W{1'b0}};
+            dd  <= {W{1'b0}};
+            ee  <= {W{1'b0}};
+            yy  <= {W{1'b0}};
+            xp  <= {W{1'b0}};
+        end else begin
+            if (p_en)   p   <= mul_q;
+            if (acc_en) acc <= !acc_first ? add_q : acc_eps ? EPS : {W{1'b0}};
+            if (rr_en)  rr  <= rb_rdata;
+            if (den_en) den <= add_q;
+            if (rcp_en) rcp <= div_q;
+            if (d_en) begin
+                dd <= D_PORT != 0 ? d : add_q;
+                xp <= x;
+            end else if (d_half && D_PORT == 0) dd <= mul_q;
+            if (e_en) ee <= add_q;
+            else if (e_gain) ee <= mul_q;
+            if (y_en)   yy  <= add_q;
+        end
+
     assign y = yy;
 
-    wire first = (j == 0);
-    wire [W-1:0] add_a = (state == L_LOADING) ? x : (state == ERR) ? dd
-                       : (state == LMW_WRITING) ? rr : acc;
-    wire [W-1:0] add_b = (state == L_LOADING) ? xp : (state == ERR) ? yy : p;
-    wire subtracts = (state == ERR) || ((AS_PRINTED != 0) && (state == LMW_WRITING));
-    fp_add #(.W(W), .FTZ(FTZ)) add (.a(add_a), .b(add_b), .sub(subtracts), .q(add_q));
-
-    wire [W-1:0] mul_a = (state == OUT_WRITING) ? dd : (state == GAIN) ? ee : ra_rdata;
-    wire [W-1:0] mul_b = (state == OUT_WRITING) ? HALF
-                       : (state == GAIN) ? ((NORMALISED != 0) ? rcp : MU)
-                       : (state == LMW_READING) ? ee
-                       : (state == LL_READING) ? ra_rdata : rb_rdata;
-    fp_mul #(.W(W), .FTZ(FTZ)) mul (.a(mul_a), .b(mul_b), .q(mul_q));
-
-    generate
-        if (NORMALISED != 0) begin : divider
-            fp_div #(.W(W), .FTZ(FTZ)) div (.a(MU), .b(den), .q(div_q));
-        end else begin : no_divider
-            assign div_q = 0;
-        end
-    endgenerate
-
-    assign ra_wdata = ra_we ? x : {W{1'b0}};
-    assign rb_wdata = rb_we ? add_q : {W{1'b0}};
-
-    always @(posedge clk) begin
-        if (rst) begin
-            p <= 0;
-            acc <= 0;
-            rr <= 0;
-            den <= ONE;
-            rcp <= 0;
-            dd <= 0;
-            ee <= 0;
-            yy <= 0;
-            xp <= 0;
-        end else begin
-            if (in_ready) begin
-                dd <= (MEAN != 0) ? add_q : d;
-                xp <= x;
-            end
-            if (state == LL_READING || state == OUT_READING) begin
-                p <= mul_q;
-                acc <= !first ? add_q : (state == LL_READING) ? EPS : {W{1'b0}};
-            end
-            if (state == LL_WRITING) den <= add_q;
-            if (state == OUT_WRITING) begin
-                yy <= add_q;
-                if (MEAN != 0) dd <= mul_q;
-            end
-            if (state == ERR) begin
-                ee <= add_q;
-                if (NORMALISED != 0) rcp <= div_q;
-            end
-            if (state == GAIN) ee <= mul_q;
-            if (state == LMW_READING) begin
-                p <= mul_q;
-                rr <= rb_rdata;
-            end
-        end
-    end
+`ifdef WAVE
+    // Readable twins of the binary64 words.
+    /* verilator lint_off UNUSED */
+    real x_real, d_real, p_real, acc_real, rr_real, den_real, rcp_real;
+    real dd_real, ee_real, yy_real;
+    /* verilator lint_on UNUSED */
+    always @* x_real   = W == 64 ? $bitstoreal(x) : 0.0;
+    always @* d_real   = W == 64 ? $bitstoreal(d) : 0.0;
+    always @* p_real   = W == 64 ? $bitstoreal(p) : 0.0;
+    always @* acc_real = W == 64 ? $bitstoreal(acc) : 0.0;
+    always @* rr_real  = W == 64 ? $bitstoreal(rr) : 0.0;
+    always @* den_real = W == 64 ? $bitstoreal(den) : 0.0;
+    always @* rcp_real = W == 64 ? $bitstoreal(rcp) : 0.0;
+    always @* dd_real  = W == 64 ? $bitstoreal(dd) : 0.0;
+    always @* ee_real  = W == 64 ? $bitstoreal(ee) : 0.0;
+    always @* yy_real  = W == 64 ? $bitstoreal(yy) : 0.0;
+`endif
 endmodule
+
+`default_nettype wire

@@ -1,119 +1,142 @@
-// RLS pipeline: control, two single-port memories, one adder, one multiplier, one divider.
-`timescale 1ns/1ps
+// RLS filter core: the alternate-storage multiply-accumulate pipeline.
+//
+//              +--------------------------------------------------------+
+//  x, d ------>| RAMA  2P words       L (ring) | t, then M              |
+//  in_valid -->| RAMB  2P+P*P words   W | t | R row by row              |---> out_valid
+//  in_ready <--| one multiplier, one adder, one divider                 |---> y
+//              | registers P ACC RR DEN RCP D E Y; control in rls_ctrl  |
+//              +--------------------------------------------------------+
+//
+// Word for word, with RN after every operation and j ascending:
+//   t_i  = ((+0 + L_0*R_i0) + L_1*R_i1) + ...
+//   den  = ((ALPHA + L_0*t_0) + L_1*t_1) + ...
+//   R_ij = (R_ij - (t_i*t_j)*(1/den)) * IALPHA      DIV_ELEM: (t_i*t_j)/den
+//   M_i  = ((+0 + L_0*R_i0) + ...                   updated R
+//   y    = ((+0 + L_0*W_0) + ...                    weights before the update
+//   W_i  = W_i + M_i*(d - y)                        UPDATE_SUB: the sign the paper prints
+// (t_i*t_j) first keeps R exactly symmetric; (t_i*rcp)*t_j diverges for ALPHA < 1.
+//
+// Reset: registers +0, DEN 1. The memories keep their contents under rst; their initial contents
+// are +0 and R = DELTA * I. y is right from the clock with out_valid until the next one.
+`default_nettype none
 
 module rls_core #(
-    parameter P = 4,
-    parameter W = 64,
-    parameter FTZ = 0,
-    parameter ELEM = 0,                 // 1: divide per element; 0: one reciprocal per sample
-    parameter AS_PRINTED = 0,           // 1: W - M*e as the paper prints it (diverges)
-    parameter [W-1:0] ONE = 0,
-    parameter [W-1:0] ALPHA = 0,
-    parameter [W-1:0] IALPHA = 0,
-    parameter [W-1:0] DELTA = 0
+    parameter         P           = 4,                      // taps, 1 to 64
+    parameter         W           = 64,                     // bits of a word: 64 or 32
+    // The binary64 defaults do not fit W = 32, which comes with constants of its own.
+    /* verilator lint_off WIDTH */
+    parameter [W-1:0] ALPHA       = 64'h3ff0000000000000,   // forgetting factor
+    parameter [W-1:0] IALPHA      = 64'h3ff0000000000000,   // RN(1 / ALPHA)
+    parameter [W-1:0] DELTA       = 64'h40c3880000000000,   // initial diagonal of R
+    /* verilator lint_on WIDTH */
+    parameter         DIV_ELEM    = 0,      // 0: one division per sample; 1: one per element
+    parameter         UPDATE_SUB  = 0,      // 1: W - M*e, as printed; diverges
+    parameter         FTZ         = 0,      // 1: units flush subnormals
+    parameter         DIV_LATENCY = 1       // clocks of the divider
 ) (
     input  wire         clk,
     input  wire         rst,
-    input  wire         in_valid,
+    input  wire         in_valid,   // hold x, d and in_valid until in_ready
     output wire         in_ready,
-    input  wire [W-1:0] x,
-    input  wire [W-1:0] d,
-    output wire         out_valid,
-    output wire [W-1:0] y
+    input  wire [W-1:0] x,          // regressor word
+    input  wire [W-1:0] d,          // desired word
+    output wire         out_valid,  // one clock
+    output wire [W-1:0] y           // filtered word
 );
-    localparam CW = (P > 1) ? $clog2(P) : 1;
-    localparam AW = $clog2(2 * P);
-    localparam BW = $clog2(2 * P + P * P);
-    localparam [3:0] RIL_LOADING = 1, RIL_READING = 2, RIL_WRITING = 3,
-                     LRL_READING = 4, LRL_WRITING = 5, RFR_READING = 6, RFR_WRITING = 7,
-                     RFM_READING = 8, RFM_WRITING = 9, OUT_READING = 10, OUT_WRITING = 11,
-                     RFW_READING = 12, RFW_WRITING = 13;
+    localparam RA = $clog2(2 * P);
+    localparam RB = $clog2(2 * P + P * P);
+    /* verilator lint_off WIDTH */
+    localparam [W-1:0] ONE = W == 64 ? 64'h3ff0000000000000 : 64'h3f800000;
+    /* verilator lint_on WIDTH */
 
-    wire [3:0] state;
-    wire [1:0] ph;
-    wire [CW-1:0] i, j, head;
-    wire [AW-1:0] ra_addr;
-    wire [BW-1:0] rb_addr;
-    wire ra_we, rb_we;
-    rls_ctrl #(.P(P)) ctrl (
+    wire          ra_we, ra_sel, rb_we, rb_sel, p_en, p_div, acc_en, acc_first, acc_alpha;
+    wire          rr_en, den_en, rcp_en, d_en, e_en, y_en, div_req, div_done;
+    wire [RA-1:0] ra_addr;
+    wire [RB-1:0] rb_addr;
+    wire [1:0]    mul_sel, add_sel;
+    /* verilator lint_off UNUSED */
+    wire [3:0]    state;      // for the eye and the testbench
+    /* verilator lint_on UNUSED */
+    wire [W-1:0]  ra_rdata, rb_rdata, mul_q, add_q, div_q;
+    reg  [W-1:0]  p, acc, rr, den, rcp, dd, ee, yy;
+
+    rls_ctrl #(.P(P), .DIV_ELEM(DIV_ELEM)) ctrl (
         .clk(clk), .rst(rst), .in_valid(in_valid), .in_ready(in_ready), .out_valid(out_valid),
-        .state(state), .ph(ph), .i(i), .j(j), .head(head),
-        .ra_addr(ra_addr), .ra_we(ra_we), .rb_addr(rb_addr), .rb_we(rb_we)
-    );
+        .div_req(div_req), .div_done(div_done), .state(state),
+        .ra_addr(ra_addr), .ra_we(ra_we), .ra_sel(ra_sel),
+        .rb_addr(rb_addr), .rb_we(rb_we), .rb_sel(rb_sel),
+        .mul_sel(mul_sel), .add_sel(add_sel), .p_en(p_en), .p_div(p_div),
+        .acc_en(acc_en), .acc_first(acc_first), .acc_alpha(acc_alpha), .rr_en(rr_en),
+        .den_en(den_en), .rcp_en(rcp_en), .d_en(d_en), .e_en(e_en), .y_en(y_en));
 
-    wire [W-1:0] ra_rdata, rb_rdata, ra_wdata, rb_wdata, add_q, mul_q, div_q;
-    ram_sp #(.W(W), .DEPTH(2 * P), .AW(AW)) rama (
-        .clk(clk), .we(ra_we), .addr(ra_addr), .wdata(ra_wdata), .rdata(ra_rdata)
-    );
-    ram_sp #(
-        .W(W), .DEPTH(2 * P + P * P), .AW(BW),
-        .FIRST(2 * P), .STEP(P + 1), .COUNT(P), .VALUE(DELTA)
-    ) ramb (
-        .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_wdata), .rdata(rb_rdata)
-    );
+    sp_ram #(.W(W), .DEPTH(2 * P)) rama (
+        .clk(clk), .we(ra_we), .addr(ra_addr), .wdata(ra_sel ? x : add_q), .rdata(ra_rdata));
 
-    reg [W-1:0] p, acc, rr, den, rcp, dd, ee, yy;
+    sp_ram #(.W(W), .DEPTH(2 * P + P * P), .DIAG_FIRST(2 * P), .DIAG_STRIDE(P + 1),
+             .DIAG_COUNT(P), .DIAG_WORD(DELTA)) ramb (
+        .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_sel ? mul_q : add_q), .rdata(rb_rdata));
+
+    // x * 1.0 = x for every word that leaves a unit: with ALPHA = 1 the multiplier is by-passed,
+    // so that subtract and multiply do not share a clock.
+    wire          scale = mul_sel == 2'd2;
+    wire          unity = IALPHA == ONE;
+    wire [W-1:0]  product;
+    fp_mul #(.W(W), .FTZ(FTZ)) mul (
+        .a(mul_sel == 2'd1 ? p : scale && !unity ? add_q : ra_rdata),
+        .b(mul_sel == 2'd1 ? rcp : mul_sel == 2'd3 ? ee : scale ? IALPHA : rb_rdata),
+        .q(product));
+    assign mul_q = scale && unity ? add_q : product;
+
+    fp_add #(.W(W), .FTZ(FTZ)) add (
+        .a(add_sel == 2'd0 ? acc : add_sel == 2'd2 ? dd : rr),
+        .b(add_sel == 2'd2 ? yy : p),
+        .sub(add_sel == 2'd1 || add_sel == 2'd2 || (add_sel == 2'd3 && UPDATE_SUB != 0)),
+        .q(add_q));
+
+    fp_div #(.W(W), .FTZ(FTZ), .LATENCY(DIV_LATENCY)) div (
+        .clk(clk), .rst(rst), .req(div_req), .a(DIV_ELEM != 0 ? p : ONE), .b(den),
+        .done(div_done), .q(div_q));
+
+    always @(posedge clk)
+        if (rst) begin
+            p   <= {W{1'b0}};
+            acc <= {W{1'b0}};
+            rr  <= {W{1'b0}};
+            den <= ONE;
+            rcp <= {W{1'b0}};
+            dd  <= {W{1'b0}};
+            ee  <= {W{1'b0}};
+            yy  <= {W{1'b0}};
+        end else begin
+            if (p_en)   p   <= p_div ? div_q : mul_q;
+            if (acc_en) acc <= !acc_first ? add_q : acc_alpha ? ALPHA : {W{1'b0}};
+            if (rr_en)  rr  <= rb_rdata;
+            if (den_en) den <= add_q;
+            if (rcp_en) rcp <= div_q;
+            if (d_en)   dd  <= d;
+            if (e_en)   ee  <= add_q;
+            if (y_en)   yy  <= add_q;
+        end
+
     assign y = yy;
 
-    wire accumulates = (state == RIL_READING) || (state == LRL_READING)
-                    || (state == RFM_READING) || (state == OUT_READING);
-    wire first = (j == 0);
-    wire scales = (state == RFR_READING) && (ph != 0);
-    wire forms_error = (state == RFW_READING) && (ph == 0);
-    wire corrects = (state == RFR_WRITING) || (state == RFW_WRITING);
-
-    // The adder continues a sum, forms the error, or corrects the latched word.
-    wire [W-1:0] add_a = forms_error ? dd : corrects ? rr : acc;
-    wire [W-1:0] add_b = forms_error ? yy : p;
-    wire subtracts = forms_error || (state == RFR_WRITING)
-                  || ((AS_PRINTED != 0) && (state == RFW_WRITING));
-    fp_add #(.W(W), .FTZ(FTZ)) add (.a(add_a), .b(add_b), .sub(subtracts), .q(add_q));
-
-    // The multiplier works on the memories' words, rescales a product, or applies 1/alpha.
-    wire [W-1:0] mul_a = (state == RFR_WRITING) ? add_q : scales ? p : ra_rdata;
-    wire [W-1:0] mul_b = (state == RFR_WRITING) ? IALPHA : scales ? rcp
-                       : (state == RFW_READING) ? ee : rb_rdata;
-    fp_mul #(.W(W), .FTZ(FTZ)) mul (.a(mul_a), .b(mul_b), .q(mul_q));
-
-    fp_div #(.W(W), .FTZ(FTZ)) div (.a((ELEM != 0) ? p : ONE), .b(den), .q(div_q));
-
-    // Write data is zero without write enable, so that traces compare as text.
-    assign ra_wdata = !ra_we ? {W{1'b0}} : (state == RIL_LOADING) ? x : add_q;
-    // Without forgetting the product with 1/alpha is wired away: x * 1 = x to the bit.
-    assign rb_wdata = !rb_we ? {W{1'b0}}
-                    : (state == RFR_WRITING && IALPHA != ONE) ? mul_q : add_q;
-
-    always @(posedge clk) begin
-        if (rst) begin
-            p <= 0;
-            acc <= 0;
-            rr <= 0;
-            den <= ONE;
-            rcp <= 0;
-            dd <= 0;
-            ee <= 0;
-            yy <= 0;
-        end else begin
-            if (in_ready) dd <= d;
-            if (accumulates) begin
-                p <= mul_q;
-                acc <= !first ? add_q : (state == LRL_READING) ? ALPHA : {W{1'b0}};
-            end
-            if (state == LRL_WRITING) den <= add_q;
-            if (state == RFR_READING && ph == 0) begin
-                p <= mul_q;
-                if (ELEM == 0 && i == 0 && j == 0) rcp <= div_q;
-            end
-            if (scales) begin
-                rr <= rb_rdata;
-                p <= (ELEM != 0) ? div_q : mul_q;
-            end
-            if (state == OUT_WRITING) yy <= add_q;
-            if (forms_error) ee <= add_q;
-            if (state == RFW_READING && ph != 0) begin
-                p <= mul_q;
-                rr <= rb_rdata;
-            end
-        end
-    end
+`ifdef WAVE
+    // Readable twins of the binary64 words.
+    /* verilator lint_off UNUSED */
+    real x_real, d_real, p_real, acc_real, rr_real, den_real, rcp_real;
+    real dd_real, ee_real, yy_real;
+    /* verilator lint_on UNUSED */
+    always @* x_real   = W == 64 ? $bitstoreal(x) : 0.0;
+    always @* d_real   = W == 64 ? $bitstoreal(d) : 0.0;
+    always @* p_real   = W == 64 ? $bitstoreal(p) : 0.0;
+    always @* acc_real = W == 64 ? $bitstoreal(acc) : 0.0;
+    always @* rr_real  = W == 64 ? $bitstoreal(rr) : 0.0;
+    always @* den_real = W == 64 ? $bitstoreal(den) : 0.0;
+    always @* rcp_real = W == 64 ? $bitstoreal(rcp) : 0.0;
+    always @* dd_real  = W == 64 ? $bitstoreal(dd) : 0.0;
+    always @* ee_real  = W == 64 ? $bitstoreal(ee) : 0.0;
+    always @* yy_real  = W == 64 ? $bitstoreal(yy) : 0.0;
+`endif
 endmodule
+
+`default_nettype wire

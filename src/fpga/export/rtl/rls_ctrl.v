@@ -1,153 +1,232 @@
-// Control machine of the RLS pipeline: states, counters, memory addresses and write enables.
-// Synthesizable; keeps no data, so the datapath can be replaced around it.
-// Clocks per sample back to back: 4 + 6P + 5P^2. One more after Idle.
-`timescale 1ns/1ps
+// Control of the RLS pipeline: 14 states, ring-buffer head, counters, memory addresses, selects.
+//
+//   in_valid --->|           |---> in_ready, out_valid
+//   div_done --->| rls_ctrl  |---> ra_addr, ra_we, rb_addr, rb_we      to the two memories
+//                |           |---> mul_sel, add_sel, *_en, div_req     to the data path
+//
+// Synthesizable Verilog-2005, any P from 1 to 64. No word of data passes through here, so the
+// data path and its floating-point units can be exchanged while addresses and selects stay.
+//
+// Clocks of a sample, clock 0 = RiL_loading, i and j from 0 to P-1, j fastest:
+//   RiL_loading  1          the regressor word enters the ring
+//   RiL_reading  P*P        t = R L, one product per clock; RiL_writing P (last sum, both memories)
+//   LRL_reading  P          den = alpha + L't;              LRL_writing 1
+//   RFR_reading  2*P*P      t_i*t_j, then division;         RFR_writing P*P (element of R)
+//   RFM_reading  P*P        M = R L with the updated R;     RFM_writing P
+//   Out_reading  P          y = W'L;                        Out_writing 1
+//   RFW_reading  1+P        e = d - y, then M_i*e;          RFW_writing P (weight)
+// Interval 5P^2 + 6P + 4 clocks back to back, one more after Idle. Latency 5P^2 + 4P + 3: from
+// RiL_loading to the clock in which out_valid is up. Reset is synchronous.
+//
+// Source: Ma et al., Chinese J. Lasers 49(21) 2106004 (2022), section 3: memory depths, unit
+// counts and clocks per state; the place of each operation within a state is derived from them.
+`default_nettype none
 
 module rls_ctrl #(
-    parameter P  = 4,                                   // taps, 1 to 64
-    parameter CW = (P > 1) ? $clog2(P) : 1,             // counter width
-    parameter AW = $clog2(2 * P),                       // RAMA address width
-    parameter BW = $clog2(2 * P + P * P)                // RAMB address width
+    parameter P        = 4,         // taps, 1 to 64
+    parameter DIV_ELEM = 0,         // 0: one division per sample; 1: one per element of R
+    parameter RA       = $clog2(2 * P),             // address bits of RAMA (derived)
+    parameter RB       = $clog2(2 * P + P * P)      // address bits of RAMB (derived)
 ) (
     input  wire          clk,
-    input  wire          rst,                           // synchronous
-    input  wire          in_valid,                      // hold until in_ready
+    input  wire          rst,
+    // A sample is taken in the clock in which in_valid and in_ready are both up. in_valid has to
+    // stay up until then; withdrawn before, the sample is not taken.
+    input  wire          in_valid,
     output wire          in_ready,
-    output wire          out_valid,
+    output wire          out_valid,   // one clock; Y holds the result from here on
+    // The divider may take several clocks: all registers hold while div_req waits for div_done.
+    output wire          div_req,
+    input  wire          div_done,
     output reg  [3:0]    state,
-    output reg  [1:0]    ph,                            // phase within an element or a tap
-    output reg  [CW-1:0] i,
-    output reg  [CW-1:0] j,
-    output reg  [CW-1:0] head,                          // slot of the newest L
-    output reg  [AW-1:0] ra_addr,
+    output reg  [RA-1:0] ra_addr,     // unused addresses are 0
     output wire          ra_we,
-    output reg  [BW-1:0] rb_addr,
-    output wire          rb_we
+    output wire          ra_sel,      // RAMA write word: 0 adder, 1 input x
+    output reg  [RB-1:0] rb_addr,
+    output wire          rb_we,
+    output wire          rb_sel,      // RAMB write word: 0 adder, 1 multiplier
+    output reg  [1:0]    mul_sel,     // 0 A*B, 1 P*RCP, 2 adder*IALPHA, 3 A*E
+    output reg  [1:0]    add_sel,     // 0 ACC+P, 1 RR-P, 2 D-Y, 3 RR+P
+    output wire          p_en,        // P   <- product
+    output wire          p_div,       // P   <- quotient instead (DIV_ELEM only)
+    output wire          acc_en,      // ACC <- sum
+    output wire          acc_first,   // ACC <- initial value instead ...
+    output wire          acc_alpha,   // ... which is ALPHA, not +0
+    output wire          rr_en,       // RR  <- RAMB
+    output wire          den_en,      // DEN <- sum
+    output wire          rcp_en,      // RCP <- quotient
+    output wire          d_en,        // D   <- input d
+    output wire          e_en,        // E   <- sum
+    output wire          y_en         // Y   <- sum
 );
-    localparam [3:0] IDLE = 0, RIL_LOADING = 1, RIL_READING = 2, RIL_WRITING = 3,
-                     LRL_READING = 4, LRL_WRITING = 5, RFR_READING = 6, RFR_WRITING = 7,
-                     RFM_READING = 8, RFM_WRITING = 9, OUT_READING = 10, OUT_WRITING = 11,
-                     RFW_READING = 12, RFW_WRITING = 13;
-    localparam [CW-1:0] LAST = P - 1;
+    localparam IB = P > 1 ? $clog2(P) : 1;   // bits of a tap index
 
-    reg [BW-1:0] n;                                     // element of R: i*P + j
-    wire last_i = (i == LAST);
-    wire last_j = (j == LAST);
-    wire [CW-1:0] next_head = (head == LAST) ? {CW{1'b0}} : head + 1'b1;
+    localparam [3:0] IDLE  = 4'd0,  LOAD  = 4'd1,
+                     RIL_R = 4'd2,  RIL_W = 4'd3,  LRL_R = 4'd4,  LRL_W = 4'd5,
+                     RFR_R = 4'd6,  RFR_W = 4'd7,  RFM_R = 4'd8,  RFM_W = 4'd9,
+                     OUT_R = 4'd10, OUT_W = 4'd11, RFW_R = 4'd12, RFW_W = 4'd13;
 
-    // Slot of tap j: (head - j) mod P.
-    wire [CW:0] difference = {1'b0, head} - {1'b0, j};
-    wire [CW:0] wrapped = difference + P;
-    wire [CW-1:0] slot = difference[CW] ? wrapped[CW-1:0] : difference[CW-1:0];
+    // Widths are cut on purpose: the derived address widths hold these constants.
+    /* verilator lint_off WIDTH */
+    localparam [IB-1:0] LAST     = P - 1;      // last tap
+    localparam [RA-1:0] A_SECOND = P;          // RAMA: second half, t then M
+    localparam [RB-1:0] B_T      = P;          // RAMB: t
+    localparam [RB-1:0] B_R      = 2 * P;      // RAMB: R, row by row
+    /* verilator lint_on WIDTH */
 
-    assign in_ready = (state == RIL_LOADING) && in_valid;
-    assign out_valid = (state == RFW_READING) && (ph == 0);
-    assign ra_we = in_ready || (state == RIL_WRITING) || (state == RFM_WRITING);
-    assign rb_we = (state == RIL_WRITING) || (state == RFR_WRITING) || (state == RFW_WRITING);
+    reg           second;   // RFR: second reading clock; RFW: the error is done
+    reg  [IB-1:0] i;        // row; tap in RFW
+    reg  [IB-1:0] j;        // column, tap of a dot product
+    reg  [IB-1:0] slot;     // ring slot of L_j, going down
+    // Ring slot of the newest regressor word. P steps down bring slot back to it, so that only the
+    // eye needs it: synthesis drops the register.
+    /* verilator lint_off UNUSED */
+    reg  [IB-1:0] head;
+    /* verilator lint_on UNUSED */
+    reg  [RB-1:0] element;  // RAMB address of R_ij
 
-    always @* begin
-        ra_addr = 0;
-        rb_addr = 0;
-        case (state)
-            RIL_LOADING: if (in_valid) ra_addr = next_head;
-            RIL_READING, RFM_READING: begin
-                ra_addr = slot;
-                rb_addr = 2 * P + n;
-            end
-            RIL_WRITING: begin
-                ra_addr = P + i;
-                rb_addr = P + i;
-            end
-            LRL_READING: begin
-                ra_addr = slot;
-                rb_addr = P + j;
-            end
-            RFR_READING: begin
-                if (ph == 0) ra_addr = P + i;
-                rb_addr = (ph == 0) ? P + j : 2 * P + n;
-            end
-            RFR_WRITING: rb_addr = 2 * P + n;
-            RFM_WRITING: ra_addr = P + i;
-            OUT_READING: begin
-                ra_addr = slot;
-                rb_addr = j;
-            end
-            RFW_READING: if (ph != 0) begin
-                ra_addr = P + i;
-                rb_addr = i;
-            end
-            RFW_WRITING: rb_addr = i;
-            default: ;
-        endcase
-    end
+    wire last_i = i == LAST;
+    wire last_j = j == LAST;
+    wire last   = last_i & last_j;
+    wire take   = (state == LOAD) & in_valid;
+    wire stall  = div_req & ~div_done;
 
-    always @(posedge clk) begin
+    // A dot product is being read: regressor word from RAMA, other factor from RAMB.
+    wire dot = (state == RIL_R) | (state == LRL_R) | (state == RFM_R) | (state == OUT_R);
+
+    wire [IB-1:0] head_next = slot == LAST ? {IB{1'b0}} : slot + 1'b1;
+    wire [IB-1:0] slot_next = slot == {IB{1'b0}} ? LAST : slot - 1'b1;
+    wire [IB-1:0] i_next    = last_i ? {IB{1'b0}} : i + 1'b1;
+    wire [IB-1:0] j_next    = last_j ? {IB{1'b0}} : j + 1'b1;
+
+    // The element counter runs through R once in each of RiL, RFR and RFM.
+    wire element_step = (state == RIL_R) | (state == RFR_W) | (state == RFM_R);
+    wire i_step = (state == RIL_W) | (state == RFM_W) | (state == RFW_W)
+                | ((state == RFR_W) & last_j);
+
+    always @(posedge clk)
         if (rst) begin
-            state <= IDLE;
-            ph <= 0;
-            i <= 0;
-            j <= 0;
-            n <= 0;
-            head <= LAST;
-        end else case (state)
-            IDLE: if (in_valid) state <= RIL_LOADING;
-            RIL_LOADING: if (in_valid) begin
-                head <= next_head;
-                state <= RIL_READING;
-            end else state <= IDLE;
-            RIL_READING, RFM_READING: begin
-                n <= n + 1'b1;
-                j <= last_j ? {CW{1'b0}} : j + 1'b1;
-                if (last_j) state <= (state == RIL_READING) ? RIL_WRITING : RFM_WRITING;
-            end
-            RIL_WRITING: begin
-                i <= last_i ? {CW{1'b0}} : i + 1'b1;
-                if (last_i) n <= 0;
-                state <= last_i ? LRL_READING : RIL_READING;
-            end
-            LRL_READING: begin
-                j <= last_j ? {CW{1'b0}} : j + 1'b1;
-                if (last_j) state <= LRL_WRITING;
-            end
-            LRL_WRITING: state <= RFR_READING;
-            RFR_READING: begin
-                ph <= ph + 1'b1;
-                if (ph != 0) state <= RFR_WRITING;
-            end
-            RFR_WRITING: begin
-                ph <= 0;
-                n <= n + 1'b1;
-                j <= last_j ? {CW{1'b0}} : j + 1'b1;
-                state <= RFR_READING;
-                if (last_j) begin
-                    i <= last_i ? {CW{1'b0}} : i + 1'b1;
-                    if (last_i) begin
-                        n <= 0;
-                        state <= RFM_READING;
-                    end
-                end
-            end
-            RFM_WRITING: begin
-                i <= last_i ? {CW{1'b0}} : i + 1'b1;
-                if (last_i) n <= 0;
-                state <= last_i ? OUT_READING : RFM_READING;
-            end
-            OUT_READING: begin
-                j <= last_j ? {CW{1'b0}} : j + 1'b1;
-                if (last_j) state <= OUT_WRITING;
-            end
-            OUT_WRITING: state <= RFW_READING;
-            RFW_READING: begin
-                ph <= ph + 1'b1;
-                if (ph != 0) state <= RFW_WRITING;
-            end
-            RFW_WRITING: begin
-                ph <= last_i ? 2'd0 : 2'd1;
-                i <= last_i ? {CW{1'b0}} : i + 1'b1;
-                if (!last_i) state <= RFW_READING;
-                else state <= in_valid ? RIL_LOADING : IDLE;
-            end
-            default: state <= IDLE;
+            state   <= IDLE;
+            second  <= 1'b0;
+            i       <= {IB{1'b0}};
+            j       <= {IB{1'b0}};
+            head    <= LAST;          // so that sample 0 goes to slot 0
+            slot    <= LAST;
+            element <= B_R;
+        end else if (!stall) begin
+            if (take) begin
+                head <= head_next;
+                slot <= head_next;
+            end else if (dot)
+                slot <= slot_next;
+            if (dot | (state == RFR_W)) j <= j_next;
+            if (i_step)                 i <= i_next;
+            if (element_step)           element <= last ? B_R : element + 1'b1;
+            second <= ((state == RFR_R) & ~second) | (state == RFW_R)
+                    | ((state == RFW_W) & ~last_i);
+            case (state)
+                IDLE:    state <= in_valid ? LOAD : IDLE;
+                LOAD:    state <= in_valid ? RIL_R : IDLE;
+                RIL_R:   state <= last_j ? RIL_W : RIL_R;
+                RIL_W:   state <= last_i ? LRL_R : RIL_R;
+                LRL_R:   state <= last_j ? LRL_W : LRL_R;
+                LRL_W:   state <= RFR_R;
+                RFR_R:   state <= second ? RFR_W : RFR_R;
+                RFR_W:   state <= last ? RFM_R : RFR_R;
+                RFM_R:   state <= last_j ? RFM_W : RFM_R;
+                RFM_W:   state <= last_i ? OUT_R : RFM_R;
+                OUT_R:   state <= last_j ? OUT_W : OUT_R;
+                OUT_W:   state <= RFW_R;
+                RFW_R:   state <= second ? RFW_W : RFW_R;
+                // Passing through Idle would cost a clock of the sample period.
+                RFW_W:   state <= !last_i ? RFW_R : in_valid ? LOAD : IDLE;
+                default: state <= IDLE;
+            endcase
+        end
+
+    // Tap indices widen to addresses with leading zeros.
+    /* verilator lint_off WIDTH */
+    always @* begin
+        ra_addr = {RA{1'b0}};
+        case (state)
+            LOAD:                       if (in_valid) ra_addr = head_next;
+            RIL_R, LRL_R, RFM_R, OUT_R: ra_addr = slot;
+            RIL_W, RFM_W:               ra_addr = A_SECOND + i;
+            RFR_R:                      if (!second) ra_addr = A_SECOND + i;
+            RFW_R:                      if (second) ra_addr = A_SECOND + i;
+            default:                    ;
+        endcase
+        rb_addr = {RB{1'b0}};
+        case (state)
+            RIL_R, RFM_R, RFR_W: rb_addr = element;
+            RIL_W:               rb_addr = B_T + i;
+            LRL_R:               rb_addr = B_T + j;
+            RFR_R:               rb_addr = second ? element : B_T + j;
+            OUT_R:               rb_addr = j;
+            RFW_R:               if (second) rb_addr = i;
+            RFW_W:               rb_addr = i;
+            default:             ;
+        endcase
+        case (state)
+            RFR_R:   mul_sel = {1'b0, second};
+            RFR_W:   mul_sel = 2'd2;
+            RFW_R:   mul_sel = 2'd3;
+            default: mul_sel = 2'd0;
+        endcase
+        case (state)
+            RFR_W:   add_sel = 2'd1;
+            RFW_R:   add_sel = 2'd2;
+            RFW_W:   add_sel = 2'd3;
+            default: add_sel = 2'd0;
         endcase
     end
+    /* verilator lint_on WIDTH */
+
+    assign in_ready  = state == LOAD;
+    assign out_valid = (state == RFW_R) & ~second;
+    assign ra_we     = take | (state == RIL_W) | (state == RFM_W);
+    assign ra_sel    = state == LOAD;
+    assign rb_we     = (state == RIL_W) | (state == RFR_W) | (state == RFW_W);
+    assign rb_sel    = state == RFR_W;
+    assign div_req   = (state == RFR_R)
+                     & (DIV_ELEM != 0 ? second : ~second & (i == {IB{1'b0}}) & (j == {IB{1'b0}}));
+    assign p_en      = (dot | (state == RFR_R) | ((state == RFW_R) & second)) & ~stall;
+    assign p_div     = (DIV_ELEM != 0) & second & (state == RFR_R);
+    assign acc_en    = dot;
+    assign acc_first = j == {IB{1'b0}};
+    assign acc_alpha = state == LRL_R;
+    assign rr_en     = ((state == RFR_R) | (state == RFW_R)) & second & ~stall;
+    assign den_en    = state == LRL_W;
+    assign rcp_en    = (DIV_ELEM == 0) & div_req & div_done;
+    assign d_en      = take;
+    assign e_en      = out_valid;
+    assign y_en      = state == OUT_W;
+
+`ifndef SYNTHESIS
+    // For waveforms only: the phase within an element or a tap, and the state in letters.
+    /* verilator lint_off UNUSED */
+    wire [1:0] ph = (state == RFR_W) | (state == RFW_W) ? 2'd2 : {1'b0, second};
+    reg [8*11-1:0] state_name;
+    /* verilator lint_on UNUSED */
+    always @*
+        case (state)
+            IDLE:    state_name = "Idle";
+            LOAD:    state_name = "RiL_loading";
+            RIL_R:   state_name = "RiL_reading";
+            RIL_W:   state_name = "RiL_writing";
+            LRL_R:   state_name = "LRL_reading";
+            LRL_W:   state_name = "LRL_writing";
+            RFR_R:   state_name = "RFR_reading";
+            RFR_W:   state_name = "RFR_writing";
+            RFM_R:   state_name = "RFM_reading";
+            RFM_W:   state_name = "RFM_writing";
+            OUT_R:   state_name = "Out_reading";
+            OUT_W:   state_name = "Out_writing";
+            RFW_R:   state_name = "RFW_reading";
+            RFW_W:   state_name = "RFW_writing";
+            default: state_name = "illegal";
+        endcase
+`endif
 endmodule
+
+`default_nettype wire

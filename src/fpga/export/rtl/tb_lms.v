@@ -1,18 +1,28 @@
-// Self-checking testbench of the LMS pipeline. Stops non-zero at the first difference.
-`timescale 1ns/1ps
+// Self-checking testbench of the LMS and NLMS pipelines; the checks are in tb_common.vh. Run by
+// run.sh. Plusargs as in tb_rls.v.
+`timescale 1ps/1ps
 `include "params.vh"
+`include "tb_defaults.vh"
+`define DUT lms
+`define VEC_NAME "lms"
 
 module tb_lms;
-    localparam W = `FB_W;
-    localparam DEPTH_A = `FB_N;
-    localparam DEPTH_B = `FB_N;
-    `include "tb_body.vh"
+    localparam W          = `VEC_WIDTH;
+    localparam N          = `VEC_TAPS;
+    localparam RAMA_WORDS = N;
+    localparam RAMB_WORDS = N;
+    localparam DIVISIONS  = `VEC_NLMS != 0 ? 1 : 0;
+
+    reg          clk, rst;
+    wire         strobe, in_ready, out_valid;
+    wire [W-1:0] x, d, y;
 
     lms_core #(
-        .N(`FB_N), .W(W), .FTZ(`FB_FTZ), .NORMALISED(`FB_NORMALISED), .MEAN(`FB_MEAN),
-        .AS_PRINTED(`FB_AS_PRINTED), .ONE(`FB_ONE), .HALF(`FB_HALF), .MU(`FB_MU), .EPS(`FB_EPS)
-    ) dut (
-        .clk(clk), .rst(rst), .in_valid(in_valid), .in_ready(in_ready), .x(x), .d(d),
-        .out_valid(out_valid), .y(y)
-    );
+        .N(N), .W(W), .MU(`VEC_MU), .EPS(`VEC_EPS), .NLMS(`VEC_NLMS), .D_PORT(`VEC_D_PORT),
+        .UPDATE_SUB(`VEC_UPDATE_SUB), .FTZ(`VEC_FTZ), .DIV_LATENCY(`VEC_DIV_LATENCY)
+    ) lms (
+        .clk(clk), .rst(rst), .in_valid(strobe), .in_ready(in_ready),
+        .x(x), .d(d), .out_valid(out_valid), .y(y));
+
+    `include "tb_common.vh"
 endmodule

@@ -1,18 +1,32 @@
-// Self-checking testbench of the RLS pipeline. Stops non-zero at the first difference.
-`timescale 1ns/1ps
+// Self-checking testbench of the RLS pipeline; the checks are in tb_common.vh. Run by run.sh.
+//
+// Plusargs: +VEC_DIR=folder of the vectors; +GAP=n clocks without strobe after each sample, or,
+// with +GAP_SEED=s, a random number of them from 0 to n; +WITHDRAW raises the strobe for one clock
+// before the first sample; +VCD=file, +VCD_FIRST=sample, +VCD_SAMPLES=count dump a window.
+`timescale 1ps/1ps
 `include "params.vh"
+`include "tb_defaults.vh"
+`define DUT rls
+`define VEC_NAME "rls"
 
 module tb_rls;
-    localparam W = `FB_W;
-    localparam DEPTH_A = 2 * `FB_P;
-    localparam DEPTH_B = 2 * `FB_P + `FB_P * `FB_P;
-    `include "tb_body.vh"
+    localparam W          = `VEC_WIDTH;
+    localparam P          = `VEC_TAPS;
+    localparam RAMA_WORDS = 2 * P;
+    localparam RAMB_WORDS = 2 * P + P * P;
+    localparam DIVISIONS  = `VEC_DIV_ELEM != 0 ? P * P : 1;
+
+    reg          clk, rst;
+    wire         strobe, in_ready, out_valid;
+    wire [W-1:0] x, d, y;
 
     rls_core #(
-        .P(`FB_P), .W(W), .FTZ(`FB_FTZ), .ELEM(`FB_ELEM), .AS_PRINTED(`FB_AS_PRINTED),
-        .ONE(`FB_ONE), .ALPHA(`FB_ALPHA), .IALPHA(`FB_IALPHA), .DELTA(`FB_DELTA)
-    ) dut (
-        .clk(clk), .rst(rst), .in_valid(in_valid), .in_ready(in_ready), .x(x), .d(d),
-        .out_valid(out_valid), .y(y)
-    );
+        .P(P), .W(W), .ALPHA(`VEC_ALPHA), .IALPHA(`VEC_IALPHA), .DELTA(`VEC_DELTA),
+        .DIV_ELEM(`VEC_DIV_ELEM), .UPDATE_SUB(`VEC_UPDATE_SUB), .FTZ(`VEC_FTZ),
+        .DIV_LATENCY(`VEC_DIV_LATENCY)
+    ) rls (
+        .clk(clk), .rst(rst), .in_valid(strobe), .in_ready(in_ready),
+        .x(x), .d(d), .out_valid(out_valid), .y(y));
+
+    `include "tb_common.vh"
 endmodule

@@ -1,0 +1,19 @@
+// Values a params.vh may leave out.
+`ifndef VEC_WIDTH
+`define VEC_WIDTH 64
+`endif
+`ifndef VEC_FTZ
+`define VEC_FTZ 0
+`endif
+`ifndef VEC_UPDATE_SUB
+`define VEC_UPDATE_SUB 0
+`endif
+`ifndef VEC_TRACE_CLOCKS
+`define VEC_TRACE_CLOCKS 0
+`endif
+`ifndef VEC_CLOCK_PS
+`define VEC_CLOCK_PS 25000
+`endif
+`ifndef VEC_DIV_LATENCY
+`define VEC_DIV_LATENCY 1
+`endif
