@@ -196,7 +196,7 @@ fn lost_digits_are_warned_of_by_word_format() {
     assert!(turning("10.0", "").is_empty());
     let single = turning("10.0", "number_format = \"binary32\"\n");
     assert!(single[0].contains("above 1e5"), "{single:?}");
-    let double = turning("1000.0", "");
+    let double = turning("10.0", "initial_inverse_correlation = 10.0\n");
     assert!(double[0].contains("above 1e10"), "{double:?}");
 }
 

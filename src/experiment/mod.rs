@@ -4,6 +4,7 @@
 //! `plan`, so that `check` and `run` refuse the same files.
 
 mod channel_filter;
+mod motion;
 mod pipeline_check;
 mod pipeline_export;
 mod pipeline_filter;

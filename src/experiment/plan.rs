@@ -1,22 +1,21 @@
 //! From scenario files to checked plans: the checks that need physics or metrics.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
+use super::motion::{motion, motion_extremes, rate_deg_per_h_max};
 use super::pipeline_check;
 use super::pipeline_settings::PipelineSettings;
 use crate::filters::{
     constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
 };
-use crate::gyro::{self, MotionExtremes};
-use crate::metrics::{self, Motion};
+use crate::gyro;
+use crate::metrics;
 use crate::scenario::{
     Fidelity, FilterKind, LmsFilterConfig, MotionConfig, Pipeline, Resolved, SamplesFormat,
-    Scenario, ScenarioError, ServoConfig, load_suite,
+    ScenarioError, load_suite,
 };
 use crate::signal::GyroFacts;
-use crate::turntable::{command_rate_max_rad_per_s, earth_rate_rad_per_s, step_indices};
-use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
 /// Metric that turns the divergence of a channel into an expected result.
 pub(super) const DIVERGED_AT: &str = "diverged_at_s";
@@ -140,72 +139,6 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
             warnings,
         }),
         _ => Err(errors),
-    }
-}
-
-/// Motion as the metrics see it; a staircase's last step counts from the start of the record.
-pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
-    match &scenario.turntable.motion {
-        MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
-        MotionConfig::Swing(swing) => Motion::Swing {
-            frequency_hz: swing.frequency_hz,
-        },
-        MotionConfig::Steps(steps) => {
-            let rates = &steps.rates_deg_per_s;
-            let last_step_index = step_indices(steps, 0.0, sample_period_s)
-                .last()
-                .map_or(0, |&index| usize::try_from(index).unwrap_or(usize::MAX));
-            let rise = match rates.as_slice() {
-                [.., before, last] => last - before,
-                _ => 0.0,
-            };
-            Motion::Steps {
-                last_step_index,
-                step_deg_per_h: deg_per_s_to_deg_per_h(rise),
-            }
-        }
-    }
-}
-
-/// Largest rate the configured motion puts on the input axis, deg/h.
-fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
-    let earth = rad_per_s_to_deg_per_h(earth_rate_rad_per_s(&scenario.turntable.site)).abs();
-    let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
-    earth + rad_per_s_to_deg_per_h(commanded)
-}
-
-/// The hardest motion on the input axis; the loop starts from zero rate, the servo settled.
-fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
-    let earth = earth_rate_rad_per_s(&scenario.turntable.site).abs();
-    let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
-    let (jump, acceleration) = match &scenario.turntable.motion {
-        MotionConfig::Static(_) => (0.0, 0.0),
-        MotionConfig::Swing(swing) => (0.0, TAU * swing.frequency_hz * commanded),
-        MotionConfig::Rotation(rotation) => {
-            let soft_start_s = rotation.soft_start_s.min(scenario.warm_up_s);
-            if soft_start_s > 0.0 {
-                (0.0, FRAC_PI_2 * commanded / soft_start_s)
-            } else {
-                (commanded, 0.0)
-            }
-        }
-        MotionConfig::Steps(steps) => {
-            let rates = &steps.rates_deg_per_s;
-            let first = rates.first().map_or(0.0, |rate| rate.abs());
-            let rises = rates.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-            let rise = deg_per_s_to_rad_per_s(rises.fold(0.0, f64::max));
-            let first = deg_per_s_to_rad_per_s(first);
-            match &scenario.turntable.servo {
-                ServoConfig::Ideal(_) => (rise.max(first), 0.0),
-                // The slope of the step response of a second-order servo stays below wn.
-                ServoConfig::SecondOrder(servo) => (first, TAU * servo.natural_frequency_hz * rise),
-            }
-        }
-    };
-    MotionExtremes {
-        rate_rad_per_s: earth + commanded,
-        jump_rad_per_s: earth + jump,
-        acceleration_rad_per_s2: acceleration,
     }
 }
 

@@ -6,8 +6,9 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
+use super::motion::motion;
 use super::pipeline_metrics;
-use super::plan::{DIVERGED_AT, Plan, motion};
+use super::plan::{DIVERGED_AT, Plan};
 use super::simulate::{Faults, RecordLength, Simulation, simulate};
 use super::suite::{Observer, SuiteError, VERSION};
 use crate::filters::Divergence;

@@ -92,7 +92,7 @@ pub fn support(
             "`{metric}` needs a record of at least {needed_s} s; this one has {duration_s} s"
         ));
     }
-    if INDEPENDENT.contains(&metric) || known.applies == Applies::Pipeline {
+    if is_independent(known) {
         return Ok(());
     }
     let samples = samples_in_record(duration_s, sample_period_s);
@@ -111,6 +111,11 @@ pub fn support(
         } => check_tail(metric, samples, *last_step_index),
         Motion::Steady => Ok(()),
     }
+}
+
+/// Whether a metric does not use the words of the record: a pipeline's figures and a few more.
+fn is_independent(known: &KnownMetric) -> bool {
+    known.applies == Applies::Pipeline || INDEPENDENT.contains(&known.name)
 }
 
 /// Whole samples in a duration; a duration made from a count gives that count back.
@@ -223,7 +228,7 @@ mod tests {
                 },
             ] {
                 let short = ask(known.name, 63.0 * PERIOD_S, &motion, true);
-                let refused = short.is_err() || INDEPENDENT.contains(&known.name);
+                let refused = short.is_err() || is_independent(known);
                 assert!(refused, "{} {motion:?}", known.name);
             }
         }

@@ -1,0 +1,75 @@
+//! The configured motion as the checks and the metrics need it.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use crate::gyro::MotionExtremes;
+use crate::metrics::Motion;
+use crate::scenario::{MotionConfig, Scenario, ServoConfig};
+use crate::turntable::{command_rate_max_rad_per_s, earth_rate_rad_per_s, step_indices};
+use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
+
+/// Motion as the metrics see it; a staircase's last step counts from the start of the record.
+pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
+    match &scenario.turntable.motion {
+        MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
+        MotionConfig::Swing(swing) => Motion::Swing {
+            frequency_hz: swing.frequency_hz,
+        },
+        MotionConfig::Steps(steps) => {
+            let rates = &steps.rates_deg_per_s;
+            let last_step_index = step_indices(steps, 0.0, sample_period_s)
+                .last()
+                .map_or(0, |&index| usize::try_from(index).unwrap_or(usize::MAX));
+            let rise = match rates.as_slice() {
+                [.., before, last] => last - before,
+                _ => 0.0,
+            };
+            Motion::Steps {
+                last_step_index,
+                step_deg_per_h: deg_per_s_to_deg_per_h(rise),
+            }
+        }
+    }
+}
+
+/// Largest rate the configured motion puts on the input axis, deg/h.
+pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
+    let earth = rad_per_s_to_deg_per_h(earth_rate_rad_per_s(&scenario.turntable.site)).abs();
+    let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
+    earth + rad_per_s_to_deg_per_h(commanded)
+}
+
+/// The hardest motion on the input axis; the loop starts from zero rate, the servo settled.
+pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
+    let earth = earth_rate_rad_per_s(&scenario.turntable.site).abs();
+    let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
+    let (jump, acceleration) = match &scenario.turntable.motion {
+        MotionConfig::Static(_) => (0.0, 0.0),
+        MotionConfig::Swing(swing) => (0.0, TAU * swing.frequency_hz * commanded),
+        MotionConfig::Rotation(rotation) => {
+            let soft_start_s = rotation.soft_start_s.min(scenario.warm_up_s);
+            if soft_start_s > 0.0 {
+                (0.0, FRAC_PI_2 * commanded / soft_start_s)
+            } else {
+                (commanded, 0.0)
+            }
+        }
+        MotionConfig::Steps(steps) => {
+            let rates = &steps.rates_deg_per_s;
+            let first = rates.first().map_or(0.0, |rate| rate.abs());
+            let rises = rates.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            let rise = deg_per_s_to_rad_per_s(rises.fold(0.0, f64::max));
+            let first = deg_per_s_to_rad_per_s(first);
+            match &scenario.turntable.servo {
+                ServoConfig::Ideal(_) => (rise.max(first), 0.0),
+                // The slope of the step response of a second-order servo stays below wn.
+                ServoConfig::SecondOrder(servo) => (first, TAU * servo.natural_frequency_hz * rise),
+            }
+        }
+    };
+    MotionExtremes {
+        rate_rad_per_s: earth + commanded,
+        jump_rad_per_s: earth + jump,
+        acceleration_rad_per_s2: acceleration,
+    }
+}
