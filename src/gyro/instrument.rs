@@ -1,12 +1,10 @@
 //! The gyro as the rest of the bench sees it.
 
 use crate::gyro::coil::Coil;
-use crate::gyro::controller::Controller;
-use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
 use crate::gyro::loop_model::LoopModel;
-use crate::gyro::modulator::Modulator;
 use crate::gyro::noise_budget::NoiseBudget;
+use crate::gyro::parts::Parts;
 use crate::gyro::rate_model::RateModel;
 use crate::random::Streams;
 use crate::scenario::{Fidelity, GyroConfig};
@@ -101,17 +99,13 @@ pub fn sample_period_s(config: &GyroConfig) -> f64 {
 /// # Errors
 /// Any [`GyroError`], as [`Gyro::new`].
 pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
-    let half_periods = config.output.half_periods_per_sample;
-    if half_periods < 2 || !half_periods.is_multiple_of(2) {
-        return Err(GyroError::OddOutputSample { half_periods });
-    }
-    let coil = Coil::new(&config.coil, &config.source);
-    let detector = Detector::new(config, &Modulator::new(&config.modulator))?;
-    let controller = Controller::new(
-        config.controller.loop_bandwidth_hz,
-        config.controller.loop_latency_periods,
-        coil.loop_period_s(),
-    )?;
+    let Parts {
+        half_periods,
+        coil,
+        detector,
+        controller,
+        ..
+    } = Parts::new(config)?;
     Ok(GyroFacts {
         scale_factor_s: coil.scale_factor_s,
         transit_time_us: s_to_us(coil.transit_time_s),

@@ -8,6 +8,7 @@ use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
 use crate::gyro::modulator::Modulator;
 use crate::gyro::noise_budget::NoiseBudget;
+use crate::gyro::parts::Parts;
 use crate::scenario::{Fidelity, GyroConfig, NoiseDraw};
 use crate::units::{
     deg_per_h_to_rad_per_s, deg_per_sqrt_h_to_rad_per_sqrt_s, rad_per_s_to_deg_per_h,
@@ -63,21 +64,19 @@ pub struct MotionExtremes {
 /// [`GyroError::RampTooCoarse`].
 ///
 /// # Source
-/// Slope: derived, Fourier series of the rounding error averaged over the noise; as in Carbone and
-/// Petri, IEEE Trans. Instrum. Meas. 43 (1994) 389. Others: derived.
+/// Derived; the slope from the Fourier series of the rounding error, averaged over the noise.
 pub fn cautions(
     config: &GyroConfig,
     fidelity: Fidelity,
     motion: &MotionExtremes,
 ) -> Result<Vec<String>, GyroError> {
-    let coil = Coil::new(&config.coil, &config.source);
-    let modulator = Modulator::new(&config.modulator);
-    let detector = Detector::new(config, &modulator)?;
-    let controller = Controller::new(
-        config.controller.loop_bandwidth_hz,
-        config.controller.loop_latency_periods,
-        coil.loop_period_s(),
-    )?;
+    let Parts {
+        coil,
+        modulator,
+        detector,
+        controller,
+        ..
+    } = Parts::new(config)?;
     let found = [
         fringe(config, fidelity, motion, &coil)?,
         phase_error(fidelity, motion, &coil, &controller)?,

@@ -6,6 +6,7 @@ use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
 use crate::gyro::loop_kernel::{LoopConstants, Registers, advance};
 use crate::gyro::modulator::Modulator;
+use crate::gyro::parts::Parts;
 use crate::gyro::rate_word::RateWord;
 use crate::gyro::sampler::{CombinedSampler, ExactSampler, Faults, Sampler, levels_per_ampere};
 use crate::gyro::slow_noise::SlowNoise;
@@ -67,18 +68,13 @@ impl LoopModel {
         simulated_time_s: f64,
         streams: &Streams,
     ) -> Result<Self, GyroError> {
-        let half_periods = config.output.half_periods_per_sample;
-        if half_periods < 2 || !half_periods.is_multiple_of(2) {
-            return Err(GyroError::OddOutputSample { half_periods });
-        }
-        let coil = Coil::new(&config.coil, &config.source);
-        let modulator = Modulator::new(&config.modulator);
-        let detector = Detector::new(config, &modulator)?;
-        let controller = Controller::new(
-            config.controller.loop_bandwidth_hz,
-            config.controller.loop_latency_periods,
-            coil.loop_period_s(),
-        )?;
+        let Parts {
+            half_periods,
+            coil,
+            modulator,
+            detector,
+            controller,
+        } = Parts::new(config)?;
         let count = f64::from(half_periods);
         let mut model = Self {
             coil,

@@ -30,6 +30,7 @@ mod loop_kernel;
 mod loop_model;
 mod modulator;
 mod noise_budget;
+mod parts;
 mod rate_matrices;
 mod rate_model;
 mod rate_word;

@@ -2,10 +2,9 @@
 
 use crate::gyro::coil::Coil;
 use crate::gyro::controller::Controller;
-use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
-use crate::gyro::modulator::Modulator;
 use crate::gyro::noise_budget::NoiseBudget;
+use crate::gyro::parts::Parts;
 use crate::gyro::rate_matrices::RateMatrices;
 use crate::gyro::rate_word::RateWord;
 use crate::gyro::slow_noise::SlowNoise;
@@ -45,17 +44,13 @@ impl RateModel {
         simulated_time_s: f64,
         streams: &Streams,
     ) -> Result<Self, GyroError> {
-        let half_periods = config.output.half_periods_per_sample;
-        if half_periods < 2 || !half_periods.is_multiple_of(2) {
-            return Err(GyroError::OddOutputSample { half_periods });
-        }
-        let coil = Coil::new(&config.coil, &config.source);
-        let detector = Detector::new(config, &Modulator::new(&config.modulator))?;
-        let controller = Controller::new(
-            config.controller.loop_bandwidth_hz,
-            config.controller.loop_latency_periods,
-            coil.loop_period_s(),
-        )?;
+        let Parts {
+            half_periods,
+            coil,
+            detector,
+            controller,
+            ..
+        } = Parts::new(config)?;
         let random_walk = deg_per_sqrt_h_to_rad_per_sqrt_s(
             NoiseBudget::new(&detector, &coil).total_deg_per_sqrt_h(),
         );
