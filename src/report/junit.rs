@@ -76,8 +76,8 @@ fn failed_channel(run: &RunOutcome, channel: &ChannelOutcome) -> Option<TestCase
 fn gate(run: &RunOutcome, verdict: &Verdict) -> TestCase {
     let limits = limits_text(verdict.min, verdict.max);
     let name = match &verdict.relative_to {
-        Some(other) => format!("{} relative to {other} in {limits}", verdict.metric),
-        None => format!("{} in {limits}", verdict.metric),
+        Some(other) => format!("{} relative to {other}, {limits}", verdict.metric),
+        None => format!("{}, {limits}", verdict.metric),
     };
     let message = format!("{}: {}", verdict.kind.as_str(), verdict.reason);
     let text = match &verdict.location {
