@@ -41,11 +41,9 @@ impl Exit {
 
 /// Prints what clap has to say (help and version are no errors) and gives its exit code.
 pub(super) fn usage(error: &clap::Error) -> ExitCode {
-    let wrong = error.use_stderr();
-    if error.print().is_err() {
-        return Exit::Io.code();
-    }
-    if wrong {
+    // Whoever closed the stream does not want to read it; the code stays what it is.
+    drop(error.print());
+    if error.use_stderr() {
         Exit::Usage.code()
     } else {
         Exit::Success.code()

@@ -55,22 +55,47 @@ pub(super) struct FilterOptions {
     #[arg(long, value_name = "P", default_value_t = 4)]
     pub(super) taps: usize,
     /// Clock of the hardware, MHz
-    #[arg(long, value_name = "F", default_value_t = 40.0)]
+    #[arg(
+        long,
+        value_name = "F",
+        allow_negative_numbers = true,
+        default_value_t = 40.0
+    )]
     pub(super) clock_mhz: f64,
     /// Where recursive least squares divides
     #[arg(long, value_enum, default_value_t = DivisionOption::Reciprocal)]
     pub(super) division: DivisionOption,
     /// Forgetting factor alpha, (0, 1]
-    #[arg(long, value_name = "A", default_value_t = 1.0)]
+    #[arg(
+        long,
+        value_name = "A",
+        allow_negative_numbers = true,
+        default_value_t = 1.0
+    )]
     pub(super) forgetting_factor: f64,
     /// Initial inverse correlation, in the inverse square of the words' unit
-    #[arg(long, value_name = "D", default_value_t = 7.716e-4)]
+    #[arg(
+        long,
+        value_name = "D",
+        allow_negative_numbers = true,
+        default_value_t = 7.716e-4
+    )]
     pub(super) initial_inverse_correlation: f64,
     /// Step size of least mean squares
-    #[arg(long, value_name = "MU", default_value_t = 0.8)]
+    #[arg(
+        long,
+        value_name = "MU",
+        allow_negative_numbers = true,
+        default_value_t = 0.8
+    )]
     pub(super) step_size: f64,
     /// Added to the energy of the input (nlms), in the square of the words' unit
-    #[arg(long, value_name = "E", default_value_t = 1.0)]
+    #[arg(
+        long,
+        value_name = "E",
+        allow_negative_numbers = true,
+        default_value_t = 1.0
+    )]
     pub(super) regularisation: f64,
     /// Words of the hardware
     #[arg(long, value_enum, default_value_t = FormatOption::Binary64)]
