@@ -46,15 +46,6 @@ impl MotionSegment {
     }
 }
 
-/// One channel of uniformly spaced rate words.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RateSeries {
-    /// Rate words, deg/h; index 0 is the first sample of the warm-up.
-    pub rate_deg_per_h: Vec<f64>,
-    /// Sample period, s.
-    pub sample_period_s: f64,
-}
-
 /// A filter as its outputs are judged: which input samples it weighs and what it aims at.
 ///
 /// Ages count whole samples before the instant a value is stamped; the output register is

@@ -128,12 +128,6 @@ impl LoopModel {
         self.registers.step_codes / self.codes_per_rad
     }
 
-    /// Ramp u, rad, in `[0, 2 pi)`.
-    #[must_use]
-    pub fn ramp_rad(&self) -> f64 {
-        self.registers.ramp_codes / self.codes_per_rad
-    }
-
     /// Resets of the ramp by 2 pi since the start.
     #[must_use]
     pub fn reset_count(&self) -> u64 {

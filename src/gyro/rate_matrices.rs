@@ -68,11 +68,6 @@ impl RateMatrices {
         }
     }
 
-    /// Number of unit normals one sample takes.
-    pub(super) fn normal_count(&self) -> usize {
-        self.state_count + 1
-    }
-
     /// Advances the state by one output sample and returns the mean register, rad.
     ///
     /// `phase_rad`: coefficients of the Sagnac phase in normalised time; `noise_rad`: standard

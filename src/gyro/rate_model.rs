@@ -85,12 +85,6 @@ impl RateModel {
         self.sample_period_s
     }
 
-    /// Normals drawn per rate word, slow noise not counted.
-    #[must_use]
-    pub fn normals_per_word(&self) -> usize {
-        self.matrices.normal_count()
-    }
-
     /// Rate word of the output sample over which the gyro moves as `segment`, deg/h.
     pub fn next_word(&mut self, segment: &MotionSegment) -> f64 {
         let scale = self.coil.scale_factor_s;

@@ -45,10 +45,10 @@ pub(crate) fn portable_place(place: &str) -> &str {
 
 /// One complaint about a scenario.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
-#[error("{}{message}", prefix(.location.as_ref()))]
+#[error("{location}: {message}")]
 pub struct ScenarioError {
-    /// Where it is wrong; `None` if no file is to blame.
-    pub location: Option<Location>,
+    /// Where it is wrong.
+    pub location: Location,
     /// What is wrong: key, value, unit, allowed range and the way out.
     pub message: String,
 }
@@ -58,22 +58,8 @@ impl ScenarioError {
     #[must_use]
     pub fn at(location: Location, message: impl Into<String>) -> Self {
         Self {
-            location: Some(location),
+            location,
             message: message.into(),
         }
     }
-
-    /// A complaint about no place in particular.
-    #[must_use]
-    pub fn general(message: impl Into<String>) -> Self {
-        Self {
-            location: None,
-            message: message.into(),
-        }
-    }
-}
-
-/// The location as the beginning of a line.
-fn prefix(location: Option<&Location>) -> String {
-    location.map_or_else(String::new, |location| format!("{location}: "))
 }
