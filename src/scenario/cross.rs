@@ -3,11 +3,11 @@
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
 use super::address;
-use super::config::MotionConfig;
 use super::defaults::default_of;
 use super::error::ScenarioError;
 use super::filter_config::{FilterKind, Pipeline};
 use super::resolved::Resolved;
+use super::turntable_config::MotionConfig;
 
 /// Channel names that mean something else.
 pub(crate) const RESERVED: [&str; 3] = ["raw", "truth", "time_s"];

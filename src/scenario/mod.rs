@@ -23,11 +23,11 @@ mod schema;
 mod source;
 mod suite;
 mod tree;
+mod turntable_config;
 
 pub use config::{
-    Fidelity, GateConfig, GateDecision, InconclusivePolicy, MotionConfig, OutputConfig,
-    PublishedConfig, RotationConfig, SamplesFormat, Scenario, SecondOrderServoConfig, ServoConfig,
-    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
+    Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
+    SamplesFormat, Scenario,
 };
 pub use defaults::reference_toml;
 pub(crate) use error::portable_place;
@@ -45,6 +45,10 @@ pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use suite::load_suite;
+pub use turntable_config::{
+    MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
+    StepsConfig, SwingConfig, TurntableConfig,
+};
 
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,7 @@
 
 use std::fmt::{self, Write as _};
 
-use super::keys::{GROUPS, KEYS};
+use super::keys::{GROUPS, keys};
 
 /// One key of a scenario file.
 #[derive(Clone, Copy, Debug)]
@@ -184,7 +184,7 @@ pub(crate) enum Child {
 /// Names a table may hold, in the order of the key table.
 pub(crate) fn children(schema_path: &str) -> Vec<(&'static str, Child)> {
     let mut found: Vec<(&'static str, Child)> = Vec::new();
-    for key in KEYS {
+    for key in keys() {
         let Some(rest) = inside(schema_path, key.path) else {
             continue;
         };
@@ -233,7 +233,7 @@ pub(crate) fn join(parent: &str, name: &str) -> String {
 /// table counts one more, so that a slip in a name beats a slip in its place.
 pub(crate) fn nearest(schema_path: &str, name: &str) -> (String, bool) {
     let mut candidates: Vec<&'static str> = Vec::new();
-    for key in KEYS {
+    for key in keys() {
         let ends = key.path.match_indices('.').map(|(at, _)| at);
         for end in ends.chain([key.path.len()]) {
             let path = &key.path[..end];

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use proptest::prelude::*;
 
 use super::defaults::{alternatives, default_of, reference_toml};
-use super::keys::{GROUPS, KEYS};
+use super::keys::{GROUPS, keys};
 use super::schema::{self, Child, Key, Kind, Presence};
 use super::tree::{Node, Table, Value, merge, parse_document};
 use super::{Fidelity, MotionConfig, Resolved, ScenarioError, ServoConfig, load_suite};
@@ -22,7 +22,7 @@ fn load(text: &str) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
 
 /// The key a path of a file stands for.
 fn key_of(schema_path: &str) -> Option<&'static Key> {
-    KEYS.iter().find(|key| key.path == schema_path)
+    keys().find(|key| key.path == schema_path)
 }
 
 /// The reference with the marks of all alternatives taken off, line by line.
@@ -72,7 +72,7 @@ fn documented_keys() -> Vec<(String, String)> {
 #[test]
 fn reference_documents_every_key_with_its_exact_unit_and_range() {
     let documented = documented_keys();
-    for key in KEYS {
+    for key in keys() {
         let line = key.line();
         let comments: Vec<&String> = documented
             .iter()
@@ -101,7 +101,7 @@ fn reference_documents_every_key_with_its_exact_unit_and_range() {
 fn reference_itself_has_no_name_and_gives_every_default() {
     let root = parse_document(0, reference_toml()).ok().unwrap();
     assert!(!root.contains_key("name"));
-    for key in KEYS {
+    for key in keys() {
         let has_default = default_of(key.path).is_some();
         let is_expected = key.presence == Presence::Defaulted;
         assert_eq!(has_default, is_expected, "{}", key.path);
@@ -207,7 +207,7 @@ fn json_schema_follows_the_key_table() {
     let rls = &document["properties"]["filter"]["items"]["properties"]["rls"]["properties"];
     assert_eq!(rls["taps"]["maximum"], 64);
     assert_eq!(document["additionalProperties"], false);
-    for key in KEYS {
+    for key in keys() {
         let mut at = &document;
         for name in key.path.split('.') {
             at = match name.strip_suffix("[]") {
@@ -249,9 +249,9 @@ fn json_schema_asks_for_what_the_reader_asks_for() {
 
 #[test]
 fn leaves_of_the_key_table_are_no_tables() {
-    for key in KEYS {
+    for key in keys() {
         let is_prefix = |other: &&Key| other.path.starts_with(&format!("{}.", key.path));
-        assert!(KEYS.iter().find(is_prefix).is_none(), "{}", key.path);
+        assert!(keys().find(is_prefix).is_none(), "{}", key.path);
         assert!(!matches!(key.kind, Kind::EmptyTable) || key.unit.is_empty());
         let (parent, name) = key.path.rsplit_once('.').unwrap_or(("", key.path));
         assert!(matches!(schema::child(parent, name), Some(Child::Leaf(_))));

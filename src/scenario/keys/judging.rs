@@ -1,0 +1,36 @@
+//! Keys of gates, published figures, output and sweep.
+
+use super::key;
+use crate::scenario::schema::{
+    Key, Kind,
+    Presence::{Defaulted, Optional, Required},
+    Range,
+};
+
+#[rustfmt::skip]
+pub(super) const KEYS: &[Key] = &[
+    key("gate[].metric", Kind::Text, "", Required,
+        "Channel and metric, split at the last dot."),
+    key("gate[].min", Kind::Float(Range::ANY), "", Optional,
+        "Lower limit, in the unit of the metric."),
+    key("gate[].max", Kind::Float(Range::ANY), "", Optional,
+        "Upper limit, in the unit of the metric."),
+    key("gate[].relative_to", Kind::Text, "", Optional,
+        "Channel whose same metric divides this one."),
+    key("gate[].decide", Kind::Choice(&["interval", "value"]), "", Defaulted,
+        "What is compared."),
+    key("gate[].inconclusive", Kind::Choice(&["fail", "allow"]), "", Defaulted,
+        "What becomes of an interval that reaches over a limit."),
+    key("published[].metric", Kind::Text, "", Required,
+        "Channel and metric, split at the last dot."),
+    key("published[].value", Kind::Float(Range::ANY), "", Required,
+        "The published figure."),
+    key("published[].unit", Kind::FreeText, "", Required,
+        "Its unit, that of the metric; \"1\" or \"\" for a ratio."),
+    key("published[].source", Kind::Text, "", Required,
+        "Where it was published."),
+    key("output.samples", Kind::Choice(&["none", "npy"]), "", Defaulted,
+        "Rate words of every channel and the truth, written as NPY or not."),
+    key("matrix", Kind::Matrix, "", Optional,
+        "Swept keys and their values; the runs are the Cartesian product."),
+];

@@ -1,0 +1,80 @@
+//! The key table: every key of a scenario file with its type, range, unit and meaning.
+//!
+//! The one source of unknown-key detection, type and range messages, the JSON Schema and the
+//! test of `reference.toml`, which holds the defaults.
+
+mod filter;
+mod gyro;
+mod judging;
+mod run;
+mod turntable;
+
+use super::schema::{Group, Integers, Key, Kind, Presence};
+
+/// A row of the table.
+const fn key(
+    path: &'static str,
+    kind: Kind,
+    unit: &'static str,
+    presence: Presence,
+    doc: &'static str,
+) -> Key {
+    Key {
+        path,
+        kind,
+        unit,
+        presence,
+        doc,
+    }
+}
+
+/// Whole numbers `min..=max`.
+const fn integer(min: i64, max: i64) -> Kind {
+    Kind::Integer(Integers {
+        min,
+        max,
+        is_even: false,
+    })
+}
+
+/// Tables of which exactly one alternative stands.
+pub(crate) const GROUPS: &[Group] = &[
+    Group {
+        table: "turntable",
+        noun: "motion",
+        alternatives: &["static", "swing", "steps", "rotation"],
+    },
+    Group {
+        table: "turntable.swing",
+        noun: "amplitude",
+        alternatives: &["rate_amplitude_deg_per_s", "angle_amplitude_deg"],
+    },
+    Group {
+        table: "turntable.servo",
+        noun: "servo",
+        alternatives: &["ideal", "second_order"],
+    },
+    Group {
+        table: "gyro.temperature",
+        noun: "temperature profile",
+        alternatives: &["soak"],
+    },
+    Group {
+        table: "filter[]",
+        noun: "filter kind",
+        alternatives: &["rls", "lms"],
+    },
+];
+
+/// Every key, in the order in which resolved scenarios are written.
+pub(crate) fn keys() -> impl Iterator<Item = &'static Key> {
+    [
+        run::KEYS,
+        turntable::KEYS,
+        gyro::KEYS,
+        filter::KEYS,
+        judging::KEYS,
+    ]
+    .into_iter()
+    .flatten()
+}
