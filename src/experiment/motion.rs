@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use crate::gyro::MotionExtremes;
 use crate::metrics::Motion;
 use crate::scenario::{MotionConfig, Scenario, ServoConfig};
-use crate::turntable::{command_rate_max_rad_per_s, earth_rate_rad_per_s, step_indices};
+use crate::turntable::{command_rate_max_rad_per_s, input_axis_bounds, step_indices};
 use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
 /// Motion as the metrics see it; a staircase's last step counts from the start of the record.
@@ -34,14 +34,15 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
 
 /// Largest rate the configured motion puts on the input axis, deg/h.
 pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
-    let earth = rad_per_s_to_deg_per_h(earth_rate_rad_per_s(&scenario.turntable.site)).abs();
+    let axis = input_axis_bounds(&scenario.turntable);
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
-    earth + rad_per_s_to_deg_per_h(commanded)
+    rad_per_s_to_deg_per_h(axis.earth_rate_rad_per_s)
+        + rad_per_s_to_deg_per_h(axis.rate_ratio * commanded)
 }
 
 /// The hardest motion on the input axis; the loop starts from zero rate, the servo settled.
 pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
-    let earth = earth_rate_rad_per_s(&scenario.turntable.site).abs();
+    let axis = input_axis_bounds(&scenario.turntable);
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
     let (jump, acceleration) = match &scenario.turntable.motion {
         MotionConfig::Static(_) => (0.0, 0.0),
@@ -68,8 +69,9 @@ pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
         }
     };
     MotionExtremes {
-        rate_rad_per_s: earth + commanded,
-        jump_rad_per_s: earth + jump,
-        acceleration_rad_per_s2: acceleration,
+        rate_rad_per_s: axis.earth_rate_rad_per_s + axis.rate_ratio * commanded,
+        jump_rad_per_s: axis.earth_rate_rad_per_s + axis.rate_ratio * jump,
+        acceleration_rad_per_s2: axis.rate_ratio * acceleration
+            + commanded * (axis.acceleration_ratio * commanded + axis.earth_slope_rad_per_s),
     }
 }
