@@ -17,6 +17,7 @@ use fogbench::units::{
 };
 
 use crate::support::assert_close;
+use crate::support::turntable_cases::{true_axis, true_mounting};
 
 /// Four kilohertz, commensurate with the swings, so that records hold whole cycles.
 const PERIOD_S: f64 = 0.000_25;
@@ -65,6 +66,8 @@ fn table(
         motion,
         servo,
         site,
+        axis: true_axis(),
+        mounting: true_mounting(),
     };
     Turntable::new(&config, warm_up_s, sample_period_s)
 }

@@ -5,7 +5,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use crate::gyro::MotionExtremes;
 use crate::metrics::Motion;
 use crate::scenario::{MotionConfig, Scenario, ServoConfig};
-use crate::turntable::{command_rate_max_rad_per_s, input_axis_bounds, step_indices};
+use crate::turntable::{
+    command_extremes, command_rate_max_rad_per_s, input_axis_bounds, step_indices,
+};
 use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
 /// Motion as the metrics see it; a staircase's last step counts from the start of the record.
@@ -15,6 +17,9 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
         MotionConfig::Swing(swing) => Motion::Swing {
             frequency_hz: swing.frequency_hz,
         },
+        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => {
+            Motion::General
+        }
         MotionConfig::Steps(steps) => {
             let rates = &steps.rates_deg_per_s;
             let last_step_index = step_indices(steps, 0.0, sample_period_s)
@@ -44,6 +49,7 @@ pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
 pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
     let axis = input_axis_bounds(&scenario.turntable);
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
+    let own = command_extremes(&scenario.turntable.motion);
     let (jump, acceleration) = match &scenario.turntable.motion {
         MotionConfig::Static(_) => (0.0, 0.0),
         MotionConfig::Swing(swing) => (0.0, TAU * swing.frequency_hz * commanded),
@@ -55,6 +61,10 @@ pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
                 (commanded, 0.0)
             }
         }
+        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => own
+            .map_or((0.0, 0.0), |own| {
+                (own.jump_rad_per_s, own.acceleration_rad_per_s2)
+            }),
         MotionConfig::Steps(steps) => {
             let rates = &steps.rates_deg_per_s;
             let first = rates.first().map_or(0.0, |rate| rate.abs());
