@@ -2,14 +2,16 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use super::assembly_motion::{hardest, is_turned};
 use crate::gyro::MotionExtremes;
 use crate::metrics::Motion;
 use crate::scenario::{MotionConfig, Scenario, ServoConfig};
 use crate::turntable::{command_rate_max_rad_per_s, earth_rate_rad_per_s, step_indices};
 use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
-/// Motion as the metrics see it; a staircase's last step counts from the start of the record.
-pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
+/// Motion of a gyro as the metrics see it; a staircase's last step counts from the start of the
+/// record, and is no step for the axes of an assembly across the table's.
+pub(super) fn motion(scenario: &Scenario, gyro: usize, sample_period_s: f64) -> Motion {
     match &scenario.turntable.motion {
         MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
         MotionConfig::Swing(swing) => Motion::Swing {
@@ -21,7 +23,7 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
                 .last()
                 .map_or(0, |&index| usize::try_from(index).unwrap_or(usize::MAX));
             let rise = match rates.as_slice() {
-                [.., before, last] => last - before,
+                [.., before, last] if is_turned(scenario, gyro) => last - before,
                 _ => 0.0,
             };
             Motion::Steps {
@@ -32,15 +34,27 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
     }
 }
 
-/// Largest rate the configured motion puts on the input axis, deg/h.
+/// Largest rate the configured motion puts on the input axis, of an assembly on any, deg/h.
 pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
+    if scenario.gyro.assembly.is_some() {
+        return rad_per_s_to_deg_per_h(motion_extremes(scenario).rate_rad_per_s);
+    }
     let earth = rad_per_s_to_deg_per_h(earth_rate_rad_per_s(&scenario.turntable.site)).abs();
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
     earth + rad_per_s_to_deg_per_h(commanded)
 }
 
-/// The hardest motion on the input axis; the loop starts from zero rate, the servo settled.
+/// The hardest motion on the input axis, of an assembly on any.
 pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
+    let table = table_extremes(scenario);
+    match &scenario.gyro.assembly {
+        None => table,
+        Some(assembly) => hardest(scenario, assembly, &table),
+    }
+}
+
+/// The hardest motion about the table axis; the loop starts from zero rate, the servo settled.
+fn table_extremes(scenario: &Scenario) -> MotionExtremes {
     let earth = earth_rate_rad_per_s(&scenario.turntable.site).abs();
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
     let (jump, acceleration) = match &scenario.turntable.motion {

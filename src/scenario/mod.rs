@@ -5,6 +5,8 @@
 //! contradiction, and every complaint points at the file, line and key that is wrong.
 
 mod address;
+mod assembly_config;
+mod channels;
 mod check;
 mod config;
 mod cross;
@@ -25,6 +27,7 @@ mod suite;
 mod tree;
 mod turntable_config;
 
+pub use assembly_config::AssemblyConfig;
 pub use config::{
     Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
     SamplesFormat, Scenario,
@@ -46,7 +49,7 @@ pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use suite::load_suite;
 pub use turntable_config::{
-    MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
+    CaseAxis, MotionConfig, MountingConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
     StepsConfig, SwingConfig, TurntableConfig,
 };
 

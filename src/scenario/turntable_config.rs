@@ -12,6 +12,28 @@ pub struct TurntableConfig {
     pub servo: ServoConfig,
     /// Where the table stands and where its axis points.
     pub site: SiteConfig,
+    /// How a case of three axes stands on the table.
+    pub mounting: MountingConfig,
+}
+
+/// How a case of three axes stands on the table.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MountingConfig {
+    /// Case axis along the table axis; the others follow cyclically.
+    pub axis_along_table: CaseAxis,
+}
+
+/// An axis of the case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CaseAxis {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
 }
 
 /// Commanded motion.

@@ -3,7 +3,7 @@
 use super::axis::earth_rate_rad_per_s;
 use super::profile::Profile;
 use super::servo::Servo;
-use crate::scenario::TurntableConfig;
+use crate::scenario::{CaseAxis, TurntableConfig};
 use crate::signal::MotionSegment;
 
 /// A rate table that carries one gyro, its axis along the gyro's input axis.
@@ -16,6 +16,7 @@ pub struct Turntable {
     servo: Servo,
     /// Projection of the Earth's rotation, rad/s.
     earth_rate: f64,
+    axis_along_table: CaseAxis,
 }
 
 impl Turntable {
@@ -34,6 +35,7 @@ impl Turntable {
             servo: Servo::new(&config.servo, profile.initial_rate(), sample_period_s),
             profile,
             earth_rate: earth_rate_rad_per_s(&config.site),
+            axis_along_table: config.mounting.axis_along_table,
         }
     }
 
@@ -47,5 +49,17 @@ impl Turntable {
         let mut motion = self.servo.follow(self.profile.next_segment());
         motion.rate_rad_per_s[0] += self.earth_rate;
         motion
+    }
+
+    /// Motion about the case axes x, y, z over the next output sample, rad/s.
+    pub fn next_platform_segments(&mut self) -> [MotionSegment; 3] {
+        let mut axes = [MotionSegment::constant(0.0); 3];
+        let along = match self.axis_along_table {
+            CaseAxis::X => 0,
+            CaseAxis::Y => 1,
+            CaseAxis::Z => 2,
+        };
+        axes[along] = self.next_segment();
+        axes
     }
 }

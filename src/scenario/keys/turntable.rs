@@ -39,4 +39,6 @@ pub(super) const KEYS: &[Key] = &[
         "Elevation of the input axis above the horizon, 90 is up."),
     key("turntable.site.axis_azimuth_deg", Kind::Float(Range::closed(-360.0, 360.0)), "deg", Defaulted,
         "Azimuth of the input axis from north towards east."),
+    key("turntable.mounting.axis_along_table", Kind::Choice(&["x", "y", "z"]), "", Defaulted,
+        "Case axis along the table axis; the others follow cyclically."),
 ];
