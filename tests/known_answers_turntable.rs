@@ -65,6 +65,9 @@ fn table(
         motion,
         servo,
         site,
+        mounting: MountingConfig {
+            axis_along_table: CaseAxis::Z,
+        },
     };
     Turntable::new(&config, warm_up_s, sample_period_s)
 }
