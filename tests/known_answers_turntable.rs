@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use fogbench::scenario::{
-    MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
-    StepsConfig, SwingConfig, TurntableConfig,
+    AxisConfig, CaseAxis, MotionConfig, MountingConfig, RotationConfig, SecondOrderServoConfig,
+    ServoConfig, SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
 use fogbench::turntable::{
@@ -65,7 +65,16 @@ fn table(
         motion,
         servo,
         site,
+        axis: AxisConfig {
+            tilt_north_arcsec: 0.0,
+            tilt_east_arcsec: 0.0,
+            wobble_arcsec: 0.0,
+            wobble_harmonic: 1,
+        },
         mounting: MountingConfig {
+            misalignment_arcsec: 0.0,
+            misalignment_azimuth_deg: 0.0,
+            start_angle_deg: 0.0,
             axis_along_table: CaseAxis::Z,
         },
     };

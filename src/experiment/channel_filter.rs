@@ -13,8 +13,7 @@ use crate::filters::{
     OutputRegister as Register, Rls, RlsConfig, UpdateSign as Sign,
 };
 use crate::scenario::{
-    DesiredSignal, FilterKind, LmsFilterConfig, OutputRegister, RlsFilterConfig,
-    UpdateSign,
+    DesiredSignal, FilterKind, LmsFilterConfig, OutputRegister, RlsFilterConfig, UpdateSign,
 };
 use crate::signal::FilterShape;
 

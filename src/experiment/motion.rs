@@ -2,16 +2,15 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::assembly_motion::{hardest, is_turned};
+use super::assembly_motion::hardest;
 use crate::gyro::MotionExtremes;
 use crate::metrics::Motion;
 use crate::scenario::{MotionConfig, Scenario, ServoConfig};
-use crate::turntable::{command_rate_max_rad_per_s, earth_rate_rad_per_s, step_indices};
+use crate::turntable::{command_rate_max_rad_per_s, input_axis_bounds, step_indices};
 use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
-/// Motion of a gyro as the metrics see it; a staircase's last step counts from the start of the
-/// record, and is no step for the axes of an assembly across the table's.
-pub(super) fn motion(scenario: &Scenario, gyro: usize, sample_period_s: f64) -> Motion {
+/// Motion as the metrics see it; a staircase's last step counts from the start of the record.
+pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
     match &scenario.turntable.motion {
         MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
         MotionConfig::Swing(swing) => Motion::Swing {
@@ -23,7 +22,7 @@ pub(super) fn motion(scenario: &Scenario, gyro: usize, sample_period_s: f64) -> 
                 .last()
                 .map_or(0, |&index| usize::try_from(index).unwrap_or(usize::MAX));
             let rise = match rates.as_slice() {
-                [.., before, last] if is_turned(scenario, gyro) => last - before,
+                [.., before, last] => last - before,
                 _ => 0.0,
             };
             Motion::Steps {
@@ -39,23 +38,31 @@ pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
     if scenario.gyro.assembly.is_some() {
         return rad_per_s_to_deg_per_h(motion_extremes(scenario).rate_rad_per_s);
     }
-    let earth = rad_per_s_to_deg_per_h(earth_rate_rad_per_s(&scenario.turntable.site)).abs();
+    let axis = input_axis_bounds(&scenario.turntable);
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
-    earth + rad_per_s_to_deg_per_h(commanded)
+    rad_per_s_to_deg_per_h(axis.earth_rate_rad_per_s)
+        + rad_per_s_to_deg_per_h(axis.rate_ratio * commanded)
 }
 
-/// The hardest motion on the input axis, of an assembly on any.
+/// The hardest motion on the input axis, of an assembly on any; the loop starts from zero rate.
 pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
-    let table = table_extremes(scenario);
+    let command = command_extremes(scenario);
+    let axis = input_axis_bounds(&scenario.turntable);
+    let commanded = command.rate_rad_per_s;
+    let input = MotionExtremes {
+        rate_rad_per_s: axis.earth_rate_rad_per_s + axis.rate_ratio * commanded,
+        jump_rad_per_s: axis.earth_rate_rad_per_s + axis.rate_ratio * command.jump_rad_per_s,
+        acceleration_rad_per_s2: axis.rate_ratio * command.acceleration_rad_per_s2
+            + commanded * (axis.acceleration_ratio * commanded + axis.earth_slope_rad_per_s),
+    };
     match &scenario.gyro.assembly {
-        None => table,
-        Some(assembly) => hardest(scenario, assembly, &table),
+        None => input,
+        Some(assembly) => hardest(&scenario.turntable, assembly, &command, &input),
     }
 }
 
-/// The hardest motion about the table axis; the loop starts from zero rate, the servo settled.
-fn table_extremes(scenario: &Scenario) -> MotionExtremes {
-    let earth = earth_rate_rad_per_s(&scenario.turntable.site).abs();
+/// The hardest motion about the table axis but for the Earth's; the servo starts settled.
+fn command_extremes(scenario: &Scenario) -> MotionExtremes {
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
     let (jump, acceleration) = match &scenario.turntable.motion {
         MotionConfig::Static(_) => (0.0, 0.0),
@@ -82,8 +89,8 @@ fn table_extremes(scenario: &Scenario) -> MotionExtremes {
         }
     };
     MotionExtremes {
-        rate_rad_per_s: earth + commanded,
-        jump_rad_per_s: earth + jump,
+        rate_rad_per_s: commanded,
+        jump_rad_per_s: jump,
         acceleration_rad_per_s2: acceleration,
     }
 }

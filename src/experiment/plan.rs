@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
+use super::assembly_motion;
 use super::motion::{motion, motion_extremes, rate_deg_per_h_max};
 use super::pipeline_check;
 use super::pipeline_settings::PipelineSettings;
@@ -327,8 +328,7 @@ impl Checker<'_> {
     /// Refuses gates and published figures that this record can never support.
     fn metrics(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
-        // Whether there is a metric does not depend on which gyro of an assembly is asked.
-        let motion = motion(scenario, 0, 1.0 / facts.output_rate_hz);
+        let motion = motion(scenario, 1.0 / facts.output_rate_hz);
         let mut requested: Vec<(String, &str, &str)> = Vec::new();
         for (index, gate) in scenario.gates.iter().enumerate() {
             // The reader has checked that there is a dot and that the channel exists.
@@ -360,7 +360,8 @@ impl Checker<'_> {
                 scenario.bias_averaging_time_s,
             );
             let lack = pipeline_check::lacks(scenario, channel, name).map(str::to_owned);
-            if let Some(reason) = supported.err().or(lack) {
+            let across = assembly_motion::lacks(scenario, channel, name).map(str::to_owned);
+            if let Some(reason) = supported.err().or(lack).or(across) {
                 self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
             }
         }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
+use super::assembly_motion::drop_lacking;
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use super::motion::motion;
 use super::pipeline_metrics;
@@ -188,17 +189,18 @@ fn run_repeat(
 fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) -> Channels {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
-    let gyros = simulation.gyros.iter().enumerate();
+    let settings = &Settings {
+        motion: motion(scenario, sample_period_s),
+        bias_averaging_time_s: scenario.bias_averaging_time_s,
+        fit_tau_min_s: plan.fit_tau_min_s(),
+    };
+    let gyros = simulation.gyros.iter();
     let cuts: Vec<Cut> = gyros
-        .map(|(axis, record)| Cut {
+        .map(|record| Cut {
             record,
             length,
             sample_period_s,
-            settings: Settings {
-                motion: motion(scenario, axis, sample_period_s),
-                bias_averaging_time_s: scenario.bias_averaging_time_s,
-                fit_tau_min_s: plan.fit_tau_min_s(),
-            },
+            settings,
         })
         .collect();
     let (raw, filters): (Channels, Channels) = rayon::join(
@@ -213,7 +215,11 @@ fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) ->
                 .collect()
         },
     );
-    raw.into_iter().chain(filters).collect()
+    let mut channels: Channels = raw.into_iter().chain(filters).collect();
+    for (name, metrics) in &mut channels {
+        drop_lacking(scenario, name, metrics);
+    }
+    channels
 }
 
 /// The measured part of one gyro's record and how to measure it.
@@ -221,7 +227,7 @@ struct Cut<'a> {
     record: &'a GyroRecord,
     length: RecordLength,
     sample_period_s: f64,
-    settings: Settings,
+    settings: &'a Settings,
 }
 
 impl Cut<'_> {
@@ -238,7 +244,7 @@ impl Cut<'_> {
             sample_period_s: self.sample_period_s,
             first_stamp_s: stamp_s(first as u64, self.sample_period_s),
         };
-        measure(&record, &self.settings, filter)
+        measure(&record, self.settings, filter)
     }
 
     fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {

@@ -253,15 +253,15 @@ impl Source {
                 vec![words]
             }
             Gyros::InCase(gyros) => {
-                let case: Vec<_> = (0..block)
-                    .map(|_| table.next_platform_segments())
-                    .collect();
+                let case: Vec<_> = (0..block).map(|_| table.next_platform_segments()).collect();
                 let gyros = gyros.par_iter_mut().zip(truth).enumerate();
                 gyros
                     .map(|(axis, (gyro, truth))| {
                         let ends = case.iter().map(|segments| segments[axis].rate_at(1.0));
                         truth.extend(ends.map(rad_per_s_to_deg_per_h));
-                        case.iter().map(|segments| gyro.next_word(segments)).collect()
+                        case.iter()
+                            .map(|segments| gyro.next_word(segments))
+                            .collect()
                     })
                     .collect()
             }

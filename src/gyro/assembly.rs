@@ -49,7 +49,11 @@ impl InputAxis {
         let (xy, xz) = (theta(config.theta_xy_arcsec), theta(config.theta_xz_arcsec));
         let (yx, yz) = (theta(config.theta_yx_arcsec), theta(config.theta_yz_arcsec));
         let (zx, zy) = (theta(config.theta_zx_arcsec), theta(config.theta_zy_arcsec));
-        let rows = [[scale[0], xz, -xy], [-yz, scale[1], yx], [zy, -zx, scale[2]]];
+        let rows = [
+            [scale[0], xz, -xy],
+            [-yz, scale[1], yx],
+            [zy, -zx, scale[2]],
+        ];
         [0, 1, 2].map(|axis| Self {
             sensitivity: rows[axis],
             bias_rad_per_s: bias[axis],
@@ -64,7 +68,8 @@ impl InputAxis {
         let [x, y, z] = self.sensitivity;
         let mut coefficients = [0.0; 4];
         for (power, coefficient) in coefficients.iter_mut().enumerate() {
-            let [about_x, about_y, about_z] = case.each_ref().map(|axis| axis.rate_rad_per_s[power]);
+            let [about_x, about_y, about_z] =
+                case.each_ref().map(|axis| axis.rate_rad_per_s[power]);
             *coefficient = x * about_x + y * about_y + z * about_z;
         }
         coefficients[0] += self.bias_rad_per_s;
@@ -159,9 +164,10 @@ mod tests {
             let tilt = cross(unit(about), unit(gyro)).map(|side| side * arcsec_to_rad(200.0));
             for (axis, seen) in InputAxis::of_assembly(&config).iter().enumerate() {
                 let own = unit(axis);
-                let expected =
-                    [0, 1, 2].map(|k| own[k] + if axis == gyro { tilt[k] } else { 0.0 });
-                assert_eq!(seen.sensitivity, expected, "theta {gyro} about {about}");
+                let expected = [0, 1, 2].map(|k| own[k] + if axis == gyro { tilt[k] } else { 0.0 });
+                for (got, want) in seen.sensitivity.iter().zip(expected) {
+                    assert!((got - want).abs() < 1e-15, "theta {gyro} about {about}");
+                }
             }
         }
     }
@@ -178,6 +184,7 @@ mod tests {
         let sensed = axis.sensed(&[segment(1.0), segment(10.0), segment(100.0)]);
         let level = 2.0 - 30.0 + 50.0;
         let expected = [level + 7.0, 2.0 * level, 3.0 * level, 4.0 * level];
-        assert_eq!(sensed.rate_rad_per_s, expected);
+        let bits = |rates: [f64; 4]| rates.map(f64::to_bits);
+        assert_eq!(bits(sensed.rate_rad_per_s), bits(expected));
     }
 }

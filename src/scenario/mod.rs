@@ -49,8 +49,8 @@ pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use suite::load_suite;
 pub use turntable_config::{
-    CaseAxis, MotionConfig, MountingConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
-    StepsConfig, SwingConfig, TurntableConfig,
+    AxisConfig, CaseAxis, MotionConfig, MountingConfig, RotationConfig, SecondOrderServoConfig,
+    ServoConfig, SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 
 #[cfg(test)]

@@ -282,7 +282,10 @@ impl Key {
             Kind::Choice(_) => format!("one of {}", self.allowed()),
             Kind::Floats(_) => format!("an array of numbers, each {}", self.allowed()),
             Kind::Triple(_) => {
-                format!("an array of three numbers (x, y, z), each {}", self.allowed())
+                format!(
+                    "an array of three numbers (x, y, z), each {}",
+                    self.allowed()
+                )
             }
             Kind::Name => format!("a name {}", self.allowed()),
             _ => self.allowed(),

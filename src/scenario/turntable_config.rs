@@ -12,28 +12,10 @@ pub struct TurntableConfig {
     pub servo: ServoConfig,
     /// Where the table stands and where its axis points.
     pub site: SiteConfig,
-    /// How a case of three axes stands on the table.
+    /// How the axis departs from its pointing.
+    pub axis: AxisConfig,
+    /// How the gyro sits on the platform.
     pub mounting: MountingConfig,
-}
-
-/// How a case of three axes stands on the table.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MountingConfig {
-    /// Case axis along the table axis; the others follow cyclically.
-    pub axis_along_table: CaseAxis,
-}
-
-/// An axis of the case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CaseAxis {
-    /// The first.
-    X,
-    /// The second.
-    Y,
-    /// The third.
-    Z,
 }
 
 /// Commanded motion.
@@ -110,14 +92,54 @@ pub struct SecondOrderServoConfig {
     pub damping_ratio: f64,
 }
 
-/// Site and pointing of the table axis, which is the gyro's input axis.
+/// Site and nominal pointing of the table axis.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SiteConfig {
     /// Geodetic latitude, deg, north positive.
     pub latitude_deg: f64,
-    /// Elevation of the input axis above the horizon, deg (90 = up).
+    /// Elevation of the table axis above the horizon, deg (90 = up).
     pub axis_elevation_deg: f64,
-    /// Azimuth of the input axis from north towards east, deg.
+    /// Azimuth of the table axis from north towards east, deg.
     pub axis_azimuth_deg: f64,
+}
+
+/// Errors of the table axis.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AxisConfig {
+    /// How far the axis leans towards north, arcsec.
+    pub tilt_north_arcsec: f64,
+    /// How far the axis leans towards east, arcsec.
+    pub tilt_east_arcsec: f64,
+    /// Half angle of the cone on which the platform normal goes round the axis, arcsec.
+    pub wobble_arcsec: f64,
+    /// Rounds of the normal per turn of the table, 1 or 2.
+    pub wobble_harmonic: u32,
+}
+
+/// How the gyro, or the case of a three-axis assembly, sits on the platform.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MountingConfig {
+    /// Angle between the input axis and the platform normal, arcsec.
+    pub misalignment_arcsec: f64,
+    /// Direction in which the input axis leans, deg about the normal from the platform's mark.
+    pub misalignment_azimuth_deg: f64,
+    /// Table angle at the start of the warm-up, deg.
+    pub start_angle_deg: f64,
+    /// Which axis of an assembly's case lies along the platform normal.
+    pub axis_along_table: CaseAxis,
+}
+
+/// An axis of the case of a three-axis assembly; x, y, z are right-handed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CaseAxis {
+    /// The x axis.
+    X,
+    /// The y axis.
+    Y,
+    /// The z axis.
+    Z,
 }

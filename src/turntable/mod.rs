@@ -1,9 +1,9 @@
 //! Rate table: commanded motion, servo and the site, giving the true rate of the gyro's input axis.
 //!
 //! ```text
-//!  motion ──> profile ──command──> servo ──table rate──> axis ──truth──> gyro
-//!             swing, steps,        ideal or              + projection
-//!             rotation, rest       second order            of Earth rate
+//!  motion ──> profile ──command──> servo ──table rate──> platform ──truth──> gyro
+//!             swing, steps,        ideal or              wobble, mounting,
+//!             rotation, ...        second order          + Earth rate
 //! ```
 //!
 //! Truth is what the axis does, not what it was told to do: a 40 Hz table lags a 10 Hz command by
@@ -16,11 +16,12 @@
 //! Invariant: this is truth; it never sees a gyro output.
 
 mod axis;
+mod platform;
 mod profile;
 mod servo;
 mod table;
 
-pub use axis::earth_rate_rad_per_s;
+pub use axis::{InputAxisBounds, earth_rate_rad_per_s, input_axis_bounds};
 pub use profile::{
     command_rate_max_rad_per_s, first_measured_index, step_indices, swing_rate_amplitude_rad_per_s,
 };

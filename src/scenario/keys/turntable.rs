@@ -1,6 +1,6 @@
 //! Keys of the rate table.
 
-use super::key;
+use super::{integer, key};
 use crate::scenario::schema::{
     Key, Kind,
     Presence::{Defaulted, Optional, Required},
@@ -36,9 +36,23 @@ pub(super) const KEYS: &[Key] = &[
     key("turntable.site.latitude_deg", Kind::Float(Range::closed(-90.0, 90.0)), "deg", Defaulted,
         "Geodetic latitude, north positive."),
     key("turntable.site.axis_elevation_deg", Kind::Float(Range::closed(-90.0, 90.0)), "deg", Defaulted,
-        "Elevation of the input axis above the horizon, 90 is up."),
+        "Elevation of the table axis above the horizon, 90 is up."),
     key("turntable.site.axis_azimuth_deg", Kind::Float(Range::closed(-360.0, 360.0)), "deg", Defaulted,
-        "Azimuth of the input axis from north towards east."),
+        "Azimuth of the table axis from north towards east."),
+    key("turntable.axis.tilt_north_arcsec", Kind::Float(Range::closed(-36000.0, 36000.0)), "arcsec", Defaulted,
+        "How far the table axis leans towards north."),
+    key("turntable.axis.tilt_east_arcsec", Kind::Float(Range::closed(-36000.0, 36000.0)), "arcsec", Defaulted,
+        "How far the table axis leans towards east."),
+    key("turntable.axis.wobble_arcsec", Kind::Float(Range::closed(0.0, 3600.0)), "arcsec", Defaulted,
+        "Half angle of the cone on which the platform normal goes round the table axis."),
+    key("turntable.axis.wobble_harmonic", integer(1, 2), "", Defaulted,
+        "Rounds of the platform normal on its cone per turn of the table."),
+    key("turntable.mounting.misalignment_arcsec", Kind::Float(Range::closed(0.0, 648_000.0)), "arcsec", Defaulted,
+        "Angle between the input axis of the gyro and the platform normal."),
+    key("turntable.mounting.misalignment_azimuth_deg", Kind::Float(Range::closed(-360.0, 360.0)), "deg", Defaulted,
+        "Direction in which the input axis leans, about the normal from the platform's mark."),
+    key("turntable.mounting.start_angle_deg", Kind::Float(Range::closed(-360.0, 360.0)), "deg", Defaulted,
+        "Table angle at the start of the warm-up."),
     key("turntable.mounting.axis_along_table", Kind::Choice(&["x", "y", "z"]), "", Defaulted,
-        "Case axis along the table axis; the others follow cyclically."),
+        "Axis of a three-axis assembly's case that lies along the platform normal."),
 ];

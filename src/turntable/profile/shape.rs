@@ -1,0 +1,94 @@
+//! The commanded rate as a function of the sample count.
+
+use std::f64::consts::TAU;
+
+use super::extremes::swing_rate_amplitude_rad_per_s;
+use super::soft_start::SoftStart;
+use super::steps::step_indices;
+use crate::scenario::MotionConfig;
+use crate::units::deg_per_s_to_rad_per_s;
+
+/// Commanded rate at one instant and its slope per sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Instant {
+    /// rad/s.
+    pub(super) rate: f64,
+    /// rad/s per sample.
+    pub(super) slope: f64,
+}
+
+/// Shape of a command.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    /// `rate`, ramped.
+    Rotation { rate: f64, soft_start: SoftStart },
+    /// `amplitude sin(2 pi f t)`, ramped.
+    Swing {
+        amplitude: f64,
+        cycles_per_sample: f64,
+        soft_start: SoftStart,
+    },
+    /// Rates, rad/s, and the index of the first sample of each but the first.
+    Steps { rates: Vec<f64>, changes: Vec<u64> },
+}
+
+impl Shape {
+    /// The shape of a configured motion; see [`Turntable::new`](crate::turntable::Turntable::new).
+    pub(super) fn new(motion: &MotionConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
+        let soft_start = |length_s| SoftStart::new(length_s, warm_up_s, sample_period_s);
+        match motion {
+            MotionConfig::Static(_) => Shape::Rotation {
+                rate: 0.0,
+                soft_start: soft_start(0.0),
+            },
+            MotionConfig::Rotation(rotation) => Shape::Rotation {
+                rate: deg_per_s_to_rad_per_s(rotation.rate_deg_per_s),
+                soft_start: soft_start(rotation.soft_start_s),
+            },
+            MotionConfig::Swing(swing) => Shape::Swing {
+                amplitude: swing_rate_amplitude_rad_per_s(swing),
+                cycles_per_sample: swing.frequency_hz * sample_period_s,
+                soft_start: soft_start(swing.soft_start_s),
+            },
+            MotionConfig::Steps(steps) => {
+                assert!(!steps.rates_deg_per_s.is_empty(), "a staircase has a rate");
+                let rates = steps.rates_deg_per_s.iter();
+                Shape::Steps {
+                    rates: rates.copied().map(deg_per_s_to_rad_per_s).collect(),
+                    changes: step_indices(steps, warm_up_s, sample_period_s),
+                }
+            }
+        }
+    }
+
+    /// Command at `instant` samples from the start; staircases have no such single value.
+    pub(super) fn at(&self, instant: f64) -> Instant {
+        match self {
+            Self::Rotation { rate, soft_start } => {
+                let (ramp, ramp_slope) = soft_start.at(instant);
+                Instant {
+                    rate: rate * ramp,
+                    slope: rate * ramp_slope,
+                }
+            }
+            Self::Swing {
+                amplitude,
+                cycles_per_sample,
+                soft_start,
+            } => {
+                // Whole cycles are dropped before the sine, which keeps full precision for hours.
+                let (sine, cosine) = (TAU * (cycles_per_sample * instant).fract()).sin_cos();
+                let (ramp, ramp_slope) = soft_start.at(instant);
+                Instant {
+                    rate: amplitude * ramp * sine,
+                    slope: amplitude
+                        * (ramp * TAU * cycles_per_sample * cosine + ramp_slope * sine),
+                }
+            }
+            Self::Steps { rates, .. } => Instant {
+                rate: rates[0],
+                slope: 0.0,
+            },
+        }
+    }
+}
