@@ -13,16 +13,30 @@ use rand_xoshiro::rand_core::SeedableRng;
 pub struct Streams {
     seed: u64,
     repeat: u64,
+    scope: Option<&'static str>,
 }
 
 impl Streams {
     /// Streams of repeat `repeat` (from 0) of a scenario with seed `seed`.
     #[must_use]
     pub fn new(seed: u64, repeat: u64) -> Self {
-        Self { seed, repeat }
+        Self {
+            seed,
+            repeat,
+            scope: None,
+        }
     }
 
-    /// The stream of the source called `source`, from its beginning.
+    /// The same streams for one of several like instruments: `combined` becomes `x.combined`.
+    #[must_use]
+    pub fn scoped(&self, scope: &'static str) -> Self {
+        Self {
+            scope: Some(scope),
+            ..*self
+        }
+    }
+
+    /// The stream of the source called `source` (within the scope, if any), from its beginning.
     ///
     /// The 256-bit state is the BLAKE3 digest of seed, repeat and name, so that neighbouring
     /// seeds and similar names give unrelated streams.
@@ -32,6 +46,10 @@ impl Streams {
         hasher.update(b"fogbench stream 1");
         hasher.update(&self.seed.to_le_bytes());
         hasher.update(&self.repeat.to_le_bytes());
+        if let Some(scope) = self.scope {
+            hasher.update(scope.as_bytes());
+            hasher.update(b".");
+        }
         hasher.update(source.as_bytes());
         Stream {
             generator: Xoshiro256PlusPlus::from_seed(*hasher.finalize().as_bytes()),
@@ -76,6 +94,10 @@ mod tests {
         assert_ne!(base, first(2, "detector", 0).to_bits());
         assert_ne!(base, first(1, "flicker", 0).to_bits());
         assert_ne!(base, first(1, "detector", 1).to_bits());
+        let scoped = |scope| Streams::new(1, 0).scoped(scope).stream("detector");
+        let x = scoped("x").normal().to_bits();
+        assert_eq!(x, first(1, "x.detector", 0).to_bits());
+        assert!(x != base && x != scoped("y").normal().to_bits());
     }
 
     #[test]

@@ -85,7 +85,7 @@ pub struct GyroFacts {
     pub angle_random_walk_budget_deg_per_sqrt_h: Vec<(&'static str, f64)>,
 }
 
-/// The samples of one run, borrowed: what the plots draw and the sample files hold.
+/// The samples of one gyro of a run, borrowed: what the plots draw and the sample files hold.
 ///
 /// All slices have the same length; index 0 is the first sample of the warm-up and is stamped one
 /// sample period after the start.
@@ -95,8 +95,10 @@ pub struct RunSignals<'a> {
     pub sample_period_s: f64,
     /// Index of the first sample that metrics use.
     pub first_measured: usize,
-    /// Inertial rate of the input axis at each stamp, deg/h.
+    /// Prefix of the channels of this gyro: empty, or `x_`, `y_`, `z_` in an assembly.
+    pub prefix: &'a str,
+    /// Inertial rate of the axis at each stamp, deg/h.
     pub truth_deg_per_h: &'a [f64],
-    /// Channels in order, `raw` first: name and rate words, deg/h.
+    /// Channels in order, raw first: name and rate words, deg/h.
     pub channels: Vec<(&'a str, &'a [f64])>,
 }

@@ -32,16 +32,16 @@ pub fn rad_to_deg(angle_rad: f64) -> f64 {
     angle_rad * (180.0 / PI)
 }
 
-/// Converts an angle from radians to arcseconds.
-#[must_use]
-pub fn rad_to_arcsec(angle_rad: f64) -> f64 {
-    rad_to_deg(angle_rad) * 3600.0
-}
-
 /// Converts an angle from arcseconds to radians.
 #[must_use]
 pub fn arcsec_to_rad(angle_arcsec: f64) -> f64 {
     deg_to_rad(angle_arcsec / 3600.0)
+}
+
+/// Converts an angle from radians to arcseconds.
+#[must_use]
+pub fn rad_to_arcsec(angle_rad: f64) -> f64 {
+    rad_to_deg(angle_rad) * 3600.0
 }
 
 /// Converts a rate from deg/s to rad/s.

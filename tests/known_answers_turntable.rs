@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use fogbench::scenario::{
-    MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
-    StepsConfig, SwingConfig, TurntableConfig,
+    AxisConfig, CaseAxis, MotionConfig, MountingConfig, RotationConfig, SecondOrderServoConfig,
+    ServoConfig, SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
 use fogbench::turntable::{

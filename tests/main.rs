@@ -1,6 +1,7 @@
 //! The one integration-test binary.
 
 mod architecture;
+mod assembly;
 mod bit_exact;
 mod cli;
 mod cli_fpga;

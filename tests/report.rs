@@ -346,6 +346,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
     let signals = RunSignals {
         sample_period_s: period_s,
         first_measured: 4000,
+        prefix: "",
         truth_deg_per_h: &truth,
         channels: vec![("raw", &raw), ("lms", &lms), ("rls", &raw), ("bad", &raw)],
     };

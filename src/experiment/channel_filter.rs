@@ -13,8 +13,7 @@ use crate::filters::{
     OutputRegister as Register, Rls, RlsConfig, UpdateSign as Sign,
 };
 use crate::scenario::{
-    DesiredSignal, FilterConfig, FilterKind, LmsFilterConfig, OutputRegister, RlsFilterConfig,
-    UpdateSign,
+    DesiredSignal, FilterKind, LmsFilterConfig, OutputRegister, RlsFilterConfig, UpdateSign,
 };
 use crate::signal::FilterShape;
 
@@ -111,19 +110,19 @@ impl Arithmetic {
 const CHECKED: &str = "the plan has refused what the pipeline refuses";
 
 impl ChannelFilter {
-    /// The filter of `config`, with room for a record of this length.
+    /// The channel `name` of a filter, with room for a record of this length.
     ///
     /// # Panics
     /// If the hardware refuses its constants, which the plan has checked.
-    pub(super) fn new(config: &FilterConfig, length: RecordLength) -> Self {
-        let filter = Arithmetic::new(&config.kind, length);
+    pub(super) fn new(name: String, kind: &FilterKind, length: RecordLength) -> Self {
+        let filter = Arithmetic::new(kind, length);
         Self {
-            name: config.name.clone(),
-            settings: PipelineSettings::of(&config.kind),
+            name,
+            settings: PipelineSettings::of(kind),
             shape: filter.as_filter().shape(),
             weight_totals: vec![0.0; filter.as_filter().weights().len()],
             filter,
-            twin: Some(Arithmetic::new(&config.kind, length)),
+            twin: Some(Arithmetic::new(kind, length)),
             output_deg_per_h: Vec::with_capacity(length.total()),
             warm_up_samples: length.warm_up,
             failure: None,

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use super::assembly_motion::hardest;
 use crate::gyro::MotionExtremes;
 use crate::metrics::Motion;
 use crate::scenario::{MotionConfig, Scenario, ServoConfig};
@@ -37,17 +38,36 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
     }
 }
 
-/// Largest rate the configured motion puts on the input axis, deg/h.
+/// Largest rate the configured motion puts on the input axis, of an assembly on any, deg/h.
 pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
+    if scenario.gyro.assembly.is_some() {
+        return rad_per_s_to_deg_per_h(motion_extremes(scenario).rate_rad_per_s);
+    }
     let axis = input_axis_bounds(&scenario.turntable);
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
     rad_per_s_to_deg_per_h(axis.earth_rate_rad_per_s)
         + rad_per_s_to_deg_per_h(axis.rate_ratio * commanded)
 }
 
-/// The hardest motion on the input axis; the loop starts from zero rate, the servo settled.
+/// The hardest motion on the input axis, of an assembly on any; the loop starts from zero rate.
 pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
+    let command = command_extremes(scenario);
     let axis = input_axis_bounds(&scenario.turntable);
+    let commanded = command.rate_rad_per_s;
+    let input = MotionExtremes {
+        rate_rad_per_s: axis.earth_rate_rad_per_s + axis.rate_ratio * commanded,
+        jump_rad_per_s: axis.earth_rate_rad_per_s + axis.rate_ratio * command.jump_rad_per_s,
+        acceleration_rad_per_s2: axis.rate_ratio * command.acceleration_rad_per_s2
+            + commanded * (axis.acceleration_ratio * commanded + axis.earth_slope_rad_per_s),
+    };
+    match &scenario.gyro.assembly {
+        None => input,
+        Some(assembly) => hardest(&scenario.turntable, assembly, &command, &input),
+    }
+}
+
+/// The hardest motion about the table axis but for the Earth's; the servo starts settled.
+fn command_extremes(scenario: &Scenario) -> MotionExtremes {
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
     let own = command_extremes(&scenario.turntable.motion);
     let (jump, acceleration) = match &scenario.turntable.motion {
@@ -79,9 +99,8 @@ pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
         }
     };
     MotionExtremes {
-        rate_rad_per_s: axis.earth_rate_rad_per_s + axis.rate_ratio * commanded,
-        jump_rad_per_s: axis.earth_rate_rad_per_s + axis.rate_ratio * jump,
-        acceleration_rad_per_s2: axis.rate_ratio * acceleration
-            + commanded * (axis.acceleration_ratio * commanded + axis.earth_slope_rad_per_s),
+        rate_rad_per_s: commanded,
+        jump_rad_per_s: jump,
+        acceleration_rad_per_s2: acceleration,
     }
 }

@@ -3,7 +3,7 @@
 use super::pipeline_metrics::{MATRIX_METRICS, PREDICTED_FAILURE};
 use super::pipeline_settings::{CoreSettings, PipelineSettings};
 use crate::metrics::{Applies, known_metrics};
-use crate::scenario::FilterConfig;
+use crate::scenario::Scenario;
 use crate::units::s_to_us;
 
 /// The table of the filter in its scenario.
@@ -44,12 +44,12 @@ pub(super) fn check(
 }
 
 /// Why a channel can never have a metric of hardware pipelines; nothing for other metrics.
-pub(super) fn lacks(filters: &[FilterConfig], channel: &str, metric: &str) -> Option<&'static str> {
+pub(super) fn lacks(scenario: &Scenario, channel: &str, metric: &str) -> Option<&'static str> {
     let known = known_metrics().iter().find(|known| known.name == metric)?;
     if known.applies != Applies::Pipeline {
         return None;
     }
-    let filter = filters.iter().find(|filter| filter.name == channel)?;
+    let filter = scenario.filter_of(channel)?;
     let Some(settings) = PipelineSettings::of(&filter.kind) else {
         return Some("only a filter with pipeline = \"fpga\" has it");
     };

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
+use super::assembly_motion;
 use super::motion::{motion, motion_extremes, rate_deg_per_h_max};
 use super::pipeline_check;
 use super::pipeline_settings::PipelineSettings;
@@ -21,6 +22,9 @@ use crate::signal::GyroFacts;
 pub(super) const DIVERGED_AT: &str = "diverged_at_s";
 /// Longest record held in memory, samples (two hours at 4 kHz).
 const SAMPLES_MAX: f64 = 3.0e7;
+/// Most words held in memory, truth and channels of every gyro together (1.44 GB): an hour at 4 kHz
+/// of three axes with two filters, or two hours of one with four.
+const WORDS_MAX: f64 = 1.8e8;
 
 /// One run that has passed every check.
 #[derive(Clone, Debug)]
@@ -49,16 +53,10 @@ impl Plan {
         &self.warnings
     }
 
-    /// Channels in order, `raw` first.
+    /// Channels in order, raw ones first.
     #[must_use]
-    pub fn channel_names(&self) -> Vec<&str> {
-        let filters = self
-            .resolved
-            .scenario
-            .filters
-            .iter()
-            .map(|filter| filter.name.as_str());
-        std::iter::once("raw").chain(filters).collect()
+    pub fn channel_names(&self) -> Vec<String> {
+        self.resolved.scenario.channel_names()
     }
 
     /// Period of the rate words, s.
@@ -85,7 +83,8 @@ impl Plan {
     /// Relative cost of the run, for the order of work only.
     pub(super) fn cost(&self) -> f64 {
         const LOOP_COST: f64 = 10.0;
-        let samples = self.simulated_s() * self.facts.output_rate_hz;
+        let gyros = count(self.resolved.scenario.axis_prefixes().len());
+        let samples = gyros * self.simulated_s() * self.facts.output_rate_hz;
         match self.resolved.scenario.fidelity {
             Fidelity::Loop => LOOP_COST * samples,
             Fidelity::Rate => samples,
@@ -192,6 +191,20 @@ impl Checker<'_> {
                 format!(
                     "duration_s + warm_up_s = {} s at {rate_hz:.2} Hz are {samples:.3e} samples: \
                      at most {SAMPLES_MAX:e} are held in memory; use `repeats`, or a larger \
+                     gyro.output.half_periods_per_sample",
+                    duration_s + warm_up_s
+                ),
+            );
+        }
+        let records = scenario.channel_names().len() + scenario.axis_prefixes().len();
+        let words = samples * count(records);
+        if samples <= SAMPLES_MAX && words > WORDS_MAX {
+            self.complain(
+                "duration_s",
+                format!(
+                    "duration_s + warm_up_s = {} s at {rate_hz:.2} Hz are {words:.3e} words in \
+                     {records} records (the true rate and the channels of every gyro): at most \
+                     {WORDS_MAX:e} are held in memory; use `repeats`, fewer filters, or a larger \
                      gyro.output.half_periods_per_sample",
                     duration_s + warm_up_s
                 ),
@@ -343,11 +356,12 @@ impl Checker<'_> {
                 scenario.duration_s,
                 1.0 / facts.output_rate_hz,
                 &motion,
-                channel != "raw",
+                !scenario.is_raw(channel),
                 scenario.bias_averaging_time_s,
             );
-            let lack = pipeline_check::lacks(&scenario.filters, channel, name).map(str::to_owned);
-            if let Some(reason) = supported.err().or(lack) {
+            let lack = pipeline_check::lacks(scenario, channel, name).map(str::to_owned);
+            let across = assembly_motion::lacks(scenario, channel, name).map(str::to_owned);
+            if let Some(reason) = supported.err().or(lack).or(across) {
                 self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
             }
         }
@@ -356,3 +370,12 @@ impl Checker<'_> {
 
 /// Peak of the noise that the digits warning reckons with, standard deviations.
 const PEAK_SIGMAS: f64 = 4.0;
+
+/// A small count as a number.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "counts of gyros and channels lie far below 2^53"
+)]
+fn count(things: usize) -> f64 {
+    things as f64
+}

@@ -5,11 +5,12 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
+use super::assembly_motion::drop_lacking;
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use super::motion::motion;
 use super::pipeline_metrics;
 use super::plan::{DIVERGED_AT, Plan};
-use super::simulate::{Faults, RecordLength, Simulation, simulate};
+use super::simulate::{Faults, GyroRecord, RecordLength, Simulation, simulate};
 use super::suite::{Observer, SuiteError, VERSION};
 use crate::filters::Divergence;
 use crate::gate::judge;
@@ -49,7 +50,7 @@ pub(super) fn run_scenario(
     let sample_period_s = plan.sample_period_s();
     let filters = simulation.filters.iter();
     let pipelines: Vec<String> = filters
-        .flat_map(|filter| pipeline_metrics::notes(filter, sample_period_s))
+        .flat_map(|(_, filter)| pipeline_metrics::notes(filter, sample_period_s))
         .collect();
     let notes = [plan.warnings().to_vec(), faults.notes(), pipelines].concat();
     let report = RunReport {
@@ -116,40 +117,60 @@ fn write_folder(
     if let Some(csv) = report::psd_csv(report) {
         folder.write("psd.csv", csv.as_bytes())?;
     }
-    let signals = signals(plan, simulation);
-    for (name, svg) in report::plots(report, &signals) {
-        folder.write(&name, svg.as_bytes())?;
+    let raw_names = report.scenario.raw_channels();
+    let gyros = signals(plan, simulation, &raw_names);
+    for signals in &gyros {
+        for (name, svg) in report::plots(report, signals) {
+            folder.write(&name, svg.as_bytes())?;
+        }
     }
     if report.scenario.output.samples == SamplesFormat::Npy {
-        write_samples(&folder, &signals)?;
+        write_samples(&folder, &gyros)?;
     }
     folder.commit()
 }
 
-fn signals<'a>(plan: &Plan, simulation: &'a Simulation) -> RunSignals<'a> {
-    let raw = ("raw", simulation.raw_deg_per_h.as_slice());
-    let filters = simulation.filters.iter().filter_map(|filter| {
-        let words = filter.words.as_ref().ok()?;
-        Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
-    });
+/// The samples of each gyro.
+fn signals<'a>(
+    plan: &Plan,
+    simulation: &'a Simulation,
+    raw_names: &'a [String],
+) -> Vec<RunSignals<'a>> {
+    let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
-    RunSignals {
-        sample_period_s,
-        first_measured: RecordLength::new(&plan.resolved().scenario, sample_period_s).warm_up,
-        truth_deg_per_h: &simulation.truth_deg_per_h,
-        channels: std::iter::once(raw).chain(filters).collect(),
-    }
+    let first_measured = RecordLength::new(scenario, sample_period_s).warm_up;
+    let gyros = simulation.gyros.iter().enumerate();
+    let named = gyros.zip(scenario.axis_prefixes().iter().zip(raw_names));
+    let signals = named.map(|((gyro, record), (prefix, raw_name))| {
+        let raw = (raw_name.as_str(), record.raw_deg_per_h.as_slice());
+        let filters = simulation.filters.iter().filter_map(|(of, filter)| {
+            let words = filter.words.as_ref().ok().filter(|_| *of == gyro)?;
+            Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
+        });
+        RunSignals {
+            sample_period_s,
+            first_measured,
+            prefix,
+            truth_deg_per_h: &record.truth_deg_per_h,
+            channels: std::iter::once(raw).chain(filters).collect(),
+        }
+    });
+    signals.collect()
 }
 
-fn write_samples(folder: &FolderWriter, signals: &RunSignals) -> io::Result<()> {
-    for (name, words) in &signals.channels {
-        folder.write_npy(&format!("samples/{name}.npy"), words)?;
+fn write_samples(folder: &FolderWriter, gyros: &[RunSignals]) -> io::Result<()> {
+    for signals in gyros {
+        for (name, words) in &signals.channels {
+            folder.write_npy(&format!("samples/{name}.npy"), words)?;
+        }
+        let truth = format!("samples/{}truth.npy", signals.prefix);
+        folder.write_npy(&truth, signals.truth_deg_per_h)?;
     }
-    folder.write_npy("samples/truth.npy", signals.truth_deg_per_h)?;
-    let samples = signals.truth_deg_per_h.len() as u64;
-    let time_s: Vec<f64> = (0..samples)
-        .map(|index| stamp_s(index, signals.sample_period_s))
-        .collect();
+    let time_s: Vec<f64> = gyros.first().map_or_else(Vec::new, |signals| {
+        let samples = signals.truth_deg_per_h.len() as u64;
+        let stamps = (0..samples).map(|index| stamp_s(index, signals.sample_period_s));
+        stamps.collect()
+    });
     folder.write_npy("samples/time_s.npy", &time_s)
 }
 
@@ -168,50 +189,62 @@ fn run_repeat(
 fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) -> Channels {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
-    let settings = Settings {
+    let settings = &Settings {
         motion: motion(scenario, sample_period_s),
         bias_averaging_time_s: scenario.bias_averaging_time_s,
         fit_tau_min_s: plan.fit_tau_min_s(),
     };
-    let cut = &Cut {
-        simulation,
-        length,
-        sample_period_s,
-        settings,
-    };
-    let (raw, filters) = rayon::join(
-        || cut.measure(&simulation.raw_deg_per_h, None),
-        || -> Channels {
+    let gyros = simulation.gyros.iter();
+    let cuts: Vec<Cut> = gyros
+        .map(|record| Cut {
+            record,
+            length,
+            sample_period_s,
+            settings,
+        })
+        .collect();
+    let (raw, filters): (Channels, Channels) = rayon::join(
+        || {
+            let named = cuts.par_iter().zip(scenario.raw_channels());
+            named.map(|(cut, name)| (name, cut.measure_raw())).collect()
+        },
+        || {
             let filters = simulation.filters.par_iter();
             filters
-                .map(|filter| (filter.name.clone(), cut.measure_filter(filter)))
+                .map(|(gyro, filter)| (filter.name.clone(), cuts[*gyro].measure_filter(filter)))
                 .collect()
         },
     );
-    std::iter::once(("raw".to_owned(), raw))
-        .chain(filters)
-        .collect()
+    let mut channels: Channels = raw.into_iter().chain(filters).collect();
+    for (name, metrics) in &mut channels {
+        drop_lacking(scenario, name, metrics);
+    }
+    channels
 }
 
-/// The measured part of a simulation and how to measure it.
+/// The measured part of one gyro's record and how to measure it.
 struct Cut<'a> {
-    simulation: &'a Simulation,
+    record: &'a GyroRecord,
     length: RecordLength,
     sample_period_s: f64,
-    settings: Settings,
+    settings: &'a Settings,
 }
 
 impl Cut<'_> {
+    fn measure_raw(&self) -> ChannelMetrics {
+        self.measure(&self.record.raw_deg_per_h, None)
+    }
+
     fn measure(&self, channel_deg_per_h: &[f64], filter: Option<&FilterFacts>) -> ChannelMetrics {
         let first = self.length.warm_up;
         let record = Record {
             channel_deg_per_h: &channel_deg_per_h[first..],
-            raw_deg_per_h: &self.simulation.raw_deg_per_h[first..],
-            truth_deg_per_h: &self.simulation.truth_deg_per_h[first..],
+            raw_deg_per_h: &self.record.raw_deg_per_h[first..],
+            truth_deg_per_h: &self.record.truth_deg_per_h[first..],
             sample_period_s: self.sample_period_s,
             first_stamp_s: stamp_s(first as u64, self.sample_period_s),
         };
-        measure(&record, &self.settings, filter)
+        measure(&record, self.settings, filter)
     }
 
     fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::channel_filter::{ChannelFilter, FinishedFilter};
 use super::suite::Observer;
-use crate::gyro::{Gyro, GyroError};
+use crate::gyro::{self, CaseGyro, Gyro, GyroError};
 use crate::random::Streams;
 use crate::scenario::Scenario;
 use crate::turntable::{Turntable, first_measured_index};
@@ -45,14 +45,20 @@ impl RecordLength {
 
 /// The records of one repeat; index 0 is the first sample of the warm-up.
 pub(super) struct Simulation {
-    /// Inertial rate of the input axis at each stamp, deg/h.
+    /// One gyro, or those of the case axes x, y, z.
+    pub(super) gyros: Vec<GyroRecord>,
+    /// The filters in the order of the file, each on every gyro in turn, with the index of the gyro.
+    pub(super) filters: Vec<(usize, FinishedFilter)>,
+    /// Half modulation periods in which a gyro did not work as meant.
+    pub(super) faults: Faults,
+}
+
+/// What one gyro was given and what it made of it.
+pub(super) struct GyroRecord {
+    /// Inertial rate of the input axis, or of the case axis of an assembly, at each stamp, deg/h.
     pub(super) truth_deg_per_h: Vec<f64>,
     /// The gyro's rate words, deg/h.
     pub(super) raw_deg_per_h: Vec<f64>,
-    /// The filters, in the order of the file.
-    pub(super) filters: Vec<FinishedFilter>,
-    /// Half modulation periods in which the gyro did not work as meant.
-    pub(super) faults: Faults,
 }
 
 /// Half modulation periods in which the gyro did not work as meant.
@@ -94,7 +100,7 @@ impl Faults {
 
 /// Runs repeat `repeat` of `scenario`.
 ///
-/// The gyro makes the next block while the filters work on the one before, so that two threads
+/// The gyros make the next block while the filters work on the one before, so that two threads
 /// share even a single run; every word depends on the words before it alone.
 pub(super) fn simulate(
     scenario: &Scenario,
@@ -103,38 +109,59 @@ pub(super) fn simulate(
     observer: &dyn Observer,
 ) -> Result<Simulation, GyroError> {
     let mut source = Source::new(scenario, length, repeat)?;
-    let mut filters: Vec<_> = scenario
-        .filters
+    let mut filters = channel_filters(scenario, length);
+    let mut raw: Vec<Vec<f64>> = scenario
+        .axis_prefixes()
         .iter()
-        .map(|config| ChannelFilter::new(config, length))
+        .map(|_| Vec::with_capacity(length.total()))
         .collect();
-    let mut raw = Vec::with_capacity(length.total());
     let mut block = source.next_block();
-    while !block.is_empty() {
+    while !block[0].is_empty() {
         let (next, ()) = rayon::join(
             || source.next_block(),
             || {
                 filters
                     .par_iter_mut()
-                    .for_each(|filter| filter.take(&block))
+                    .for_each(|(gyro, filter)| filter.take(&block[*gyro]))
             },
         );
-        raw.extend_from_slice(&block);
-        observer.advanced(source.sample_period_s * count(block.len()));
+        for (raw, words) in raw.iter_mut().zip(&block) {
+            raw.extend_from_slice(words);
+        }
+        observer.advanced(source.sample_period_s * count(block[0].len()));
         block = next;
     }
+    let faults = source.gyros.faults();
+    let records = source.truth_deg_per_h.into_iter().zip(raw);
     Ok(Simulation {
-        truth_deg_per_h: source.truth_deg_per_h,
-        raw_deg_per_h: raw,
-        filters: filters.into_iter().map(ChannelFilter::finish).collect(),
-        faults: Faults {
-            saturated: source.gyro.saturated_half_periods(),
-            unlocked: source.gyro.unlocked_half_periods(),
-        },
+        gyros: records
+            .map(|(truth_deg_per_h, raw_deg_per_h)| GyroRecord {
+                truth_deg_per_h,
+                raw_deg_per_h,
+            })
+            .collect(),
+        filters: filters
+            .into_iter()
+            .map(|(gyro, filter)| (gyro, filter.finish()))
+            .collect(),
+        faults,
     })
 }
 
-/// The first rate words of the first repeat, deg/h, warm-up included.
+/// The filters in the order of the file, each on every gyro in turn, with the index of the gyro.
+fn channel_filters(scenario: &Scenario, length: RecordLength) -> Vec<(usize, ChannelFilter)> {
+    let prefixes = scenario.axis_prefixes();
+    let filters = scenario.filters.iter().flat_map(|config| {
+        let gyros = prefixes.iter().enumerate();
+        gyros.map(move |(gyro, prefix)| {
+            let name = format!("{prefix}{}", config.name);
+            (gyro, ChannelFilter::new(name, &config.kind, length))
+        })
+    });
+    filters.collect()
+}
+
+/// The first rate words of the first repeat, deg/h, warm-up included; of an assembly those of x.
 pub(super) fn first_words(scenario: &Scenario, samples: usize) -> Result<Vec<f64>, GyroError> {
     let length = RecordLength {
         warm_up: 0,
@@ -143,46 +170,102 @@ pub(super) fn first_words(scenario: &Scenario, samples: usize) -> Result<Vec<f64
     let mut source = Source::new(scenario, length, 0)?;
     let mut words = Vec::with_capacity(samples);
     while words.len() < samples {
-        words.extend(source.next_block());
+        words.append(&mut source.next_block()[0]);
     }
     Ok(words)
 }
 
-/// Table and gyro: where the words come from.
+/// Table and gyros: where the words come from.
 struct Source {
     table: Turntable,
-    gyro: Gyro,
+    gyros: Gyros,
     sample_period_s: f64,
-    truth_deg_per_h: Vec<f64>,
+    /// Of each gyro.
+    truth_deg_per_h: Vec<Vec<f64>>,
     samples: usize,
+}
+
+/// What stands on the table.
+enum Gyros {
+    /// One gyro, its input axis along the table axis.
+    Alone(Box<Gyro>),
+    /// A case with three.
+    InCase(Vec<CaseGyro>),
+}
+
+impl Gyros {
+    fn new(scenario: &Scenario, repeat: u32) -> Result<Self, GyroError> {
+        let streams = Streams::new(scenario.seed, u64::from(repeat));
+        let simulated_s = scenario.warm_up_s + scenario.duration_s;
+        let (config, fidelity) = (&scenario.gyro, scenario.fidelity);
+        if config.assembly.is_some() {
+            CaseGyro::assembly(config, fidelity, simulated_s, &streams).map(Self::InCase)
+        } else {
+            let gyro = Gyro::new(config, fidelity, simulated_s, &streams)?;
+            Ok(Self::Alone(Box::new(gyro)))
+        }
+    }
+
+    fn faults(&self) -> Faults {
+        let of = |gyro: &Gyro| Faults {
+            saturated: gyro.saturated_half_periods(),
+            unlocked: gyro.unlocked_half_periods(),
+        };
+        match self {
+            Self::Alone(gyro) => of(gyro),
+            Self::InCase(gyros) => gyros
+                .iter()
+                .map(|gyro| of(gyro.gyro()))
+                .fold(Faults::default(), Faults::plus),
+        }
+    }
 }
 
 impl Source {
     fn new(scenario: &Scenario, length: RecordLength, repeat: u32) -> Result<Self, GyroError> {
-        let streams = Streams::new(scenario.seed, u64::from(repeat));
-        let simulated_s = scenario.warm_up_s + scenario.duration_s;
-        let gyro = Gyro::new(&scenario.gyro, scenario.fidelity, simulated_s, &streams)?;
-        let sample_period_s = gyro.sample_period_s();
+        let sample_period_s = gyro::sample_period_s(&scenario.gyro);
         Ok(Self {
             table: Turntable::new(&scenario.turntable, scenario.warm_up_s, sample_period_s),
-            gyro,
+            gyros: Gyros::new(scenario, repeat)?,
             sample_period_s,
-            truth_deg_per_h: Vec::with_capacity(length.total()),
+            truth_deg_per_h: scenario
+                .axis_prefixes()
+                .iter()
+                .map(|_| Vec::with_capacity(length.total()))
+                .collect(),
             samples: length.total(),
         })
     }
 
-    /// The next rate words, deg/h; empty when the record is complete.
-    fn next_block(&mut self) -> Vec<f64> {
-        let left = self.samples - self.truth_deg_per_h.len();
-        let mut words = Vec::with_capacity(left.min(BLOCK_SAMPLES));
-        for _ in 0..left.min(BLOCK_SAMPLES) {
-            let segment = self.table.next_segment();
-            words.push(self.gyro.next_word(&segment));
-            self.truth_deg_per_h
-                .push(rad_per_s_to_deg_per_h(segment.rate_at(1.0)));
+    /// The next rate words of each gyro, deg/h; empty when the records are complete.
+    fn next_block(&mut self) -> Vec<Vec<f64>> {
+        let (table, truth) = (&mut self.table, &mut self.truth_deg_per_h);
+        let left = self.samples - truth[0].len();
+        let block = left.min(BLOCK_SAMPLES);
+        match &mut self.gyros {
+            Gyros::Alone(gyro) => {
+                let mut words = Vec::with_capacity(block);
+                for _ in 0..block {
+                    let segment = table.next_segment();
+                    words.push(gyro.next_word(&segment));
+                    truth[0].push(rad_per_s_to_deg_per_h(segment.rate_at(1.0)));
+                }
+                vec![words]
+            }
+            Gyros::InCase(gyros) => {
+                let case: Vec<_> = (0..block).map(|_| table.next_platform_segments()).collect();
+                let gyros = gyros.par_iter_mut().zip(truth).enumerate();
+                gyros
+                    .map(|(axis, (gyro, truth))| {
+                        let ends = case.iter().map(|segments| segments[axis].rate_at(1.0));
+                        truth.extend(ends.map(rad_per_s_to_deg_per_h));
+                        case.iter()
+                            .map(|segments| gyro.next_word(segments))
+                            .collect()
+                    })
+                    .collect()
+            }
         }
-        words
     }
 }
 

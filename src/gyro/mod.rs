@@ -14,12 +14,13 @@
 //! Two models share every part above: [`LoopModel`] runs each half modulation period;
 //! [`RateModel`] advances the same loop, linearised, by one output sample at a time with the same
 //! mean, bandwidth, delay and noise colour. [`Gyro`] is either of them; [`cautions`] says where
-//! their assumptions end.
+//! their assumptions end. [`CaseGyro`] is one of three gyros in a case, behind its own input axis.
 //!
 //! Symbols: `tau` = transit time of the coil = half modulation period, `T_L = 2 tau` = loop
 //! period, `Ks` = Sagnac scale factor, `g` = integrator gain, `d` = pipeline latency in loop
 //! periods, `r` = step of the ramp per `tau` (the register), `phi_m` = modulation depth.
 
+mod assembly;
 mod coil;
 mod controller;
 mod detector;
@@ -38,6 +39,7 @@ mod sampler;
 mod slow_noise;
 mod source;
 
+pub use assembly::{CaseGyro, InputAxis};
 pub use coil::Coil;
 pub use controller::{Controller, gain_limit};
 pub use detector::{CurrentNoise, Detector};

@@ -68,11 +68,15 @@ fn budget(report: &RunReport, width: usize) -> String {
         .map(|(source, value)| format!("{source} {value:.5}"))
         .collect();
     let mut line = format!("ARW budget (theory), deg/sqrt(h): {}", terms.join(", "));
-    let raw = report.channels.iter().find(|(name, _)| name == "raw");
     let key = "angle_random_walk_deg_per_sqrt_h";
-    if let Some(metric) = raw.and_then(|(_, metrics)| metrics.metrics.get(key)) {
-        line.push_str("; simulated raw ");
-        line.push_str(&estimate_text(&metric.estimate, DIGITS));
+    for (name, metrics) in report.channels {
+        if !report.scenario.is_raw(name) {
+            continue;
+        }
+        if let Some(metric) = metrics.metrics.get(key) {
+            let value = estimate_text(&metric.estimate, DIGITS);
+            line.push_str(&format!("; simulated {name} {value}"));
+        }
     }
     wrapped(&line, INDENT, width)
 }

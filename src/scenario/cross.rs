@@ -215,12 +215,10 @@ impl Checks<'_> {
     }
 
     fn channel(&mut self, path: &str, written: &str, channel: &str) {
-        let filters = &self.resolved.scenario.filters;
-        if channel == "raw" || filters.iter().any(|filter| filter.name == channel) {
+        let known = self.resolved.scenario.channel_names();
+        if known.iter().any(|name| name == channel) {
             return;
         }
-        let mut known = vec!["raw"];
-        known.extend(filters.iter().map(|filter| filter.name.as_str()));
         let message = format!(
             "{path} = \"{written}\": there is no channel {channel}: expected one of {}",
             known.join(", ")

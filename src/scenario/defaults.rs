@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
+use super::keys::OPTIONAL_TABLES;
 use super::schema::{self, Child, Group, Presence, join};
 use super::tree::{Node, Table, Value, parse_document};
 
@@ -116,8 +117,9 @@ pub(crate) fn has_default_alternative(group: &Group) -> bool {
     live.is_some_and(stands)
 }
 
-/// Fills every absent defaulted key and table of a tree; chosen alternatives stay, and a group
-/// without a choice takes the alternative that stands live in the reference.
+/// Fills every absent defaulted key and table of a tree; chosen alternatives stay, a group without a
+/// choice takes the alternative that stands live in the reference, and an optional table that is
+/// absent stays so.
 pub(crate) fn fill(root: &mut Table) {
     fill_table("", root, Some(&defaults().live));
 }
@@ -135,7 +137,11 @@ fn fill_table(schema_path: &str, table: &mut Table, live: Option<&Table>) {
         let path = join(schema_path, name);
         let live_node = live.and_then(|live| live.get(name));
         let is_alternative = group.is_some_and(|group| group.alternatives.contains(&name));
-        let may_add = !is_alternative || (!is_chosen && live_node.is_some());
+        let may_add = if is_alternative {
+            !is_chosen && live_node.is_some()
+        } else {
+            !OPTIONAL_TABLES.contains(&path.as_str())
+        };
         if !table.contains_key(name) && may_add {
             let value = match child {
                 Child::Leaf(_) => default_of(&path).cloned(),

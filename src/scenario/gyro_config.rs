@@ -2,6 +2,8 @@
 
 use serde::Deserialize;
 
+use super::assembly_config::AssemblyConfig;
+
 /// The gyro.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -26,6 +28,8 @@ pub struct GyroConfig {
     pub temperature: TemperatureConfig,
     /// Rate word.
     pub output: RateOutputConfig,
+    /// Three such gyros in one case; none is a single gyro on the table axis.
+    pub assembly: Option<AssemblyConfig>,
 }
 
 /// Fibre coil.

@@ -129,6 +129,9 @@ fn leaf(key: &Key) -> Value {
         Kind::Floats(range) => {
             json!({"type": "array", "minItems": 1, "items": number(range)})
         }
+        Kind::Triple(range) => {
+            json!({"type": "array", "minItems": 3, "maxItems": 3, "items": number(range)})
+        }
         Kind::Integer(range) => {
             let mut schema = json!({"type": "integer", "minimum": range.min, "maximum": range.max});
             if range.is_even {
@@ -171,13 +174,14 @@ fn number(range: schema::Range) -> Value {
     schema
 }
 
-/// A scalar default in JSON.
+/// A scalar default in JSON, or an array of such.
 fn plain(value: &tree::Value) -> Option<Value> {
     match value {
         tree::Value::Text(text) => Some(json!(text)),
         tree::Value::Integer(number) => Some(json!(number)),
         tree::Value::Float(number) => Some(json!(number)),
         tree::Value::Boolean(is_set) => Some(json!(is_set)),
+        tree::Value::Array(elements) => elements.iter().map(|node| plain(&node.value)).collect(),
         _ => None,
     }
 }

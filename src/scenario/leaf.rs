@@ -4,6 +4,9 @@ use super::schema::{self, Key, Kind, join};
 use super::source::Mark;
 use super::tree::{Node, Value};
 
+/// Elements of a [`Kind::Triple`].
+const AXES: usize = 3;
+
 /// What is wrong with a value, and where if not at its key.
 pub(crate) struct Fault {
     pub(crate) mark: Option<Mark>,
@@ -27,6 +30,15 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), 
         (Kind::Floats(range), Value::Array(values)) => {
             if values.is_empty() {
                 return Err(format!("{shown} is empty: expected {}", key.expected()).into());
+            }
+            check_elements(key, shown, range, values)?;
+            true
+        }
+        (Kind::Triple(range), Value::Array(values)) => {
+            if values.len() != AXES {
+                let count = values.len();
+                let message = format!("{shown} holds {count} values: expected {}", key.expected());
+                return Err(message.into());
             }
             check_elements(key, shown, range, values)?;
             true
@@ -147,7 +159,7 @@ fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
 /// The complaint about a value that is no number where one is expected, alone or in an array.
 fn wrong_element(key: &Key, shown: &str, value: &Value) -> String {
     match key.kind {
-        Kind::Floats(_) if !matches!(value, Value::Beyond(..)) => format!(
+        Kind::Floats(_) | Kind::Triple(_) if !matches!(value, Value::Beyond(..)) => format!(
             "{shown} has the wrong type: expected a number, {}, got {}{}",
             key.allowed(),
             value.type_name(),
@@ -161,7 +173,7 @@ fn wrong_element(key: &Key, shown: &str, value: &Value) -> String {
 fn wrong_type(key: &Key, shown: &str, value: &Value) -> String {
     let is_number = matches!(
         key.kind,
-        Kind::Float(_) | Kind::Floats(_) | Kind::Integer(_)
+        Kind::Float(_) | Kind::Floats(_) | Kind::Triple(_) | Kind::Integer(_)
     );
     if let Value::Beyond(text, number_type) = value
         && is_number

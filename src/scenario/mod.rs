@@ -5,6 +5,8 @@
 //! contradiction, and every complaint points at the file, line and key that is wrong.
 
 mod address;
+mod assembly_config;
+mod channels;
 mod check;
 mod config;
 mod cross;
@@ -27,6 +29,7 @@ mod suite;
 mod tree;
 mod turntable_config;
 
+pub use assembly_config::AssemblyConfig;
 pub use config::{
     Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
     SamplesFormat, Scenario,

@@ -40,6 +40,8 @@ pub(crate) enum Kind {
     Choice(&'static [&'static str]),
     /// Non-empty array of binary64.
     Floats(Range),
+    /// Array of three binary64, one for each case axis x, y, z.
+    Triple(Range),
     /// A table that holds no keys (an alternative with nothing to set).
     EmptyTable,
     /// The table of swept keys.
@@ -260,7 +262,7 @@ impl Key {
     /// Allowed values with the unit, as error messages print them.
     pub(crate) fn allowed(&self) -> String {
         let range = match self.kind {
-            Kind::Float(range) | Kind::Floats(range) => range.to_string(),
+            Kind::Float(range) | Kind::Floats(range) | Kind::Triple(range) => range.to_string(),
             Kind::Integer(range) => range.to_string(),
             Kind::Boolean => "true or false".to_owned(),
             Kind::Text | Kind::FreeText => "text".to_owned(),
@@ -279,6 +281,12 @@ impl Key {
             Kind::Integer(_) => format!("a whole number, {}", self.allowed()),
             Kind::Choice(_) => format!("one of {}", self.allowed()),
             Kind::Floats(_) => format!("an array of numbers, each {}", self.allowed()),
+            Kind::Triple(_) => {
+                format!(
+                    "an array of three numbers (x, y, z), each {}",
+                    self.allowed()
+                )
+            }
             Kind::Name => format!("a name {}", self.allowed()),
             _ => self.allowed(),
         }
@@ -298,6 +306,7 @@ impl Key {
         let mut line = match self.kind {
             Kind::Float(range) => format!("Number {range}"),
             Kind::Floats(range) => format!("Array of numbers {range}"),
+            Kind::Triple(range) => format!("Array of three numbers (x, y, z) {range}"),
             Kind::Integer(range) => format!("Integer {range}"),
             Kind::Boolean => "Boolean true or false".to_owned(),
             Kind::Text | Kind::FreeText => "Text".to_owned(),

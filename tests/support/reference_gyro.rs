@@ -63,5 +63,6 @@ pub(crate) fn reference_gyro() -> GyroConfig {
             half_periods_per_sample: 64,
             rate_lsb_deg_per_s: 0.0,
         },
+        assembly: None,
     }
 }

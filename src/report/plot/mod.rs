@@ -18,13 +18,24 @@ use crate::signal::RunSignals;
 /// Largest size of a picture, bytes: long records are drawn as an envelope per pixel column.
 pub const SVG_BYTES_MAX: usize = 500_000;
 
-/// The pictures of a run as file name and SVG text: `rate.svg`; `allan.svg` and `spectrum.svg`
-/// where a channel has the curve; `swing.svg` for a swing.
+/// The pictures of one gyro of a run as file name and SVG text: `rate.svg`; `allan.svg` and
+/// `spectrum.svg` where a channel has the curve; `swing.svg` for a swing. Those of an assembly
+/// stand behind the axis, as in `x-rate.svg`: nine channels in one picture would hide one another.
 ///
 /// # Panics
 /// If a picture exceeds [`SVG_BYTES_MAX`], which its fixed number of points rules out.
 #[must_use]
 pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> {
+    let own = report.channels.iter();
+    let own: Vec<_> = own
+        .filter(|(name, _)| name.starts_with(signals.prefix))
+        .cloned()
+        .collect();
+    let report = &RunReport {
+        channels: &own,
+        ..report.clone()
+    };
+    let axis = signals.prefix.replace('_', "-");
     let swing = match &report.scenario.turntable.motion {
         MotionConfig::Swing(swing) => swing::picture(report, signals, swing.frequency_hz),
         _ => None,
@@ -37,7 +48,7 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
     ];
     pictures
         .into_iter()
-        .filter_map(|(name, picture)| Some((name.to_owned(), picture?.svg())))
+        .filter_map(|(name, picture)| Some((format!("{axis}{name}"), picture?.svg())))
         .inspect(|(name, svg)| {
             let bytes = svg.len();
             assert!(bytes <= SVG_BYTES_MAX, "{name} has {bytes} bytes");

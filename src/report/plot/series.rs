@@ -20,6 +20,8 @@ const DASHES: [Dash; 4] = [Dash::Solid, Dash::Long, Dash::Mixed, Dash::Dotted];
 /// A channel as it is drawn.
 pub(super) struct Series<'a> {
     pub(super) name: &'a str,
+    /// Whether this is the gyro's own output.
+    pub(super) is_raw: bool,
     pub(super) metrics: Option<&'a ChannelMetrics>,
     pub(super) stroke: Stroke,
     /// Rate words of the measured part, deg/h; none where the channel has no samples or failed.
@@ -71,6 +73,7 @@ pub(super) fn series<'a>(report: &RunReport<'a>, signals: &RunSignals<'a>) -> Ve
                 .unwrap_or(&[]);
             Series {
                 name,
+                is_raw: report.scenario.is_raw(name),
                 metrics: Some(metrics),
                 stroke: stroke_of(index),
                 samples,

@@ -223,7 +223,7 @@ fn zoom(picture: &mut Picture, fold: &Fold, truth: &[f64], channels: &[Series]) 
 fn arrows(picture: &mut Picture, panel: &Panel, channels: &[&Series], (low, high): (f64, f64)) {
     let raw_ms = channels
         .iter()
-        .find(|channel| channel.name == "raw")
+        .find(|channel| channel.is_raw)
         .and_then(|channel| delay(channel, "delay_vs_truth_ms"))
         .map_or(0.0, |estimate| estimate.value);
     let mut row = 0.0_f64;
@@ -233,7 +233,7 @@ fn arrows(picture: &mut Picture, panel: &Panel, channels: &[&Series], (low, high
         };
         let end_ms = to_truth.value;
         let (start_ms, delay_ms, from) = match delay(channel, "delay_vs_raw_ms") {
-            Some(to_raw) if channel.name != "raw" => (raw_ms, to_raw.value, "raw"),
+            Some(to_raw) if !channel.is_raw => (raw_ms, to_raw.value, "raw"),
             _ => (0.0, end_ms, "truth"),
         };
         row += 1.0;

@@ -1,0 +1,89 @@
+//! The motion of a three-axis assembly as the checks and the metrics need it.
+
+use crate::gyro::{InputAxis, MotionExtremes};
+use crate::metrics::ChannelMetrics;
+use crate::scenario::{AssemblyConfig, CaseAxis, Scenario, TurntableConfig};
+use crate::units::{EARTH_RATE_RAD_PER_S, arcsec_to_rad};
+
+/// Index of the case axis along the table axis.
+fn index_along(table: &TurntableConfig) -> usize {
+    match table.mounting.axis_along_table {
+        CaseAxis::X => 0,
+        CaseAxis::Y => 1,
+        CaseAxis::Z => 2,
+    }
+}
+
+/// The hardest motion on any of the three input axes, their biases included.
+///
+/// * `command`: motion about the table axis, without the Earth's.
+/// * `along`: motion on the case axis along the table axis.
+///
+/// A case axis across the table axis sees at most the whole Earth rate, which the table turns past
+/// it, and `sin mu + k sin w` of the command under misalignment `mu` and wobble `w` of harmonic k.
+pub(super) fn hardest(
+    table: &TurntableConfig,
+    assembly: &AssemblyConfig,
+    command: &MotionExtremes,
+    along: &MotionExtremes,
+) -> MotionExtremes {
+    let harmonic = f64::from(table.axis.wobble_harmonic);
+    let wobble = harmonic * arcsec_to_rad(table.axis.wobble_arcsec).sin();
+    let lean = arcsec_to_rad(table.mounting.misalignment_arcsec).sin() + wobble;
+    let commanded = command.rate_rad_per_s;
+    let across = MotionExtremes {
+        rate_rad_per_s: EARTH_RATE_RAD_PER_S + lean * commanded,
+        jump_rad_per_s: EARTH_RATE_RAD_PER_S + lean * command.jump_rad_per_s,
+        acceleration_rad_per_s2: lean * command.acceleration_rad_per_s2
+            + commanded * ((harmonic - 1.0) * wobble * commanded + EARTH_RATE_RAD_PER_S),
+    };
+    let index_along = index_along(table);
+    let mut hardest = MotionExtremes::default();
+    for input_axis in InputAxis::of_assembly(assembly) {
+        let bias = input_axis.bias_rad_per_s.abs();
+        let sensed = |of: fn(&MotionExtremes) -> f64| -> f64 {
+            let axes = input_axis.sensitivity.iter().enumerate();
+            let parts = axes.map(|(axis, sensitivity)| {
+                sensitivity.abs() * of(if axis == index_along { along } else { &across })
+            });
+            parts.sum()
+        };
+        let rate = sensed(|motion| motion.rate_rad_per_s) + bias;
+        let jump = sensed(|motion| motion.jump_rad_per_s) + bias;
+        let acceleration = sensed(|motion| motion.acceleration_rad_per_s2);
+        hardest = MotionExtremes {
+            rate_rad_per_s: hardest.rate_rad_per_s.max(rate),
+            jump_rad_per_s: hardest.jump_rad_per_s.max(jump),
+            acceleration_rad_per_s2: hardest.acceleration_rad_per_s2.max(acceleration),
+        };
+    }
+    hardest
+}
+
+/// Metrics of a motion that only the axis has about which the table turns.
+const TURNED_ONLY: [&str; 2] = ["delay_vs_truth_ms", "settling_time_s"];
+/// The same, of unfiltered channels: those of filters compare with the raw channel.
+const TURNED_RAW_ONLY: &str = "amplitude_ratio";
+
+/// Why a channel can never have a metric because its gyro stands across the table axis.
+pub(super) fn lacks(scenario: &Scenario, channel: &str, metric: &str) -> Option<&'static str> {
+    scenario.gyro.assembly.as_ref()?;
+    let along = scenario.axis_prefixes()[index_along(&scenario.turntable)];
+    let is_concerned =
+        TURNED_ONLY.contains(&metric) || (scenario.is_raw(channel) && metric == TURNED_RAW_ONLY);
+    (is_concerned && !channel.starts_with(along))
+        .then_some("the table does not turn about this axis")
+}
+
+/// Takes from a channel across the table axis what it can never have.
+pub(super) fn drop_lacking(scenario: &Scenario, channel: &str, metrics: &mut ChannelMetrics) {
+    for name in TURNED_ONLY.into_iter().chain([TURNED_RAW_ONLY]) {
+        if let Some(reason) = lacks(scenario, channel, name)
+            && metrics.metrics.remove(name).is_some()
+        {
+            metrics
+                .unavailable
+                .insert(name.to_owned(), reason.to_owned());
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! The channels of a scenario: which there are, in which order, and whose words they carry.
+
+use super::config::Scenario;
+use super::filter_config::FilterConfig;
+
+/// Prefixes of the channels of an assembly, in the order of its case axes.
+const ASSEMBLY: &[&str] = &["x_", "y_", "z_"];
+/// A single gyro needs no prefix.
+const SINGLE: &[&str] = &[""];
+
+/// Name of the unfiltered output of a gyro, behind its prefix.
+const RAW: &str = "raw";
+
+impl Scenario {
+    /// Prefix of the channel names of each gyro: one empty one, or `x_`, `y_`, `z_`.
+    #[must_use]
+    pub fn axis_prefixes(&self) -> &'static [&'static str] {
+        match self.gyro.assembly {
+            None => SINGLE,
+            Some(_) => ASSEMBLY,
+        }
+    }
+
+    /// Names of the unfiltered channels, one for each gyro: `raw`, or `x_raw`, `y_raw`, `z_raw`.
+    #[must_use]
+    pub fn raw_channels(&self) -> Vec<String> {
+        let prefixes = self.axis_prefixes().iter();
+        prefixes.map(|prefix| format!("{prefix}{RAW}")).collect()
+    }
+
+    /// Every channel in the order of the report: the unfiltered ones, then those of each filter.
+    #[must_use]
+    pub fn channel_names(&self) -> Vec<String> {
+        let mut names = self.raw_channels();
+        for filter in &self.filters {
+            let prefixes = self.axis_prefixes().iter();
+            names.extend(prefixes.map(|prefix| format!("{prefix}{}", filter.name)));
+        }
+        names
+    }
+
+    /// Whether a channel is the unfiltered output of a gyro.
+    #[must_use]
+    pub fn is_raw(&self, channel: &str) -> bool {
+        self.raw_channels().iter().any(|raw| raw == channel)
+    }
+
+    /// The filter whose words a channel carries; none for an unfiltered or unknown one.
+    #[must_use]
+    pub fn filter_of(&self, channel: &str) -> Option<&FilterConfig> {
+        let prefixes = self.axis_prefixes();
+        self.filters.iter().find(|filter| {
+            prefixes
+                .iter()
+                .any(|prefix| channel.strip_prefix(prefix) == Some(filter.name.as_str()))
+        })
+    }
+}
