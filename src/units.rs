@@ -38,6 +38,12 @@ pub fn rad_to_arcsec(angle_rad: f64) -> f64 {
     rad_to_deg(angle_rad) * 3600.0
 }
 
+/// Converts an angle from arcseconds to radians.
+#[must_use]
+pub fn arcsec_to_rad(angle_arcsec: f64) -> f64 {
+    deg_to_rad(angle_arcsec / 3600.0)
+}
+
 /// Converts a rate from deg/s to rad/s.
 #[must_use]
 pub fn deg_per_s_to_rad_per_s(rate_deg_per_s: f64) -> f64 {

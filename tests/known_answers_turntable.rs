@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use fogbench::scenario::{
-    MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
-    StepsConfig, SwingConfig, TurntableConfig,
+    EncoderConfig, MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig,
+    StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
 use fogbench::turntable::{
@@ -64,6 +64,7 @@ fn table(
     let config = TurntableConfig {
         motion,
         servo,
+        encoder: EncoderConfig::default(),
         site,
     };
     Turntable::new(&config, warm_up_s, sample_period_s)

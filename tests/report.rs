@@ -347,6 +347,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
         sample_period_s: period_s,
         first_measured: 4000,
         truth_deg_per_h: &truth,
+        encoder_rad: None,
         channels: vec![("raw", &raw), ("lms", &lms), ("rls", &raw), ("bad", &raw)],
     };
     let pictures = plots(&fixture.report(), &signals);

@@ -64,6 +64,10 @@ pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
                 ServoConfig::Ideal(_) => (rise.max(first), 0.0),
                 // The slope of the step response of a second-order servo stays below wn.
                 ServoConfig::SecondOrder(servo) => (first, TAU * servo.natural_frequency_hz * rise),
+                // Whatever its controller demands, the motor is limited.
+                ServoConfig::DirectDrive(servo) => {
+                    (first, servo.acceleration_max_rad_per_s2(commanded))
+                }
             }
         }
     };

@@ -346,8 +346,10 @@ impl Checker<'_> {
                 channel != "raw",
                 scenario.bias_averaging_time_s,
             );
-            let lack = pipeline_check::lacks(&scenario.filters, channel, name).map(str::to_owned);
-            if let Some(reason) = supported.err().or(lack) {
+            let lack = pipeline_check::lacks(&scenario.filters, channel, name);
+            let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
+            let lack = lack.or_else(|| metrics::encoder_lack(name, has_encoder));
+            if let Some(reason) = supported.err().or(lack.map(str::to_owned)) {
                 self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
             }
         }

@@ -21,6 +21,7 @@ use crate::metrics::{
 use crate::report::{self, FolderWriter, RunOutcome, RunReport};
 use crate::scenario::{SamplesFormat, manifest_toml};
 use crate::signal::RunSignals;
+use crate::units::rad_to_arcsec;
 
 /// Channels of one repeat with their metrics.
 type Channels = Vec<(String, ChannelMetrics)>;
@@ -137,6 +138,7 @@ fn signals<'a>(plan: &Plan, simulation: &'a Simulation) -> RunSignals<'a> {
         sample_period_s,
         first_measured: RecordLength::new(&plan.resolved().scenario, sample_period_s).warm_up,
         truth_deg_per_h: &simulation.truth_deg_per_h,
+        encoder_rad: simulation.encoder_rad.as_deref(),
         channels: std::iter::once(raw).chain(filters).collect(),
     }
 }
@@ -146,6 +148,10 @@ fn write_samples(folder: &FolderWriter, signals: &RunSignals) -> io::Result<()> 
         folder.write_npy(&format!("samples/{name}.npy"), words)?;
     }
     folder.write_npy("samples/truth.npy", signals.truth_deg_per_h)?;
+    if let Some(readings) = signals.encoder_rad {
+        let angles: Vec<f64> = readings.iter().copied().map(rad_to_arcsec).collect();
+        folder.write_npy("samples/encoder_arcsec.npy", &angles)?;
+    }
     let samples = signals.truth_deg_per_h.len() as u64;
     let time_s: Vec<f64> = (0..samples)
         .map(|index| stamp_s(index, signals.sample_period_s))
@@ -204,10 +210,12 @@ struct Cut<'a> {
 impl Cut<'_> {
     fn measure(&self, channel_deg_per_h: &[f64], filter: Option<&FilterFacts>) -> ChannelMetrics {
         let first = self.length.warm_up;
+        let encoder = self.simulation.encoder_rad.as_ref();
         let record = Record {
             channel_deg_per_h: &channel_deg_per_h[first..],
             raw_deg_per_h: &self.simulation.raw_deg_per_h[first..],
             truth_deg_per_h: &self.simulation.truth_deg_per_h[first..],
+            encoder_rad: encoder.map(|readings| &readings[first..]),
             sample_period_s: self.sample_period_s,
             first_stamp_s: stamp_s(first as u64, self.sample_period_s),
         };

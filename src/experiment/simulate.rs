@@ -47,6 +47,8 @@ impl RecordLength {
 pub(super) struct Simulation {
     /// Inertial rate of the input axis at each stamp, deg/h.
     pub(super) truth_deg_per_h: Vec<f64>,
+    /// What the table's encoder shows at each stamp, rad; none if the table has none.
+    pub(super) encoder_rad: Option<Vec<f64>>,
     /// The gyro's rate words, deg/h.
     pub(super) raw_deg_per_h: Vec<f64>,
     /// The filters, in the order of the file.
@@ -125,6 +127,7 @@ pub(super) fn simulate(
     }
     Ok(Simulation {
         truth_deg_per_h: source.truth_deg_per_h,
+        encoder_rad: source.encoder_rad,
         raw_deg_per_h: raw,
         filters: filters.into_iter().map(ChannelFilter::finish).collect(),
         faults: Faults {
@@ -154,6 +157,7 @@ struct Source {
     gyro: Gyro,
     sample_period_s: f64,
     truth_deg_per_h: Vec<f64>,
+    encoder_rad: Option<Vec<f64>>,
     samples: usize,
 }
 
@@ -163,8 +167,11 @@ impl Source {
         let simulated_s = scenario.warm_up_s + scenario.duration_s;
         let gyro = Gyro::new(&scenario.gyro, scenario.fidelity, simulated_s, &streams)?;
         let sample_period_s = gyro.sample_period_s();
+        let encoder = &scenario.turntable.encoder;
+        let has_encoder = encoder.resolution_arcsec.is_some();
         Ok(Self {
             table: Turntable::new(&scenario.turntable, scenario.warm_up_s, sample_period_s),
+            encoder_rad: has_encoder.then(|| Vec::with_capacity(length.total())),
             gyro,
             sample_period_s,
             truth_deg_per_h: Vec::with_capacity(length.total()),
@@ -181,6 +188,9 @@ impl Source {
             words.push(self.gyro.next_word(&segment));
             self.truth_deg_per_h
                 .push(rad_per_s_to_deg_per_h(segment.rate_at(1.0)));
+            if let Some(readings) = &mut self.encoder_rad {
+                readings.extend(self.table.encoder_rad());
+            }
         }
         words
     }

@@ -8,6 +8,7 @@ mod address;
 mod check;
 mod config;
 mod cross;
+mod cross_turntable;
 mod defaults;
 mod emit;
 mod error;
@@ -20,6 +21,7 @@ mod manifest;
 mod matrix;
 mod resolved;
 mod schema;
+mod servo_config;
 mod source;
 mod suite;
 mod tree;
@@ -44,6 +46,7 @@ pub use gyro_config::{
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
+pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
 pub use suite::load_suite;
 pub use turntable_config::{
     MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,

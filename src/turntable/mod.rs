@@ -2,8 +2,9 @@
 //!
 //! ```text
 //!  motion ──> profile ──command──> servo ──table rate──> axis ──truth──> gyro
-//!             swing, steps,        ideal or              + projection
-//!             rotation, rest       second order            of Earth rate
+//!             swing, steps,        ideal,      │         + projection
+//!             rotation, rest       2nd order,  │           of Earth rate
+//!                                  motor       └──> encoder ──> laboratory
 //! ```
 //!
 //! Truth is what the axis does, not what it was told to do: a 40 Hz table lags a 10 Hz command by
@@ -16,6 +17,7 @@
 //! Invariant: this is truth; it never sees a gyro output.
 
 mod axis;
+mod encoder;
 mod profile;
 mod servo;
 mod table;

@@ -1,6 +1,7 @@
 //! The table: command, servo and Earth rate joined.
 
 use super::axis::earth_rate_rad_per_s;
+use super::encoder::Encoder;
 use super::profile::Profile;
 use super::servo::Servo;
 use crate::scenario::TurntableConfig;
@@ -14,6 +15,7 @@ use crate::signal::MotionSegment;
 pub struct Turntable {
     profile: Profile,
     servo: Servo,
+    encoder: Option<Encoder>,
     /// Projection of the Earth's rotation, rad/s.
     earth_rate: f64,
 }
@@ -30,8 +32,15 @@ impl Turntable {
     #[must_use]
     pub fn new(config: &TurntableConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         let profile = Profile::new(&config.motion, warm_up_s, sample_period_s);
+        let initial_rate = profile.initial_rate();
         Self {
-            servo: Servo::new(&config.servo, profile.initial_rate(), sample_period_s),
+            servo: Servo::new(
+                &config.servo,
+                &config.encoder,
+                initial_rate,
+                sample_period_s,
+            ),
+            encoder: Encoder::new(&config.encoder, initial_rate, sample_period_s),
             profile,
             earth_rate: earth_rate_rad_per_s(&config.site),
         }
@@ -45,7 +54,16 @@ impl Turntable {
     /// between them (2e-10 at 10 Hz and 4 kHz); a servo has its amplitude low by that much at most.
     pub fn next_segment(&mut self) -> MotionSegment {
         let mut motion = self.servo.follow(self.profile.next_segment());
+        if let Some(encoder) = &mut self.encoder {
+            encoder.advance(&motion);
+        }
         motion.rate_rad_per_s[0] += self.earth_rate;
         motion
+    }
+
+    /// What the encoder shows at the stamp of the last sample, rad; none without an encoder.
+    #[must_use]
+    pub fn encoder_rad(&self) -> Option<f64> {
+        self.encoder.as_ref().map(Encoder::reading_rad)
     }
 }
