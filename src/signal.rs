@@ -44,6 +44,21 @@ impl MotionSegment {
         let [c0, c1, c2, c3] = self.rate_rad_per_s;
         ((c3 * u + c2) * u + c1) * u + c0
     }
+
+    /// Slope of the rate at normalised time `u` in `[0, 1]`, rad/s per interval.
+    #[must_use]
+    pub fn slope_at(&self, u: f64) -> f64 {
+        let [_, c1, c2, c3] = self.rate_rad_per_s;
+        (3.0 * c3 * u + 2.0 * c2) * u + c1
+    }
+
+    /// Angle turned from the start of an interval of `period_s` to normalised time `u` in
+    /// `[0, 1]`, rad: the integral of the cubic.
+    #[must_use]
+    pub fn angle_at(&self, u: f64, period_s: f64) -> f64 {
+        let [c0, c1, c2, c3] = self.rate_rad_per_s;
+        (((c3 / 4.0 * u + c2 / 3.0) * u + c1 / 2.0) * u + c0) * u * period_s
+    }
 }
 
 /// A filter as its outputs are judged: which input samples it weighs and what it aims at.
@@ -99,6 +114,8 @@ pub struct RunSignals<'a> {
     pub prefix: &'a str,
     /// Inertial rate of the axis at each stamp, deg/h.
     pub truth_deg_per_h: &'a [f64],
+    /// Angle that the table's encoder shows at each stamp, rad; none if the table has none.
+    pub encoder_rad: Option<&'a [f64]>,
     /// Channels in order, raw first: name and rate words, deg/h.
     pub channels: Vec<(&'a str, &'a [f64])>,
 }

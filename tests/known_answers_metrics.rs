@@ -33,6 +33,7 @@ fn steady(seed: u64, samples: usize) -> [ChannelMetrics; 2] {
         channel_deg_per_h: channel,
         raw_deg_per_h: &raw,
         truth_deg_per_h: &truth,
+        encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 1.0,
     };
@@ -124,6 +125,7 @@ fn a_swing_record_is_measured_as_theory_says() {
         channel_deg_per_h: channel,
         raw_deg_per_h: &raw,
         truth_deg_per_h: &truth,
+        encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 20.0,
     };
@@ -172,6 +174,7 @@ fn a_step_record_settles() {
         channel_deg_per_h: &raw,
         raw_deg_per_h: &raw,
         truth_deg_per_h: &truth,
+        encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 0.0,
     };
@@ -196,6 +199,7 @@ fn a_record_too_short_or_not_finite_gives_reasons_and_no_numbers() {
             channel_deg_per_h: &raw,
             raw_deg_per_h: &raw,
             truth_deg_per_h: &raw,
+            encoder_rad: None,
             sample_period_s: PERIOD_S,
             first_stamp_s: 0.0,
         };
@@ -224,6 +228,7 @@ fn a_noise_free_record_has_no_noise_gain_and_no_false_numbers() {
         channel_deg_per_h: &raw,
         raw_deg_per_h: &raw,
         truth_deg_per_h: &raw,
+        encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 0.0,
     };

@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use fogbench::scenario::{
-    AxisConfig, CaseAxis, MotionConfig, MountingConfig, RotationConfig, SecondOrderServoConfig,
-    ServoConfig, SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
+    EncoderConfig, MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig,
+    StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
 use fogbench::turntable::{
@@ -65,6 +65,7 @@ fn table(
     let config = TurntableConfig {
         motion,
         servo,
+        encoder: EncoderConfig::default(),
         site,
         axis: true_axis(),
         mounting: true_mounting(),

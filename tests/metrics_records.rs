@@ -24,6 +24,7 @@ fn measured(
         channel_deg_per_h: channel,
         raw_deg_per_h: raw,
         truth_deg_per_h: &truth,
+        encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 1.0,
     };
@@ -112,6 +113,7 @@ fn through_a_wandering_gain(deviation: f64) -> ChannelMetrics {
         channel_deg_per_h: &output,
         raw_deg_per_h: &raw,
         truth_deg_per_h: &truth,
+        encoder_rad: None,
         sample_period_s: 0.01,
         first_stamp_s: 0.0,
     };

@@ -348,6 +348,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
         first_measured: 4000,
         prefix: "",
         truth_deg_per_h: &truth,
+        encoder_rad: None,
         channels: vec![("raw", &raw), ("lms", &lms), ("rls", &raw), ("bad", &raw)],
     };
     let pictures = plots(&fixture.report(), &signals);

@@ -394,7 +394,7 @@ fn bad_reserved_and_repeated_names_are_refused() {
         complaints("[[filter]]\nname = \"truth\"\n[filter.rls]\n"),
         [
             "x.toml:5:1: filter[0].name = \"truth\" is a reserved name: \
-          raw, truth, time_s have a meaning of their own"
+          raw, truth, time_s, encoder_arcsec have a meaning of their own"
         ]
     );
     assert_eq!(
@@ -409,7 +409,7 @@ fn bad_reserved_and_repeated_names_are_refused() {
     assert_eq!(
         complaints_of_set("", &["name=time_s"]),
         ["--set name=time_s: name = \"time_s\" is a reserved name: \
-          raw, truth, time_s have a meaning of their own"]
+          raw, truth, time_s, encoder_arcsec have a meaning of their own"]
     );
     let long = format!("name={}", "a".repeat(65));
     assert!(complaints_of_set("", &[&long])[0].contains("is not a valid name"));

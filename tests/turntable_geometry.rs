@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use fogbench::scenario::{
-    AxisConfig, CaseAxis, MotionConfig, MountingConfig, RotationConfig, ServoConfig, SiteConfig,
-    StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
+    AxisConfig, CaseAxis, EncoderConfig, MotionConfig, MountingConfig, RotationConfig, ServoConfig,
+    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::turntable::{Turntable, earth_rate_rad_per_s, input_axis_bounds};
 use fogbench::units::{
@@ -46,6 +46,7 @@ fn config(motion: MotionConfig, axis: AxisConfig, mounting: MountingConfig) -> T
     TurntableConfig {
         motion,
         servo: ServoConfig::Ideal(StaticConfig {}),
+        encoder: EncoderConfig::default(),
         site: upright(),
         axis,
         mounting,

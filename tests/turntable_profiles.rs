@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use fogbench::scenario::{
-    ChirpConfig, MotionConfig, MountingConfig, Progression, ScriptConfig, ScriptPoints,
-    SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig, TrapezoidConfig,
+    ChirpConfig, EncoderConfig, MotionConfig, MountingConfig, Progression, ScriptConfig,
+    ScriptPoints, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig, TrapezoidConfig,
     TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
@@ -22,6 +22,7 @@ fn config(motion: MotionConfig) -> TurntableConfig {
     TurntableConfig {
         motion,
         servo: ServoConfig::Ideal(StaticConfig {}),
+        encoder: EncoderConfig::default(),
         // Level and eastward: no Earth rate to speak of.
         site: SiteConfig {
             latitude_deg: 34.27,

@@ -61,7 +61,11 @@ pub(super) fn hardest(
 }
 
 /// Metrics of a motion that only the axis has about which the table turns.
-const TURNED_ONLY: [&str; 2] = ["delay_vs_truth_ms", "settling_time_s"];
+const TURNED_ONLY: [&str; 3] = [
+    "delay_vs_truth_ms",
+    "delay_vs_encoder_ms",
+    "settling_time_s",
+];
 /// The same, of unfiltered channels: those of filters compare with the raw channel.
 const TURNED_RAW_ONLY: &str = "amplitude_ratio";
 

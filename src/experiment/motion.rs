@@ -51,7 +51,7 @@ pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
 
 /// The hardest motion on the input axis, of an assembly on any; the loop starts from zero rate.
 pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
-    let command = command_extremes(scenario);
+    let command = table_extremes(scenario);
     let axis = input_axis_bounds(&scenario.turntable);
     let commanded = command.rate_rad_per_s;
     let input = MotionExtremes {
@@ -67,7 +67,7 @@ pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
 }
 
 /// The hardest motion about the table axis but for the Earth's; the servo starts settled.
-fn command_extremes(scenario: &Scenario) -> MotionExtremes {
+fn table_extremes(scenario: &Scenario) -> MotionExtremes {
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
     let own = command_extremes(&scenario.turntable.motion);
     let (jump, acceleration) = match &scenario.turntable.motion {
@@ -95,6 +95,10 @@ fn command_extremes(scenario: &Scenario) -> MotionExtremes {
                 ServoConfig::Ideal(_) => (rise.max(first), 0.0),
                 // The slope of the step response of a second-order servo stays below wn.
                 ServoConfig::SecondOrder(servo) => (first, TAU * servo.natural_frequency_hz * rise),
+                // Whatever its controller demands, the motor is limited.
+                ServoConfig::DirectDrive(servo) => {
+                    (first, servo.acceleration_max_rad_per_s2(commanded))
+                }
             }
         }
     };

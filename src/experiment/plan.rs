@@ -361,7 +361,9 @@ impl Checker<'_> {
             );
             let lack = pipeline_check::lacks(scenario, channel, name).map(str::to_owned);
             let across = assembly_motion::lacks(scenario, channel, name).map(str::to_owned);
-            if let Some(reason) = supported.err().or(lack).or(across) {
+            let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
+            let unread = metrics::encoder_lack(name, has_encoder).map(str::to_owned);
+            if let Some(reason) = supported.err().or(lack).or(across).or(unread) {
                 self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
             }
         }

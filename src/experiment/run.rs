@@ -22,6 +22,7 @@ use crate::metrics::{
 use crate::report::{self, FolderWriter, RunOutcome, RunReport};
 use crate::scenario::{SamplesFormat, manifest_toml};
 use crate::signal::RunSignals;
+use crate::units::rad_to_arcsec;
 
 /// Channels of one repeat with their metrics.
 type Channels = Vec<(String, ChannelMetrics)>;
@@ -152,6 +153,7 @@ fn signals<'a>(
             first_measured,
             prefix,
             truth_deg_per_h: &record.truth_deg_per_h,
+            encoder_rad: simulation.encoder_rad.as_deref(),
             channels: std::iter::once(raw).chain(filters).collect(),
         }
     });
@@ -166,11 +168,17 @@ fn write_samples(folder: &FolderWriter, gyros: &[RunSignals]) -> io::Result<()> 
         let truth = format!("samples/{}truth.npy", signals.prefix);
         folder.write_npy(&truth, signals.truth_deg_per_h)?;
     }
-    let time_s: Vec<f64> = gyros.first().map_or_else(Vec::new, |signals| {
-        let samples = signals.truth_deg_per_h.len() as u64;
-        let stamps = (0..samples).map(|index| stamp_s(index, signals.sample_period_s));
-        stamps.collect()
-    });
+    let Some(first) = gyros.first() else {
+        return Ok(());
+    };
+    if let Some(readings) = first.encoder_rad {
+        let angles: Vec<f64> = readings.iter().copied().map(rad_to_arcsec).collect();
+        folder.write_npy("samples/encoder_arcsec.npy", &angles)?;
+    }
+    let samples = first.truth_deg_per_h.len() as u64;
+    let time_s: Vec<f64> = (0..samples)
+        .map(|index| stamp_s(index, first.sample_period_s))
+        .collect();
     folder.write_npy("samples/time_s.npy", &time_s)
 }
 
@@ -198,6 +206,7 @@ fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) ->
     let cuts: Vec<Cut> = gyros
         .map(|record| Cut {
             record,
+            encoder_rad: simulation.encoder_rad.as_deref(),
             length,
             sample_period_s,
             settings,
@@ -225,6 +234,7 @@ fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) ->
 /// The measured part of one gyro's record and how to measure it.
 struct Cut<'a> {
     record: &'a GyroRecord,
+    encoder_rad: Option<&'a [f64]>,
     length: RecordLength,
     sample_period_s: f64,
     settings: &'a Settings,
@@ -241,6 +251,7 @@ impl Cut<'_> {
             channel_deg_per_h: &channel_deg_per_h[first..],
             raw_deg_per_h: &self.record.raw_deg_per_h[first..],
             truth_deg_per_h: &self.record.truth_deg_per_h[first..],
+            encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
             sample_period_s: self.sample_period_s,
             first_stamp_s: stamp_s(first as u64, self.sample_period_s),
         };

@@ -49,6 +49,8 @@ pub(super) struct Simulation {
     pub(super) gyros: Vec<GyroRecord>,
     /// The filters in the order of the file, each on every gyro in turn, with the index of the gyro.
     pub(super) filters: Vec<(usize, FinishedFilter)>,
+    /// What the table's encoder shows at each stamp, rad; none if the table has none.
+    pub(super) encoder_rad: Option<Vec<f64>>,
     /// Half modulation periods in which a gyro did not work as meant.
     pub(super) faults: Faults,
 }
@@ -144,6 +146,7 @@ pub(super) fn simulate(
             .into_iter()
             .map(|(gyro, filter)| (gyro, filter.finish()))
             .collect(),
+        encoder_rad: source.encoder_rad,
         faults,
     })
 }
@@ -182,6 +185,7 @@ struct Source {
     sample_period_s: f64,
     /// Of each gyro.
     truth_deg_per_h: Vec<Vec<f64>>,
+    encoder_rad: Option<Vec<f64>>,
     samples: usize,
 }
 
@@ -224,8 +228,10 @@ impl Gyros {
 impl Source {
     fn new(scenario: &Scenario, length: RecordLength, repeat: u32) -> Result<Self, GyroError> {
         let sample_period_s = gyro::sample_period_s(&scenario.gyro);
+        let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
         Ok(Self {
             table: Turntable::new(&scenario.turntable, scenario.warm_up_s, sample_period_s),
+            encoder_rad: has_encoder.then(|| Vec::with_capacity(length.total())),
             gyros: Gyros::new(scenario, repeat)?,
             sample_period_s,
             truth_deg_per_h: scenario
@@ -240,6 +246,12 @@ impl Source {
     /// The next rate words of each gyro, deg/h; empty when the records are complete.
     fn next_block(&mut self) -> Vec<Vec<f64>> {
         let (table, truth) = (&mut self.table, &mut self.truth_deg_per_h);
+        let encoder = &mut self.encoder_rad;
+        let mut read = |table: &Turntable| {
+            if let Some(readings) = encoder {
+                readings.extend(table.encoder_rad());
+            }
+        };
         let left = self.samples - truth[0].len();
         let block = left.min(BLOCK_SAMPLES);
         match &mut self.gyros {
@@ -249,11 +261,18 @@ impl Source {
                     let segment = table.next_segment();
                     words.push(gyro.next_word(&segment));
                     truth[0].push(rad_per_s_to_deg_per_h(segment.rate_at(1.0)));
+                    read(table);
                 }
                 vec![words]
             }
             Gyros::InCase(gyros) => {
-                let case: Vec<_> = (0..block).map(|_| table.next_platform_segments()).collect();
+                let case: Vec<_> = (0..block)
+                    .map(|_| {
+                        let segments = table.next_platform_segments();
+                        read(table);
+                        segments
+                    })
+                    .collect();
                 let gyros = gyros.par_iter_mut().zip(truth).enumerate();
                 gyros
                     .map(|(axis, (gyro, truth))| {

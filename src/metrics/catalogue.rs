@@ -208,6 +208,12 @@ const CATALOGUE: &[KnownMetric] = &[
         Applies::Swing,
         "phase delay behind the true rate at the swing frequency",
     ),
+    any(
+        "delay_vs_encoder_ms",
+        "ms",
+        Applies::Swing,
+        "phase delay behind the rate implied by a sine fit of the encoder's angle",
+    ),
     filter(
         "delay_predicted_ms",
         "ms",

@@ -11,7 +11,7 @@ use super::steady::{
     LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_mean_ratio, measure_steady, put_mean,
     put_noise_gain, put_noise_std,
 };
-use super::support::{SAMPLES_MIN, support};
+use super::support::{SAMPLES_MIN, encoder_lack, support};
 use super::swing::measure_swing;
 
 /// Points of the spectrum in the report.
@@ -25,7 +25,7 @@ const SPECTRUM_POINTS_MAX: usize = 400;
 /// knows the hardware. Intervals are 95 %.
 ///
 /// # Panics
-/// If the three slices of the record differ in length.
+/// If the slices of the record differ in length.
 #[must_use]
 pub fn measure(
     record: &Record,
@@ -38,6 +38,11 @@ pub fn measure(
         "channel, raw and truth hold {samples}, {} and {} samples",
         record.raw_deg_per_h.len(),
         record.truth_deg_per_h.len()
+    );
+    let readings = record.encoder_rad.map_or(samples, <[f64]>::len);
+    assert!(
+        readings == samples,
+        "channel and encoder hold {samples} and {readings} samples"
     );
     let mut metrics = ChannelMetrics::default();
     if let Err(reason) = measure_motion(record, settings, filter, &mut metrics) {
@@ -241,6 +246,7 @@ fn explain_missing(
             settings.bias_averaging_time_s,
         )
         .err()
+        .or_else(|| encoder_lack(name, record.encoder_rad.is_some()).map(str::to_owned))
         .unwrap_or_else(|| match known.applies {
             Applies::Pipeline => PIPELINE_ONLY.to_owned(),
             _ => "the record is too short for it".to_owned(),

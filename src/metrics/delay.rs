@@ -171,6 +171,26 @@ pub fn fit_swing(values: &[f64], clock: &SwingClock) -> Result<SwingFit, String>
 }
 
 impl SwingFit {
+    /// The fit of the rate whose angle was fitted: `d/dt` of every sine, its offset dropped.
+    ///
+    /// `B cos(w t + phase)` has the derivative `w B cos(w t + phase + pi/2)`. The samples are never
+    /// differenced: a step `delta` of the angle would put `delta / (sqrt(6) T)` of noise on each.
+    #[must_use]
+    pub fn derivative(&self) -> Self {
+        let of = |sine: &SineFit| SineFit {
+            amplitude: TAU * self.clock.frequency_hz * sine.amplitude,
+            phase_rad: TAU * wrap_turns(sine.phase_rad / TAU + 0.25),
+            offset: 0.0,
+        };
+        Self {
+            whole: of(&self.whole),
+            cycles: self.cycles,
+            borders: self.borders.clone(),
+            blocks: self.blocks.iter().map(of).collect(),
+            clock: self.clock,
+        }
+    }
+
     /// Samples in the whole cycles.
     #[must_use]
     pub fn samples(&self) -> usize {

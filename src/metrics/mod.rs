@@ -1,7 +1,7 @@
 //! Measures: what a record of rate words says, and how sure it is.
 //!
 //! Invariant: metrics see samples, a sample period and plain parameters; never a scenario, a gyro
-//! or a filter. Everything is in deg/h and s.
+//! or a filter. Everything is in deg/h and s; the angle of an encoder is in rad.
 //!
 //! [`measure`] turns one channel's [`Record`] into a [`ChannelMetrics`]; [`aggregate`] pools
 //! independent repeats. The estimators stand alone as well: [`overlapping_allan`], [`fit_noise`],
@@ -50,4 +50,4 @@ pub use noise_fit::{
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
 pub use record::{FilterFacts, Motion, Record, Settings};
 pub use settling::{Settling, settling};
-pub use support::support;
+pub use support::{encoder_lack, support};

@@ -13,6 +13,8 @@ pub struct Record<'a> {
     pub raw_deg_per_h: &'a [f64],
     /// The true rate at the stamps, deg/h.
     pub truth_deg_per_h: &'a [f64],
+    /// What the table's encoder shows at the stamps, rad; none if the table has none.
+    pub encoder_rad: Option<&'a [f64]>,
     /// Sample period, s.
     pub sample_period_s: f64,
     /// Stamp of the first sample, s.

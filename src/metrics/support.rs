@@ -113,6 +113,16 @@ pub fn support(
     }
 }
 
+/// The metric that needs the angle of an encoder.
+pub(crate) const DELAY_VS_ENCODER: &str = "delay_vs_encoder_ms";
+
+/// Why a record without an encoder can never have a metric; nothing for other metrics.
+#[must_use]
+pub fn encoder_lack(metric: &str, has_encoder: bool) -> Option<&'static str> {
+    (metric == DELAY_VS_ENCODER && !has_encoder)
+        .then_some("the table has no encoder: give turntable.encoder.resolution_arcsec")
+}
+
 /// Whether a metric does not use the words of the record: a pipeline's figures and a few more.
 fn is_independent(known: &KnownMetric) -> bool {
     known.applies == Applies::Pipeline || INDEPENDENT.contains(&known.name)

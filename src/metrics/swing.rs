@@ -9,6 +9,7 @@ use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
 use super::record::{FilterFacts, Record};
 use super::steady::{LAGS_MIN, put_bound, put_mean, put_noise_gain, put_noise_std};
+use super::support::DELAY_VS_ENCODER;
 use crate::units;
 
 /// The sine fits of one swing record.
@@ -16,6 +17,8 @@ struct Fits {
     channel: SwingFit,
     raw: SwingFit,
     truth: SwingFit,
+    /// Rate implied by the encoder's angle, if there is an encoder.
+    encoder: Option<SwingFit>,
 }
 
 /// Measures everything a swing record supports.
@@ -37,6 +40,10 @@ pub(crate) fn measure_swing(
         channel: fit_swing(record.channel_deg_per_h, &clock)?,
         raw: fit_swing(record.raw_deg_per_h, &clock)?,
         truth: fit_swing(record.truth_deg_per_h, &clock)?,
+        encoder: match record.encoder_rad {
+            Some(angles) => Some(fit_swing(angles, &clock)?.derivative()),
+            None => None,
+        },
     };
     let duration_s = fits.channel.samples() as f64 * record.sample_period_s;
     put_mean(
@@ -90,6 +97,9 @@ fn measure_sines(
         }
     };
     put_delay("delay_vs_truth_ms", &fits.truth);
+    if let Some(encoder) = &fits.encoder {
+        put_delay(DELAY_VS_ENCODER, encoder);
+    }
     if filter.is_some() {
         put_delay("delay_vs_raw_ms", &fits.raw);
     }

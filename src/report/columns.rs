@@ -41,6 +41,7 @@ const SWING: &[(&str, &str)] = &[
     ("delay_vs_raw_ms", "delay vs raw"),
     ("delay_predicted_ms", "predicted"),
     ("delay_vs_truth_ms", "delay vs truth"),
+    ("delay_vs_encoder_ms", "delay vs encoder"),
     ("amplitude_ratio", "amplitude ratio"),
     ("harmonic_distortion_percent", "harmonic distortion"),
     ("tracking_error_rms_deg_per_h", "tracking error rms"),

@@ -3,6 +3,7 @@
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
 use super::address;
+use super::cross_servo;
 use super::defaults::default_of;
 use super::error::ScenarioError;
 use super::filter_config::{FilterKind, Pipeline};
@@ -10,7 +11,7 @@ use super::resolved::Resolved;
 use super::turntable_config::MotionConfig;
 
 /// Channel names that mean something else.
-pub(crate) const RESERVED: [&str; 3] = ["raw", "truth", "time_s"];
+pub(crate) const RESERVED: [&str; 4] = ["raw", "truth", "time_s", "encoder_arcsec"];
 
 /// Fewest output samples per cycle of a swing.
 pub(super) const SAMPLES_PER_CYCLE_MIN: f64 = 8.0;
@@ -33,6 +34,9 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.motion();
     checks.gates();
     checks.published();
+    for (key_path, message) in cross_servo::check(resolved) {
+        checks.complain(&key_path, message);
+    }
     checks.errors
 }
 

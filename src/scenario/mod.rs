@@ -10,6 +10,7 @@ mod channels;
 mod check;
 mod config;
 mod cross;
+mod cross_servo;
 mod cross_turntable;
 mod defaults;
 mod emit;
@@ -24,6 +25,7 @@ mod matrix;
 mod resolved;
 mod schema;
 mod script;
+mod servo_config;
 mod source;
 mod suite;
 mod tree;
@@ -49,6 +51,7 @@ pub use gyro_config::{
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
+pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
 pub use suite::load_suite;
 pub use turntable_config::{
     AxisConfig, CaseAxis, ChirpConfig, MotionConfig, MountingConfig, Progression, RotationConfig,

@@ -238,7 +238,7 @@ fn json_schema_asks_for_what_the_reader_asks_for() {
         items("filter")["oneOf"],
         serde_json::json!([required("rls"), required("lms")])
     );
-    let reserved = serde_json::json!({"enum": ["raw", "truth", "time_s"]});
+    let reserved = serde_json::json!({"enum": ["raw", "truth", "time_s", "encoder_arcsec"]});
     assert_eq!(document["properties"]["name"]["not"], reserved);
     assert_eq!(items("filter")["properties"]["name"]["not"], reserved);
     // A file that extends another may leave the choice to it; one that does not may not.

@@ -2,14 +2,18 @@
 
 use serde::Deserialize;
 
+use super::servo_config::{DirectDriveServoConfig, EncoderConfig};
+
 /// Rate table: exactly one motion.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct TurntableConfig {
     /// What the table is told to do (`[turntable.static]`, `.swing`, `.steps`, ...).
     #[serde(flatten)]
     pub motion: MotionConfig,
-    /// How the table follows (`[turntable.servo.ideal]` or `.second_order`).
+    /// How the table follows (`[turntable.servo.ideal]`, `.second_order` or `.direct_drive`).
     pub servo: ServoConfig,
+    /// What a laboratory sees of the axis; a direct drive is steered by it.
+    pub encoder: EncoderConfig,
     /// Where the table stands and where its axis points.
     pub site: SiteConfig,
     /// How the axis departs from its pointing.
@@ -173,6 +177,8 @@ pub enum ServoConfig {
     Ideal(StaticConfig),
     /// Second-order low pass.
     SecondOrder(SecondOrderServoConfig),
+    /// Motor, friction and a sampled controller.
+    DirectDrive(DirectDriveServoConfig),
 }
 
 /// `H(s) = wn^2 / (s^2 + 2 zeta wn s + wn^2)` from commanded to actual rate.

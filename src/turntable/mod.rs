@@ -2,8 +2,9 @@
 //!
 //! ```text
 //!  motion ──> profile ──command──> servo ──table rate──> platform ──truth──> gyro
-//!             swing, steps,        ideal or              wobble, mounting,
-//!             rotation, ...        second order          + Earth rate
+//!             swing, steps,        ideal,      │         wobble, mounting,
+//!             rotation, ...        2nd order,  │         + Earth rate
+//!                                  motor       └──> encoder ──> laboratory
 //! ```
 //!
 //! Truth is what the axis does, not what it was told to do: a 40 Hz table lags a 10 Hz command by
@@ -16,6 +17,7 @@
 //! Invariant: this is truth; it never sees a gyro output.
 
 mod axis;
+mod encoder;
 mod platform;
 mod profile;
 mod servo;

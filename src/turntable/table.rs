@@ -1,6 +1,7 @@
 //! The table: command, servo, platform and Earth rate joined.
 
 use super::axis::fixed_earth_rate;
+use super::encoder::Encoder;
 use super::platform::Platform;
 use super::profile::Profile;
 use super::servo::Servo;
@@ -17,6 +18,7 @@ use crate::units::deg_to_rad;
 pub struct Turntable {
     profile: Profile,
     servo: Servo,
+    encoder: Option<Encoder>,
     angle: TableAngle,
     platform: Platform,
     /// Rate of the Earth on an input axis that stays along the table axis, rad/s.
@@ -35,9 +37,16 @@ impl Turntable {
     #[must_use]
     pub fn new(config: &TurntableConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         let profile = Profile::new(&config.motion, warm_up_s, sample_period_s);
+        let initial_rate = profile.initial_rate();
         let start_angle = deg_to_rad(config.mounting.start_angle_deg);
         Self {
-            servo: Servo::new(&config.servo, profile.initial_rate(), sample_period_s),
+            servo: Servo::new(
+                &config.servo,
+                &config.encoder,
+                initial_rate,
+                sample_period_s,
+            ),
+            encoder: Encoder::new(&config.encoder, initial_rate, sample_period_s),
             profile,
             angle: TableAngle::new(start_angle, sample_period_s),
             platform: Platform::new(config, start_angle, sample_period_s),
@@ -88,7 +97,16 @@ impl Turntable {
     fn turn(&mut self) -> MotionSegment {
         let motion = self.servo.follow(self.profile.next_segment());
         self.angle.add(&motion);
+        if let Some(encoder) = &mut self.encoder {
+            encoder.advance(&motion);
+        }
         motion
+    }
+
+    /// What the encoder shows at the stamp of the last sample, rad; none without an encoder.
+    #[must_use]
+    pub fn encoder_rad(&self) -> Option<f64> {
+        self.encoder.as_ref().map(Encoder::reading_rad)
     }
 }
 

@@ -18,6 +18,7 @@ fidelity = "loop"
 bias_averaging_time_s = 100.0
 [turntable]
 servo = { ideal = {} }
+encoder = { latency_us = 0.0, eccentricity_error_arcsec = 0.0, eccentricity_phase_deg = 0.0, interpolation_error_arcsec = 0.0, interpolation_phase_deg = 0.0, lines_per_revolution = 36000 }
 site = { latitude_deg = 34.27, axis_elevation_deg = 90.0, axis_azimuth_deg = 0.0 }
 axis = { tilt_north_arcsec = 0.0, tilt_east_arcsec = 0.0, wobble_arcsec = 0.0, wobble_harmonic = 1 }
 mounting = { misalignment_arcsec = 0.0, misalignment_azimuth_deg = 0.0, start_angle_deg = 0.0, axis_along_table = "z" }

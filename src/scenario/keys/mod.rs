@@ -75,7 +75,7 @@ pub(crate) const GROUPS: &[Group] = &[
     Group {
         table: "turntable.servo",
         noun: "servo",
-        alternatives: &["ideal", "second_order"],
+        alternatives: &["ideal", "second_order", "direct_drive"],
     },
     Group {
         table: "gyro.temperature",

@@ -1,40 +1,9 @@
-//! How the table follows: from commanded to actual rate.
+//! The reduced model of a table: a second-order low pass of the commanded rate.
 
 use std::f64::consts::TAU;
 
-use crate::scenario::{SecondOrderServoConfig, ServoConfig};
+use crate::scenario::SecondOrderServoConfig;
 use crate::signal::MotionSegment;
-
-/// The servo with its state.
-#[derive(Clone, Debug)]
-pub(super) enum Servo {
-    /// The axis is the command.
-    Ideal,
-    /// Second-order low pass.
-    SecondOrder(SecondOrder),
-}
-
-impl Servo {
-    /// A servo that has settled on `initial_rate` (rad/s) for ever.
-    pub(super) fn new(config: &ServoConfig, initial_rate: f64, sample_period_s: f64) -> Self {
-        match config {
-            ServoConfig::Ideal(_) => Self::Ideal,
-            ServoConfig::SecondOrder(second_order) => Self::SecondOrder(SecondOrder::new(
-                second_order,
-                initial_rate,
-                sample_period_s,
-            )),
-        }
-    }
-
-    /// Actual motion over the sample in which `command` is commanded.
-    pub(super) fn follow(&mut self, command: MotionSegment) -> MotionSegment {
-        match self {
-            Self::Ideal => command,
-            Self::SecondOrder(second_order) => second_order.follow(command),
-        }
-    }
-}
 
 /// `H(s) = wn^2 / (s^2 + 2 zeta wn s + wn^2)`, advanced exactly over cubic commands.
 ///
@@ -47,7 +16,7 @@ impl Servo {
 /// Derived; the reduced model of a rate-table servo. Known answer:
 /// `known_answer_k29_the_servo_lags_its_command_by_its_transfer_function`.
 #[derive(Clone, Debug)]
-pub(super) struct SecondOrder {
+pub(in crate::turntable) struct SecondOrder {
     decay: FreeDecay,
     /// `2 zeta / (wn T)`.
     a: f64,
@@ -60,7 +29,11 @@ pub(super) struct SecondOrder {
 }
 
 impl SecondOrder {
-    fn new(config: &SecondOrderServoConfig, initial_rate: f64, sample_period_s: f64) -> Self {
+    pub(super) fn new(
+        config: &SecondOrderServoConfig,
+        initial_rate: f64,
+        sample_period_s: f64,
+    ) -> Self {
         let angle = TAU * config.natural_frequency_hz * sample_period_s;
         Self {
             decay: FreeDecay::new(angle, config.damping_ratio),
@@ -71,7 +44,7 @@ impl SecondOrder {
         }
     }
 
-    fn follow(&mut self, command: MotionSegment) -> MotionSegment {
+    pub(super) fn follow(&mut self, command: MotionSegment) -> MotionSegment {
         let [c0, c1, c2, c3] = command.rate_rad_per_s;
         // Coefficients of the forced cubic, highest power first.
         let p3 = c3;
