@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fogbench::gyro::{CaseGyro, Gyro};
+use fogbench::gyro::{CaseGyro, Gyro, InputAxis};
 use fogbench::random::Streams;
 use fogbench::scenario::{AssemblyConfig, Fidelity, GyroConfig};
 use fogbench::signal::MotionSegment;
@@ -123,15 +123,15 @@ fn known_answer_first_and_last_group_of_the_worked_example() {
             [-0.089_724_438_1, 0.053_445_774_0, 90.029_633_228_3],
         ),
     ];
+    let table = ASSEMBLY.split_once('\n').expect("a header line").1;
+    let config: AssemblyConfig = toml::from_str(table).expect("a sound assembly");
     for (along, rate, expected) in groups {
-        let turning = 3600.0 * rate + 7.977_228_854;
-        for (row, expected) in ROWS.iter().zip(expected) {
-            assert_close(
-                (row[along] * turning + row[3]) / 3600.0,
-                expected,
-                0.0,
-                6e-11,
-            );
+        let turning_deg_per_s = rate + 7.977_228_854 / 3600.0;
+        let mut case = [MotionSegment::constant(0.0); 3];
+        case[along] = MotionSegment::constant(turning_deg_per_s.to_radians());
+        for (axis, expected) in InputAxis::of_assembly(&config).iter().zip(expected) {
+            let got = axis.sensed(&case).rate_at(1.0).to_degrees();
+            assert_close(got, expected, 0.0, 6e-11);
         }
     }
 }
@@ -329,7 +329,7 @@ fn channels_that_do_not_exist_are_refused_with_those_that_do() {
         ),
         (
             "[gyro.assembly]\nscale_factor_error_ppm = [0, 2e5, 0]\n".to_owned(),
-            "gyro.assembly.scale_factor_error_ppm[1] = 2e5 ppm is out of range",
+            "gyro.assembly.scale_factor_error_ppm[1] = 200000.0 ppm is out of range",
         ),
         (
             "[gyro.assembly]\ntheta_xx_arcsec = 1.0\n".to_owned(),
