@@ -138,12 +138,10 @@ fn eccentricity_repeats_once_a_turn_from_its_phase() {
     };
     // A turn a second: 4000 samples.
     let (_, angles) = ideal_table(rotation(360.0), encoder, 8000);
-    for (turns, phase) in [(0.0, 30.0_f64), (0.25, 120.0), (1.0, 30.0), (1.5, 210.0)] {
-        let stamp = (turns * 4000.0_f64).max(1.0);
-        let exact = TAU * stamp / 4000.0;
-        let phase = phase.to_radians() + if turns > 0.0 { 0.0 } else { exact };
-        let expected = exact + deg_per_s_to_rad_per_s(2.0 / 3600.0) * phase.sin();
-        assert_close(angles[stamp as usize - 1], expected, 0.0, 1e-12);
+    for (stamp, phase_deg) in [(1, 30.09_f64), (1000, 120.0), (4000, 30.0), (6000, 210.0)] {
+        let exact = TAU * stamp as f64 / 4000.0;
+        let error = deg_per_s_to_rad_per_s(2.0 / 3600.0) * phase_deg.to_radians().sin();
+        assert_close(angles[stamp - 1], exact + error, 0.0, 1e-12);
     }
 }
 

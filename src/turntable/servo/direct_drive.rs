@@ -20,9 +20,10 @@ use crate::units::us_to_s;
 ///
 /// Motion leaves as the cubic through rate and acceleration at both stamps, which is exact there.
 /// Between them the acceleration is continuous (the current loop sees to that) but its slope jumps
-/// at ticks, so that the cubic errs by at most `T^2 / 8` times the largest change of that slope
-/// within the sample, and the angle it turns by `T` times that. The controller holds the angle the
-/// plant has turned; the sum of the cubics is what the gyro turns.
+/// at ticks. If that slope spreads over `D` within a sample, the cubic errs by at most `D T^2 / 32`
+/// (half of it times 1/16, the integral of the Peano kernel of the middle) and the angle it turns
+/// by `D T^3 / (36 sqrt(3))`. The controller holds the angle the plant has turned; the sum of the
+/// cubics is what gyro and encoder channel turn.
 #[derive(Clone, Debug)]
 pub(in crate::turntable) struct DirectDrive {
     plant: Plant,
