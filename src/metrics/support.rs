@@ -5,6 +5,7 @@ use super::delay::{CYCLES_MIN, SwingClock};
 use super::interval::round_to_count;
 use super::record::Motion;
 use super::settling::{STEP_SAMPLES_MIN, tail_start};
+use super::staircase::lack;
 
 /// The name that is fewest edits away.
 fn nearest(name: &str) -> &'static str {
@@ -106,9 +107,18 @@ pub fn support(
         Motion::Swing { frequency_hz } => {
             check_cycles(metric, samples, sample_period_s, *frequency_hz)
         }
+        Motion::MultiSine { frequencies_hz } => {
+            let lowest_hz = frequencies_hz.first().copied().unwrap_or(0.0);
+            check_cycles(metric, samples, sample_period_s, lowest_hz)
+        }
         Motion::Steps {
-            last_step_index, ..
-        } => check_tail(metric, samples, *last_step_index),
+            last_step_index,
+            staircase,
+            ..
+        } => match lack(metric, staircase, samples) {
+            Some(reason) => Err(format!("`{metric}`: {reason}")),
+            None => check_tail(metric, samples, *last_step_index),
+        },
         Motion::Steady => Ok(()),
     }
 }
@@ -153,8 +163,12 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
         (Applies::Always | Applies::Pipeline, _)
             | (Applies::Steady | Applies::SteadyOrSwing, Motion::Steady)
             | (
-                Applies::Swing | Applies::SteadyOrSwing | Applies::Moving,
+                Applies::Swing | Applies::Tones | Applies::SteadyOrSwing | Applies::Moving,
                 Motion::Swing { .. }
+            )
+            | (
+                Applies::Tones | Applies::MultiSine | Applies::Moving,
+                Motion::MultiSine { .. }
             )
             | (Applies::Steps | Applies::Moving, Motion::Steps { .. })
     );
@@ -165,9 +179,11 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
         Applies::Always | Applies::Pipeline => "any motion",
         Applies::Steady => "a table at rest or at constant rate",
         Applies::Swing => "a swing",
+        Applies::Tones => "a swing or several sines",
+        Applies::MultiSine => "several sines",
         Applies::Steps => "steps",
         Applies::SteadyOrSwing => "a swing or a table at rest or at constant rate",
-        Applies::Moving => "a swing or steps",
+        Applies::Moving => "a swing, several sines or steps",
     };
     Err(format!("`{}` is defined for {wanted} only", known.name))
 }
@@ -200,6 +216,7 @@ fn check_cycles(
 
 #[cfg(test)]
 mod tests {
+    use super::super::record::Staircase;
     use super::*;
 
     const PERIOD_S: f64 = 1.0 / 3989.45;
@@ -225,6 +242,7 @@ mod tests {
                 Motion::Steps {
                     last_step_index: 0,
                     step_deg_per_h: 1.0,
+                    staircase: Staircase::default(),
                 },
             ] {
                 let short = ask(known.name, 63.0 * PERIOD_S, &motion, true);
@@ -242,6 +260,7 @@ mod tests {
             let motion = Motion::Steps {
                 last_step_index: 100,
                 step_deg_per_h: 1.0,
+                staircase: Staircase::default(),
             };
             ask(
                 "noise_std_deg_per_h",

@@ -3,6 +3,7 @@
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
 use super::address;
+use super::cross_multi_sine;
 use super::defaults::default_of;
 use super::error::ScenarioError;
 use super::filter_config::{FilterKind, Pipeline};
@@ -107,6 +108,18 @@ impl Checks<'_> {
                 self.soft_start("turntable.swing.soft_start_s", swing.soft_start_s);
                 self.swing_frequency(swing.frequency_hz);
             }
+            MotionConfig::MultiSine(multi_sine) => {
+                self.soft_start("turntable.multi_sine.soft_start_s", multi_sine.soft_start_s);
+                let found = cross_multi_sine::complaints(
+                    multi_sine,
+                    scenario.duration_s,
+                    self.output_rate_hz(),
+                    SAMPLES_PER_CYCLE_MIN,
+                );
+                for (key, message) in found {
+                    self.complain(&key, message);
+                }
+            }
             MotionConfig::Rotation(rotation) => {
                 self.soft_start("turntable.rotation.soft_start_s", rotation.soft_start_s);
             }
@@ -121,6 +134,15 @@ impl Checks<'_> {
                         steps.dwell_s, scenario.duration_s
                     );
                     self.complain("turntable.steps.dwell_s", message);
+                }
+                let settle = "turntable.steps.settle_s";
+                // The default is no wish: short dwells merely have no scale factor.
+                if steps.settle_s >= steps.dwell_s && self.resolved.is_written(settle) {
+                    let message = format!(
+                        "{settle} = {:?} s leaves nothing of turntable.steps.dwell_s = {:?} s",
+                        steps.settle_s, steps.dwell_s
+                    );
+                    self.complain(settle, message);
                 }
             }
         }
@@ -141,11 +163,15 @@ impl Checks<'_> {
         }
     }
 
-    fn swing_frequency(&mut self, frequency_hz: f64) {
+    fn output_rate_hz(&self) -> f64 {
         let gyro = &self.resolved.scenario.gyro;
         // A half modulation period is the transit time n L / c of the coil.
         let half_period_s = gyro.coil.group_index * gyro.coil.length_m / SPEED_OF_LIGHT_M_PER_S;
-        let output_rate_hz = 1.0 / (half_period_s * f64::from(gyro.output.half_periods_per_sample));
+        1.0 / (half_period_s * f64::from(gyro.output.half_periods_per_sample))
+    }
+
+    fn swing_frequency(&mut self, frequency_hz: f64) {
+        let output_rate_hz = self.output_rate_hz();
         let frequency_hz_max = output_rate_hz / SAMPLES_PER_CYCLE_MIN;
         if frequency_hz > frequency_hz_max {
             let message = format!(

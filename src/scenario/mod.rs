@@ -8,6 +8,7 @@ mod address;
 mod check;
 mod config;
 mod cross;
+mod cross_multi_sine;
 mod defaults;
 mod emit;
 mod error;
@@ -46,8 +47,8 @@ pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use suite::load_suite;
 pub use turntable_config::{
-    MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
-    StepsConfig, SwingConfig, TurntableConfig,
+    MotionConfig, MultiSineConfig, PhaseRule, RotationConfig, SecondOrderServoConfig, ServoConfig,
+    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 
 #[cfg(test)]

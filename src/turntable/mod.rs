@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  motion ──> profile ──command──> servo ──table rate──> axis ──truth──> gyro
-//!             swing, steps,        ideal or              + projection
+//!             sines, steps,        ideal or              + projection
 //!             rotation, rest       second order            of Earth rate
 //! ```
 //!
@@ -19,9 +19,11 @@ mod axis;
 mod profile;
 mod servo;
 mod table;
+mod tones;
 
 pub use axis::earth_rate_rad_per_s;
 pub use profile::{
-    command_rate_max_rad_per_s, first_measured_index, step_indices, swing_rate_amplitude_rad_per_s,
+    command_rate_max_rad_per_s, first_measured_index, multi_sine_acceleration_max_rad_per_s2,
+    step_indices, swing_rate_amplitude_rad_per_s,
 };
 pub use table::Turntable;

@@ -2,7 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::scenario::{MotionConfig, StepsConfig, SwingConfig};
+use super::tones::{self, Tone};
+use crate::scenario::{MotionConfig, MultiSineConfig, StepsConfig, SwingConfig};
 use crate::signal::MotionSegment;
 use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
 
@@ -57,6 +58,11 @@ enum Shape {
         cycles_per_sample: f64,
         soft_start: SoftStart,
     },
+    /// A sum of sines, ramped.
+    MultiSine {
+        tones: Vec<Tone>,
+        soft_start: SoftStart,
+    },
     /// Rates, rad/s, and the index of the first sample of each but the first.
     Steps { rates: Vec<f64>, changes: Vec<u64> },
 }
@@ -84,6 +90,14 @@ impl Shape {
                     rate: amplitude * ramp * sine,
                     slope: amplitude
                         * (ramp * TAU * cycles_per_sample * cosine + ramp_slope * sine),
+                }
+            }
+            Self::MultiSine { tones, soft_start } => {
+                let (rate, slope) = tones::sum_at(tones, instant);
+                let (ramp, ramp_slope) = soft_start.at(instant);
+                Instant {
+                    rate: ramp * rate,
+                    slope: ramp * slope + ramp_slope * rate,
                 }
             }
             Self::Steps { rates, .. } => Instant {
@@ -122,6 +136,10 @@ impl Profile {
                 amplitude: swing_rate_amplitude_rad_per_s(swing),
                 cycles_per_sample: swing.frequency_hz * sample_period_s,
                 soft_start: soft_start(swing.soft_start_s),
+            },
+            MotionConfig::MultiSine(multi_sine) => Shape::MultiSine {
+                tones: tones::tones(multi_sine, sample_period_s),
+                soft_start: soft_start(multi_sine.soft_start_s),
             },
             MotionConfig::Steps(steps) => {
                 assert!(!steps.rates_deg_per_s.is_empty(), "a staircase has a rate");
@@ -178,12 +196,29 @@ pub fn swing_rate_amplitude_rad_per_s(swing: &SwingConfig) -> f64 {
     }
 }
 
-/// Largest commanded rate in magnitude, without the Earth's, rad/s.
+/// Rate amplitudes of several sines, rad/s.
+fn multi_sine_amplitudes_rad_per_s(config: &MultiSineConfig) -> impl Iterator<Item = f64> {
+    (0..config.frequencies_hz.len())
+        .map(|index| deg_per_s_to_rad_per_s(config.rate_amplitude_deg_per_s(index)))
+}
+
+/// Bound of the acceleration of several sines, rad/s^2: they may all peak at once.
+#[must_use]
+pub fn multi_sine_acceleration_max_rad_per_s2(config: &MultiSineConfig) -> f64 {
+    let amplitudes = multi_sine_amplitudes_rad_per_s(config);
+    amplitudes
+        .zip(&config.frequencies_hz)
+        .map(|(amplitude, frequency_hz)| TAU * frequency_hz * amplitude)
+        .sum()
+}
+
+/// Largest commanded rate in magnitude, without the Earth's, rad/s; of several sines its bound.
 #[must_use]
 pub fn command_rate_max_rad_per_s(motion: &MotionConfig) -> f64 {
     match motion {
         MotionConfig::Static(_) => 0.0,
         MotionConfig::Swing(swing) => swing_rate_amplitude_rad_per_s(swing).abs(),
+        MotionConfig::MultiSine(multi_sine) => multi_sine_amplitudes_rad_per_s(multi_sine).sum(),
         MotionConfig::Rotation(rotation) => deg_per_s_to_rad_per_s(rotation.rate_deg_per_s).abs(),
         MotionConfig::Steps(steps) => {
             let rates = steps.rates_deg_per_s.iter().copied();

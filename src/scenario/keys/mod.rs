@@ -42,7 +42,7 @@ pub(crate) const GROUPS: &[Group] = &[
     Group {
         table: "turntable",
         noun: "motion",
-        alternatives: &["static", "swing", "steps", "rotation"],
+        alternatives: &["static", "swing", "multi_sine", "steps", "rotation"],
     },
     Group {
         table: "turntable.swing",
