@@ -240,7 +240,7 @@ fn naive_correlation_delay_s(x: &[f64], y: &[f64], lag_max: usize) -> f64 {
     let products: Vec<f64> = (0..=2 * lag_max).map(product).collect();
     let best = (1..2 * lag_max)
         .max_by(|a, b| products[*a].total_cmp(&products[*b]))
-        .unwrap();
+        .expect("there are lags");
     let [before, at, after] = [products[best - 1], products[best], products[best + 1]];
     let part = 0.5 * (before - after) / (before - 2.0 * at + after);
     (best as f64 - lag_max as f64 + part) * PERIOD_S

@@ -81,9 +81,9 @@ impl MultiSineConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PhaseRule {
-    /// By the power in the tones below (Schroeder).
+    /// Cosines, by the power in the tones below (Schroeder).
     Schroeder,
-    /// `pi (k - 1)^2 / K` (Newman).
+    /// Cosines of phase `pi (k - 1)^2 / K` (Newman).
     Newman,
     /// All zero: every sine rises through zero at the start.
     Zero,
