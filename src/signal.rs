@@ -100,6 +100,30 @@ pub struct GyroFacts {
     pub angle_random_walk_budget_deg_per_sqrt_h: Vec<(&'static str, f64)>,
 }
 
+/// A line of theory that a picture draws beside measured points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TheoryCurve {
+    /// Name in the legend.
+    pub name: &'static str,
+    /// What `y` is, and over what.
+    pub quantity: TheoryQuantity,
+    /// Abscissae, ascending.
+    pub x: Vec<f64>,
+    /// Ordinates, as many.
+    pub y: Vec<f64>,
+}
+
+/// Quantity of a [`TheoryCurve`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TheoryQuantity {
+    /// Gain of the raw channel against the true rate, dB, over the frequency, Hz.
+    GainDb,
+    /// Its phase, deg, over the frequency, Hz.
+    PhaseDeg,
+    /// Mean output of the raw channel minus the true rate, deg/h, over the true rate, deg/h.
+    RateErrorDegPerH,
+}
+
 /// The samples of one gyro of a run, borrowed: what the plots draw and the sample files hold.
 ///
 /// All slices have the same length; index 0 is the first sample of the warm-up and is stamped one

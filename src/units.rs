@@ -130,6 +130,18 @@ pub fn deg_per_h_per_h_to_deg_per_h_per_s(ramp_deg_per_h_per_h: f64) -> f64 {
     ramp_deg_per_h_per_h / SECONDS_PER_HOUR
 }
 
+/// Converts a ratio to parts per million.
+#[must_use]
+pub fn ratio_to_ppm(ratio: f64) -> f64 {
+    ratio * 1e6
+}
+
+/// Converts a gain of amplitude to decibels.
+#[must_use]
+pub fn gain_to_db(gain: f64) -> f64 {
+    20.0 * gain.log10()
+}
+
 /// Converts a time from seconds to milliseconds.
 #[must_use]
 pub fn s_to_ms(time_s: f64) -> f64 {

@@ -126,7 +126,7 @@ fn known_answer_first_and_last_group_of_the_worked_example() {
     let table = ASSEMBLY.split_once('\n').expect("a header line").1;
     let config: AssemblyConfig = toml::from_str(table).expect("a sound assembly");
     for (along, rate, expected) in groups {
-        let turning_deg_per_s = rate + 7.977_228_854 / 3600.0;
+        let turning_deg_per_s: f64 = rate + 7.977_228_854 / 3600.0;
         let mut case = [MotionSegment::constant(0.0); 3];
         case[along] = MotionSegment::constant(turning_deg_per_s.to_radians());
         for (axis, expected) in InputAxis::of_assembly(&config).iter().zip(expected) {

@@ -169,6 +169,7 @@ fn a_step_record_settles() {
     let motion = Motion::Steps {
         last_step_index: 4000,
         step_deg_per_h: 3600.0,
+        staircase: fogbench::metrics::Staircase::default(),
     };
     let record = Record {
         channel_deg_per_h: &raw,

@@ -331,6 +331,7 @@ fn staircase() -> StepsConfig {
     StepsConfig {
         rates_deg_per_s: vec![2.0, -1.0, 0.5],
         dwell_s: 0.1,
+        settle_s: 0.0,
     }
 }
 
@@ -368,6 +369,7 @@ fn a_staircase_of_one_rate_has_no_step() {
     let steps = StepsConfig {
         rates_deg_per_s: vec![3.0],
         dwell_s: 0.1,
+        settle_s: 0.0,
     };
     assert!(step_indices(&steps, 1.0, PERIOD_S).is_empty());
     // Settled from the start: no transient with a servo either.
@@ -389,6 +391,7 @@ fn a_servo_answers_a_step_as_the_textbook_says() {
     let steps = StepsConfig {
         rates_deg_per_s: vec![0.0, 1.0],
         dwell_s: 0.1,
+        settle_s: 0.0,
     };
     let first = usize::try_from(step_indices(&steps, 0.0, PERIOD_S)[0]).unwrap();
     assert_eq!(first, 400);

@@ -44,6 +44,7 @@ fn records_of_every_length_are_measured_or_refused_and_support_agrees() {
             Motion::Steps {
                 last_step_index: count / 3,
                 step_deg_per_h: 100.0,
+                staircase: fogbench::metrics::Staircase::default(),
             },
         ] {
             let raw: Vec<f64> = noise[..count]
@@ -60,7 +61,7 @@ fn records_of_every_length_are_measured_or_refused_and_support_agrees() {
                 })
                 .collect();
             let halved: Vec<f64> = raw.iter().map(|value| value / 2.0).collect();
-            let settings = settings(motion);
+            let settings = settings(motion.clone());
             for (channel, facts) in [(&raw, None), (&halved, Some(&facts))] {
                 let metrics = measured(&raw, channel, &settings, facts);
                 every_metric_is_answered(&metrics);

@@ -8,7 +8,7 @@ use fogbench::report::{
     psd_csv, run_summary_json, suite_summary_json, suite_text, table_text, write_atomic,
 };
 use fogbench::scenario::{GateConfig, GateDecision, InconclusivePolicy, Scenario};
-use fogbench::signal::{GyroFacts, RunSignals};
+use fogbench::signal::{GyroFacts, RunSignals, TheoryCurve, TheoryQuantity};
 
 fn gate(metric: &str, min: Option<f64>, max: Option<f64>) -> GateConfig {
     GateConfig {
@@ -172,6 +172,7 @@ impl Fixture {
                 vec![("gyro.source.power_uw".to_owned(), "0.87".to_owned())],
             )),
             gyro: &self.gyro,
+            theory: &[],
             channels: &self.channels,
             verdicts: &self.verdicts,
             notes: &[],
@@ -366,6 +367,110 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
     }
     assert!(pictures[2].1.contains("behind raw"));
     assert_eq!(pictures, plots(&fixture.report(), &signals));
+}
+
+/// Samples for pictures that are drawn from curves.
+fn quiet_signals(zeros: &[f64]) -> RunSignals<'_> {
+    RunSignals {
+        sample_period_s: 1e-3,
+        first_measured: 0,
+        prefix: "",
+        encoder_rad: None,
+        truth_deg_per_h: zeros,
+        channels: vec![("raw", zeros), ("lms", zeros)],
+    }
+}
+
+fn theory(quantity: TheoryQuantity, x: [f64; 2], y: [f64; 2]) -> TheoryCurve {
+    TheoryCurve {
+        name: "closed form",
+        quantity,
+        x: x.to_vec(),
+        y: y.to_vec(),
+    }
+}
+
+#[test]
+fn several_sines_are_drawn_with_the_line_of_theory() {
+    let motion = "multi_sine = { frequencies_hz = [5.0, 50.0], \
+                  rate_amplitudes_deg_per_s = [1.0], phases = \"zero\", soft_start_s = 0.0 }";
+    let mut fixture = Fixture::new(motion, &[]);
+    let column = |name: &'static str, middle: f64, half_width: f64| {
+        let (quantity, unit) = name.split_once('/').unwrap();
+        [("", 0.0), ("_low", -half_width), ("_high", half_width)]
+            .map(|(end, shift)| (format!("{quantity}{end}{unit}"), vec![middle + shift; 2]))
+    };
+    for (_, metrics) in &mut fixture.channels[..2] {
+        let curve = [
+            column("gain/", 0.9, 0.05),
+            column("phase/_deg", -20.0, 3.0),
+            column("delay/_ms", 1.0, 0.1),
+        ];
+        let frequencies = [("frequency_hz".to_owned(), vec![5.0, 50.0])];
+        let curve = curve.into_iter().flatten().chain(frequencies).collect();
+        metrics
+            .curves
+            .insert("frequency_response".to_owned(), curve);
+    }
+    let lines = [
+        theory(TheoryQuantity::GainDb, [5.0, 50.0], [0.0, -3.0]),
+        theory(TheoryQuantity::PhaseDeg, [5.0, 50.0], [0.0, -90.0]),
+    ];
+    let zeros = [0.0; 64];
+    let drawn = |theory: &[TheoryCurve]| {
+        let report = RunReport {
+            theory,
+            ..fixture.report()
+        };
+        let pictures = plots(&report, &quiet_signals(&zeros));
+        let bode = pictures.into_iter().find(|(name, _)| name == "bode.svg");
+        bode.expect("a response is drawn").1
+    };
+    let (with, without) = (drawn(&lines), drawn(&[]));
+    assert!(with.contains("closed form") && !without.contains("closed form"));
+    // The phase axis reaches down to the line of theory.
+    assert!(with.contains("\n-80\n") && !without.contains("\n-80\n"));
+}
+
+#[test]
+fn a_staircase_of_three_rates_is_drawn_as_a_response() {
+    let motion = "steps = { rates_deg_per_s = [-1.0, 0.0, 1.0], dwell_s = 1.0, settle_s = 0.1 }";
+    let mut fixture = Fixture::new(motion, &[]);
+    let curve_of = |count: usize| {
+        let input: Vec<f64> = [-3600.0, 0.0, 3600.0][..count].to_vec();
+        run::curve(&[
+            ("output_deg_per_h", input.clone()),
+            ("error_deg_per_h", vec![0.25; count]),
+            ("error_low_deg_per_h", vec![0.0; count]),
+            ("error_high_deg_per_h", vec![0.5; count]),
+            ("input_deg_per_h", input),
+        ])
+    };
+    let lines = [theory(
+        TheoryQuantity::RateErrorDegPerH,
+        [-3600.0, 3600.0],
+        [-9.0, 9.0],
+    )];
+    let zeros = [0.0; 64];
+    let mut response = |count: usize| {
+        let curves = &mut fixture.channels[0].1.curves;
+        curves.insert("response".to_owned(), curve_of(count));
+        let report = RunReport {
+            theory: &lines,
+            ..fixture.report()
+        };
+        let pictures = plots(&report, &quiet_signals(&zeros));
+        pictures
+            .into_iter()
+            .find(|(name, _)| name == "response.svg")
+    };
+    assert!(response(2).is_none());
+    let svg = response(3).expect("three dwells are drawn").1;
+    assert!(svg.contains("closed form") && svg.contains("true rate [deg/h]"));
+    assert!(
+        svg.contains("\n-5\n"),
+        "the error axis reaches the line of theory"
+    );
 }
 
 #[test]

@@ -377,6 +377,7 @@ fn a_true_table_delivers_the_plain_sum_to_the_bit() {
     let steps = MotionConfig::Steps(StepsConfig {
         rates_deg_per_s: vec![2.0, -1.0],
         dwell_s: 0.1,
+        settle_s: 0.0,
     });
     for motion in [rotation(7.0), swing(), steps] {
         let config = config(motion, true_axis(), true_mounting());

@@ -61,10 +61,15 @@ pub(super) fn hardest(
 }
 
 /// Metrics of a motion that only the axis has about which the table turns.
-const TURNED_ONLY: [&str; 3] = [
+const TURNED_ONLY: [&str; 8] = [
     "delay_vs_truth_ms",
     "delay_vs_encoder_ms",
+    "delay_by_correlation_ms",
+    "bandwidth_hz",
     "settling_time_s",
+    "scale_factor_error_ppm",
+    "scale_factor_nonlinearity_ppm",
+    "scale_factor_asymmetry_ppm",
 ];
 /// The same, of unfiltered channels: those of filters compare with the raw channel.
 const TURNED_RAW_ONLY: &str = "amplitude_ratio";

@@ -15,6 +15,7 @@ mod plan;
 mod run;
 mod simulate;
 mod suite;
+mod theory;
 
 pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};

@@ -4,10 +4,11 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::assembly_motion::hardest;
 use crate::gyro::MotionExtremes;
-use crate::metrics::Motion;
-use crate::scenario::{MotionConfig, Scenario, ServoConfig};
+use crate::metrics::{Dwell, Motion, Staircase};
+use crate::scenario::{MotionConfig, Scenario, ServoConfig, StepsConfig};
 use crate::turntable::{
-    command_extremes, command_rate_max_rad_per_s, input_axis_bounds, step_indices,
+    command_extremes, command_rate_max_rad_per_s, earth_rate_rad_per_s, first_measured_index,
+    input_axis_bounds, multi_sine_acceleration_max_rad_per_s2, step_indices,
 };
 use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
@@ -21,6 +22,9 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
         MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => {
             Motion::General
         }
+        MotionConfig::MultiSine(multi_sine) => Motion::MultiSine {
+            frequencies_hz: multi_sine.frequencies_hz.clone(),
+        },
         MotionConfig::Steps(steps) => {
             let rates = &steps.rates_deg_per_s;
             let last_step_index = step_indices(steps, 0.0, sample_period_s)
@@ -33,8 +37,32 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
             Motion::Steps {
                 last_step_index,
                 step_deg_per_h: deg_per_s_to_deg_per_h(rise),
+                staircase: staircase(steps, scenario, sample_period_s),
             }
         }
+    }
+}
+
+/// The dwells of a staircase within the record, their settling left out.
+fn staircase(steps: &StepsConfig, scenario: &Scenario, sample_period_s: f64) -> Staircase {
+    let rest_deg_per_h = rad_per_s_to_deg_per_h(earth_rate_rad_per_s(&scenario.turntable.site));
+    let settle_samples = first_measured_index(steps.settle_s, sample_period_s);
+    // One more rate than there is, whose step is the end of the last dwell.
+    let mut closed = steps.clone();
+    closed.rates_deg_per_s.push(0.0);
+    let ends = step_indices(&closed, 0.0, sample_period_s);
+    let starts = std::iter::once(0).chain(ends.iter().copied());
+    let index = |count: u64| usize::try_from(count).unwrap_or(usize::MAX);
+    let dwells = starts.zip(&ends).zip(&steps.rates_deg_per_s);
+    Staircase {
+        dwells: dwells
+            .map(|((start, &end), &rate)| Dwell {
+                samples: index(start.saturating_add(settle_samples))..index(end),
+                rate_deg_per_h: rest_deg_per_h + deg_per_s_to_deg_per_h(rate),
+            })
+            .collect(),
+        settle_s: steps.settle_s,
+        rest_deg_per_h,
     }
 }
 
@@ -73,6 +101,16 @@ fn table_extremes(scenario: &Scenario) -> MotionExtremes {
     let (jump, acceleration) = match &scenario.turntable.motion {
         MotionConfig::Static(_) => (0.0, 0.0),
         MotionConfig::Swing(swing) => (0.0, TAU * swing.frequency_hz * commanded),
+        MotionConfig::MultiSine(multi_sine) => {
+            let acceleration = multi_sine_acceleration_max_rad_per_s2(multi_sine);
+            let soft_start_s = multi_sine.soft_start_s.min(scenario.warm_up_s);
+            if soft_start_s > 0.0 {
+                let of_start = FRAC_PI_2 * commanded / soft_start_s;
+                (0.0, acceleration + of_start)
+            } else {
+                (commanded, acceleration)
+            }
+        }
         MotionConfig::Rotation(rotation) => {
             let soft_start_s = rotation.soft_start_s.min(scenario.warm_up_s);
             if soft_start_s > 0.0 {

@@ -12,6 +12,7 @@ use super::pipeline_metrics;
 use super::plan::{DIVERGED_AT, Plan};
 use super::simulate::{Faults, GyroRecord, RecordLength, Simulation, simulate};
 use super::suite::{Observer, SuiteError, VERSION};
+use super::theory::theory;
 use crate::filters::Divergence;
 use crate::gate::judge;
 use crate::gyro::GyroError;
@@ -37,7 +38,8 @@ pub(super) fn run_scenario(
     let resolved = plan.resolved();
     let scenario = &resolved.scenario;
     let folder = resolved.folder();
-    let (simulation, channels, faults) = match run_repeats(plan, observer) {
+    let done = theory(scenario).and_then(|curves| Ok((curves, run_repeats(plan, observer)?)));
+    let (theory, (simulation, channels, faults)) = match done {
         Ok(done) => done,
         Err(error) => {
             let (name, file) = (&scenario.name, &resolved.file);
@@ -64,6 +66,7 @@ pub(super) fn run_scenario(
             .as_ref()
             .map(|point| (point.index, point.assignments.clone())),
         gyro: plan.facts(),
+        theory: &theory,
         channels: &channels,
         verdicts: &verdicts,
         notes: &notes,

@@ -82,6 +82,22 @@ impl Controller {
         )
     }
 
+    /// Gain and phase (rad) of a rate word that averages `periods` registers and is stamped with the
+    /// last, against the motion.
+    ///
+    /// `H cos(w tau / 2) e^(i w tau / 2)`, the pair of samples that makes one error, times the mean
+    /// `e^(-i w (n - 1) T_L / 2) sin(n w T_L / 2) / (n sin(w T_L / 2))`. The phase may lie beyond
+    /// half a turn. To first order in w it is `-w` times [`word_delay_s`](Self::word_delay_s).
+    #[must_use]
+    pub fn word_response(&self, frequency_hz: f64, periods: f64) -> (f64, f64) {
+        let half_angle = 0.5 * TAU * frequency_hz * self.loop_period_s;
+        let (re, im) = self.response(frequency_hz);
+        let pair = (0.5 * half_angle).cos();
+        let mean = (periods * half_angle).sin() / (periods * half_angle.sin());
+        let phase = im.atan2(re) + 0.5 * half_angle - (periods - 1.0) * half_angle;
+        (re.hypot(im) * pair * mean, phase)
+    }
+
     /// Delay of the register behind the Sagnac phase at low frequency, s.
     ///
     /// `T_L / g - tau / 2`: the first-order expansion of `1 / H`, whatever the latency, less half

@@ -1,5 +1,7 @@
 //! The gyro as the rest of the bench sees it.
 
+use std::f64::consts::TAU;
+
 use crate::gyro::coil::Coil;
 use crate::gyro::error::GyroError;
 use crate::gyro::loop_model::LoopModel;
@@ -92,6 +94,38 @@ impl Gyro {
 pub fn sample_period_s(config: &GyroConfig) -> f64 {
     let coil = Coil::new(&config.coil, &config.source);
     f64::from(config.output.half_periods_per_sample) * coil.transit_time_s
+}
+
+/// Gain and phase (rad) of the rate words against the motion at ascending frequencies, Hz.
+///
+/// The phase is continued from one frequency to the next at the delay of the one before, from the
+/// delay at low frequency on.
+///
+/// # Errors
+/// Any [`GyroError`], as [`Gyro::new`].
+///
+/// # Source
+/// [`Controller::word_response`](crate::gyro::Controller::word_response).
+pub fn word_response(
+    config: &GyroConfig,
+    frequencies_hz: &[f64],
+) -> Result<Vec<(f64, f64)>, GyroError> {
+    let Parts {
+        half_periods,
+        controller,
+        ..
+    } = Parts::new(config)?;
+    let periods = 0.5 * f64::from(half_periods);
+    let mut delay_s = controller.word_delay_s(periods);
+    let response = frequencies_hz.iter().map(|&frequency_hz| {
+        let angular = TAU * frequency_hz;
+        let (gain, phase) = controller.word_response(frequency_hz, periods);
+        let turns = (phase + angular * delay_s) / TAU;
+        let phase = phase - TAU * turns.round();
+        delay_s = -phase / angular;
+        (gain, phase)
+    });
+    Ok(response.collect())
 }
 
 /// What the gyro of a configuration is, in closed form.

@@ -44,7 +44,7 @@ pub use coil::Coil;
 pub use controller::{Controller, gain_limit};
 pub use detector::{CurrentNoise, Detector};
 pub use error::GyroError;
-pub use instrument::{Gyro, facts, sample_period_s};
+pub use instrument::{Gyro, facts, sample_period_s, word_response};
 pub use limits::{MotionExtremes, cautions};
 pub use loop_model::LoopModel;
 pub use modulator::{Modulator, optimum_depth_rad};

@@ -22,6 +22,13 @@ const FITTED: [&str; 5] = [
     "quantisation_arcsec",
 ];
 
+/// Curves of points that have intervals of their own.
+const POINT_CURVES: [&str; 3] = [
+    "response",
+    "frequency_response",
+    "frequency_response_vs_raw",
+];
+
 /// Pools independent repeats of the same channel.
 ///
 /// * Noise coefficients: the Allan variances are averaged, their degrees of freedom added, and the
@@ -31,8 +38,8 @@ const FITTED: [&str; 5] = [
 /// * Everything else: mean, Student's t on the scatter of the repeats from six repeats on; with
 ///   fewer, the repeats' own intervals combined in quadrature if each has one.
 ///
-/// Each metric gets the field `repeats`, the number of repeats that have it. Curves are averaged as
-/// powers. If a repeat failed, the first failed one stands for the channel.
+/// Each metric gets the field `repeats`, the number of repeats that have it. Allan
+/// deviations and spectra are averaged as powers, other curves as they are. If a repeat failed, the first failed one stands for the channel.
 #[must_use]
 pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
     if let Some(failed) = repeats.iter().find(|repeat| repeat.error.is_some()) {
@@ -59,6 +66,7 @@ pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
         }
     }
     pool_spectra(repeats, &mut pooled);
+    pool_points(repeats, &mut pooled);
     pool_allan(repeats, &mut pooled);
     pooled
 }
@@ -143,6 +151,41 @@ fn pool_spectra(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
             ),
         ]);
         pooled.curves.insert("psd".to_owned(), curve);
+    }
+}
+
+/// Averages the curves whose points have intervals of their own, which shrink with the root of the
+/// number of repeats.
+fn pool_points(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
+    let shrink = 1.0 / (repeats.len() as f64).sqrt();
+    for name in POINT_CURVES {
+        let Some(first) = repeats.first().and_then(|repeat| repeat.curves.get(name)) else {
+            continue;
+        };
+        let mean = |column: &str| {
+            let found = columns(repeats, name, column)?;
+            Some(mean_of(&found, std::convert::identity))
+        };
+        let pool = |column: &String| {
+            let own = mean(column)?;
+            let middle = ["_low", "_high"]
+                .iter()
+                .find(|end| column.contains(*end))
+                .and_then(|end| mean(&column.replace(end, "")));
+            let values = match middle {
+                Some(middle) => own
+                    .iter()
+                    .zip(&middle)
+                    .map(|(end, middle)| middle + shrink * (end - middle))
+                    .collect(),
+                None => own,
+            };
+            Some((column.clone(), values))
+        };
+        let curve: Option<BTreeMap<String, Vec<f64>>> = first.keys().map(pool).collect();
+        if let Some(curve) = curve {
+            pooled.curves.insert(name.to_owned(), curve);
+        }
     }
 }
 

@@ -9,6 +9,10 @@ pub enum Applies {
     Steady,
     /// Swing.
     Swing,
+    /// Swing or several sines at once.
+    Tones,
+    /// Several sines at once.
+    MultiSine,
     /// Steps.
     Steps,
     /// Steady motion or swing.
@@ -199,14 +203,14 @@ const CATALOGUE: &[KnownMetric] = &[
     filter(
         "delay_vs_raw_ms",
         "ms",
-        Applies::Swing,
-        "phase delay behind the raw channel at the swing frequency",
+        Applies::Tones,
+        "phase delay behind the raw channel at the swing frequency; of several sines the lowest",
     ),
     any(
         "delay_vs_truth_ms",
         "ms",
-        Applies::Swing,
-        "phase delay behind the true rate at the swing frequency",
+        Applies::Tones,
+        "phase delay behind the true rate at the swing frequency; of several sines the lowest",
     ),
     any(
         "delay_vs_encoder_ms",
@@ -221,10 +225,22 @@ const CATALOGUE: &[KnownMetric] = &[
         "phase delay of the Wiener weights behind raw at the swing frequency, register included",
     ),
     any(
+        "delay_by_correlation_ms",
+        "ms",
+        Applies::Swing,
+        "delay behind the true rate again, by the peak of their correlation: a check of the sine fit",
+    ),
+    any(
         "amplitude_ratio",
         "1",
-        Applies::Swing,
-        "fitted amplitude over raw's; for raw itself over the true rate's",
+        Applies::Tones,
+        "fitted amplitude over raw's, for raw itself over the true rate's; of several sines the lowest",
+    ),
+    any(
+        "bandwidth_hz",
+        "Hz",
+        Applies::MultiSine,
+        "where the gain against the true rate first falls through 1/sqrt(2) of that of the lowest sine",
     ),
     any(
         "harmonic_distortion_percent",
@@ -243,6 +259,24 @@ const CATALOGUE: &[KnownMetric] = &[
         "s",
         Applies::Steps,
         "time after the last step until the rate stays within max(1 % of the step, 5 sigma)",
+    ),
+    any(
+        "scale_factor_error_ppm",
+        "ppm",
+        Applies::Steps,
+        "slope of the line through mean output against mean true rate of the settled dwells, minus 1",
+    ),
+    any(
+        "scale_factor_nonlinearity_ppm",
+        "ppm",
+        Applies::Steps,
+        "largest distance of a dwell from that line over the largest output (of full scale)",
+    ),
+    any(
+        "scale_factor_asymmetry_ppm",
+        "ppm",
+        Applies::Steps,
+        "difference of the slopes of separate lines for the two senses over their mean",
     ),
     any(
         "diverged_at_s",

@@ -4,9 +4,11 @@ use super::autocovariance::LaggedProducts;
 use super::catalogue::{Applies, PIPELINE_ONLY, known_metrics};
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::multi_sine::measure_multi_sine;
 use super::psd::{log_binned, segment_samples, welch};
 use super::record::{FilterFacts, Motion, Record, Settings};
 use super::settling::{settling, tail_start};
+use super::staircase::measure_scale_factor;
 use super::steady::{
     LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_mean_ratio, measure_steady, put_mean,
     put_noise_gain, put_noise_std,
@@ -78,12 +80,15 @@ fn measure_motion(
         segment_samples(values.len()),
     );
     metrics.put_spectrum(log_binned(&spectrum, SPECTRUM_POINTS_MAX));
-    match settings.motion {
+    match &settings.motion {
         Motion::Steady => {
             measure_steady(record, settings, filter, metrics);
             Ok(())
         }
-        Motion::Swing { frequency_hz } => measure_swing(record, frequency_hz, filter, metrics),
+        Motion::Swing { frequency_hz } => measure_swing(record, *frequency_hz, filter, metrics),
+        Motion::MultiSine { frequencies_hz } => {
+            measure_multi_sine(record, frequencies_hz, filter, metrics)
+        }
         Motion::General => {
             measure_tracking(record, metrics);
             if filter.is_some() {
@@ -94,8 +99,10 @@ fn measure_motion(
         Motion::Steps {
             last_step_index,
             step_deg_per_h,
+            staircase,
         } => {
-            measure_steps(record, last_step_index, step_deg_per_h, filter, metrics);
+            measure_steps(record, *last_step_index, *step_deg_per_h, filter, metrics);
+            measure_scale_factor(record, staircase, metrics);
             Ok(())
         }
     }

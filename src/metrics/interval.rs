@@ -62,6 +62,17 @@ pub(crate) fn student_quantile(degrees_of_freedom: f64) -> f64 {
         .inverse_cdf(1.0 - TAIL)
 }
 
+/// Quantile of Student's t distribution for `count` intervals that shall all hold at once.
+///
+/// Source: Bonferroni; each tail gets the `count`-th part of the probability.
+pub(crate) fn student_quantile_of_many(degrees_of_freedom: f64, count: usize) -> f64 {
+    let tail = TAIL / count.max(1) as f64;
+    // Beyond a million degrees of freedom the distribution is normal to 1e-6.
+    StudentsT::new(0.0, 1.0, degrees_of_freedom.clamp(1.0, 1e6))
+        .expect("freedom is positive and finite")
+        .inverse_cdf(1.0 - tail)
+}
+
 /// Arithmetic mean; 0 for no values.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64

@@ -6,7 +6,7 @@
 //! [`measure`] turns one channel's [`Record`] into a [`ChannelMetrics`]; [`aggregate`] pools
 //! independent repeats. The estimators stand alone as well: [`overlapping_allan`], [`fit_noise`],
 //! [`block_means`], [`welch`], [`fit_swing`], [`noise_delay_bound`], [`wiener_prediction`],
-//! [`settling`](fn@settling).
+//! [`settling`](fn@settling), [`fit_scale_factor`], [`fit_tones`].
 
 mod aggregate;
 mod allan;
@@ -17,13 +17,19 @@ mod autocovariance;
 mod bias;
 mod catalogue;
 mod channel;
+mod correlation;
 mod delay;
 mod estimate;
 mod interval;
+mod multi_sine;
 mod noise_fit;
 mod psd;
 mod record;
+mod response;
+mod scale_factor;
 mod settling;
+mod sine_frequency;
+mod staircase;
 mod steady;
 mod support;
 mod swing;
@@ -41,6 +47,7 @@ pub use audit::{
 pub use bias::{block_means, effective_degrees_of_freedom, expected_bias_stability, samples_in};
 pub use catalogue::{Applies, KnownMetric, known_metrics};
 pub use channel::measure;
+pub use correlation::correlation_delay_s;
 pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 pub use noise_fit::{
@@ -48,6 +55,13 @@ pub use noise_fit::{
     fit_noise, mixed_degrees_of_freedom,
 };
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
-pub use record::{FilterFacts, Motion, Record, Settings};
+pub use record::{Dwell, FilterFacts, Motion, Record, Settings, Staircase};
+pub use response::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
+pub use scale_factor::{
+    Asymmetry, RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero,
+    distinct_rates, distinct_rates_by_sense, fit_scale_factor, scale_factor_repeatability,
+    scale_factor_temperature_sensitivity,
+};
 pub use settling::{Settling, settling};
+pub use sine_frequency::{FreeSineFit, fit_sine_free_frequency};
 pub use support::{encoder_lack, support};

@@ -1,5 +1,7 @@
 //! What a measurement is given: samples, motion and the filter's outline.
 
+use std::ops::Range;
+
 use crate::signal::FilterShape;
 
 /// The samples of one channel with the two references it is compared to.
@@ -22,7 +24,7 @@ pub struct Record<'a> {
 }
 
 /// What the table did during the record.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// At rest or turning at a constant rate.
     Steady,
@@ -33,13 +35,40 @@ pub enum Motion {
     },
     /// Any other known motion, such as trapezoids or a sweep.
     General,
+    /// Sum of sines of rate.
+    MultiSine {
+        /// Frequencies of the tones, Hz, ascending.
+        frequencies_hz: Vec<f64>,
+    },
     /// Steps of rate.
     Steps {
         /// First sample of the last rate, counted within the record.
         last_step_index: usize,
         /// Height of the last step, deg/h.
         step_deg_per_h: f64,
+        /// All rates, for the scale factor.
+        staircase: Staircase,
     },
+}
+
+/// The rates of a staircase as the scale factor needs them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Staircase {
+    /// The dwells in order.
+    pub dwells: Vec<Dwell>,
+    /// Time left out at the start of each dwell, s.
+    pub settle_s: f64,
+    /// Rate of the input axis when the table rests, deg/h.
+    pub rest_deg_per_h: f64,
+}
+
+/// One rate of a staircase.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dwell {
+    /// Samples that count, settling left out, within the record.
+    pub samples: Range<usize>,
+    /// Rate the input axis is to have, deg/h.
+    pub rate_deg_per_h: f64,
 }
 
 /// What is known of a filter besides its output.
@@ -79,7 +108,7 @@ impl FilterFacts {
 }
 
 /// How to measure.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Motion of the table.
     pub motion: Motion,

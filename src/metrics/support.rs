@@ -5,6 +5,7 @@ use super::delay::{CYCLES_MIN, SwingClock};
 use super::interval::round_to_count;
 use super::record::Motion;
 use super::settling::{STEP_SAMPLES_MIN, tail_start};
+use super::staircase::lack;
 
 /// The name that is fewest edits away.
 fn nearest(name: &str) -> &'static str {
@@ -106,9 +107,18 @@ pub fn support(
         Motion::Swing { frequency_hz } => {
             check_cycles(metric, samples, sample_period_s, *frequency_hz)
         }
+        Motion::MultiSine { frequencies_hz } => {
+            let lowest_hz = frequencies_hz.first().copied().unwrap_or(0.0);
+            check_cycles(metric, samples, sample_period_s, lowest_hz)
+        }
         Motion::Steps {
-            last_step_index, ..
-        } => check_tail(metric, samples, *last_step_index),
+            last_step_index,
+            staircase,
+            ..
+        } => match lack(metric, staircase, samples) {
+            Some(reason) => Err(format!("`{metric}`: {reason}")),
+            None => check_tail(metric, samples, *last_step_index),
+        },
         Motion::Steady | Motion::General => Ok(()),
     }
 }
@@ -166,8 +176,16 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
                 Motion::Steady
             )
             | (
-                Applies::Swing | Applies::SteadyOrSwing | Applies::Moving | Applies::Separable,
+                Applies::Swing
+                    | Applies::Tones
+                    | Applies::SteadyOrSwing
+                    | Applies::Moving
+                    | Applies::Separable,
                 Motion::Swing { .. }
+            )
+            | (
+                Applies::Tones | Applies::MultiSine | Applies::Moving | Applies::Separable,
+                Motion::MultiSine { .. }
             )
             | (
                 Applies::Steps | Applies::Moving | Applies::Separable,
@@ -182,11 +200,13 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
         Applies::Always | Applies::Pipeline => "any motion",
         Applies::Steady => "a table at rest or at constant rate",
         Applies::Swing => "a swing",
+        Applies::Tones => "a swing or several sines",
+        Applies::MultiSine => "several sines",
         Applies::Steps => "steps",
         Applies::SteadyOrSwing => "a swing or a table at rest or at constant rate",
         Applies::Moving => "a moving table",
         Applies::Separable => {
-            "rest, constant rate, a swing or steps, where noise can be told from motion,"
+            "rest, constant rate, sines or steps, where noise can be told from motion,"
         }
     };
     Err(format!("`{}` is defined for {wanted} only", known.name))
@@ -220,6 +240,7 @@ fn check_cycles(
 
 #[cfg(test)]
 mod tests {
+    use super::super::record::Staircase;
     use super::*;
 
     const PERIOD_S: f64 = 1.0 / 3989.45;
@@ -246,6 +267,7 @@ mod tests {
                 Motion::Steps {
                     last_step_index: 0,
                     step_deg_per_h: 1.0,
+                    staircase: Staircase::default(),
                 },
             ] {
                 let short = ask(known.name, 63.0 * PERIOD_S, &motion, true);
@@ -263,6 +285,7 @@ mod tests {
             let motion = Motion::Steps {
                 last_step_index: 100,
                 step_deg_per_h: 1.0,
+                staircase: Staircase::default(),
             };
             ask(
                 "noise_std_deg_per_h",

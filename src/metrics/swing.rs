@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::audit::{lags_needed, noise_delay_bound_coloured, wiener_prediction};
 use super::autocovariance::LaggedProducts;
+use super::correlation::correlation_delay_s;
 use super::delay::{SwingClock, SwingFit, fit_swing};
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
@@ -53,6 +54,7 @@ pub(crate) fn measure_swing(
         metrics,
     );
     measure_sines(&fits, &clock, filter, metrics);
+    measure_correlation(record, &clock, filter, metrics);
     measure_tracking(record, &fits, metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let residuals = fits.channel.residuals(record.channel_deg_per_h);
@@ -105,6 +107,27 @@ fn measure_sines(
     }
     let reference = filter.map_or(&fits.truth, |_| &fits.raw);
     describe(metrics.put("amplitude_ratio", fits.channel.amplitude_over(reference)));
+}
+
+/// The delay behind the truth that [`measure_sines`] finds, by another estimator.
+///
+/// Not behind raw: raw's noise is in the filter's output too and correlates with it at small lags.
+/// Near the peak a swing's own correlation is so flat that this would move it by some 50 us.
+fn measure_correlation(
+    record: &Record,
+    clock: &SwingClock,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
+    let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
+    match correlation_delay_s(record.truth_deg_per_h, record.channel_deg_per_h, clock) {
+        Ok(delay_s) => {
+            let delay_ms = later(delay_s, latency_s).scaled(units::s_to_ms(1.0));
+            let metric = metrics.put("delay_by_correlation_ms", delay_ms);
+            metric.fields.insert("frequency_hz", clock.frequency_hz);
+        }
+        Err(reason) => metrics.miss("delay_by_correlation_ms", reason),
+    }
 }
 
 /// A delay and the known time after it at which the value appears.

@@ -52,6 +52,17 @@ const SWING: &[(&str, &str)] = &[
     ("dc_gain_predicted", "DC gain predicted"),
 ];
 
+const MULTI_SINE: &[(&str, &str)] = &[
+    ("delay_vs_raw_ms", "delay vs raw"),
+    ("delay_vs_truth_ms", "delay vs truth"),
+    ("amplitude_ratio", "amplitude ratio"),
+    ("bandwidth_hz", "bandwidth"),
+    ("tracking_error_rms_deg_per_h", "tracking error rms"),
+    ("noise_std_deg_per_h", "noise std"),
+    ("noise_gain", "noise power gain"),
+    ("dc_gain", "DC gain"),
+];
+
 const STEPS: &[(&str, &str)] = &[
     ("settling_time_s", "settling time"),
     ("mean_deg_per_h", "mean"),
@@ -73,6 +84,7 @@ const STATIC_HEADLINE: &[&str] = &[
     "dc_gain",
 ];
 const SWING_HEADLINE: &[&str] = &["delay_vs_raw_ms", "amplitude_ratio", "noise_std_deg_per_h"];
+const MULTI_SINE_HEADLINE: &[&str] = &["delay_vs_truth_ms", "bandwidth_hz", "noise_std_deg_per_h"];
 const STEPS_HEADLINE: &[&str] = &[
     "settling_time_s",
     "mean_error_deg_per_h",
@@ -94,6 +106,7 @@ fn known(motion: &MotionConfig) -> &'static [(&'static str, &'static str)] {
     match motion {
         MotionConfig::Static(_) => STATIC,
         MotionConfig::Swing(_) => SWING,
+        MotionConfig::MultiSine(_) => MULTI_SINE,
         MotionConfig::Steps(_)
         | MotionConfig::Rotation(_)
         | MotionConfig::Trapezoid(_)
@@ -159,6 +172,7 @@ pub(crate) fn headline(motion: &MotionConfig, metrics: &ChannelMetrics) -> Vec<(
         MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => {
             GENERAL_HEADLINE
         }
+        MotionConfig::MultiSine(_) => MULTI_SINE_HEADLINE,
         MotionConfig::Steps(_) | MotionConfig::Rotation(_) => STEPS_HEADLINE,
     };
     keys.iter()

@@ -3,6 +3,7 @@
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
 use super::address;
+use super::cross_multi_sine;
 use super::cross_servo;
 use super::defaults::default_of;
 use super::error::ScenarioError;
@@ -111,6 +112,18 @@ impl Checks<'_> {
                 self.soft_start("turntable.swing.soft_start_s", swing.soft_start_s);
                 self.frequency("turntable.swing.frequency_hz", swing.frequency_hz);
             }
+            MotionConfig::MultiSine(multi_sine) => {
+                self.soft_start("turntable.multi_sine.soft_start_s", multi_sine.soft_start_s);
+                let found = cross_multi_sine::complaints(
+                    multi_sine,
+                    scenario.duration_s,
+                    1.0 / self.sample_period_s(),
+                    SAMPLES_PER_CYCLE_MIN,
+                );
+                for (key, message) in found {
+                    self.complain(&key, message);
+                }
+            }
             MotionConfig::Rotation(rotation) => {
                 self.soft_start("turntable.rotation.soft_start_s", rotation.soft_start_s);
             }
@@ -128,6 +141,15 @@ impl Checks<'_> {
                         steps.dwell_s, scenario.duration_s
                     );
                     self.complain("turntable.steps.dwell_s", message);
+                }
+                let settle = "turntable.steps.settle_s";
+                // The default is no wish: short dwells merely have no scale factor.
+                if steps.settle_s >= steps.dwell_s && self.resolved.is_written(settle) {
+                    let message = format!(
+                        "{settle} = {:?} s leaves nothing of turntable.steps.dwell_s = {:?} s",
+                        steps.settle_s, steps.dwell_s
+                    );
+                    self.complain(settle, message);
                 }
             }
         }

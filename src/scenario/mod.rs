@@ -10,6 +10,7 @@ mod channels;
 mod check;
 mod config;
 mod cross;
+mod cross_multi_sine;
 mod cross_servo;
 mod cross_turntable;
 mod defaults;
@@ -54,9 +55,9 @@ pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
 pub use suite::load_suite;
 pub use turntable_config::{
-    AxisConfig, CaseAxis, ChirpConfig, MotionConfig, MountingConfig, Progression, RotationConfig,
-    ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
-    StepsConfig, SwingConfig, TrapezoidConfig, TurntableConfig,
+    AxisConfig, CaseAxis, ChirpConfig, MotionConfig, MountingConfig, MultiSineConfig, PhaseRule,
+    Progression, RotationConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig,
+    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TrapezoidConfig, TurntableConfig,
 };
 
 #[cfg(test)]

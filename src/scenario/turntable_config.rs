@@ -30,6 +30,8 @@ pub enum MotionConfig {
     Static(StaticConfig),
     /// Sine rate.
     Swing(SwingConfig),
+    /// Several sines of rate at once.
+    MultiSine(MultiSineConfig),
     /// A staircase of rates.
     Steps(StepsConfig),
     /// Constant rate.
@@ -61,6 +63,46 @@ pub struct SwingConfig {
     pub soft_start_s: f64,
 }
 
+/// Several sines of rate at once, for a frequency response from one record.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MultiSineConfig {
+    /// Frequencies, Hz, ascending.
+    pub frequencies_hz: Vec<f64>,
+    /// Rate amplitudes, deg/s: one for all frequencies, or one for each.
+    pub rate_amplitudes_deg_per_s: Vec<f64>,
+    /// Rule for the phases.
+    pub phases: PhaseRule,
+    /// Raised-cosine soft start, s, inside the warm-up.
+    pub soft_start_s: f64,
+}
+
+impl MultiSineConfig {
+    /// Rate amplitude of tone `index`, deg/s.
+    ///
+    /// # Panics
+    /// If there is neither one amplitude nor one for each frequency; the reader refuses that.
+    #[must_use]
+    pub fn rate_amplitude_deg_per_s(&self, index: usize) -> f64 {
+        match self.rate_amplitudes_deg_per_s.as_slice() {
+            [common] => *common,
+            each => each[index],
+        }
+    }
+}
+
+/// Phases of several sines, which decide how high their sum peaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PhaseRule {
+    /// Cosines, by the power in the tones below (Schroeder).
+    Schroeder,
+    /// Cosines of phase `pi (k - 1)^2 / K` (Newman).
+    Newman,
+    /// All zero: every sine rises through zero at the start.
+    Zero,
+}
+
 /// Staircase: each rate is held for the dwell time; the last one is held for ever.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -70,6 +112,8 @@ pub struct StepsConfig {
     /// Time at each rate, s; the first dwell begins at the end of the warm-up, before which the
     /// first rate is held. Steps fall on output-sample boundaries.
     pub dwell_s: f64,
+    /// Time at the start of each dwell that the scale factor leaves out, s.
+    pub settle_s: f64,
 }
 
 /// Constant rotation.

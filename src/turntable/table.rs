@@ -32,8 +32,8 @@ impl Turntable {
     /// * `sample_period_s`: s, > 0; one segment is delivered per sample.
     ///
     /// # Panics
-    /// If a swing has not exactly one amplitude or a staircase no rate; the scenario reader
-    /// refuses both.
+    /// If a swing has not exactly one amplitude, several sines neither one amplitude nor one for each,
+    /// or a staircase no rate; the scenario reader refuses all of these.
     #[must_use]
     pub fn new(config: &TurntableConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         let profile = Profile::new(&config.motion, warm_up_s, sample_period_s);

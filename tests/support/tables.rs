@@ -34,6 +34,7 @@ pub(crate) fn steps(rates_deg_per_s: &[f64], dwell_s: f64) -> MotionConfig {
     MotionConfig::Steps(StepsConfig {
         rates_deg_per_s: rates_deg_per_s.to_vec(),
         dwell_s,
+        settle_s: 0.0,
     })
 }
 

@@ -4,12 +4,15 @@
 
 mod allan;
 mod axis;
+mod bode;
 mod panel;
 mod picture;
 mod rate;
+mod response;
 mod series;
 mod spectrum;
 mod swing;
+mod theory;
 
 use crate::report::RunReport;
 use crate::scenario::MotionConfig;
@@ -19,8 +22,9 @@ use crate::signal::RunSignals;
 pub const SVG_BYTES_MAX: usize = 500_000;
 
 /// The pictures of one gyro of a run as file name and SVG text: `rate.svg`; `allan.svg` and
-/// `spectrum.svg` where a channel has the curve; `swing.svg` for a swing. Those of an assembly
-/// stand behind the axis, as in `x-rate.svg`: nine channels in one picture would hide one another.
+/// `spectrum.svg` where a channel has the curve; `swing.svg` for a swing, `bode.svg` for several
+/// sines, `response.svg` for a staircase of three rates or more. Those of an assembly stand behind
+/// the axis, as in `x-rate.svg`: nine channels in one picture would hide one another.
 ///
 /// # Panics
 /// If a picture exceeds [`SVG_BYTES_MAX`], which its fixed number of points rules out.
@@ -44,6 +48,8 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
         ("rate.svg", rate::picture(report, signals)),
         ("allan.svg", allan::picture(report)),
         ("swing.svg", swing),
+        ("bode.svg", bode::picture(report)),
+        ("response.svg", response::picture(report)),
         ("spectrum.svg", spectrum::picture(report)),
     ];
     pictures

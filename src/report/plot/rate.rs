@@ -73,6 +73,12 @@ fn window(
             let name = format!("first {SWING_CYCLES} cycles of the measured part");
             Some((0..length, name))
         }
+        MotionConfig::MultiSine(multi_sine) => {
+            let lowest_hz = multi_sine.frequencies_hz.first()?;
+            let length = index(1.0 / (lowest_hz * period_s)).clamp(2, truth.len());
+            let name = "first cycle of the lowest sine".to_owned();
+            Some((0..length, name))
+        }
         MotionConfig::Steps(_) => {
             let step = (1..truth.len())
                 .max_by(|a, b| {

@@ -1,6 +1,6 @@
 //! Long records made short enough to draw.
 
-use super::picture::{BLACK, Colour, Dash, Stroke};
+use super::picture::{BLACK, Colour, Dash, Shape, Stroke};
 use crate::metrics::ChannelMetrics;
 use crate::report::RunReport;
 use crate::signal::RunSignals;
@@ -47,6 +47,11 @@ pub(super) fn stroke_of(index: usize) -> Stroke {
         dash: DASHES[index % DASHES.len()],
         opacity: 1.0,
     }
+}
+
+/// Marker of channel number `index`.
+pub(super) fn shape_of(index: usize) -> Shape {
+    [Shape::Circle, Shape::Square, Shape::Triangle][index % 3]
 }
 
 /// Line of the true rate.

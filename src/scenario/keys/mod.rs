@@ -45,6 +45,7 @@ pub(crate) const GROUPS: &[Group] = &[
         alternatives: &[
             "static",
             "swing",
+            "multi_sine",
             "steps",
             "rotation",
             "trapezoid",

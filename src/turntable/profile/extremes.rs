@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::chirp::{chirp_frequency_max, chirp_rate_max, chirp_widening_max};
 use super::script::script_extremes;
-use crate::scenario::{MotionConfig, SwingConfig};
+use crate::scenario::{MotionConfig, MultiSineConfig, SwingConfig};
 use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
 
 /// What a trapezoid, chirp or script asks of the table at most; see [`command_extremes`].
@@ -23,6 +23,7 @@ pub fn command_extremes(motion: &MotionConfig) -> Option<CommandExtremes> {
     let (jump_rad_per_s, acceleration_rad_per_s2) = match motion {
         MotionConfig::Static(_)
         | MotionConfig::Swing(_)
+        | MotionConfig::MultiSine(_)
         | MotionConfig::Rotation(_)
         | MotionConfig::Steps(_) => return None,
         MotionConfig::Trapezoid(trapezoid) => (
@@ -68,12 +69,29 @@ pub fn swing_rate_amplitude_rad_per_s(swing: &SwingConfig) -> f64 {
     }
 }
 
-/// Largest commanded rate in magnitude, without the Earth's, rad/s.
+/// Rate amplitudes of several sines, rad/s.
+fn multi_sine_amplitudes_rad_per_s(config: &MultiSineConfig) -> impl Iterator<Item = f64> {
+    (0..config.frequencies_hz.len())
+        .map(|index| deg_per_s_to_rad_per_s(config.rate_amplitude_deg_per_s(index)))
+}
+
+/// Bound of the acceleration of several sines, rad/s^2: they may all peak at once.
+#[must_use]
+pub fn multi_sine_acceleration_max_rad_per_s2(config: &MultiSineConfig) -> f64 {
+    let amplitudes = multi_sine_amplitudes_rad_per_s(config);
+    amplitudes
+        .zip(&config.frequencies_hz)
+        .map(|(amplitude, frequency_hz)| TAU * frequency_hz * amplitude)
+        .sum()
+}
+
+/// Largest commanded rate in magnitude, without the Earth's, rad/s; of several sines its bound.
 #[must_use]
 pub fn command_rate_max_rad_per_s(motion: &MotionConfig) -> f64 {
     match motion {
         MotionConfig::Static(_) => 0.0,
         MotionConfig::Swing(swing) => swing_rate_amplitude_rad_per_s(swing).abs(),
+        MotionConfig::MultiSine(multi_sine) => multi_sine_amplitudes_rad_per_s(multi_sine).sum(),
         MotionConfig::Rotation(rotation) => deg_per_s_to_rad_per_s(rotation.rate_deg_per_s).abs(),
         MotionConfig::Trapezoid(trapezoid) => {
             deg_per_s_to_rad_per_s(trapezoid.rate_deg_per_s).abs()

@@ -7,10 +7,12 @@ mod script;
 mod shape;
 mod soft_start;
 mod steps;
+mod tones;
 mod trapezoid;
 
 pub(in crate::turntable) use command::Profile;
 pub use extremes::{
-    CommandExtremes, command_extremes, command_rate_max_rad_per_s, swing_rate_amplitude_rad_per_s,
+    CommandExtremes, command_extremes, command_rate_max_rad_per_s,
+    multi_sine_acceleration_max_rad_per_s2, swing_rate_amplitude_rad_per_s,
 };
 pub use steps::{first_measured_index, step_indices};

@@ -7,6 +7,7 @@ use super::extremes::swing_rate_amplitude_rad_per_s;
 use super::script::Script;
 use super::soft_start::SoftStart;
 use super::steps::step_indices;
+use super::tones::{Tone, sum_at, tones};
 use super::trapezoid::Trapezoids;
 use crate::scenario::MotionConfig;
 use crate::units::deg_per_s_to_rad_per_s;
@@ -39,6 +40,11 @@ pub(super) enum Shape {
         cycles_per_sample: f64,
         soft_start: SoftStart,
     },
+    /// A sum of sines, ramped.
+    MultiSine {
+        tones: Vec<Tone>,
+        soft_start: SoftStart,
+    },
     /// Rates, rad/s, and the index of the first sample of each but the first.
     Steps { rates: Vec<f64>, changes: Vec<u64> },
     /// Trapezoids in a row.
@@ -66,6 +72,10 @@ impl Shape {
                 amplitude: swing_rate_amplitude_rad_per_s(swing),
                 cycles_per_sample: swing.frequency_hz * sample_period_s,
                 soft_start: soft_start(swing.soft_start_s),
+            },
+            MotionConfig::MultiSine(multi_sine) => Self::MultiSine {
+                tones: tones(multi_sine, sample_period_s),
+                soft_start: soft_start(multi_sine.soft_start_s),
             },
             MotionConfig::Trapezoid(config) => {
                 Self::Trapezoids(Trapezoids::new(config, warm_up_s, sample_period_s))
@@ -109,6 +119,14 @@ impl Shape {
                     rate: amplitude * ramp * sine,
                     slope: amplitude
                         * (ramp * TAU * cycles_per_sample * cosine + ramp_slope * sine),
+                }
+            }
+            Self::MultiSine { tones, soft_start } => {
+                let (rate, slope) = sum_at(tones, instant);
+                let (ramp, ramp_slope) = soft_start.at(instant);
+                Instant {
+                    rate: ramp * rate,
+                    slope: ramp * slope + ramp_slope * rate,
                 }
             }
             Self::Trapezoids(trapezoids) => trapezoids.at(instant),
