@@ -13,7 +13,7 @@ use super::simulate::{Faults, RecordLength, Simulation, simulate};
 use super::suite::{Observer, SuiteError, VERSION};
 use crate::filters::Divergence;
 use crate::gate::judge;
-use crate::gyro::GyroError;
+use crate::gyro::{GyroError, temperature_record};
 use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings, aggregate,
     measure,
@@ -133,11 +133,14 @@ fn signals<'a>(plan: &Plan, simulation: &'a Simulation) -> RunSignals<'a> {
         Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
     });
     let sample_period_s = plan.sample_period_s();
+    let scenario = &plan.resolved().scenario;
+    let end_s = scenario.warm_up_s + scenario.duration_s;
     RunSignals {
         sample_period_s,
-        first_measured: RecordLength::new(&plan.resolved().scenario, sample_period_s).warm_up,
+        first_measured: RecordLength::new(scenario, sample_period_s).warm_up,
         truth_deg_per_h: &simulation.truth_deg_per_h,
         channels: std::iter::once(raw).chain(filters).collect(),
+        temperature: temperature_record(&scenario.gyro, scenario.warm_up_s, end_s),
     }
 }
 

@@ -8,6 +8,7 @@ mod address;
 mod check;
 mod config;
 mod cross;
+mod cross_gyro;
 mod defaults;
 mod emit;
 mod error;
@@ -22,6 +23,7 @@ mod resolved;
 mod schema;
 mod source;
 mod suite;
+mod thermal_config;
 mod tree;
 mod turntable_config;
 
@@ -38,13 +40,17 @@ pub use filter_config::{
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
-    NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SoakConfig, SourceConfig,
-    TemperatureConfig,
+    NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SourceConfig,
 };
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use suite::load_suite;
+pub use thermal_config::{
+    ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig, SoakConfig,
+    TemperatureConfig, TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig,
+    ThermalWarmUp, Winding,
+};
 pub use turntable_config::{
     MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
     StepsConfig, SwingConfig, TurntableConfig,
