@@ -100,8 +100,6 @@ pub struct TemperatureRecord {
     pub bias_deg_per_h: Vec<f64>,
     /// Predicted scale factor over its nominal value.
     pub scale_ratio: Vec<f64>,
-    /// Detected power over its nominal value.
-    pub power_ratio: Vec<f64>,
 }
 
 /// The samples of one run, borrowed: what the plots draw and the sample files hold.

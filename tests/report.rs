@@ -348,6 +348,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
         first_measured: 4000,
         truth_deg_per_h: &truth,
         channels: vec![("raw", &raw), ("lms", &lms), ("rls", &raw), ("bad", &raw)],
+        temperature: None,
     };
     let pictures = plots(&fixture.report(), &signals);
     let names: Vec<&str> = pictures.iter().map(|(name, _)| name.as_str()).collect();

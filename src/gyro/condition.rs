@@ -190,7 +190,6 @@ pub fn temperature_record(
         let bias_deg_per_h = rad_per_s_to_deg_per_h(condition.bias_rad_per_s);
         record.bias_deg_per_h.push(bias_deg_per_h);
         record.scale_ratio.push(condition.scale_ratio);
-        record.power_ratio.push(condition.power_ratio);
     }
     Some(record)
 }

@@ -10,6 +10,7 @@ mod rate;
 mod series;
 mod spectrum;
 mod swing;
+mod thermal;
 
 use crate::report::RunReport;
 use crate::scenario::MotionConfig;
@@ -19,7 +20,7 @@ use crate::signal::RunSignals;
 pub const SVG_BYTES_MAX: usize = 500_000;
 
 /// The pictures of a run as file name and SVG text: `rate.svg`; `allan.svg` and `spectrum.svg`
-/// where a channel has the curve; `swing.svg` for a swing.
+/// where a channel has the curve; `swing.svg` for a swing; `thermal.svg` where the temperature changes.
 ///
 /// # Panics
 /// If a picture exceeds [`SVG_BYTES_MAX`], which its fixed number of points rules out.
@@ -34,6 +35,7 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
         ("allan.svg", allan::picture(report)),
         ("swing.svg", swing),
         ("spectrum.svg", spectrum::picture(report)),
+        ("thermal.svg", thermal::picture(report, signals)),
     ];
     pictures
         .into_iter()
