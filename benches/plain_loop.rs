@@ -44,7 +44,9 @@ impl PlainLoop {
         let linewidth = C * config.source.linewidth_nm * 1e-9 / lambda.powi(2);
         let rin = (1.0 + config.source.polarisation_degree.powi(2)) * (2.0 * LN_2 / PI).sqrt()
             / linewidth;
-        let TemperatureConfig::Soak(soak) = &config.temperature;
+        let TemperatureConfig::Soak(soak) = &config.temperature else {
+            panic!("the plain loop has one temperature");
+        };
         let density = 2.0 * E * (bias_a + dark_a)
             + 4.0 * K * (soak.temperature_c + 273.15) / feedback
             + (config.detector.voltage_noise_nv_per_sqrt_hz * 1e-9 / feedback).powi(2)

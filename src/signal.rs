@@ -124,6 +124,23 @@ pub enum TheoryQuantity {
     RateErrorDegPerH,
 }
 
+/// Temperatures of a run and what they are predicted to do, at equally spaced times.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TemperatureRecord {
+    /// Times, s from the start of the warm-up.
+    pub time_s: Vec<f64>,
+    /// Chamber, deg C.
+    pub chamber_c: Vec<f64>,
+    /// Case and electronics, deg C.
+    pub case_c: Vec<f64>,
+    /// Mean of the coil, deg C.
+    pub coil_c: Vec<f64>,
+    /// Predicted thermal bias, deg/h.
+    pub bias_deg_per_h: Vec<f64>,
+    /// Predicted scale factor over its nominal value.
+    pub scale_ratio: Vec<f64>,
+}
+
 /// The samples of one gyro of a run, borrowed: what the plots draw and the sample files hold.
 ///
 /// All slices have the same length; index 0 is the first sample of the warm-up and is stamped one
@@ -142,4 +159,6 @@ pub struct RunSignals<'a> {
     pub encoder_rad: Option<&'a [f64]>,
     /// Channels in order, raw first: name and rate words, deg/h.
     pub channels: Vec<(&'a str, &'a [f64])>,
+    /// Temperatures over the measured part; `None` where they never change.
+    pub temperature: Option<TemperatureRecord>,
 }

@@ -173,6 +173,18 @@ pub fn celsius_to_kelvin(temperature_c: f64) -> f64 {
     temperature_c + ZERO_CELSIUS_K
 }
 
+/// Converts a temperature rate from K/min to K/s.
+#[must_use]
+pub fn k_per_min_to_k_per_s(rate_k_per_min: f64) -> f64 {
+    rate_k_per_min / 60.0
+}
+
+/// Converts a temperature rate from K/s to K/min.
+#[must_use]
+pub fn k_per_s_to_k_per_min(rate_k_per_s: f64) -> f64 {
+    rate_k_per_s * 60.0
+}
+
 /// SI prefix pico.
 pub const PICO: f64 = 1e-12;
 /// SI prefix nano.

@@ -20,6 +20,7 @@ mod known_answers_metrics;
 mod known_answers_scale_factor;
 mod known_answers_slow_noise;
 mod known_answers_swing;
+mod known_answers_thermal;
 mod known_answers_turntable;
 mod metrics_intervals;
 mod metrics_records;

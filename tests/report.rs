@@ -351,6 +351,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
         truth_deg_per_h: &truth,
         encoder_rad: None,
         channels: vec![("raw", &raw), ("lms", &lms), ("rls", &raw), ("bad", &raw)],
+        temperature: None,
     };
     let pictures = plots(&fixture.report(), &signals);
     let names: Vec<&str> = pictures.iter().map(|(name, _)| name.as_str()).collect();
@@ -378,6 +379,7 @@ fn quiet_signals(zeros: &[f64]) -> RunSignals<'_> {
         encoder_rad: None,
         truth_deg_per_h: zeros,
         channels: vec![("raw", zeros), ("lms", zeros)],
+        temperature: None,
     }
 }
 

@@ -15,7 +15,7 @@ use super::suite::{Observer, SuiteError, VERSION};
 use super::theory::theory;
 use crate::filters::Divergence;
 use crate::gate::judge;
-use crate::gyro::GyroError;
+use crate::gyro::{GyroError, temperature_record};
 use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings, aggregate,
     measure,
@@ -143,6 +143,7 @@ fn signals<'a>(
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
     let first_measured = RecordLength::new(scenario, sample_period_s).warm_up;
+    let end_s = scenario.warm_up_s + scenario.duration_s;
     let gyros = simulation.gyros.iter().enumerate();
     let named = gyros.zip(scenario.axis_prefixes().iter().zip(raw_names));
     let signals = named.map(|((gyro, record), (prefix, raw_name))| {
@@ -158,6 +159,7 @@ fn signals<'a>(
             truth_deg_per_h: &record.truth_deg_per_h,
             encoder_rad: simulation.encoder_rad.as_deref(),
             channels: std::iter::once(raw).chain(filters).collect(),
+            temperature: temperature_record(&scenario.gyro, scenario.warm_up_s, end_s),
         }
     });
     signals.collect()

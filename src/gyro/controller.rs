@@ -98,6 +98,22 @@ impl Controller {
         (re.hypot(im) * pair * mean, phase)
     }
 
+    /// Closed-loop -3 dB bandwidth of the gain now in use, Hz: the inverse of [`Controller::new`].
+    #[must_use]
+    pub fn bandwidth_hz(&self) -> f64 {
+        const HALVINGS: u32 = 60;
+        let (mut low, mut high) = (0.0, PI);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if half_power_gain(middle, self.latency_periods) < self.gain {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low / (TAU * self.loop_period_s)
+    }
+
     /// Delay of the register behind the Sagnac phase at low frequency, s.
     ///
     /// `T_L / g - tau / 2`: the first-order expansion of `1 / H`, whatever the latency, less half

@@ -1,9 +1,10 @@
 //! Photodetector, amplifier and converter: levels at the bias point and noise densities.
 
+use crate::gyro::condition::Condition;
 use crate::gyro::error::GyroError;
 use crate::gyro::modulator::Modulator;
 use crate::gyro::source::relative_intensity_noise_per_hz;
-use crate::scenario::{GyroConfig, TemperatureConfig};
+use crate::scenario::GyroConfig;
 use crate::units::{
     BOLTZMANN_J_PER_K, ELEMENTARY_CHARGE_C, KILO, MICRO, NANO, PICO, celsius_to_kelvin,
 };
@@ -37,6 +38,8 @@ impl CurrentNoise {
 /// waves; the square-wave bias alternates `D = phi_e +- phi_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detector {
+    /// Photocurrent of the nominal mean power, A.
+    pub nominal_current_a: f64,
     /// Photocurrent of the mean power, `R P0`, A.
     pub mean_current_a: f64,
     /// Fringe visibility V.
@@ -64,24 +67,33 @@ pub struct Detector {
 }
 
 impl Detector {
-    /// The chain of a configuration.
+    /// The chain of a configuration in a condition: its power, and its temperature for the
+    /// Johnson noise.
     ///
     /// # Errors
     /// [`GyroError::NoSlope`] if the slope at the bias point is not positive;
     /// [`GyroError::ConverterRange`] if the bias point lies outside the converter's range.
-    pub fn new(config: &GyroConfig, modulator: &Modulator) -> Result<Self, GyroError> {
+    pub fn new(
+        config: &GyroConfig,
+        modulator: &Modulator,
+        condition: &Condition,
+    ) -> Result<Self, GyroError> {
         let (sine, cosine) = modulator.depth_rad.sin_cos();
         let visibility = config.source.visibility;
-        let mean_current_a = config.detector.responsivity_a_per_w * config.source.power_uw * MICRO;
+        let nominal_current_a =
+            config.detector.responsivity_a_per_w * config.source.power_uw * MICRO;
+        let mean_current_a = nominal_current_a * condition.power_ratio;
         let transimpedance_v_per_a =
             config.detector.transimpedance_kohm * KILO * config.detector.post_gain;
         let bits = config.adc.bits;
         let codes = 2.0_f64.powi(bits.cast_signed());
+        let bias_current_a = mean_current_a * (1.0 + visibility * cosine);
         let detector = Self {
+            nominal_current_a,
             mean_current_a,
             visibility,
             dark_current_a: config.detector.dark_current_na * NANO,
-            bias_current_a: mean_current_a * (1.0 + visibility * cosine),
+            bias_current_a,
             slope_a_per_rad: mean_current_a * visibility * sine,
             transimpedance_v_per_a,
             rin_per_hz: if config.noise.rin {
@@ -89,7 +101,7 @@ impl Detector {
             } else {
                 0.0
             },
-            noise: current_noise(config, mean_current_a * (1.0 + visibility * cosine)),
+            noise: current_noise(config, bias_current_a, condition.case_c),
             gate_duty: config.detector.gate_duty,
             converter_step_v: if bits == 0 {
                 0.0
@@ -128,9 +140,8 @@ impl Detector {
     }
 }
 
-fn current_noise(config: &GyroConfig, bias_current_a: f64) -> CurrentNoise {
-    let TemperatureConfig::Soak(soak) = &config.temperature;
-    let kelvin = celsius_to_kelvin(soak.temperature_c);
+fn current_noise(config: &GyroConfig, bias_current_a: f64, case_c: f64) -> CurrentNoise {
+    let kelvin = celsius_to_kelvin(case_c);
     let feedback_ohm = config.detector.transimpedance_kohm * KILO;
     let dark_current_a = config.detector.dark_current_na * NANO;
     let voltage_noise = config.detector.voltage_noise_nv_per_sqrt_hz * NANO / feedback_ohm;

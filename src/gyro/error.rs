@@ -58,6 +58,31 @@ pub enum GyroError {
         /// Range of the converter, V.
         range_v: f64,
     },
+    /// The power law leaves no light at a temperature of the run.
+    #[error(
+        "the detected power is {power_ratio:.3} of nominal at {temperature_c:.1} C: the law \
+         gyro.thermal.power does not reach this far"
+    )]
+    NoPower {
+        /// Power over its nominal value.
+        power_ratio: f64,
+        /// Temperature of the case, deg C.
+        temperature_c: f64,
+    },
+    /// More light at some temperature makes the loop oscillate.
+    #[error(
+        "the detected power reaches {power_ratio:.3} of nominal and the loop gain {gain:.4} with it, but \
+         the loop is stable only below {gain_limit:.4}: lower gyro.controller.loop_bandwidth_hz or set \
+         gyro.controller.automatic_gain_control = true"
+    )]
+    UnstableAtPower {
+        /// Largest power over its nominal value.
+        power_ratio: f64,
+        /// Gain with it.
+        gain: f64,
+        /// Gain at which the loop starts to oscillate.
+        gain_limit: f64,
+    },
     /// The output sample is not a whole number of loop periods.
     #[error("{half_periods} half periods per output sample: expected an even number of at least 2")]
     OddOutputSample {
@@ -127,6 +152,8 @@ impl GyroError {
             Self::BandwidthAboveNyquist { .. } | Self::UnstableLoop { .. } => {
                 "gyro.controller.loop_bandwidth_hz"
             }
+            Self::NoPower { .. } => "gyro.thermal.power",
+            Self::UnstableAtPower { .. } => "gyro.controller.automatic_gain_control",
             Self::LatencyOutOfRange { .. } => "gyro.controller.loop_latency_periods",
             Self::NoSlope { .. } => "gyro.modulator.depth_deg",
             Self::ConverterRange { .. } => "gyro.adc.range_v",

@@ -128,7 +128,9 @@ pub fn word_response(
     Ok(response.collect())
 }
 
-/// What the gyro of a configuration is, in closed form.
+/// What the gyro of a configuration is, in closed form, at the start of the simulation.
+///
+/// At constant temperature that is what it is throughout.
 ///
 /// # Errors
 /// Any [`GyroError`], as [`Gyro::new`].
@@ -138,15 +140,22 @@ pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
         coil,
         detector,
         controller,
+        condition,
         ..
     } = Parts::new(config)?;
+    let is_gain_nominal =
+        config.controller.automatic_gain_control || (condition.power_ratio - 1.0).abs() <= 0.0;
     Ok(GyroFacts {
         scale_factor_s: coil.scale_factor_s,
         transit_time_us: s_to_us(coil.transit_time_s),
         proper_frequency_khz: hz_to_khz(coil.proper_frequency_hz()),
         output_rate_hz: sample_period_s(config).recip(),
         loop_gain: controller.gain,
-        loop_bandwidth_hz: config.controller.loop_bandwidth_hz,
+        loop_bandwidth_hz: if is_gain_nominal {
+            config.controller.loop_bandwidth_hz
+        } else {
+            controller.bandwidth_hz()
+        },
         delay_ms: s_to_ms(controller.word_delay_s(0.5 * f64::from(half_periods))),
         angle_random_walk_budget_deg_per_sqrt_h: NoiseBudget::new(&detector, &coil).entries(),
     })

@@ -1,6 +1,7 @@
 //! Gyro model that runs every half modulation period.
 
 use crate::gyro::coil::Coil;
+use crate::gyro::condition::{Condition, Schedule};
 use crate::gyro::controller::Controller;
 use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
@@ -48,6 +49,17 @@ pub struct LoopModel {
     phases_codes: Vec<f64>,
     slow_noise: SlowNoise,
     rate_word: RateWord,
+    condition: Condition,
+    /// Absent where the temperature never changes.
+    varying: Option<Box<Varying>>,
+}
+
+/// What it takes to follow the temperature.
+#[derive(Clone, Debug)]
+struct Varying {
+    schedule: Schedule,
+    config: GyroConfig,
+    streams: Streams,
 }
 
 /// The samplers a configuration can ask for.
@@ -74,6 +86,7 @@ impl LoopModel {
             modulator,
             detector,
             controller,
+            condition,
         } = Parts::new(config)?;
         let count = f64::from(half_periods);
         let mut model = Self {
@@ -99,12 +112,22 @@ impl LoopModel {
                 streams,
             ),
             rate_word: RateWord::new(&config.output, &coil),
+            condition,
+            varying: Schedule::new(config, count * coil.transit_time_s).map(|schedule| {
+                Box::new(Varying {
+                    schedule,
+                    config: config.clone(),
+                    streams: *streams,
+                })
+            }),
         };
         model.set_loop_gain(controller.gain);
         Ok(model)
     }
 
-    /// Replaces the loop gain, whatever bandwidth or stability it gives.
+    /// Replaces the loop gain at the present power, whatever bandwidth or stability it gives.
+    ///
+    /// Where the temperature changes, its next update sets the configured gain again.
     pub fn set_loop_gain(&mut self, gain: f64) {
         self.controller.gain = gain;
         self.constants.gain_codes_per_level = gain * self.codes_per_rad / self.levels_per_rad;
@@ -162,7 +185,10 @@ impl LoopModel {
 
     /// Rate word of the output sample over which the gyro moves as `segment`, deg/h.
     pub fn next_word(&mut self, segment: &MotionSegment) -> f64 {
-        let slow_rad_per_s = self.slow_noise.next_rate_rad_per_s();
+        if let Some(condition) = self.next_condition() {
+            self.enter(condition);
+        }
+        let slow_rad_per_s = self.slow_noise.next_rate_rad_per_s() + self.condition.bias_rad_per_s;
         self.fill_phases(segment, slow_rad_per_s);
         let sum_codes = self.detection.run(
             &mut self.registers,
@@ -175,9 +201,35 @@ impl LoopModel {
             .deg_per_h(sum_codes / (periods * self.codes_per_rad))
     }
 
+    fn next_condition(&mut self) -> Option<Condition> {
+        self.varying.as_mut()?.schedule.next_change()
+    }
+
+    /// Works in another condition from the next output sample on.
+    fn enter(&mut self, condition: Condition) {
+        let Some(Varying {
+            config, streams, ..
+        }) = self.varying.as_deref()
+        else {
+            return;
+        };
+        let Parts {
+            coil,
+            modulator,
+            detector,
+            controller,
+            ..
+        } = Parts::under_way(config, &condition);
+        let fresh = detection(config, &detector, &modulator, coil.transit_time_s, streams);
+        self.detection.retune(fresh);
+        self.levels_per_rad = 2.0 * detector.slope_a_per_rad * levels_per_ampere(&detector);
+        self.condition = condition;
+        self.set_loop_gain(controller.gain);
+    }
+
     /// Sagnac phase at the start of each half period, codes.
     fn fill_phases(&mut self, segment: &MotionSegment, slow_rad_per_s: f64) {
-        let scale = self.coil.scale_factor_s * self.codes_per_rad;
+        let scale = self.coil.scale_factor_s * self.condition.scale_ratio * self.codes_per_rad;
         let [c0, c1, c2, c3] = segment
             .rate_rad_per_s
             .map(|coefficient| scale * coefficient);
@@ -227,6 +279,18 @@ fn detection(
 }
 
 impl Detection {
+    /// Takes over the levels and noise densities of a detection of the same kind.
+    fn retune(&mut self, other: Self) {
+        match (self, other) {
+            (Self::Combined(sampler), Self::Combined(other)) => *sampler = sampler.retuned(other),
+            (Self::CombinedIdeal(sampler), Self::CombinedIdeal(other)) => {
+                *sampler = sampler.retuned(other);
+            }
+            (Self::Exact(sampler), Self::Exact(other)) => *sampler = sampler.retuned(other),
+            (sampler, other) => *sampler = other,
+        }
+    }
+
     /// Runs the periods of `phases_codes` and returns the sum of the register, codes.
     fn run(
         &mut self,

@@ -16,12 +16,16 @@
 //! mean, bandwidth, delay and noise colour. [`Gyro`] is either of them; [`cautions`] says where
 //! their assumptions end. [`CaseGyro`] is one of three gyros in a case, behind its own input axis.
 //!
+//! Temperature (`thermal`) sets the [`Condition`] both models work in: detected power, scale factor,
+//! bias. Where it never changes it is settled when the gyro is built and costs nothing after.
+//!
 //! Symbols: `tau` = transit time of the coil = half modulation period, `T_L = 2 tau` = loop
 //! period, `Ks` = Sagnac scale factor, `g` = integrator gain, `d` = pipeline latency in loop
 //! periods, `r` = step of the ramp per `tau` (the register), `phi_m` = modulation depth.
 
 mod assembly;
 mod coil;
+mod condition;
 mod controller;
 mod detector;
 mod error;
@@ -38,9 +42,11 @@ mod rate_word;
 mod sampler;
 mod slow_noise;
 mod source;
+mod thermal;
 
 pub use assembly::{CaseGyro, InputAxis};
 pub use coil::Coil;
+pub use condition::{Condition, temperature_record};
 pub use controller::{Controller, gain_limit};
 pub use detector::{CurrentNoise, Detector};
 pub use error::GyroError;
@@ -52,3 +58,4 @@ pub use noise_budget::NoiseBudget;
 pub use rate_model::RateModel;
 pub use slow_noise::SlowNoise;
 pub use source::relative_intensity_noise_per_hz;
+pub use thermal::{Chamber, Network, NetworkState, Propagator, Shupe, layer_integral, layer_order};

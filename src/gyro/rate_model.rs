@@ -1,7 +1,9 @@
 //! Gyro model at the output rate, for long runs.
 
 use crate::gyro::coil::Coil;
+use crate::gyro::condition::{Condition, Schedule};
 use crate::gyro::controller::Controller;
+use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
 use crate::gyro::noise_budget::NoiseBudget;
 use crate::gyro::parts::Parts;
@@ -32,6 +34,16 @@ pub struct RateModel {
     stream: Stream,
     slow_noise: SlowNoise,
     rate_word: RateWord,
+    condition: Condition,
+    /// Absent where the temperature never changes.
+    varying: Option<Box<Varying>>,
+}
+
+/// What it takes to follow the temperature.
+#[derive(Clone, Debug)]
+struct Varying {
+    schedule: Schedule,
+    config: GyroConfig,
 }
 
 impl RateModel {
@@ -49,18 +61,16 @@ impl RateModel {
             coil,
             detector,
             controller,
+            condition,
             ..
         } = Parts::new(config)?;
-        let random_walk = deg_per_sqrt_h_to_rad_per_sqrt_s(
-            NoiseBudget::new(&detector, &coil).total_deg_per_sqrt_h(),
-        );
         let sample_period_s = f64::from(half_periods) * coil.transit_time_s;
         Ok(Self {
             coil,
             controller,
             matrices: RateMatrices::new(&controller, half_periods / 2),
             state_rad: [0.0; 4],
-            noise_rad: random_walk * coil.scale_factor_s / coil.loop_period_s().sqrt(),
+            noise_rad: noise_rad(&detector, &coil),
             sample_period_s,
             stream: streams.stream("combined"),
             slow_noise: SlowNoise::new(
@@ -70,6 +80,13 @@ impl RateModel {
                 streams,
             ),
             rate_word: RateWord::new(&config.output, &coil),
+            condition,
+            varying: Schedule::new(config, sample_period_s).map(|schedule| {
+                Box::new(Varying {
+                    schedule,
+                    config: config.clone(),
+                })
+            }),
         })
     }
 
@@ -87,11 +104,15 @@ impl RateModel {
 
     /// Rate word of the output sample over which the gyro moves as `segment`, deg/h.
     pub fn next_word(&mut self, segment: &MotionSegment) -> f64 {
-        let scale = self.coil.scale_factor_s;
+        if let Some(condition) = self.next_condition() {
+            self.enter(condition);
+        }
+        let scale = self.coil.scale_factor_s * self.condition.scale_ratio;
         let mut phase_rad = segment
             .rate_rad_per_s
             .map(|coefficient| scale * coefficient);
-        phase_rad[0] += scale * self.slow_noise.next_rate_rad_per_s();
+        let slow_rad_per_s = self.slow_noise.next_rate_rad_per_s() + self.condition.bias_rad_per_s;
+        phase_rad[0] += scale * slow_rad_per_s;
         let mean_rad =
             self.matrices
                 .advance(&mut self.state_rad, &phase_rad, self.noise_rad, || {
@@ -99,4 +120,35 @@ impl RateModel {
                 });
         self.rate_word.deg_per_h(mean_rad)
     }
+
+    fn next_condition(&mut self) -> Option<Condition> {
+        self.varying.as_mut()?.schedule.next_change()
+    }
+
+    /// Works in another condition from the next output sample on.
+    fn enter(&mut self, condition: Condition) {
+        let Some(Varying { config, .. }) = self.varying.as_deref() else {
+            return;
+        };
+        let Parts {
+            half_periods,
+            detector,
+            controller,
+            ..
+        } = Parts::under_way(config, &condition);
+        // The matrices cost more than all the rest; most conditions leave the gain alone.
+        if controller != self.controller {
+            self.matrices = RateMatrices::new(&controller, half_periods / 2);
+            self.controller = controller;
+        }
+        self.noise_rad = noise_rad(&detector, &self.coil);
+        self.condition = condition;
+    }
+}
+
+/// Standard deviation of the error's noise per loop period, rad.
+fn noise_rad(detector: &Detector, coil: &Coil) -> f64 {
+    let random_walk =
+        deg_per_sqrt_h_to_rad_per_sqrt_s(NoiseBudget::new(detector, coil).total_deg_per_sqrt_h());
+    random_walk * coil.scale_factor_s / coil.loop_period_s().sqrt()
 }

@@ -3,7 +3,7 @@
 //! Levels are counted in a unit that makes the rounding a rounding to whole numbers: the
 //! converter step q over sqrt(n) for the mean of n samples (so that one rounding has the noise of
 //! n, `q^2 / 12 n`, and one normal the same ratio to the step as each of n would have), or the
-//! voltage of the mean power for an ideal converter.
+//! voltage of the nominal mean power for an ideal converter.
 
 use crate::gyro::detector::Detector;
 use crate::gyro::modulator::Modulator;
@@ -167,6 +167,15 @@ impl<const ROUNDED: bool> CombinedSampler<ROUNDED> {
     pub(super) fn faults(&self) -> Faults {
         self.faults
     }
+
+    /// The chain of `other`, with the noise and the faults so far of this one.
+    pub(super) fn retuned(&self, other: Self) -> Self {
+        Self {
+            stream: self.stream.clone(),
+            faults: self.faults,
+            ..other
+        }
+    }
 }
 
 impl<const ROUNDED: bool> Sampler for CombinedSampler<ROUNDED> {
@@ -187,7 +196,7 @@ pub(super) fn levels_per_ampere(detector: &Detector) -> f64 {
     if detector.converter_step_v > 0.0 {
         detector.samples_per_half_period.sqrt() * steps_per_ampere(detector)
     } else {
-        detector.mean_current_a.recip()
+        detector.nominal_current_a.recip()
     }
 }
 
@@ -233,7 +242,7 @@ impl ExactSampler {
         let units_per_a = if is_rounded {
             steps_per_ampere(detector)
         } else {
-            detector.mean_current_a.recip()
+            detector.nominal_current_a.recip()
         };
         let per_sample = |density: f64| {
             (count * detector.half_period_variance_a2(density, transit_time_s)).sqrt()
@@ -272,6 +281,18 @@ impl ExactSampler {
 
     pub(super) fn faults(&self) -> Faults {
         self.faults
+    }
+
+    /// The chain of `other`, with the noise and the faults so far of this one.
+    pub(super) fn retuned(&self, other: Self) -> Self {
+        Self {
+            shot_stream: self.shot_stream.clone(),
+            thermal_stream: self.thermal_stream.clone(),
+            amplifier_stream: self.amplifier_stream.clone(),
+            rin_stream: self.rin_stream.clone(),
+            faults: self.faults,
+            ..other
+        }
     }
 }
 

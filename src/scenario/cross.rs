@@ -3,6 +3,7 @@
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
 use super::address;
+use super::cross_gyro;
 use super::cross_multi_sine;
 use super::cross_servo;
 use super::defaults::default_of;
@@ -33,6 +34,9 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.names();
     checks.hardware_keys();
     checks.motion();
+    for (key, message) in cross_gyro::check(&resolved.scenario) {
+        checks.complain(&key, message);
+    }
     checks.gates();
     checks.published();
     for (key_path, message) in cross_servo::check(resolved) {

@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::assembly_config::AssemblyConfig;
+use super::thermal_config::{TemperatureConfig, ThermalConfig};
 
 /// The gyro.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -24,8 +25,10 @@ pub struct GyroConfig {
     pub noise: NoiseConfig,
     /// Slow noise of the rate.
     pub slow_noise: SlowNoiseConfig,
-    /// Temperature.
+    /// Temperature of the chamber.
     pub temperature: TemperatureConfig,
+    /// How temperature reaches the gyro and what it does there.
+    pub thermal: ThermalConfig,
     /// Rate word.
     pub output: RateOutputConfig,
     /// Three such gyros in one case; none is a single gyro on the table axis.
@@ -110,6 +113,8 @@ pub struct ControllerConfig {
     pub loop_bandwidth_hz: f64,
     /// Pipeline latency in modulation periods, 0..=3.
     pub loop_latency_periods: u32,
+    /// Whether the loop gain is held against changes of the detected power.
+    pub automatic_gain_control: bool,
 }
 
 /// Fast noise sources.
@@ -150,22 +155,6 @@ pub struct SlowNoiseConfig {
     pub rate_random_walk_deg_per_h_per_sqrt_h: f64,
     /// Rate ramp R, deg/h/h.
     pub rate_ramp_deg_per_h_per_h: f64,
-}
-
-/// Temperature: exactly one profile.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TemperatureConfig {
-    /// Constant temperature.
-    Soak(SoakConfig),
-}
-
-/// Constant temperature.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SoakConfig {
-    /// Temperature of everything, deg C.
-    pub temperature_c: f64,
 }
 
 /// Rate word.

@@ -10,6 +10,7 @@ mod channels;
 mod check;
 mod config;
 mod cross;
+mod cross_gyro;
 mod cross_multi_sine;
 mod cross_servo;
 mod cross_turntable;
@@ -29,6 +30,7 @@ mod script;
 mod servo_config;
 mod source;
 mod suite;
+mod thermal_config;
 mod tree;
 mod turntable_config;
 
@@ -46,14 +48,18 @@ pub use filter_config::{
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
-    NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SoakConfig, SourceConfig,
-    TemperatureConfig,
+    NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SourceConfig,
 };
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
 pub use suite::load_suite;
+pub use thermal_config::{
+    ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig, SoakConfig,
+    TemperatureConfig, TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig,
+    ThermalWarmUp, Winding,
+};
 pub use turntable_config::{
     AxisConfig, CaseAxis, ChirpConfig, MotionConfig, MountingConfig, MultiSineConfig, PhaseRule,
     Progression, RotationConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig,

@@ -2,8 +2,8 @@
 
 use fogbench::scenario::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
-    NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SoakConfig, SourceConfig,
-    TemperatureConfig,
+    NoiseConfig, NoiseDraw, PowerConfig, QuadraticPowerConfig, RateOutputConfig, SlowNoiseConfig,
+    SoakConfig, SourceConfig, TemperatureConfig, ThermalConfig, ThermalWarmUp, Winding,
 };
 
 /// All fast noise on, drawn combined; no slow noise; rate word not rounded.
@@ -42,6 +42,7 @@ pub(crate) fn reference_gyro() -> GyroConfig {
         controller: ControllerConfig {
             loop_bandwidth_hz: 2000.0,
             loop_latency_periods: 1,
+            automatic_gain_control: false,
         },
         noise: NoiseConfig {
             shot: true,
@@ -59,6 +60,36 @@ pub(crate) fn reference_gyro() -> GyroConfig {
         temperature: TemperatureConfig::Soak(SoakConfig {
             temperature_c: 25.0,
         }),
+        thermal: ThermalConfig {
+            reference_c: 25.0,
+            ripple_amplitude_c: 0.0,
+            ripple_period_s: 480.0,
+            self_heating_c: 0.0,
+            warm_up: ThermalWarmUp::Settled,
+            case_time_constant_s: 600.0,
+            outer_time_constant_s: 300.0,
+            inner_time_constant_s: 100.0,
+            winding: Winding::Quadrupole,
+            layers: 40,
+            midpoint_offset_m: 0.0,
+            index_per_k: 1.0e-5,
+            length_ppm_per_k: 0.55,
+            diameter_ppm_per_k: 10.0,
+            wavelength_nm_per_k: 0.4,
+            wavelength_feed_through: 0.01,
+            compensation_ppm_per_k: 0.0,
+            compensation_ppm_per_k2: 0.0,
+            bias_deg_per_h_per_k: 5e-4,
+            bias_deg_per_h_per_k2: 3e-6,
+            bias_deg_per_h_per_c_per_min: 0.02,
+            half_wave_voltage_ppm_per_k: 0.0,
+            power: PowerConfig::Quadratic(QuadraticPowerConfig {
+                cold_c: -40.0,
+                cold_ratio: 0.853,
+                hot_c: 60.0,
+                hot_ratio: 0.967,
+            }),
+        },
         output: RateOutputConfig {
             half_periods_per_sample: 64,
             rate_lsb_deg_per_s: 0.0,

@@ -13,6 +13,7 @@ mod series;
 mod spectrum;
 mod swing;
 mod theory;
+mod thermal;
 
 use crate::report::RunReport;
 use crate::scenario::MotionConfig;
@@ -23,7 +24,8 @@ pub const SVG_BYTES_MAX: usize = 500_000;
 
 /// The pictures of one gyro of a run as file name and SVG text: `rate.svg`; `allan.svg` and
 /// `spectrum.svg` where a channel has the curve; `swing.svg` for a swing, `bode.svg` for several
-/// sines, `response.svg` for a staircase of three rates or more. Those of an assembly stand behind
+/// sines, `response.svg` for a staircase of three rates or more; `thermal.svg` where the temperature
+/// changes. Those of an assembly stand behind
 /// the axis, as in `x-rate.svg`: nine channels in one picture would hide one another.
 ///
 /// # Panics
@@ -51,6 +53,7 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
         ("bode.svg", bode::picture(report)),
         ("response.svg", response::picture(report)),
         ("spectrum.svg", spectrum::picture(report)),
+        ("thermal.svg", thermal::picture(report, signals)),
     ];
     pictures
         .into_iter()

@@ -7,6 +7,7 @@ mod filter;
 mod gyro;
 mod judging;
 mod run;
+mod thermal;
 mod turntable;
 
 use super::schema::{Group, Integers, Key, Kind, Presence};
@@ -81,7 +82,12 @@ pub(crate) const GROUPS: &[Group] = &[
     Group {
         table: "gyro.temperature",
         noun: "temperature profile",
-        alternatives: &["soak"],
+        alternatives: &["soak", "ramp", "profile"],
+    },
+    Group {
+        table: "gyro.thermal.power",
+        noun: "power law",
+        alternatives: &["quadratic", "exponential", "constant"],
     },
     Group {
         table: "filter[]",
@@ -99,6 +105,7 @@ pub(crate) fn keys() -> impl Iterator<Item = &'static Key> {
         run::KEYS,
         turntable::KEYS,
         gyro::KEYS,
+        thermal::KEYS,
         filter::KEYS,
         judging::KEYS,
     ]

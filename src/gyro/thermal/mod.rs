@@ -1,0 +1,19 @@
+//! Temperature of the gyro: from the chamber to the optics.
+//!
+//! ```text
+//! chamber(t) -> case -> outer layer -> inner layer       (network)
+//!                |          '-- difference of rates --> Shupe bias (winding)
+//!                '-- power, wavelength, Johnson noise --> sensitivities --> condition
+//! ```
+//!
+//! Invariant: no random numbers; everything follows from the configuration and the time.
+
+mod chamber;
+mod network;
+mod sensitivities;
+mod winding;
+
+pub use chamber::Chamber;
+pub use network::{Network, NetworkState, Propagator};
+pub(super) use sensitivities::Sensitivities;
+pub use winding::{Shupe, layer_integral, layer_order};
