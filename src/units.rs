@@ -74,6 +74,18 @@ pub fn deg_per_h_to_deg_per_s(rate_deg_per_h: f64) -> f64 {
     rate_deg_per_h / SECONDS_PER_HOUR
 }
 
+/// Converts a rate from deg/h to arcsec/s: the same number, as both divide by 3600.
+#[must_use]
+pub fn deg_per_h_to_arcsec_per_s(rate_deg_per_h: f64) -> f64 {
+    rate_deg_per_h
+}
+
+/// Converts a rate from arcsec/s to deg/h: the same number, as both divide by 3600.
+#[must_use]
+pub fn arcsec_per_s_to_deg_per_h(rate_arcsec_per_s: f64) -> f64 {
+    rate_arcsec_per_s
+}
+
 /// Converts an angle random walk from rad/sqrt(s) to deg/sqrt(h).
 #[must_use]
 pub fn rad_per_sqrt_s_to_deg_per_sqrt_h(random_walk_rad_per_sqrt_s: f64) -> f64 {

@@ -14,6 +14,7 @@ mod known_answers_gyro;
 mod known_answers_gyro_limits;
 mod known_answers_gyro_noise;
 mod known_answers_metrics;
+mod known_answers_output;
 mod known_answers_slow_noise;
 mod known_answers_swing;
 mod known_answers_turntable;

@@ -98,7 +98,7 @@ impl LoopModel {
                 simulated_time_s,
                 streams,
             ),
-            rate_word: RateWord::new(&config.output, &coil),
+            rate_word: RateWord::new(&config.output, &coil, count * coil.transit_time_s),
         };
         model.set_loop_gain(controller.gain);
         Ok(model)

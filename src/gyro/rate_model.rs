@@ -69,7 +69,7 @@ impl RateModel {
                 simulated_time_s,
                 streams,
             ),
-            rate_word: RateWord::new(&config.output, &coil),
+            rate_word: RateWord::new(&config.output, &coil, sample_period_s),
         })
     }
 

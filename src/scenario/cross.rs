@@ -3,6 +3,7 @@
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
 use super::address;
+use super::cross_gyro;
 use super::defaults::default_of;
 use super::error::ScenarioError;
 use super::filter_config::{FilterKind, Pipeline};
@@ -33,6 +34,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.motion();
     checks.gates();
     checks.published();
+    checks.errors.extend(cross_gyro::check(resolved));
     checks.errors
 }
 

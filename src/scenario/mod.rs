@@ -8,6 +8,7 @@ mod address;
 mod check;
 mod config;
 mod cross;
+mod cross_gyro;
 mod defaults;
 mod emit;
 mod error;
@@ -38,8 +39,8 @@ pub use filter_config::{
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
-    NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SoakConfig, SourceConfig,
-    TemperatureConfig,
+    NoiseConfig, NoiseDraw, OutputQuantisation, RateOutputConfig, SlowNoiseConfig, SoakConfig,
+    SourceConfig, TemperatureConfig,
 };
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
