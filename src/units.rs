@@ -167,6 +167,12 @@ pub fn celsius_to_kelvin(temperature_c: f64) -> f64 {
     temperature_c + ZERO_CELSIUS_K
 }
 
+/// Converts an angle from rad to urad, and its densities likewise.
+#[must_use]
+pub fn rad_to_urad(angle_rad: f64) -> f64 {
+    angle_rad * 1e6
+}
+
 /// SI prefix pico.
 pub const PICO: f64 = 1e-12;
 /// SI prefix nano.

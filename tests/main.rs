@@ -3,6 +3,7 @@
 mod architecture;
 mod bit_exact;
 mod cli;
+mod cli_budget;
 mod cli_fpga;
 mod closed_loop;
 mod cycle_exact;

@@ -3,6 +3,7 @@
 //! Invariant: wiring only; what a stage does stands in the stage. Checks that need physics live in
 //! `plan`, so that `check` and `run` refuse the same files.
 
+mod budget;
 mod channel_filter;
 mod motion;
 mod pipeline_check;
@@ -15,6 +16,7 @@ mod run;
 mod simulate;
 mod suite;
 
+pub use budget::{GyroBudget, gyro_budget};
 pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{CoreSettings, PipelineSettings, PipelineTiming};

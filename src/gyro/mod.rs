@@ -20,6 +20,7 @@
 //! period, `Ks` = Sagnac scale factor, `g` = integrator gain, `d` = pipeline latency in loop
 //! periods, `r` = step of the ramp per `tau` (the register), `phi_m` = modulation depth.
 
+mod budget;
 mod coil;
 mod controller;
 mod detector;
@@ -38,6 +39,7 @@ mod sampler;
 mod slow_noise;
 mod source;
 
+pub use budget::{budget_at, budget_sheet, power_independent_ratio};
 pub use coil::Coil;
 pub use controller::{Controller, gain_limit};
 pub use detector::{CurrentNoise, Detector};

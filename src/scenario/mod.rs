@@ -45,7 +45,7 @@ pub use gyro_config::{
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
-pub use suite::load_suite;
+pub use suite::{load_base_or_scenario, load_suite};
 pub use turntable_config::{
     MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
     StepsConfig, SwingConfig, TurntableConfig,

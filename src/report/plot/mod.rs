@@ -4,12 +4,15 @@
 
 mod allan;
 mod axis;
+mod budget;
 mod panel;
 mod picture;
 mod rate;
 mod series;
 mod spectrum;
 mod swing;
+
+pub use budget::budget_svg;
 
 use crate::report::RunReport;
 use crate::scenario::MotionConfig;
