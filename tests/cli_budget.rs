@@ -162,7 +162,12 @@ fn known_answer_k15_the_searched_optimum_is_the_closed_form_at_any_visibility() 
 fn text_names_the_sources_the_optimum_and_what_is_largest() {
     let output = run("scenarios/base/fog70.toml", &[]);
     let text = stdout(&output);
-    for part in ["thermal", "0.006 ", "closed form", "largest: thermal from"] {
+    for part in [
+        "thermal",
+        "0.00600 ",
+        "closed form",
+        "largest: thermal from",
+    ] {
         assert!(text.contains(part), "no `{part}` in:\n{text}");
     }
     assert!(!text.contains("note:"), "{text}");

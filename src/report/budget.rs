@@ -80,7 +80,7 @@ fn optimum(sheet: &BudgetSheet) -> String {
         ""
     };
     format!(
-        "least at {:.2} deg{remark} (closed form {closed_form:.2} deg): {} deg/sqrt(h)\n",
+        "least at {:.2} deg{remark} (closed form {closed_form:.2} deg): {} deg/sqrt(h) at this power\n",
         point.modulation_depth_deg,
         walk_text(point.walk(TOTAL)),
     )
@@ -154,12 +154,23 @@ fn short(value: f64) -> String {
     plain(rounded)
 }
 
-/// A walk to three significant digits; a source that is off has none, a point out of range `-`.
+/// A walk to three significant digits, trailing zeros kept, so that columns compare; a source that
+/// is off has none, a point out of range `-`.
 fn walk_text(walk: Option<f64>) -> String {
-    match walk {
-        None => "-".to_owned(),
-        Some(walk) if walk > 0.0 => short(walk),
-        Some(_) => "0".to_owned(),
+    let Some(walk) = walk else {
+        return "-".to_owned();
+    };
+    if walk <= 0.0 {
+        return "0".to_owned();
+    }
+    let scientific = format!("{walk:.2e}");
+    let exponent = scientific.split_once('e').map(|(_, exponent)| exponent);
+    match exponent.and_then(|exponent| exponent.parse::<i32>().ok()) {
+        Some(exponent) if (-5..3).contains(&exponent) => {
+            let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+            format!("{walk:.decimals$}")
+        }
+        _ => scientific,
     }
 }
 

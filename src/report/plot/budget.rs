@@ -10,7 +10,7 @@ use crate::report::budget::{TOTAL, sources};
 use crate::signal::{BudgetPoint, BudgetSheet};
 
 /// Sources below this part of the least total are cut off.
-const FLOOR: f64 = 0.05;
+const FLOOR: f64 = 0.02;
 
 /// Two panels: every source against depth, and the total against power.
 ///
@@ -104,6 +104,14 @@ fn against_depth(picture: &mut Picture, sheet: &BudgetSheet, place: (f64, f64)) 
         let text = format!("{name}: {:.1} deg, {total:.2e}", depth(point));
         legend.marker(picture, (shape, BLACK), &text);
     }
+    say_where_lines_end(picture, &mut legend, &sheet.by_depth);
+}
+
+fn say_where_lines_end(picture: &mut Picture, legend: &mut Legend, points: &[BudgetPoint]) {
+    if points.iter().any(|point| point.walk(TOTAL).is_none()) {
+        legend.text(picture, "a line ends where the bias point leaves");
+        legend.text(picture, "the converter's range");
+    }
 }
 
 fn against_power(picture: &mut Picture, sheet: &BudgetSheet, place: (f64, f64)) {
@@ -140,9 +148,5 @@ fn against_power(picture: &mut Picture, sheet: &BudgetSheet, place: (f64, f64)) 
         let text = format!("configured: {} uW", plain(power(configured)));
         legend.marker(picture, (Shape::Circle, BLACK), &text);
     }
-    let beyond = |point: &BudgetPoint| point.walk(TOTAL).is_none();
-    if sheet.by_power.iter().any(beyond) {
-        legend.text(picture, "a line ends where the bias point leaves");
-        legend.text(picture, "the converter's range");
-    }
+    say_where_lines_end(picture, &mut legend, &sheet.by_power);
 }
