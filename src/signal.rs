@@ -95,8 +95,8 @@ pub struct GyroFacts {
     pub loop_bandwidth_hz: f64,
     /// Delay of the rate word behind the motion at low frequency, ms.
     pub delay_ms: f64,
-    /// Angle random walk by source (`shot`, `thermal`, `amplifier`, `rin`, `adc`, `total`),
-    /// deg/sqrt(h).
+    /// Angle random walk by source (`shot`, `thermal`, `amplifier`, `rin`, `adc`, `technical`,
+    /// `total`), deg/sqrt(h).
     pub angle_random_walk_budget_deg_per_sqrt_h: Vec<(&'static str, f64)>,
 }
 
@@ -139,6 +139,62 @@ pub struct TemperatureRecord {
     pub bias_deg_per_h: Vec<f64>,
     /// Predicted scale factor over its nominal value.
     pub scale_ratio: Vec<f64>,
+}
+
+/// One source in the noise budget of a gyro.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BudgetEntry {
+    /// Name as in [`GyroFacts::angle_random_walk_budget_deg_per_sqrt_h`].
+    pub source: &'static str,
+    /// Angle random walk N, deg/sqrt(h).
+    pub angle_random_walk_deg_per_sqrt_h: f64,
+    /// Share of the noise power, 0..1; 0 where there is none at all.
+    pub power_share: f64,
+    /// White one-sided phase noise of the same angle random walk, `sqrt(2) N Ks`, urad/sqrt(Hz).
+    pub phase_noise_urad_per_sqrt_hz: f64,
+}
+
+/// The noise budget at one power and modulation depth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BudgetPoint {
+    /// Mean detected power over a fringe, uW.
+    pub power_uw: f64,
+    /// Modulation depth, deg.
+    pub modulation_depth_deg: f64,
+    /// Angle random walk by source and `total`, deg/sqrt(h); `None` where the bias point lies beyond
+    /// the converter's range.
+    pub angle_random_walk_deg_per_sqrt_h: Option<Vec<(&'static str, f64)>>,
+}
+
+impl BudgetPoint {
+    /// Angle random walk of one source or of the total, deg/sqrt(h).
+    #[must_use]
+    pub fn walk(&self, source: &str) -> Option<f64> {
+        let walks = self.angle_random_walk_deg_per_sqrt_h.as_ref()?;
+        let (_, walk) = walks.iter().find(|(name, _)| *name == source)?;
+        Some(*walk)
+    }
+}
+
+/// The noise budget of a gyro in closed form, as the report prints it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BudgetSheet {
+    /// The configured power and depth.
+    pub configured: BudgetPoint,
+    /// Its sources, `total` last.
+    pub entries: Vec<BudgetEntry>,
+    /// Depth of least total at the configured power, searched for; `None` if no source depends on it.
+    pub optimum: Option<BudgetPoint>,
+    /// The same depth from its closed form, deg, whether the converter reaches it or not.
+    pub closed_form_optimum_depth_deg: Option<f64>,
+    /// Against modulation depth at the configured power.
+    pub by_depth: Vec<BudgetPoint>,
+    /// Against power at the configured depth.
+    pub by_power: Vec<BudgetPoint>,
+    /// Against power, each at its own best depth; empty if no source depends on the depth.
+    pub by_power_at_optimum_depth: Vec<BudgetPoint>,
+    /// Where the closed forms do not hold.
+    pub cautions: Vec<String>,
 }
 
 /// The samples of one gyro of a run, borrowed: what the plots draw and the sample files hold.

@@ -80,6 +80,18 @@ pub fn deg_per_h_to_deg_per_s(rate_deg_per_h: f64) -> f64 {
     rate_deg_per_h / SECONDS_PER_HOUR
 }
 
+/// Converts a rate from deg/h to arcsec/s: the same number, as both divide by 3600.
+#[must_use]
+pub fn deg_per_h_to_arcsec_per_s(rate_deg_per_h: f64) -> f64 {
+    rate_deg_per_h
+}
+
+/// Converts a rate from arcsec/s to deg/h: the same number, as both divide by 3600.
+#[must_use]
+pub fn arcsec_per_s_to_deg_per_h(rate_arcsec_per_s: f64) -> f64 {
+    rate_arcsec_per_s
+}
+
 /// Converts an angle random walk from rad/sqrt(s) to deg/sqrt(h).
 #[must_use]
 pub fn rad_per_sqrt_s_to_deg_per_sqrt_h(random_walk_rad_per_sqrt_s: f64) -> f64 {
@@ -183,6 +195,12 @@ pub fn k_per_min_to_k_per_s(rate_k_per_min: f64) -> f64 {
 #[must_use]
 pub fn k_per_s_to_k_per_min(rate_k_per_s: f64) -> f64 {
     rate_k_per_s * 60.0
+}
+
+/// Converts an angle from rad to urad, and its densities likewise.
+#[must_use]
+pub fn rad_to_urad(angle_rad: f64) -> f64 {
+    angle_rad * 1e6
 }
 
 /// SI prefix pico.

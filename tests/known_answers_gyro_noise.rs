@@ -83,24 +83,54 @@ fn only(source: &str) -> NoiseConfig {
         thermal: source == "thermal",
         amplifier: source == "amplifier",
         rin: source == "rin",
+        technical_phase_urad_per_sqrt_hz: if source == "technical" { 2.0 } else { 0.0 },
         draw: NoiseDraw::Exact,
     }
 }
 
 #[test]
 fn known_answer_k13_each_source_alone_has_its_closed_form() {
-    for source in ["shot", "thermal", "amplifier", "rin"] {
+    let sources = ["shot", "thermal", "amplifier", "rin", "technical"];
+    let depths_deg = [90.0, 120.0, 135.0];
+    let cases = sources
+        .iter()
+        .flat_map(|source| depths_deg.map(|depth_deg| (*source, depth_deg)));
+    for (source, depth_deg) in cases {
         let mut config = fast_gyro();
         config.noise = only(source);
+        config.modulator.depth_deg = depth_deg;
         config.adc.bits = 0;
         config.adc.samples_per_half_period = 3;
         let want = budget_of(&config, source);
         assert_close(budget_of(&config, "total"), want, 1e-12, 0.0);
-        let (got, error) = random_walk(&config, &loop_words(&config, 11, 20.0), FACTOR);
+        let (got, error) = random_walk(&config, &loop_words(&config, 11, 16.0), FACTOR);
         assert!(error < 0.025);
         assert_close(got, want, 3.0 * error, 0.0);
         // The check can fail: a one-sided density taken for a two-sided one is sqrt(2) off.
         assert!((got - want * 2.0_f64.sqrt()).abs() > 3.0 * error * want);
+    }
+}
+
+#[test]
+fn known_answer_k13_technical_noise_knows_neither_gate_nor_slope_nor_draw() {
+    let mut config = fast_gyro();
+    config.noise = only("technical");
+    config.adc.bits = 0;
+    // N = sqrt(S1 / 2) / Ks with Ks = 0.8959337 s; 1 rad/sqrt(s) is 3437.747 deg/sqrt(h).
+    let want = 2e-6 / 2.0_f64.sqrt() / 0.895_933_7 * 3437.747;
+    for (gate_duty, power_uw, visibility) in [(0.7, 0.87, 0.95), (0.3, 5.0, 0.5)] {
+        config.detector.gate_duty = gate_duty;
+        config.source.power_uw = power_uw;
+        config.source.visibility = visibility;
+        assert_close(budget_of(&config, "technical"), want, 1e-6, 0.0);
+        config.noise.draw = NoiseDraw::Combined;
+        let combined = loop_words(&config, 16, 16.0);
+        config.noise.draw = NoiseDraw::Exact;
+        let exact = loop_words(&config, 16, 16.0);
+        for words in [combined, exact, rate_words(&config, 16, 16.0)] {
+            let (got, error) = random_walk(&config, &words, FACTOR);
+            assert_close(got, want, 3.0 * error, 0.0);
+        }
     }
 }
 
@@ -111,6 +141,7 @@ fn known_answer_k13_all_sources_together_at_three_modulation_depths() {
         config.modulator.depth_deg = depth_deg;
         assert_close(budget_of(&config, "total"), want, 0.0, 1e-5);
         config.noise.draw = NoiseDraw::Exact;
+        config.noise.technical_phase_urad_per_sqrt_hz = 2.0;
         config.adc.samples_per_half_period = 4;
         let want = budget_of(&config, "total");
         let (got, error) = random_walk(&config, &loop_words(&config, 12, 10.0), FACTOR);
@@ -150,6 +181,8 @@ fn known_answer_k13_the_random_walk_does_not_depend_on_the_loop_gain() {
         let mut config = reference_gyro();
         config.controller.loop_bandwidth_hz = bandwidth_hz;
         config.controller.loop_latency_periods = latency;
+        config.noise.draw = NoiseDraw::Exact;
+        config.adc.samples_per_half_period = 1;
         // Ideal: rounding errors depend on the register, and so would not be the same noise.
         config.adc.bits = 0;
         let (got, error) = random_walk(&config, &loop_words(&config, 14, 40.0), 800);
@@ -203,14 +236,14 @@ fn known_answer_k15_the_optimum_depth_is_where_the_budget_is_least() {
     let beta = (square("thermal") + square("amplifier")) / (square("shot") + 2.0 * square("rin"));
     let want = optimum_depth_rad(beta);
     let mut best = (f64::INFINITY, 0.0);
-    for step in 900..1700 {
-        config.modulator.depth_deg = 0.1 * f64::from(step);
+    for step in 1600..3000 {
+        config.modulator.depth_deg = rad_to_deg(1e-3 * f64::from(step));
         let total = budget_of(&config, "total");
         if total < best.0 {
-            best = (total, config.modulator.depth_deg);
+            best = (total, 1e-3 * f64::from(step));
         }
     }
-    assert_close(best.1, rad_to_deg(want), 0.0, 0.1);
+    assert_close(best.1, want, 0.0, 1e-3);
     assert_close(optimum_depth_rad(1e12), 0.5 * PI, 1e-3, 0.0);
 }
 
@@ -224,13 +257,16 @@ fn known_answer_k16_intensity_noise_of_a_gaussian_line() {
         1e-3,
         0.0,
     );
-    source.polarisation_degree = 0.0;
-    assert_close(
-        relative_intensity_noise_per_hz(&source),
-        0.5 * 1.901e-13,
-        1e-3,
-        0.0,
-    );
+    // Two independent polarisations share the power: half the noise; (1 + P^2) / 2 between.
+    for (degree, share) in [(0.0, 0.5), (0.6, 0.68)] {
+        source.polarisation_degree = degree;
+        assert_close(
+            relative_intensity_noise_per_hz(&source),
+            share * 1.901e-13,
+            1e-3,
+            0.0,
+        );
+    }
 }
 
 /// Autocovariance of the words at lags 0, 1, ... for unit error noise per loop period.

@@ -148,3 +148,78 @@ fn bias_stability_of_the_default_mix_is_the_sum_of_its_parts() {
     // White means alone would err by sqrt(1 / 2 / 35 / 200) = 0.85 %; flicker's few slow modes double it.
     assert_close((sum / 200.0).sqrt(), want, 0.04, 0.0);
 }
+
+/// Exponentially correlated noise of 1 deg/h and 1 s, deg/h, beside other slow noise.
+fn gauss_markov(instability: f64, deviation: f64, period_s: f64, seed: u64) -> Vec<f64> {
+    const COUNT: usize = 1 << 16;
+    let mut config = reference_gyro().slow_noise;
+    config.bias_instability_deg_per_h = instability;
+    config.gauss_markov_deg_per_h = deviation;
+    config.gauss_markov_correlation_time_s = 1.0;
+    let mut noise = SlowNoise::new(&config, period_s, 1e3, &Streams::new(seed, 0));
+    (0..COUNT)
+        .map(|_| rad_per_s_to_deg_per_h(noise.next_rate_rad_per_s()))
+        .collect()
+}
+
+#[test]
+fn gauss_markov_noise_has_the_allan_variance_of_its_closed_form() {
+    const RUNS: u64 = 80;
+    let period_s = 0.01;
+    let runs: Vec<_> = (0..RUNS)
+        .map(|seed| gauss_markov(0.0, 1.0, period_s, seed))
+        .collect();
+    // At 1.89 correlation times the deviation is greatest: 0.437 q sqrt(Tc) with q^2 Tc = 2 s^2.
+    let mut greatest = 0.0_f64;
+    for factor in [10_usize, 30, 100, 189, 400, 1000] {
+        let tau = factor as f64 * period_s;
+        let bracket = 1.0 - (3.0 - 4.0 * (-tau).exp() + (-2.0 * tau).exp()) / (2.0 * tau);
+        let want = 2.0 / tau * bracket;
+        let got = runs
+            .iter()
+            .map(|run| allan_deviation(run, factor).powi(2))
+            .sum::<f64>()
+            / RUNS as f64;
+        // Differences further apart than two averages and a correlation time are independent.
+        let independent = RUNS as f64 * (runs[0].len() as f64 * period_s) / (2.0 * tau + 1.0);
+        let error = (2.0 / independent).sqrt();
+        assert!(error < 0.03, "{error}");
+        assert_close(got, want, 4.0 * error, 0.0);
+        greatest = greatest.max(want.sqrt());
+    }
+    assert_close(greatest, 0.437 * 2.0_f64.sqrt(), 2e-3, 0.0);
+}
+
+#[test]
+fn gauss_markov_noise_is_exact_at_any_sample_period_and_has_a_stream_of_its_own() {
+    // A correlation time per sample: correlation exp(-1), variance 1 from the first sample on.
+    let words = gauss_markov(0.0, 1.0, 1.0, 7);
+    let count = words.len() as f64;
+    let products = |lag: usize| {
+        let pairs = words.iter().zip(&words[lag..]);
+        pairs.map(|(a, b)| a * b).sum::<f64>() / count
+    };
+    let error = (2.0 / count * (1.0 + 2.0 / (2.0_f64.exp() - 1.0))).sqrt();
+    assert_close(products(0), 1.0, 0.0, 4.0 * error);
+    assert_close(products(1), (-1.0_f64).exp(), 0.0, 4.0 * error);
+    let first = (0..2000).map(|seed| gauss_markov_first(seed).powi(2));
+    assert_close(
+        first.sum::<f64>() / 2000.0,
+        1.0,
+        0.0,
+        4.0 * (2.0_f64 / 2000.0).sqrt(),
+    );
+    let flicker = gauss_markov(1.0, 0.0, 1.0, 7);
+    let both = gauss_markov(1.0, 1.0, 1.0, 7);
+    for ((sum, flicker), correlated) in both.iter().zip(&flicker).zip(&words) {
+        assert_close(*sum, flicker + correlated, 0.0, 1e-9);
+    }
+}
+
+fn gauss_markov_first(seed: u64) -> f64 {
+    let mut config = reference_gyro().slow_noise;
+    config.gauss_markov_deg_per_h = 1.0;
+    config.gauss_markov_correlation_time_s = 1e6;
+    let mut noise = SlowNoise::new(&config, 1e-3, 1.0, &Streams::new(seed, 0));
+    rad_per_s_to_deg_per_h(noise.next_rate_rad_per_s())
+}

@@ -37,6 +37,8 @@ pub(super) enum Command {
     List(ListOptions),
     /// Print the JSON Schema of scenario files
     Schema,
+    /// Print the noise budget of a gyro in closed form, without a run
+    Budget(BudgetOptions),
     /// Print clocks, units and sample rates of a filter in hardware
     Timing(TimingOptions),
     /// Write golden vectors, waveforms or RTL of a hardware pipeline into a folder
@@ -62,6 +64,22 @@ pub(super) enum Format {
     Json,
     /// One JSON document per line and run
     Jsonl,
+}
+
+/// Options of `budget`.
+#[derive(Args, Debug)]
+pub(super) struct BudgetOptions {
+    /// Scenario file, or a base without a name
+    pub(super) path: PathBuf,
+    /// Override a key
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(super) set: Vec<String>,
+    /// Folder for budget.svg and budget.csv [default: neither is written]
+    #[arg(short, long, value_name = "DIR")]
+    pub(super) output: Option<PathBuf>,
+    /// Form of the budget on stdout
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
 }
 
 /// Options of `list`.

@@ -3,6 +3,7 @@
 //! Data goes to stdout, talk and progress to stderr. A progress bar is drawn on a terminal only.
 
 mod arguments;
+mod budget;
 mod check;
 mod exit;
 mod expand;
@@ -42,6 +43,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Expand(options) => expand::expand(options),
         Command::List(options) => list::list(options),
         Command::Schema => schema::schema(),
+        Command::Budget(options) => budget::budget(options),
         Command::Timing(options) => timing::timing(options),
         Command::Export(options) => export::export(options),
     };

@@ -4,6 +4,7 @@
 //! `plan`, so that `check` and `run` refuse the same files.
 
 mod assembly_motion;
+mod budget;
 mod channel_filter;
 mod motion;
 mod pipeline_check;
@@ -17,6 +18,7 @@ mod simulate;
 mod suite;
 mod theory;
 
+pub use budget::{GyroBudget, gyro_budget};
 pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{CoreSettings, PipelineSettings, PipelineTiming};

@@ -56,6 +56,8 @@ pub struct Detector {
     pub rin_per_hz: f64,
     /// Noise densities at the bias point.
     pub noise: CurrentNoise,
+    /// One-sided technical phase noise of the half periods, rad^2/Hz; 0 when there is none.
+    pub technical_phase_rad2_per_hz: f64,
     /// Gated fraction of a half period.
     pub gate_duty: f64,
     /// Converter step q, V; 0 for an ideal converter.
@@ -102,6 +104,8 @@ impl Detector {
                 0.0
             },
             noise: current_noise(config, bias_current_a, condition.case_c),
+            technical_phase_rad2_per_hz: (config.noise.technical_phase_urad_per_sqrt_hz * MICRO)
+                .powi(2),
             gate_duty: config.detector.gate_duty,
             converter_step_v: if bits == 0 {
                 0.0
@@ -137,6 +141,26 @@ impl Detector {
     #[must_use]
     pub fn half_period_variance_a2(&self, density_a2_per_hz: f64, transit_time_s: f64) -> f64 {
         density_a2_per_hz / (2.0 * self.gate_duty * transit_time_s)
+    }
+
+    /// Variance of the technical phase noise of one half period, rad^2.
+    ///
+    /// `S1 / (2 tau)`: one independent phase per half period, of one-sided density `S1` up to half
+    /// the half-period rate. Noise of that band passes the gate unaltered; if it were white far
+    /// beyond the gate's band, each gate would alias it up to `S1 / (2 gate_duty tau)`.
+    #[must_use]
+    pub fn half_period_phase_variance_rad2(&self, transit_time_s: f64) -> f64 {
+        self.technical_phase_rad2_per_hz / (2.0 * transit_time_s)
+    }
+
+    /// Variance of the mean current of one half period, all sources together, A^2.
+    ///
+    /// Phase noise counts through the slope at the bias point, as the linear loop sees it.
+    #[must_use]
+    pub fn half_period_noise_a2(&self, transit_time_s: f64) -> f64 {
+        let phase_rad2 = self.half_period_phase_variance_rad2(transit_time_s);
+        self.half_period_variance_a2(self.noise.total_a2_per_hz(), transit_time_s)
+            + phase_rad2 * self.slope_a_per_rad * self.slope_a_per_rad
     }
 }
 

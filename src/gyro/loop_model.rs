@@ -111,7 +111,7 @@ impl LoopModel {
                 simulated_time_s,
                 streams,
             ),
-            rate_word: RateWord::new(&config.output, &coil),
+            rate_word: RateWord::new(&config.output, &coil, count * coil.transit_time_s),
             condition,
             varying: Schedule::new(config, count * coil.transit_time_s).map(|schedule| {
                 Box::new(Varying {

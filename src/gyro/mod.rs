@@ -24,6 +24,7 @@
 //! periods, `r` = step of the ramp per `tau` (the register), `phi_m` = modulation depth.
 
 mod assembly;
+mod budget;
 mod coil;
 mod condition;
 mod controller;
@@ -45,6 +46,7 @@ mod source;
 mod thermal;
 
 pub use assembly::{CaseGyro, InputAxis};
+pub use budget::{budget_at, budget_sheet, power_independent_ratio};
 pub use coil::Coil;
 pub use condition::{Condition, temperature_record};
 pub use controller::{Controller, gain_limit};

@@ -32,17 +32,21 @@ impl Modulator {
     }
 }
 
-/// Modulation depth of least angle random walk at unit visibility, rad.
+/// Modulation depth of least angle random walk, rad.
 ///
-/// `cos(phi) = -(1 + beta) + sqrt(beta^2 + 2 beta)`, where `beta = B / (A + 2 C)` compares the
-/// power-independent current noise `B` with shot noise `A = 2 e R P0` and intensity noise
-/// `C = RIN (R P0)^2`. `beta -> 0` gives pi, `beta -> infinity` pi/2.
+/// `cos(phi) = -(1 + beta) + sqrt(beta^2 + 2 beta)`. At unit visibility `beta = B / (A + 2 C)`
+/// compares the power-independent current noise `B` with shot noise `A = 2 e R P0` and intensity
+/// noise `C = RIN (R P0)^2`; for any visibility see
+/// [`power_independent_ratio`](crate::gyro::power_independent_ratio). `beta -> 0` gives pi,
+/// `beta -> infinity` pi/2.
 ///
 /// # Source
-/// Derived: zero of the derivative of `(A (1 + cos) + B + C (1 + cos)^2) / sin^2`. Checked by
-/// known answer K15 against a grid search of the budget.
+/// Derived: zero of the derivative of `(a + b cos + c cos^2) / sin^2`, which is the root of
+/// `b cos^2 + 2 (a + c) cos + b` inside the unit circle, `1 + beta = (a + c) / b`. Checked by known
+/// answer K15 against a grid search of the budget.
 #[must_use]
 pub fn optimum_depth_rad(power_independent_ratio: f64) -> f64 {
-    let beta = power_independent_ratio;
-    (-(1.0 + beta) + (beta * beta + 2.0 * beta).sqrt()).acos()
+    // The root as a quotient: the difference of two large numbers would lose its digits.
+    let sum = 1.0 + power_independent_ratio;
+    (-1.0 / (sum + (sum * sum - 1.0).sqrt())).acos()
 }

@@ -17,6 +17,8 @@ pub struct NoiseBudget {
     pub rin_deg_per_sqrt_h: f64,
     /// Rounding in the analogue-to-digital converter.
     pub adc_deg_per_sqrt_h: f64,
+    /// Technical phase noise.
+    pub technical_deg_per_sqrt_h: f64,
 }
 
 impl NoiseBudget {
@@ -25,7 +27,9 @@ impl NoiseBudget {
     /// A white current noise of one-sided density `S` gives
     /// `N = sqrt(S / (2 gate_duty)) / (Ks slope)` rad/sqrt(s), whatever the loop gain; rounding to
     /// `q` with n samples averaged gives `N = sqrt(tau / (12 n)) q / (G Ks slope)`. They add in
-    /// quadrature. Rounding counts as white noise of variance `q^2 / 12`, which holds while the
+    /// quadrature. Technical phase noise of density `S1` gives `N = sqrt(S1 / 2) / Ks`: a pair
+    /// averages the independent phases of its halves, so that the error of one loop period `T_L` has
+    /// the variance `S1 / (4 tau) = S1 / (2 T_L)`; neither slope nor gate enters. Rounding counts as white noise of variance `q^2 / 12`, which holds while the
     /// noise of one sample exceeds about half a step.
     ///
     /// # Source
@@ -47,6 +51,9 @@ impl NoiseBudget {
             amplifier_deg_per_sqrt_h: walk(detector.noise.amplifier_a2_per_hz),
             rin_deg_per_sqrt_h: walk(detector.noise.rin_a2_per_hz),
             adc_deg_per_sqrt_h: rad_per_sqrt_s_to_deg_per_sqrt_h(rounding / slope),
+            technical_deg_per_sqrt_h: rad_per_sqrt_s_to_deg_per_sqrt_h(
+                (0.5 * detector.technical_phase_rad2_per_hz).sqrt() / coil.scale_factor_s,
+            ),
         }
     }
 
@@ -59,6 +66,7 @@ impl NoiseBudget {
             self.amplifier_deg_per_sqrt_h,
             self.rin_deg_per_sqrt_h,
             self.adc_deg_per_sqrt_h,
+            self.technical_deg_per_sqrt_h,
         ]
         .iter()
         .map(|walk| walk * walk)
@@ -75,6 +83,7 @@ impl NoiseBudget {
             ("amplifier", self.amplifier_deg_per_sqrt_h),
             ("rin", self.rin_deg_per_sqrt_h),
             ("adc", self.adc_deg_per_sqrt_h),
+            ("technical", self.technical_deg_per_sqrt_h),
             ("total", self.total_deg_per_sqrt_h()),
         ]
     }

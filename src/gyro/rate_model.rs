@@ -79,7 +79,7 @@ impl RateModel {
                 simulated_time_s,
                 streams,
             ),
-            rate_word: RateWord::new(&config.output, &coil),
+            rate_word: RateWord::new(&config.output, &coil, sample_period_s),
             condition,
             varying: Schedule::new(config, sample_period_s).map(|schedule| {
                 Box::new(Varying {

@@ -153,8 +153,7 @@ impl<const ROUNDED: bool> CombinedSampler<ROUNDED> {
         let levels_per_a = levels_per_ampere(detector);
         let mean = detector.mean_current_a * levels_per_a;
         let dark = detector.dark_current_a * levels_per_a;
-        let variance_a2 =
-            detector.half_period_variance_a2(detector.noise.total_a2_per_hz(), transit_time_s);
+        let variance_a2 = detector.half_period_noise_a2(transit_time_s);
         Self {
             fringe: Fringe::new(mean + dark, mean * detector.visibility, modulator),
             noise_levels: variance_a2.sqrt() * levels_per_a,
@@ -206,7 +205,7 @@ fn steps_per_ampere(detector: &Detector) -> f64 {
 
 /// Every source and every converter sample drawn on its own.
 ///
-/// Per sample: shot noise of the instantaneous photocurrent, Johnson and amplifier noise added,
+/// Per half period: technical noise of the phase, before the fringe. Per sample: shot noise of the instantaneous photocurrent, Johnson and amplifier noise added,
 /// intensity noise multiplied, then rounding to the converter's own step. The variance of one
 /// sample is `n S / (2 gate_duty tau)`, so that the mean of n has that of the gate.
 #[derive(Clone, Debug)]
@@ -217,6 +216,7 @@ pub(super) struct ExactSampler {
     thermal: f64,
     amplifier: f64,
     rin: f64,
+    technical_codes: f64,
     samples: u32,
     level_max: f64,
     is_rounded: bool,
@@ -225,6 +225,7 @@ pub(super) struct ExactSampler {
     thermal_stream: Stream,
     amplifier_stream: Stream,
     rin_stream: Stream,
+    technical_stream: Stream,
     faults: Faults,
 }
 
@@ -263,6 +264,10 @@ impl ExactSampler {
             thermal: per_sample(detector.noise.thermal_a2_per_hz) * units_per_a,
             amplifier: per_sample(detector.noise.amplifier_a2_per_hz) * units_per_a,
             rin: per_sample(detector.rin_per_hz),
+            technical_codes: detector
+                .half_period_phase_variance_rad2(transit_time_s)
+                .sqrt()
+                * modulator.codes_per_rad(),
             samples: config_samples,
             level_max: detector.converter_code_max,
             is_rounded,
@@ -275,6 +280,7 @@ impl ExactSampler {
             thermal_stream: streams.stream("thermal"),
             amplifier_stream: streams.stream("amplifier"),
             rin_stream: streams.stream("rin"),
+            technical_stream: streams.stream("technical"),
             faults: Faults::default(),
         }
     }
@@ -299,7 +305,12 @@ impl ExactSampler {
 impl Sampler for ExactSampler {
     #[inline]
     fn sample<const PLUS: bool>(&mut self, error_codes: f64) -> f64 {
-        let light = self.fringe.level::<PLUS>(error_codes, &mut self.faults);
+        let phase_codes = if self.technical_codes > 0.0 {
+            error_codes + self.technical_codes * self.technical_stream.normal()
+        } else {
+            error_codes
+        };
+        let light = self.fringe.level::<PLUS>(phase_codes, &mut self.faults);
         let mut sum = 0.0;
         let mut saturated = 0;
         for _ in 0..self.samples {

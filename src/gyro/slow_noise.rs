@@ -1,4 +1,4 @@
-//! Slow noise of the rate: bias, flicker, rate random walk and ramp.
+//! Slow noise of the rate: bias, flicker, exponentially correlated noise, rate random walk and ramp.
 
 use std::f64::consts::PI;
 
@@ -44,6 +44,11 @@ const HOLD_UPDATES_MAX: u32 = 256;
 ///   however long the record.
 /// * Rate random walk of coefficient K: a sum of independent normals of variance `K^2 D` per
 ///   update interval D, from 0.
+/// * Gauss-Markov: standard deviation s and correlation time Tc, from its stationary distribution,
+///   drawn anew for every output sample: `b <- exp(-T / Tc) b + s sqrt(1 - exp(-2 T / Tc)) n`, exact
+///   for any Tc (white beneath an output sample). Two-sided density
+///   `2 s^2 Tc / (1 + (2 pi f Tc)^2)`, Allan variance
+///   `(2 s^2 Tc / tau) (1 - (Tc / 2 tau) (3 - 4 exp(-tau / Tc) + exp(-2 tau / Tc)))`.
 /// * Ramp: `R t`, taken at the middle of an output sample. Bias: a constant.
 ///
 /// Flicker and walk are held between updates: four output samples, fewer where these are longer
@@ -59,6 +64,8 @@ pub struct SlowNoise {
     flicker_stream: Stream,
     walk_step_rad_per_s: f64,
     walk_stream: Stream,
+    correlated: GaussMarkov,
+    correlated_stream: Stream,
     samples_per_update: u32,
     samples_to_update: u32,
     updates_done: u32,
@@ -68,13 +75,30 @@ pub struct SlowNoise {
 }
 
 /// One Gauss-Markov process, exact at the instants at which it is redrawn.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct GaussMarkov {
     value: f64,
     decay: f64,
     innovation: f64,
     /// Updates over which the value is held, a power of two.
     hold_updates: u32,
+}
+
+impl GaussMarkov {
+    /// A process in its stationary distribution; `exponent` is the time between two draws over the
+    /// correlation time.
+    fn stationary(deviation: f64, exponent: f64, hold_updates: u32, stream: &mut Stream) -> Self {
+        Self {
+            value: deviation * stream.normal(),
+            decay: (-exponent).exp(),
+            innovation: deviation * (-(-2.0 * exponent).exp_m1()).sqrt(),
+            hold_updates,
+        }
+    }
+
+    fn redraw(&mut self, stream: &mut Stream) {
+        self.value = self.decay * self.value + self.innovation * stream.normal();
+    }
 }
 
 impl SlowNoise {
@@ -96,6 +120,14 @@ impl SlowNoise {
         } else {
             Vec::new()
         };
+        let mut correlated_stream = streams.stream("gauss_markov");
+        let deviation = deg_per_h_to_rad_per_s(config.gauss_markov_deg_per_h);
+        let correlated = if deviation > 0.0 {
+            let exponent = sample_period_s / config.gauss_markov_correlation_time_s;
+            GaussMarkov::stationary(deviation, exponent, 1, &mut correlated_stream)
+        } else {
+            GaussMarkov::default()
+        };
         let walk_coefficient =
             deg_per_h_to_rad_per_s(deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(
                 config.rate_random_walk_deg_per_h_per_sqrt_h,
@@ -111,6 +143,8 @@ impl SlowNoise {
             flicker_stream,
             walk_step_rad_per_s: walk_coefficient * interval_s.sqrt(),
             walk_stream: streams.stream("rate_random_walk"),
+            correlated,
+            correlated_stream,
             samples_per_update,
             samples_to_update: samples_per_update,
             updates_done: 0,
@@ -127,11 +161,15 @@ impl SlowNoise {
         }
         self.samples_to_update -= 1;
         let middle = self.samples_done as f64 + 0.5;
+        if self.samples_done > 0 && self.correlated.innovation > 0.0 {
+            self.correlated.redraw(&mut self.correlated_stream);
+        }
         self.samples_done += 1;
         self.bias_rad_per_s
             + self.ramp_rad_per_s_per_sample * middle
             + self.flicker_rad_per_s
             + self.walk_rad_per_s
+            + self.correlated.value
     }
 
     fn update(&mut self) {
@@ -140,8 +178,7 @@ impl SlowNoise {
         let mut sum = 0.0;
         for process in &mut self.flicker {
             if self.updates_done.is_multiple_of(process.hold_updates) {
-                process.value = process.decay * process.value
-                    + process.innovation * self.flicker_stream.normal();
+                process.redraw(&mut self.flicker_stream);
             }
             sum += process.value;
         }
@@ -178,12 +215,12 @@ fn gauss_markov_ladder(
     loop {
         let hold_updates = hold_updates(correlation_s / interval_s);
         let exponent = f64::from(hold_updates) * interval_s / correlation_s;
-        processes.push(GaussMarkov {
-            value: deviation * stream.normal(),
-            decay: (-exponent).exp(),
-            innovation: deviation * (-(-2.0 * exponent).exp_m1()).sqrt(),
+        processes.push(GaussMarkov::stationary(
+            deviation,
+            exponent,
             hold_updates,
-        });
+            stream,
+        ));
         if correlation_s >= longest_s {
             return processes;
         }

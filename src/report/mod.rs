@@ -4,6 +4,7 @@
 //! Invariant: formats, does not compute. The same records give the same bytes: nothing here reads
 //! a clock, a host name or an environment variable.
 
+mod budget;
 mod columns;
 mod csv;
 mod files;
@@ -16,10 +17,11 @@ mod summary;
 mod table;
 mod text;
 
+pub use budget::{budget_csv, budget_json, budget_text};
 pub use csv::{allan_csv, psd_csv};
 pub use files::{FolderWriter, write_atomic, write_npy};
 pub use junit::junit_xml;
-pub use plot::{SVG_BYTES_MAX, plots};
+pub use plot::{SVG_BYTES_MAX, budget_svg, plots};
 pub use record::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
 pub use suite_table::suite_text;
 pub use summary::{run_summary_json, suite_summary_json};

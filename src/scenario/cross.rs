@@ -5,6 +5,7 @@ use crate::units::SPEED_OF_LIGHT_M_PER_S;
 use super::address;
 use super::cross_gyro;
 use super::cross_multi_sine;
+use super::cross_output;
 use super::cross_servo;
 use super::defaults::default_of;
 use super::error::ScenarioError;
@@ -42,6 +43,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     for (key_path, message) in cross_servo::check(resolved) {
         checks.complain(&key_path, message);
     }
+    checks.errors.extend(cross_output::check(resolved));
     checks.errors
 }
 

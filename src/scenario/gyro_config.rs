@@ -129,6 +129,8 @@ pub struct NoiseConfig {
     pub amplifier: bool,
     /// Relative intensity noise of the source.
     pub rin: bool,
+    /// Technical phase noise, one-sided, urad/sqrt(Hz); 0 = none.
+    pub technical_phase_urad_per_sqrt_hz: f64,
     /// How the noise is drawn.
     pub draw: NoiseDraw,
 }
@@ -151,6 +153,10 @@ pub struct SlowNoiseConfig {
     pub bias_deg_per_h: f64,
     /// Flicker (bias instability) coefficient B, deg/h.
     pub bias_instability_deg_per_h: f64,
+    /// Standard deviation of an exponentially correlated (Gauss-Markov) rate, deg/h; 0 = none.
+    pub gauss_markov_deg_per_h: f64,
+    /// Its correlation time Tc, s.
+    pub gauss_markov_correlation_time_s: f64,
     /// Rate random walk coefficient K, deg/h/sqrt(h).
     pub rate_random_walk_deg_per_h_per_sqrt_h: f64,
     /// Rate ramp R, deg/h/h.
@@ -163,6 +169,20 @@ pub struct SlowNoiseConfig {
 pub struct RateOutputConfig {
     /// Half modulation periods averaged into one rate word (even).
     pub half_periods_per_sample: u32,
+    /// What is rounded: each rate word, or the angle turned since the start.
+    pub quantisation: OutputQuantisation,
     /// Least significant bit of the rate word, deg/s, rounded without carry; 0 = not rounded.
     pub rate_lsb_deg_per_s: f64,
+    /// Angle of one pulse, arcsec, where pulses are counted.
+    pub angle_lsb_arcsec: f64,
+}
+
+/// What the output rounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OutputQuantisation {
+    /// Each rate word to its least significant bit; the remainder is thrown away.
+    RateWord,
+    /// The angle to whole pulses; the remainder is carried into the next word.
+    AngleCarry,
 }

@@ -12,6 +12,7 @@ mod config;
 mod cross;
 mod cross_gyro;
 mod cross_multi_sine;
+mod cross_output;
 mod cross_servo;
 mod cross_turntable;
 mod defaults;
@@ -48,13 +49,13 @@ pub use filter_config::{
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
-    NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SourceConfig,
+    NoiseConfig, NoiseDraw, OutputQuantisation, RateOutputConfig, SlowNoiseConfig, SourceConfig,
 };
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
-pub use suite::load_suite;
+pub use suite::{load_base_or_scenario, load_suite};
 pub use thermal_config::{
     ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig, SoakConfig,
     TemperatureConfig, TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig,

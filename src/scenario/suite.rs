@@ -44,6 +44,40 @@ pub fn load_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Resolved>, V
     Err(unique)
 }
 
+/// Reads and checks the runs of one file of which only the gyro matters.
+///
+/// A base without a name and without a duration will do: both are then made up, and every other
+/// check is that of [`load_suite`].
+///
+/// # Errors
+/// Every complaint about the file.
+pub fn load_base_or_scenario(
+    file: &Path,
+    sets: &[String],
+) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
+    if file.is_dir() {
+        let location = Location::of_file(shown_path(file));
+        return Err(vec![ScenarioError::at(
+            location,
+            "it is a folder: name one scenario or base file",
+        )]);
+    }
+    load_drafted(load_draft(file).map(completed)?, sets)
+}
+
+/// A draft with a name and a duration.
+fn completed((mut draft, errors): (Draft, Vec<ScenarioError>)) -> (Draft, Vec<ScenarioError>) {
+    let made_up = [
+        ("name", Value::Text("base".to_owned())),
+        ("duration_s", Value::Float(1.0)),
+    ];
+    for (key, value) in made_up {
+        let node = Node { value, mark: None };
+        draft.root.entry(key.to_owned()).or_insert(node);
+    }
+    (draft, errors)
+}
+
 /// The files to load, each once.
 fn discover(paths: &[PathBuf], errors: &mut Vec<ScenarioError>) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = Vec::new();
@@ -123,7 +157,14 @@ fn identity(path: &Path) -> PathBuf {
 
 /// Loads one file with all points of its sweep.
 fn load_file(file: &Path, sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
-    let (mut draft, mut errors) = load_draft(file)?;
+    load_drafted(load_draft(file)?, sets)
+}
+
+/// Applies `--set` to what was read and resolves it, all points of a sweep.
+fn load_drafted(
+    (mut draft, mut errors): (Draft, Vec<ScenarioError>),
+    sets: &[String],
+) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
     let matrix = draft.root.remove("matrix");
     if matrix.is_some() {
         // A sweep over a manifest is an experiment of its own.

@@ -12,6 +12,7 @@ pub(crate) fn silent_gyro() -> GyroConfig {
         thermal: false,
         amplifier: false,
         rin: false,
+        technical_phase_urad_per_sqrt_hz: 0.0,
         draw: NoiseDraw::Combined,
     };
     config.adc.bits = 0;

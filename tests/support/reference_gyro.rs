@@ -2,8 +2,9 @@
 
 use fogbench::scenario::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
-    NoiseConfig, NoiseDraw, PowerConfig, QuadraticPowerConfig, RateOutputConfig, SlowNoiseConfig,
-    SoakConfig, SourceConfig, TemperatureConfig, ThermalConfig, ThermalWarmUp, Winding,
+    NoiseConfig, NoiseDraw, OutputQuantisation, PowerConfig, QuadraticPowerConfig,
+    RateOutputConfig, SlowNoiseConfig, SoakConfig, SourceConfig, TemperatureConfig, ThermalConfig,
+    ThermalWarmUp, Winding,
 };
 
 /// All fast noise on, drawn combined; no slow noise; rate word not rounded.
@@ -49,11 +50,14 @@ pub(crate) fn reference_gyro() -> GyroConfig {
             thermal: true,
             amplifier: true,
             rin: true,
+            technical_phase_urad_per_sqrt_hz: 0.0,
             draw: NoiseDraw::Combined,
         },
         slow_noise: SlowNoiseConfig {
             bias_deg_per_h: 0.0,
             bias_instability_deg_per_h: 0.0,
+            gauss_markov_deg_per_h: 0.0,
+            gauss_markov_correlation_time_s: 100.0,
             rate_random_walk_deg_per_h_per_sqrt_h: 0.0,
             rate_ramp_deg_per_h_per_h: 0.0,
         },
@@ -92,7 +96,9 @@ pub(crate) fn reference_gyro() -> GyroConfig {
         },
         output: RateOutputConfig {
             half_periods_per_sample: 64,
+            quantisation: OutputQuantisation::RateWord,
             rate_lsb_deg_per_s: 0.0,
+            angle_lsb_arcsec: 0.0221,
         },
         assembly: None,
     }

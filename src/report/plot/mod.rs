@@ -5,6 +5,7 @@
 mod allan;
 mod axis;
 mod bode;
+mod budget;
 mod panel;
 mod picture;
 mod rate;
@@ -14,6 +15,8 @@ mod spectrum;
 mod swing;
 mod theory;
 mod thermal;
+
+pub use budget::budget_svg;
 
 use crate::report::RunReport;
 use crate::scenario::MotionConfig;

@@ -1,0 +1,304 @@
+//! The noise budget of a gyro as text, JSON and CSV.
+
+use std::fmt::Write as _;
+
+use serde_json::{Map, Value};
+
+use crate::gate::plain;
+use crate::report::json::{number, object, pretty};
+use crate::report::text::Grid;
+use crate::signal::{BudgetPoint, BudgetSheet};
+
+/// Name of the sum of all sources.
+pub(crate) const TOTAL: &str = "total";
+/// Every how many points of its curve the text has a row.
+const DEPTHS_PER_ROW: usize = 15;
+const POWERS_PER_ROW: usize = 5;
+
+/// The budget for people.
+#[must_use]
+pub fn budget_text(file: &str, sheet: &BudgetSheet) -> String {
+    let configured = &sheet.configured;
+    let mut text = format!(
+        "{file}  {} uW at {} deg of modulation: angle random walk in closed form, deg/sqrt(h)\n\n",
+        plain(configured.power_uw),
+        plain(configured.modulation_depth_deg),
+    );
+    text.push_str(&entries(sheet));
+    text.push('\n');
+    text.push_str(&optimum(sheet));
+    let depth = |point: &BudgetPoint| point.modulation_depth_deg;
+    text.push_str("\nagainst modulation depth at the configured power\n");
+    text.push_str(&curve(&sheet.by_depth, "deg", depth, DEPTHS_PER_ROW));
+    text.push_str(&largest(&sheet.by_depth, "deg", depth));
+    let power = |point: &BudgetPoint| point.power_uw;
+    text.push_str("\nagainst power at the configured depth\n");
+    text.push_str(&curve(&sheet.by_power, "uW", power, POWERS_PER_ROW));
+    text.push_str(&largest(&sheet.by_power, "uW", power));
+    for caution in &sheet.cautions {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "\nnote: {caution}");
+    }
+    text
+}
+
+/// A table by source at the configured point.
+fn entries(sheet: &BudgetSheet) -> String {
+    let mut grid = Grid::default();
+    grid.row(
+        [
+            "source",
+            "deg/sqrt(h)",
+            "share %",
+            "as phase noise, urad/sqrt(Hz)",
+        ]
+        .map(str::to_owned),
+    );
+    for entry in &sheet.entries {
+        grid.row([
+            entry.source.to_owned(),
+            walk_text(Some(entry.angle_random_walk_deg_per_sqrt_h)),
+            format!("{:.1}", 100.0 * entry.power_share),
+            format!("{:.3}", entry.phase_noise_urad_per_sqrt_hz),
+        ]);
+    }
+    grid.lines("  ")
+}
+
+fn optimum(sheet: &BudgetSheet) -> String {
+    let Some(closed_form) = sheet.closed_form_optimum_depth_deg else {
+        return "no source depends on the modulation depth\n".to_owned();
+    };
+    let Some(point) = &sheet.optimum else {
+        return "no modulation depth keeps the bias point within the converter's range\n"
+            .to_owned();
+    };
+    let is_cut_off = (point.modulation_depth_deg - closed_form).abs() > 0.01;
+    let remark = if is_cut_off {
+        ", where the converter's range ends"
+    } else {
+        ""
+    };
+    format!(
+        "least at {:.2} deg{remark} (closed form {closed_form:.2} deg): {} deg/sqrt(h) at this power\n",
+        point.modulation_depth_deg,
+        walk_text(point.walk(TOTAL)),
+    )
+}
+
+/// Every so many points of a curve as a table.
+fn curve(
+    points: &[BudgetPoint],
+    unit: &str,
+    abscissa: impl Fn(&BudgetPoint) -> f64,
+    step: usize,
+) -> String {
+    let names = sources(points);
+    let mut grid = Grid::default();
+    let titles = names.iter().map(|name| (*name).to_owned());
+    grid.row(std::iter::once(unit.to_owned()).chain(titles));
+    for point in points.iter().step_by(step) {
+        let walks = names.iter().map(|name| walk_text(point.walk(name)));
+        grid.row(std::iter::once(short(abscissa(point))).chain(walks));
+    }
+    let mut text = grid.lines("  ");
+    let beyond = |point: &BudgetPoint| point.angle_random_walk_deg_per_sqrt_h.is_none();
+    if points.iter().any(beyond) {
+        text.push_str("  -: the bias point lies beyond the converter's range\n");
+    }
+    text
+}
+
+/// Which source is the largest where along a curve.
+fn largest(points: &[BudgetPoint], unit: &str, abscissa: impl Fn(&BudgetPoint) -> f64) -> String {
+    let parts: Vec<String> = points
+        .chunk_by(|a, b| dominant(a) == dominant(b))
+        .filter_map(|run| {
+            let source = dominant(&run[0])?;
+            let (first, last) = (abscissa(&run[0]), abscissa(&run[run.len() - 1]));
+            Some(format!(
+                "{source} from {} to {} {unit}",
+                short(first),
+                short(last)
+            ))
+        })
+        .collect();
+    if parts.is_empty() {
+        return String::new();
+    }
+    format!("  largest: {}\n", parts.join(", "))
+}
+
+/// The largest source of a point, if there is noise at all.
+fn dominant(point: &BudgetPoint) -> Option<&'static str> {
+    let walks = point.angle_random_walk_deg_per_sqrt_h.as_ref()?;
+    walks
+        .iter()
+        .filter(|(name, walk)| *name != TOTAL && *walk > 0.0)
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(name, _)| *name)
+}
+
+/// Names along a curve, `total` last.
+pub(crate) fn sources(points: &[BudgetPoint]) -> Vec<&'static str> {
+    points
+        .iter()
+        .find_map(|point| point.angle_random_walk_deg_per_sqrt_h.as_ref())
+        .map(|walks| walks.iter().map(|(name, _)| *name).collect())
+        .unwrap_or_default()
+}
+
+/// Three significant digits.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    plain(rounded)
+}
+
+/// A walk to three significant digits, trailing zeros kept, so that columns compare; a source that
+/// is off has none, a point out of range `-`.
+fn walk_text(walk: Option<f64>) -> String {
+    let Some(walk) = walk else {
+        return "-".to_owned();
+    };
+    if walk <= 0.0 {
+        return "0".to_owned();
+    }
+    let scientific = format!("{walk:.2e}");
+    let exponent = scientific.split_once('e').map(|(_, exponent)| exponent);
+    match exponent.and_then(|exponent| exponent.parse::<i32>().ok()) {
+        Some(exponent) if (-5..3).contains(&exponent) => {
+            let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+            format!("{walk:.decimals$}")
+        }
+        _ => scientific,
+    }
+}
+
+/// The budget as JSON, all curves as arrays; a point out of the converter's range is `null`.
+///
+/// # Panics
+/// If a number is not finite, which a checked gyro rules out.
+#[must_use]
+pub fn budget_json(file: &str, sheet: &BudgetSheet) -> String {
+    let document = Value::Object(object([
+        ("schema", 1.into()),
+        ("file", file.into()),
+        (
+            "power_uw",
+            number(sheet.configured.power_uw, "the power of the budget"),
+        ),
+        (
+            "modulation_depth_deg",
+            number(sheet.configured.modulation_depth_deg, "a depth"),
+        ),
+        ("sources", entries_json(sheet)),
+        ("optimum", optimum_json(sheet)),
+        ("by_depth", curve_json(&sheet.by_depth)),
+        ("by_power", curve_json(&sheet.by_power)),
+        (
+            "by_power_at_optimum_depth",
+            curve_json(&sheet.by_power_at_optimum_depth),
+        ),
+        ("cautions", sheet.cautions.clone().into()),
+    ]));
+    pretty(&document)
+}
+
+fn entries_json(sheet: &BudgetSheet) -> Value {
+    let row = |entry: &crate::signal::BudgetEntry| {
+        let what = entry.source;
+        let walk = number(entry.angle_random_walk_deg_per_sqrt_h, what);
+        let row = object([
+            ("angle_random_walk_deg_per_sqrt_h", walk),
+            ("power_share", number(entry.power_share, what)),
+            (
+                "phase_noise_urad_per_sqrt_hz",
+                number(entry.phase_noise_urad_per_sqrt_hz, what),
+            ),
+        ]);
+        (what.to_owned(), Value::Object(row))
+    };
+    Value::Object(sheet.entries.iter().map(row).collect())
+}
+
+fn optimum_json(sheet: &BudgetSheet) -> Value {
+    let closed_form = sheet.closed_form_optimum_depth_deg;
+    let (Some(point), Some(closed_form)) = (&sheet.optimum, closed_form) else {
+        return Value::Null;
+    };
+    Value::Object(object([
+        (
+            "modulation_depth_deg",
+            number(point.modulation_depth_deg, "the best depth"),
+        ),
+        (
+            "closed_form_modulation_depth_deg",
+            number(closed_form, "the best depth"),
+        ),
+        (
+            "angle_random_walk_deg_per_sqrt_h",
+            walk_json(point.walk(TOTAL)),
+        ),
+    ]))
+}
+
+fn walk_json(walk: Option<f64>) -> Value {
+    walk.map_or(Value::Null, |walk| number(walk, "a noise source"))
+}
+
+fn curve_json(points: &[BudgetPoint]) -> Value {
+    let column =
+        |read: &dyn Fn(&BudgetPoint) -> Value| Value::Array(points.iter().map(read).collect());
+    let walks: Map<String, Value> = sources(points)
+        .into_iter()
+        .map(|name| {
+            (
+                name.to_owned(),
+                column(&|point| walk_json(point.walk(name))),
+            )
+        })
+        .collect();
+    Value::Object(object([
+        (
+            "power_uw",
+            column(&|point| number(point.power_uw, "a power")),
+        ),
+        (
+            "modulation_depth_deg",
+            column(&|point| number(point.modulation_depth_deg, "a depth")),
+        ),
+        ("angle_random_walk_deg_per_sqrt_h", Value::Object(walks)),
+    ]))
+}
+
+/// The curves as CSV: which one, its point, and the walk of each source, deg/sqrt(h); empty where
+/// the bias point lies beyond the converter's range.
+#[must_use]
+pub fn budget_csv(sheet: &BudgetSheet) -> String {
+    let names = sources(&sheet.by_depth);
+    let mut text = String::from("curve,power_uw,modulation_depth_deg");
+    for name in &names {
+        // Writing to a string cannot fail.
+        let _ = write!(text, ",{name}_deg_per_sqrt_h");
+    }
+    text.push('\n');
+    for (curve, points) in [
+        ("by_depth", &sheet.by_depth),
+        ("by_power", &sheet.by_power),
+        (
+            "by_power_at_optimum_depth",
+            &sheet.by_power_at_optimum_depth,
+        ),
+    ] {
+        for point in points {
+            let (power, depth) = (point.power_uw, point.modulation_depth_deg);
+            let _ = write!(text, "{curve},{power:?},{depth:?}");
+            for name in &names {
+                let walk = point.walk(name).map(|walk| format!("{walk:?}"));
+                let _ = write!(text, ",{}", walk.unwrap_or_default());
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
