@@ -30,3 +30,4 @@ mod suite;
 mod support;
 mod timing;
 mod waveform;
+mod waveform_model;
