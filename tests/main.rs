@@ -29,5 +29,6 @@ mod scenario_errors;
 mod suite;
 mod support;
 mod timing;
+mod vibration;
 mod waveform;
 mod waveform_model;

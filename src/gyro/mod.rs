@@ -16,6 +16,9 @@
 //! mean, bandwidth, delay and noise colour. [`Gyro`] is either of them; [`cautions`] says where
 //! their assumptions end.
 //!
+//! Vibration of the case reaches the loop as phases and as powers per half period, through a
+//! kernel of its own.
+//!
 //! Symbols: `tau` = transit time of the coil = half modulation period, `T_L = 2 tau` = loop
 //! period, `Ks` = Sagnac scale factor, `g` = integrator gain, `d` = pipeline latency in loop
 //! periods, `r` = step of the ramp per `tau` (the register), `phi_m` = modulation depth.
@@ -37,6 +40,7 @@ mod rate_word;
 mod sampler;
 mod slow_noise;
 mod source;
+mod vibration;
 
 pub use coil::Coil;
 pub use controller::{Controller, gain_limit};

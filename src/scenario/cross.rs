@@ -3,6 +3,7 @@
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
 use super::address;
+use super::cross_vibration;
 use super::defaults::default_of;
 use super::error::ScenarioError;
 use super::filter_config::{FilterKind, Pipeline};
@@ -31,6 +32,9 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.names();
     checks.hardware_keys();
     checks.motion();
+    for (key, message) in cross_vibration::check(&resolved.scenario.gyro) {
+        checks.complain(key, message);
+    }
     checks.gates();
     checks.published();
     checks.errors

@@ -2,6 +2,8 @@
 
 use serde::Deserialize;
 
+use super::vibration_config::VibrationConfig;
+
 /// The gyro.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -24,6 +26,8 @@ pub struct GyroConfig {
     pub slow_noise: SlowNoiseConfig,
     /// Temperature.
     pub temperature: TemperatureConfig,
+    /// Vibration of the case.
+    pub vibration: VibrationConfig,
     /// Rate word.
     pub output: RateOutputConfig,
 }

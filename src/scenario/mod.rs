@@ -8,6 +8,7 @@ mod address;
 mod check;
 mod config;
 mod cross;
+mod cross_vibration;
 mod defaults;
 mod emit;
 mod error;
@@ -24,6 +25,7 @@ mod source;
 mod suite;
 mod tree;
 mod turntable_config;
+mod vibration_config;
 
 pub use config::{
     Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
@@ -48,6 +50,9 @@ pub use suite::load_suite;
 pub use turntable_config::{
     MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
     StepsConfig, SwingConfig, TurntableConfig,
+};
+pub use vibration_config::{
+    RandomVibrationConfig, SineVibrationConfig, VibrationConfig, VibrationMotion,
 };
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use fogbench::scenario::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
     NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SoakConfig, SourceConfig,
-    TemperatureConfig,
+    StaticConfig, TemperatureConfig, VibrationConfig, VibrationMotion,
 };
 
 /// All fast noise on, drawn combined; no slow noise; rate word not rounded.
@@ -59,6 +59,11 @@ pub(crate) fn reference_gyro() -> GyroConfig {
         temperature: TemperatureConfig::Soak(SoakConfig {
             temperature_c: 25.0,
         }),
+        vibration: VibrationConfig {
+            intensity_per_g: 1e-3,
+            rate_error_deg_per_h_per_g: 0.0,
+            motion: VibrationMotion::Off(StaticConfig {}),
+        },
         output: RateOutputConfig {
             half_periods_per_sample: 64,
             rate_lsb_deg_per_s: 0.0,

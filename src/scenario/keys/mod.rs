@@ -60,6 +60,11 @@ pub(crate) const GROUPS: &[Group] = &[
         alternatives: &["soak"],
     },
     Group {
+        table: "gyro.vibration",
+        noun: "vibration",
+        alternatives: &["off", "sine", "random"],
+    },
+    Group {
         table: "filter[]",
         noun: "filter kind",
         alternatives: &["rls", "lms"],
