@@ -30,6 +30,7 @@ controller = { loop_bandwidth_hz = 2000.0, loop_latency_periods = 1 }
 noise = { shot = true, thermal = true, amplifier = true, rin = true, draw = "combined" }
 slow_noise = { bias_deg_per_h = 0.0, bias_instability_deg_per_h = 0.045, rate_random_walk_deg_per_h_per_sqrt_h = 0.005, rate_ramp_deg_per_h_per_h = 0.0 }
 temperature = { soak = { temperature_c = 25.0 } }
+vibration = { intensity_per_g = 0.001, rate_error_deg_per_h_per_g = 0.0, off = {} }
 output = { half_periods_per_sample = 64, rate_lsb_deg_per_s = 1e-4 }
 [[published]]
 metric = "rls.delay_vs_raw_ms"
