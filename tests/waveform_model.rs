@@ -86,6 +86,16 @@ fn two_state_demodulation_is_the_sine_of_the_phase_error() {
 }
 
 #[test]
+fn a_growing_phase_counts_with_its_mean_over_each_half_period() {
+    // From 0 by a slope per transit time: means 1/2 and 3/2, the error is their mean. A model that
+    // samples the motion at the start of each half leads by half a transit time.
+    let slope_rad = 1e-5;
+    let mut growing = WaveformLoop::new(gyro(two_state(), 0.0));
+    growing.sagnac_slope_rad = slope_rad;
+    assert_close(growing.cycle(0.0).rate, slope_rad, 1e-4, 0.0);
+}
+
+#[test]
 fn an_ungated_mismatch_lowers_the_gain_by_the_gap() {
     for mismatch in [-0.2_f64, -1e-3, 1e-3, 0.2] {
         let got = |is_gated: bool| {

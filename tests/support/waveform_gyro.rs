@@ -5,8 +5,8 @@
 //! clock is cut where either wave meets a new state, and every piece is integrated in steps of at
 //! most a fortieth of the transit time; a gap of a thousandth of it is therefore resolved exactly.
 
-/// Steps per transit time.
-const STEPS_PER_TRANSIT: f64 = 40.0;
+/// Steps of a piece, which is no longer than a transit time.
+const STEPS: u32 = 40;
 
 /// States the delayed wave may lie behind: tau over a state of just under tau / 2, rounded up.
 const HISTORY: usize = 4;
@@ -65,6 +65,8 @@ pub(crate) struct WaveformLoop {
     ramp_rad: f64,
     /// Step of the staircase per proper transit time, the register.
     pub(crate) register_rad: f64,
+    /// Growth of the Sagnac phase per transit time inside a cycle.
+    pub(crate) sagnac_slope_rad: f64,
 }
 
 /// Demodulated cycle: the loop's error and that of the modulator's gain.
@@ -81,6 +83,7 @@ impl WaveformLoop {
             states: [State::default(); HISTORY],
             ramp_rad: 0.0,
             register_rad: 0.0,
+            sagnac_slope_rad: 0.0,
         };
         // The states of the cycle before the first one, so that it starts in the steady state.
         for state in 0..new.gyro.wave.bias_rad.len() {
@@ -89,14 +92,15 @@ impl WaveformLoop {
         new
     }
 
-    /// Runs one cycle of the clock at a Sagnac phase, the register held; powers are demodulated as
+    /// Runs one cycle of the clock from a Sagnac phase at its start, the register held; powers are demodulated as
     /// the detector sees them.
     pub(crate) fn cycle(&mut self, sagnac_rad: f64) -> Demodulated {
         let states = self.gyro.wave.bias_rad.len();
         let (mut rate, mut gain) = (0.0, 0.0);
         for state in 0..states {
             self.put(state);
-            let power = self.mean_power(sagnac_rad);
+            let start = state as f64 * self.state_length();
+            let power = self.mean_power(sagnac_rad + self.sagnac_slope_rad * start);
             rate += self.gyro.wave.rate_signs[state] * power;
             gain += self.gyro.wave.gain_signs[state] * power;
         }
@@ -135,36 +139,38 @@ impl WaveformLoop {
         };
     }
 
+    /// Length of a state in transit times.
+    fn state_length(&self) -> f64 {
+        (1.0 + self.gyro.mismatch) / self.gyro.wave.states_per_transit
+    }
+
     /// Mean power over the newest state, in units of the mean power over a fringe. Time is counted
     /// in transit times from the start of the state.
     fn mean_power(&self, sagnac_rad: f64) -> f64 {
         let per_transit = self.gyro.wave.states_per_transit;
-        let length = (1.0 + self.gyro.mismatch) / per_transit;
-        let mut edges = vec![0.0, length];
-        let crossings = (0..HISTORY).map(|behind| 1.0 - behind as f64 * length);
-        edges.extend(crossings.filter(|at| *at > 0.0 && *at < length));
-        edges.sort_by(f64::total_cmp);
+        let length = self.state_length();
         let (mut sum, mut time) = (0.0, 0.0);
-        for piece in edges.windows(2) {
-            let behind = -((0.5 * (piece[0] + piece[1]) - 1.0) / length).floor();
-            if self.gyro.is_gated && (behind - per_transit).abs() > 0.5 {
+        for (behind, before) in self.states.iter().enumerate() {
+            // While the delayed wave, a transit time late, met that earlier state.
+            let start = (1.0 - behind as f64 * length).max(0.0);
+            let end = (1.0 - (behind as f64 - 1.0) * length).min(length);
+            let is_proper = (behind as f64 - per_transit).abs() < 0.5;
+            if start >= end || (self.gyro.is_gated && !is_proper) {
                 continue;
             }
-            let steps = ((piece[1] - piece[0]) * STEPS_PER_TRANSIT).ceil();
-            let step = (piece[1] - piece[0]) / steps;
-            for index in 0..steps as u32 {
-                let at = piece[0] + (f64::from(index) + 0.5) * step;
-                sum += step * self.power(sagnac_rad, at, length);
+            let step = (end - start) / f64::from(STEPS);
+            for index in 0..STEPS {
+                let at = start + (f64::from(index) + 0.5) * step;
+                sum += step * self.power(sagnac_rad + self.sagnac_slope_rad * at, before);
                 time += step;
             }
         }
         sum / time
     }
 
-    /// Power at an instant of the newest state.
-    fn power(&self, sagnac_rad: f64, at: f64, length: f64) -> f64 {
+    /// Power while the delayed wave meets the modulator in state `before`.
+    fn power(&self, sagnac_rad: f64, before: &State) -> f64 {
         let now = self.states[0];
-        let before = self.states[(-((at - 1.0) / length).floor()) as usize];
         let applied = 1.0 + self.gyro.modulator_gain_error;
         let difference = applied * (now.phase_rad - before.phase_rad);
         let [arm_a, arm_b] = self.gyro.intensity.arms;
