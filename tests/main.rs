@@ -40,4 +40,6 @@ mod turntable_geometry;
 mod turntable_profiles;
 mod turntable_script;
 mod turntable_servo;
+mod vibration;
 mod waveform;
+mod waveform_model;

@@ -9,6 +9,8 @@ use crate::gyro::error::GyroError;
 use crate::gyro::modulator::Modulator;
 use crate::gyro::noise_budget::NoiseBudget;
 use crate::gyro::parts::Parts;
+use crate::gyro::vibration::{Tone, VibrationResponse, tones};
+use crate::random::Streams;
 use crate::scenario::{Fidelity, GyroConfig, NoiseDraw};
 use crate::units::{
     deg_per_h_to_rad_per_s, deg_per_sqrt_h_to_rad_per_sqrt_s, rad_per_s_to_deg_per_h,
@@ -56,6 +58,8 @@ pub struct MotionExtremes {
 ///   smoother the loop. The rate
 ///   model leaves it out: refused beyond the word's white noise, said from a twentieth of it.
 ///
+/// * **Vibration** adds its peak rates and accelerations, and its rectified mean is said.
+///
 /// Ideal converters (0 bits) have no such limits, with or without noise.
 ///
 /// # Errors
@@ -70,20 +74,47 @@ pub fn cautions(
     fidelity: Fidelity,
     motion: &MotionExtremes,
 ) -> Result<Vec<String>, GyroError> {
+    let parts = Parts::new(config)?;
+    // Neither peaks nor the mean depend on the phases drawn.
+    let tones = tones(&config.vibration, &Streams::new(0, 0));
+    let motion = &shaken(motion, &tones);
+    let rectified = rectification(tones, &parts);
     let Parts {
         coil,
         modulator,
         detector,
         controller,
         ..
-    } = Parts::new(config)?;
+    } = parts;
     let found = [
+        rectified,
         fringe(config, fidelity, motion, &coil)?,
         phase_error(fidelity, motion, &coil, &controller)?,
         converter(config, fidelity, &detector, &coil)?,
         ramp(config, fidelity, &detector, &modulator, &coil)?,
     ];
     Ok(found.into_iter().flatten().collect())
+}
+
+/// The motion with all tones of the vibration in step.
+fn shaken(motion: &MotionExtremes, tones: &[Tone]) -> MotionExtremes {
+    let mut shaken = *motion;
+    for tone in tones {
+        let rate = tone.rate_rad_per_s.norm();
+        shaken.rate_rad_per_s += rate;
+        shaken.acceleration_rad_per_s2 += TAU * tone.frequency_hz * rate;
+    }
+    shaken
+}
+
+fn rectification(tones: Vec<Tone>, parts: &Parts) -> Option<String> {
+    let response = VibrationResponse::new(tones, parts)?;
+    let mean = response.mean_rad() / parts.coil.scale_factor_s;
+    Some(format!(
+        "gyro.vibration: the loop rectifies it into a mean error of {:.4} deg/h, power times \
+         residual phase to second order; truth is the rate of the table's axis, without the case's",
+        rad_per_s_to_deg_per_h(mean)
+    ))
 }
 
 fn fringe(

@@ -9,8 +9,11 @@ use crate::gyro::loop_kernel::{LoopConstants, Registers, advance};
 use crate::gyro::modulator::Modulator;
 use crate::gyro::parts::Parts;
 use crate::gyro::rate_word::RateWord;
-use crate::gyro::sampler::{CombinedSampler, ExactSampler, Faults, Sampler, levels_per_ampere};
+use crate::gyro::sampler::{
+    CombinedSampler, ExactSampler, Faults, PowerSampler, Sampler, ScaledSampler, levels_per_ampere,
+};
 use crate::gyro::slow_noise::SlowNoise;
+use crate::gyro::vibration::Vibration;
 use crate::random::Streams;
 use crate::scenario::{GyroConfig, NoiseDraw};
 use crate::signal::MotionSegment;
@@ -47,6 +50,8 @@ pub struct LoopModel {
     /// Start of each half period in normalised time of the output sample.
     times: Vec<f64>,
     phases_codes: Vec<f64>,
+    /// Vibration and the detected power of each half period over its mean, if it is on.
+    vibration: Option<(Vibration, Vec<f64>)>,
     slow_noise: SlowNoise,
     rate_word: RateWord,
     condition: Condition,
@@ -105,6 +110,8 @@ impl LoopModel {
                 .map(|half| f64::from(half) / count)
                 .collect(),
             phases_codes: (0..half_periods).map(|_| 0.0).collect(),
+            vibration: Vibration::new(&config.vibration, &coil, streams)
+                .map(|vibration| (vibration, (0..half_periods).map(|_| 1.0).collect())),
             slow_noise: SlowNoise::new(
                 &config.slow_noise,
                 count * coil.transit_time_s,
@@ -169,7 +176,8 @@ impl LoopModel {
         self.faults().unlocked
     }
 
-    /// Runs one loop period with the given Sagnac phases (rad) in its halves; slow noise is left out.
+    /// Runs one loop period with the given Sagnac phases (rad) in its halves; slow noise and
+    /// vibration are left out.
     ///
     /// Returns the register after its update, rad per half period.
     pub fn run_period(&mut self, sagnac_phase_rad: [f64; 2]) -> f64 {
@@ -177,7 +185,7 @@ impl LoopModel {
         self.detection.run(
             &mut self.registers,
             self.constants,
-            &phases_codes,
+            (&phases_codes, None),
             (self.is_ramp_rounded, self.controller.latency_periods),
         );
         self.register_rad()
@@ -190,10 +198,16 @@ impl LoopModel {
         }
         let slow_rad_per_s = self.slow_noise.next_rate_rad_per_s() + self.condition.bias_rad_per_s;
         self.fill_phases(segment, slow_rad_per_s);
+        let mut powers = None;
+        if let Some((vibration, factors)) = &mut self.vibration {
+            let codes_per_rate = self.coil.scale_factor_s * self.codes_per_rad;
+            vibration.next_half_periods(codes_per_rate, &mut self.phases_codes, factors);
+            powers = Some(factors.as_slice());
+        }
         let sum_codes = self.detection.run(
             &mut self.registers,
             self.constants,
-            &self.phases_codes,
+            (&self.phases_codes, powers),
             (self.is_ramp_rounded, self.controller.latency_periods),
         );
         let periods = 0.5 * self.phases_codes.len() as f64;
@@ -291,34 +305,55 @@ impl Detection {
         }
     }
 
-    /// Runs the periods of `phases_codes` and returns the sum of the register, codes.
+    /// Runs the periods of `(phases_codes, powers)` and returns the sum of the register, codes.
+    ///
+    /// Powers are those of the light in each half period over the mean; none means 1.
     fn run(
         &mut self,
         registers: &mut Registers,
         constants: LoopConstants,
-        phases_codes: &[f64],
+        inputs: (&[f64], Option<&[f64]>),
         variant: (bool, u32),
     ) -> f64 {
         match self {
-            Self::Combined(sampler) => {
-                dispatch(sampler, registers, constants, phases_codes, variant)
-            }
-            Self::CombinedIdeal(sampler) => {
-                dispatch(sampler, registers, constants, phases_codes, variant)
-            }
-            Self::Exact(sampler) => dispatch(sampler, registers, constants, phases_codes, variant),
+            Self::Combined(sampler) => drive(sampler, registers, constants, inputs, variant),
+            Self::CombinedIdeal(sampler) => drive(sampler, registers, constants, inputs, variant),
+            Self::Exact(sampler) => drive(sampler, registers, constants, inputs, variant),
         }
     }
 }
 
-/// Picks the kernel compiled for (ramp rounded, latency) and runs it on a local copy of the sampler.
-fn dispatch<S: Sampler + Clone>(
+/// Runs a local copy of the sampler, with or without power factors.
+fn drive<S: ScaledSampler + Clone>(
     sampler: &mut S,
+    registers: &mut Registers,
+    constants: LoopConstants,
+    (phases_codes, powers): (&[f64], Option<&[f64]>),
+    variant: (bool, u32),
+) -> f64 {
+    let copy = sampler.clone();
+    let (after, sum) = if let Some(powers) = powers {
+        let scaled = PowerSampler {
+            sampler: copy,
+            powers: powers.iter(),
+        };
+        let (after, sum) = dispatch(scaled, registers, constants, phases_codes, variant);
+        (after.sampler, sum)
+    } else {
+        dispatch(copy, registers, constants, phases_codes, variant)
+    };
+    *sampler = after;
+    sum
+}
+
+/// Picks the kernel compiled for (ramp rounded, latency) and runs it.
+fn dispatch<S: Sampler>(
+    sampler: S,
     registers: &mut Registers,
     constants: LoopConstants,
     phases_codes: &[f64],
     variant: (bool, u32),
-) -> f64 {
+) -> (S, f64) {
     let kernel = match variant {
         (false, 0) => advance::<S, false, 0>,
         (false, 1) => advance::<S, false, 1>,
@@ -329,7 +364,5 @@ fn dispatch<S: Sampler + Clone>(
         (true, 2) => advance::<S, true, 2>,
         (true, _) => advance::<S, true, 3>,
     };
-    let (after, sum) = kernel(registers, constants, phases_codes, sampler.clone());
-    *sampler = after;
-    sum
+    kernel(registers, constants, phases_codes, sampler)
 }

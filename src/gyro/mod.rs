@@ -19,6 +19,9 @@
 //! Temperature (`thermal`) sets the [`Condition`] both models work in: detected power, scale factor,
 //! bias. Where it never changes it is settled when the gyro is built and costs nothing after.
 //!
+//! Vibration of the case reaches the loop as phases and as powers per half period, through a
+//! kernel of its own.
+//!
 //! Symbols: `tau` = transit time of the coil = half modulation period, `T_L = 2 tau` = loop
 //! period, `Ks` = Sagnac scale factor, `g` = integrator gain, `d` = pipeline latency in loop
 //! periods, `r` = step of the ramp per `tau` (the register), `phi_m` = modulation depth.
@@ -44,6 +47,7 @@ mod sampler;
 mod slow_noise;
 mod source;
 mod thermal;
+mod vibration;
 
 pub use assembly::{CaseGyro, InputAxis};
 pub use budget::{budget_at, budget_sheet, power_independent_ratio};

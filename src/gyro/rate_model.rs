@@ -10,6 +10,7 @@ use crate::gyro::parts::Parts;
 use crate::gyro::rate_matrices::RateMatrices;
 use crate::gyro::rate_word::RateWord;
 use crate::gyro::slow_noise::SlowNoise;
+use crate::gyro::vibration::{VibrationResponse, tones};
 use crate::random::{Stream, Streams};
 use crate::scenario::GyroConfig;
 use crate::signal::MotionSegment;
@@ -22,7 +23,8 @@ use crate::units::deg_per_sqrt_h_to_rad_per_sqrt_s;
 /// Allan deviation, at a cost that does not depend on the number of half periods per sample. The
 /// noise n has the variance of the whole budget, converter rounding included:
 /// `sigma_e^2 T_L = (N Ks)^2`. Left out: the sine of the fringe (matters for phase errors beyond
-/// about 0.1 rad), resets, and the ramp converter's rounding, which is bounded in angle.
+/// about 0.1 rad), resets, and the ramp converter's rounding, which is bounded in angle. Vibration is the settled
+/// loop's answer to its tones and the mean that they rectify to.
 #[derive(Clone, Debug)]
 pub struct RateModel {
     coil: Coil,
@@ -32,6 +34,7 @@ pub struct RateModel {
     noise_rad: f64,
     sample_period_s: f64,
     stream: Stream,
+    vibration: Option<VibrationResponse>,
     slow_noise: SlowNoise,
     rate_word: RateWord,
     condition: Condition,
@@ -56,6 +59,8 @@ impl RateModel {
         simulated_time_s: f64,
         streams: &Streams,
     ) -> Result<Self, GyroError> {
+        let parts = Parts::new(config)?;
+        let vibration = VibrationResponse::new(tones(&config.vibration, streams), &parts);
         let Parts {
             half_periods,
             coil,
@@ -63,7 +68,7 @@ impl RateModel {
             controller,
             condition,
             ..
-        } = Parts::new(config)?;
+        } = parts;
         let sample_period_s = f64::from(half_periods) * coil.transit_time_s;
         Ok(Self {
             coil,
@@ -73,6 +78,7 @@ impl RateModel {
             noise_rad: noise_rad(&detector, &coil),
             sample_period_s,
             stream: streams.stream("combined"),
+            vibration,
             slow_noise: SlowNoise::new(
                 &config.slow_noise,
                 sample_period_s,
@@ -113,11 +119,14 @@ impl RateModel {
             .map(|coefficient| scale * coefficient);
         let slow_rad_per_s = self.slow_noise.next_rate_rad_per_s() + self.condition.bias_rad_per_s;
         phase_rad[0] += scale * slow_rad_per_s;
-        let mean_rad =
+        let mut mean_rad =
             self.matrices
                 .advance(&mut self.state_rad, &phase_rad, self.noise_rad, || {
                     self.stream.normal()
                 });
+        if let Some(vibration) = &mut self.vibration {
+            mean_rad += vibration.next_rad();
+        }
         self.rate_word.deg_per_h(mean_rad)
     }
 

@@ -40,6 +40,26 @@ pub(super) trait Sampler: Sized {
     fn sample<const PLUS: bool>(&mut self, error_codes: f64) -> f64;
 }
 
+/// A sampler whose light may change in power.
+pub(super) trait ScaledSampler: Sampler {
+    /// As [`Sampler::sample`], with the light times `power`; the dark current stays.
+    fn sample_scaled<const PLUS: bool>(&mut self, error_codes: f64, power: f64) -> f64;
+}
+
+/// A sampler whose light changes from half period to half period by the given factors.
+pub(super) struct PowerSampler<'a, S> {
+    pub(super) sampler: S,
+    pub(super) powers: std::slice::Iter<'a, f64>,
+}
+
+impl<S: ScaledSampler> Sampler for PowerSampler<'_, S> {
+    #[inline(always)]
+    fn sample<const PLUS: bool>(&mut self, error_codes: f64) -> f64 {
+        let power = self.powers.next().copied().unwrap_or(1.0);
+        self.sampler.sample_scaled::<PLUS>(error_codes, power)
+    }
+}
+
 /// The raised-cosine fringe about its two bias points, in levels against ramp codes.
 ///
 /// `level = offset + swing cos(x +- phi_m)`. For a small phase error x the cosine splits into an
@@ -136,6 +156,7 @@ fn clamp_level(level: f64, level_max: f64, saturated: &mut u64) -> f64 {
 #[derive(Clone, Debug)]
 pub(super) struct CombinedSampler<const ROUNDED: bool> {
     fringe: Fringe,
+    dark: f64,
     noise_levels: f64,
     level_max: f64,
     stream: Stream,
@@ -156,6 +177,7 @@ impl<const ROUNDED: bool> CombinedSampler<ROUNDED> {
         let variance_a2 = detector.half_period_noise_a2(transit_time_s);
         Self {
             fringe: Fringe::new(mean + dark, mean * detector.visibility, modulator),
+            dark,
             noise_levels: variance_a2.sqrt() * levels_per_a,
             level_max: detector.converter_code_max * detector.samples_per_half_period.sqrt(),
             stream: streams.stream("combined"),
@@ -182,6 +204,21 @@ impl<const ROUNDED: bool> Sampler for CombinedSampler<ROUNDED> {
     fn sample<const PLUS: bool>(&mut self, error_codes: f64) -> f64 {
         let noise = self.noise_levels * self.stream.normal();
         let level = self.fringe.level::<PLUS>(error_codes, &mut self.faults) + noise;
+        if ROUNDED {
+            convert(level, self.level_max, &mut self.faults.saturated)
+        } else {
+            level
+        }
+    }
+}
+
+impl<const ROUNDED: bool> ScaledSampler for CombinedSampler<ROUNDED> {
+    /// The noise stays that of the mean power.
+    #[inline(always)]
+    fn sample_scaled<const PLUS: bool>(&mut self, error_codes: f64, power: f64) -> f64 {
+        let noise = self.noise_levels * self.stream.normal();
+        let light = self.fringe.level::<PLUS>(error_codes, &mut self.faults) - self.dark;
+        let level = light * power + self.dark + noise;
         if ROUNDED {
             convert(level, self.level_max, &mut self.faults.saturated)
         } else {
@@ -296,21 +333,26 @@ impl ExactSampler {
             thermal_stream: self.thermal_stream.clone(),
             amplifier_stream: self.amplifier_stream.clone(),
             rin_stream: self.rin_stream.clone(),
+            technical_stream: self.technical_stream.clone(),
             faults: self.faults,
             ..other
         }
     }
-}
 
-impl Sampler for ExactSampler {
+    /// Light of the half period, technical phase noise included.
     #[inline]
-    fn sample<const PLUS: bool>(&mut self, error_codes: f64) -> f64 {
+    fn light<const PLUS: bool>(&mut self, error_codes: f64) -> f64 {
         let phase_codes = if self.technical_codes > 0.0 {
             error_codes + self.technical_codes * self.technical_stream.normal()
         } else {
             error_codes
         };
-        let light = self.fringe.level::<PLUS>(phase_codes, &mut self.faults);
+        self.fringe.level::<PLUS>(phase_codes, &mut self.faults)
+    }
+
+    /// Mean level of the samples of one half period of steady light.
+    #[inline]
+    fn sample_light(&mut self, light: f64) -> f64 {
         let mut sum = 0.0;
         let mut saturated = 0;
         for _ in 0..self.samples {
@@ -337,5 +379,21 @@ impl Sampler for ExactSampler {
         }
         self.faults.saturated += u64::from(saturated > 0);
         sum * self.mean_scale
+    }
+}
+
+impl Sampler for ExactSampler {
+    #[inline]
+    fn sample<const PLUS: bool>(&mut self, error_codes: f64) -> f64 {
+        let light = self.light::<PLUS>(error_codes);
+        self.sample_light(light)
+    }
+}
+
+impl ScaledSampler for ExactSampler {
+    #[inline]
+    fn sample_scaled<const PLUS: bool>(&mut self, error_codes: f64, power: f64) -> f64 {
+        let light = self.light::<PLUS>(error_codes);
+        self.sample_light(light * power)
     }
 }

@@ -7,6 +7,7 @@ use super::cross_gyro;
 use super::cross_multi_sine;
 use super::cross_output;
 use super::cross_servo;
+use super::cross_vibration;
 use super::defaults::default_of;
 use super::error::ScenarioError;
 use super::filter_config::{FilterKind, Pipeline};
@@ -37,6 +38,9 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.motion();
     for (key, message) in cross_gyro::check(&resolved.scenario) {
         checks.complain(&key, message);
+    }
+    for (key, message) in cross_vibration::check(&resolved.scenario.gyro) {
+        checks.complain(key, message);
     }
     checks.gates();
     checks.published();

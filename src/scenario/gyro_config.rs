@@ -4,6 +4,7 @@ use serde::Deserialize;
 
 use super::assembly_config::AssemblyConfig;
 use super::thermal_config::{TemperatureConfig, ThermalConfig};
+use super::vibration_config::VibrationConfig;
 
 /// The gyro.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -29,6 +30,8 @@ pub struct GyroConfig {
     pub temperature: TemperatureConfig,
     /// How temperature reaches the gyro and what it does there.
     pub thermal: ThermalConfig,
+    /// Vibration of the case.
+    pub vibration: VibrationConfig,
     /// Rate word.
     pub output: RateOutputConfig,
     /// Three such gyros in one case; none is a single gyro on the table axis.

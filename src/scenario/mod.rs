@@ -15,6 +15,7 @@ mod cross_multi_sine;
 mod cross_output;
 mod cross_servo;
 mod cross_turntable;
+mod cross_vibration;
 mod defaults;
 mod emit;
 mod error;
@@ -34,6 +35,7 @@ mod suite;
 mod thermal_config;
 mod tree;
 mod turntable_config;
+mod vibration_config;
 
 pub use assembly_config::AssemblyConfig;
 pub use config::{
@@ -65,6 +67,9 @@ pub use turntable_config::{
     AxisConfig, CaseAxis, ChirpConfig, MotionConfig, MountingConfig, MultiSineConfig, PhaseRule,
     Progression, RotationConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig,
     SiteConfig, StaticConfig, StepsConfig, SwingConfig, TrapezoidConfig, TurntableConfig,
+};
+pub use vibration_config::{
+    RandomVibrationConfig, SineVibrationConfig, VibrationConfig, VibrationMotion,
 };
 
 #[cfg(test)]

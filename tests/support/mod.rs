@@ -11,6 +11,7 @@ pub(crate) mod run;
 pub(crate) mod stimulus;
 pub(crate) mod tables;
 pub(crate) mod turntable_cases;
+pub(crate) mod waveform_gyro;
 
 /// Asserts that `got` equals `want` within `rtol * |want| + atol`.
 #[track_caller]

@@ -1,57 +1,32 @@
 //! A small run with every kind of record, for the tests of gates and reports.
 
 use fogbench::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric};
-use fogbench::scenario::Scenario;
+use fogbench::scenario::{PublishedConfig, Scenario};
 use fogbench::signal::GyroFacts;
 use std::collections::BTreeMap;
 
-/// Everything but the motion; `MOTION` stands for its table.
-const SCENARIO: &str = r#"
-schema = 1
-name = "fixture"
-description = "A fixture with every kind of record."
-seed = 1
-repeats = 1
-duration_s = 3600.0
-warm_up_s = 60.0
-fidelity = "loop"
-bias_averaging_time_s = 100.0
-[turntable]
-servo = { ideal = {} }
-encoder = { latency_us = 0.0, eccentricity_error_arcsec = 0.0, eccentricity_phase_deg = 0.0, interpolation_error_arcsec = 0.0, interpolation_phase_deg = 0.0, lines_per_revolution = 36000 }
-site = { latitude_deg = 34.27, axis_elevation_deg = 90.0, axis_azimuth_deg = 0.0 }
-axis = { tilt_north_arcsec = 0.0, tilt_east_arcsec = 0.0, wobble_arcsec = 0.0, wobble_harmonic = 1 }
-mounting = { misalignment_arcsec = 0.0, misalignment_azimuth_deg = 0.0, start_angle_deg = 0.0, axis_along_table = "z" }
-MOTION
-[gyro]
-coil = { length_m = 800.0, diameter_mm = 70.0, group_index = 1.4677 }
-source = { wavelength_nm = 1310.0, power_uw = 0.87, linewidth_nm = 35.0, polarisation_degree = 1.0, visibility = 0.95 }
-modulator = { depth_deg = 120.0, dac_bits = 16 }
-detector = { responsivity_a_per_w = 0.9, dark_current_na = 0.0, transimpedance_kohm = 20.0, post_gain = 10.0, voltage_noise_nv_per_sqrt_hz = 6.0, current_noise_pa_per_sqrt_hz = 0.0, gate_duty = 0.7 }
-adc = { bits = 12, range_v = 2.0, samples_per_half_period = 8 }
-controller = { loop_bandwidth_hz = 2000.0, loop_latency_periods = 1, automatic_gain_control = false }
-noise = { shot = true, thermal = true, amplifier = true, rin = true, draw = "combined" }
-slow_noise = { bias_deg_per_h = 0.0, bias_instability_deg_per_h = 0.045, rate_random_walk_deg_per_h_per_sqrt_h = 0.005, rate_ramp_deg_per_h_per_h = 0.0 }
-temperature = { soak = { temperature_c = 25.0 } }
-thermal = { reference_c = 25.0, ripple_amplitude_c = 0.0, ripple_period_s = 480.0, self_heating_c = 0.0, warm_up = "settled", case_time_constant_s = 600.0, outer_time_constant_s = 300.0, inner_time_constant_s = 100.0, winding = "quadrupole", layers = 40, midpoint_offset_m = 0.0, index_per_k = 1e-5, length_ppm_per_k = 0.55, diameter_ppm_per_k = 10.0, wavelength_nm_per_k = 0.4, wavelength_feed_through = 0.01, compensation_ppm_per_k = 0.0, compensation_ppm_per_k2 = 0.0, bias_deg_per_h_per_k = 5e-4, bias_deg_per_h_per_k2 = 3e-6, bias_deg_per_h_per_c_per_min = 0.02, half_wave_voltage_ppm_per_k = 0.0, power = { constant = {} } }
-output = { half_periods_per_sample = 64, rate_lsb_deg_per_s = 1e-4 }
-[[published]]
-metric = "rls.delay_vs_raw_ms"
-value = 0.25
-unit = "ms"
-source = "paper, section 4.2"
-[[published]]
-metric = "lms.angle_random_walk_deg_per_sqrt_h"
-value = 0.006
-unit = "deg/sqrt(h)"
-source = "paper, table 2"
-[output]
-samples = "none"
-"#;
+use super::reference_gyro::default_scenario;
 
-/// A scenario whose motion is the given table, e.g. `static = {}`.
+/// A scenario whose motion is the given table, with two published figures.
 pub(crate) fn scenario(motion: &str) -> Scenario {
-    toml::from_str(&SCENARIO.replace("MOTION", motion)).expect("the fixture is a scenario")
+    let published = |metric: &str, value: f64, unit: &str, source: &str| PublishedConfig {
+        metric: metric.to_owned(),
+        value,
+        unit: unit.to_owned(),
+        source: source.to_owned(),
+    };
+    Scenario {
+        published: vec![
+            published("rls.delay_vs_raw_ms", 0.25, "ms", "paper, section 4.2"),
+            published(
+                "lms.angle_random_walk_deg_per_sqrt_h",
+                0.006,
+                "deg/sqrt(h)",
+                "paper, table 2",
+            ),
+        ],
+        ..default_scenario(motion)
+    }
 }
 
 /// A gyro like the one of the paper.

@@ -1,7 +1,11 @@
 //! Keys of the gyro.
 
 use super::{integer, key};
-use crate::scenario::schema::{Integers, Key, Kind, Presence::Defaulted, Range};
+use crate::scenario::schema::{
+    Integers, Key, Kind,
+    Presence::{Defaulted, Required},
+    Range,
+};
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
@@ -75,6 +79,34 @@ pub(super) const KEYS: &[Key] = &[
         "Rate random walk coefficient K."),
     key("gyro.slow_noise.rate_ramp_deg_per_h_per_h", Kind::Float(Range::closed(-1e6, 1e6)), "deg/h/h", Defaulted,
         "Rate ramp R."),
+    key("gyro.vibration.intensity_per_g", Kind::Float(Range::closed(-1.0, 1.0)), "1/g", Defaulted,
+        "Relative change of the detected power per acceleration."),
+    key("gyro.vibration.rate_error_deg_per_h_per_g", Kind::Float(Range::closed(-1e6, 1e6)), "deg/h/g", Defaulted,
+        "Rate error per acceleration."),
+    key("gyro.vibration.off", Kind::EmptyTable, "", Defaulted,
+        "The case does not vibrate."),
+    key("gyro.vibration.sine.frequency_hz", Kind::Float(Range::above(0.0, 100000.0)), "Hz", Required,
+        "Frequency of the vibration; below half the rate of the half modulation periods."),
+    key("gyro.vibration.sine.acceleration_g", Kind::Float(Range::closed(0.0, 1000.0)), "g", Defaulted,
+        "Amplitude of the acceleration A sin(2 pi f t)."),
+    key("gyro.vibration.sine.rate_amplitude_deg_per_s", Kind::Float(Range::closed(0.0, 2000.0)), "deg/s", Defaulted,
+        "Amplitude of the case's rate about the input axis, relative to the table."),
+    key("gyro.vibration.sine.rate_phase_deg", Kind::Float(Range::closed(-360.0, 360.0)), "deg", Defaulted,
+        "Phase by which the rate leads the acceleration."),
+    key("gyro.vibration.random.from_hz", Kind::Float(Range::above(0.0, 100000.0)), "Hz", Required,
+        "Lower edge of the band."),
+    key("gyro.vibration.random.to_hz", Kind::Float(Range::above(0.0, 100000.0)), "Hz", Required,
+        "Upper edge of the band; below half the rate of the half modulation periods."),
+    key("gyro.vibration.random.acceleration_psd_g2_per_hz", Kind::Float(Range::closed(0.0, 1e6)), "g^2/Hz", Defaulted,
+        "One-sided density of the acceleration."),
+    key("gyro.vibration.random.rate_psd_deg2_per_s2_per_hz", Kind::Float(Range::closed(0.0, 1e6)), "(deg/s)^2/Hz", Defaulted,
+        "One-sided density of the case's rate about the input axis."),
+    key("gyro.vibration.random.tones", integer(1, 1024), "", Defaulted,
+        "Tones that make up the band."),
+    key("gyro.vibration.random.coherent", Kind::Boolean, "", Defaulted,
+        "Whether rate and acceleration are locked in phase."),
+    key("gyro.vibration.random.rate_phase_deg", Kind::Float(Range::closed(-360.0, 360.0)), "deg", Defaulted,
+        "Phase by which a coherent rate leads the acceleration."),
     key("gyro.output.half_periods_per_sample", Kind::Integer(Integers { min: 2, max: 1_048_576, is_even: true }), "", Defaulted,
         "Half modulation periods averaged into one rate word."),
     key("gyro.output.quantisation", Kind::Choice(&["rate-word", "angle-carry"]), "", Defaulted,

@@ -90,6 +90,11 @@ pub(crate) const GROUPS: &[Group] = &[
         alternatives: &["quadratic", "exponential", "constant"],
     },
     Group {
+        table: "gyro.vibration",
+        noun: "vibration",
+        alternatives: &["off", "sine", "random"],
+    },
+    Group {
         table: "filter[]",
         noun: "filter kind",
         alternatives: &["rls", "lms"],
