@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  motion ──> profile ──command──> servo ──table rate──> platform ──truth──> gyro
-//!             swing, steps,        ideal or              wobble, mounting,
+//!             swing, script,       ideal or              wobble, mounting,
 //!             rotation, ...        second order          + Earth rate
 //! ```
 //!
