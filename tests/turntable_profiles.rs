@@ -289,7 +289,7 @@ fn scripted_angles_are_met_and_never_exceeded() {
     // T^2 / 12 of the jump, of which the record holds four.
     let jump = 2.0 * rad_per_s_to_deg_per_s(extremes.acceleration_rad_per_s2);
     let missed = 4.0 * PERIOD_S * PERIOD_S / 12.0 * jump;
-    assert!(missed < 1e-4);
+    assert!(missed < 1e-3);
     for (sample, angle) in [(1999, 10.0), (2999, 40.0), (7999, 20.0), (9999, 20.0)] {
         assert_close(record[sample].1, angle, 0.0, missed);
     }
