@@ -26,7 +26,7 @@ fn complaint(csv: &str) -> String {
     let errors = load(folder.path(), &text, &[]).unwrap_err();
     assert_eq!(errors.len(), 1, "{errors:?}");
     let message = errors[0].to_string();
-    message.rsplit('/').next().unwrap().to_owned()
+    message[message.find("motion.csv").unwrap()..].to_owned()
 }
 
 fn times_and_rates(run: &Resolved) -> (Vec<f64>, Vec<f64>) {

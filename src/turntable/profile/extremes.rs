@@ -18,6 +18,10 @@ pub struct CommandExtremes {
 
 /// Jump and acceleration of a motion whose acceleration is its own; `None` for rest, swing,
 /// rotation and steps, where it depends on the warm-up or the servo.
+///
+/// # Panics
+/// If a chirp has not exactly one amplitude or a script not either rates or angles; the scenario
+/// reader refuses both.
 #[must_use]
 pub fn command_extremes(motion: &MotionConfig) -> Option<CommandExtremes> {
     let (jump_rad_per_s, acceleration_rad_per_s2) = match motion {

@@ -10,7 +10,9 @@ use crate::units::deg_to_rad;
 /// Rates are joined by straight lines; the first is held before the record, the last one after the
 /// table. Angles are joined by the monotone cubics of Fritsch and Butland, so that the table never
 /// swings beyond its points; it rests at the first angle before the record and comes to rest at the
-/// last one. The rate is continuous either way, the acceleration jumps at the points.
+/// last one. The rate is continuous either way, the acceleration jumps at the points: the cubic of
+/// the sample that holds such a jump turns by up to `T^2 / 8` of the jump too much or too little,
+/// 0.03 arcsec for 1000 deg/s^2 at 4 kHz.
 ///
 /// # Source
 /// F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, the weighted harmonic
