@@ -19,6 +19,8 @@ bias_averaging_time_s = 100.0
 [turntable]
 servo = { ideal = {} }
 site = { latitude_deg = 34.27, axis_elevation_deg = 90.0, axis_azimuth_deg = 0.0 }
+axis = { tilt_north_arcsec = 0.0, tilt_east_arcsec = 0.0, wobble_arcsec = 0.0, wobble_harmonic = 1 }
+mounting = { misalignment_arcsec = 0.0, misalignment_azimuth_deg = 0.0, start_angle_deg = 0.0, axis_along_table = "z" }
 MOTION
 [gyro]
 coil = { length_m = 800.0, diameter_mm = 70.0, group_index = 1.4677 }
