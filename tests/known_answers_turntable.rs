@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use fogbench::scenario::{
-    AxisConfig, CaseAxis, MotionConfig, MountingConfig, RotationConfig, SecondOrderServoConfig,
-    ServoConfig, SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
+    MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
+    StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
 use fogbench::turntable::{
@@ -17,6 +17,7 @@ use fogbench::units::{
 };
 
 use crate::support::assert_close;
+use crate::support::turntable_cases::{true_axis, true_mounting};
 
 /// Four kilohertz, commensurate with the swings, so that records hold whole cycles.
 const PERIOD_S: f64 = 0.000_25;
@@ -65,18 +66,8 @@ fn table(
         motion,
         servo,
         site,
-        axis: AxisConfig {
-            tilt_north_arcsec: 0.0,
-            tilt_east_arcsec: 0.0,
-            wobble_arcsec: 0.0,
-            wobble_harmonic: 1,
-        },
-        mounting: MountingConfig {
-            misalignment_arcsec: 0.0,
-            misalignment_azimuth_deg: 0.0,
-            start_angle_deg: 0.0,
-            axis_along_table: CaseAxis::Z,
-        },
+        axis: true_axis(),
+        mounting: true_mounting(),
     };
     Turntable::new(&config, warm_up_s, sample_period_s)
 }

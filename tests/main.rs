@@ -30,4 +30,7 @@ mod scenario_errors;
 mod suite;
 mod support;
 mod timing;
+mod turntable_geometry;
+mod turntable_profiles;
+mod turntable_script;
 mod waveform;

@@ -435,7 +435,8 @@ fn two_motions_in_one_file_are_refused_but_a_later_file_replaces_the_motion() {
         complaints("[turntable.static]\n[turntable.rotation]\nrate_deg_per_s = 1.0\n"),
         [
             "x.toml:5:12: turntable.rotation contradicts turntable.static: give exactly one motion: \
-          turntable.static, turntable.swing, turntable.steps, turntable.rotation"
+          turntable.static, turntable.swing, turntable.steps, turntable.rotation, \
+             turntable.trapezoid, turntable.chirp, turntable.script"
         ]
     );
     let suite = Suite::new(&[

@@ -6,7 +6,9 @@ use super::assembly_motion::hardest;
 use crate::gyro::MotionExtremes;
 use crate::metrics::Motion;
 use crate::scenario::{MotionConfig, Scenario, ServoConfig};
-use crate::turntable::{command_rate_max_rad_per_s, input_axis_bounds, step_indices};
+use crate::turntable::{
+    command_extremes, command_rate_max_rad_per_s, input_axis_bounds, step_indices,
+};
 use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
 /// Motion as the metrics see it; a staircase's last step counts from the start of the record.
@@ -16,6 +18,9 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
         MotionConfig::Swing(swing) => Motion::Swing {
             frequency_hz: swing.frequency_hz,
         },
+        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => {
+            Motion::General
+        }
         MotionConfig::Steps(steps) => {
             let rates = &steps.rates_deg_per_s;
             let last_step_index = step_indices(steps, 0.0, sample_period_s)
@@ -46,7 +51,7 @@ pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
 
 /// The hardest motion on the input axis, of an assembly on any; the loop starts from zero rate.
 pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
-    let command = command_extremes(scenario);
+    let command = table_extremes(scenario);
     let axis = input_axis_bounds(&scenario.turntable);
     let commanded = command.rate_rad_per_s;
     let input = MotionExtremes {
@@ -62,8 +67,9 @@ pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
 }
 
 /// The hardest motion about the table axis but for the Earth's; the servo starts settled.
-fn command_extremes(scenario: &Scenario) -> MotionExtremes {
+fn table_extremes(scenario: &Scenario) -> MotionExtremes {
     let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
+    let own = command_extremes(&scenario.turntable.motion);
     let (jump, acceleration) = match &scenario.turntable.motion {
         MotionConfig::Static(_) => (0.0, 0.0),
         MotionConfig::Swing(swing) => (0.0, TAU * swing.frequency_hz * commanded),
@@ -75,6 +81,10 @@ fn command_extremes(scenario: &Scenario) -> MotionExtremes {
                 (commanded, 0.0)
             }
         }
+        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => own
+            .map_or((0.0, 0.0), |own| {
+                (own.jump_rad_per_s, own.acceleration_rad_per_s2)
+            }),
         MotionConfig::Steps(steps) => {
             let rates = &steps.rates_deg_per_s;
             let first = rates.first().map_or(0.0, |rate| rate.abs());

@@ -13,8 +13,10 @@ pub enum Applies {
     Steps,
     /// Steady motion or swing.
     SteadyOrSwing,
-    /// Swing or steps.
+    /// Every motion but rest and constant rate.
     Moving,
+    /// Steady motion, swing or steps: a signal that can be told from noise.
+    Separable,
     /// Every record of a filter that is a hardware pipeline.
     Pipeline,
 }
@@ -137,7 +139,7 @@ const CATALOGUE: &[KnownMetric] = &[
     any(
         "noise_std_deg_per_h",
         "deg/h",
-        Applies::Always,
+        Applies::Separable,
         "standard deviation of the samples about the signal: mean, fitted sine, or settled rate",
     ),
     filter(
@@ -149,7 +151,7 @@ const CATALOGUE: &[KnownMetric] = &[
     filter(
         "noise_gain",
         "1",
-        Applies::Always,
+        Applies::Separable,
         "variance about the signal over that of raw",
     ),
     filter(

@@ -8,7 +8,7 @@ use super::psd::{log_binned, segment_samples, welch};
 use super::record::{FilterFacts, Motion, Record, Settings};
 use super::settling::{settling, tail_start};
 use super::steady::{
-    LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_steady, put_mean, put_mean_ratio,
+    LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_mean_ratio, measure_steady, put_mean,
     put_noise_gain, put_noise_std,
 };
 use super::support::{SAMPLES_MIN, support};
@@ -79,6 +79,13 @@ fn measure_motion(
             Ok(())
         }
         Motion::Swing { frequency_hz } => measure_swing(record, frequency_hz, filter, metrics),
+        Motion::General => {
+            measure_tracking(record, metrics);
+            if filter.is_some() {
+                measure_mean_ratio(record, metrics);
+            }
+            Ok(())
+        }
         Motion::Steps {
             last_step_index,
             step_deg_per_h,
@@ -90,10 +97,6 @@ fn measure_motion(
 }
 
 /// Metrics of a staircase: settling after the last step, noise and means.
-///
-/// Mean and tracking error are those of the whole record. The mean's interval comes from twenty
-/// blocks of the differences from the truth, so that the staircase itself does not widen it; the
-/// tracking error, which a few transients make, has none.
 fn measure_steps(
     record: &Record,
     last_step_index: usize,
@@ -117,6 +120,30 @@ fn measure_steps(
         }
         Err(reason) => metrics.miss("settling_time_s", reason),
     }
+    measure_tracking(record, metrics);
+    let start = tail_start(values.len(), last_step_index.min(values.len()));
+    if values.len() - start < SAMPLES_MIN {
+        return;
+    }
+    let products = |series: &[f64]| {
+        let tail = &series[start..];
+        LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS)
+    };
+    let channel = products(values);
+    put_noise_std(&channel.autocovariance(), values.len() - start, metrics);
+    if filter.is_some() {
+        let level = interval::mean(&record.raw_deg_per_h[start..]).abs();
+        put_noise_gain(&channel, &products(record.raw_deg_per_h), level, metrics);
+        measure_mean_ratio(record, metrics);
+    }
+}
+
+/// Mean and tracking error over the whole record of a motion that is known but not modelled.
+///
+/// The mean's interval comes from twenty blocks of the differences from the truth, so that the
+/// motion itself does not widen it; the tracking error, which a few transients make, has none.
+fn measure_tracking(record: &Record, metrics: &mut ChannelMetrics) {
+    let values = record.channel_deg_per_h;
     let errors: Vec<f64> = values
         .iter()
         .zip(record.truth_deg_per_h)
@@ -139,25 +166,6 @@ fn measure_steps(
         "tracking_error_rms_deg_per_h",
         Estimate::exact(square.sqrt()),
     );
-    let start = tail_start(values.len(), last_step_index.min(values.len()));
-    if values.len() - start < SAMPLES_MIN {
-        return;
-    }
-    let products = |series: &[f64]| {
-        let tail = &series[start..];
-        LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS)
-    };
-    let channel = products(values);
-    put_noise_std(&channel.autocovariance(), values.len() - start, metrics);
-    if filter.is_some() {
-        let level = interval::mean(&record.raw_deg_per_h[start..]).abs();
-        put_noise_gain(&channel, &products(record.raw_deg_per_h), level, metrics);
-        put_mean_ratio(
-            &equal_block_means(values, RATIO_BLOCKS),
-            &equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS),
-            metrics,
-        );
-    }
 }
 
 /// Enters the DC gains found by replay, which are exact up to rounding.

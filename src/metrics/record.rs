@@ -29,6 +29,8 @@ pub enum Motion {
         /// Swing frequency, Hz.
         frequency_hz: f64,
     },
+    /// Any other known motion, such as trapezoids or a sweep.
+    General,
     /// Steps of rate.
     Steps {
         /// First sample of the last rate, counted within the record.

@@ -250,7 +250,7 @@ pub(crate) fn put_noise_gain(
 }
 
 /// Ratio of the means, if raw's mean can be told from zero.
-fn measure_mean_ratio(record: &Record, metrics: &mut ChannelMetrics) {
+pub(crate) fn measure_mean_ratio(record: &Record, metrics: &mut ChannelMetrics) {
     let channel = equal_block_means(record.channel_deg_per_h, RATIO_BLOCKS);
     let raw = equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS);
     put_mean_ratio(&channel, &raw, metrics);

@@ -109,7 +109,7 @@ pub fn support(
         Motion::Steps {
             last_step_index, ..
         } => check_tail(metric, samples, *last_step_index),
-        Motion::Steady => Ok(()),
+        Motion::Steady | Motion::General => Ok(()),
     }
 }
 
@@ -151,12 +151,19 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
     let fits = matches!(
         (known.applies, motion),
         (Applies::Always | Applies::Pipeline, _)
-            | (Applies::Steady | Applies::SteadyOrSwing, Motion::Steady)
             | (
-                Applies::Swing | Applies::SteadyOrSwing | Applies::Moving,
+                Applies::Steady | Applies::SteadyOrSwing | Applies::Separable,
+                Motion::Steady
+            )
+            | (
+                Applies::Swing | Applies::SteadyOrSwing | Applies::Moving | Applies::Separable,
                 Motion::Swing { .. }
             )
-            | (Applies::Steps | Applies::Moving, Motion::Steps { .. })
+            | (
+                Applies::Steps | Applies::Moving | Applies::Separable,
+                Motion::Steps { .. }
+            )
+            | (Applies::Moving, Motion::General)
     );
     if fits {
         return Ok(());
@@ -167,7 +174,10 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
         Applies::Swing => "a swing",
         Applies::Steps => "steps",
         Applies::SteadyOrSwing => "a swing or a table at rest or at constant rate",
-        Applies::Moving => "a swing or steps",
+        Applies::Moving => "a moving table",
+        Applies::Separable => {
+            "rest, constant rate, a swing or steps, where noise can be told from motion,"
+        }
     };
     Err(format!("`{}` is defined for {wanted} only", known.name))
 }
@@ -222,6 +232,7 @@ mod tests {
                 Motion::Swing {
                     frequency_hz: 900.0,
                 },
+                Motion::General,
                 Motion::Steps {
                     last_step_index: 0,
                     step_deg_per_h: 1.0,

@@ -79,6 +79,8 @@ const STEPS_HEADLINE: &[&str] = &[
     "noise_std_deg_per_h",
 ];
 
+const GENERAL_HEADLINE: &[&str] = &["tracking_error_rms_deg_per_h", "mean_error_deg_per_h"];
+
 /// Metrics of every motion that stand last: how a channel failed, what a pipeline costs.
 const ALWAYS: &[(&str, &str)] = &[
     ("predicted_failure_s", "predicted failure"),
@@ -91,7 +93,11 @@ fn known(motion: &MotionConfig) -> &'static [(&'static str, &'static str)] {
     match motion {
         MotionConfig::Static(_) => STATIC,
         MotionConfig::Swing(_) => SWING,
-        MotionConfig::Steps(_) | MotionConfig::Rotation(_) => STEPS,
+        MotionConfig::Steps(_)
+        | MotionConfig::Rotation(_)
+        | MotionConfig::Trapezoid(_)
+        | MotionConfig::Chirp(_)
+        | MotionConfig::Script(_) => STEPS,
     }
 }
 
@@ -149,6 +155,9 @@ pub(crate) fn headline(motion: &MotionConfig, metrics: &ChannelMetrics) -> Vec<(
     let keys = match motion {
         MotionConfig::Static(_) => STATIC_HEADLINE,
         MotionConfig::Swing(_) => SWING_HEADLINE,
+        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => {
+            GENERAL_HEADLINE
+        }
         MotionConfig::Steps(_) | MotionConfig::Rotation(_) => STEPS_HEADLINE,
     };
     keys.iter()

@@ -13,10 +13,10 @@ use super::turntable_config::MotionConfig;
 pub(crate) const RESERVED: [&str; 3] = ["raw", "truth", "time_s"];
 
 /// Fewest output samples per cycle of a swing.
-const SAMPLES_PER_CYCLE_MIN: f64 = 8.0;
+pub(super) const SAMPLES_PER_CYCLE_MIN: f64 = 8.0;
 
 /// Relative slack when times are compared, so that `3 x 0.1 s` fits into 0.3 s.
-const TIME_SLACK: f64 = 1e-9;
+pub(super) const TIME_SLACK: f64 = 1e-9;
 
 /// Keys that only a hardware pipeline of either kind reads.
 const RLS_HARDWARE_KEYS: &[&str] = &["number_format", "clock_mhz", "division", "update_order"];
@@ -36,13 +36,13 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.errors
 }
 
-struct Checks<'a> {
-    resolved: &'a Resolved,
+pub(super) struct Checks<'a> {
+    pub(super) resolved: &'a Resolved,
     errors: Vec<ScenarioError>,
 }
 
 impl Checks<'_> {
-    fn complain(&mut self, key_path: &str, message: String) {
+    pub(super) fn complain(&mut self, key_path: &str, message: String) {
         let location = self.resolved.locate(key_path);
         self.errors.push(ScenarioError::at(location, message));
     }
@@ -105,11 +105,14 @@ impl Checks<'_> {
             MotionConfig::Static(_) => {}
             MotionConfig::Swing(swing) => {
                 self.soft_start("turntable.swing.soft_start_s", swing.soft_start_s);
-                self.swing_frequency(swing.frequency_hz);
+                self.frequency("turntable.swing.frequency_hz", swing.frequency_hz);
             }
             MotionConfig::Rotation(rotation) => {
                 self.soft_start("turntable.rotation.soft_start_s", rotation.soft_start_s);
             }
+            MotionConfig::Trapezoid(trapezoid) => self.trapezoid(trapezoid),
+            MotionConfig::Chirp(chirp) => self.chirp(chirp),
+            MotionConfig::Script(script) => self.script(&script.points),
             MotionConfig::Steps(steps) => {
                 let count = steps.rates_deg_per_s.len();
                 let count_f64 = u32::try_from(count).map_or(f64::INFINITY, f64::from);
@@ -126,7 +129,7 @@ impl Checks<'_> {
         }
     }
 
-    fn soft_start(&mut self, path: &str, soft_start_s: f64) {
+    pub(super) fn soft_start(&mut self, path: &str, soft_start_s: f64) {
         let warm_up_s = self.resolved.scenario.warm_up_s;
         if soft_start_s > warm_up_s {
             let message = format!(
@@ -141,18 +144,24 @@ impl Checks<'_> {
         }
     }
 
-    fn swing_frequency(&mut self, frequency_hz: f64) {
+    /// Period of the rate words, s, but for errors that the gyro's own check finds.
+    pub(super) fn sample_period_s(&self) -> f64 {
         let gyro = &self.resolved.scenario.gyro;
         // A half modulation period is the transit time n L / c of the coil.
         let half_period_s = gyro.coil.group_index * gyro.coil.length_m / SPEED_OF_LIGHT_M_PER_S;
-        let output_rate_hz = 1.0 / (half_period_s * f64::from(gyro.output.half_periods_per_sample));
+        half_period_s * f64::from(gyro.output.half_periods_per_sample)
+    }
+
+    /// Refuses a frequency that the cubics between samples cannot follow.
+    pub(super) fn frequency(&mut self, path: &str, frequency_hz: f64) {
+        let output_rate_hz = 1.0 / self.sample_period_s();
         let frequency_hz_max = output_rate_hz / SAMPLES_PER_CYCLE_MIN;
         if frequency_hz > frequency_hz_max {
             let message = format!(
-                "turntable.swing.frequency_hz = {frequency_hz:?} Hz is too fast: allowed up to \
+                "{path} = {frequency_hz:?} Hz is too fast: allowed up to \
                  {frequency_hz_max:.6} Hz, 8 samples a cycle at the output rate of {output_rate_hz:.6} Hz"
             );
-            self.complain("turntable.swing.frequency_hz", message);
+            self.complain(path, message);
         }
     }
 

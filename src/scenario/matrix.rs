@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::address::{self, Step};
 use super::error::ScenarioError;
 use super::resolved::{Draft, Resolved, SweepPoint};
+use super::script;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
 
@@ -148,7 +149,7 @@ fn axis(
     };
     if matches!(
         key.path,
-        "schema" | "name" | "extends" | "matrix" | "description"
+        "schema" | "name" | "extends" | "matrix" | "description" | script::FILE_KEY
     ) {
         return Err(format!("{written} cannot be swept"));
     }

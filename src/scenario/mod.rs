@@ -10,6 +10,7 @@ mod channels;
 mod check;
 mod config;
 mod cross;
+mod cross_turntable;
 mod defaults;
 mod emit;
 mod error;
@@ -22,6 +23,7 @@ mod manifest;
 mod matrix;
 mod resolved;
 mod schema;
+mod script;
 mod source;
 mod suite;
 mod tree;
@@ -49,8 +51,9 @@ pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use suite::load_suite;
 pub use turntable_config::{
-    AxisConfig, CaseAxis, MotionConfig, MountingConfig, RotationConfig, SecondOrderServoConfig,
-    ServoConfig, SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
+    AxisConfig, CaseAxis, ChirpConfig, MotionConfig, MountingConfig, Progression, RotationConfig,
+    ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
+    StepsConfig, SwingConfig, TrapezoidConfig, TurntableConfig,
 };
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use super::cross;
 use super::defaults::fill;
 use super::emit::to_toml;
 use super::error::{Location, ScenarioError};
+use super::script;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
 
@@ -45,7 +46,7 @@ pub struct Resolved {
     pub file: String,
     /// BLAKE3 of [`Resolved::to_toml`], hexadecimal.
     pub digest: String,
-    /// Every file it was read from, the innermost base first.
+    /// Every file it was read from, the innermost base first and the table of a script last.
     pub inputs: Vec<InputFile>,
     /// Which point of a sweep it is; `None` without a matrix.
     pub sweep: Option<SweepPoint>,
@@ -112,6 +113,9 @@ impl Draft {
     /// # Errors
     /// Every complaint about the scenario.
     pub(crate) fn resolve(mut self) -> Result<Resolved, Vec<ScenarioError>> {
+        let sources = Arc::make_mut(&mut self.sources);
+        script::read_into(&mut self.root, sources, &mut self.inputs)
+            .map_err(|error| vec![error])?;
         let mut errors = check_values(&mut self.root, self.root_mark, &self.sources);
         if errors.is_empty() || !self.is_other_version() {
             fill(&mut self.root);

@@ -9,7 +9,8 @@ use super::error::{Location, ScenarioError};
 struct Source {
     shown: String,
     text: String,
-    is_file: bool,
+    /// The path as seen from the scenario's own folder; `None` for a `--set` argument.
+    label: Option<Label>,
 }
 
 /// Every text of one scenario: its files and the `--set` arguments.
@@ -27,11 +28,11 @@ pub(crate) struct Mark {
 
 impl Sources {
     /// Adds the text of a file; returns its index.
-    pub(crate) fn add_file(&mut self, shown: String, text: String) -> usize {
+    pub(crate) fn add_file(&mut self, shown: String, text: String, label: Label) -> usize {
         self.0.push(Source {
             shown,
             text,
-            is_file: true,
+            label: Some(label),
         });
         self.0.len() - 1
     }
@@ -41,15 +42,28 @@ impl Sources {
         self.0.push(Source {
             shown: format!("--set {argument}"),
             text: String::new(),
-            is_file: false,
+            label: None,
         });
         self.0.len() - 1
+    }
+
+    /// Path and label of a file that is named at a mark, relative to the file that names it; what a
+    /// `--set` argument names is relative to the working directory.
+    pub(crate) fn beside(&self, mark: Mark, file: &str) -> (PathBuf, Label) {
+        let source = &self.0[mark.source];
+        match &source.label {
+            Some(label) => {
+                let folder = Path::new(&source.shown).parent().unwrap_or(Path::new(""));
+                (folder.join(file), label.of_base(file))
+            }
+            None => (PathBuf::from(file), Label::of_scenario(Path::new(file))),
+        }
     }
 
     /// Where a mark points.
     pub(crate) fn locate(&self, mark: Mark) -> Location {
         let source = &self.0[mark.source];
-        if !source.is_file {
+        if source.label.is_none() {
             return Location::of_file(source.shown.clone());
         }
         let mut end = mark.start.min(source.text.len());
@@ -110,7 +124,7 @@ fn clean(path: &Path) -> PathBuf {
 
 /// The path of an input as seen from the scenario's own folder.
 ///
-/// It is made from the `extends` keys alone, never from the working directory or the way in which
+/// It is made from the keys that name files alone, never from the working directory or the way in which
 /// a path was typed, so that the same files always carry the same labels.
 #[derive(Clone, Debug)]
 pub(crate) struct Label(PathBuf);
@@ -121,10 +135,10 @@ impl Label {
         Self(path.file_name().map(PathBuf::from).unwrap_or_default())
     }
 
-    /// The label of the file that a labelled one extends.
-    pub(crate) fn of_base(&self, extends: &str) -> Self {
+    /// The label of the file that a labelled one names.
+    pub(crate) fn of_base(&self, named: &str) -> Self {
         let folder = self.0.parent().unwrap_or(Path::new(""));
-        Self(clean(&folder.join(extends)))
+        Self(clean(&folder.join(named)))
     }
 
     /// The label as results carry it: forward slashes; the file name alone of an absolute path.

@@ -209,7 +209,7 @@ impl Chain {
             let location = Location::of_file(shown.clone());
             vec![ScenarioError::at(location, "the file is not UTF-8 text")]
         })?;
-        let source = self.sources.add_file(shown, text.clone());
+        let source = self.sources.add_file(shown, text.clone(), label.clone());
         let root = parse_document(source, &text).map_err(|error| {
             let mark = Mark {
                 source,

@@ -129,6 +129,8 @@ fn each_alternative_of_the_reference_validates_when_enabled() {
         };
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("base.toml"), reference_toml()).unwrap();
+        let motion = "time_s,rate_deg_per_s\n0,0\n20,1\n";
+        std::fs::write(folder.path().join("motion.csv"), motion).unwrap();
         let file = folder.path().join("x.toml");
         let extends = if base.starts_with("extends") {
             ""

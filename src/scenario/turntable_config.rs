@@ -5,7 +5,7 @@ use serde::Deserialize;
 /// Rate table: exactly one motion.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct TurntableConfig {
-    /// What the table is told to do (`[turntable.static]`, `.swing`, `.steps` or `.rotation`).
+    /// What the table is told to do (`[turntable.static]`, `.swing`, `.steps`, ...).
     #[serde(flatten)]
     pub motion: MotionConfig,
     /// How the table follows (`[turntable.servo.ideal]` or `.second_order`).
@@ -30,6 +30,12 @@ pub enum MotionConfig {
     Steps(StepsConfig),
     /// Constant rate.
     Rotation(RotationConfig),
+    /// Trapezoids of rate.
+    Trapezoid(TrapezoidConfig),
+    /// A swing whose frequency sweeps.
+    Chirp(ChirpConfig),
+    /// A table of rates or angles.
+    Script(ScriptConfig),
 }
 
 /// At rest: nothing to set.
@@ -70,6 +76,93 @@ pub struct RotationConfig {
     pub rate_deg_per_s: f64,
     /// Raised-cosine soft start, s, inside the warm-up.
     pub soft_start_s: f64,
+}
+
+/// Trapezoids of rate: accelerate, hold, decelerate, rest; the first begins with the record.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrapezoidConfig {
+    /// Rate at the top, deg/s.
+    pub rate_deg_per_s: f64,
+    /// Acceleration of both ramps in magnitude, deg/s^2.
+    pub acceleration_deg_per_s2: f64,
+    /// Time at the top, s.
+    pub hold_s: f64,
+    /// Time at rest after each, s.
+    pub rest_s: f64,
+    /// How often it is repeated.
+    pub cycles: u32,
+    /// Whether each is followed by one the other way.
+    pub both_senses: bool,
+}
+
+impl TrapezoidConfig {
+    /// Number of trapezoids, those of both senses.
+    #[must_use]
+    pub fn count(&self) -> u32 {
+        self.cycles * if self.both_senses { 2 } else { 1 }
+    }
+
+    /// Time from the start of the first to the end of the last, s.
+    #[must_use]
+    pub fn length_s(&self) -> f64 {
+        let count = f64::from(self.count());
+        let ramp_s = self.rate_deg_per_s.abs() / self.acceleration_deg_per_s2;
+        count * (2.0 * ramp_s + self.hold_s) + (count - 1.0) * self.rest_s
+    }
+}
+
+/// Sine sweep: a swing at the first frequency through the warm-up, the sweep from the start of the
+/// record, then the soft stop at the last frequency and rest.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChirpConfig {
+    /// Rate amplitude, deg/s.
+    pub rate_amplitude_deg_per_s: Option<f64>,
+    /// Angle amplitude, deg; the rate amplitude is `2 pi f` times this at every frequency.
+    pub angle_amplitude_deg: Option<f64>,
+    /// Frequency before the sweep, Hz.
+    pub start_frequency_hz: f64,
+    /// Frequency after the sweep, Hz.
+    pub end_frequency_hz: f64,
+    /// Length of the sweep, s.
+    pub sweep_s: f64,
+    /// How the frequency moves.
+    pub progression: Progression,
+    /// Raised-cosine soft start, s, inside the warm-up.
+    pub soft_start_s: f64,
+    /// Raised-cosine soft stop, s, after the sweep.
+    pub soft_stop_s: f64,
+}
+
+/// How the frequency of a sweep moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Progression {
+    /// By as many hertz in every second.
+    Linear,
+    /// By the same factor in every second.
+    Logarithmic,
+}
+
+/// A motion given point by point.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScriptConfig {
+    /// The points; the reader has put those of a file in their place.
+    pub points: ScriptPoints,
+}
+
+/// Points of a script; exactly one of rates and angles is given, as many as there are times.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScriptPoints {
+    /// Times from the start of the record, s; the first is 0 and each is later than the last.
+    pub time_s: Vec<f64>,
+    /// Rates, deg/s, joined by straight lines.
+    pub rate_deg_per_s: Option<Vec<f64>>,
+    /// Angles, deg, joined by monotone cubics.
+    pub angle_deg: Option<Vec<f64>>,
 }
 
 /// How the table follows its command.

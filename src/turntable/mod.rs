@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  motion ──> profile ──command──> servo ──table rate──> platform ──truth──> gyro
-//!             swing, steps,        ideal or              wobble, mounting,
+//!             swing, script,       ideal or              wobble, mounting,
 //!             rotation, ...        second order          + Earth rate
 //! ```
 //!
@@ -23,6 +23,7 @@ mod table;
 
 pub use axis::{InputAxisBounds, earth_rate_rad_per_s, input_axis_bounds};
 pub use profile::{
-    command_rate_max_rad_per_s, first_measured_index, step_indices, swing_rate_amplitude_rad_per_s,
+    CommandExtremes, command_extremes, command_rate_max_rad_per_s, first_measured_index,
+    step_indices, swing_rate_amplitude_rad_per_s,
 };
 pub use table::Turntable;

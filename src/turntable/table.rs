@@ -30,8 +30,8 @@ impl Turntable {
     /// * `sample_period_s`: s, > 0; one segment is delivered per sample.
     ///
     /// # Panics
-    /// If a swing has not exactly one amplitude or a staircase no rate; the scenario reader
-    /// refuses both.
+    /// If a swing or a sweep has not exactly one amplitude, a staircase no rate, or a script not
+    /// either rates or angles; the scenario reader refuses them.
     #[must_use]
     pub fn new(config: &TurntableConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         let profile = Profile::new(&config.motion, warm_up_s, sample_period_s);
@@ -67,11 +67,11 @@ impl Turntable {
     /// rates at its end are truth at that stamp.
     ///
     /// The case axis named by `turntable.mounting.axis_along_table` moves as the input axis of
-    /// [`Turntable::next_segment`], misalignment included, up to rounding. The next two of the cycle x, y, z, x
-    /// complete it to a right-handed triad: without misalignment the first points along the mark
-    /// of the platform, which is the zero of the table angle, the second a quarter turn, in the
-    /// positive sense of rotation, from it. Both functions advance the table by one sample: a table
-    /// is asked by one of them only.
+    /// [`Turntable::next_segment`], misalignment included, up to rounding. The next two of the cycle
+    /// x, y, z, x complete it to a right-handed triad: without misalignment the first points along
+    /// the mark of the platform, which is the zero of the table angle, the second a quarter turn, in
+    /// the positive sense of rotation, from it. Both functions advance the table by one sample: a
+    /// table is asked by one of them only.
     pub fn next_platform_segments(&mut self) -> [MotionSegment; 3] {
         let motion = self.turn();
         self.platform.case_segments(&motion, self.angle.rad())

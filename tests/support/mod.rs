@@ -9,6 +9,7 @@ pub(crate) mod gyro_cases;
 pub(crate) mod reference_gyro;
 pub(crate) mod run;
 pub(crate) mod stimulus;
+pub(crate) mod turntable_cases;
 
 /// Asserts that `got` equals `want` within `rtol * |want| + atol`.
 #[track_caller]

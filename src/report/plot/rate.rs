@@ -84,6 +84,8 @@ fn window(
             let end = (step + index(STEP_WINDOW_S.1 / period_s)).min(truth.len());
             (end > start + 1).then(|| (start..end, "around the largest step".to_owned()))
         }
+        // Their motion shows in the envelope and in the means.
+        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => None,
         MotionConfig::Static(_) | MotionConfig::Rotation(_) => None,
     }
 }

@@ -42,12 +42,35 @@ pub(crate) const GROUPS: &[Group] = &[
     Group {
         table: "turntable",
         noun: "motion",
-        alternatives: &["static", "swing", "steps", "rotation"],
+        alternatives: &[
+            "static",
+            "swing",
+            "steps",
+            "rotation",
+            "trapezoid",
+            "chirp",
+            "script",
+        ],
     },
     Group {
         table: "turntable.swing",
         noun: "amplitude",
         alternatives: &["rate_amplitude_deg_per_s", "angle_amplitude_deg"],
+    },
+    Group {
+        table: "turntable.chirp",
+        noun: "amplitude",
+        alternatives: &["rate_amplitude_deg_per_s", "angle_amplitude_deg"],
+    },
+    Group {
+        table: "turntable.script",
+        noun: "source of points",
+        alternatives: &["file", "points"],
+    },
+    Group {
+        table: "turntable.script.points",
+        noun: "kind of values",
+        alternatives: &["rate_deg_per_s", "angle_deg"],
     },
     Group {
         table: "turntable.servo",

@@ -2,9 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use super::chirp::Chirp;
 use super::extremes::swing_rate_amplitude_rad_per_s;
+use super::script::Script;
 use super::soft_start::SoftStart;
 use super::steps::step_indices;
+use super::trapezoid::Trapezoids;
 use crate::scenario::MotionConfig;
 use crate::units::deg_per_s_to_rad_per_s;
 
@@ -15,6 +18,14 @@ pub(super) struct Instant {
     pub(super) rate: f64,
     /// rad/s per sample.
     pub(super) slope: f64,
+}
+
+impl Instant {
+    /// Standing still.
+    pub(super) const REST: Self = Self {
+        rate: 0.0,
+        slope: 0.0,
+    };
 }
 
 /// Shape of a command.
@@ -30,6 +41,12 @@ pub(super) enum Shape {
     },
     /// Rates, rad/s, and the index of the first sample of each but the first.
     Steps { rates: Vec<f64>, changes: Vec<u64> },
+    /// Trapezoids in a row.
+    Trapezoids(Trapezoids),
+    /// A swing whose frequency sweeps.
+    Chirp(Chirp),
+    /// Tabulated rates or angles.
+    Script(Script),
 }
 
 impl Shape {
@@ -37,23 +54,32 @@ impl Shape {
     pub(super) fn new(motion: &MotionConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         let soft_start = |length_s| SoftStart::new(length_s, warm_up_s, sample_period_s);
         match motion {
-            MotionConfig::Static(_) => Shape::Rotation {
+            MotionConfig::Static(_) => Self::Rotation {
                 rate: 0.0,
                 soft_start: soft_start(0.0),
             },
-            MotionConfig::Rotation(rotation) => Shape::Rotation {
+            MotionConfig::Rotation(rotation) => Self::Rotation {
                 rate: deg_per_s_to_rad_per_s(rotation.rate_deg_per_s),
                 soft_start: soft_start(rotation.soft_start_s),
             },
-            MotionConfig::Swing(swing) => Shape::Swing {
+            MotionConfig::Swing(swing) => Self::Swing {
                 amplitude: swing_rate_amplitude_rad_per_s(swing),
                 cycles_per_sample: swing.frequency_hz * sample_period_s,
                 soft_start: soft_start(swing.soft_start_s),
             },
+            MotionConfig::Trapezoid(config) => {
+                Self::Trapezoids(Trapezoids::new(config, warm_up_s, sample_period_s))
+            }
+            MotionConfig::Chirp(config) => {
+                Self::Chirp(Chirp::new(config, warm_up_s, sample_period_s))
+            }
+            MotionConfig::Script(config) => {
+                Self::Script(Script::new(&config.points, warm_up_s, sample_period_s))
+            }
             MotionConfig::Steps(steps) => {
                 assert!(!steps.rates_deg_per_s.is_empty(), "a staircase has a rate");
                 let rates = steps.rates_deg_per_s.iter();
-                Shape::Steps {
+                Self::Steps {
                     rates: rates.copied().map(deg_per_s_to_rad_per_s).collect(),
                     changes: step_indices(steps, warm_up_s, sample_period_s),
                 }
@@ -85,6 +111,9 @@ impl Shape {
                         * (ramp * TAU * cycles_per_sample * cosine + ramp_slope * sine),
                 }
             }
+            Self::Trapezoids(trapezoids) => trapezoids.at(instant),
+            Self::Chirp(chirp) => chirp.at(instant),
+            Self::Script(script) => script.at(instant),
             Self::Steps { rates, .. } => Instant {
                 rate: rates[0],
                 slope: 0.0,

@@ -22,6 +22,13 @@ impl SoftStart {
         }
     }
 
+    /// A ramp of any length, >= 0 s.
+    pub(super) fn of(length_s: f64, sample_period_s: f64) -> Self {
+        Self {
+            samples: length_s / sample_period_s,
+        }
+    }
+
     /// Value and slope per sample at `instant` samples from the start.
     pub(super) fn at(self, instant: f64) -> (f64, f64) {
         if instant >= self.samples {

@@ -1,0 +1,117 @@
+//! Checks across the values of trapezoids, chirps and scripts.
+
+use super::cross::{Checks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
+use super::turntable_config::{ChirpConfig, ScriptPoints, TrapezoidConfig};
+
+impl Checks<'_> {
+    /// Refuses ramps of a few samples and trapezoids that the record cuts off.
+    pub(super) fn trapezoid(&mut self, trapezoid: &TrapezoidConfig) {
+        let duration_s = self.resolved.scenario.duration_s;
+        let period_s = self.sample_period_s();
+        let rate = trapezoid.rate_deg_per_s.abs();
+        let acceleration = trapezoid.acceleration_deg_per_s2;
+        if rate <= 0.0 {
+            let message = "turntable.trapezoid.rate_deg_per_s = 0.0 deg/s is no motion: allowed \
+                           [-2000, 2000] deg/s without 0; use [turntable.static]";
+            self.complain("turntable.trapezoid.rate_deg_per_s", message.to_owned());
+            return;
+        }
+        let acceleration_max = rate / (SAMPLES_PER_CYCLE_MIN * period_s);
+        if acceleration > acceleration_max {
+            let message = format!(
+                "turntable.trapezoid.acceleration_deg_per_s2 = {acceleration:?} deg/s^2 is too \
+                 steep: allowed up to {acceleration_max:.6} deg/s^2, 8 output samples to reach \
+                 {rate:?} deg/s"
+            );
+            self.complain("turntable.trapezoid.acceleration_deg_per_s2", message);
+        }
+        let needed_s = trapezoid.length_s();
+        if needed_s > duration_s * (1.0 + TIME_SLACK) {
+            let message = format!(
+                "turntable.trapezoid.cycles = {}: the motion takes {needed_s:?} s, but duration_s = \
+                 {duration_s:?} s",
+                trapezoid.cycles
+            );
+            let path = "turntable.trapezoid.cycles";
+            let is_written = self.resolved.is_written(path);
+            self.complain(if is_written { path } else { "duration_s" }, message);
+        }
+    }
+
+    /// Refuses frequencies the record cannot hold and a sweep that outlasts it.
+    pub(super) fn chirp(&mut self, chirp: &ChirpConfig) {
+        self.soft_start("turntable.chirp.soft_start_s", chirp.soft_start_s);
+        self.frequency(
+            "turntable.chirp.start_frequency_hz",
+            chirp.start_frequency_hz,
+        );
+        self.frequency("turntable.chirp.end_frequency_hz", chirp.end_frequency_hz);
+        let duration_s = self.resolved.scenario.duration_s;
+        if chirp.sweep_s > duration_s * (1.0 + TIME_SLACK) {
+            let message = format!(
+                "turntable.chirp.sweep_s = {:?} s is too long: allowed up to duration_s = \
+                 {duration_s:?} s",
+                chirp.sweep_s
+            );
+            self.complain("turntable.chirp.sweep_s", message);
+        }
+    }
+
+    /// Refuses columns of different lengths, times that do not increase, and a script that is too
+    /// short or too fine for the record.
+    pub(super) fn script(&mut self, points: &ScriptPoints) {
+        let times = &points.time_s;
+        let path = |index: usize| format!("turntable.script.points.time_s[{index}]");
+        for (name, values) in [
+            ("rate_deg_per_s", &points.rate_deg_per_s),
+            ("angle_deg", &points.angle_deg),
+        ] {
+            if let Some(values) = values
+                && values.len() != times.len()
+            {
+                let key = format!("turntable.script.points.{name}");
+                let message = format!(
+                    "{key} has {} values, but there are {} times: give one for each",
+                    values.len(),
+                    times.len()
+                );
+                self.complain(&key, message);
+            }
+        }
+        if let Some(first) = times.first()
+            && first.abs() > 0.0
+        {
+            let message = format!(
+                "{} = {first:?} s: the first time must be 0.0 s, the start of the record",
+                path(0)
+            );
+            self.complain(&path(0), message);
+        }
+        let period_s = self.sample_period_s();
+        let close = times
+            .windows(2)
+            .position(|pair| pair[1] - pair[0] < period_s);
+        if let Some(before) = close {
+            let (earlier, later) = (times[before], times[before + 1]);
+            let message = format!(
+                "{} = {later:?} s is too early: allowed from {:?} s, one output sample after the \
+                 {earlier:?} s before it",
+                path(before + 1),
+                earlier + period_s
+            );
+            self.complain(&path(before + 1), message);
+        }
+        let duration_s = self.resolved.scenario.duration_s;
+        if let Some(last) = times.last()
+            && *last < duration_s * (1.0 - TIME_SLACK)
+        {
+            let index = times.len() - 1;
+            let message = format!(
+                "{} = {last:?} s ends the script too early: expected at least duration_s = \
+                 {duration_s:?} s",
+                path(index)
+            );
+            self.complain(&path(index), message);
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! The table of a scripted motion: from a CSV file to the values of a scenario.
+//!
+//! The file is read where the key that names it was written, and its columns take the place of
+//! that key. What is checked, hashed, recorded and repeated afterwards are the values themselves.
+
+use std::fs;
+use std::path::Path;
+
+use super::error::ScenarioError;
+use super::resolved::InputFile;
+use super::source::{Mark, Sources};
+use super::tree::{Node, Table, Value};
+
+/// The key that names the file.
+pub(crate) const FILE_KEY: &str = "turntable.script.file";
+
+/// The column of times.
+const TIME: &str = "time_s";
+
+/// The columns of which a file has one.
+const VALUES: [&str; 2] = ["rate_deg_per_s", "angle_deg"];
+
+/// Most rows of a file: its values stand in the manifest of every run.
+const ROWS_MAX: usize = 100_000;
+
+/// Replaces `turntable.script.file` by the columns of that file, if it is given.
+///
+/// # Errors
+/// A file that cannot be read or is no such table, at the line and column that is wrong.
+pub(crate) fn read_into(
+    root: &mut Table,
+    sources: &mut Sources,
+    inputs: &mut Vec<InputFile>,
+) -> Result<(), ScenarioError> {
+    let script = root
+        .get_mut("turntable")
+        .and_then(Node::as_table_mut)
+        .and_then(|turntable| turntable.get_mut("script"))
+        .and_then(Node::as_table_mut);
+    let Some(script) = script else {
+        return Ok(());
+    };
+    let named = script.get("file").map(|node| (node.as_text(), node.mark));
+    // A value that is no text is refused with the other types.
+    let Some((Some(file), Some(mark))) = named else {
+        return Ok(());
+    };
+    let (path, label) = sources.beside(mark, file);
+    let complain = |sources: &Sources, message: &str| {
+        let shown = super::source::shown_path(&path);
+        sources.error(mark, format!("{FILE_KEY} = {shown}: {message}"))
+    };
+    let bytes = read_bytes(&path).map_err(|message| complain(sources, &message))?;
+    let digest = blake3::hash(&bytes).to_hex().to_string();
+    let text =
+        String::from_utf8(bytes).map_err(|_| complain(sources, "the file is not UTF-8 text"))?;
+    let source = sources.add_file(
+        super::source::shown_path(&path),
+        text.clone(),
+        label.clone(),
+    );
+    inputs.push(InputFile {
+        file: label.text(),
+        digest,
+    });
+    let points = columns(source, &text).map_err(|(start, message)| {
+        let mark = Mark { source, start };
+        sources.error(mark, message)
+    })?;
+    script.remove("file");
+    let node = Node {
+        value: Value::Table(points),
+        mark: Some(mark),
+    };
+    script.insert("points".to_owned(), node);
+    Ok(())
+}
+
+fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+    fs::read(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => "no such file".to_owned(),
+        _ if path.is_dir() => "it is a folder, not a file".to_owned(),
+        _ => format!("cannot read the file: {error}"),
+    })
+}
+
+/// A cell and the byte at which it starts.
+type Cell<'a> = (usize, &'a str);
+
+/// The cells of a line, spaces taken off.
+fn cells(start: usize, line: &str) -> Vec<Cell<'_>> {
+    let mut at = start;
+    let cell = |cell| {
+        let begin = at;
+        at += str::len(cell) + 1;
+        let bare = str::trim_start(cell);
+        (begin + cell.len() - bare.len(), bare.trim_end())
+    };
+    line.split(',').map(cell).collect()
+}
+
+/// The lines that say something, with the byte at which each starts.
+fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut start = 0;
+    let placed = text.split_inclusive('\n').map(move |line| {
+        let at = start;
+        start += line.len();
+        (at, line.trim_end())
+    });
+    placed.filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'))
+}
+
+/// The columns of a table, every value marked where it stands.
+fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
+    let mut lines = lines(text);
+    let (start, header) = lines
+        .next()
+        .ok_or_else(|| (0, format!("the file is empty: expected {}", expected())))?;
+    let header = cells(start, header);
+    check_header(start, &header)?;
+    let mut values: [Vec<Node>; 2] = [Vec::new(), Vec::new()];
+    for (start, line) in lines {
+        if values[0].len() == ROWS_MAX {
+            return Err((start, format!("too many rows: allowed up to {ROWS_MAX}")));
+        }
+        let row = cells(start, line);
+        if row.len() != header.len() {
+            let count = row.len();
+            return Err((
+                start,
+                format!("{count} values in the row: expected 2, one a column"),
+            ));
+        }
+        for ((at, cell), (column, (_, name))) in row.iter().zip(values.iter_mut().zip(&header)) {
+            let number: f64 = cell.parse().map_err(|_| {
+                let message =
+                    format!("{name} = `{cell}` is not a number: expected one such as 0.5");
+                (*at, message)
+            })?;
+            column.push(Node {
+                value: Value::Float(number),
+                mark: Some(Mark { source, start: *at }),
+            });
+        }
+    }
+    let table = header.iter().zip(values).map(|((at, name), values)| {
+        let node = Node {
+            value: Value::Array(values),
+            mark: Some(Mark { source, start: *at }),
+        };
+        ((*name).to_owned(), node)
+    });
+    Ok(table.collect())
+}
+
+/// What the first line must be.
+fn expected() -> String {
+    format!(
+        "a first line `{TIME},{}` or `{TIME},{}`",
+        VALUES[0], VALUES[1]
+    )
+}
+
+/// Refuses a header that is not [`TIME`] and one of [`VALUES`], in any order.
+fn check_header(start: usize, header: &[Cell<'_>]) -> Result<(), (usize, String)> {
+    let is_known = |name: &str| name == TIME || VALUES.contains(&name);
+    if let Some((at, name)) = header.iter().find(|(_, name)| !is_known(name)) {
+        return Err((
+            *at,
+            format!("unknown column `{name}`: expected {}", expected()),
+        ));
+    }
+    let times = header.iter().filter(|(_, name)| *name == TIME).count();
+    if header.len() == 2 && times == 1 {
+        return Ok(());
+    }
+    Err((start, format!("wrong columns: expected {}", expected())))
+}

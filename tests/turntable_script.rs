@@ -1,0 +1,255 @@
+//! Scripted and profiled motion from the scenario file to the report.
+
+use std::fs;
+use std::path::Path;
+
+use fogbench::metrics::{Applies, Motion, Record, Settings, known_metrics, measure, support};
+use fogbench::scenario::{MotionConfig, Resolved, ScenarioError, load_suite, manifest_toml};
+
+use crate::support::{assert_close, fogbench};
+
+const HEAD: &str = "schema = 1\nname = \"x\"\nduration_s = 2.0\nwarm_up_s = 1.0\n";
+const CSV: &str = "# A slew.\ntime_s, rate_deg_per_s\n0, 0\n\n0.5, 10\n2.0, -0.1\n";
+
+fn load(folder: &Path, text: &str, sets: &[&str]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
+    let file = folder.join("x.toml");
+    fs::write(&file, text).unwrap();
+    let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+    load_suite(&[file], &sets)
+}
+
+/// The only complaint about a scenario whose script is the given CSV.
+fn complaint(csv: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("motion.csv"), csv).unwrap();
+    let text = format!("{HEAD}[turntable.script]\nfile = \"motion.csv\"\n");
+    let errors = load(folder.path(), &text, &[]).unwrap_err();
+    assert_eq!(errors.len(), 1, "{errors:?}");
+    let message = errors[0].to_string();
+    message[message.find("motion.csv").unwrap()..].to_owned()
+}
+
+fn times_and_rates(run: &Resolved) -> (Vec<f64>, Vec<f64>) {
+    let MotionConfig::Script(script) = &run.scenario.turntable.motion else {
+        panic!("{:?}", run.scenario.turntable.motion);
+    };
+    let rates = script.points.rate_deg_per_s.clone();
+    (script.points.time_s.clone(), rates.unwrap_or_default())
+}
+
+#[test]
+fn a_script_is_found_beside_the_file_that_names_it_and_its_digest_is_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    let base = folder.path().join("base");
+    fs::create_dir(&base).unwrap();
+    fs::write(base.join("motion.csv"), CSV).unwrap();
+    let script = "[turntable.script]\nfile = \"motion.csv\"\n";
+    fs::write(base.join("base.toml"), format!("schema = 1\n{script}")).unwrap();
+    let text = format!("extends = \"base/base.toml\"\n{HEAD}");
+    let run = load(folder.path(), &text, &[]).unwrap().remove(0);
+    let (times, rates) = times_and_rates(&run);
+    assert_eq!((times, rates), (vec![0.0, 0.5, 2.0], vec![0.0, 10.0, -0.1]));
+    let files: Vec<&str> = run.inputs.iter().map(|input| input.file.as_str()).collect();
+    assert_eq!(files, ["base/base.toml", "x.toml", "base/motion.csv"]);
+    let digest = blake3::hash(CSV.as_bytes()).to_hex().to_string();
+    assert_eq!(run.inputs[2].digest, digest);
+
+    // The manifest repeats the run wherever it lies, without the file.
+    let elsewhere = tempfile::tempdir().unwrap();
+    let manifest = elsewhere.path().join("manifest.toml");
+    fs::write(&manifest, manifest_toml(&run, env!("CARGO_PKG_VERSION"))).unwrap();
+    fs::remove_file(base.join("motion.csv")).unwrap();
+    let repeated = load_suite(&[manifest], &[]).unwrap().remove(0);
+    assert_eq!(repeated, run);
+}
+
+#[test]
+fn a_script_of_the_command_line_replaces_the_motion_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("other.csv");
+    fs::write(&csv, CSV).unwrap();
+    let set = format!("turntable.script.file={}", csv.display());
+    let run = load(folder.path(), HEAD, &[&set]).unwrap().remove(0);
+    assert_eq!(times_and_rates(&run).0, [0.0, 0.5, 2.0]);
+    assert_eq!(run.inputs.last().unwrap().file, "other.csv");
+    assert!(!run.to_toml().contains("turntable.static"));
+}
+
+#[test]
+fn a_wrong_script_is_refused_at_its_line_and_column() {
+    for (csv, expected) in [
+        ("", "motion.csv:1:1: the file is empty"),
+        ("time_s,rate\n", "motion.csv:1:8: unknown column `rate`"),
+        ("time_s\n0\n", "motion.csv:1:1: wrong columns"),
+        (
+            "time_s,rate_deg_per_s\n0,1\n2,a\n",
+            "motion.csv:3:3: rate_deg_per_s = `a` is not a number",
+        ),
+        ("time_s,rate_deg_per_s\n0,1,2\n", "motion.csv:2:1: 3 values"),
+        (
+            "time_s,rate_deg_per_s\n0,1\n2, 3000\n",
+            "motion.csv:3:4: turntable.script.points.rate_deg_per_s[1] = 3000.0 deg/s is out of \
+             range: allowed [-2000, 2000] deg/s",
+        ),
+        (
+            "time_s,angle_deg\n0,1\n2,inf\n",
+            "motion.csv:3:3: turntable.script.points.angle_deg[1] = inf is not a finite number",
+        ),
+        (
+            "time_s,angle_deg\n0,1\n1,2\n1,3\n2,0\n",
+            "motion.csv:4:1: turntable.script.points.time_s[2] = 1.0 s is too early",
+        ),
+        (
+            "time_s,angle_deg\n0.1,1\n2,3\n",
+            "motion.csv:2:1: turntable.script.points.time_s[0] = 0.1 s: the first time must be 0",
+        ),
+        (
+            "time_s,angle_deg\n0,1\n1.5,3\n",
+            "motion.csv:3:1: turntable.script.points.time_s[1] = 1.5 s ends the script too early",
+        ),
+    ] {
+        let message = complaint(csv);
+        assert!(message.starts_with(expected), "{message}\n{expected}");
+    }
+}
+
+#[test]
+fn scripts_that_are_missing_or_given_twice_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = |text: &str| {
+        let errors = load(folder.path(), &format!("{HEAD}{text}"), &[]).unwrap_err();
+        errors[0].message.clone()
+    };
+    let missing = first("[turntable.script]\nfile = \"none.csv\"\n");
+    assert!(missing.contains("none.csv: no such file"), "{missing}");
+    let points = "points = { time_s = [0.0, 2.0], rate_deg_per_s = [0.0, 1.0] }\n";
+    let twice = first(&format!(
+        "[turntable.script]\nfile = \"none.csv\"\n{points}"
+    ));
+    assert!(
+        twice.contains("none.csv") || twice.contains("points"),
+        "{twice}"
+    );
+    let lengths = points.replace("[0.0, 1.0]", "[0.0]");
+    let lengths = first(&format!("[turntable.script]\n{lengths}"));
+    assert!(
+        lengths.contains("1 values, but there are 2 times"),
+        "{lengths}"
+    );
+    let both = points.replace(" }", ", angle_deg = [0.0, 1.0] }");
+    assert!(
+        load(
+            folder.path(),
+            &format!("{HEAD}[turntable.script]\n{both}"),
+            &[]
+        )
+        .is_err()
+    );
+    fs::write(folder.path().join("m.csv"), CSV).unwrap();
+    let swept = first(
+        "[matrix]\n\"turntable.script.file\" = [\"m.csv\"]\n[turntable.script]\nfile = \"m.csv\"\n",
+    );
+    assert!(swept.contains("cannot be swept"), "{swept}");
+}
+
+#[test]
+fn profiles_that_the_record_cannot_hold_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |text: &str| {
+        let errors = load(folder.path(), &format!("{HEAD}{text}"), &[]).unwrap_err();
+        errors[0].message.clone()
+    };
+    let trapezoid = "[turntable.trapezoid]\nrate_deg_per_s = 10.0\nhold_s = 0.5\n";
+    let fits = format!("{HEAD}{trapezoid}acceleration_deg_per_s2 = 20.0\n");
+    assert!(load(folder.path(), &fits, &[]).is_ok());
+    for (text, expected) in [
+        (
+            format!("{trapezoid}acceleration_deg_per_s2 = 20.0\nboth_senses = true\n"),
+            "the motion takes 3.0 s, but duration_s = 2.0 s",
+        ),
+        (
+            format!("{trapezoid}acceleration_deg_per_s2 = 1e5\n"),
+            "deg/s^2 is too steep: allowed up to",
+        ),
+        (
+            format!("{trapezoid}acceleration_deg_per_s2 = 1.0\n").replace("10.0", "0.0"),
+            "is no motion",
+        ),
+    ] {
+        let message = refused(&text);
+        assert!(message.contains(expected), "{message}");
+    }
+    let chirp = |end_hz: f64, sweep_s: f64| {
+        refused(&format!(
+            "[turntable.chirp]\nrate_amplitude_deg_per_s = 0.1\nstart_frequency_hz = 1.0\n\
+             end_frequency_hz = {end_hz:?}\nsweep_s = {sweep_s:?}\n"
+        ))
+    };
+    assert!(chirp(600.0, 1.0).contains("turntable.chirp.end_frequency_hz = 600.0 Hz is too fast"));
+    assert!(chirp(10.0, 3.0).contains("turntable.chirp.sweep_s = 3.0 s is too long"));
+}
+
+#[test]
+fn a_general_motion_has_means_and_tracking_error_and_reasons_for_the_rest() {
+    const PERIOD_S: f64 = 0.01;
+    let truth: Vec<f64> = (0..4000_i32)
+        .map(|k| 100.0 * (0.001 * f64::from(k * k % 977)).sin())
+        .collect();
+    // A known error: 2 deg/h with 1 deg/h of alternating noise, rms sqrt(5).
+    let error = |k: usize| if k.is_multiple_of(2) { 3.0 } else { 1.0 };
+    let raw: Vec<f64> = truth
+        .iter()
+        .enumerate()
+        .map(|(k, rate)| rate + error(k))
+        .collect();
+    let record = Record {
+        channel_deg_per_h: &raw,
+        raw_deg_per_h: &raw,
+        truth_deg_per_h: &truth,
+        sample_period_s: PERIOD_S,
+        first_stamp_s: PERIOD_S,
+    };
+    let settings = Settings {
+        motion: Motion::General,
+        bias_averaging_time_s: 1.0,
+        fit_tau_min_s: 0.1,
+    };
+    let metrics = measure(&record, &settings, None);
+    let value = |name: &str| metrics.metrics[name].estimate.value;
+    assert_close(value("mean_error_deg_per_h"), 2.0, 1e-12, 0.0);
+    assert_close(
+        value("tracking_error_rms_deg_per_h"),
+        5.0_f64.sqrt(),
+        1e-12,
+        0.0,
+    );
+    assert_eq!(metrics.metrics.len(), 3, "{:?}", metrics.metrics.keys());
+    for known in known_metrics() {
+        let supported = support(known.name, 40.0, PERIOD_S, &Motion::General, false, 1.0).is_ok();
+        let is_given = metrics.metrics.contains_key(known.name);
+        let is_elsewhere = known.name == "diverged_at_s" || known.applies == Applies::Pipeline;
+        assert!(is_elsewhere || supported == is_given, "{}", known.name);
+    }
+    let reason = &metrics.unavailable["noise_std_deg_per_h"];
+    assert!(reason.contains("noise can be told from motion"), "{reason}");
+}
+
+#[test]
+fn the_program_runs_a_script_and_repeats_it_from_its_manifest() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("motion.csv"), CSV).unwrap();
+    let text = format!("{HEAD}fidelity = \"rate\"\n[turntable.script]\nfile = \"motion.csv\"\n");
+    fs::write(folder.path().join("x.toml"), text).unwrap();
+    let run = |input: &str, output: &str| {
+        let done = fogbench(folder.path(), &["run", input, "--output", output]);
+        assert!(done.status.success(), "{done:?}");
+        fs::read(folder.path().join(output).join("x/manifest.toml")).unwrap()
+    };
+    let first = run("x.toml", "first");
+    fs::remove_file(folder.path().join("motion.csv")).unwrap();
+    let second = run("first/x/manifest.toml", "second");
+    assert_eq!(first, second);
+    let summary =
+        |output: &str| fs::read(folder.path().join(output).join("x/summary.json")).unwrap();
+    assert_eq!(summary("first"), summary("second"));
+}
