@@ -111,7 +111,7 @@ fn means_in_each_mounting_are_those_of_equation_7_of_the_patent() {
 #[test]
 fn known_answer_first_and_last_group_of_the_worked_example() {
     // Means of group 1 (10 deg/s about x) and of group 9 (90 deg/s about z), deg/s to ten digits.
-    let groups = [
+    let groups: [(usize, f64, [f64; 3]); 2] = [
         (
             0,
             10.0,
