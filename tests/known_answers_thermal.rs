@@ -30,6 +30,15 @@ fn ramp(start_c: f64, end_c: f64, rate_c_per_min: f64, start_s: f64) -> Temperat
     })
 }
 
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a small non-negative count of samples"
+)]
+fn whole(count: f64) -> usize {
+    count as usize
+}
+
 /// Temperature rates of a coil whose layers lie on a straight line.
 fn line(layers: usize, inner: f64, outer: f64) -> Vec<f64> {
     let last = (layers - 1) as f64;
@@ -226,7 +235,8 @@ fn the_budget_at_the_papers_temperatures_is_the_papers() {
 
 /// Delay of the words behind a steadily rising rate, s.
 fn delay_s(config: &GyroConfig, fidelity: Fidelity) -> f64 {
-    let mut gyro = Gyro::new(config, fidelity, 1.0, &Streams::new(3, 0)).unwrap();
+    let mut gyro =
+        Gyro::new(config, fidelity, 1.0, &Streams::new(3, 0)).expect("the gyro is sound");
     let period_s = gyro.sample_period_s();
     let slope = 0.1;
     let rise = slope * period_s;
@@ -274,7 +284,8 @@ fn hurried(mut config: GyroConfig) -> GyroConfig {
 }
 
 fn words(config: &GyroConfig, fidelity: Fidelity, seed: u64, rate: f64) -> Vec<f64> {
-    let mut gyro = Gyro::new(config, fidelity, 16.0, &Streams::new(seed, 0)).unwrap();
+    let mut gyro =
+        Gyro::new(config, fidelity, 16.0, &Streams::new(seed, 0)).expect("the gyro is sound");
     let segment = MotionSegment::constant(rate);
     (0..64_000).map(|_| gyro.next_word(&segment)).collect()
 }
@@ -294,7 +305,7 @@ fn loop_and_rate_model_agree_under_a_ramp_of_temperature() {
     let at = (record.time_s[200] * facts(&config).unwrap().output_rate_hz).round();
     let want = 1000.0 * scale + record.bias_deg_per_h[200];
     // The condition is a quarter of a second wide.
-    let word = linear[at as usize];
+    let word = linear[whole(at)];
     assert!((want - 1000.0).abs() > 5.0, "nothing happens: {want}");
     assert_close(word - 1000.0, want - 1000.0, 0.04, 0.0);
 
@@ -335,7 +346,7 @@ fn known_answer_the_shupe_pulse_integrates_to_the_difference_it_leaves() {
         let streams = Streams::new(1, 0);
         let mut gyro = Gyro::new(&config, Fidelity::Rate, 5000.0, &streams).unwrap();
         let period_s = gyro.sample_period_s();
-        let count = (5000.0 / period_s) as usize;
+        let count = whole(5000.0 / period_s);
         let rest = MotionSegment::constant(0.0);
         let angle: f64 = (0..count)
             .map(|_| deg_per_h_to_rad_per_s(gyro.next_word(&rest)) * period_s)
