@@ -27,10 +27,10 @@ modulator = { depth_deg = 120.0, dac_bits = 16 }
 detector = { responsivity_a_per_w = 0.9, dark_current_na = 0.0, transimpedance_kohm = 20.0, post_gain = 10.0, voltage_noise_nv_per_sqrt_hz = 6.0, current_noise_pa_per_sqrt_hz = 0.0, gate_duty = 0.7 }
 adc = { bits = 12, range_v = 2.0, samples_per_half_period = 8 }
 controller = { loop_bandwidth_hz = 2000.0, loop_latency_periods = 1 }
-noise = { shot = true, thermal = true, amplifier = true, rin = true, draw = "combined" }
-slow_noise = { bias_deg_per_h = 0.0, bias_instability_deg_per_h = 0.045, rate_random_walk_deg_per_h_per_sqrt_h = 0.005, rate_ramp_deg_per_h_per_h = 0.0 }
+noise = { shot = true, thermal = true, amplifier = true, rin = true, technical_phase_urad_per_sqrt_hz = 0.0, draw = "combined" }
+slow_noise = { bias_deg_per_h = 0.0, bias_instability_deg_per_h = 0.045, gauss_markov_deg_per_h = 0.0, gauss_markov_correlation_time_s = 100.0, rate_random_walk_deg_per_h_per_sqrt_h = 0.005, rate_ramp_deg_per_h_per_h = 0.0 }
 temperature = { soak = { temperature_c = 25.0 } }
-output = { half_periods_per_sample = 64, rate_lsb_deg_per_s = 1e-4 }
+output = { half_periods_per_sample = 64, quantisation = "rate-word", rate_lsb_deg_per_s = 1e-4, angle_lsb_arcsec = 0.0221 }
 [[published]]
 metric = "rls.delay_vs_raw_ms"
 value = 0.25
@@ -66,6 +66,7 @@ pub(crate) fn gyro() -> GyroFacts {
             ("amplifier", 0.001_51),
             ("rin", 0.000_96),
             ("adc", 0.002_94),
+            ("technical", 0.0),
             ("total", 0.006),
         ],
     }
