@@ -13,7 +13,8 @@ use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Desired;
 use crate::fpga::trace::Window;
 use crate::gyro::GyroError;
-use crate::units::deg_per_h_to_deg_per_s;
+use crate::scenario::OutputQuantisation;
+use crate::units::{arcsec_per_s_to_deg_per_h, deg_per_h_to_deg_per_s};
 
 /// What is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +43,14 @@ pub struct Stimulus {
 pub fn scenario_stimulus(plan: &Plan, samples: usize) -> Result<Stimulus, GyroError> {
     let scenario = &plan.resolved().scenario;
     let words = first_words(scenario, samples)?;
-    let lsb = scenario.gyro.output.rate_lsb_deg_per_s;
+    let output = &scenario.gyro.output;
+    let lsb = match output.quantisation {
+        OutputQuantisation::RateWord => output.rate_lsb_deg_per_s,
+        // One pulse in an output sample.
+        OutputQuantisation::AngleCarry => deg_per_h_to_deg_per_s(arcsec_per_s_to_deg_per_h(
+            output.angle_lsb_arcsec / plan.sample_period_s(),
+        )),
+    };
     let codes = (lsb > 0.0).then(|| IntegerCodes {
         codes: words.iter().map(|word| code(*word, lsb)).collect(),
         lsb,
