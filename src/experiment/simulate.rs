@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::channel_filter::{ChannelFilter, FinishedFilter};
 use super::suite::Observer;
-use crate::gyro::{Gyro, GyroError};
+use crate::gyro::{Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
 use crate::scenario::Scenario;
 use crate::turntable::{Turntable, first_measured_index};
@@ -56,12 +56,14 @@ pub(super) struct Simulation {
 }
 
 /// Half modulation periods in which the gyro did not work as meant.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Faults {
     /// The converter was driven beyond its range.
     pub(super) saturated: u64,
     /// The phase error was beyond +-pi/2, where the loop pushes the wrong way.
     pub(super) unlocked: u64,
+    /// The loop's limits and the fringe it locked onto.
+    pub(super) limits: LoopFaults,
 }
 
 impl Faults {
@@ -70,6 +72,7 @@ impl Faults {
         Self {
             saturated: self.saturated + other.saturated,
             unlocked: self.unlocked + other.unlocked,
+            limits: self.limits.plus(other.limits),
         }
     }
 
@@ -88,6 +91,7 @@ impl Faults {
         let happened = sentences.iter().filter(|(count, _)| *count > 0);
         happened
             .map(|(count, what)| format!("{what} in {count} half modulation periods"))
+            .chain(self.limits.notes())
             .collect()
     }
 }
@@ -130,6 +134,7 @@ pub(super) fn simulate(
         faults: Faults {
             saturated: source.gyro.saturated_half_periods(),
             unlocked: source.gyro.unlocked_half_periods(),
+            limits: source.gyro.loop_faults(),
         },
     })
 }

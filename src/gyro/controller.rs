@@ -20,8 +20,10 @@ pub struct Controller {
     pub gain: f64,
     /// Pipeline latency d, loop periods.
     pub latency_periods: u32,
-    /// Loop period `T_L = 2 tau`, s.
+    /// Loop period: `T_L = 2 tau`, or `4 tau` with four states of tau; s.
     pub loop_period_s: f64,
+    /// States of the bias wave in a loop period, each of which samples the input.
+    pub states_per_period: u32,
 }
 
 impl Controller {
@@ -65,7 +67,17 @@ impl Controller {
             gain,
             latency_periods,
             loop_period_s,
+            states_per_period: 2,
         })
+    }
+
+    /// The same loop with another number of states in its bias wave.
+    #[must_use]
+    pub fn with_states(self, states_per_period: u32) -> Self {
+        Self {
+            states_per_period,
+            ..self
+        }
     }
 
     /// Complex response `H` at a frequency, as `(real, imaginary)`.
@@ -84,12 +96,13 @@ impl Controller {
 
     /// Delay of the register behind the Sagnac phase at low frequency, s.
     ///
-    /// `T_L / g - tau / 2`: the first-order expansion of `1 / H`, whatever the latency, less half
-    /// a transit time because the pair that makes one error averages inputs at its start and at
-    /// its middle. The register is stamped when it is updated.
+    /// `T_L / g - T_L (n - 1) / 2n`: the first-order expansion of `1 / H`, whatever the latency,
+    /// less the mean age of the n instants at which the states that make one error see the input
+    /// (a quarter period for two states). The register is stamped when it is updated.
     #[must_use]
     pub fn delay_s(&self) -> f64 {
-        self.loop_period_s / self.gain - 0.25 * self.loop_period_s
+        let states = f64::from(self.states_per_period);
+        self.loop_period_s / self.gain - 0.5 * (states - 1.0) / states * self.loop_period_s
     }
 
     /// Delay of a rate word that averages `periods` registers and is stamped with the last, s.

@@ -1,10 +1,10 @@
 //! The gyro as the rest of the bench sees it.
 
-use crate::gyro::coil::Coil;
 use crate::gyro::error::GyroError;
+use crate::gyro::loop_faults::LoopFaults;
 use crate::gyro::loop_model::LoopModel;
 use crate::gyro::noise_budget::NoiseBudget;
-use crate::gyro::parts::Parts;
+use crate::gyro::parts::{Parts, half_period_s};
 use crate::gyro::rate_model::RateModel;
 use crate::random::Streams;
 use crate::scenario::{Fidelity, GyroConfig};
@@ -85,13 +85,21 @@ impl Gyro {
             Model::Rate(_) => 0,
         }
     }
+
+    /// Limits reached and fringes lost; none for the rate model.
+    #[must_use]
+    pub fn loop_faults(&self) -> LoopFaults {
+        match &self.model {
+            Model::Loop(model) => model.loop_faults(),
+            Model::Rate(_) => LoopFaults::default(),
+        }
+    }
 }
 
 /// Time between rate words of a configuration, s.
 #[must_use]
 pub fn sample_period_s(config: &GyroConfig) -> f64 {
-    let coil = Coil::new(&config.coil, &config.source);
-    f64::from(config.output.half_periods_per_sample) * coil.transit_time_s
+    f64::from(config.output.half_periods_per_sample) * half_period_s(config)
 }
 
 /// What the gyro of a configuration is, in closed form.
@@ -101,6 +109,7 @@ pub fn sample_period_s(config: &GyroConfig) -> f64 {
 pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
     let Parts {
         half_periods,
+        timing,
         coil,
         detector,
         controller,
@@ -113,7 +122,7 @@ pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
         output_rate_hz: sample_period_s(config).recip(),
         loop_gain: controller.gain,
         loop_bandwidth_hz: config.controller.loop_bandwidth_hz,
-        delay_ms: s_to_ms(controller.word_delay_s(0.5 * f64::from(half_periods))),
+        delay_ms: s_to_ms(controller.word_delay_s(f64::from(half_periods / timing.half_periods))),
         angle_random_walk_budget_deg_per_sqrt_h: NoiseBudget::new(&detector, &coil).entries(),
     })
 }

@@ -6,6 +6,7 @@ use crate::gyro::coil::Coil;
 use crate::gyro::controller::Controller;
 use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
+use crate::gyro::limits_optics::optics;
 use crate::gyro::modulator::Modulator;
 use crate::gyro::noise_budget::NoiseBudget;
 use crate::gyro::parts::Parts;
@@ -60,8 +61,8 @@ pub struct MotionExtremes {
 ///
 /// # Errors
 /// Any [`GyroError`] of the configuration; for the rate model [`GyroError::RateBeyondFringe`],
-/// [`GyroError::PhaseErrorBeyondSlope`], [`GyroError::ConverterTooCoarse`] and
-/// [`GyroError::RampTooCoarse`].
+/// [`GyroError::PhaseErrorBeyondSlope`], [`GyroError::ConverterTooCoarse`],
+/// [`GyroError::RampTooCoarse`] and [`GyroError::RateModelLacks`].
 ///
 /// # Source
 /// Derived; the slope from the Fourier series of the rounding error, averaged over the noise.
@@ -70,20 +71,22 @@ pub fn cautions(
     fidelity: Fidelity,
     motion: &MotionExtremes,
 ) -> Result<Vec<String>, GyroError> {
+    let parts = Parts::new(config)?;
+    let second_order = optics(&parts, fidelity, motion)?;
     let Parts {
         coil,
         modulator,
         detector,
         controller,
         ..
-    } = Parts::new(config)?;
+    } = parts;
     let found = [
         fringe(config, fidelity, motion, &coil)?,
         phase_error(fidelity, motion, &coil, &controller)?,
         converter(config, fidelity, &detector, &coil)?,
         ramp(config, fidelity, &detector, &modulator, &coil)?,
     ];
-    Ok(found.into_iter().flatten().collect())
+    Ok(found.into_iter().flatten().chain(second_order).collect())
 }
 
 fn fringe(

@@ -1,10 +1,15 @@
 //! Gyro model that runs every half modulation period.
 
+use std::f64::consts::{PI, TAU};
+
 use crate::gyro::coil::Coil;
 use crate::gyro::controller::Controller;
 use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
+use crate::gyro::full_kernel::FullLoop;
+use crate::gyro::loop_faults::LoopFaults;
 use crate::gyro::loop_kernel::{LoopConstants, Registers, advance};
+use crate::gyro::modulation::Timing;
 use crate::gyro::modulator::Modulator;
 use crate::gyro::parts::Parts;
 use crate::gyro::rate_word::RateWord;
@@ -13,6 +18,7 @@ use crate::gyro::slow_noise::SlowNoise;
 use crate::random::Streams;
 use crate::scenario::{GyroConfig, NoiseDraw};
 use crate::signal::MotionSegment;
+use crate::units::rad_per_s_to_deg_per_s;
 
 /// The closed loop, half period by half period.
 ///
@@ -41,13 +47,21 @@ pub struct LoopModel {
     detection: Detection,
     is_ramp_rounded: bool,
     codes_per_rad: f64,
-    /// Pair difference in levels per radian of phase error, `2 slope`.
+    /// Demodulated levels per radian of phase error, slope times states (`2 slope` for a pair).
     levels_per_rad: f64,
-    /// Start of each half period in normalised time of the output sample.
+    /// Start of each state (two-state: half period) in normalised time of the output sample.
     times: Vec<f64>,
     phases_codes: Vec<f64>,
     slow_noise: SlowNoise,
     rate_word: RateWord,
+    /// Half period, s.
+    half_period_s: f64,
+    timing: Timing,
+    /// The second-order effects, and whether they are in the loop.
+    full: Box<FullLoop>,
+    is_full: bool,
+    wrong_fringe_words: u64,
+    fringe_error: f64,
 }
 
 /// The samplers a configuration can ask for.
@@ -70,12 +84,22 @@ impl LoopModel {
     ) -> Result<Self, GyroError> {
         let Parts {
             half_periods,
+            half_period_s,
+            timing,
+            optics,
             coil,
             modulator,
             detector,
             controller,
         } = Parts::new(config)?;
-        let count = f64::from(half_periods);
+        let states = half_periods * timing.states_per_half_period;
+        let count = f64::from(states);
+        let state_detector = state_detector(&detector, timing);
+        let levels_per_rad = f64::from(timing.states)
+            * detector.slope_a_per_rad
+            * levels_per_ampere(&state_detector);
+        let state_time_s = half_period_s / f64::from(timing.states_per_half_period);
+        let full = FullLoop::new(optics, &detector, &modulator, levels_per_rad, streams);
         let mut model = Self {
             coil,
             controller,
@@ -84,24 +108,63 @@ impl LoopModel {
                 codes_per_turn: modulator.codes_per_turn,
             },
             registers: Registers::default(),
-            detection: detection(config, &detector, &modulator, coil.transit_time_s, streams),
+            detection: detection(config, &state_detector, &modulator, state_time_s, streams),
             is_ramp_rounded: modulator.is_quantised,
             codes_per_rad: modulator.codes_per_rad(),
-            levels_per_rad: 2.0 * detector.slope_a_per_rad * levels_per_ampere(&detector),
-            times: (0..half_periods)
-                .map(|half| f64::from(half) / count)
-                .collect(),
-            phases_codes: (0..half_periods).map(|_| 0.0).collect(),
+            levels_per_rad,
+            times: (0..states).map(|state| f64::from(state) / count).collect(),
+            phases_codes: (0..states).map(|_| 0.0).collect(),
             slow_noise: SlowNoise::new(
                 &config.slow_noise,
-                count * coil.transit_time_s,
+                f64::from(half_periods) * half_period_s,
                 simulated_time_s,
                 streams,
             ),
             rate_word: RateWord::new(&config.output, &coil),
+            half_period_s,
+            timing,
+            full: Box::new(full),
+            is_full: optics.is_needed(),
+            wrong_fringe_words: 0,
+            fringe_error: 0.0,
         };
         model.set_loop_gain(controller.gain);
         Ok(model)
+    }
+
+    /// Runs the full kernel from here on, even if no effect needs it.
+    pub fn use_full_kernel(&mut self) {
+        if !self.is_full {
+            self.full.take_over(&self.registers);
+            self.is_full = true;
+        }
+    }
+
+    /// Lets the modulator's gain drift: applied phase = (1 + configured error) (1 + drift)
+    /// commanded, as a temperature does by way of the voltage of pi.
+    pub fn set_modulator_gain_error(&mut self, drift: f64) {
+        if drift != 0.0 {
+            self.use_full_kernel();
+        }
+        self.full.set_drift(drift);
+    }
+
+    /// Applied over commanded phase, less one, with what the second loop has corrected.
+    #[must_use]
+    pub fn modulator_gain_error(&self) -> f64 {
+        self.full.gain_error()
+    }
+
+    /// Limits reached and fringes lost since the start.
+    #[must_use]
+    pub fn loop_faults(&self) -> LoopFaults {
+        let fringe_deg_per_s =
+            2.0 * rad_per_s_to_deg_per_s(self.coil.single_fringe_rate_rad_per_s());
+        LoopFaults {
+            saturated_steps: self.full.saturated_steps(),
+            wrong_fringe_words: self.wrong_fringe_words,
+            fringe_error_deg_per_s: self.fringe_error * fringe_deg_per_s,
+        }
     }
 
     /// Replaces the loop gain, whatever bandwidth or stability it gives.
@@ -119,7 +182,9 @@ impl LoopModel {
     /// Time between rate words, s.
     #[must_use]
     pub fn sample_period_s(&self) -> f64 {
-        self.phases_codes.len() as f64 * self.coil.transit_time_s
+        let half_periods =
+            self.phases_codes.len() as f64 / f64::from(self.timing.states_per_half_period);
+        half_periods * self.half_period_s
     }
 
     /// Register r: feedback phase step per half period, rad.
@@ -146,17 +211,22 @@ impl LoopModel {
         self.faults().unlocked
     }
 
-    /// Runs one loop period with the given Sagnac phases (rad) in its halves; slow noise is left out.
+    /// Runs one loop period with the given Sagnac phases (rad), one for each state of the bias wave;
+    /// slow noise is left out.
     ///
     /// Returns the register after its update, rad per half period.
-    pub fn run_period(&mut self, sagnac_phase_rad: [f64; 2]) -> f64 {
-        let phases_codes = sagnac_phase_rad.map(|phase| phase * self.codes_per_rad);
-        self.detection.run(
-            &mut self.registers,
-            self.constants,
-            &phases_codes,
-            (self.is_ramp_rounded, self.controller.latency_periods),
-        );
+    ///
+    /// # Panics
+    /// If there are not as many phases as states: 2, or 4 with a four-state scheme.
+    pub fn run_period(&mut self, sagnac_phase_rad: impl AsRef<[f64]>) -> f64 {
+        let phases = sagnac_phase_rad.as_ref();
+        let states = self.timing.states as usize;
+        assert_eq!(phases.len(), states, "one phase per state");
+        let mut phases_codes = [0.0; 4];
+        for (codes, phase) in phases_codes.iter_mut().zip(phases) {
+            *codes = phase * self.codes_per_rad;
+        }
+        self.run(&phases_codes[..states]);
         self.register_rad()
     }
 
@@ -164,18 +234,50 @@ impl LoopModel {
     pub fn next_word(&mut self, segment: &MotionSegment) -> f64 {
         let slow_rad_per_s = self.slow_noise.next_rate_rad_per_s();
         self.fill_phases(segment, slow_rad_per_s);
-        let sum_codes = self.detection.run(
-            &mut self.registers,
-            self.constants,
-            &self.phases_codes,
-            (self.is_ramp_rounded, self.controller.latency_periods),
-        );
-        let periods = 0.5 * self.phases_codes.len() as f64;
-        self.rate_word
-            .deg_per_h(sum_codes / (periods * self.codes_per_rad))
+        let phases_codes = std::mem::take(&mut self.phases_codes);
+        let sum_codes = self.run(&phases_codes);
+        self.phases_codes = phases_codes;
+        let periods = self.phases_codes.len() as f64 / f64::from(self.timing.states);
+        let mean_rad = sum_codes / (periods * self.codes_per_rad);
+        self.watch_fringe(segment, mean_rad);
+        self.rate_word.deg_per_h(mean_rad)
     }
 
-    /// Sagnac phase at the start of each half period, codes.
+    /// Runs the kernel in use and returns the sum of the register over the periods, codes.
+    fn run(&mut self, phases_codes: &[f64]) -> f64 {
+        let variant = (self.is_ramp_rounded, self.controller.latency_periods);
+        let (registers, constants) = (&mut self.registers, self.constants);
+        if !self.is_full {
+            return self
+                .detection
+                .run(registers, constants, phases_codes, variant);
+        }
+        let full = &mut self.full;
+        match &mut self.detection {
+            Detection::Combined(sampler) => {
+                full.run(registers, constants, phases_codes, variant, sampler)
+            }
+            Detection::CombinedIdeal(sampler) => {
+                full.run(registers, constants, phases_codes, variant, sampler)
+            }
+            Detection::Exact(sampler) => {
+                full.run(registers, constants, phases_codes, variant, sampler)
+            }
+        }
+    }
+
+    /// Counts a word that is nearer to another fringe than to the motion's own.
+    fn watch_fringe(&mut self, segment: &MotionSegment, mean_rad: f64) {
+        let [c0, c1, c2, c3] = segment.rate_rad_per_s;
+        let phase_rad = self.coil.scale_factor_s * (c0 + c1 / 2.0 + c2 / 3.0 + c3 / 4.0);
+        let error_rad = mean_rad - phase_rad;
+        if error_rad.abs() > PI {
+            self.wrong_fringe_words += 1;
+            self.fringe_error = (error_rad / TAU).round();
+        }
+    }
+
+    /// Sagnac phase at the start of each state, codes.
     fn fill_phases(&mut self, segment: &MotionSegment, slow_rad_per_s: f64) {
         let scale = self.coil.scale_factor_s * self.codes_per_rad;
         let [c0, c1, c2, c3] = segment
@@ -196,6 +298,15 @@ impl LoopModel {
     }
 }
 
+/// The detection of one state: a half period, or its share of gate and samples.
+fn state_detector(detector: &Detector, timing: Timing) -> Detector {
+    Detector {
+        samples_per_half_period: detector.samples_per_half_period
+            / f64::from(timing.states_per_half_period),
+        ..*detector
+    }
+}
+
 fn detection(
     config: &GyroConfig,
     detector: &Detector,
@@ -207,7 +318,8 @@ fn detection(
         (NoiseDraw::Exact, _) => Detection::Exact(ExactSampler::new(
             detector,
             modulator,
-            config.adc.samples_per_half_period,
+            config.adc.samples_per_half_period
+                / Timing::new(config.modulator.scheme).states_per_half_period,
             transit_time_s,
             streams,
         )),

@@ -3,6 +3,7 @@
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
 use super::address;
+use super::cross_gyro;
 use super::defaults::default_of;
 use super::error::ScenarioError;
 use super::filter_config::{FilterKind, Pipeline};
@@ -31,6 +32,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.names();
     checks.hardware_keys();
     checks.motion();
+    checks.gyro();
     checks.gates();
     checks.published();
     checks.errors
@@ -143,8 +145,9 @@ impl Checks<'_> {
 
     fn swing_frequency(&mut self, frequency_hz: f64) {
         let gyro = &self.resolved.scenario.gyro;
-        // A half modulation period is the transit time n L / c of the coil.
-        let half_period_s = gyro.coil.group_index * gyro.coil.length_m / SPEED_OF_LIGHT_M_PER_S;
+        // A half modulation period is the transit time n L / c of the coil, but for a mismatch.
+        let transit_time_s = gyro.coil.group_index * gyro.coil.length_m / SPEED_OF_LIGHT_M_PER_S;
+        let half_period_s = transit_time_s * (1.0 + gyro.modulator.half_period_mismatch);
         let output_rate_hz = 1.0 / (half_period_s * f64::from(gyro.output.half_periods_per_sample));
         let frequency_hz_max = output_rate_hz / SAMPLES_PER_CYCLE_MIN;
         if frequency_hz > frequency_hz_max {
@@ -153,6 +156,12 @@ impl Checks<'_> {
                  {frequency_hz_max:.6} Hz, 8 samples a cycle at the output rate of {output_rate_hz:.6} Hz"
             );
             self.complain("turntable.swing.frequency_hz", message);
+        }
+    }
+
+    fn gyro(&mut self) {
+        for (key, message) in cross_gyro::contradictions(&self.resolved.scenario.gyro) {
+            self.complain(key, message);
         }
     }
 

@@ -8,6 +8,7 @@ mod address;
 mod check;
 mod config;
 mod cross;
+mod cross_gyro;
 mod defaults;
 mod emit;
 mod error;
@@ -37,9 +38,9 @@ pub use filter_config::{
     OutputRegister, Pipeline, RlsFilterConfig, UpdateOrder, UpdateSign,
 };
 pub use gyro_config::{
-    AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
-    NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SoakConfig, SourceConfig,
-    TemperatureConfig,
+    AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,
+    ModulatorConfig, NoiseConfig, NoiseDraw, RateOutputConfig, ResetSample, SlowNoiseConfig,
+    SoakConfig, SourceConfig, TemperatureConfig,
 };
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;

@@ -1,9 +1,9 @@
 //! The reference gyro, written out: 800 m of fibre on 70 mm, 0.87 uW, 2 kHz.
 
 use fogbench::scenario::{
-    AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
-    NoiseConfig, NoiseDraw, RateOutputConfig, SlowNoiseConfig, SoakConfig, SourceConfig,
-    TemperatureConfig,
+    AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,
+    ModulatorConfig, NoiseConfig, NoiseDraw, RateOutputConfig, ResetSample, SlowNoiseConfig,
+    SoakConfig, SourceConfig, TemperatureConfig,
 };
 
 /// All fast noise on, drawn combined; no slow noise; rate word not rounded.
@@ -24,6 +24,15 @@ pub(crate) fn reference_gyro() -> GyroConfig {
         modulator: ModulatorConfig {
             depth_deg: 120.0,
             dac_bits: 16,
+            scheme: ModulationScheme::TwoState,
+            gain_error_ppm: 0.0,
+            reset_sample: ResetSample::Demodulated,
+            cross_coupling_urad: 0.0,
+            cross_coupling_phase_deg: 0.0,
+            dither_deg: 0.0,
+            dither_interval_periods: 16,
+            half_period_mismatch: 0.0,
+            intensity_modulation: 0.0,
         },
         detector: DetectorConfig {
             responsivity_a_per_w: 0.9,
@@ -33,6 +42,7 @@ pub(crate) fn reference_gyro() -> GyroConfig {
             voltage_noise_nv_per_sqrt_hz: 6.0,
             current_noise_pa_per_sqrt_hz: 0.0,
             gate_duty: 0.7,
+            gate_spikes: true,
         },
         adc: AdcConfig {
             bits: 12,
@@ -42,6 +52,9 @@ pub(crate) fn reference_gyro() -> GyroConfig {
         controller: ControllerConfig {
             loop_bandwidth_hz: 2000.0,
             loop_latency_periods: 1,
+            second_loop_gain: 0.0,
+            step_bits: 0,
+            step_limit_deg: 0.0,
         },
         noise: NoiseConfig {
             shot: true,
