@@ -12,6 +12,7 @@ mod fpga_health;
 mod known_answers_allan;
 mod known_answers_gyro;
 mod known_answers_gyro_limits;
+mod known_answers_gyro_loop;
 mod known_answers_gyro_noise;
 mod known_answers_metrics;
 mod known_answers_slow_noise;

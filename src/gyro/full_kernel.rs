@@ -19,9 +19,7 @@ use crate::scenario::ModulationScheme;
 pub(super) struct FullLoop {
     optics: Optics,
     states: Vec<BiasState>,
-    /// Half periods from state to state, 1 or 1/2.
-    step_share: f64,
-    /// States between the two passes through the modulator.
+    /// States between the two passes through the modulator; the ramp steps as often.
     delay_states: usize,
     codes_per_rad: f64,
     /// Demodulated levels per radian of phase error.
@@ -56,7 +54,6 @@ impl FullLoop {
         Self {
             optics,
             states: states(optics.scheme, modulator.depth_rad),
-            step_share: f64::from(timing.states_per_half_period).recip(),
             delay_states: timing.states_per_half_period as usize,
             codes_per_rad: modulator.codes_per_rad(),
             levels_per_rad,
@@ -140,7 +137,9 @@ impl FullLoop {
         let (mut has_reset, mut is_disturbed) = (false, false);
         for (index, &phase) in phases.iter().enumerate() {
             let state = self.states[index];
-            has_reset |= self.advance_ramp(registers, turn);
+            if index.is_multiple_of(self.delay_states) {
+                has_reset |= self.advance_ramp(registers, turn);
+            }
             is_disturbed |= self.disturbed_states > 0;
             self.disturbed_states = self.disturbed_states.saturating_sub(1);
             let error = self.error_codes(registers, phase, gain, state, is_rounded);
@@ -171,7 +170,7 @@ impl FullLoop {
         self.correction *= 1.0 - self.optics.second_loop_gain * estimate;
     }
 
-    /// Advances the ramp by one state; whether it was reset.
+    /// Advances the ramp by one half period; whether it was reset.
     fn advance_ramp(&mut self, registers: &mut Registers, turn: f64) -> bool {
         let lsb = self.optics.step_lsb_rad * self.codes_per_rad;
         let step = if lsb > 0.0 {
@@ -179,7 +178,7 @@ impl FullLoop {
         } else {
             registers.step_codes
         };
-        registers.ramp_codes += self.step_share * step;
+        registers.ramp_codes += step;
         if (0.0..turn).contains(&registers.ramp_codes) {
             return false;
         }
