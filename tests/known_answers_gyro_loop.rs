@@ -107,7 +107,7 @@ fn known_answer_k8_a_modulator_gain_error_with_resets() {
     }
     let rate = deg_per_s_to_rad_per_s(10.0);
     let expected = expected_mean_rate_rad_per_s(&config, rate);
-    assert_close((expected / rate - 1.0) * 1e6, -9900.990_1, 0.0, 1e-3);
+    assert_close((expected / rate - 1.0) * 1e6, -9_900.990_1, 0.0, 1e-3);
 }
 
 #[test]

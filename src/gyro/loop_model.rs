@@ -31,6 +31,9 @@ use crate::units::rad_per_s_to_deg_per_s;
 /// e_m = (v(-) - v(+)) / (2 R_f G_v R P0 V sin phi_m)      r += g e_(m-d)
 /// ```
 ///
+/// Second-order effects of modulator, ramp and register (gain error and its second loop, four-state
+/// bias, dead band, spikes, step width) run in a kernel of their own, only if one of them is on.
+///
 /// The rate word is the mean of r, taken after each update, over the periods of an output sample,
 /// divided by Ks. The motion is sampled at the start of each half period. Slow noise is a rate
 /// added to the motion, constant over an output sample. The loop starts with r = 0 and locks onto

@@ -89,7 +89,8 @@ impl RateOptics {
         for coefficient in phase_rad.iter_mut() {
             *coefficient *= scale;
         }
-        // A step that is cut off lies half a bit below the register on average.
+        // A step that is cut off lies half a bit below the register on average, but for a few
+        // hundredths where the error comes in whole levels of the converter.
         phase_rad[0] += 0.5 * self.optics.step_lsb_rad
             + self
                 .optics
