@@ -16,6 +16,7 @@ mod frequency_response;
 mod known_answers_allan;
 mod known_answers_gyro;
 mod known_answers_gyro_limits;
+mod known_answers_gyro_loop;
 mod known_answers_gyro_noise;
 mod known_answers_metrics;
 mod known_answers_output;

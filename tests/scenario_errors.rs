@@ -853,3 +853,31 @@ fn the_worked_example_loads() {
         "the innermost base comes first"
     );
 }
+
+#[test]
+fn contradictory_bias_waves_are_refused_with_the_reason() {
+    for (more, reason) in [
+        (
+            "[gyro.detector]\ngate_spikes = false\n",
+            "averages the whole half period, but gyro.detector.gate_duty = 0.7",
+        ),
+        (
+            "[gyro.detector]\ngate_spikes = false\ngate_duty = 1.0\n\
+             [gyro.modulator]\nscheme = \"four-state\"\n",
+            "averages the spikes of a square wave",
+        ),
+        (
+            "[gyro.modulator]\nscheme = \"four-state\"\nintensity_modulation = 1e-3\n",
+            "goes with the two states of a square wave",
+        ),
+        (
+            "[gyro.modulator]\nscheme = \"four-state-half\"\n\
+             [gyro.adc]\nsamples_per_half_period = 7\n",
+            "samples_per_half_period = 7 is odd",
+        ),
+    ] {
+        let found = complaints(more);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains(reason), "{found:?}");
+    }
+}

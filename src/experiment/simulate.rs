@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::channel_filter::{ChannelFilter, FinishedFilter};
 use super::suite::Observer;
-use crate::gyro::{self, CaseGyro, Gyro, GyroError};
+use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
 use crate::scenario::Scenario;
 use crate::turntable::{Turntable, first_measured_index};
@@ -64,12 +64,14 @@ pub(super) struct GyroRecord {
 }
 
 /// Half modulation periods in which the gyro did not work as meant.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Faults {
     /// The converter was driven beyond its range.
     pub(super) saturated: u64,
     /// The phase error was beyond +-pi/2, where the loop pushes the wrong way.
     pub(super) unlocked: u64,
+    /// The loop's limits and the fringe it locked onto.
+    pub(super) limits: LoopFaults,
 }
 
 impl Faults {
@@ -78,6 +80,7 @@ impl Faults {
         Self {
             saturated: self.saturated + other.saturated,
             unlocked: self.unlocked + other.unlocked,
+            limits: self.limits.plus(other.limits),
         }
     }
 
@@ -96,6 +99,7 @@ impl Faults {
         let happened = sentences.iter().filter(|(count, _)| *count > 0);
         happened
             .map(|(count, what)| format!("{what} in {count} half modulation periods"))
+            .chain(self.limits.notes())
             .collect()
     }
 }
@@ -214,6 +218,7 @@ impl Gyros {
         let of = |gyro: &Gyro| Faults {
             saturated: gyro.saturated_half_periods(),
             unlocked: gyro.unlocked_half_periods(),
+            limits: gyro.loop_faults(),
         };
         match self {
             Self::Alone(gyro) => of(gyro),

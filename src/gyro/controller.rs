@@ -20,8 +20,10 @@ pub struct Controller {
     pub gain: f64,
     /// Pipeline latency d, loop periods.
     pub latency_periods: u32,
-    /// Loop period `T_L = 2 tau`, s.
+    /// Loop period: `T_L = 2 tau`, or `4 tau` with four states of tau; s.
     pub loop_period_s: f64,
+    /// States of the bias wave in a loop period, each of which samples the input.
+    pub states_per_period: u32,
 }
 
 impl Controller {
@@ -65,7 +67,17 @@ impl Controller {
             gain,
             latency_periods,
             loop_period_s,
+            states_per_period: 2,
         })
+    }
+
+    /// The same loop with another number of states in its bias wave.
+    #[must_use]
+    pub fn with_states(self, states_per_period: u32) -> Self {
+        Self {
+            states_per_period,
+            ..self
+        }
     }
 
     /// Complex response `H` at a frequency, as `(real, imaginary)`.
@@ -85,17 +97,21 @@ impl Controller {
     /// Gain and phase (rad) of a rate word that averages `periods` registers and is stamped with the
     /// last, against the motion.
     ///
-    /// `H cos(w tau / 2) e^(i w tau / 2)`, the pair of samples that makes one error, times the mean
-    /// `e^(-i w (n - 1) T_L / 2) sin(n w T_L / 2) / (n sin(w T_L / 2))`. The phase may lie beyond
-    /// half a turn. To first order in w it is `-w` times [`word_delay_s`](Self::word_delay_s).
+    /// H times two means of `e^(i w t)`: that of the states that make one error, ahead of the start
+    /// of their period, and that of the registers, behind the last. Each of n terms a time D apart
+    /// is `sin(n w D / 2) / (n sin(w D / 2))` at their middle. The phase may lie beyond half a turn.
+    /// To first order in w it is `-w` times [`word_delay_s`](Self::word_delay_s).
     #[must_use]
     pub fn word_response(&self, frequency_hz: f64, periods: f64) -> (f64, f64) {
         let half_angle = 0.5 * TAU * frequency_hz * self.loop_period_s;
         let (re, im) = self.response(frequency_hz);
-        let pair = (0.5 * half_angle).cos();
-        let mean = (periods * half_angle).sin() / (periods * half_angle.sin());
-        let phase = im.atan2(re) + 0.5 * half_angle - (periods - 1.0) * half_angle;
-        (re.hypot(im) * pair * mean, phase)
+        let mean =
+            |count: f64, half_angle: f64| (count * half_angle).sin() / (count * half_angle.sin());
+        let states = f64::from(self.states_per_period);
+        let state = half_angle / states;
+        let gain = mean(states, state) * mean(periods, half_angle);
+        let phase = im.atan2(re) + (states - 1.0) * state - (periods - 1.0) * half_angle;
+        (re.hypot(im) * gain, phase)
     }
 
     /// Closed-loop -3 dB bandwidth of the gain now in use, Hz: the inverse of [`Controller::new`].
@@ -116,12 +132,13 @@ impl Controller {
 
     /// Delay of the register behind the Sagnac phase at low frequency, s.
     ///
-    /// `T_L / g - tau / 2`: the first-order expansion of `1 / H`, whatever the latency, less half
-    /// a transit time because the pair that makes one error averages inputs at its start and at
-    /// its middle. The register is stamped when it is updated.
+    /// `T_L / g - T_L (n - 1) / 2n`: the first-order expansion of `1 / H`, whatever the latency,
+    /// less the mean age of the n instants at which the states that make one error see the input
+    /// (a quarter period for two states). The register is stamped when it is updated.
     #[must_use]
     pub fn delay_s(&self) -> f64 {
-        self.loop_period_s / self.gain - 0.25 * self.loop_period_s
+        let states = f64::from(self.states_per_period);
+        self.loop_period_s / self.gain - 0.5 * (states - 1.0) / states * self.loop_period_s
     }
 
     /// Delay of a rate word that averages `periods` registers and is stamped with the last, s.

@@ -89,6 +89,25 @@ pub enum GyroError {
         /// Half periods per sample asked for.
         half_periods: u32,
     },
+    /// The output sample breaks a loop period of the four-state bias wave.
+    #[error(
+        "{half_periods} half periods per output sample: one loop period of this gyro.modulator.scheme takes \
+         {per_period}: expected a multiple of it"
+    )]
+    BrokenLoopPeriod {
+        /// Half periods per sample asked for.
+        half_periods: u32,
+        /// Half periods of one loop period.
+        per_period: u32,
+    },
+    /// The rate model is asked for an effect that it leaves out.
+    #[error("fidelity = \"rate\" does not hold: {reason}; use fidelity = \"loop\"")]
+    RateModelLacks {
+        /// Key of the effect.
+        key: &'static str,
+        /// Why it does not hold.
+        reason: String,
+    },
     /// The rate model is asked for rates beyond its fringe.
     #[error(
         "up to {rate_deg_per_s:.3} deg/s on the input axis, but fidelity = \"rate\" holds within \
@@ -157,7 +176,10 @@ impl GyroError {
             Self::LatencyOutOfRange { .. } => "gyro.controller.loop_latency_periods",
             Self::NoSlope { .. } => "gyro.modulator.depth_deg",
             Self::ConverterRange { .. } => "gyro.adc.range_v",
-            Self::OddOutputSample { .. } => "gyro.output.half_periods_per_sample",
+            Self::RateModelLacks { key, .. } => key,
+            Self::OddOutputSample { .. } | Self::BrokenLoopPeriod { .. } => {
+                "gyro.output.half_periods_per_sample"
+            }
             Self::RateBeyondFringe { .. } | Self::PhaseErrorBeyondSlope { .. } => "turntable",
             Self::ConverterTooCoarse { .. } => "gyro.adc.bits",
             Self::RampTooCoarse { .. } => "gyro.modulator.dac_bits",

@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use crate::gyro::coil::Coil;
 use crate::gyro::error::GyroError;
+use crate::gyro::loop_faults::LoopFaults;
 use crate::gyro::loop_model::LoopModel;
 use crate::gyro::noise_budget::NoiseBudget;
-use crate::gyro::parts::Parts;
+use crate::gyro::parts::{Parts, half_period_s};
 use crate::gyro::rate_model::RateModel;
 use crate::random::Streams;
 use crate::scenario::{Fidelity, GyroConfig};
@@ -87,13 +87,21 @@ impl Gyro {
             Model::Rate(_) => 0,
         }
     }
+
+    /// Limits reached and fringes lost; none for the rate model.
+    #[must_use]
+    pub fn loop_faults(&self) -> LoopFaults {
+        match &self.model {
+            Model::Loop(model) => model.loop_faults(),
+            Model::Rate(_) => LoopFaults::default(),
+        }
+    }
 }
 
 /// Time between rate words of a configuration, s.
 #[must_use]
 pub fn sample_period_s(config: &GyroConfig) -> f64 {
-    let coil = Coil::new(&config.coil, &config.source);
-    f64::from(config.output.half_periods_per_sample) * coil.transit_time_s
+    f64::from(config.output.half_periods_per_sample) * half_period_s(config)
 }
 
 /// Gain and phase (rad) of the rate words against the motion at ascending frequencies, Hz.
@@ -112,10 +120,11 @@ pub fn word_response(
 ) -> Result<Vec<(f64, f64)>, GyroError> {
     let Parts {
         half_periods,
+        timing,
         controller,
         ..
     } = Parts::new(config)?;
-    let periods = 0.5 * f64::from(half_periods);
+    let periods = f64::from(half_periods / timing.half_periods);
     let mut delay_s = controller.word_delay_s(periods);
     let response = frequencies_hz.iter().map(|&frequency_hz| {
         let angular = TAU * frequency_hz;
@@ -137,6 +146,7 @@ pub fn word_response(
 pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
     let Parts {
         half_periods,
+        timing,
         coil,
         detector,
         controller,
@@ -156,7 +166,7 @@ pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
         } else {
             controller.bandwidth_hz()
         },
-        delay_ms: s_to_ms(controller.word_delay_s(0.5 * f64::from(half_periods))),
+        delay_ms: s_to_ms(controller.word_delay_s(f64::from(half_periods / timing.half_periods))),
         angle_random_walk_budget_deg_per_sqrt_h: NoiseBudget::new(&detector, &coil).entries(),
     })
 }

@@ -6,6 +6,7 @@ use crate::gyro::coil::Coil;
 use crate::gyro::controller::Controller;
 use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
+use crate::gyro::limits_optics::optics;
 use crate::gyro::modulator::Modulator;
 use crate::gyro::noise_budget::NoiseBudget;
 use crate::gyro::parts::Parts;
@@ -64,8 +65,8 @@ pub struct MotionExtremes {
 ///
 /// # Errors
 /// Any [`GyroError`] of the configuration; for the rate model [`GyroError::RateBeyondFringe`],
-/// [`GyroError::PhaseErrorBeyondSlope`], [`GyroError::ConverterTooCoarse`] and
-/// [`GyroError::RampTooCoarse`].
+/// [`GyroError::PhaseErrorBeyondSlope`], [`GyroError::ConverterTooCoarse`],
+/// [`GyroError::RampTooCoarse`] and [`GyroError::RateModelLacks`].
 ///
 /// # Source
 /// Derived; the slope from the Fourier series of the rounding error, averaged over the noise.
@@ -79,6 +80,7 @@ pub fn cautions(
     let tones = tones(&config.vibration, &Streams::new(0, 0));
     let motion = &shaken(motion, &tones);
     let rectified = rectification(tones, &parts);
+    let second_order = optics(&parts, fidelity, motion)?;
     let Parts {
         coil,
         modulator,
@@ -93,7 +95,7 @@ pub fn cautions(
         converter(config, fidelity, &detector, &coil)?,
         ramp(config, fidelity, &detector, &modulator, &coil)?,
     ];
-    Ok(found.into_iter().flatten().collect())
+    Ok(found.into_iter().flatten().chain(second_order).collect())
 }
 
 /// The motion with all tones of the vibration in step.

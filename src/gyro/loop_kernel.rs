@@ -48,6 +48,17 @@ impl Registers {
         error
     }
 
+    /// Puts an error into the pipeline and takes out the one that is due.
+    pub(super) fn delay(&mut self, error_levels: f64, latency: usize) -> f64 {
+        if latency == 0 {
+            return error_levels;
+        }
+        let due = self.delayed_levels[latency - 1];
+        self.delayed_levels.copy_within(0..latency - 1, 1);
+        self.delayed_levels[0] = error_levels;
+        due
+    }
+
     #[cold]
     #[inline(never)]
     fn reset(&mut self, turn: f64) {

@@ -1,22 +1,24 @@
 //! Gyro model that runs every half modulation period.
 
+use std::f64::consts::{PI, TAU};
+
 use crate::gyro::coil::Coil;
 use crate::gyro::condition::{Condition, Schedule};
 use crate::gyro::controller::Controller;
-use crate::gyro::detector::Detector;
+use crate::gyro::detection::{Detection, Drive, levels_per_rad};
 use crate::gyro::error::GyroError;
-use crate::gyro::loop_kernel::{LoopConstants, Registers, advance};
-use crate::gyro::modulator::Modulator;
+use crate::gyro::full_kernel::FullLoop;
+use crate::gyro::loop_faults::LoopFaults;
+use crate::gyro::loop_kernel::{LoopConstants, Registers};
+use crate::gyro::modulation::Timing;
 use crate::gyro::parts::Parts;
 use crate::gyro::rate_word::RateWord;
-use crate::gyro::sampler::{
-    CombinedSampler, ExactSampler, Faults, PowerSampler, Sampler, ScaledSampler, levels_per_ampere,
-};
 use crate::gyro::slow_noise::SlowNoise;
 use crate::gyro::vibration::Vibration;
 use crate::random::Streams;
-use crate::scenario::{GyroConfig, NoiseDraw};
+use crate::scenario::GyroConfig;
 use crate::signal::MotionSegment;
+use crate::units::rad_per_s_to_deg_per_s;
 
 /// The closed loop, half period by half period.
 ///
@@ -28,6 +30,9 @@ use crate::signal::MotionSegment;
 /// v = mean over n samples of round(R_f G_v (R P0 (1 + V cos D) (1 + rin) + I_dark + i_noise))
 /// e_m = (v(-) - v(+)) / (2 R_f G_v R P0 V sin phi_m)      r += g e_(m-d)
 /// ```
+///
+/// Second-order effects of modulator, ramp and register (gain error and its second loop, four-state
+/// bias, dead band, spikes, step width) run in a kernel of their own, only if one of them is on.
 ///
 /// The rate word is the mean of r, taken after each update, over the periods of an output sample,
 /// divided by Ks. The motion is sampled at the start of each half period. Slow noise is a rate
@@ -45,15 +50,23 @@ pub struct LoopModel {
     detection: Detection,
     is_ramp_rounded: bool,
     codes_per_rad: f64,
-    /// Pair difference in levels per radian of phase error, `2 slope`.
+    /// Demodulated levels per radian of phase error, slope times states (`2 slope` for a pair).
     levels_per_rad: f64,
-    /// Start of each half period in normalised time of the output sample.
+    /// Start of each state (two-state: half period) in normalised time of the output sample.
     times: Vec<f64>,
     phases_codes: Vec<f64>,
-    /// Vibration and the detected power of each half period over its mean, if it is on.
+    /// Vibration and the detected power of each state over its mean, if it is on.
     vibration: Option<(Vibration, Vec<f64>)>,
     slow_noise: SlowNoise,
     rate_word: RateWord,
+    /// Half period, s.
+    half_period_s: f64,
+    timing: Timing,
+    /// The second-order effects, and whether they are in the loop.
+    full: Box<FullLoop>,
+    is_full: bool,
+    wrong_fringe_words: u64,
+    fringe_error: f64,
     condition: Condition,
     /// Absent where the temperature never changes.
     varying: Option<Box<Varying>>,
@@ -67,14 +80,6 @@ struct Varying {
     streams: Streams,
 }
 
-/// The samplers a configuration can ask for.
-#[derive(Clone, Debug)]
-enum Detection {
-    Combined(CombinedSampler<true>),
-    CombinedIdeal(CombinedSampler<false>),
-    Exact(ExactSampler),
-}
-
 impl LoopModel {
     /// The model of a configuration; `simulated_time_s` bounds the flicker's correlation times.
     ///
@@ -85,42 +90,42 @@ impl LoopModel {
         simulated_time_s: f64,
         streams: &Streams,
     ) -> Result<Self, GyroError> {
-        let Parts {
-            half_periods,
-            coil,
-            modulator,
-            detector,
-            controller,
-            condition,
-        } = Parts::new(config)?;
-        let count = f64::from(half_periods);
+        let parts = Parts::new(config)?;
+        let (half_periods, timing) = (parts.half_periods, parts.timing);
+        let states = half_periods * timing.states_per_half_period;
+        let count = f64::from(states);
+        let sample_period_s = f64::from(half_periods) * parts.half_period_s;
         let mut model = Self {
-            coil,
-            controller,
+            coil: parts.coil,
+            controller: parts.controller,
             constants: LoopConstants {
                 gain_codes_per_level: 0.0,
-                codes_per_turn: modulator.codes_per_turn,
+                codes_per_turn: parts.modulator.codes_per_turn,
             },
             registers: Registers::default(),
-            detection: detection(config, &detector, &modulator, coil.transit_time_s, streams),
-            is_ramp_rounded: modulator.is_quantised,
-            codes_per_rad: modulator.codes_per_rad(),
-            levels_per_rad: 2.0 * detector.slope_a_per_rad * levels_per_ampere(&detector),
-            times: (0..half_periods)
-                .map(|half| f64::from(half) / count)
-                .collect(),
-            phases_codes: (0..half_periods).map(|_| 0.0).collect(),
-            vibration: Vibration::new(&config.vibration, &coil, streams)
-                .map(|vibration| (vibration, (0..half_periods).map(|_| 1.0).collect())),
+            detection: Detection::new(config, &parts, streams),
+            is_ramp_rounded: parts.modulator.is_quantised,
+            codes_per_rad: parts.modulator.codes_per_rad(),
+            levels_per_rad: levels_per_rad(&parts),
+            times: (0..states).map(|state| f64::from(state) / count).collect(),
+            phases_codes: (0..states).map(|_| 0.0).collect(),
+            vibration: Vibration::new(&config.vibration, &parts.coil, streams)
+                .map(|vibration| (vibration, (0..states).map(|_| 1.0).collect())),
             slow_noise: SlowNoise::new(
                 &config.slow_noise,
-                count * coil.transit_time_s,
+                sample_period_s,
                 simulated_time_s,
                 streams,
             ),
-            rate_word: RateWord::new(&config.output, &coil, count * coil.transit_time_s),
-            condition,
-            varying: Schedule::new(config, count * coil.transit_time_s).map(|schedule| {
+            rate_word: RateWord::new(&config.output, &parts.coil, sample_period_s),
+            half_period_s: parts.half_period_s,
+            timing,
+            full: Box::new(FullLoop::new(&parts, levels_per_rad(&parts), streams)),
+            is_full: parts.optics.is_needed(),
+            wrong_fringe_words: 0,
+            fringe_error: 0.0,
+            condition: parts.condition,
+            varying: Schedule::new(config, sample_period_s).map(|schedule| {
                 Box::new(Varying {
                     schedule,
                     config: config.clone(),
@@ -128,8 +133,44 @@ impl LoopModel {
                 })
             }),
         };
-        model.set_loop_gain(controller.gain);
+        model.set_loop_gain(parts.controller.gain);
+        model.set_modulator_gain_error(parts.condition.modulator_gain_error);
         Ok(model)
+    }
+
+    /// Runs the full kernel from here on, even if no effect needs it.
+    pub fn use_full_kernel(&mut self) {
+        if !self.is_full {
+            self.full.take_over(&self.registers);
+            self.is_full = true;
+        }
+    }
+
+    /// Lets the modulator's gain drift: applied phase = (1 + configured error) (1 + drift)
+    /// commanded, as a temperature does by way of the voltage of pi.
+    pub fn set_modulator_gain_error(&mut self, drift: f64) {
+        if drift != 0.0 {
+            self.use_full_kernel();
+        }
+        self.full.set_drift(drift);
+    }
+
+    /// Applied over commanded phase, less one, with what the second loop has corrected.
+    #[must_use]
+    pub fn modulator_gain_error(&self) -> f64 {
+        self.full.gain_error()
+    }
+
+    /// Limits reached and fringes lost since the start.
+    #[must_use]
+    pub fn loop_faults(&self) -> LoopFaults {
+        let fringe_deg_per_s =
+            2.0 * rad_per_s_to_deg_per_s(self.coil.single_fringe_rate_rad_per_s());
+        LoopFaults {
+            saturated_steps: self.full.saturated_steps(),
+            wrong_fringe_words: self.wrong_fringe_words,
+            fringe_error_deg_per_s: self.fringe_error * fringe_deg_per_s,
+        }
     }
 
     /// Replaces the loop gain at the present power, whatever bandwidth or stability it gives.
@@ -149,7 +190,9 @@ impl LoopModel {
     /// Time between rate words, s.
     #[must_use]
     pub fn sample_period_s(&self) -> f64 {
-        self.phases_codes.len() as f64 * self.coil.transit_time_s
+        let half_periods =
+            self.phases_codes.len() as f64 / f64::from(self.timing.states_per_half_period);
+        half_periods * self.half_period_s
     }
 
     /// Register r: feedback phase step per half period, rad.
@@ -167,27 +210,31 @@ impl LoopModel {
     /// Half periods in which the converter was beyond its range.
     #[must_use]
     pub fn saturated_half_periods(&self) -> u64 {
-        self.faults().saturated
+        self.detection.faults().saturated
     }
 
     /// Half periods with a phase error beyond a quarter turn.
     #[must_use]
     pub fn unlocked_half_periods(&self) -> u64 {
-        self.faults().unlocked
+        self.detection.faults().unlocked
     }
 
-    /// Runs one loop period with the given Sagnac phases (rad) in its halves; slow noise and
-    /// vibration are left out.
+    /// Runs one loop period with the given Sagnac phases (rad), one for each state of the bias wave;
+    /// slow noise and vibration are left out.
     ///
     /// Returns the register after its update, rad per half period.
-    pub fn run_period(&mut self, sagnac_phase_rad: [f64; 2]) -> f64 {
-        let phases_codes = sagnac_phase_rad.map(|phase| phase * self.codes_per_rad);
-        self.detection.run(
-            &mut self.registers,
-            self.constants,
-            (&phases_codes, None),
-            (self.is_ramp_rounded, self.controller.latency_periods),
-        );
+    ///
+    /// # Panics
+    /// If there are not as many phases as states: 2, or 4 with a four-state scheme.
+    pub fn run_period(&mut self, sagnac_phase_rad: impl AsRef<[f64]>) -> f64 {
+        let phases = sagnac_phase_rad.as_ref();
+        let states = self.timing.states as usize;
+        assert_eq!(phases.len(), states, "one phase per state");
+        let mut phases_codes = [0.0; 4];
+        for (codes, phase) in phases_codes.iter_mut().zip(phases) {
+            *codes = phase * self.codes_per_rad;
+        }
+        self.run(&phases_codes[..states], None);
         self.register_rad()
     }
 
@@ -198,21 +245,33 @@ impl LoopModel {
         }
         let slow_rad_per_s = self.slow_noise.next_rate_rad_per_s() + self.condition.bias_rad_per_s;
         self.fill_phases(segment, slow_rad_per_s);
-        let mut powers = None;
-        if let Some((vibration, factors)) = &mut self.vibration {
+        let mut phases_codes = std::mem::take(&mut self.phases_codes);
+        let mut vibration = self.vibration.take();
+        let powers = vibration.as_mut().map(|(vibration, factors)| {
             let codes_per_rate = self.coil.scale_factor_s * self.codes_per_rad;
-            vibration.next_half_periods(codes_per_rate, &mut self.phases_codes, factors);
-            powers = Some(factors.as_slice());
-        }
-        let sum_codes = self.detection.run(
-            &mut self.registers,
-            self.constants,
-            (&self.phases_codes, powers),
-            (self.is_ramp_rounded, self.controller.latency_periods),
-        );
-        let periods = 0.5 * self.phases_codes.len() as f64;
-        self.rate_word
-            .deg_per_h(sum_codes / (periods * self.codes_per_rad))
+            vibration.next_half_periods(codes_per_rate, &mut phases_codes, factors);
+            factors.as_slice()
+        });
+        let sum_codes = self.run(&phases_codes, powers);
+        self.vibration = vibration;
+        self.phases_codes = phases_codes;
+        let periods = self.phases_codes.len() as f64 / f64::from(self.timing.states);
+        let mean_rad = sum_codes / (periods * self.codes_per_rad);
+        self.watch_fringe(segment, mean_rad);
+        self.rate_word.deg_per_h(mean_rad)
+    }
+
+    /// Runs the kernel in use and returns the sum of the register over the periods, codes.
+    fn run(&mut self, phases_codes: &[f64], powers: Option<&[f64]>) -> f64 {
+        let drive = Drive {
+            constants: self.constants,
+            is_rounded: self.is_ramp_rounded,
+            latency: self.controller.latency_periods,
+            phases_codes,
+            powers,
+        };
+        let full = self.is_full.then_some(self.full.as_mut());
+        self.detection.run(&mut self.registers, drive, full)
     }
 
     fn next_condition(&mut self) -> Option<Condition> {
@@ -227,21 +286,30 @@ impl LoopModel {
         else {
             return;
         };
-        let Parts {
-            coil,
-            modulator,
-            detector,
-            controller,
-            ..
-        } = Parts::under_way(config, &condition);
-        let fresh = detection(config, &detector, &modulator, coil.transit_time_s, streams);
-        self.detection.retune(fresh);
-        self.levels_per_rad = 2.0 * detector.slope_a_per_rad * levels_per_ampere(&detector);
+        let parts = Parts::under_way(config, &condition);
+        self.detection
+            .retune(Detection::new(config, &parts, streams));
+        self.levels_per_rad = levels_per_rad(&parts);
+        if config.controller.automatic_gain_control {
+            self.full.set_levels_per_rad(self.levels_per_rad);
+        }
         self.condition = condition;
-        self.set_loop_gain(controller.gain);
+        self.set_loop_gain(parts.controller.gain);
+        self.set_modulator_gain_error(condition.modulator_gain_error);
     }
 
-    /// Sagnac phase at the start of each half period, codes.
+    /// Counts a word that is nearer to another fringe than to the motion's own.
+    fn watch_fringe(&mut self, segment: &MotionSegment, mean_rad: f64) {
+        let [c0, c1, c2, c3] = segment.rate_rad_per_s;
+        let phase_rad = self.coil.scale_factor_s * (c0 + c1 / 2.0 + c2 / 3.0 + c3 / 4.0);
+        let error_rad = mean_rad - phase_rad;
+        if error_rad.abs() > PI {
+            self.wrong_fringe_words += 1;
+            self.fringe_error = (error_rad / TAU).round();
+        }
+    }
+
+    /// Sagnac phase at the start of each state, codes.
     fn fill_phases(&mut self, segment: &MotionSegment, slow_rad_per_s: f64) {
         let scale = self.coil.scale_factor_s * self.condition.scale_ratio * self.codes_per_rad;
         let [c0, c1, c2, c3] = segment
@@ -252,117 +320,4 @@ impl LoopModel {
             *phase = ((c3 * u + c2) * u + c1) * u + c0;
         }
     }
-
-    fn faults(&self) -> Faults {
-        match &self.detection {
-            Detection::Combined(sampler) => sampler.faults(),
-            Detection::CombinedIdeal(sampler) => sampler.faults(),
-            Detection::Exact(sampler) => sampler.faults(),
-        }
-    }
-}
-
-fn detection(
-    config: &GyroConfig,
-    detector: &Detector,
-    modulator: &Modulator,
-    transit_time_s: f64,
-    streams: &Streams,
-) -> Detection {
-    match (config.noise.draw, config.adc.bits) {
-        (NoiseDraw::Exact, _) => Detection::Exact(ExactSampler::new(
-            detector,
-            modulator,
-            config.adc.samples_per_half_period,
-            transit_time_s,
-            streams,
-        )),
-        (NoiseDraw::Combined, 0) => Detection::CombinedIdeal(CombinedSampler::new(
-            detector,
-            modulator,
-            transit_time_s,
-            streams,
-        )),
-        (NoiseDraw::Combined, _) => Detection::Combined(CombinedSampler::new(
-            detector,
-            modulator,
-            transit_time_s,
-            streams,
-        )),
-    }
-}
-
-impl Detection {
-    /// Takes over the levels and noise densities of a detection of the same kind.
-    fn retune(&mut self, other: Self) {
-        match (self, other) {
-            (Self::Combined(sampler), Self::Combined(other)) => *sampler = sampler.retuned(other),
-            (Self::CombinedIdeal(sampler), Self::CombinedIdeal(other)) => {
-                *sampler = sampler.retuned(other);
-            }
-            (Self::Exact(sampler), Self::Exact(other)) => *sampler = sampler.retuned(other),
-            (sampler, other) => *sampler = other,
-        }
-    }
-
-    /// Runs the periods of `(phases_codes, powers)` and returns the sum of the register, codes.
-    ///
-    /// Powers are those of the light in each half period over the mean; none means 1.
-    fn run(
-        &mut self,
-        registers: &mut Registers,
-        constants: LoopConstants,
-        inputs: (&[f64], Option<&[f64]>),
-        variant: (bool, u32),
-    ) -> f64 {
-        match self {
-            Self::Combined(sampler) => drive(sampler, registers, constants, inputs, variant),
-            Self::CombinedIdeal(sampler) => drive(sampler, registers, constants, inputs, variant),
-            Self::Exact(sampler) => drive(sampler, registers, constants, inputs, variant),
-        }
-    }
-}
-
-/// Runs a local copy of the sampler, with or without power factors.
-fn drive<S: ScaledSampler + Clone>(
-    sampler: &mut S,
-    registers: &mut Registers,
-    constants: LoopConstants,
-    (phases_codes, powers): (&[f64], Option<&[f64]>),
-    variant: (bool, u32),
-) -> f64 {
-    let copy = sampler.clone();
-    let (after, sum) = if let Some(powers) = powers {
-        let scaled = PowerSampler {
-            sampler: copy,
-            powers: powers.iter(),
-        };
-        let (after, sum) = dispatch(scaled, registers, constants, phases_codes, variant);
-        (after.sampler, sum)
-    } else {
-        dispatch(copy, registers, constants, phases_codes, variant)
-    };
-    *sampler = after;
-    sum
-}
-
-/// Picks the kernel compiled for (ramp rounded, latency) and runs it.
-fn dispatch<S: Sampler>(
-    sampler: S,
-    registers: &mut Registers,
-    constants: LoopConstants,
-    phases_codes: &[f64],
-    variant: (bool, u32),
-) -> (S, f64) {
-    let kernel = match variant {
-        (false, 0) => advance::<S, false, 0>,
-        (false, 1) => advance::<S, false, 1>,
-        (false, 2) => advance::<S, false, 2>,
-        (false, _) => advance::<S, false, 3>,
-        (true, 0) => advance::<S, true, 0>,
-        (true, 1) => advance::<S, true, 1>,
-        (true, 2) => advance::<S, true, 2>,
-        (true, _) => advance::<S, true, 3>,
-    };
-    kernel(registers, constants, phases_codes, sampler)
 }

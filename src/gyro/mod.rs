@@ -15,12 +15,13 @@
 //! [`RateModel`] advances the same loop, linearised, by one output sample at a time with the same
 //! mean, bandwidth, delay and noise colour. [`Gyro`] is either of them; [`cautions`] says where
 //! their assumptions end. [`CaseGyro`] is one of three gyros in a case, behind its own input axis.
+//! The loop model has two kernels: a plain one, and a full one with the second-order effects of
+//! modulator and ramp, which runs only when one of them is on.
 //!
 //! Temperature (`thermal`) sets the [`Condition`] both models work in: detected power, scale factor,
 //! bias. Where it never changes it is settled when the gyro is built and costs nothing after.
 //!
-//! Vibration of the case reaches the loop as phases and as powers per half period, through a
-//! kernel of its own.
+//! Vibration of the case reaches the loop as phases and as powers per state of the bias wave.
 //!
 //! Symbols: `tau` = transit time of the coil = half modulation period, `T_L = 2 tau` = loop
 //! period, `Ks` = Sagnac scale factor, `g` = integrator gain, `d` = pipeline latency in loop
@@ -31,17 +32,24 @@ mod budget;
 mod coil;
 mod condition;
 mod controller;
+mod detection;
 mod detector;
 mod error;
+mod full_kernel;
 mod instrument;
 mod limits;
+mod limits_optics;
+mod loop_faults;
 mod loop_kernel;
 mod loop_model;
+mod modulation;
 mod modulator;
 mod noise_budget;
+mod optics;
 mod parts;
 mod rate_matrices;
 mod rate_model;
+mod rate_optics;
 mod rate_word;
 mod sampler;
 mod slow_noise;
@@ -58,9 +66,11 @@ pub use detector::{CurrentNoise, Detector};
 pub use error::GyroError;
 pub use instrument::{Gyro, facts, sample_period_s, word_response};
 pub use limits::{MotionExtremes, cautions};
+pub use loop_faults::LoopFaults;
 pub use loop_model::LoopModel;
 pub use modulator::{Modulator, optimum_depth_rad};
 pub use noise_budget::NoiseBudget;
+pub use optics::{expected_mean_rate_rad_per_s, spike_share};
 pub use rate_model::RateModel;
 pub use slow_noise::SlowNoise;
 pub use source::relative_intensity_noise_per_hz;

@@ -50,11 +50,15 @@ impl RateMatrices {
             }
         }
         let mut input = [[0.0; 4]; JOINT];
-        let halves = 2.0 * f64::from(periods);
+        let states = f64::from(controller.states_per_period);
+        let instants = states * f64::from(periods);
         for power in 0..4_i32 {
             let end = recursion.run([0.0; STATE], periods, |period| {
-                let start = 2.0 * f64::from(period);
-                0.5 * ((start / halves).powi(power) + ((start + 1.0) / halves).powi(power))
+                let start = states * f64::from(period);
+                let sum: f64 = (0..controller.states_per_period)
+                    .map(|state| ((start + f64::from(state)) / instants).powi(power))
+                    .sum();
+                states.recip() * sum
             });
             for (row, value) in input.iter_mut().zip(end) {
                 row[power.unsigned_abs() as usize] = value;

@@ -3,11 +3,11 @@
 use crate::gyro::coil::Coil;
 use crate::gyro::condition::{Condition, Schedule};
 use crate::gyro::controller::Controller;
-use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
 use crate::gyro::noise_budget::NoiseBudget;
 use crate::gyro::parts::Parts;
 use crate::gyro::rate_matrices::RateMatrices;
+use crate::gyro::rate_optics::RateOptics;
 use crate::gyro::rate_word::RateWord;
 use crate::gyro::slow_noise::SlowNoise;
 use crate::gyro::vibration::{VibrationResponse, tones};
@@ -23,8 +23,8 @@ use crate::units::deg_per_sqrt_h_to_rad_per_sqrt_s;
 /// Allan deviation, at a cost that does not depend on the number of half periods per sample. The
 /// noise n has the variance of the whole budget, converter rounding included:
 /// `sigma_e^2 T_L = (N Ks)^2`. Left out: the sine of the fringe (matters for phase errors beyond
-/// about 0.1 rad), resets, and the ramp converter's rounding, which is bounded in angle. Vibration is the settled
-/// loop's answer to its tones and the mean that they rectify to.
+/// about 0.1 rad), single resets, and the ramp converter's rounding, which is bounded in angle. Vibration
+/// is the settled loop's answer to its tones and the mean that they rectify to.
 #[derive(Clone, Debug)]
 pub struct RateModel {
     coil: Coil,
@@ -37,6 +37,7 @@ pub struct RateModel {
     vibration: Option<VibrationResponse>,
     slow_noise: SlowNoise,
     rate_word: RateWord,
+    optics: RateOptics,
     condition: Condition,
     /// Absent where the temperature never changes.
     varying: Option<Box<Varying>>,
@@ -61,21 +62,17 @@ impl RateModel {
     ) -> Result<Self, GyroError> {
         let parts = Parts::new(config)?;
         let vibration = VibrationResponse::new(tones(&config.vibration, streams), &parts);
-        let Parts {
-            half_periods,
-            coil,
-            detector,
-            controller,
-            condition,
-            ..
-        } = parts;
-        let sample_period_s = f64::from(half_periods) * coil.transit_time_s;
+        let half_periods = parts.half_periods;
+        let sample_period_s = f64::from(half_periods) * parts.half_period_s;
+        let fringe = (parts.detector.visibility, parts.modulator.depth_rad);
+        let mut optics = RateOptics::new(parts.optics, fringe, half_periods, streams);
+        optics.set_drift(parts.condition.modulator_gain_error);
         Ok(Self {
-            coil,
-            controller,
-            matrices: RateMatrices::new(&controller, half_periods / 2),
+            coil: parts.coil,
+            controller: parts.controller,
+            matrices: matrices(&parts),
             state_rad: [0.0; 4],
-            noise_rad: noise_rad(&detector, &coil),
+            noise_rad: noise_rad(&parts),
             sample_period_s,
             stream: streams.stream("combined"),
             vibration,
@@ -85,8 +82,9 @@ impl RateModel {
                 simulated_time_s,
                 streams,
             ),
-            rate_word: RateWord::new(&config.output, &coil, sample_period_s),
-            condition,
+            rate_word: RateWord::new(&config.output, &parts.coil, sample_period_s),
+            optics,
+            condition: parts.condition,
             varying: Schedule::new(config, sample_period_s).map(|schedule| {
                 Box::new(Varying {
                     schedule,
@@ -100,6 +98,18 @@ impl RateModel {
     #[must_use]
     pub fn controller(&self) -> &Controller {
         &self.controller
+    }
+
+    /// Lets the modulator's gain drift: applied phase = (1 + configured error) (1 + drift)
+    /// commanded, as a temperature does by way of the voltage of pi.
+    pub fn set_modulator_gain_error(&mut self, drift: f64) {
+        self.optics.set_drift(drift);
+    }
+
+    /// Applied over commanded phase, less one, with what the second loop has corrected.
+    #[must_use]
+    pub fn modulator_gain_error(&self) -> f64 {
+        self.optics.gain_error()
     }
 
     /// Time between rate words, s.
@@ -119,11 +129,13 @@ impl RateModel {
             .map(|coefficient| scale * coefficient);
         let slow_rad_per_s = self.slow_noise.next_rate_rad_per_s() + self.condition.bias_rad_per_s;
         phase_rad[0] += scale * slow_rad_per_s;
+        self.optics.distort(&mut phase_rad);
         let mut mean_rad =
             self.matrices
                 .advance(&mut self.state_rad, &phase_rad, self.noise_rad, || {
                     self.stream.normal()
                 });
+        self.optics.follow(mean_rad);
         if let Some(vibration) = &mut self.vibration {
             mean_rad += vibration.next_rad();
         }
@@ -139,25 +151,41 @@ impl RateModel {
         let Some(Varying { config, .. }) = self.varying.as_deref() else {
             return;
         };
-        let Parts {
-            half_periods,
-            detector,
-            controller,
-            ..
-        } = Parts::under_way(config, &condition);
+        let parts = Parts::under_way(config, &condition);
         // The matrices cost more than all the rest; most conditions leave the gain alone.
-        if controller != self.controller {
-            self.matrices = RateMatrices::new(&controller, half_periods / 2);
-            self.controller = controller;
+        if parts.controller != self.controller {
+            self.matrices = matrices(&parts);
+            self.controller = parts.controller;
         }
-        self.noise_rad = noise_rad(&detector, &self.coil);
+        self.noise_rad = noise_rad(&parts);
+        self.optics.set_drift(condition.modulator_gain_error);
         self.condition = condition;
     }
 }
 
-/// Standard deviation of the error's noise per loop period, rad.
-fn noise_rad(detector: &Detector, coil: &Coil) -> f64 {
-    let random_walk =
-        deg_per_sqrt_h_to_rad_per_sqrt_s(NoiseBudget::new(detector, coil).total_deg_per_sqrt_h());
-    random_walk * coil.scale_factor_s / coil.loop_period_s().sqrt()
+/// Shares of a loop period's error that are signal, and of the periods that reach the integrator.
+///
+/// Averaged spikes weaken signal and gain; discarded periods weaken the gain alone.
+fn shares(parts: &Parts) -> (f64, f64) {
+    (1.0 - parts.optics.gap_share, parts.optics.update_share())
+}
+
+/// The linear loop over the periods of an output sample.
+fn matrices(parts: &Parts) -> RateMatrices {
+    let (signal_share, update_share) = shares(parts);
+    let effective = Controller {
+        gain: parts.controller.gain * signal_share * update_share,
+        ..parts.controller
+    };
+    RateMatrices::new(&effective, parts.half_periods / parts.timing.half_periods)
+}
+
+/// Standard deviation of the error's noise per loop period, rad: it counts in the periods that
+/// reach the integrator alone.
+fn noise_rad(parts: &Parts) -> f64 {
+    let (signal_share, update_share) = shares(parts);
+    let budget = NoiseBudget::new(&parts.detector, &parts.coil).total_deg_per_sqrt_h();
+    let random_walk = deg_per_sqrt_h_to_rad_per_sqrt_s(budget);
+    let error_rad = random_walk * parts.coil.scale_factor_s / parts.controller.loop_period_s.sqrt();
+    error_rad / (signal_share * update_share.sqrt())
 }

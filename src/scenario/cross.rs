@@ -5,6 +5,7 @@ use crate::units::SPEED_OF_LIGHT_M_PER_S;
 use super::address;
 use super::cross_gyro;
 use super::cross_multi_sine;
+use super::cross_optics;
 use super::cross_output;
 use super::cross_servo;
 use super::cross_vibration;
@@ -42,6 +43,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     for (key, message) in cross_vibration::check(&resolved.scenario.gyro) {
         checks.complain(key, message);
     }
+    checks.gyro();
     checks.gates();
     checks.published();
     for (key_path, message) in cross_servo::check(resolved) {
@@ -183,8 +185,9 @@ impl Checks<'_> {
     /// Period of the rate words, s, but for errors that the gyro's own check finds.
     pub(super) fn sample_period_s(&self) -> f64 {
         let gyro = &self.resolved.scenario.gyro;
-        // A half modulation period is the transit time n L / c of the coil.
-        let half_period_s = gyro.coil.group_index * gyro.coil.length_m / SPEED_OF_LIGHT_M_PER_S;
+        // A half modulation period is the transit time n L / c of the coil, but for a mismatch.
+        let transit_time_s = gyro.coil.group_index * gyro.coil.length_m / SPEED_OF_LIGHT_M_PER_S;
+        let half_period_s = transit_time_s * (1.0 + gyro.modulator.half_period_mismatch);
         half_period_s * f64::from(gyro.output.half_periods_per_sample)
     }
 
@@ -198,6 +201,12 @@ impl Checks<'_> {
                  {frequency_hz_max:.6} Hz, 8 samples a cycle at the output rate of {output_rate_hz:.6} Hz"
             );
             self.complain(path, message);
+        }
+    }
+
+    fn gyro(&mut self) {
+        for (key, message) in cross_optics::contradictions(&self.resolved.scenario.gyro) {
+            self.complain(key, message);
         }
     }
 

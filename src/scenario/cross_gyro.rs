@@ -1,6 +1,6 @@
 //! Checks across the values of the gyro's temperature that need no physics.
 
-use super::config::{Fidelity, Scenario};
+use super::config::Scenario;
 use super::thermal_config::{
     PowerConfig, TemperatureConfig, TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig,
     ThermalWarmUp, Winding,
@@ -20,15 +20,6 @@ pub(crate) fn check(scenario: &Scenario) -> Vec<(String, String)> {
         found.push(complaint(
             "gyro.thermal.warm_up",
             "\"cold\" has no effect: without gyro.thermal.self_heating_c there is nothing to warm up",
-        ));
-    }
-    if scenario.fidelity == Fidelity::Rate && thermal.half_wave_voltage_ppm_per_k.abs() > 0.0 {
-        found.push(complaint(
-            "gyro.thermal.half_wave_voltage_ppm_per_k",
-            &format!(
-                "{:?} ppm/K has no effect: fidelity = \"rate\" has no ramp to reset; use fidelity = \"loop\"",
-                thermal.half_wave_voltage_ppm_per_k
-            ),
         ));
     }
     found

@@ -70,10 +70,50 @@ pub struct SourceConfig {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModulatorConfig {
-    /// Two-state square-wave modulation depth `phi_m`, deg.
+    /// Bias modulation depth `phi_m`, deg; the four-state schemes stand at `180 +- (180 - phi_m)`.
     pub depth_deg: f64,
     /// Bits of the ramp converter over 2 pi; 0 = ideal.
     pub dac_bits: u32,
+    /// Bias wave.
+    pub scheme: ModulationScheme,
+    /// Applied over commanded phase, less one, ppm.
+    pub gain_error_ppm: f64,
+    /// What becomes of the loop period in which the ramp resets.
+    pub reset_sample: ResetSample,
+    /// Amplitude of the error phase that follows the ramp voltage, urad.
+    pub cross_coupling_urad: f64,
+    /// Ramp phase at which that error crosses zero upwards, with opposite sign, deg.
+    pub cross_coupling_phase_deg: f64,
+    /// Random jumps of the ramp against the dead band, deg rms; 0 = none.
+    pub dither_deg: f64,
+    /// Loop periods from jump to jump.
+    pub dither_interval_periods: u32,
+    /// Half modulation period over transit time, less one.
+    pub half_period_mismatch: f64,
+    /// Relative intensity modulation that goes with the bias wave.
+    pub intensity_modulation: f64,
+}
+
+/// Bias wave of the modulator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModulationScheme {
+    /// Square wave: two states of tau.
+    TwoState,
+    /// Four states of tau, period 4 tau.
+    FourState,
+    /// Four states of tau / 2, period 2 tau.
+    FourStateHalf,
+}
+
+/// What becomes of the loop period in which the ramp resets by 2 pi.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ResetSample {
+    /// Demodulated as any other.
+    Demodulated,
+    /// Discarded.
+    Blanked,
 }
 
 /// Photodetector, transimpedance amplifier and gate.
@@ -94,6 +134,8 @@ pub struct DetectorConfig {
     pub current_noise_pa_per_sqrt_hz: f64,
     /// Fraction of each half period that is gated into the demodulator.
     pub gate_duty: f64,
+    /// Whether the gate leaves out the spikes between the states of the bias wave.
+    pub gate_spikes: bool,
 }
 
 /// Analogue-to-digital converter.
@@ -118,6 +160,12 @@ pub struct ControllerConfig {
     pub loop_latency_periods: u32,
     /// Whether the loop gain is held against changes of the detected power.
     pub automatic_gain_control: bool,
+    /// Gain of the second loop, which corrects the modulator's gain; 0 = off.
+    pub second_loop_gain: f64,
+    /// Bits of the ramp's step over 2 pi, the rest cut off; 0 = ideal.
+    pub step_bits: u32,
+    /// Largest ramp step, deg; 0 = not limited.
+    pub step_limit_deg: f64,
 }
 
 /// Fast noise sources.

@@ -12,6 +12,7 @@ mod config;
 mod cross;
 mod cross_gyro;
 mod cross_multi_sine;
+mod cross_optics;
 mod cross_output;
 mod cross_servo;
 mod cross_turntable;
@@ -50,8 +51,9 @@ pub use filter_config::{
     OutputRegister, Pipeline, RlsFilterConfig, UpdateOrder, UpdateSign,
 };
 pub use gyro_config::{
-    AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulatorConfig,
-    NoiseConfig, NoiseDraw, OutputQuantisation, RateOutputConfig, SlowNoiseConfig, SourceConfig,
+    AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,
+    ModulatorConfig, NoiseConfig, NoiseDraw, OutputQuantisation, RateOutputConfig, ResetSample,
+    SlowNoiseConfig, SourceConfig,
 };
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
