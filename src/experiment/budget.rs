@@ -9,7 +9,7 @@ use crate::signal::BudgetSheet;
 /// The noise budget of one gyro, and whose it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GyroBudget {
-    /// The file as it was named.
+    /// The bare name of the file, so that what is written does not depend on where one stands.
     pub file: String,
     /// The budget.
     pub sheet: BudgetSheet,
@@ -43,7 +43,7 @@ pub fn gyro_budget(path: &Path, sets: &[String]) -> Result<GyroBudget, Vec<Scena
         )]
     })?;
     Ok(GyroBudget {
-        file: first.shown_file(),
+        file: first.file.clone(),
         sheet,
     })
 }
