@@ -1,6 +1,7 @@
 //! Known answers of the slow noise: flicker, rate random walk and ramp.
 
 use fogbench::gyro::{RateModel, SlowNoise};
+use fogbench::metrics::{NoiseCoefficients, expected_bias_stability};
 use fogbench::random::Streams;
 use fogbench::signal::MotionSegment;
 use fogbench::units::rad_per_s_to_deg_per_h;
@@ -86,6 +87,49 @@ fn flicker_stays_flat_over_the_record_at_the_output_rate() {
         // edf 1.5 x 6 x 128 at the longest: 2.1 %.
         assert_close(deviation, flat, 0.05, 0.0);
     }
+}
+
+/// Root mean square over `runs` of the standard deviation of 36 means of 32 samples each.
+fn block_deviation(coefficients: [f64; 3], runs: u64) -> f64 {
+    const BLOCKS: usize = 36;
+    let sum: f64 = (0..runs)
+        .map(|seed| {
+            let words = slow_noise(coefficients, BLOCK_S / 32.0, BLOCKS * 32, 5000 + seed);
+            let means: Vec<f64> = words
+                .chunks_exact(32)
+                .map(|block| block.iter().sum::<f64>() / 32.0)
+                .collect();
+            let mean = means.iter().sum::<f64>() / BLOCKS as f64;
+            let power: f64 = means.iter().map(|block| (block - mean).powi(2)).sum();
+            power / (BLOCKS - 1) as f64
+        })
+        .sum();
+    (sum / runs as f64).sqrt()
+}
+
+/// Length of a block of [`block_deviation`], s.
+const BLOCK_S: f64 = 0.32;
+
+#[test]
+fn known_answer_k21_block_means_of_slow_noise_scatter_as_predicted() {
+    // Flicker: B sqrt(n ln n / (pi (n - 1))) = 1.083 B for n = 36 (Barnes). Some 20 degrees of
+    // freedom a run: 0.4 % after 2000.
+    let flicker = NoiseCoefficients {
+        bias_instability_deg_per_h: 1.0,
+        ..NoiseCoefficients::default()
+    };
+    let want = expected_bias_stability(&flicker, BLOCK_S, 36);
+    assert_close(want, 1.083, 0.0, 5e-4);
+    assert_close(block_deviation([1.0, 0.0, 0.0], 2000), want, 0.03, 0.0);
+    // Walk: n / 2 = 18 times the Allan variance K^2 t / 3. Its lowest mode has three fifths of the
+    // power, two to three degrees of freedom a run: 0.7 % after 4000.
+    let walk = NoiseCoefficients {
+        rate_random_walk_deg_per_h_per_sqrt_s: 0.1,
+        ..NoiseCoefficients::default()
+    };
+    let want = expected_bias_stability(&walk, BLOCK_S, 36);
+    assert_close(want * want, 18.0 * 0.01 * BLOCK_S / 3.0, 1e-12, 0.0);
+    assert_close(block_deviation([0.0, 6.0, 0.0], 4000), want, 0.03, 0.0);
 }
 
 #[test]

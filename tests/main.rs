@@ -13,6 +13,7 @@ mod encoder;
 mod filters;
 mod fpga_health;
 mod frequency_response;
+mod gyro_effects;
 mod known_answers_allan;
 mod known_answers_gyro;
 mod known_answers_gyro_limits;

@@ -13,20 +13,21 @@ const CSV: &str = "# A slew.\ntime_s, rate_deg_per_s\n0, 0\n\n0.5, 10\n2.0, -0.1
 
 fn load(folder: &Path, text: &str, sets: &[&str]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
     let file = folder.join("x.toml");
-    fs::write(&file, text).unwrap();
+    fs::write(&file, text).expect("a writable folder");
     let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
     load_suite(&[file], &sets)
 }
 
 /// The only complaint about a scenario whose script is the given CSV.
 fn complaint(csv: &str) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("motion.csv"), csv).unwrap();
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    fs::write(folder.path().join("motion.csv"), csv).expect("a writable folder");
     let text = format!("{HEAD}[turntable.script]\nfile = \"motion.csv\"\n");
-    let errors = load(folder.path(), &text, &[]).unwrap_err();
+    let errors = load(folder.path(), &text, &[]).expect_err("a wrong script");
     assert_eq!(errors.len(), 1, "{errors:?}");
     let message = errors[0].to_string();
-    message[message.find("motion.csv").unwrap()..].to_owned()
+    let place = message.find("motion.csv").expect("the place of the fault");
+    message[place..].to_owned()
 }
 
 fn times_and_rates(run: &Resolved) -> (Vec<f64>, Vec<f64>) {

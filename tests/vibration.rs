@@ -296,6 +296,17 @@ fn vibrations_that_make_no_sense_are_refused_with_the_reason() {
             format!("{sine}acceleration_g = 2.0\n{bare}"),
             "leaves no light",
         ),
+        (
+            format!("{sine}[gyro.modulator]\nscheme = \"four-state\"\n"),
+            "pair of states only",
+        ),
+        (
+            format!(
+                "{random}to_hz = 99.0\n[gyro.modulator]\nhalf_period_mismatch = 1e-3\n\
+                 [gyro.detector]\ngate_spikes = false\ngate_duty = 1.0\n"
+            ),
+            "known without spikes only",
+        ),
     ] {
         let errors = refused(&text);
         assert_eq!(errors.len(), 1, "{text}{errors:?}");

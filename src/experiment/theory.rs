@@ -1,12 +1,19 @@
 //! Closed forms of the gyro that the pictures draw beside the measured points.
 
 use crate::gyro::{self, GyroError};
-use crate::scenario::{MotionConfig, Scenario};
+use crate::scenario::{MotionConfig, Scenario, StepsConfig};
 use crate::signal::{TheoryCurve, TheoryQuantity};
-use crate::units::{gain_to_db, rad_to_deg};
+use crate::turntable::earth_rate_rad_per_s;
+use crate::units::{deg_per_s_to_rad_per_s, gain_to_db, rad_per_s_to_deg_per_h, rad_to_deg};
 
 /// Points of a line, equally spaced by the logarithm of the frequency.
 const POINTS: u32 = 200;
+/// Points of a line over the rates of a staircase, equally spaced: the edge of a dead band is steep.
+const RATE_POINTS: u32 = 1000;
+/// Error over the span of the rates below which a response is a straight line but for rounding.
+const ERROR_MIN: f64 = 1e-9;
+/// Name in the legend.
+const NAME: &str = "raw, theory";
 
 /// The lines of theory for the motion of a scenario; none where there is no closed form.
 pub(super) fn theory(scenario: &Scenario) -> Result<Vec<TheoryCurve>, GyroError> {
@@ -22,7 +29,7 @@ pub(super) fn theory(scenario: &Scenario) -> Result<Vec<TheoryCurve>, GyroError>
                 .collect();
             let response = gyro::word_response(&scenario.gyro, &frequencies_hz)?;
             let line = |quantity, y: Vec<f64>| TheoryCurve {
-                name: "raw, theory",
+                name: NAME,
                 quantity,
                 x: frequencies_hz.clone(),
                 y,
@@ -37,6 +44,39 @@ pub(super) fn theory(scenario: &Scenario) -> Result<Vec<TheoryCurve>, GyroError>
                 line(TheoryQuantity::PhaseDeg, phase),
             ])
         }
+        MotionConfig::Steps(steps) => Ok(rate_error(scenario, steps).into_iter().collect()),
         _ => Ok(Vec::new()),
     }
+}
+
+/// Mean error of the rate word over the rates of a staircase, in the temperature of the start.
+///
+/// None for an assembly, whose axes see other rates, nor for a gyro without systematic error.
+fn rate_error(scenario: &Scenario, steps: &StepsConfig) -> Option<TheoryCurve> {
+    if scenario.gyro.assembly.is_some() {
+        return None;
+    }
+    let earth_rate = earth_rate_rad_per_s(&scenario.turntable.site);
+    let rates = steps.rates_deg_per_s.iter();
+    let (low, high) = rates
+        .map(|&rate| earth_rate + deg_per_s_to_rad_per_s(rate))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), rate| {
+            (low.min(rate), high.max(rate))
+        });
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for point in 0..RATE_POINTS {
+        let rate = low + (high - low) * f64::from(point) / f64::from(RATE_POINTS - 1);
+        let mean = gyro::expected_mean_rate_rad_per_s(&scenario.gyro, rate);
+        x.push(rad_per_s_to_deg_per_h(rate));
+        y.push(rad_per_s_to_deg_per_h(mean - rate));
+    }
+    let error_min = ERROR_MIN * rad_per_s_to_deg_per_h(high - low);
+    y.iter()
+        .any(|error| error.abs() > error_min)
+        .then_some(TheoryCurve {
+            name: NAME,
+            quantity: TheoryQuantity::RateErrorDegPerH,
+            x,
+            y,
+        })
 }

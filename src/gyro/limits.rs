@@ -79,8 +79,8 @@ pub fn cautions(
     // Neither peaks nor the mean depend on the phases drawn.
     let tones = tones(&config.vibration, &Streams::new(0, 0));
     let motion = &shaken(motion, &tones);
+    let second_order = optics(&parts, fidelity, motion, &tones)?;
     let rectified = rectification(tones, &parts);
-    let second_order = optics(&parts, fidelity, motion)?;
     let Parts {
         coil,
         modulator,

@@ -7,6 +7,7 @@ use crate::gyro::error::GyroError;
 use crate::gyro::limits::MotionExtremes;
 use crate::gyro::noise_budget::NoiseBudget;
 use crate::gyro::parts::Parts;
+use crate::gyro::vibration::Tone;
 use crate::scenario::Fidelity;
 use crate::units::{
     deg_per_sqrt_h_to_rad_per_sqrt_s, rad_per_s_to_deg_per_h, rad_per_s_to_deg_per_s,
@@ -14,6 +15,8 @@ use crate::units::{
 
 /// Noise of the register, steps, from which a cut-off step is a bias of half a bit (to 1 %).
 const STEP_NOISE_MIN_LSB: f64 = 0.43;
+/// Share of the dead band that vibration may take off it unsaid.
+const NARROWING_MAX: f64 = 0.01;
 /// Share of discarded loop periods from which the fall of the loop gain is worth a caution.
 const BLANKED_SHARE_SAID: f64 = 0.1;
 
@@ -25,6 +28,7 @@ pub(super) fn optics(
     parts: &Parts,
     fidelity: Fidelity,
     motion: &MotionExtremes,
+    tones: &[Tone],
 ) -> Result<Vec<String>, GyroError> {
     if !parts.optics.is_needed() {
         return Ok(Vec::new());
@@ -32,6 +36,7 @@ pub(super) fn optics(
     if fidelity == Fidelity::Rate {
         step_noise(parts)?;
         dither(parts)?;
+        shaken_ramp(parts, tones)?;
     }
     let found = [
         step_limit(parts, fidelity, motion)?,
@@ -78,6 +83,33 @@ fn dither(parts: &Parts) -> Result<(), GyroError> {
         reason: "it takes dithered cross-coupling for white noise, which takes jumps of at least \
                  90 deg rms and one in every output sample"
             .to_string(),
+    })
+}
+
+/// Vibration swings the ramp, which narrows the dead band as dither does in a ring laser.
+///
+/// A swing of s rad leaves `J0(s) = 1 - s^2 / 4` of the coupling, tone by tone.
+fn shaken_ramp(parts: &Parts, tones: &[Tone]) -> Result<(), GyroError> {
+    if parts.optics.coupling_rad <= 0.0 || parts.optics.dither_rad > 0.0 {
+        return Ok(());
+    }
+    let swing_rad = |tone: &Tone| {
+        let phase_rad = tone.rate_rad_per_s.norm() * parts.coil.scale_factor_s;
+        phase_rad / (TAU * tone.frequency_hz * parts.half_period_s)
+    };
+    let narrowing: f64 = tones
+        .iter()
+        .map(|tone| 0.25 * swing_rad(tone).powi(2))
+        .sum();
+    if narrowing <= NARROWING_MAX {
+        return Ok(());
+    }
+    Err(GyroError::RateModelLacks {
+        key: "gyro.modulator.cross_coupling_urad",
+        reason: format!(
+            "gyro.vibration swings the ramp by {:.2} rad rms, which narrows the dead band",
+            (2.0 * narrowing).sqrt()
+        ),
     })
 }
 

@@ -109,7 +109,7 @@ impl LoopModel {
             levels_per_rad: levels_per_rad(&parts),
             times: (0..states).map(|state| f64::from(state) / count).collect(),
             phases_codes: (0..states).map(|_| 0.0).collect(),
-            vibration: Vibration::new(&config.vibration, &parts.coil, streams)
+            vibration: Vibration::new(&config.vibration, parts.half_period_s, streams)
                 .map(|vibration| (vibration, (0..states).map(|_| 1.0).collect())),
             slow_noise: SlowNoise::new(
                 &config.slow_noise,

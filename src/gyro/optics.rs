@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use crate::gyro::coil::Coil;
+use crate::gyro::condition::Condition;
 use crate::scenario::{GyroConfig, ModulationScheme, ResetSample};
-use crate::units::{MICRO, deg_to_rad};
+use crate::units::{MICRO, deg_per_h_to_rad_per_s, deg_to_rad};
 
 /// Settings of the second-order effects, SI, as both models use them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,6 +131,8 @@ pub fn spike_share(mismatch: f64) -> f64 {
 
 /// Mean output rate at a constant input rate in the long run, noise apart, rad/s.
 ///
+/// In the condition of the start: its temperature gives scale factor, bias and half-wave voltage.
+///
 /// * **Dead band.** An error phase `a sin(u + theta)` of the ramp u makes
 ///   `tau du/dt = phi_s + a sin(u + theta)`, Adler's equation: u stands still for
 ///   `|phi_s| <= a`, else its mean step is `sgn(phi_s) sqrt(phi_s^2 - a^2)`. Ramp dither removes it.
@@ -143,8 +146,11 @@ pub fn spike_share(mismatch: f64) -> f64 {
 #[must_use]
 pub fn expected_mean_rate_rad_per_s(config: &GyroConfig, rate_rad_per_s: f64) -> f64 {
     let optics = Optics::new(config);
+    let condition = Condition::at_start(config);
     let scale_factor_s = Coil::new(&config.coil, &config.source).scale_factor_s;
-    let phase_rad = scale_factor_s * rate_rad_per_s;
+    let bias_rad_per_s =
+        condition.bias_rad_per_s + deg_per_h_to_rad_per_s(config.slow_noise.bias_deg_per_h);
+    let phase_rad = scale_factor_s * condition.scale_ratio * (rate_rad_per_s + bias_rad_per_s);
     let dead_rad = if optics.dither_rad > 0.0 {
         0.0
     } else {
@@ -157,7 +163,7 @@ pub fn expected_mean_rate_rad_per_s(config: &GyroConfig, rate_rad_per_s: f64) ->
     let gain_error = if optics.second_loop_gain > 0.0 {
         0.0
     } else {
-        optics.gain_error
+        (1.0 + optics.gain_error) * (1.0 + condition.modulator_gain_error) - 1.0
     };
     let bias_rad = optics.intensity_bias_rad(
         config.source.visibility,

@@ -11,7 +11,6 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::Complex;
 
-use crate::gyro::coil::Coil;
 use crate::gyro::parts::Parts;
 use crate::random::{Stream, Streams};
 use crate::scenario::{
@@ -140,10 +139,13 @@ pub(super) struct Vibration {
 }
 
 impl Vibration {
-    /// The vibration of a configuration, `None` if it is off.
-    pub(super) fn new(config: &VibrationConfig, coil: &Coil, streams: &Streams) -> Option<Self> {
+    /// The vibration of a configuration at half periods of `half_period_s`, `None` if it is off.
+    pub(super) fn new(
+        config: &VibrationConfig,
+        half_period_s: f64,
+        streams: &Streams,
+    ) -> Option<Self> {
         let tones = tones(config, streams);
-        let half_period_s = coil.transit_time_s;
         let turn = |tone: &Tone| std::array::from_fn(|h| tone.turned(h as f64 * half_period_s));
         (!tones.is_empty()).then(|| Self {
             turns: tones.iter().map(turn).collect(),
@@ -182,7 +184,8 @@ impl Vibration {
 
 /// The linear loop's answer to a vibration, to second order.
 ///
-/// With `zeta = e^(j w tau)`, Q the power and P the Sagnac phase of a tone, a pair demodulates
+/// With `zeta = e^(j w tau)`, tau the half period (of a mismatched gyro too, if its spikes are
+/// gated), Q the power and P the Sagnac phase of a tone, a pair demodulates
 ///
 /// ```text
 /// e = (x0 + x1)/2 + B (q1 - q0) + (q0 x0 + q1 x1)/2 - cot(phi_m) (x1^2 - x0^2)/4
@@ -228,7 +231,7 @@ impl VibrationResponse {
         let mut mean_rad = 0.0;
         let mut answers = Vec::with_capacity(tones.len());
         for tone in tones {
-            let half_angle = 0.5 * TAU * tone.frequency_hz * coil.transit_time_s;
+            let half_angle = 0.5 * TAU * tone.frequency_hz * parts.half_period_s;
             let zeta = Complex::from_polar(1.0, 2.0 * half_angle);
             let (re, im) = parts.controller.response(tone.frequency_hz);
             let response = Complex::new(re, im);
@@ -251,7 +254,7 @@ impl VibrationResponse {
         Some(Self {
             tones: answers,
             mean_rad,
-            sample_period_s: periods * coil.loop_period_s(),
+            sample_period_s: periods * parts.controller.loop_period_s,
             index: 0,
         })
     }

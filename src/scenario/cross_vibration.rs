@@ -2,7 +2,7 @@
 
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
-use super::gyro_config::GyroConfig;
+use super::gyro_config::{GyroConfig, ModulationScheme};
 use super::vibration_config::{RandomVibrationConfig, SineVibrationConfig, VibrationMotion};
 
 /// Every complaint about a gyro's vibration: the key to blame and what is wrong.
@@ -23,7 +23,30 @@ pub(crate) fn check(gyro: &GyroConfig) -> Vec<(&'static str, String)> {
         );
         ("gyro.vibration.intensity_per_g", message)
     });
-    found.into_iter().chain(dark).collect()
+    let pair = no_pair(gyro);
+    found.into_iter().chain(dark).chain(pair).collect()
+}
+
+/// Vibration of a gyro that does not demodulate two plain states a half period apart.
+///
+/// What vibration rectifies to is the product of a change of power and a change of phase within one
+/// demodulation: other states, or spikes beside them, weigh the two differently.
+fn no_pair(gyro: &GyroConfig) -> Option<(&'static str, String)> {
+    if matches!(gyro.vibration.motion, VibrationMotion::Off(_)) {
+        return None;
+    }
+    let modulator = &gyro.modulator;
+    if modulator.scheme != ModulationScheme::TwoState {
+        let message = "gyro.modulator.scheme has four states under gyro.vibration: the mean that \
+                       vibration rectifies to is known for a pair of states only, use \"two-state\"";
+        return Some(("gyro.modulator.scheme", message.to_owned()));
+    }
+    (modulator.half_period_mismatch != 0.0 && !gyro.detector.gate_spikes).then(|| {
+        let message = "gyro.detector.gate_spikes = false under gyro.vibration with a \
+                       gyro.modulator.half_period_mismatch: the mean that vibration rectifies to is \
+                       known without spikes only, gate them";
+        ("gyro.detector.gate_spikes", message.to_owned())
+    })
 }
 
 /// Largest acceleration: all tones of a band in step.

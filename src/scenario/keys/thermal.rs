@@ -66,7 +66,7 @@ pub(super) const KEYS: &[Key] = &[
     key("gyro.thermal.bias_deg_per_h_per_c_per_min", Kind::Float(Range::closed(-1000.0, 1000.0)), "deg/h per K/min", Defaulted,
         "Bias per temperature rate of the coil."),
     key("gyro.thermal.half_wave_voltage_ppm_per_k", Kind::Float(Range::closed(-5000.0, 5000.0)), "ppm/K", Defaulted,
-        "Drift of the modulator's half-wave voltage that no second loop corrects."),
+        "Drift of the modulator's half-wave voltage, which the second loop corrects if it is on."),
     key("gyro.thermal.power.quadratic.cold_c", Kind::Float(Range::closed(-100.0, 150.0)), "C", Defaulted,
         "A temperature below the reference."),
     key("gyro.thermal.power.quadratic.cold_ratio", Kind::Float(Range::above(0.0, 100.0)), "", Defaulted,
