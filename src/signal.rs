@@ -199,8 +199,8 @@ pub struct BudgetSheet {
 
 /// The samples of one gyro of a run, borrowed: what the plots draw and the sample files hold.
 ///
-/// All slices have the same length; index 0 is the first sample of the warm-up and is stamped one
-/// sample period after the start.
+/// All slices have the same length, but for a truth that is not known; index 0 is the first sample
+/// of the warm-up and is stamped one sample period after the start.
 #[derive(Clone, Debug)]
 pub struct RunSignals<'a> {
     /// Sample period, s.
@@ -209,7 +209,7 @@ pub struct RunSignals<'a> {
     pub first_measured: usize,
     /// Prefix of the channels of this gyro: empty, or `x_`, `y_`, `z_` in an assembly.
     pub prefix: &'a str,
-    /// Inertial rate of the axis at each stamp, deg/h.
+    /// Inertial rate of the axis at each stamp, deg/h; empty where nobody knows it.
     pub truth_deg_per_h: &'a [f64],
     /// Angle that the table's encoder shows at each stamp, rad; none if the table has none.
     pub encoder_rad: Option<&'a [f64]>,

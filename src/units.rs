@@ -74,6 +74,18 @@ pub fn deg_per_s_to_deg_per_h(rate_deg_per_s: f64) -> f64 {
     rate_deg_per_s * SECONDS_PER_HOUR
 }
 
+/// Converts a rate from mdeg/s to deg/h.
+#[must_use]
+pub fn mdeg_per_s_to_deg_per_h(rate_mdeg_per_s: f64) -> f64 {
+    deg_per_s_to_deg_per_h(rate_mdeg_per_s * MILLI)
+}
+
+/// Converts a rate from rad/h to deg/h.
+#[must_use]
+pub fn rad_per_h_to_deg_per_h(rate_rad_per_h: f64) -> f64 {
+    rad_to_deg(rate_rad_per_h)
+}
+
 /// Converts a rate from deg/h to deg/s.
 #[must_use]
 pub fn deg_per_h_to_deg_per_s(rate_deg_per_h: f64) -> f64 {
@@ -164,6 +176,12 @@ pub fn s_to_ms(time_s: f64) -> f64 {
 #[must_use]
 pub fn s_to_us(time_s: f64) -> f64 {
     time_s * 1e6
+}
+
+/// Converts a time from milliseconds to seconds.
+#[must_use]
+pub fn ms_to_s(time_ms: f64) -> f64 {
+    time_ms * 1e-3
 }
 
 /// Time, us -> s.

@@ -14,6 +14,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ("fpga", &[]),
     ("filters", &["signal"]),
     ("metrics", &["units", "signal"]),
+    ("recording", &["units", "signal"]),
     ("gate", &["metrics", "scenario"]),
     (
         "report",
@@ -31,13 +32,22 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "fpga",
             "filters",
             "metrics",
+            "recording",
             "gate",
             "report",
         ],
     ),
     (
         "cli",
-        &["units", "experiment", "gate", "report", "scenario", "fpga"],
+        &[
+            "units",
+            "experiment",
+            "gate",
+            "recording",
+            "report",
+            "scenario",
+            "fpga",
+        ],
     ),
 ];
 

@@ -13,7 +13,7 @@ use super::steady::{
     LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_mean_ratio, measure_steady, put_mean,
     put_noise_gain, put_noise_std,
 };
-use super::support::{SAMPLES_MIN, encoder_lack, support};
+use super::support::{NO_TRUTH, SAMPLES_MIN, encoder_lack, support, truth_lack};
 use super::swing::measure_swing;
 
 /// Points of the spectrum in the report.
@@ -27,7 +27,7 @@ const SPECTRUM_POINTS_MAX: usize = 400;
 /// knows the hardware. Intervals are 95 %.
 ///
 /// # Panics
-/// If the slices of the record differ in length.
+/// If the slices of the record differ in length, an empty truth excepted.
 #[must_use]
 pub fn measure(
     record: &Record,
@@ -35,11 +35,11 @@ pub fn measure(
     filter: Option<&FilterFacts>,
 ) -> ChannelMetrics {
     let samples = record.channel_deg_per_h.len();
+    let truths = record.truth().map_or(samples, <[f64]>::len);
     assert!(
-        record.raw_deg_per_h.len() == samples && record.truth_deg_per_h.len() == samples,
-        "channel, raw and truth hold {samples}, {} and {} samples",
-        record.raw_deg_per_h.len(),
-        record.truth_deg_per_h.len()
+        record.raw_deg_per_h.len() == samples && truths == samples,
+        "channel, raw and truth hold {samples}, {} and {truths} samples",
+        record.raw_deg_per_h.len()
     );
     let readings = record.encoder_rad.map_or(samples, <[f64]>::len);
     assert!(
@@ -81,6 +81,11 @@ fn measure_motion(
     );
     metrics.put_spectrum(log_binned(&spectrum, SPECTRUM_POINTS_MAX));
     match &settings.motion {
+        Motion::MultiSine { .. } | Motion::General | Motion::Steps { .. }
+            if record.truth().is_none() =>
+        {
+            Err(NO_TRUTH.to_owned())
+        }
         Motion::Steady => {
             measure_steady(record, settings, filter, metrics);
             Ok(())
@@ -169,7 +174,7 @@ fn measure_tracking(record: &Record, metrics: &mut ChannelMetrics) {
     let mean = Estimate::with_interval(error.value + truth, error.low + truth, error.high + truth);
     put_mean(
         mean,
-        truth,
+        Some(truth),
         values.len() as f64 * record.sample_period_s,
         metrics,
     );
@@ -253,6 +258,7 @@ fn explain_missing(
             settings.bias_averaging_time_s,
         )
         .err()
+        .or_else(|| truth_lack(name, record.truth().is_some(), is_filter).map(str::to_owned))
         .or_else(|| encoder_lack(name, record.encoder_rad.is_some()).map(str::to_owned))
         .unwrap_or_else(|| match known.applies {
             Applies::Pipeline => PIPELINE_ONLY.to_owned(),

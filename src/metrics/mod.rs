@@ -64,4 +64,4 @@ pub use scale_factor::{
 };
 pub use settling::{Settling, settling};
 pub use sine_frequency::{FreeSineFit, fit_sine_free_frequency};
-pub use support::{encoder_lack, support};
+pub use support::{encoder_lack, support, truth_lack};

@@ -39,7 +39,12 @@ pub(crate) fn measure_multi_sine(
     let fits = fit_tones(&series, &clock)?;
     let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
     let truth_offset = fits.offset(TRUTH).value;
-    put_mean(fits.offset(CHANNEL), truth_offset, duration_s, metrics);
+    put_mean(
+        fits.offset(CHANNEL),
+        Some(truth_offset),
+        duration_s,
+        metrics,
+    );
     let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
     let behind_truth = later(fits.response(CHANNEL, TRUTH), latency_s);
     put_lowest("delay_vs_truth_ms", &behind_truth, metrics);

@@ -6,14 +6,14 @@ use crate::signal::FilterShape;
 
 /// The samples of one channel with the two references it is compared to.
 ///
-/// All slices have the same length and are cut to the measured window.
+/// All slices have the same length and are cut to the measured window; the truth may be empty.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
     /// The channel, deg/h.
     pub channel_deg_per_h: &'a [f64],
     /// The unfiltered gyro, deg/h; the channel itself when raw is measured.
     pub raw_deg_per_h: &'a [f64],
-    /// The true rate at the stamps, deg/h.
+    /// The true rate at the stamps, deg/h; empty where nobody knows it, as of a recorded log.
     pub truth_deg_per_h: &'a [f64],
     /// What the table's encoder shows at the stamps, rad; none if the table has none.
     pub encoder_rad: Option<&'a [f64]>,
@@ -21,6 +21,14 @@ pub struct Record<'a> {
     pub sample_period_s: f64,
     /// Stamp of the first sample, s.
     pub first_stamp_s: f64,
+}
+
+impl<'a> Record<'a> {
+    /// The true rate at the stamps, deg/h, where it is known.
+    #[must_use]
+    pub fn truth(&self) -> Option<&'a [f64]> {
+        (!self.truth_deg_per_h.is_empty()).then_some(self.truth_deg_per_h)
+    }
 }
 
 /// What the table did during the record.

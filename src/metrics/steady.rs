@@ -171,16 +171,16 @@ fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMe
     };
     put_mean(
         estimate,
-        interval::mean(record.truth_deg_per_h),
+        record.truth().map(interval::mean),
         duration_s,
         metrics,
     );
 }
 
-/// Enters the mean and its error against the mean truth.
+/// Enters the mean and, where the truth is known, its error against the mean truth.
 pub(crate) fn put_mean(
     mean: Estimate,
-    truth_deg_per_h: f64,
+    truth_deg_per_h: Option<f64>,
     averaging_time_s: f64,
     metrics: &mut ChannelMetrics,
 ) {
@@ -188,6 +188,9 @@ pub(crate) fn put_mean(
         .put("mean_deg_per_h", mean)
         .fields
         .insert("averaging_time_s", averaging_time_s);
+    let Some(truth_deg_per_h) = truth_deg_per_h else {
+        return;
+    };
     let error = Estimate::with_interval(
         mean.value - truth_deg_per_h,
         mean.low - truth_deg_per_h,

@@ -133,6 +133,30 @@ pub fn encoder_lack(metric: &str, has_encoder: bool) -> Option<&'static str> {
         .then_some("the table has no encoder: give turntable.encoder.resolution_arcsec")
 }
 
+/// Why a record without its true rate lacks what is compared with it.
+pub(crate) const NO_TRUTH: &str = "the true rate is not known: a recorded log brings none";
+
+/// Metrics of steady and swing records that compare a channel with the true rate.
+const OF_TRUTH: [&str; 4] = [
+    "mean_error_deg_per_h",
+    "delay_vs_truth_ms",
+    "delay_by_correlation_ms",
+    "tracking_error_rms_deg_per_h",
+];
+
+/// Why a record without its true rate can never have a metric; nothing for other metrics.
+///
+/// The amplitude of raw has nothing but the true rate to be compared with; a filter's has raw.
+#[must_use]
+pub fn truth_lack(metric: &str, has_truth: bool, is_filter: bool) -> Option<&'static str> {
+    let compares = OF_TRUTH.contains(&metric) || (metric == "amplitude_ratio" && !is_filter);
+    match metric {
+        _ if has_truth => None,
+        DELAY_VS_ENCODER => Some("a recorded log brings no angle of an encoder"),
+        _ => compares.then_some(NO_TRUTH),
+    }
+}
+
 /// Whether a metric does not use the words of the record: a pipeline's figures and a few more.
 fn is_independent(known: &KnownMetric) -> bool {
     known.applies == Applies::Pipeline || INDEPENDENT.contains(&known.name)

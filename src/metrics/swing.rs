@@ -17,7 +17,8 @@ use crate::units;
 struct Fits {
     channel: SwingFit,
     raw: SwingFit,
-    truth: SwingFit,
+    /// The true rate, if it is known.
+    truth: Option<SwingFit>,
     /// Rate implied by the encoder's angle, if there is an encoder.
     encoder: Option<SwingFit>,
 }
@@ -40,7 +41,10 @@ pub(crate) fn measure_swing(
     let fits = Fits {
         channel: fit_swing(record.channel_deg_per_h, &clock)?,
         raw: fit_swing(record.raw_deg_per_h, &clock)?,
-        truth: fit_swing(record.truth_deg_per_h, &clock)?,
+        truth: match record.truth() {
+            Some(truth) => Some(fit_swing(truth, &clock)?),
+            None => None,
+        },
         encoder: match record.encoder_rad {
             Some(angles) => Some(fit_swing(angles, &clock)?.derivative()),
             None => None,
@@ -49,13 +53,15 @@ pub(crate) fn measure_swing(
     let duration_s = fits.channel.samples() as f64 * record.sample_period_s;
     put_mean(
         fits.channel.offset(),
-        fits.truth.whole.offset,
+        fits.truth.as_ref().map(|truth| truth.whole.offset),
         duration_s,
         metrics,
     );
     measure_sines(&fits, &clock, filter, metrics);
-    measure_correlation(record, &clock, filter, metrics);
-    measure_tracking(record, &fits, metrics);
+    if let Some(truth) = record.truth() {
+        measure_correlation(truth, record, &clock, filter, metrics);
+        measure_tracking(truth, record, &fits, metrics);
+    }
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let residuals = fits.channel.residuals(record.channel_deg_per_h);
     metrics.put(
@@ -98,15 +104,19 @@ fn measure_sines(
             metric.fields.insert("latency_us", latency_us);
         }
     };
-    put_delay("delay_vs_truth_ms", &fits.truth);
+    if let Some(truth) = &fits.truth {
+        put_delay("delay_vs_truth_ms", truth);
+    }
     if let Some(encoder) = &fits.encoder {
         put_delay(DELAY_VS_ENCODER, encoder);
     }
     if filter.is_some() {
         put_delay("delay_vs_raw_ms", &fits.raw);
     }
-    let reference = filter.map_or(&fits.truth, |_| &fits.raw);
-    describe(metrics.put("amplitude_ratio", fits.channel.amplitude_over(reference)));
+    let reference = filter.map_or(fits.truth.as_ref(), |_| Some(&fits.raw));
+    if let Some(reference) = reference {
+        describe(metrics.put("amplitude_ratio", fits.channel.amplitude_over(reference)));
+    }
 }
 
 /// The delay behind the truth that [`measure_sines`] finds, by another estimator.
@@ -114,13 +124,14 @@ fn measure_sines(
 /// Not behind raw: raw's noise is in the filter's output too and correlates with it at small lags.
 /// Near the peak a swing's own correlation is so flat that this would move it by some 50 us.
 fn measure_correlation(
+    truth_deg_per_h: &[f64],
     record: &Record,
     clock: &SwingClock,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
     let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
-    match correlation_delay_s(record.truth_deg_per_h, record.channel_deg_per_h, clock) {
+    match correlation_delay_s(truth_deg_per_h, record.channel_deg_per_h, clock) {
         Ok(delay_s) => {
             let delay_ms = later(delay_s, latency_s).scaled(units::s_to_ms(1.0));
             let metric = metrics.put("delay_by_correlation_ms", delay_ms);
@@ -141,10 +152,15 @@ fn later(delay_s: Estimate, latency_s: f64) -> Estimate {
 }
 
 /// Root mean square difference from the truth, with Student's t on the sub-blocks' squares.
-fn measure_tracking(record: &Record, fits: &Fits, metrics: &mut ChannelMetrics) {
+fn measure_tracking(
+    truth_deg_per_h: &[f64],
+    record: &Record,
+    fits: &Fits,
+    metrics: &mut ChannelMetrics,
+) {
     let errors: Vec<f64> = record.channel_deg_per_h[..fits.channel.samples()]
         .iter()
-        .zip(record.truth_deg_per_h)
+        .zip(truth_deg_per_h)
         .map(|(rate, truth)| rate - truth)
         .collect();
     let mean_squares = fits.channel.block_mean_squares(&errors);

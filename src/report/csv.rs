@@ -64,13 +64,13 @@ fn is_end(column: &str, end: &str) -> bool {
 /// The Allan deviation of every channel, or nothing if no channel has one.
 #[must_use]
 pub fn allan_csv(report: &RunReport) -> Option<String> {
-    curve_csv(report, allan_curve)
+    curve_csv(report.channels, allan_curve)
 }
 
 /// The one-sided power spectral density of every channel, or nothing if no channel has one.
 #[must_use]
 pub fn psd_csv(report: &RunReport) -> Option<String> {
-    curve_csv(report, psd_curve)
+    curve_csv(report.channels, psd_curve)
 }
 
 /// Columns of an independent variable: they stand first.
@@ -78,10 +78,13 @@ fn is_abscissa(column: &str) -> bool {
     column == "averaging_time_s" || column == "tau_s" || column == "frequency_hz"
 }
 
-fn curve_csv(report: &RunReport, curve: fn(&ChannelMetrics) -> Option<&Curve>) -> Option<String> {
+/// One curve of every channel that has it, or nothing if none has.
+pub(crate) fn curve_csv(
+    channels: &[(String, ChannelMetrics)],
+    curve: fn(&ChannelMetrics) -> Option<&Curve>,
+) -> Option<String> {
     let curves = || {
-        report
-            .channels
+        channels
             .iter()
             .filter_map(|(name, metrics)| Some((name, curve(metrics)?)))
     };

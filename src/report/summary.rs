@@ -9,7 +9,7 @@ use crate::signal::GyroFacts;
 use serde_json::{Map, Value};
 
 /// Version of the layout of both files.
-const SCHEMA: u32 = 1;
+pub(crate) const SCHEMA: u32 = 1;
 
 /// The text of `<scenario>/summary.json`.
 ///
@@ -107,7 +107,8 @@ fn run_entry(run: &RunOutcome) -> Value {
     entry.into()
 }
 
-fn tool(version: &str) -> Value {
+/// Who wrote it.
+pub(crate) fn tool(version: &str) -> Value {
     object([("name", "fogbench".into()), ("version", version.into())]).into()
 }
 
@@ -164,7 +165,8 @@ fn gyro(facts: &GyroFacts) -> Value {
     record.into()
 }
 
-fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
+/// One channel of `channels`.
+pub(crate) fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
     let mut record: Map<String, Value> = metrics
         .metrics
         .iter()

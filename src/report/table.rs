@@ -6,6 +6,7 @@ use crate::gate::{Verdict, VerdictKind, estimate_text, plain};
 use crate::metrics::{ChannelMetrics, Metric, known_metrics};
 use crate::report::RunReport;
 use crate::report::columns::{Column, columns, matters, unit_text};
+use crate::report::measured::Measured;
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::scenario::{Fidelity, PublishedConfig};
 
@@ -21,8 +22,9 @@ const INDENT: &str = "  ";
 pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     let mut text = heading(report, width, colour);
     text.push_str(&budget(report, width));
-    text.push_str(&channels(report, width, colour));
-    text.push_str(&failures(report, width, colour));
+    text.push_str(&channels_text(&report.measured(), width, colour));
+    let verdicts = report.verdicts;
+    text.push_str(&failures_text(&report.measured(), verdicts, width, colour));
     text.push_str(&published(report, colour));
     text.push_str(&gates(report.verdicts, width, colour));
     for note in report.notes {
@@ -82,8 +84,8 @@ fn budget(report: &RunReport, width: usize) -> String {
 }
 
 /// The channels, their columns broken into as many blocks as the width asks for.
-fn channels(report: &RunReport, width: usize, colour: bool) -> String {
-    let columns = columns(&report.scenario.turntable.motion, report.channels);
+pub(crate) fn channels_text(report: &Measured, width: usize, colour: bool) -> String {
+    let columns = columns(report.motion, report.channels);
     let names = column_of_names(report.channels, colour);
     let mut text = String::new();
     let mut block = vec![names.clone()];
@@ -153,13 +155,18 @@ fn block_lines(columns: &[Vec<String>]) -> String {
 }
 
 /// Channels that failed, then metrics of the table that a record could not support.
-fn failures(report: &RunReport, width: usize, colour: bool) -> String {
+pub(crate) fn failures_text(
+    report: &Measured,
+    verdicts: &[Verdict],
+    width: usize,
+    colour: bool,
+) -> String {
     let mut text = String::new();
     for (name, metrics) in report.channels {
         if let Some(failure) = &metrics.error {
             let line = format!(
                 "{} channel {name} at sample {} ({}): {}",
-                failure_word(report, name, colour),
+                failure_word(verdicts, name, colour),
                 failure.sample,
                 failure.kind,
                 failure.message
@@ -179,9 +186,9 @@ fn failures(report: &RunReport, width: usize, colour: bool) -> String {
 }
 
 /// A gate on the failure of a channel makes it an expected one.
-fn failure_word(report: &RunReport, channel: &str, colour: bool) -> String {
+fn failure_word(verdicts: &[Verdict], channel: &str, colour: bool) -> String {
     let metric = format!("{channel}.diverged_at_s");
-    let mut verdicts = report.verdicts.iter();
+    let mut verdicts = verdicts.iter();
     if verdicts.any(|verdict| verdict.metric == metric) {
         toned("failed as expected:", Tone::Good, colour)
     } else {
@@ -191,13 +198,12 @@ fn failure_word(report: &RunReport, channel: &str, colour: bool) -> String {
 
 /// Metrics that this table would show and the record could not support, with the reason and the
 /// channels concerned; what is not defined for a motion or a channel is left to the JSON.
-fn missing<'a>(report: &'a RunReport) -> BTreeMap<(&'a str, &'a str), Vec<&'a str>> {
-    let motion = &report.scenario.turntable.motion;
+fn missing<'a>(report: &Measured<'a>) -> BTreeMap<(&'a str, &'a str), Vec<&'a str>> {
     let mut missing: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
     for (name, metrics) in report.channels {
         for (key, reason) in &metrics.unavailable {
             let compares = key.contains("_over_") || is_for_filters_only(key);
-            if matters(motion, key) && !compares {
+            if matters(report.motion, key) && !compares {
                 missing.entry((key, reason)).or_default().push(name);
             }
         }

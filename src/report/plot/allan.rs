@@ -6,8 +6,8 @@ use super::picture::{Dash, Picture, Shape, Stroke};
 use super::series::{extent, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::ChannelMetrics;
-use crate::report::RunReport;
 use crate::report::csv::{abscissa, allan_curve, fitted, interval_end, ordinate};
+use crate::report::measured::Measured;
 use crate::units::{
     deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s, deg_per_sqrt_h_to_deg_per_h_sqrt_s,
 };
@@ -29,7 +29,7 @@ struct Reading {
 }
 
 /// The Allan deviation of every channel that has one.
-pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+pub(super) fn picture(report: &Measured) -> Option<Picture> {
     let tables = || {
         report
             .channels
@@ -56,7 +56,7 @@ pub(super) fn picture(report: &RunReport) -> Option<Picture> {
     let y = extent(levels.filter(positive))?;
 
     let mut picture = Picture::new(WIDTH, 700.0);
-    let title = format!("{}: overlapping Allan deviation", report.scenario.name);
+    let title = format!("{}: overlapping Allan deviation", report.name);
     picture.heading((90.0, 28.0), &title, 18.0);
     let x = Axis::log(x, 0.01, "averaging time τ [s]");
     let y = Axis::log(y, 0.04, "Allan deviation σ(τ) [deg/h]");

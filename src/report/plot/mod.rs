@@ -18,7 +18,10 @@ mod thermal;
 
 pub use budget::budget_svg;
 
+use picture::Picture;
+
 use crate::report::RunReport;
+use crate::report::measured::Measured;
 use crate::scenario::MotionConfig;
 use crate::signal::RunSignals;
 
@@ -50,14 +53,33 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
         _ => None,
     };
     let pictures = [
-        ("rate.svg", rate::picture(report, signals)),
-        ("allan.svg", allan::picture(report)),
+        ("rate.svg", rate::picture(&report.measured(), signals)),
+        ("allan.svg", allan::picture(&report.measured())),
         ("swing.svg", swing),
         ("bode.svg", bode::picture(report)),
         ("response.svg", response::picture(report)),
-        ("spectrum.svg", spectrum::picture(report)),
+        ("spectrum.svg", spectrum::picture(&report.measured())),
         ("thermal.svg", thermal::picture(report, signals)),
     ];
+    drawn(pictures, &axis)
+}
+
+/// The pictures of a recorded log: `rate.svg`; `allan.svg` and `spectrum.svg` where a channel has
+/// the curve.
+pub(super) fn log_plots(log: &Measured, signals: &RunSignals) -> Vec<(String, String)> {
+    let pictures = [
+        ("rate.svg", rate::picture(log, signals)),
+        ("allan.svg", allan::picture(log)),
+        ("spectrum.svg", spectrum::picture(log)),
+    ];
+    drawn(pictures, "")
+}
+
+/// Those that there are, as SVG, named behind the axis.
+fn drawn<const N: usize>(
+    pictures: [(&str, Option<Picture>); N],
+    axis: &str,
+) -> Vec<(String, String)> {
     pictures
         .into_iter()
         .filter_map(|(name, picture)| Some((format!("{axis}{name}"), picture?.svg())))

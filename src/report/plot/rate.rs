@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{Picture, Point};
 use super::series::{Series, columns, extent, index, real, series, truth_stroke};
-use crate::report::RunReport;
+use crate::report::measured::Measured;
 use crate::scenario::MotionConfig;
 use crate::signal::RunSignals;
 use crate::units::s_to_ms;
@@ -22,20 +22,25 @@ const SWING_CYCLES: f64 = 2.0;
 
 /// Every channel over the measured record, and below it what the whole record hides: a window of a
 /// swing or of the largest step, or means.
-pub(super) fn picture(report: &RunReport, signals: &RunSignals) -> Option<Picture> {
+pub(super) fn picture(report: &Measured, signals: &RunSignals) -> Option<Picture> {
     let channels = series(report, signals);
-    let truth = signals.truth_deg_per_h.get(signals.first_measured..)?;
-    if truth.len() < 2 {
+    let (_, raw) = signals.channels.first()?;
+    let samples = raw.len().checked_sub(signals.first_measured)?;
+    if samples < 2 {
         return None;
     }
+    // Empty where nobody knows it.
+    let truth = signals.truth_deg_per_h.get(signals.first_measured..);
+    let truth = truth.unwrap_or(&[]);
     let drawing = Drawing {
         channels,
         truth,
+        samples,
         period_s: signals.sample_period_s,
         start_s: real(signals.first_measured + 1) * signals.sample_period_s,
     };
     let mut picture = Picture::new(WIDTH, 860.0);
-    let title = format!("{}: rate against time", report.scenario.name);
+    let title = format!("{}: rate against time", report.name);
     picture.heading((90.0, 28.0), &title, 18.0);
     let mut legend = Legend::new(56.0);
     for channel in &drawing.channels {
@@ -44,16 +49,14 @@ pub(super) fn picture(report: &RunReport, signals: &RunSignals) -> Option<Pictur
             legend.detail(&mut picture, &failure);
         }
     }
-    legend.line(&mut picture, truth_stroke(), "true rate");
+    if !truth.is_empty() {
+        legend.line(&mut picture, truth_stroke(), "true rate");
+    }
     legend.space();
     drawing.envelope(&mut picture, (56.0, 400.0), &mut legend);
     let mut legend = Legend::new(476.0);
     let lower = (476.0, 800.0);
-    match window(
-        &report.scenario.turntable.motion,
-        truth,
-        signals.sample_period_s,
-    ) {
+    match window(report.motion, truth, samples, signals.sample_period_s) {
         Some((range, name)) => drawing.window(&mut picture, lower, range, (&mut legend, &name)),
         None => drawing.means(&mut picture, lower, &mut legend),
     }
@@ -64,18 +67,18 @@ pub(super) fn picture(report: &RunReport, signals: &RunSignals) -> Option<Pictur
 fn window(
     motion: &MotionConfig,
     truth: &[f64],
+    samples: usize,
     period_s: f64,
 ) -> Option<(std::ops::Range<usize>, String)> {
     match motion {
         MotionConfig::Swing(swing) => {
-            let length =
-                index(SWING_CYCLES / (swing.frequency_hz * period_s)).clamp(2, truth.len());
+            let length = index(SWING_CYCLES / (swing.frequency_hz * period_s)).clamp(2, samples);
             let name = format!("first {SWING_CYCLES} cycles of the measured part");
             Some((0..length, name))
         }
         MotionConfig::MultiSine(multi_sine) => {
             let lowest_hz = multi_sine.frequencies_hz.first()?;
-            let length = index(1.0 / (lowest_hz * period_s)).clamp(2, truth.len());
+            let length = index(1.0 / (lowest_hz * period_s)).clamp(2, samples);
             let name = "first cycle of the lowest sine".to_owned();
             Some((0..length, name))
         }
@@ -99,6 +102,7 @@ fn window(
 struct Drawing<'a> {
     channels: Vec<Series<'a>>,
     truth: &'a [f64],
+    samples: usize,
     period_s: f64,
     start_s: f64,
 }
@@ -109,7 +113,7 @@ impl Drawing<'_> {
     }
 
     fn end_s(&self) -> f64 {
-        self.time_s(real(self.truth.len()))
+        self.time_s(real(self.samples))
     }
 
     /// Smallest to largest value per pixel column, channels over one another.
@@ -143,13 +147,14 @@ impl Drawing<'_> {
                 [(time, column.low), (time, column.high)]
             })
             .collect();
-        let is_quiet = truth
-            .iter()
-            .all(|column| column.high - column.low < 0.2 * panel_span(&truth));
+        let is_quiet = !truth.is_empty()
+            && truth
+                .iter()
+                .all(|column| column.high - column.low < 0.2 * panel_span(&truth));
         if is_quiet {
             panel.line(picture, &line, truth_stroke());
         }
-        let step_s = self.period_s * real(self.truth.len().div_ceil(share));
+        let step_s = self.period_s * real(self.samples.div_ceil(share));
         legend.text(picture, "above: smallest to largest value");
         let each = format!("in each {} s", crate::gate::plain(rounded(step_s)));
         legend.text(picture, &each);
@@ -166,7 +171,7 @@ impl Drawing<'_> {
         };
         let x = Axis::linear((self.start_s, self.end_s()), 0.0, "time [s]");
         self.lines(picture, frame, x, &line_of);
-        let step_s = self.period_s * real(self.truth.len().div_ceil(MEANS));
+        let step_s = self.period_s * real(self.samples.div_ceil(MEANS));
         let each = format!(
             "below: means over {} s",
             crate::gate::plain(rounded(step_s))
@@ -222,7 +227,9 @@ impl Drawing<'_> {
         for (line, stroke) in &lines {
             panel.line(picture, line, *stroke);
         }
-        panel.line(picture, &truth, truth_stroke());
+        if !truth.is_empty() {
+            panel.line(picture, &truth, truth_stroke());
+        }
     }
 }
 

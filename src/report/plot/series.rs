@@ -2,7 +2,7 @@
 
 use super::picture::{BLACK, Colour, Dash, Shape, Stroke};
 use crate::metrics::ChannelMetrics;
-use crate::report::RunReport;
+use crate::report::measured::Measured;
 use crate::signal::RunSignals;
 
 /// Colours that colour-blind readers tell apart (Okabe and Ito, 2008), raw first.
@@ -62,8 +62,8 @@ pub(super) fn truth_stroke() -> Stroke {
     }
 }
 
-/// The channels of a report with their samples.
-pub(super) fn series<'a>(report: &RunReport<'a>, signals: &RunSignals<'a>) -> Vec<Series<'a>> {
+/// The channels of a report with their samples; the first of the signals is raw.
+pub(super) fn series<'a>(report: &Measured<'a>, signals: &RunSignals<'a>) -> Vec<Series<'a>> {
     report
         .channels
         .iter()
@@ -78,7 +78,7 @@ pub(super) fn series<'a>(report: &RunReport<'a>, signals: &RunSignals<'a>) -> Ve
                 .unwrap_or(&[]);
             Series {
                 name,
-                is_raw: report.scenario.is_raw(name),
+                is_raw: signals.channels.first().is_some_and(|(raw, _)| raw == name),
                 metrics: Some(metrics),
                 stroke: stroke_of(index),
                 samples,

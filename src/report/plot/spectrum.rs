@@ -4,14 +4,14 @@ use super::axis::Axis;
 use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{Picture, Point};
 use super::series::{extent, real, stroke_of};
-use crate::report::RunReport;
 use crate::report::csv::{abscissa, ordinate, psd_curve};
+use crate::report::measured::Measured;
 
 /// Densities are averaged over steps of this part of a decade.
 const STEPS_PER_DECADE: f64 = 60.0;
 
 /// The spectrum of every channel that has one.
-pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+pub(super) fn picture(report: &Measured) -> Option<Picture> {
     let curves: Vec<(usize, &str, Vec<Point>)> = report
         .channels
         .iter()
@@ -29,7 +29,7 @@ pub(super) fn picture(report: &RunReport) -> Option<Picture> {
     let x = extent(points().map(|(frequency, _)| *frequency))?;
     let y = extent(points().map(|(_, density)| *density))?;
     let mut picture = Picture::new(WIDTH, 640.0);
-    let title = format!("{}: spectrum of the rate", report.scenario.name);
+    let title = format!("{}: spectrum of the rate", report.name);
     picture.heading((90.0, 28.0), &title, 18.0);
     let x = Axis::log(x, 0.01, "frequency [Hz]");
     let y = Axis::log(y, 0.04, "one-sided power spectral density [(deg/h)²/Hz]");

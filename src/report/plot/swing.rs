@@ -27,7 +27,7 @@ pub(super) fn picture(
     frequency_hz: f64,
 ) -> Option<Picture> {
     let truth = signals.truth_deg_per_h.get(signals.first_measured..)?;
-    let channels = series(report, signals);
+    let channels = series(&report.measured(), signals);
     let fold = Fold::new(truth, signals.sample_period_s, frequency_hz)?;
     let mut picture = Picture::new(WIDTH, 900.0);
     let title = format!(

@@ -1,0 +1,63 @@
+//! What can be wrong with a log.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a log was not read.
+#[derive(Debug, thiserror::Error)]
+pub enum LogError {
+    /// The file system refused.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// What the file holds, or what was said of it, is wrong.
+    #[error("{place}: {message}")]
+    Content {
+        /// The file, with line or index where there is one.
+        place: String,
+        /// What is wrong: column, value, unit, what is allowed.
+        message: String,
+    },
+}
+
+impl LogError {
+    /// A complaint about a file as a whole.
+    pub fn of_file(path: &Path, message: impl Into<String>) -> Self {
+        Self::Content {
+            place: path.display().to_string(),
+            message: message.into(),
+        }
+    }
+
+    /// A complaint about a line, counted from 1, or about an element of an array.
+    pub(crate) fn at(path: &Path, place: Place, message: impl Into<String>) -> Self {
+        let path = path.display();
+        Self::Content {
+            place: match place {
+                Place::Line(line) => format!("{path}:{line}"),
+                Place::Index(index) => format!("{path}: index {index}"),
+            },
+            message: message.into(),
+        }
+    }
+
+    pub(crate) fn read(path: &Path, source: io::Error) -> Self {
+        Self::Read {
+            path: path.to_owned(),
+            source,
+        }
+    }
+}
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// Line of a text, from 1.
+    Line(usize),
+    /// Element of an array, from 0.
+    Index(usize),
+}

@@ -1,0 +1,18 @@
+//! Reads recorded logs (NPY, CSV) into rate words, and writes words as CSV.
+//!
+//! Invariant: a log comes out of here whole, finite, equally spaced and in deg/h, or not at all;
+//! every complaint names the file and the place in it.
+
+mod column;
+mod csv;
+mod error;
+mod log;
+mod npy;
+mod timing;
+mod unit;
+
+pub use csv::csv_text;
+pub use error::LogError;
+pub use log::{Log, LogFormat, read_log};
+pub use timing::{TimeUnit, Timing};
+pub use unit::RateUnit;

@@ -1,0 +1,156 @@
+//! What is said of a recorded log: text, JSON, and the files of its folder.
+
+use serde_json::{Map, Value};
+
+use crate::gate::plain;
+use crate::metrics::ChannelMetrics;
+use crate::report::csv::{allan_curve, curve_csv, psd_curve};
+use crate::report::json::{number, object, pretty};
+use crate::report::measured::Measured;
+use crate::report::plot::log_plots;
+use crate::report::summary::{SCHEMA, channel, tool};
+use crate::report::table::{channels_text, failures_text};
+use crate::report::text::{Tone, toned, wrapped};
+use crate::scenario::MotionConfig;
+use crate::signal::RunSignals;
+
+/// Everything the report of one log shows.
+#[derive(Clone, Debug)]
+pub struct LogReport<'a> {
+    /// Version of the tool.
+    pub tool_version: &'a str,
+    /// Name of the file, without its folder.
+    pub file: &'a str,
+    /// Column of the rate, where the file has several.
+    pub column: Option<&'a str>,
+    /// Unit it was recorded in.
+    pub unit: &'a str,
+    /// Sample rate, Hz.
+    pub sample_rate_hz: f64,
+    /// Samples measured.
+    pub samples: usize,
+    /// Samples before them, left out.
+    pub warm_up_samples: usize,
+    /// Name of the scenario or base whose filters ran, with its digest; none without filters.
+    pub filters: Option<(&'a str, &'a str)>,
+    /// Motion during the record, as the user gives it.
+    pub motion: &'a MotionConfig,
+    /// Channels, raw first.
+    pub channels: &'a [(String, ChannelMetrics)],
+    /// What else is worth saying.
+    pub notes: &'a [String],
+}
+
+impl<'a> LogReport<'a> {
+    fn measured(&self) -> Measured<'a> {
+        Measured {
+            name: self.file,
+            motion: self.motion,
+            channels: self.channels,
+        }
+    }
+
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "sample counts are far below 2^53"
+    )]
+    fn seconds(&self, samples: usize) -> f64 {
+        samples as f64 / self.sample_rate_hz
+    }
+}
+
+/// The table of one log: heading, channels by metrics, failures and what is lacking, notes.
+#[must_use]
+pub fn log_text(report: &LogReport, width: usize, colour: bool) -> String {
+    let column = report
+        .column
+        .map_or_else(String::new, |column| format!(", column {column}"));
+    let mut text = format!(
+        "{}{column}  recorded log, {}, {} samples at {} Hz: {} s after {} s of warm-up\n",
+        toned(report.file, Tone::Heading, colour),
+        report.unit,
+        report.samples,
+        plain(report.sample_rate_hz),
+        plain(report.seconds(report.samples)),
+        plain(report.seconds(report.warm_up_samples)),
+    );
+    if let Some((file, _)) = report.filters {
+        text.push_str(&wrapped(&format!("filters of {file}"), "  ", width));
+    }
+    let measured = report.measured();
+    text.push_str(&channels_text(&measured, width, colour));
+    text.push_str(&failures_text(&measured, &[], width, colour));
+    for note in report.notes {
+        let note = format!("{} {note}", toned("note:", Tone::Doubt, colour));
+        text.push_str(&wrapped(&note, "  ", width));
+    }
+    text
+}
+
+/// The results as JSON; `channels.<name>` is that of a run's `summary.json`.
+///
+/// # Panics
+/// If a number is not finite; see the metric named in the message.
+#[must_use]
+pub fn log_json(report: &LogReport) -> String {
+    let channels: Map<String, Value> = report
+        .channels
+        .iter()
+        .map(|(name, metrics)| (name.clone(), channel(name, metrics)))
+        .collect();
+    let mut root = object([
+        ("schema", SCHEMA.into()),
+        ("tool", tool(report.tool_version)),
+        ("log", log(report)),
+        ("channels", channels.into()),
+    ]);
+    if !report.notes.is_empty() {
+        root.insert("notes".to_owned(), report.notes.to_vec().into());
+    }
+    pretty(&root.into())
+}
+
+fn log(report: &LogReport) -> Value {
+    let duration_s = report.seconds(report.samples);
+    let warm_up_s = report.seconds(report.warm_up_samples);
+    let mut record = object([
+        ("file", report.file.into()),
+        ("unit", report.unit.into()),
+        ("rate_hz", number(report.sample_rate_hz, "rate_hz")),
+        ("samples", report.samples.into()),
+        ("duration_s", number(duration_s, "duration_s")),
+        ("warm_up_samples", report.warm_up_samples.into()),
+        ("warm_up_s", number(warm_up_s, "warm_up_s")),
+    ]);
+    if let Some(column) = report.column {
+        record.insert("column".to_owned(), column.into());
+    }
+    if let MotionConfig::Swing(swing) = report.motion {
+        let frequency_hz = number(swing.frequency_hz, "swing_frequency_hz");
+        record.insert("swing_frequency_hz".to_owned(), frequency_hz);
+    }
+    if let Some((file, digest)) = report.filters {
+        let filters = object([("file", file.into()), ("digest", digest.into())]);
+        record.insert("filters".to_owned(), filters.into());
+    }
+    record.into()
+}
+
+/// The files of a log's folder but for its samples: name and text.
+///
+/// # Panics
+/// As [`log_json`], or if a picture is too large, which its fixed number of points rules out.
+#[must_use]
+pub fn log_files(report: &LogReport, signals: &RunSignals) -> Vec<(String, String)> {
+    let curves = [
+        ("allan.csv", curve_csv(report.channels, allan_curve)),
+        ("psd.csv", curve_csv(report.channels, psd_curve)),
+    ];
+    let curves = curves
+        .into_iter()
+        .filter_map(|(name, text)| Some((name.to_owned(), text?)));
+    std::iter::once(("summary.json".to_owned(), log_json(report)))
+        .chain(curves)
+        .chain(log_plots(&report.measured(), signals))
+        .collect()
+}

@@ -1,0 +1,27 @@
+//! What tables and pictures need to know, of a run and of a recorded log alike.
+
+use crate::metrics::ChannelMetrics;
+use crate::report::RunReport;
+use crate::scenario::MotionConfig;
+
+/// Channels that were measured together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measured<'a> {
+    /// Name in headings.
+    pub(crate) name: &'a str,
+    /// Motion during the record.
+    pub(crate) motion: &'a MotionConfig,
+    /// Channels, raw first.
+    pub(crate) channels: &'a [(String, ChannelMetrics)],
+}
+
+impl<'a> RunReport<'a> {
+    /// The measured channels of the run.
+    pub(crate) fn measured(&self) -> Measured<'a> {
+        Measured {
+            name: &self.scenario.name,
+            motion: &self.scenario.turntable.motion,
+            channels: self.channels,
+        }
+    }
+}
