@@ -1,12 +1,11 @@
 //! Frequency response from several sines at once, by one joint least-squares fit.
 
-use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::f64::consts::TAU;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::estimate::Estimate;
 use super::interval;
-use crate::units;
 
 /// Blocks that leave the fit in turn, for the jackknife.
 const BLOCKS: usize = 20;
@@ -247,9 +246,8 @@ impl ToneFits<'_> {
 
     /// Lowest frequency at which the gain falls through `1/sqrt(2)` of the lowest tone's, Hz.
     ///
-    /// The interval is that of the noise. It leaves out the error of the straight line between two
-    /// tones (see [`bandwidth_hz`]), which goes with the square of their spacing: 0.31 % low for a
-    /// loop of 198 Hz between tones at 190 and 230 Hz.
+    /// The interval is that of the noise; it leaves out the error of the interpolation between two
+    /// tones (see [`bandwidth_hz`]).
     ///
     /// # Errors
     /// The reason, in words, if the tones do not bracket it in every part of the record.
@@ -287,17 +285,18 @@ fn near(angle_rad: f64, target_rad: f64) -> f64 {
 
 /// Lowest frequency at which gains fall through `1/sqrt(2)` of the first, Hz; `None` if they do not.
 ///
-/// Between two tones the gain in decibels is taken as a straight line over the logarithm of the
-/// frequency.
+/// Between two tones the inverse of the squared gain is taken as a straight line over the squared
+/// frequency, which is exact for one pole; elsewhere the error goes with the square of the spacing.
 #[must_use]
 pub fn bandwidth_hz(frequencies_hz: &[f64], gains: &[f64]) -> Option<f64> {
-    let limit_db = units::gain_to_db(FRAC_1_SQRT_2 * gains.first()?);
+    let limit = 2.0 / gains.first()?.powi(2);
     let points = || frequencies_hz.iter().zip(gains);
     points().zip(points().skip(1)).find_map(|(low, high)| {
-        let (above, below) = (units::gain_to_db(*low.1), units::gain_to_db(*high.1));
-        (above >= limit_db && below < limit_db).then(|| {
-            let part = (above - limit_db) / (above - below);
-            low.0 * (high.0 / low.0).powf(part)
+        let (above, below) = (low.1.powi(-2), high.1.powi(-2));
+        (above <= limit && below > limit).then(|| {
+            let part = (limit - above) / (below - above);
+            let squares = [low.0 * low.0, high.0 * high.0];
+            (squares[0] + part * (squares[1] - squares[0])).sqrt()
         })
     })
 }
