@@ -154,6 +154,44 @@ fn a_gate_that_the_duration_can_never_support_exits_2() {
 }
 
 #[test]
+fn a_gyro_of_nothing_but_noise_exits_2_at_the_key_to_blame() {
+    let folder = scratch();
+    let scenario = "name = \"x\"\nduration_s = 1.0\nwarm_up_s = 0.0\n";
+    for (set, key) in [
+        ("gyro.source.power_uw=1e-300", "gyro.noise"),
+        ("gyro.source.power_uw=1e-100", "gyro.noise"),
+        ("gyro.source.linewidth_nm=1e-300", "gyro.noise"),
+        ("gyro.detector.transimpedance_kohm=1e-300", "gyro.noise"),
+        (
+            "gyro.noise.technical_phase_urad_per_sqrt_hz=1e6",
+            "gyro.noise",
+        ),
+        ("gyro.coil.diameter_mm=1e-100", "gyro.coil"),
+        (
+            "gyro.controller.loop_bandwidth_hz=1e5",
+            "gyro.controller.loop_bandwidth_hz",
+        ),
+    ] {
+        let file = folder.path().join("x.toml");
+        std::fs::write(&file, scenario).unwrap();
+        for command in ["check", "budget"] {
+            let output = fogbench()
+                .arg(command)
+                .arg(&file)
+                .args(["--set", "gyro.adc.bits=0", "--set", set])
+                .output()
+                .unwrap();
+            let talk = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(2), "{command} {set}: {talk}");
+            assert!(
+                talk.contains(&format!(": {key}: ")),
+                "{command} {set}: {talk}"
+            );
+        }
+    }
+}
+
+#[test]
 fn an_unknown_metric_in_a_gate_names_the_nearest_one() {
     let folder = scratch();
     let gate = "[[gate]]\nmetric = \"raw.mean_deg_per_hour\"\nmax = 1.0\n";

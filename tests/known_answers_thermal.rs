@@ -395,6 +395,40 @@ fn power_that_vanishes_or_makes_the_loop_oscillate_is_refused() {
 }
 
 #[test]
+fn thermal_laws_that_leave_small_changes_are_refused() {
+    let refused = |config: &GyroConfig| {
+        let error = facts(config).unwrap_err();
+        assert!(
+            matches!(error, GyroError::ThermalLawTooSteep { .. }),
+            "{error}"
+        );
+        error.key()
+    };
+    // 1 - 5000 ppm/K of 125 K: the modulator would overshoot its states by a factor of 2.7.
+    let mut config = reference_gyro();
+    config.temperature = ramp(25.0, 150.0, 1.0, 0.0);
+    config.thermal.power = PowerConfig::Constant(ConstantPowerConfig {});
+    config.thermal.half_wave_voltage_ppm_per_k = 662.0;
+    assert!(facts(&config).is_ok());
+    config.thermal.half_wave_voltage_ppm_per_k = -5000.0;
+    let key = "gyro.thermal.half_wave_voltage_ppm_per_k";
+    assert_eq!(refused(&config), key);
+
+    // 10 nm/K of 125 K on 1310 nm would all but halve the scale factor twice over.
+    config.thermal.half_wave_voltage_ppm_per_k = 0.0;
+    config.thermal.wavelength_nm_per_k = 10.0;
+    config.thermal.wavelength_feed_through = 1.0;
+    assert_eq!(refused(&config), "gyro.thermal");
+
+    // -10 ppm/K^2 of 125 K and -4000 ppm/K of it divide by 0.34.
+    config.thermal.wavelength_nm_per_k = 0.0;
+    config.thermal.compensation_ppm_per_k = -4000.0;
+    config.thermal.compensation_ppm_per_k2 = -10.0;
+    let key = "gyro.thermal.compensation_ppm_per_k";
+    assert_eq!(refused(&config), key);
+}
+
+#[test]
 fn temperatures_that_make_no_sense_are_refused() {
     let cases = [
         (

@@ -77,6 +77,17 @@ fn a_script_of_the_command_line_replaces_the_motion_of_the_file() {
 }
 
 #[test]
+fn a_script_saved_by_a_spreadsheet_is_read_as_any_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = format!("\u{feff}{}", CSV.trim_start_matches("# A slew.\n")).replace('\n', "\r\n");
+    fs::write(folder.path().join("motion.csv"), csv).unwrap();
+    let text = format!("{HEAD}[turntable.script]\nfile = \"motion.csv\"\n");
+    let run = load(folder.path(), &text, &[]).unwrap().remove(0);
+    let (times, rates) = times_and_rates(&run);
+    assert_eq!((times, rates), (vec![0.0, 0.5, 2.0], vec![0.0, 10.0, -0.1]));
+}
+
+#[test]
 fn a_wrong_script_is_refused_at_its_line_and_column() {
     for (csv, expected) in [
         ("", "motion.csv:1:1: the file is empty"),

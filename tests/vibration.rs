@@ -147,6 +147,13 @@ fn power_alone_and_rate_alone_are_rectified_too() {
 }
 
 #[test]
+fn a_tone_that_never_turns_leaves_words_that_are_numbers() {
+    let tone = VibrationMotion::Sine(sine(1e-322, 0.0));
+    let words = rate_words(&vibrating(tone, 1), 8);
+    assert!(words.iter().all(|word| word.is_finite()), "{words:?}");
+}
+
+#[test]
 fn the_rate_model_has_the_tone_and_its_mean() {
     for latency_periods in [0, 1, 3] {
         // In band, at the edge of the loop, and beyond the Nyquist frequency of 1995 Hz.

@@ -156,7 +156,7 @@ impl Checker<'_> {
 
     fn gyro(&mut self) -> Option<GyroFacts> {
         gyro::facts(&self.resolved.scenario.gyro)
-            .map_err(|error| self.complain("gyro", format!("gyro: {error}")))
+            .map_err(|error| self.complain(error.key(), format!("{}: {error}", error.key())))
             .ok()
     }
 

@@ -155,9 +155,11 @@ impl Schedule {
 /// Smallest and largest power ratio of a run.
 ///
 /// # Errors
-/// [`GyroError::NoPower`] if the power law gives no light at a temperature of the run.
+/// [`GyroError::NoPower`] if the power law gives no light at a temperature of the run,
+/// [`GyroError::ThermalLawTooSteep`] if another law leaves the small changes it holds for.
 pub(super) fn power_range(config: &GyroConfig) -> Result<(f64, f64), GyroError> {
     let course = Course::new(config);
+    course.sensitivities.check(course.range_c())?;
     course.sensitivities.power_range(course.range_c())
 }
 

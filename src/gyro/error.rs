@@ -69,6 +69,46 @@ pub enum GyroError {
         /// Temperature of the case, deg C.
         temperature_c: f64,
     },
+    /// A linear law of the temperature is asked for more than a small change.
+    #[error(
+        "{what} becomes {ratio:.3} of nominal at {temperature_c:.1} C: the law is one of small changes, \
+         within {limit} of 1"
+    )]
+    ThermalLawTooSteep {
+        /// Key of the coefficient.
+        key: &'static str,
+        /// What changes.
+        what: &'static str,
+        /// Its value over its nominal one.
+        ratio: f64,
+        /// Largest departure of that ratio from 1.
+        limit: f64,
+        /// Temperature, deg C.
+        temperature_c: f64,
+    },
+    /// Less turns the Sagnac phase than a number can well hold.
+    #[error(
+        "the scale factor of {scale_factor_s:.3e} s is that of no coil: expected at least {least_s:.0e} s, \
+         2 pi L D / (lambda c)"
+    )]
+    NoScaleFactor {
+        /// Sagnac phase per rate, s.
+        scale_factor_s: f64,
+        /// Least scale factor, s.
+        least_s: f64,
+    },
+    /// White noise as great as the range.
+    #[error(
+        "white noise of {noise_deg_per_s:.3e} deg/s rms in a rate word, as much as the single-fringe range of \
+         +-{limit_deg_per_s:.3e} deg/s: this gyro shows nothing else; \
+         lower gyro.noise or raise gyro.source.power_uw"
+    )]
+    NoiseBeyondFringe {
+        /// Standard deviation of a word, deg/s.
+        noise_deg_per_s: f64,
+        /// Rate of a Sagnac phase of pi, deg/s.
+        limit_deg_per_s: f64,
+    },
     /// More light at some temperature makes the loop oscillate.
     #[error(
         "the detected power reaches {power_ratio:.3} of nominal and the loop gain {gain:.4} with it, but \
@@ -172,6 +212,9 @@ impl GyroError {
                 "gyro.controller.loop_bandwidth_hz"
             }
             Self::NoPower { .. } => "gyro.thermal.power",
+            Self::ThermalLawTooSteep { key, .. } => key,
+            Self::NoScaleFactor { .. } => "gyro.coil",
+            Self::NoiseBeyondFringe { .. } => "gyro.noise",
             Self::UnstableAtPower { .. } => "gyro.controller.automatic_gain_control",
             Self::LatencyOutOfRange { .. } => "gyro.controller.loop_latency_periods",
             Self::NoSlope { .. } => "gyro.modulator.depth_deg",

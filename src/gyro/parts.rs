@@ -3,9 +3,14 @@
 use crate::gyro::condition::{Condition, power_range};
 use crate::gyro::controller::gain_limit;
 use crate::gyro::modulation::Timing;
+use crate::gyro::noise_budget::NoiseBudget;
 use crate::gyro::optics::{Optics, spike_share};
 use crate::gyro::{Coil, Controller, Detector, GyroError, Modulator};
 use crate::scenario::GyroConfig;
+use crate::units::{deg_per_sqrt_h_to_rad_per_sqrt_s, rad_per_s_to_deg_per_s};
+
+/// Least Sagnac phase per rate that counts as a gyro, s: a billionth of a usual coil's.
+const SCALE_FACTOR_MIN_S: f64 = 1e-9;
 
 /// Coil, modulator, detector and controller of one configuration in one condition.
 pub(super) struct Parts {
@@ -33,13 +38,22 @@ impl Parts {
     pub(super) fn new(config: &GyroConfig) -> Result<Self, GyroError> {
         let start = Condition::at_start(config);
         let parts = Self::at(config, &start)?;
+        if parts.coil.scale_factor_s < SCALE_FACTOR_MIN_S {
+            return Err(GyroError::NoScaleFactor {
+                scale_factor_s: parts.coil.scale_factor_s,
+                least_s: SCALE_FACTOR_MIN_S,
+            });
+        }
+        parts.noise_within_fringe()?;
         let (least, most) = power_range(config)?;
         for power_ratio in [least, most] {
             let extreme = Condition {
                 power_ratio,
                 ..start
             };
-            let controller = Self::at(config, &extreme)?.controller;
+            let parts = Self::at(config, &extreme)?;
+            parts.noise_within_fringe()?;
+            let controller = parts.controller;
             let gain_limit = gain_limit(controller.latency_periods);
             if controller.gain >= gain_limit {
                 return Err(GyroError::UnstableAtPower {
@@ -100,6 +114,21 @@ impl Parts {
             detector,
             controller,
             condition: *condition,
+        })
+    }
+
+    /// Refuses noise beside which nothing shows, and which ends in numbers that are not finite.
+    fn noise_within_fringe(&self) -> Result<(), GyroError> {
+        let budget = NoiseBudget::new(&self.detector, &self.coil).total_deg_per_sqrt_h();
+        let word_s = f64::from(self.half_periods) * self.half_period_s;
+        let noise = deg_per_sqrt_h_to_rad_per_sqrt_s(budget) / word_s.sqrt();
+        let limit = self.coil.single_fringe_rate_rad_per_s();
+        if noise.is_finite() && noise < limit {
+            return Ok(());
+        }
+        Err(GyroError::NoiseBeyondFringe {
+            noise_deg_per_s: rad_per_s_to_deg_per_s(noise),
+            limit_deg_per_s: rad_per_s_to_deg_per_s(limit),
         })
     }
 

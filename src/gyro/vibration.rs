@@ -247,7 +247,12 @@ impl VibrationResponse {
             let drive = phase * (1.0 + zeta) * 0.5 + tone.power * (zeta - 1.0) * level;
             // Mean of z^1 .. z^n, z = zeta^2: the register is read after each update.
             let angle = 2.0 * half_angle;
-            let ratio = (periods * angle).sin() / (periods * angle.sin());
+            // A cycle beyond the least number there is does not turn at all.
+            let ratio = if angle.sin().abs() > 0.0 {
+                (periods * angle).sin() / (periods * angle.sin())
+            } else {
+                1.0
+            };
             let boxcar = Complex::from_polar(ratio, (periods + 1.0) * angle);
             answers.push((tone, response * drive * boxcar));
         }

@@ -99,10 +99,12 @@ fn cells(start: usize, line: &str) -> Vec<Cell<'_>> {
     line.split(',').map(cell).collect()
 }
 
-/// The lines that say something, with the byte at which each starts.
+/// The lines that say something, with the byte at which each starts; the byte order mark that
+/// spreadsheets put before them is left out.
 fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut start = 0;
-    let placed = text.split_inclusive('\n').map(move |line| {
+    let bare = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut start = text.len() - bare.len();
+    let placed = bare.split_inclusive('\n').map(move |line| {
         let at = start;
         start += line.len();
         (at, line.trim_end())

@@ -6,6 +6,11 @@ use crate::gyro::thermal::{NetworkState, Shupe};
 use crate::scenario::{GyroConfig, PowerConfig};
 use crate::units::{MICRO, deg_per_h_to_rad_per_s, k_per_s_to_k_per_min};
 
+/// Largest change of the scale factor, and of its compensation, for which their laws count as such.
+const SCALE_CHANGE_MAX: f64 = 0.5;
+/// The same of the half-wave voltage: as much as `gyro.modulator.gain_error_ppm` allows.
+const HALF_WAVE_CHANGE_MAX: f64 = 0.2;
+
 /// Laws of the gyro against temperature, x being kelvins above the reference.
 ///
 /// * Scale factor `2 pi L D / (lambda c)`: `1 + (alpha_L + alpha_D) x_coil - k x_case / lambda`
@@ -87,6 +92,49 @@ impl Sensitivities {
                 + self.shupe.bias_rad_per_s(slopes_c_per_s),
             modulator_gain_error: (1.0 + self.half_wave_per_k * case_k).recip() - 1.0,
         }
+    }
+
+    /// Refuses laws that leave the small changes they hold for between two temperatures, deg C.
+    ///
+    /// # Errors
+    /// [`GyroError::ThermalLawTooSteep`].
+    pub(in crate::gyro) fn check(&self, (low_c, high_c): (f64, f64)) -> Result<(), GyroError> {
+        for temperature_c in [low_c, high_c] {
+            let kelvin = temperature_c - self.reference_c;
+            let [linear, square] = self.compensation;
+            let ratios = [
+                (
+                    "gyro.thermal",
+                    "the scale factor",
+                    1.0 + (self.coil_per_k + self.case_per_k) * kelvin,
+                    SCALE_CHANGE_MAX,
+                ),
+                (
+                    "gyro.thermal.compensation_ppm_per_k",
+                    "the compensated scale factor",
+                    1.0 + (linear + square * kelvin) * kelvin,
+                    SCALE_CHANGE_MAX,
+                ),
+                (
+                    "gyro.thermal.half_wave_voltage_ppm_per_k",
+                    "the half-wave voltage",
+                    1.0 + self.half_wave_per_k * kelvin,
+                    HALF_WAVE_CHANGE_MAX,
+                ),
+            ];
+            for (key, what, ratio, limit) in ratios {
+                if (ratio - 1.0).abs() > limit {
+                    return Err(GyroError::ThermalLawTooSteep {
+                        key,
+                        what,
+                        ratio,
+                        limit,
+                        temperature_c,
+                    });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Smallest and largest power ratio while the case is between two temperatures, deg C.
