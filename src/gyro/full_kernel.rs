@@ -38,6 +38,8 @@ pub(super) struct FullLoop {
     periods_to_jump: u32,
     dither: Stream,
     saturated_steps: u64,
+    /// States that a jump took beyond a quarter turn; their period is discarded.
+    jumped_states: u64,
 }
 
 impl FullLoop {
@@ -61,6 +63,7 @@ impl FullLoop {
             periods_to_jump: optics.dither_interval_periods,
             dither: streams.stream("phase_dither"),
             saturated_steps: 0,
+            jumped_states: 0,
         }
     }
 
@@ -87,6 +90,11 @@ impl FullLoop {
     /// Loop periods in which the step was held at its limit.
     pub(super) fn saturated_steps(&self) -> u64 {
         self.saturated_steps
+    }
+
+    /// States beyond a quarter turn that are no loss of lock: a jump of the ramp took them there.
+    pub(super) fn jumped_states(&self) -> u64 {
+        self.jumped_states
     }
 
     /// Runs the loop periods of `phases_codes`, one Sagnac phase per state; returns the sum of the
@@ -142,6 +150,9 @@ impl FullLoop {
             is_disturbed |= self.disturbed_states > 0;
             self.disturbed_states = self.disturbed_states.saturating_sub(1);
             let error = self.error_codes(registers, phase, gain, state, is_rounded);
+            if has_jumped && (error / self.codes_per_rad).abs() > FRAC_PI_2 {
+                self.jumped_states += 1;
+            }
             let level = if state.is_plus {
                 sampler.sample::<true>(error)
             } else {

@@ -213,10 +213,12 @@ impl LoopModel {
         self.detection.faults().saturated
     }
 
-    /// Half periods with a phase error beyond a quarter turn.
+    /// Half periods with a phase error beyond a quarter turn, but for those that a dithered ramp
+    /// discards.
     #[must_use]
     pub fn unlocked_half_periods(&self) -> u64 {
-        self.detection.faults().unlocked
+        let faults = self.detection.faults();
+        faults.unlocked.saturating_sub(self.full.jumped_states())
     }
 
     /// Runs one loop period with the given Sagnac phases (rad), one for each state of the bias wave;

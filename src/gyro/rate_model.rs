@@ -23,8 +23,9 @@ use crate::units::deg_per_sqrt_h_to_rad_per_sqrt_s;
 /// Allan deviation, at a cost that does not depend on the number of half periods per sample. The
 /// noise n has the variance of the whole budget, converter rounding included:
 /// `sigma_e^2 T_L = (N Ks)^2`. Left out: the sine of the fringe (matters for phase errors beyond
-/// about 0.1 rad), single resets, and the ramp converter's rounding, which is bounded in angle. Vibration
-/// is the settled loop's answer to its tones and the mean that they rectify to.
+/// about 0.1 rad), single resets, the noise of the second loop's estimates, and the ramp converter's
+/// rounding, which is bounded in angle. Vibration is the settled loop's answer to its tones and the
+/// mean that they rectify to.
 #[derive(Clone, Debug)]
 pub struct RateModel {
     coil: Coil,
