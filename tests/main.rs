@@ -4,6 +4,7 @@ mod architecture;
 mod assembly;
 mod bit_exact;
 mod cli;
+mod cli_analyze;
 mod cli_budget;
 mod cli_fpga;
 mod closed_loop;
@@ -32,6 +33,7 @@ mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
 mod readme;
+mod recording;
 mod report;
 mod rtl;
 mod scenario_errors;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::hardware_arguments::{ExportOptions, TimingOptions};
+use super::log_arguments::{AnalyzeOptions, FilterLogOptions};
 
 /// Closed-loop fibre-optic-gyro and rate-turntable testbench.
 ///
@@ -39,6 +40,10 @@ pub(super) enum Command {
     Schema,
     /// Print the noise budget of a gyro in closed form, without a run
     Budget(BudgetOptions),
+    /// Measure a recorded log: every metric that needs no true rate
+    Analyze(AnalyzeOptions),
+    /// Replay a recorded log through the filters of a scenario and measure what they make of it
+    Filter(FilterLogOptions),
     /// Print clocks, units and sample rates of a filter in hardware
     Timing(TimingOptions),
     /// Write golden vectors, waveforms or RTL of a hardware pipeline into a folder

@@ -10,6 +10,8 @@ mod expand;
 mod export;
 mod hardware_arguments;
 mod list;
+mod log;
+mod log_arguments;
 mod output;
 mod run;
 mod schema;
@@ -44,6 +46,8 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::List(options) => list::list(options),
         Command::Schema => schema::schema(),
         Command::Budget(options) => budget::budget(options),
+        Command::Analyze(options) => log::analyze(options),
+        Command::Filter(options) => log::filter(options),
         Command::Timing(options) => timing::timing(options),
         Command::Export(options) => export::export(options),
     };

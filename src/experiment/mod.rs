@@ -6,6 +6,8 @@
 mod assembly_motion;
 mod budget;
 mod channel_filter;
+mod log_filters;
+mod log_trial;
 mod motion;
 mod pipeline_check;
 mod pipeline_export;
@@ -19,6 +21,8 @@ mod suite;
 mod theory;
 
 pub use budget::{GyroBudget, gyro_budget};
+pub use log_filters::{LogFilters, load_log_filters};
+pub use log_trial::{LogMotion, LogSettings, LogTrial, LogTrialError, try_log};
 pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{CoreSettings, PipelineSettings, PipelineTiming};

@@ -237,16 +237,16 @@ fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) ->
 }
 
 /// The measured part of one gyro's record and how to measure it.
-struct Cut<'a> {
-    record: &'a GyroRecord,
-    encoder_rad: Option<&'a [f64]>,
-    length: RecordLength,
-    sample_period_s: f64,
-    settings: &'a Settings,
+pub(super) struct Cut<'a> {
+    pub(super) record: &'a GyroRecord,
+    pub(super) encoder_rad: Option<&'a [f64]>,
+    pub(super) length: RecordLength,
+    pub(super) sample_period_s: f64,
+    pub(super) settings: &'a Settings,
 }
 
 impl Cut<'_> {
-    fn measure_raw(&self) -> ChannelMetrics {
+    pub(super) fn measure_raw(&self) -> ChannelMetrics {
         self.measure(&self.record.raw_deg_per_h, None)
     }
 
@@ -255,7 +255,8 @@ impl Cut<'_> {
         let record = Record {
             channel_deg_per_h: &channel_deg_per_h[first..],
             raw_deg_per_h: &self.record.raw_deg_per_h[first..],
-            truth_deg_per_h: &self.record.truth_deg_per_h[first..],
+            // A recorded log has none.
+            truth_deg_per_h: self.record.truth_deg_per_h.get(first..).unwrap_or(&[]),
             encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
             sample_period_s: self.sample_period_s,
             first_stamp_s: stamp_s(first as u64, self.sample_period_s),
@@ -263,7 +264,7 @@ impl Cut<'_> {
         measure(&record, self.settings, filter)
     }
 
-    fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
+    pub(super) fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
         let mut metrics = match &filter.words {
             Ok(words) => {
                 let facts = filter_facts(filter, words);

@@ -57,7 +57,8 @@ pub(super) struct Simulation {
 
 /// What one gyro was given and what it made of it.
 pub(super) struct GyroRecord {
-    /// Inertial rate of the input axis, or of the case axis of an assembly, at each stamp, deg/h.
+    /// Inertial rate of the input axis, or of the case axis of an assembly, at each stamp, deg/h;
+    /// empty for a recorded log.
     pub(super) truth_deg_per_h: Vec<f64>,
     /// The gyro's rate words, deg/h.
     pub(super) raw_deg_per_h: Vec<f64>,

@@ -44,7 +44,7 @@ pub fn load_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Resolved>, V
     Err(unique)
 }
 
-/// Reads and checks the runs of one file of which only the gyro matters.
+/// Reads and checks the runs of one file of which only the gyro or the filters matter.
 ///
 /// A base without a name and without a duration will do: both are then made up, and every other
 /// check is that of [`load_suite`].

@@ -1,0 +1,104 @@
+//! What may be said of recorded logs.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::arguments::Format;
+use crate::experiment::LogMotion;
+use crate::recording::{RateUnit, TimeUnit};
+
+/// A log and how to measure it.
+#[derive(Args, Debug)]
+pub(super) struct LogOptions {
+    /// Recorded log: NPY with one dimension, or text with columns between `,`, `;`, tabs or blanks
+    pub(super) file: PathBuf,
+    /// Samples per second [default: what the time column says]
+    #[arg(long, value_name = "HZ", value_parser = above_zero, required_unless_present = "time")]
+    pub(super) rate_hz: Option<f64>,
+    /// Unit of the numbers: deg/h, deg/s, mdeg/s or mdps, arcsec/s, rad/s, rad/h; as angles turned
+    /// in a sample deg/sample, arcsec/sample, rad/sample, urad/sample
+    #[arg(long, value_name = "UNIT")]
+    pub(super) unit: RateUnit,
+    /// Units that one count of the log stands for
+    #[arg(long, value_name = "UNITS", default_value_t = 1.0, value_parser = factor,
+          allow_negative_numbers = true)]
+    pub(super) scale: f64,
+    /// Column of a text by its heading or number from 1 [default: the only one beside the time]
+    #[arg(long, value_name = "COLUMN")]
+    pub(super) column: Option<String>,
+    /// Column of the time; its stamps must be equally spaced
+    #[arg(long, value_name = "COLUMN")]
+    pub(super) time: Option<String>,
+    /// Unit of the time column: s, ms, us, ns
+    #[arg(long, value_name = "UNIT", default_value = "s")]
+    pub(super) time_unit: TimeUnit,
+    /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz
+    #[arg(long, value_name = "MOTION", default_value = "static")]
+    pub(super) motion: LogMotion,
+    /// Time at the start that metrics leave out, s
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
+    pub(super) warm_up_s: f64,
+    /// Averaging time of the plain bias stability, s
+    #[arg(long, value_name = "S", default_value_t = 100.0, value_parser = above_zero)]
+    pub(super) bias_averaging_time_s: f64,
+    /// Shortest averaging time of the noise fit, s: longer than the noise is correlated
+    /// [default: ten samples]
+    #[arg(long, value_name = "S", value_parser = above_zero)]
+    pub(super) fit_tau_min_s: Option<f64>,
+    /// Folder for summary.json, curves, pictures and filtered samples [default: none is written]
+    #[arg(short, long, value_name = "DIR")]
+    pub(super) output: Option<PathBuf>,
+    /// Form of the results on stdout
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+}
+
+/// Options of `analyze`.
+#[derive(Args, Debug)]
+pub(super) struct AnalyzeOptions {
+    #[command(flatten)]
+    pub(super) log: LogOptions,
+}
+
+/// Options of `filter`.
+#[derive(Args, Debug)]
+pub(super) struct FilterLogOptions {
+    #[command(flatten)]
+    pub(super) log: LogOptions,
+    /// Scenario or base file whose [[filter]] tables the log runs through
+    #[arg(long, value_name = "SCENARIO")]
+    pub(super) filters: PathBuf,
+    /// Override a key of that file; `filter.<name>.<key>` reaches into a filter
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(super) set: Vec<String>,
+    /// Write the filtered samples as CSV as well
+    #[arg(long, requires = "output")]
+    pub(super) csv: bool,
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err("expected a finite number".to_owned()),
+    }
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number = finite(text)?;
+    let message = || "expected a number above 0".to_owned();
+    (number > 0.0).then_some(number).ok_or_else(message)
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = finite(text)?;
+    let message = || "expected 0 or more".to_owned();
+    (number >= 0.0).then_some(number).ok_or_else(message)
+}
+
+/// A negative one turns the sense of the axis.
+fn factor(text: &str) -> Result<f64, String> {
+    let number = finite(text)?;
+    let message = || "expected another number than 0".to_owned();
+    (number.abs() > 0.0).then_some(number).ok_or_else(message)
+}

@@ -1,0 +1,304 @@
+//! A recorded log in place of table and gyro: measured as it is, or through filters.
+
+use std::io;
+use std::path::Path;
+use std::str::FromStr;
+
+use rayon::prelude::*;
+
+use super::channel_filter::{ChannelFilter, FinishedFilter};
+use super::log_filters::LogFilters;
+use super::pipeline_metrics;
+use super::run::Cut;
+use super::simulate::{GyroRecord, RecordLength};
+use super::suite::VERSION;
+use crate::metrics::{ChannelMetrics, Motion, Settings};
+use crate::recording::{Log, csv_text};
+use crate::report::{LogReport, log_files, write_atomic, write_npy};
+use crate::scenario::{MotionConfig, StaticConfig, SwingConfig};
+use crate::signal::RunSignals;
+use crate::turntable::first_measured_index;
+
+/// Samples of the gyro's low pass that the noise fit leaves out where nothing else is said.
+const FIT_SAMPLES_MIN: f64 = 10.0;
+
+/// Name of the log's own channel.
+const RAW: &str = "raw";
+
+/// What the gyro did while the log was taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LogMotion {
+    /// It rested, or turned at a constant rate.
+    Static,
+    /// It swung.
+    Swing {
+        /// Swing frequency, Hz.
+        frequency_hz: f64,
+    },
+}
+
+impl FromStr for LogMotion {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let expected = "expected `static`, or `swing:F` with the frequency F in Hz above 0";
+        if text == "static" {
+            return Ok(Self::Static);
+        }
+        let frequency = text.strip_prefix("swing:").map(str::parse::<f64>);
+        match frequency {
+            Some(Ok(frequency_hz)) if frequency_hz > 0.0 && frequency_hz.is_finite() => {
+                Ok(Self::Swing { frequency_hz })
+            }
+            _ => Err(expected.to_owned()),
+        }
+    }
+}
+
+/// How a log is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LogSettings {
+    /// What the gyro did.
+    pub motion: LogMotion,
+    /// Time at its start that metrics leave out, s.
+    pub warm_up_s: f64,
+    /// Averaging time of the plain `bias_stability_deg_per_h`, s.
+    pub bias_averaging_time_s: f64,
+    /// Shortest averaging time of the noise fit, s; none: ten samples.
+    pub fit_tau_min_s: Option<f64>,
+}
+
+/// Why a log was not measured.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}: {message}")]
+pub struct LogTrialError {
+    /// Name of the log.
+    pub file: String,
+    /// What is wrong.
+    pub message: String,
+}
+
+/// A log with everything measured on it.
+pub struct LogTrial {
+    log: Log,
+    record: GyroRecord,
+    length: RecordLength,
+    motion: MotionConfig,
+    source: Option<(String, String)>,
+    filters: Vec<FinishedFilter>,
+    channels: Vec<(String, ChannelMetrics)>,
+    notes: Vec<String>,
+}
+
+/// Measures a log, and what filters make of its words.
+///
+/// The words enter the filters from the first on, as a run's do, and leave them the same to the
+/// bit; metrics use the samples from `ceil(warm_up_s f)` on. What needs the true rate is
+/// unavailable.
+///
+/// # Errors
+/// A warm-up that leaves no sample; a swing too fast for the sample rate.
+pub fn try_log(
+    mut log: Log,
+    filters: Option<&LogFilters>,
+    settings: &LogSettings,
+) -> Result<LogTrial, LogTrialError> {
+    let sample_period_s = log.sample_period_s();
+    let length = record_length(&log, settings)?;
+    let words = std::mem::take(&mut log.rate_deg_per_h);
+    let finished = filters.map_or_else(Vec::new, |filters| run(filters, length, &words));
+    let record = GyroRecord {
+        truth_deg_per_h: Vec::new(),
+        raw_deg_per_h: words,
+    };
+    let shortest_s = FIT_SAMPLES_MIN * sample_period_s;
+    let metric_settings = Settings {
+        motion: metric_motion(settings.motion),
+        bias_averaging_time_s: settings.bias_averaging_time_s,
+        fit_tau_min_s: settings.fit_tau_min_s.unwrap_or(shortest_s),
+    };
+    let cut = Cut {
+        record: &record,
+        encoder_rad: None,
+        length,
+        sample_period_s,
+        settings: &metric_settings,
+    };
+    let (raw, others): (_, Vec<_>) = rayon::join(
+        || cut.measure_raw(),
+        || {
+            let filters = finished.par_iter();
+            filters
+                .map(|filter| (filter.name.clone(), cut.measure_filter(filter)))
+                .collect()
+        },
+    );
+    let mut notes = log.notes();
+    if let Some(filters) = filters {
+        notes.extend(filters.warnings(&record.raw_deg_per_h));
+        let of_pipelines = finished.iter();
+        notes.extend(of_pipelines.flat_map(|it| pipeline_metrics::notes(it, sample_period_s)));
+    }
+    let channels = std::iter::once((RAW.to_owned(), raw)).chain(others);
+    Ok(LogTrial {
+        channels: channels.collect(),
+        motion: report_motion(settings.motion),
+        source: filters.map(LogFilters::source),
+        filters: finished,
+        log,
+        record,
+        length,
+        notes,
+    })
+}
+
+/// Every filter over the whole log.
+fn run(filters: &LogFilters, length: RecordLength, words: &[f64]) -> Vec<FinishedFilter> {
+    let configs = filters.configs().par_iter();
+    configs
+        .map(|config| {
+            let mut filter = ChannelFilter::new(config.name.clone(), &config.kind, length);
+            filter.take(words);
+            filter.finish()
+        })
+        .collect()
+}
+
+fn record_length(log: &Log, settings: &LogSettings) -> Result<RecordLength, LogTrialError> {
+    let samples = log.rate_deg_per_h.len();
+    let refuse = |message: String| LogTrialError {
+        file: log.file.clone(),
+        message,
+    };
+    let warm_up = first_measured_index(settings.warm_up_s, log.sample_period_s());
+    let warm_up = usize::try_from(warm_up).unwrap_or(usize::MAX);
+    if warm_up >= samples {
+        return Err(refuse(format!(
+            "--warm-up-s {} leaves no sample: {samples} samples at {} Hz",
+            settings.warm_up_s, log.sample_rate_hz
+        )));
+    }
+    if let LogMotion::Swing { frequency_hz } = settings.motion
+        && frequency_hz > 0.25 * log.sample_rate_hz
+    {
+        return Err(refuse(format!(
+            "a swing of {frequency_hz} Hz needs four samples a cycle: the log has {} Hz",
+            log.sample_rate_hz
+        )));
+    }
+    Ok(RecordLength {
+        warm_up,
+        measured: samples - warm_up,
+    })
+}
+
+fn metric_motion(motion: LogMotion) -> Motion {
+    match motion {
+        LogMotion::Static => Motion::Steady,
+        LogMotion::Swing { frequency_hz } => Motion::Swing { frequency_hz },
+    }
+}
+
+/// The motion as reports head their columns by it; a log does not tell a swing's amplitude.
+fn report_motion(motion: LogMotion) -> MotionConfig {
+    match motion {
+        LogMotion::Static => MotionConfig::Static(StaticConfig {}),
+        LogMotion::Swing { frequency_hz } => MotionConfig::Swing(SwingConfig {
+            rate_amplitude_deg_per_s: None,
+            angle_amplitude_deg: None,
+            frequency_hz,
+            soft_start_s: 0.0,
+        }),
+    }
+}
+
+impl LogTrial {
+    /// Channels, `raw` first.
+    #[must_use]
+    pub fn channels(&self) -> &[(String, ChannelMetrics)] {
+        &self.channels
+    }
+
+    /// Whether a filter failed.
+    #[must_use]
+    pub fn has_failed(&self) -> bool {
+        let mut channels = self.channels.iter();
+        channels.any(|(_, metrics)| metrics.error.is_some())
+    }
+
+    /// Gives the report of the trial, printed or written, to `then`.
+    pub fn with_report<T>(&self, then: impl FnOnce(&LogReport) -> T) -> T {
+        let unit = self.log.unit.to_string();
+        let filters = self.source.as_ref();
+        then(&LogReport {
+            tool_version: VERSION,
+            file: &self.log.file,
+            column: self.log.column.as_deref(),
+            unit: &unit,
+            sample_rate_hz: self.log.sample_rate_hz,
+            samples: self.length.measured,
+            warm_up_samples: self.length.warm_up,
+            filters: filters.map(|(file, digest)| (file.as_str(), digest.as_str())),
+            motion: &self.motion,
+            channels: &self.channels,
+            notes: &self.notes,
+        })
+    }
+
+    /// Writes `summary.json`, curves and pictures into `folder`, and the words of every filter
+    /// below `samples/` as NPY, with `as_csv` as CSV as well; other files there stay.
+    ///
+    /// # Errors
+    /// Whatever the file system says, with the path.
+    pub fn write(&self, folder: &Path, as_csv: bool) -> io::Result<()> {
+        create(folder)?;
+        let files = self.with_report(|report| log_files(report, &self.signals()));
+        for (name, text) in files {
+            let path = folder.join(name);
+            write_atomic(&path, text.as_bytes()).map_err(|error| at(&path, &error))?;
+        }
+        let samples = folder.join("samples");
+        for (name, words) in self.filter_words() {
+            create(&samples)?;
+            let path = samples.join(format!("{name}.npy"));
+            write_npy(&path, words).map_err(|error| at(&path, &error))?;
+            if as_csv {
+                let text = csv_text(words, self.log.sample_period_s());
+                let path = samples.join(format!("{name}.csv"));
+                write_atomic(&path, text.as_bytes()).map_err(|error| at(&path, &error))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The words of the filters that did not fail.
+    fn filter_words(&self) -> impl Iterator<Item = (&str, &[f64])> {
+        self.filters.iter().filter_map(|filter| {
+            let words = filter.words.as_ref().ok()?;
+            Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
+        })
+    }
+
+    fn signals(&self) -> RunSignals<'_> {
+        let raw = (RAW, self.record.raw_deg_per_h.as_slice());
+        RunSignals {
+            sample_period_s: self.log.sample_period_s(),
+            first_measured: self.length.warm_up,
+            prefix: "",
+            truth_deg_per_h: &[],
+            encoder_rad: None,
+            channels: std::iter::once(raw).chain(self.filter_words()).collect(),
+            temperature: None,
+        }
+    }
+}
+
+fn create(folder: &Path) -> io::Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| at(folder, &error))
+}
+
+/// An error of the file system with the place it is about.
+fn at(path: &Path, error: &io::Error) -> io::Error {
+    let message = format!("cannot write {}: {error}", path.display());
+    io::Error::new(error.kind(), message)
+}

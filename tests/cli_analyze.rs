@@ -1,0 +1,358 @@
+//! `fogbench analyze` and `fogbench filter`: a run's own samples give the run's own numbers.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::support::{assert_close, code, fogbench, stderr, stdout, summary, tree, write};
+
+/// Pipelines and the textbook behind a gyro at rest, samples kept.
+const REST: &str = "schema = 1
+name = \"rest\"
+duration_s = 12.0
+warm_up_s = 1.0
+bias_averaging_time_s = 2.0
+fidelity = \"rate\"
+
+[[filter]]
+name = \"rls\"
+[filter.rls]
+pipeline = \"fpga\"
+clock_mhz = 40.0
+
+[[filter]]
+name = \"textbook\"
+[filter.rls]
+pipeline = \"textbook\"
+
+[[filter]]
+name = \"lms\"
+[filter.lms]
+pipeline = \"fpga\"
+clock_mhz = 40.0
+
+[output]
+samples = \"npy\"
+";
+
+const SWING: &str = "
+[turntable.motion.swing]
+rate_amplitude_deg_per_s = 1.0
+frequency_hz = 5.0
+";
+
+fn scratch() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a scratch folder")
+}
+
+/// Runs the scenario and gives its summary.
+fn run(folder: &Path, text: &str) -> Value {
+    write(folder, "rest.toml", text);
+    let output = fogbench(folder, &["run", "rest.toml"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    summary(&folder.join("output"), "rest")
+}
+
+/// A command on the run's raw samples, with the run's rate, warm-up and averaging time.
+fn on_raw(folder: &Path, run: &Value, command: &str, more: &[&str]) -> Value {
+    let rate_hz = run["gyro"]["output_rate_hz"].to_string();
+    let arguments = [
+        command,
+        "output/rest/samples/raw.npy",
+        "--rate-hz",
+        &rate_hz,
+        "--unit",
+        "deg/h",
+        "--warm-up-s",
+        "1",
+        "--bias-averaging-time-s",
+        "2",
+        "--format",
+        "json",
+    ];
+    let output = fogbench(folder, &[&arguments[..], more].concat());
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    serde_json::from_str(&stdout(&output)).expect("JSON")
+}
+
+/// Every number of `want` is that of `got`, but for keys that `is_lacking` names.
+///
+/// The sample period comes from the printed rate and may differ in its last bit; the fits take the
+/// square of times, so that some bits more may differ.
+fn assert_same(path: &str, got: &Value, want: &Value) {
+    match want {
+        Value::Number(number) => {
+            let want = number.as_f64().expect("a number");
+            let got = got.as_f64().unwrap_or_else(|| panic!("{path}: {got}"));
+            let scale = want.abs().max(1e-9);
+            assert!(
+                (got - want).abs() <= 1e-9 * scale,
+                "{path}: {got}, want {want}"
+            );
+        }
+        Value::Array(items) => {
+            assert_eq!(got.as_array().map(Vec::len), Some(items.len()), "{path}");
+            for (index, item) in items.iter().enumerate() {
+                assert_same(&format!("{path}[{index}]"), &got[index], item);
+            }
+        }
+        Value::Object(fields) => {
+            for (key, value) in fields {
+                assert_same(&format!("{path}.{key}"), &got[key], value);
+            }
+        }
+        other => assert_eq!(got, other, "{path}"),
+    }
+}
+
+/// Compares all metrics and curves of a channel; `of_truth` are unavailable in the log's.
+fn assert_same_channel(log: &Value, run: &Value, channel: &str, of_truth: &[&str]) -> usize {
+    let (got, want) = (&log["channels"][channel], &run["channels"][channel]);
+    let metrics = want.as_object().expect("a channel");
+    let mut compared = 0;
+    for (name, value) in metrics.iter().filter(|(name, _)| *name != "unavailable") {
+        let reason = &got["unavailable"][name];
+        if of_truth.contains(&name.as_str()) {
+            assert!(got[name].is_null(), "{channel}.{name}");
+            let text = reason.as_str().unwrap_or_default();
+            assert!(
+                text.contains("the true rate is not known"),
+                "{channel}.{name}: {reason}"
+            );
+        } else {
+            assert_same(&format!("{channel}.{name}"), &got[name], value);
+            compared += 1;
+        }
+    }
+    compared
+}
+
+#[test]
+fn analysing_a_runs_raw_samples_gives_the_runs_metrics() {
+    let folder = scratch();
+    let run = run(folder.path(), REST);
+    let log = on_raw(folder.path(), &run, "analyze", &[]);
+    let compared = assert_same_channel(&log, &run, "raw", &["mean_error_deg_per_h"]);
+    // Angle random walk, two bias stabilities, mean, noise, curves at least.
+    assert!(compared >= 6, "{compared} metrics");
+    assert!(log["channels"]["raw"]["angle_random_walk_deg_per_sqrt_h"]["value"].is_number());
+    let curves = &log["channels"]["raw"]["curves"];
+    assert_eq!(curves.as_object().map(serde_json::Map::len), Some(2));
+    assert_eq!(log["log"]["file"], "raw.npy");
+    let samples = run["scenario"]["duration_s"].as_f64().expect("a time")
+        * run["gyro"]["output_rate_hz"].as_f64().expect("a rate");
+    assert_close(
+        log["log"]["samples"].as_f64().expect("a count"),
+        samples.floor(),
+        0.0,
+        0.0,
+    );
+}
+
+#[test]
+fn a_swing_is_measured_as_far_as_it_needs_no_truth() {
+    let folder = scratch();
+    let run = run(folder.path(), &format!("{REST}{SWING}"));
+    let more = ["--motion", "swing:5", "--filters", "rest.toml"];
+    let log = on_raw(folder.path(), &run, "filter", &more);
+    let of_truth = [
+        "mean_error_deg_per_h",
+        "delay_vs_truth_ms",
+        "delay_by_correlation_ms",
+        "tracking_error_rms_deg_per_h",
+    ];
+    let of_raw = [&of_truth[..], &["amplitude_ratio"]].concat();
+    assert!(assert_same_channel(&log, &run, "raw", &of_raw) >= 4);
+    for channel in ["rls", "textbook", "lms"] {
+        assert!(assert_same_channel(&log, &run, channel, &of_truth) >= 10);
+        assert!(log["channels"][channel]["delay_vs_raw_ms"]["value"].is_number());
+    }
+    let reason = &log["channels"]["raw"]["unavailable"]["delay_vs_encoder_ms"];
+    assert_eq!(reason, "a recorded log brings no angle of an encoder");
+}
+
+#[test]
+fn filtering_a_runs_raw_samples_gives_its_words_to_the_bit_and_its_trial() {
+    let folder = scratch();
+    let run = run(folder.path(), REST);
+    let more = ["--filters", "rest.toml", "-o", "replay", "--csv"];
+    let log = on_raw(folder.path(), &run, "filter", &more);
+    for channel in ["rls", "textbook", "lms"] {
+        let name = format!("samples/{channel}.npy");
+        let of = |place: &str| std::fs::read(folder.path().join(place).join(&name)).expect(&name);
+        let (replayed, words) = (of("replay"), of("output/rest"));
+        assert!(replayed.len() > 8 * 50_000, "{} bytes", replayed.len());
+        assert!(replayed == words, "{channel} differs from the run's words");
+        assert!(assert_same_channel(&log, &run, channel, &["mean_error_deg_per_h"]) >= 12);
+    }
+    let names: Vec<String> = tree(&folder.path().join("replay"))
+        .iter()
+        .map(|(path, _)| path.to_string_lossy().into_owned())
+        .collect();
+    for name in [
+        "allan.csv",
+        "allan.svg",
+        "psd.csv",
+        "rate.svg",
+        "samples/lms.csv",
+        "samples/rls.csv",
+        "spectrum.svg",
+        "summary.json",
+    ] {
+        assert!(
+            names.iter().any(|found| found == name),
+            "{name} is not in {names:?}"
+        );
+    }
+    let written = std::fs::read_to_string(folder.path().join("replay/summary.json"));
+    let written: Value = serde_json::from_str(&written.expect("readable")).expect("JSON");
+    assert_eq!(written, log);
+    assert_eq!(log["log"]["filters"]["file"], "rest.toml");
+    // No true rate, no line for it.
+    let rate = std::fs::read_to_string(folder.path().join("replay/rate.svg")).expect("readable");
+    assert!(rate.contains("textbook") && !rate.contains("true rate"));
+}
+
+/// A text of `count` rates that alternate about 8 deg/h.
+fn text_log(folder: &Path, count: usize) {
+    let mut text = "time_s,rate\n".to_owned();
+    for k in 0..count {
+        // A multiplicative congruential generator: noise without a library.
+        let noise = (k as u64 + 1).wrapping_mul(6_364_136_223_846_793_005) >> 40;
+        text.push_str(&format!(
+            "{:?},{:?}\n",
+            k as f64 / 100.0,
+            8.0 + noise as f64 / 1e7
+        ));
+    }
+    write(folder, "log.csv", &text);
+}
+
+const ON_TEXT: [&str; 6] = [
+    "log.csv",
+    "--unit",
+    "deg/h",
+    "--time",
+    "time_s",
+    "--rate-hz",
+];
+
+#[test]
+fn the_table_heads_the_log_and_says_what_is_lacking() {
+    let folder = scratch();
+    text_log(folder.path(), 6400);
+    let output = fogbench(
+        folder.path(),
+        &["analyze", "log.csv", "--unit", "deg/h", "--time", "time_s"],
+    );
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let text = stdout(&output);
+    assert!(
+        text.starts_with("log.csv, column rate  recorded log, deg/h, 6400 samples"),
+        "{text}"
+    );
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in [
+        "ARW",
+        "no mean_error_deg_per_h for raw: the true rate is not known",
+        "note: time column: 100.000000 Hz, no gap",
+    ] {
+        assert!(words.contains(part), "no `{part}` in {text}");
+    }
+    let line = fogbench(
+        folder.path(),
+        &[&["analyze"], &ON_TEXT[..], &["100", "--format", "jsonl"]].concat(),
+    );
+    assert_eq!(stdout(&line).lines().count(), 1);
+    assert!(serde_json::from_str::<Value>(&stdout(&line)).is_ok());
+}
+
+#[test]
+fn bad_logs_and_usage_exit_2_and_unreadable_files_74() {
+    let folder = scratch();
+    text_log(folder.path(), 200);
+    write(folder.path(), "bare.toml", "schema = 1\n");
+    let slow = "schema = 1\n[[filter]]\nname = \"rls\"\n[filter.rls]\npipeline = \"fpga\"\n\
+                clock_mhz = 0.001\n";
+    write(folder.path(), "slow.toml", slow);
+    let on = |command: &str, more: &[&str]| {
+        let output = fogbench(folder.path(), &[&[command], &ON_TEXT[..], more].concat());
+        (code(&output), stderr(&output))
+    };
+    for (command, more, part) in [
+        ("analyze", &["90"][..], "contradicts the time column"),
+        ("analyze", &["0"], "expected a number above 0"),
+        (
+            "analyze",
+            &["100", "--warm-up-s", "3"],
+            "--warm-up-s 3 leaves no sample",
+        ),
+        (
+            "analyze",
+            &["100", "--motion", "swing:30"],
+            "needs four samples a cycle",
+        ),
+        (
+            "analyze",
+            &["100", "--motion", "swing:-1"],
+            "expected `static`, or `swing:F`",
+        ),
+        (
+            "analyze",
+            &["100", "--scale", "0"],
+            "expected another number than 0",
+        ),
+        ("filter", &["100"], "--filters"),
+        (
+            "filter",
+            &["100", "--filters", "bare.toml"],
+            "it has no [[filter]]",
+        ),
+        ("filter", &["100", "--filters", "slow.toml"], "slow.toml:6:"),
+        ("filter", &["100", "--filters", "none.toml"], "none.toml"),
+        (
+            "filter",
+            &["100", "--filters", "slow.toml", "--csv"],
+            "--output",
+        ),
+    ] {
+        let (code, text) = on(command, more);
+        assert_eq!(code, 2, "{more:?}: {text}");
+        assert!(text.contains(part), "{more:?}: {text}");
+    }
+    let output = fogbench(folder.path(), &["analyze", "log.csv", "--unit", "deg/h"]);
+    assert_eq!(code(&output), 2);
+    let missing = ["analyze", "none.csv", "--unit", "deg/h", "--rate-hz", "1"];
+    let output = fogbench(folder.path(), &missing);
+    assert_eq!(code(&output), 74, "{}", stderr(&output));
+    let (code, text) = on("analyze", &["100", "-o", "log.csv"]);
+    assert_eq!(code, 74, "{text}");
+    assert!(text.contains("cannot write log.csv"), "{text}");
+}
+
+#[test]
+fn a_filter_that_diverges_on_a_log_exits_3_and_leaves_the_others() {
+    let folder = scratch();
+    text_log(folder.path(), 6400);
+    // Four taps on 8 deg/h: the step bound is 2 / (4 * 64), some 0.008.
+    let filters = "schema = 1\n[[filter]]\nname = \"wild\"\n[filter.lms]\nnormalised = false\n\
+                   allow_unstable = true\nstep_size = 1.0\npipeline = \"textbook\"\n\
+                   [[filter]]\nname = \"tame\"\n[filter.rls]\npipeline = \"textbook\"\n";
+    write(folder.path(), "filters.toml", filters);
+    let more = [
+        "100",
+        "--filters",
+        "filters.toml",
+        "-o",
+        "out",
+        "--format",
+        "json",
+    ];
+    let output = fogbench(folder.path(), &[&["filter"], &ON_TEXT[..], &more].concat());
+    assert_eq!(code(&output), 3, "{}", stderr(&output));
+    let log: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert_eq!(log["channels"]["wild"]["error"]["kind"], "diverged");
+    assert!(log["channels"]["tame"]["noise_gain"]["value"].is_number());
+    let words = |name: &str| folder.path().join("out/samples").join(name).exists();
+    assert!(words("tame.npy") && !words("wild.npy"));
+}
