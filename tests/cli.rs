@@ -172,17 +172,12 @@ fn a_gyro_of_nothing_but_noise_exits_2_at_the_key_to_blame() {
             "gyro.controller.loop_bandwidth_hz",
         ),
     ] {
-        let file = folder.path().join("x.toml");
-        std::fs::write(&file, scenario).unwrap();
+        write(folder.path(), "x.toml", scenario);
         for command in ["check", "budget"] {
-            let output = fogbench()
-                .arg(command)
-                .arg(&file)
-                .args(["--set", "gyro.adc.bits=0", "--set", set])
-                .output()
-                .unwrap();
-            let talk = String::from_utf8(output.stderr).unwrap();
-            assert_eq!(output.status.code(), Some(2), "{command} {set}: {talk}");
+            let arguments = [command, "x.toml", "--set", "gyro.adc.bits=0", "--set", set];
+            let output = fogbench(folder.path(), &arguments);
+            let talk = stderr(&output);
+            assert_eq!(code(&output), 2, "{command} {set}: {talk}");
             assert!(
                 talk.contains(&format!(": {key}: ")),
                 "{command} {set}: {talk}"

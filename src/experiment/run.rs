@@ -247,7 +247,16 @@ pub(super) struct Cut<'a> {
 
 impl Cut<'_> {
     pub(super) fn measure_raw(&self) -> ChannelMetrics {
-        self.measure(&self.record.raw_deg_per_h, None)
+        let words = &self.record.raw_deg_per_h;
+        match words.iter().position(|word| !word.is_finite()) {
+            Some(sample) => failed(
+                "not finite",
+                sample as u64,
+                format!("the word of the gyro is {}", words[sample]),
+                self.sample_period_s,
+            ),
+            None => self.measure(words, None),
+        }
     }
 
     fn measure(&self, channel_deg_per_h: &[f64], filter: Option<&FilterFacts>) -> ChannelMetrics {
@@ -292,16 +301,21 @@ fn filter_facts(filter: &FinishedFilter, words: &FilterWords) -> FilterFacts {
 
 /// A channel that failed has no numbers of its record but the instant of its failure.
 fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
+    let (sample, message) = (divergence.sample, divergence.to_string());
+    failed("diverged", sample, message, sample_period_s)
+}
+
+fn failed(kind: &str, sample: u64, message: String, sample_period_s: f64) -> ChannelMetrics {
     let mut channel = ChannelMetrics::default();
-    let at_s = stamp_s(divergence.sample, sample_period_s);
+    let at_s = stamp_s(sample, sample_period_s);
     channel.metrics.insert(
         DIVERGED_AT.to_owned(),
         Metric::new(Estimate::exact(at_s), "s"),
     );
     channel.error = Some(ChannelFailure {
-        kind: "diverged".to_owned(),
-        sample: divergence.sample,
-        message: divergence.to_string(),
+        kind: kind.to_owned(),
+        sample,
+        message,
     });
     channel
 }

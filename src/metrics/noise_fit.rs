@@ -304,7 +304,7 @@ fn report(range: [f64; 2], solution: &Solution) -> NoiseFit {
         };
         if significance < needed {
             return Term::LeftOut(format!(
-                "the Allan variance between {:.4} s and {:.4} s does not need a {name} term \
+                "the Allan variance between {:.4} s and {:.4} s does not need {name} \
                  (it must exceed {needed} of its standard errors)",
                 range[0], range[1],
             ));

@@ -108,6 +108,9 @@ pub fn support(
             check_cycles(metric, samples, sample_period_s, *frequency_hz)
         }
         Motion::MultiSine { frequencies_hz } => {
+            if metric == "bandwidth_hz" && frequencies_hz.len() < 2 {
+                return Err(format!("`{metric}` needs two sines or more"));
+            }
             let lowest_hz = frequencies_hz.first().copied().unwrap_or(0.0);
             check_cycles(metric, samples, sample_period_s, lowest_hz)
         }
