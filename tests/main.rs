@@ -5,6 +5,7 @@ mod bit_exact;
 mod cli;
 mod cli_fpga;
 mod closed_loop;
+mod comparison_filters;
 mod cycle_exact;
 mod determinism;
 mod filters;

@@ -14,6 +14,7 @@ mod plan;
 mod run;
 mod simulate;
 mod suite;
+mod textbook;
 
 pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};

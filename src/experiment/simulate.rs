@@ -106,7 +106,7 @@ pub(super) fn simulate(
     let mut filters: Vec<_> = scenario
         .filters
         .iter()
-        .map(|config| ChannelFilter::new(config, length))
+        .map(|config| ChannelFilter::new(config, length, source.sample_period_s))
         .collect();
     let mut raw = Vec::with_capacity(length.total());
     let mut block = source.next_block();
