@@ -7,6 +7,7 @@ mod cli;
 mod cli_budget;
 mod cli_fpga;
 mod closed_loop;
+mod comparison_filters;
 mod cycle_exact;
 mod determinism;
 mod encoder;

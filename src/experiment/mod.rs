@@ -16,6 +16,7 @@ mod plan;
 mod run;
 mod simulate;
 mod suite;
+mod textbook;
 mod theory;
 
 pub use budget::{GyroBudget, gyro_budget};

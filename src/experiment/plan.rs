@@ -241,8 +241,29 @@ impl Checker<'_> {
                             .push(format!("filter `{}`: {text}", filter.name));
                     }
                 }
-                FilterKind::Rls(_) => {}
+                FilterKind::OnePole(config) => {
+                    self.cutoff(index, "one_pole", config.cutoff_hz, facts);
+                }
+                FilterKind::Butterworth(config) => {
+                    self.cutoff(index, "butterworth", config.cutoff_hz, facts);
+                }
+                _ => {}
             }
+        }
+    }
+
+    /// Refuses a low pass with its cut-off frequency beyond the reach of the words.
+    fn cutoff(&mut self, index: usize, kind: &str, cutoff_hz: f64, facts: &GyroFacts) {
+        let limit_hz = 0.5 * facts.output_rate_hz;
+        if cutoff_hz >= limit_hz {
+            let path = format!("filter[{index}].{kind}.cutoff_hz");
+            self.complain(
+                &path,
+                format!(
+                    "{path} = {cutoff_hz} Hz is not below half the output rate: allowed \
+                     (0, {limit_hz:.3}) Hz"
+                ),
+            );
         }
     }
 

@@ -5,7 +5,7 @@
 //!
 //! [`measure`] turns one channel's [`Record`] into a [`ChannelMetrics`]; [`aggregate`] pools
 //! independent repeats. The estimators stand alone as well: [`overlapping_allan`], [`fit_noise`],
-//! [`block_means`], [`welch`], [`fit_swing`], [`noise_delay_bound`], [`wiener_prediction`],
+//! [`block_means`], [`welch`], [`fit_swing`], [`noise_delay_bound`], [`predict`],
 //! [`settling`](fn@settling), [`fit_scale_factor`], [`fit_tones`].
 
 mod aggregate;
@@ -41,8 +41,8 @@ pub use allan::{
     AllanPoint, NoiseType, degrees_of_freedom, overlapping_allan, overlapping_allan_at,
 };
 pub use audit::{
-    WienerPrediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
-    wiener_prediction,
+    Prediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
+    predict,
 };
 pub use bias::{block_means, effective_degrees_of_freedom, expected_bias_stability, samples_in};
 pub use catalogue::{Applies, KnownMetric, known_metrics};

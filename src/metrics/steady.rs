@@ -1,7 +1,7 @@
 //! Metrics of a record at rest or at constant rate.
 
 use super::allan::{AllanPoint, overlapping_allan};
-use super::audit::{lags_needed, noise_delay_bound, noise_delay_bound_coloured, wiener_prediction};
+use super::audit::{filter_bound, lags_needed, noise_delay_bound, predict};
 use super::autocovariance::{LaggedProducts, independent_samples};
 use super::bias;
 use super::estimate::{ChannelMetrics, Estimate};
@@ -293,25 +293,20 @@ fn measure_predictions(
 ) {
     let mean_square = interval::mean(record.raw_deg_per_h).powi(2);
     let ran = facts.mean_delay_at_dc_samples();
-    let predict = |autocovariance: &[f64]| {
+    let at = |autocovariance: &[f64]| {
         let second_moment: Vec<f64> = autocovariance
             .iter()
             .map(|value| value + mean_square)
             .collect();
-        let prediction = wiener_prediction(&facts.shape, &second_moment)?;
+        let prediction = predict(&facts.shape, &second_moment)?;
         let delay_samples = ran.unwrap_or_else(|| prediction.delay_at_dc_samples());
-        let bound = noise_delay_bound_coloured(
-            facts.shape.taps,
-            facts.shape.newest_age_samples,
-            delay_samples,
-            autocovariance,
-        );
+        let bound = filter_bound(&facts.shape, delay_samples, autocovariance);
         Some((prediction.dc_gain(), delay_samples, bound))
     };
     let parts: Vec<_> = (0..raw.blocks())
-        .filter_map(|block| predict(&raw.autocovariance_without(block)))
+        .filter_map(|block| at(&raw.autocovariance_without(block)))
         .collect();
-    let Some((dc_gain, delay_samples, bound)) = predict(&raw.autocovariance()) else {
+    let Some((dc_gain, delay_samples, bound)) = at(&raw.autocovariance()) else {
         metrics.miss("dc_gain_predicted", "the raw channel has no power");
         metrics.miss(
             "noise_delay_bound_noise_gain",
@@ -321,7 +316,10 @@ fn measure_predictions(
     };
     let gains: Vec<f64> = parts.iter().map(|part| part.0).collect();
     metrics.put("dc_gain_predicted", interval::jackknife(dc_gain, &gains));
-    let bounds: Vec<f64> = parts.iter().filter_map(|part| part.2).collect();
+    let bounds: Vec<f64> = parts
+        .iter()
+        .filter_map(|part| part.2.as_ref().ok().copied())
+        .collect();
     put_bound(
         bound.map(|bound| interval::jackknife(bound, &bounds)),
         facts,
@@ -333,31 +331,21 @@ fn measure_predictions(
 
 /// Enters the noise-delay bound with the delay it holds at and the white-noise figure beside it.
 pub(crate) fn put_bound(
-    bound: Option<Estimate>,
+    bound: Result<Estimate, String>,
     facts: &FilterFacts,
     delay_samples: f64,
     sample_period_s: f64,
     metrics: &mut ChannelMetrics,
 ) {
-    let Some(bound) = bound else {
-        metrics.miss(
-            "noise_delay_bound_noise_gain",
-            format!(
-                "no filter of {} taps and unit DC gain has a delay of {delay_samples:.3} samples",
-                facts.shape.taps
-            ),
-        );
-        return;
+    let metric = match bound {
+        Ok(bound) => metrics.put("noise_delay_bound_noise_gain", bound),
+        Err(reason) => return metrics.miss("noise_delay_bound_noise_gain", reason),
     };
-    let metric = metrics.put("noise_delay_bound_noise_gain", bound);
     metric
         .fields
         .insert("delay_ms", units::s_to_ms(delay_samples * sample_period_s));
-    if let Some(white) = noise_delay_bound(
-        facts.shape.taps,
-        facts.shape.newest_age_samples,
-        delay_samples,
-    ) {
+    let taps = facts.shape.taps.unwrap_or(0);
+    if let Some(white) = noise_delay_bound(taps, facts.shape.newest_age_samples, delay_samples) {
         metric.fields.insert("white_noise_gain", white);
     }
 }
