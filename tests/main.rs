@@ -38,6 +38,7 @@ mod scenario_errors;
 mod suite;
 mod support;
 mod timing;
+mod trial;
 mod turntable_geometry;
 mod turntable_profiles;
 mod turntable_script;

@@ -7,9 +7,11 @@
 
 use super::pipeline_filter::{HardwareFilter, HealthSummary};
 use super::pipeline_settings::{PipelineSettings, PipelineTiming};
+use super::rate_twins::RateTwins;
 use super::simulate::RecordLength;
 use super::textbook::textbook_filter;
 use crate::filters::{Divergence, Filter, Output};
+use crate::metrics::RateGain;
 use crate::scenario::FilterKind;
 use crate::signal::{FilterShape, WeightRule};
 
@@ -23,6 +25,7 @@ pub(super) struct ChannelFilter {
     shape: FilterShape,
     filter: Arithmetic,
     twin: Option<Arithmetic>,
+    rate_twins: Option<RateTwins>,
     output_deg_per_h: Vec<f64>,
     warm_up_samples: usize,
     failure: Option<Divergence>,
@@ -64,13 +67,15 @@ pub(super) struct FilterWords {
     pub(super) dc_gain: Option<f64>,
     /// The same with the filter free to adapt to the added rate; none if the twin failed.
     pub(super) dc_gain_adapted: Option<f64>,
+    /// The same for rates of other sizes; empty unless asked for.
+    pub(super) rate_gains: Vec<RateGain>,
     /// Time mean of every weight over the measured record, as left by each sample; none for an
     /// infinite impulse response.
     pub(super) mean_weights: Option<Vec<f64>>,
 }
 
 /// Whose arithmetic makes the words.
-enum Arithmetic {
+pub(super) enum Arithmetic {
     Textbook(Box<dyn Filter>),
     Hardware(Box<dyn HardwareFilter>),
 }
@@ -92,7 +97,7 @@ impl Arithmetic {
     }
 
     #[inline]
-    fn step(&mut self, word_deg_per_h: f64) -> Result<Output, Divergence> {
+    pub(super) fn step(&mut self, word_deg_per_h: f64) -> Result<Output, Divergence> {
         match self {
             Self::Textbook(filter) => filter.step(word_deg_per_h),
             Self::Hardware(filter) => filter.step(word_deg_per_h),
@@ -104,7 +109,8 @@ impl Arithmetic {
 const CHECKED: &str = "the plan has refused what the pipeline refuses";
 
 impl ChannelFilter {
-    /// The channel `name` of a filter, with room for a record of this length.
+    /// The channel `name` of a filter, with room for a record of this length; with `rate_gain` the
+    /// gain for rates of every size is measured beside it.
     ///
     /// # Panics
     /// If the hardware refuses its constants, which the plan has checked.
@@ -113,6 +119,7 @@ impl ChannelFilter {
         kind: &FilterKind,
         length: RecordLength,
         sample_period_s: f64,
+        rate_gain: bool,
     ) -> Self {
         let arithmetic = || Arithmetic::new(kind, length, sample_period_s);
         let filter = arithmetic();
@@ -123,6 +130,7 @@ impl ChannelFilter {
             weight_totals: vec![0.0; filter.as_filter().weights().len()],
             filter,
             twin: Some(arithmetic()),
+            rate_twins: rate_gain.then(|| RateTwins::new(length, arithmetic)),
             output_deg_per_h: Vec::with_capacity(length.total()),
             warm_up_samples: length.warm_up,
             failure: None,
@@ -158,6 +166,9 @@ impl ChannelFilter {
             Some(Err(_)) => self.twin = None,
             _ => {}
         }
+        if let Some(twins) = &mut self.rate_twins {
+            twins.step(word_deg_per_h, output.value_deg_per_h);
+        }
         if is_measured {
             self.weight_sum_total += output.weight_sum;
             if let WeightRule::Adaptive { .. } = self.shape.rule {
@@ -184,6 +195,10 @@ impl ChannelFilter {
             Some(divergence) => Err(divergence),
             None => Ok(FilterWords {
                 dc_gain: mean(self.weight_sum_total),
+                rate_gains: self
+                    .rate_twins
+                    .as_ref()
+                    .map_or_else(Vec::new, RateTwins::finish),
                 mean_weights: match &self.shape.rule {
                     WeightRule::Adaptive { .. } => self
                         .weight_totals

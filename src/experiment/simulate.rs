@@ -166,7 +166,13 @@ fn channel_filters(
         let gyros = prefixes.iter().enumerate();
         gyros.map(move |(gyro, prefix)| {
             let name = format!("{prefix}{}", config.name);
-            let filter = ChannelFilter::new(name, &config.kind, length, sample_period_s);
+            let filter = ChannelFilter::new(
+                name,
+                &config.kind,
+                length,
+                sample_period_s,
+                scenario.trial.rate_gain,
+            );
             (gyro, filter)
         })
     });

@@ -71,6 +71,15 @@ pub struct Dwell {
     pub rate_deg_per_h: f64,
 }
 
+/// Gain of a filter, free to adapt, for a constant rate added from the first sample on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RateGain {
+    /// The added rate, deg/s.
+    pub rate_deg_per_s: f64,
+    /// Gain in each of equally long blocks of the measured record.
+    pub block_gains: Vec<f64>,
+}
+
 /// What is known of a filter besides its output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilterFacts {
@@ -84,6 +93,8 @@ pub struct FilterFacts {
     pub mean_weights: Option<Vec<f64>>,
     /// The added rate, deg/h.
     pub added_rate_deg_per_h: f64,
+    /// Gains for constant rates of other sizes; empty where none was asked for.
+    pub rate_gains: Vec<RateGain>,
     /// How long after their sample's stamp the outputs appear, s: the latency of a pipeline whose
     /// result is used at once; 0 where a register holds it until the next stamp.
     pub latency_s: f64,

@@ -1,11 +1,12 @@
 //! Metrics of a record at rest or at constant rate.
 
 use super::allan::{AllanPoint, overlapping_allan};
-use super::audit::{filter_bound, lags_needed, noise_delay_bound, predict};
+use super::audit::{filter_bound, lags_needed, predict};
 use super::autocovariance::{LaggedProducts, independent_samples};
 use super::bias;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::noise_delay::{put_bound, put_bound_curve, put_over_bound};
 use super::noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise, mixed_degrees_of_freedom,
 };
@@ -47,7 +48,7 @@ pub(crate) fn measure_steady(
         put_noise_gain(&products, &raw, level, metrics);
         measure_mean_ratio(record, metrics);
         measure_weight_noise(record, facts.dc_gain, metrics);
-        measure_predictions(record, facts, &raw, metrics);
+        measure_predictions(record, facts, (&products, &raw), metrics);
         for (name, over) in [
             ("angle_random_walk_deg_per_sqrt_h", WALK_OVER_DC_GAIN),
             (
@@ -281,14 +282,14 @@ pub(crate) fn put_mean_ratio(channel: &[f64], raw: &[f64], metrics: &mut Channel
     );
 }
 
-/// Wiener prediction of the DC gain, and the noise-delay bound at the delay of the mean weights.
+/// Wiener prediction of the DC gain; the delay of the mean weights and the noise-delay bound there.
 ///
 /// Without mean weights the bound is taken at the predicted delay. It holds for fixed weights; ones
 /// that keep adapting to the noise itself can go below.
 fn measure_predictions(
     record: &Record,
     facts: &FilterFacts,
-    raw: &LaggedProducts,
+    (channel, raw): (&LaggedProducts, &LaggedProducts),
     metrics: &mut ChannelMetrics,
 ) {
     let mean_square = interval::mean(record.raw_deg_per_h).powi(2);
@@ -308,17 +309,35 @@ fn measure_predictions(
         .collect();
     let Some((dc_gain, delay_samples, bound)) = at(&raw.autocovariance()) else {
         metrics.miss("dc_gain_predicted", "the raw channel has no power");
-        metrics.miss(
+        for name in [
             "noise_delay_bound_noise_gain",
-            "the raw channel has no power",
-        );
+            "noise_gain_over_bound",
+            "delay_at_dc_ms",
+        ] {
+            metrics.miss(name, "the raw channel has no power");
+        }
         return;
     };
     let gains: Vec<f64> = parts.iter().map(|part| part.0).collect();
     metrics.put("dc_gain_predicted", interval::jackknife(dc_gain, &gains));
-    let bounds: Vec<f64> = parts
+    let delay_ms = |samples: f64| {
+        let delay_s = samples * record.sample_period_s + facts.latency_s;
+        units::s_to_ms(delay_s)
+    };
+    let delays_ms: Vec<f64> = parts.iter().map(|part| delay_ms(part.1)).collect();
+    let at_dc = interval::jackknife(delay_ms(delay_samples), &delays_ms);
+    metrics.put("delay_at_dc_ms", at_dc);
+    let without: Vec<_> = parts.into_iter().map(|part| part.2).collect();
+    put_over_bound(channel, raw, &bound, &without, metrics);
+    put_bound_curve(
+        facts,
+        &raw.autocovariance(),
+        record.sample_period_s,
+        metrics,
+    );
+    let bounds: Vec<f64> = without
         .iter()
-        .filter_map(|part| part.2.as_ref().ok().copied())
+        .filter_map(|bound| bound.as_ref().ok().copied())
         .collect();
     put_bound(
         bound.map(|bound| interval::jackknife(bound, &bounds)),
@@ -327,27 +346,6 @@ fn measure_predictions(
         record.sample_period_s,
         metrics,
     );
-}
-
-/// Enters the noise-delay bound with the delay it holds at and the white-noise figure beside it.
-pub(crate) fn put_bound(
-    bound: Result<Estimate, String>,
-    facts: &FilterFacts,
-    delay_samples: f64,
-    sample_period_s: f64,
-    metrics: &mut ChannelMetrics,
-) {
-    let metric = match bound {
-        Ok(bound) => metrics.put("noise_delay_bound_noise_gain", bound),
-        Err(reason) => return metrics.miss("noise_delay_bound_noise_gain", reason),
-    };
-    metric
-        .fields
-        .insert("delay_ms", units::s_to_ms(delay_samples * sample_period_s));
-    let taps = facts.shape.taps.unwrap_or(0);
-    if let Some(white) = noise_delay_bound(taps, facts.shape.newest_age_samples, delay_samples) {
-        metric.fields.insert("white_noise_gain", white);
-    }
 }
 
 /// Enters one metric divided by the DC gain: what is left of the improvement once the scale factor

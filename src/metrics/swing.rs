@@ -8,8 +8,9 @@ use super::correlation::correlation_delay_s;
 use super::delay::{SwingClock, SwingFit, fit_swing};
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
+use super::noise_delay::{put_bound, put_bound_curve};
 use super::record::{FilterFacts, Record};
-use super::steady::{LAGS_MIN, put_bound, put_mean, put_noise_gain, put_noise_std};
+use super::steady::{LAGS_MIN, put_mean, put_noise_gain, put_noise_std};
 use super::support::DELAY_VS_ENCODER;
 use crate::units;
 
@@ -249,4 +250,5 @@ fn measure_bound(
         Estimate::with_interval(value, (value - below).max(0.0), value + above)
     });
     put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
+    put_bound_curve(facts, &autocovariance, clock.sample_period_s, metrics);
 }

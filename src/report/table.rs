@@ -7,6 +7,7 @@ use crate::metrics::{ChannelMetrics, Metric, known_metrics};
 use crate::report::RunReport;
 use crate::report::columns::{Column, columns, matters, unit_text};
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
+use crate::report::verdict_text::verdict_text;
 use crate::scenario::{Fidelity, PublishedConfig};
 
 /// Digits of an interval's half width in tables.
@@ -23,6 +24,7 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     text.push_str(&budget(report, width));
     text.push_str(&channels(report, width, colour));
     text.push_str(&failures(report, width, colour));
+    text.push_str(&filter_verdicts(report, width, colour));
     text.push_str(&published(report, colour));
     text.push_str(&gates(report.verdicts, width, colour));
     for note in report.notes {
@@ -170,6 +172,25 @@ fn failures(report: &RunReport, width: usize, colour: bool) -> String {
     for ((key, reason), names) in missing(report) {
         let line = format!("no {key} for {}: {reason}", names.join(", "));
         text.push_str(&wrapped(&line, INDENT, width));
+    }
+    if text.is_empty() {
+        text
+    } else {
+        format!("\n{text}")
+    }
+}
+
+/// What each filter does, in words.
+fn filter_verdicts(report: &RunReport, width: usize, colour: bool) -> String {
+    let mut text = String::new();
+    for (name, metrics) in report.channels {
+        if let Some(verdict) = verdict_text(metrics) {
+            let line = format!(
+                "{} {verdict}",
+                toned(&format!("{name}:"), Tone::Heading, colour)
+            );
+            text.push_str(&wrapped(&line, INDENT, width));
+        }
     }
     if text.is_empty() {
         text

@@ -53,6 +53,7 @@ pub(crate) fn facts() -> FilterFacts {
         dc_gain_adapted: None,
         mean_weights: None,
         added_rate_deg_per_h: 1.0,
+        rate_gains: Vec::new(),
         latency_s: 0.0,
     }
 }
