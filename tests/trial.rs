@@ -1,6 +1,8 @@
 //! The trial of the filters: gain over rate, the noise-delay plane and the verdict in words.
 
-use crate::support::{code, field, fogbench, repository, stderr, stdout, summary, write};
+use crate::support::{
+    assert_close, code, field, fogbench, repository, stderr, stdout, summary, write,
+};
 
 const SCENARIO: &str = r#"
 schema = 1
@@ -31,21 +33,43 @@ fn small_rates_are_attenuated_by_what_learns_from_them_and_by_nothing_else() {
     let result = summary(&output, "gains");
     let rates = column(&result, "rls", "rate_deg_per_s");
     assert_eq!((rates.len(), rates[0], rates[10]), (11, 0.001, 100.0));
-    // A mean of rounded words has gain 1 to their rounding.
-    for (gain, rate) in column(&result, "mean", "gain").iter().zip(&rates) {
-        assert!((gain - 1.0).abs() < 1e-9, "{rate} {gain}");
+    // A mean of rounded words passes every rate, to their rounding.
+    for name in ["gain", "mean_ratio"] {
+        for (value, rate) in column(&result, "mean", name).iter().zip(&rates) {
+            // Its first samples in a block are the last of the one before: the noise of a few words.
+            let tolerance = if name == "gain" { 1e-9 } else { 0.01 };
+            assert!((value - 1.0).abs() < tolerance, "{name} {rate} {value}");
+        }
     }
-    let gains = column(&result, "rls", "gain");
-    assert!(gains.is_sorted(), "{gains:?}");
-    // Four Wiener weights of noise about a mean of m have the sum 4 m^2 / (4 m^2 + s), where s is
-    // at most twice the variance of one sample, some 23 deg/h, however the noise is coloured.
-    assert!(gains[0] < 0.9, "{gains:?}");
-    let one_deg_per_s = 3600.0_f64;
-    let lowest = 1.0 - 2.0 * 23.0 * 23.0 / (4.0 * one_deg_per_s * one_deg_per_s);
-    assert!(gains[6] > lowest && gains[10] < 1.001, "{gains:?}");
+    let ratios = column(&result, "rls", "mean_ratio");
+    assert!(ratios[..4].is_sorted(), "{ratios:?}");
+    // Four Wiener weights of noise about a mean of m have the sum 4 m^2 / (4 m^2 + s), where s lies
+    // between once and twice the variance of one sample, some 19 deg/h, as neighbours correlate by
+    // less than one half. The rate comes on top of Earth's 8.47 deg/h.
+    let sum = |rate_deg_per_s: f64, s: f64| {
+        let mean = 8.47 + 3600.0 * rate_deg_per_s;
+        4.0 * mean * mean / (4.0 * mean * mean + s)
+    };
+    for (ratio, rate) in ratios.iter().zip(&rates) {
+        // The words that a block of 1596 begins and ends with enter input and output differently:
+        // some five words of 19 deg/h at either end.
+        let ends = 0.1 / (8.47 + 3600.0 * rate);
+        let low = sum(*rate, 2.2 * 19.0 * 19.0) - ends;
+        let high = sum(*rate, 0.8 * 19.0 * 19.0) + ends;
+        assert!((low..=high).contains(ratio), "{rate}: {ratio} {low} {high}");
+    }
+    // Both figures of one twin tell the same: response = total output less what was there before.
+    let mean_output = field(&result, "rls.mean_deg_per_h", "value");
+    let mean_input = field(&result, "raw.mean_deg_per_h", "value");
+    for (index, gain) in column(&result, "rls", "gain").iter().enumerate().skip(2) {
+        let rate_deg_per_h = 3600.0 * rates[index];
+        let total = gain * rate_deg_per_h + mean_output;
+        let ratio = total / (mean_input + rate_deg_per_h);
+        assert_close(ratio, ratios[index], 1e-3, 0.0);
+    }
     let (low, high) = (
-        column(&result, "rls", "gain_low"),
-        column(&result, "rls", "gain_high"),
+        column(&result, "rls", "mean_ratio_low"),
+        column(&result, "rls", "mean_ratio_high"),
     );
     assert!(low.iter().zip(&high).all(|(low, high)| low < high));
     for picture in ["rate-gain.svg", "noise-delay.svg"] {

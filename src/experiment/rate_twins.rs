@@ -29,6 +29,9 @@ pub(super) struct RateTwins {
     twins: Vec<RateTwin>,
     length: RecordLength,
     counts: [u32; BLOCKS],
+    /// Sums of the words and of the filter's outputs, deg/h, by block.
+    input_totals: [f64; BLOCKS],
+    output_totals: [f64; BLOCKS],
     taken: usize,
 }
 
@@ -44,6 +47,8 @@ impl RateTwins {
             twins: twins.collect(),
             length,
             counts: [0; BLOCKS],
+            input_totals: [0.0; BLOCKS],
+            output_totals: [0.0; BLOCKS],
             taken: 0,
         }
     }
@@ -66,20 +71,30 @@ impl RateTwins {
         });
         if let Some(block) = block {
             self.counts[block] += 1;
+            self.input_totals[block] += word_deg_per_h;
+            self.output_totals[block] += output_deg_per_h;
         }
     }
 
-    /// The gain of every twin that is left, block by block.
+    /// What every twin that is left makes of its rate, block by block.
     pub(super) fn finish(&self) -> Vec<RateGain> {
+        let blocks: Vec<usize> = (0..BLOCKS)
+            .filter(|block| self.counts[*block] > 0)
+            .collect();
         let twins = self.twins.iter().map(|twin| {
             let rate_deg_per_h = deg_per_s_to_deg_per_h(twin.rate_deg_per_s);
-            let blocks = twin.totals.iter().zip(self.counts);
+            let gain = |block: usize| {
+                twin.totals[block] / (f64::from(self.counts[block]) * rate_deg_per_h)
+            };
+            let mean_ratio = |block: usize| {
+                let added = f64::from(self.counts[block]) * rate_deg_per_h;
+                (self.output_totals[block] + twin.totals[block])
+                    / (self.input_totals[block] + added)
+            };
             RateGain {
                 rate_deg_per_s: twin.rate_deg_per_s,
-                block_gains: blocks
-                    .filter(|(_, count)| *count > 0)
-                    .map(|(total, count)| total / f64::from(count) / rate_deg_per_h)
-                    .collect(),
+                block_gains: blocks.iter().copied().map(gain).collect(),
+                block_mean_ratios: blocks.iter().copied().map(mean_ratio).collect(),
             }
         });
         twins.collect()

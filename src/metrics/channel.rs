@@ -201,16 +201,21 @@ fn put_dc_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
     }
 }
 
-/// Enters the curve `rate_gain`: Student's t on the blocks' gains.
+/// Enters the curve `rate_gain`: Student's t on the blocks.
 fn put_rate_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
     let mut curve: BTreeMap<String, Vec<f64>> = BTreeMap::new();
     for rate in &facts.rate_gains {
-        let gain = interval::from_parts(interval::mean(&rate.block_gains), &rate.block_gains);
+        let pooled = |blocks: &[f64]| interval::from_parts(interval::mean(blocks), blocks);
+        let gain = pooled(&rate.block_gains);
+        let ratio = pooled(&rate.block_mean_ratios);
         for (column, value) in [
             ("rate_deg_per_s", rate.rate_deg_per_s),
             ("gain", gain.value),
             ("gain_low", gain.low),
             ("gain_high", gain.high),
+            ("mean_ratio", ratio.value),
+            ("mean_ratio_low", ratio.low),
+            ("mean_ratio_high", ratio.high),
         ] {
             curve.entry(column.to_owned()).or_default().push(value);
         }

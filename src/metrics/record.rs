@@ -71,13 +71,16 @@ pub struct Dwell {
     pub rate_deg_per_h: f64,
 }
 
-/// Gain of a filter, free to adapt, for a constant rate added from the first sample on.
+/// What a filter, free to adapt, makes of a constant rate added from the first sample on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RateGain {
     /// The added rate, deg/s.
     pub rate_deg_per_s: f64,
-    /// Gain in each of equally long blocks of the measured record.
+    /// Response over the added rate in each of equally long blocks of the measured record: mean
+    /// output minus that without the rate. Beyond 1 where the weights grow with the rate.
     pub block_gains: Vec<f64>,
+    /// Mean output over mean input, both with everything else on the axis, in the same blocks.
+    pub block_mean_ratios: Vec<f64>,
 }
 
 /// What is known of a filter besides its output.

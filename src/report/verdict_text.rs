@@ -23,8 +23,14 @@ pub(crate) fn verdict_text(channel: &ChannelMetrics) -> Option<String> {
     Some(clauses.join("; "))
 }
 
+/// An estimate; one without an interval to three decimals, if it has a digit there.
 fn text(estimate: &Estimate) -> String {
-    estimate_text(estimate, DIGITS)
+    let is_exact = estimate.low >= estimate.high;
+    if is_exact && estimate.value.abs() >= 0.1 {
+        plain((estimate.value * 1e3).round() / 1e3)
+    } else {
+        estimate_text(estimate, DIGITS)
+    }
 }
 
 fn is(finding: Option<Finding>, against_one: AgainstOne) -> bool {
@@ -102,7 +108,7 @@ fn slow_noise(verdict: &FilterVerdict) -> Option<String> {
         .slow_noise_averaging_time_s
         .map_or_else(String::new, |time_s| format!(" at {} s", plain(time_s)));
     let ratio = text(&ratio.estimate);
-    Some(format!("{what} (Allan deviation{at} {ratio} of raw's)"))
+    Some(format!("{what} (Allan deviation{at} over raw's: {ratio})"))
 }
 
 fn delay(delay_ms: &Estimate) -> String {
@@ -171,7 +177,7 @@ mod tests {
             "reduces slow noise by attenuating the input, fast noise by smoothing too: DC gain \
              0.49; fast noise 0.120 ±0.010 of its power, 0.500 ±0.042 at restored scale; angle \
              random walk at restored scale 0.00600 ±0.00010 deg/sqrt(h), unchanged (Allan \
-             deviation at 1 s 1.000 ±0.020 of raw's); delays by 0.75 ms; its noise is 0.400 ±0.033 \
+             deviation at 1 s over raw's: 1.000 ±0.020); delays by 0.75 ms; its noise is 0.400 ±0.033 \
              of the least that its taps allow at this delay with unit DC gain: signal was removed \
              with it"
         );

@@ -111,7 +111,7 @@ fn draw_bounds(picture: &mut Picture, panel: &Panel, point: &Point) {
     panel.line(picture, &point.white, dotted);
 }
 
-/// Marker, bars and DC gain.
+/// Marker, bars, name and DC gain.
 fn draw_point(picture: &mut Picture, panel: &Panel, point: &Point) {
     let colour = stroke_of(point.index).colour;
     let bar = Stroke::solid(colour, 1.5);
@@ -124,8 +124,14 @@ fn draw_point(picture: &mut Picture, panel: &Panel, point: &Point) {
     panel.marker(picture, at, shape_of(point.index), colour);
     if let Some(dc_gain) = point.verdict.dc_gain {
         let (x, y) = panel.place(at);
-        let text = format!("{:.2}", dc_gain.estimate.value);
-        picture.text((x + 9.0, y - 9.0), &text, 12.5, Anchor::Start);
+        let text = format!("{} {:.2}", point.name, dc_gain.estimate.value);
+        // Neighbours in the file often stand close together: their labels take turns.
+        let (shift, anchor) = match point.index % 3 {
+            0 => ((9.0, -10.0), Anchor::Start),
+            1 => ((9.0, 12.0), Anchor::Start),
+            _ => ((-9.0, -10.0), Anchor::End),
+        };
+        picture.text((x + shift.0, y + shift.1), &text, 12.5, anchor);
     }
 }
 
