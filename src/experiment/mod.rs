@@ -13,6 +13,7 @@ mod pipeline_filter;
 mod pipeline_metrics;
 mod pipeline_settings;
 mod plan;
+mod published_check;
 mod rate_twins;
 mod run;
 mod simulate;

@@ -25,7 +25,7 @@ pub(crate) fn verdict_text(channel: &ChannelMetrics) -> Option<String> {
 
 /// An estimate; one without an interval to three decimals, if it has a digit there.
 fn text(estimate: &Estimate) -> String {
-    let is_exact = estimate.low >= estimate.high;
+    let is_exact = estimate.high - estimate.low <= 1e-9 * estimate.value.abs();
     if is_exact && estimate.value.abs() >= 0.1 {
         plain((estimate.value * 1e3).round() / 1e3)
     } else {
