@@ -61,21 +61,48 @@ impl MotionSegment {
     }
 }
 
-/// A filter as its outputs are judged: which input samples it weighs and what it aims at.
+/// A filter as its outputs are judged: which input samples it weighs and how its weights come about.
 ///
 /// Ages count whole samples before the instant a value is stamped; the output register is
 /// included, so that the newest sample a next-sample filter can use has age 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilterShape {
-    /// Number of adaptive weights, p.
-    pub taps: usize,
+    /// Number of weights, p; `None` for an infinite impulse response.
+    pub taps: Option<usize>,
     /// Age in samples of the newest weighed input when the output is stamped, l.
     pub newest_age_samples: usize,
-    /// Desired signal as weights on input samples of ages 0, 1, ... before the register
-    /// (`[1]` = the current sample, `[0.5, 0.5]` = mean of the newest two).
-    pub desired_weights: Vec<f64>,
     /// Samples the output register adds, 0 or 1; already part of `newest_age_samples`.
     pub register_samples: usize,
+    /// How the weights come about.
+    pub rule: WeightRule,
+}
+
+/// How the weights of a filter come about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WeightRule {
+    /// They minimise the distance from a desired signal, given as weights on input samples of ages
+    /// 0, 1, ... before the register (`[1]` = the current sample, `[0.5, 0.5]` = mean of the newest
+    /// two).
+    Adaptive {
+        /// Weights of the desired signal.
+        desired_weights: Vec<f64>,
+        /// Whether their sum is held at 1.
+        is_dc_gain_one: bool,
+    },
+    /// They are given, newest sample first.
+    Fixed(Vec<f64>),
+    /// They are the impulse response of a cascade of sections.
+    Sections(Vec<Section>),
+}
+
+/// One second-order section of a recursive filter:
+/// `H(z) = (b0 + b1 z^-1 + b2 z^-2) / (1 + a1 z^-1 + a2 z^-2)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// `b0, b1, b2`.
+    pub numerator: [f64; 3],
+    /// `a1, a2`.
+    pub denominator: [f64; 2],
 }
 
 /// What a gyro is, in closed form, as the report prints it.

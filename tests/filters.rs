@@ -460,15 +460,15 @@ fn shapes_tell_the_age_of_the_newest_weighed_sample() {
     let shape = Rls::new(&predictor(1.0, 1e4)).shape();
     assert_eq!(
         (shape.taps, shape.newest_age_samples, shape.register_samples),
-        (4, 2, 1)
+        (Some(4), 2, 1)
     );
-    assert_eq!(shape.desired_weights, [1.0]);
+    assert_eq!(shape.rule, Desired::Current.rule());
     let shape = Lms::new(&lms(0.8, ENERGY)).shape();
     assert_eq!(
         (shape.taps, shape.newest_age_samples, shape.register_samples),
-        (10, 1, 1)
+        (Some(10), 1, 1)
     );
-    assert_eq!(shape.desired_weights, [0.5, 0.5]);
+    assert_eq!(shape.rule, Desired::TwoSampleMean.rule());
     // The filter does as its shape says: a sample first shows in the output at its age.
     let mut filter = Lms::new(&lms(0.8, ENERGY));
     let mut input = constant(0.0, 20.0, 500);

@@ -187,6 +187,18 @@ fn the_bound_stands_at_the_delay_of_the_weights_that_ran() {
         1e-9,
         0.0,
     );
+    assert_close(value(&ran, "delay_at_dc_ms"), 2.25e3 * PERIOD_S, 1e-9, 0.0);
+    // The output is raw itself: its noise over the bound is one over the bound.
+    let over = value(&ran, "noise_gain_over_bound");
+    assert_close(over, 1.0 / value(&ran, name), 1e-9, 0.0);
+    // The curve of three solutions is the bound at every delay: about 3 % of colour in white noise.
+    let curve = &ran.curves["noise_delay_bound"];
+    for (index, delay_ms) in curve["delay_ms"].iter().enumerate() {
+        let delay = delay_ms / 1e3 / PERIOD_S;
+        let wanted = noise_delay_bound(4, 2, delay).unwrap();
+        assert_close(curve["white_noise_gain"][index], wanted, 1e-9, 0.0);
+        assert_close(curve["noise_gain"][index], wanted, 0.05, 0.0);
+    }
     // Without them the Wiener weights of white noise with a mean, all alike, stand in: 3.5 samples.
     let predicted = of(None).metrics[name].fields["delay_ms"];
     assert_close(predicted, 3.5e3 * PERIOD_S, 0.05, 0.0);

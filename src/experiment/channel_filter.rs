@@ -7,15 +7,13 @@
 
 use super::pipeline_filter::{HardwareFilter, HealthSummary};
 use super::pipeline_settings::{PipelineSettings, PipelineTiming};
+use super::rate_twins::RateTwins;
 use super::simulate::RecordLength;
-use crate::filters::{
-    Desired, Divergence, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, Output,
-    OutputRegister as Register, Rls, RlsConfig, UpdateSign as Sign,
-};
-use crate::scenario::{
-    DesiredSignal, FilterKind, LmsFilterConfig, OutputRegister, RlsFilterConfig, UpdateSign,
-};
-use crate::signal::FilterShape;
+use super::textbook::textbook_filter;
+use crate::filters::{Divergence, Filter, Output};
+use crate::metrics::RateGain;
+use crate::scenario::FilterKind;
+use crate::signal::{FilterShape, WeightRule};
 
 /// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
 pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
@@ -27,6 +25,7 @@ pub(super) struct ChannelFilter {
     shape: FilterShape,
     filter: Arithmetic,
     twin: Option<Arithmetic>,
+    rate_twins: Option<RateTwins>,
     output_deg_per_h: Vec<f64>,
     warm_up_samples: usize,
     failure: Option<Divergence>,
@@ -68,26 +67,26 @@ pub(super) struct FilterWords {
     pub(super) dc_gain: Option<f64>,
     /// The same with the filter free to adapt to the added rate; none if the twin failed.
     pub(super) dc_gain_adapted: Option<f64>,
-    /// Time mean of every weight over the measured record, as left by each sample.
+    /// The same for rates of other sizes; empty unless asked for.
+    pub(super) rate_gains: Vec<RateGain>,
+    /// Time mean of every weight over the measured record, as left by each sample; none for an
+    /// infinite impulse response.
     pub(super) mean_weights: Option<Vec<f64>>,
 }
 
 /// Whose arithmetic makes the words.
-enum Arithmetic {
+pub(super) enum Arithmetic {
     Textbook(Box<dyn Filter>),
     Hardware(Box<dyn HardwareFilter>),
 }
 
 impl Arithmetic {
-    fn new(kind: &FilterKind, length: RecordLength) -> Self {
+    fn new(kind: &FilterKind, length: RecordLength, sample_period_s: f64) -> Self {
         if let Some(settings) = PipelineSettings::of(kind) {
             let filter = settings.filter(length.warm_up as u64);
             return Self::Hardware(filter.expect(CHECKED));
         }
-        Self::Textbook(match kind {
-            FilterKind::Rls(config) => Box::new(Rls::new(&rls(config))),
-            FilterKind::Lms(config) => Box::new(Lms::new(&lms(config))),
-        })
+        Self::Textbook(textbook_filter(kind, sample_period_s))
     }
 
     fn as_filter(&self) -> &dyn Filter {
@@ -98,7 +97,7 @@ impl Arithmetic {
     }
 
     #[inline]
-    fn step(&mut self, word_deg_per_h: f64) -> Result<Output, Divergence> {
+    pub(super) fn step(&mut self, word_deg_per_h: f64) -> Result<Output, Divergence> {
         match self {
             Self::Textbook(filter) => filter.step(word_deg_per_h),
             Self::Hardware(filter) => filter.step(word_deg_per_h),
@@ -110,19 +109,28 @@ impl Arithmetic {
 const CHECKED: &str = "the plan has refused what the pipeline refuses";
 
 impl ChannelFilter {
-    /// The channel `name` of a filter, with room for a record of this length.
+    /// The channel `name` of a filter, with room for a record of this length; with `rate_gain` the
+    /// gain for rates of every size is measured beside it.
     ///
     /// # Panics
     /// If the hardware refuses its constants, which the plan has checked.
-    pub(super) fn new(name: String, kind: &FilterKind, length: RecordLength) -> Self {
-        let filter = Arithmetic::new(kind, length);
+    pub(super) fn new(
+        name: String,
+        kind: &FilterKind,
+        length: RecordLength,
+        sample_period_s: f64,
+        rate_gain: bool,
+    ) -> Self {
+        let arithmetic = || Arithmetic::new(kind, length, sample_period_s);
+        let filter = arithmetic();
         Self {
             name,
             settings: PipelineSettings::of(kind),
             shape: filter.as_filter().shape(),
             weight_totals: vec![0.0; filter.as_filter().weights().len()],
             filter,
-            twin: Some(Arithmetic::new(kind, length)),
+            twin: Some(arithmetic()),
+            rate_twins: rate_gain.then(|| RateTwins::new(length, arithmetic)),
             output_deg_per_h: Vec::with_capacity(length.total()),
             warm_up_samples: length.warm_up,
             failure: None,
@@ -158,14 +166,16 @@ impl ChannelFilter {
             Some(Err(_)) => self.twin = None,
             _ => {}
         }
+        if let Some(twins) = &mut self.rate_twins {
+            twins.step(word_deg_per_h, output.value_deg_per_h);
+        }
         if is_measured {
             self.weight_sum_total += output.weight_sum;
-            for (total, weight) in self
-                .weight_totals
-                .iter_mut()
-                .zip(self.filter.as_filter().weights())
-            {
-                *total += weight;
+            if let WeightRule::Adaptive { .. } = self.shape.rule {
+                let weights = self.filter.as_filter().weights();
+                for (total, weight) in self.weight_totals.iter_mut().zip(weights) {
+                    *total += weight;
+                }
             }
             self.measured += 1;
         }
@@ -185,11 +195,19 @@ impl ChannelFilter {
             Some(divergence) => Err(divergence),
             None => Ok(FilterWords {
                 dc_gain: mean(self.weight_sum_total),
-                mean_weights: self
-                    .weight_totals
-                    .iter()
-                    .map(|&total| mean(total))
-                    .collect(),
+                rate_gains: self
+                    .rate_twins
+                    .as_ref()
+                    .map_or_else(Vec::new, RateTwins::finish),
+                mean_weights: match &self.shape.rule {
+                    WeightRule::Adaptive { .. } => self
+                        .weight_totals
+                        .iter()
+                        .map(|&total| mean(total))
+                        .collect(),
+                    WeightRule::Fixed(weights) => Some(weights.clone()),
+                    WeightRule::Sections(_) => None,
+                },
                 dc_gain_adapted: self.twin.as_ref().and_then(|_| {
                     mean(self.twin_difference_total).map(|gain| gain / ADDED_RATE_DEG_PER_H)
                 }),
@@ -215,73 +233,5 @@ impl ChannelFilter {
             health: filter.health(),
             wind_up: filter.wind_up().map(|warning| warning.to_string()),
         })
-    }
-}
-
-fn rls(config: &RlsFilterConfig) -> RlsConfig {
-    RlsConfig {
-        taps: config.taps as usize,
-        forgetting_factor: config.forgetting_factor,
-        initial_inverse_correlation: config.initial_inverse_correlation,
-        update_sign: sign(config.update_sign),
-        front_end: front_end(
-            config.desired,
-            config.input_lag_samples,
-            config.output_register,
-        ),
-    }
-}
-
-fn lms(config: &LmsFilterConfig) -> LmsConfig {
-    let regularisation_deg2_per_h2 = config.regularisation_deg2_per_h2;
-    LmsConfig {
-        taps: config.taps as usize,
-        step_size: config.step_size,
-        normalisation: if config.normalised {
-            Normalisation::Energy {
-                regularisation_deg2_per_h2,
-            }
-        } else {
-            Normalisation::None
-        },
-        update_sign: sign(config.update_sign),
-        front_end: front_end(
-            config.desired,
-            config.input_lag_samples,
-            config.output_register,
-        ),
-    }
-}
-
-fn front_end(
-    aim: DesiredSignal,
-    input_lag_samples: u32,
-    output_register: OutputRegister,
-) -> FrontEndConfig {
-    FrontEndConfig {
-        desired: desired(aim),
-        input_lag_samples: input_lag_samples as usize,
-        output_register: register(output_register),
-    }
-}
-
-fn desired(desired: DesiredSignal) -> Desired {
-    match desired {
-        DesiredSignal::Current => Desired::Current,
-        DesiredSignal::TwoSampleMean => Desired::TwoSampleMean,
-    }
-}
-
-fn register(register: OutputRegister) -> Register {
-    match register {
-        OutputRegister::NextSample => Register::NextSample,
-        OutputRegister::Immediate => Register::Immediate,
-    }
-}
-
-fn sign(sign: UpdateSign) -> Sign {
-    match sign {
-        UpdateSign::Corrected => Sign::Corrected,
-        UpdateSign::AsPrinted => Sign::AsPrinted,
     }
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::pipeline_check;
 use super::pipeline_settings::PipelineSettings;
+use super::textbook::cutoff_complaint;
 use crate::filters::covariance_digits_warning;
 use crate::scenario::{
     FilterConfig, FilterKind, Pipeline, Resolved, ScenarioError, load_base_or_scenario,
@@ -21,7 +22,7 @@ pub struct LogFilters {
 ///
 /// # Errors
 /// Every complaint about the file; no filter; a sweep over filters; a pipeline that cannot be built
-/// or cannot keep up with `sample_rate_hz`.
+/// or cannot keep up with `sample_rate_hz`; a low pass beyond half of it.
 pub fn load_log_filters(
     path: &Path,
     sets: &[String],
@@ -47,9 +48,13 @@ pub fn load_log_filters(
         .iter()
         .enumerate()
         .filter_map(|(index, filter)| {
-            let settings = PipelineSettings::of(&filter.kind)?;
-            let path = format!("filter[{index}].{}", pipeline_check::kind(&settings));
-            let (key, message) = pipeline_check::check(&settings, &path, sample_rate_hz).err()?;
+            let hardware = || {
+                let settings = PipelineSettings::of(&filter.kind)?;
+                let path = format!("filter[{index}].{}", pipeline_check::kind(&settings));
+                pipeline_check::check(&settings, &path, sample_rate_hz).err()
+            };
+            let (key, message) =
+                cutoff_complaint(index, &filter.kind, sample_rate_hz).or_else(hardware)?;
             Some(ScenarioError::at(first.locate(&key), message))
         })
         .collect();

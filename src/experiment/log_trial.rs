@@ -106,7 +106,9 @@ pub fn try_log(
     let sample_period_s = log.sample_period_s();
     let length = record_length(&log, settings)?;
     let words = std::mem::take(&mut log.rate_deg_per_h);
-    let finished = filters.map_or_else(Vec::new, |filters| run(filters, length, &words));
+    let finished = filters.map_or_else(Vec::new, |filters| {
+        run(filters, length, sample_period_s, &words)
+    });
     let record = GyroRecord {
         truth_deg_per_h: Vec::new(),
         raw_deg_per_h: words,
@@ -153,11 +155,17 @@ pub fn try_log(
 }
 
 /// Every filter over the whole log.
-fn run(filters: &LogFilters, length: RecordLength, words: &[f64]) -> Vec<FinishedFilter> {
+fn run(
+    filters: &LogFilters,
+    length: RecordLength,
+    sample_period_s: f64,
+    words: &[f64],
+) -> Vec<FinishedFilter> {
     let configs = filters.configs().par_iter();
     configs
         .map(|config| {
-            let mut filter = ChannelFilter::new(config.name.clone(), &config.kind, length);
+            let name = config.name.clone();
+            let mut filter = ChannelFilter::new(name, &config.kind, length, sample_period_s, false);
             filter.take(words);
             filter.finish()
         })

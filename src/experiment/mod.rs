@@ -15,9 +15,12 @@ mod pipeline_filter;
 mod pipeline_metrics;
 mod pipeline_settings;
 mod plan;
+mod published_check;
+mod rate_twins;
 mod run;
 mod simulate;
 mod suite;
+mod textbook;
 mod theory;
 
 pub use budget::{GyroBudget, gyro_budget};

@@ -188,7 +188,7 @@ impl PipelineSettings {
             input_lag_samples: self.input_lag_samples,
             output_register: self.register(),
         };
-        front_end.shape(self.tap_count())
+        front_end.shape(Some(self.tap_count()), front_end.desired.rule())
     }
 }
 

@@ -7,6 +7,8 @@ use super::assembly_motion;
 use super::motion::{motion, motion_extremes, rate_deg_per_h_max};
 use super::pipeline_check;
 use super::pipeline_settings::PipelineSettings;
+use super::published_check::wrong_unit;
+use super::textbook::cutoff_complaint;
 use crate::filters::{
     constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
 };
@@ -230,6 +232,11 @@ impl Checker<'_> {
             if let Some(settings) = PipelineSettings::of(&filter.kind) {
                 self.pipeline(index, &settings, peak, facts);
             }
+            if let Some((key, message)) =
+                cutoff_complaint(index, &filter.kind, facts.output_rate_hz)
+            {
+                self.complain(&key, message);
+            }
             match &filter.kind {
                 FilterKind::Lms(config) => self.lms(index, config, rate_max),
                 FilterKind::Rls(config) if config.pipeline == Pipeline::Textbook => {
@@ -241,7 +248,7 @@ impl Checker<'_> {
                             .push(format!("filter `{}`: {text}", filter.name));
                     }
                 }
-                FilterKind::Rls(_) => {}
+                _ => {}
             }
         }
     }
@@ -305,26 +312,6 @@ impl Checker<'_> {
         }
     }
 
-    /// Refuses a published figure in another unit than the simulated one beside which it is shown.
-    fn published_unit(&mut self, index: usize, metric: &str, given: &str) {
-        let known = metrics::known_metrics().iter();
-        // A metric that nobody knows is refused with its nearest known one elsewhere.
-        let Some(known) = known.into_iter().find(|known| known.name == metric) else {
-            return;
-        };
-        let is_bare = known.unit == "1" && given.is_empty();
-        if given != known.unit && !is_bare {
-            let key = format!("published[{index}].unit");
-            self.complain(
-                &key,
-                format!(
-                    "{key} = \"{given}\" is not the unit of {metric}: give the value in \"{}\"",
-                    known.unit
-                ),
-            );
-        }
-    }
-
     /// Refuses gates and published figures that this record can never support.
     fn metrics(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
@@ -345,7 +332,9 @@ impl Checker<'_> {
                 continue;
             };
             requested.push((format!("published[{index}].metric"), channel, name));
-            self.published_unit(index, name, &figure.unit);
+            if let Some((key, message)) = wrong_unit(index, name, &figure.unit) {
+                self.complain(&key, message);
+            }
         }
         for (key, channel, name) in requested {
             if name == DIVERGED_AT {

@@ -116,7 +116,7 @@ pub(super) fn simulate(
     observer: &dyn Observer,
 ) -> Result<Simulation, GyroError> {
     let mut source = Source::new(scenario, length, repeat)?;
-    let mut filters = channel_filters(scenario, length);
+    let mut filters = channel_filters(scenario, length, source.sample_period_s);
     let mut raw: Vec<Vec<f64>> = scenario
         .axis_prefixes()
         .iter()
@@ -157,13 +157,24 @@ pub(super) fn simulate(
 }
 
 /// The filters in the order of the file, each on every gyro in turn, with the index of the gyro.
-fn channel_filters(scenario: &Scenario, length: RecordLength) -> Vec<(usize, ChannelFilter)> {
+fn channel_filters(
+    scenario: &Scenario,
+    length: RecordLength,
+    sample_period_s: f64,
+) -> Vec<(usize, ChannelFilter)> {
     let prefixes = scenario.axis_prefixes();
     let filters = scenario.filters.iter().flat_map(|config| {
         let gyros = prefixes.iter().enumerate();
         gyros.map(move |(gyro, prefix)| {
             let name = format!("{prefix}{}", config.name);
-            (gyro, ChannelFilter::new(name, &config.kind, length))
+            let filter = ChannelFilter::new(
+                name,
+                &config.kind,
+                length,
+                sample_period_s,
+                scenario.trial.rate_gain,
+            );
+            (gyro, filter)
         })
     });
     filters.collect()

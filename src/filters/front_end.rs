@@ -1,7 +1,7 @@
 //! What stands around the weights: delay line, desired signal and output register.
 
 use super::filter::Output;
-use crate::signal::FilterShape;
+use crate::signal::{FilterShape, WeightRule};
 
 /// What an adaptive filter aims at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,6 +13,15 @@ pub enum Desired {
 }
 
 impl Desired {
+    /// How the weights of a filter that is free to reach this aim come about.
+    #[must_use]
+    pub fn rule(self) -> WeightRule {
+        WeightRule::Adaptive {
+            desired_weights: self.weights().to_vec(),
+            is_dc_gain_one: false,
+        }
+    }
+
     /// Weights on the samples of age 0, 1, ...
     #[must_use]
     pub fn weights(self) -> &'static [f64] {
@@ -56,15 +65,25 @@ pub struct FrontEndConfig {
 }
 
 impl FrontEndConfig {
-    /// Which input samples a filter of `taps` weights behind this front end weighs.
+    /// The front end of a filter that has no desired signal and sees the newest sample.
     #[must_use]
-    pub fn shape(&self, taps: usize) -> FilterShape {
+    pub fn direct(output_register: OutputRegister) -> Self {
+        Self {
+            desired: Desired::Current,
+            input_lag_samples: 0,
+            output_register,
+        }
+    }
+
+    /// The outline of a filter behind this front end; `taps` is `None` for an infinite response.
+    #[must_use]
+    pub fn shape(&self, taps: Option<usize>, rule: WeightRule) -> FilterShape {
         let register_samples = self.output_register.samples();
         FilterShape {
             taps,
             newest_age_samples: self.input_lag_samples + register_samples,
-            desired_weights: self.desired.weights().to_vec(),
             register_samples,
+            rule,
         }
     }
 }

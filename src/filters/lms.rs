@@ -1,6 +1,6 @@
 //! Least mean squares, plain and normalised.
 
-use super::adaptive::{AdaptiveFilter, Core, dot};
+use super::core_filter::{Core, CoreFilter, dot};
 use super::divergence::Fault;
 use super::filter::Output;
 use super::front_end::FrontEndConfig;
@@ -35,7 +35,7 @@ pub struct LmsConfig {
 }
 
 /// Least mean squares behind the common front end.
-pub type Lms = AdaptiveFilter<LmsCore>;
+pub type Lms = CoreFilter<LmsCore>;
 
 impl Lms {
     /// A filter of zero weights.

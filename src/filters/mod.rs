@@ -1,4 +1,5 @@
-//! Textbook adaptive filters: the oracle for the hardware pipelines, never called by them.
+//! Textbook filters: the oracle for the hardware pipelines, never called by them, and what a user
+//! would compare them with.
 //!
 //! ```text
 //!            ┌ regressors L = x[k-lag] .. x[k-lag-p+1] ──> W'L = y ──> output register ──> out
@@ -8,7 +9,9 @@
 //!
 //! [`Rls`] is the gain form of recursive least squares as the books print it, [`Lms`] the least
 //! mean squares filter, normalised or not. Both share the front end, the output register and the
-//! watch for divergence; a filter that diverges says so in every step from then on and never
+//! watch for divergence. Beside them stand [`FixedFilter`] (moving average, Savitzky-Golay),
+//! [`RecursiveFilter`] (one pole, Butterworth), [`Kalman`] for a constant rate, and
+//! [`ConstrainedRls`], least squares among the filters that leave a constant rate alone. A filter that diverges says so in every step from then on and never
 //! returns another number.
 //!
 //! Words are rates in deg/h, but the equations only ask that the constants fit the words: the
@@ -17,20 +20,28 @@
 //!
 //! Invariant: a filter sees rate words and its own configuration, nothing else.
 
-mod adaptive;
+mod constrained;
+mod core_filter;
 mod divergence;
 mod filter;
+mod fixed;
 mod front_end;
 mod lms;
+mod recursive;
 mod rls;
 mod stability;
 mod update_sign;
 
-pub use adaptive::{AdaptiveFilter, Core};
+pub use constrained::{ConstrainedRls, ConstrainedRlsCore};
+pub use core_filter::{Core, CoreFilter};
 pub use divergence::{Divergence, DivergenceKind, Fault, Watch};
 pub use filter::{Filter, Output};
+pub use fixed::{FixedCore, FixedFilter, moving_average, savitzky_golay};
 pub use front_end::{Desired, FrontEndConfig, OutputRegister, Register};
 pub use lms::{Lms, LmsConfig, LmsCore, Normalisation};
+pub use recursive::{
+    Kalman, KalmanCore, RecursiveFilter, SectionsCore, butterworth, kalman_gain, one_pole,
+};
 pub use rls::{Rls, RlsConfig, RlsCore};
 pub use stability::{
     constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,

@@ -1,6 +1,6 @@
 //! Recursive least squares in its textbook gain form.
 
-use super::adaptive::{AdaptiveFilter, Core, dot};
+use super::core_filter::{Core, CoreFilter, dot};
 use super::divergence::{DivergenceKind, Fault};
 use super::filter::Output;
 use super::front_end::FrontEndConfig;
@@ -22,7 +22,7 @@ pub struct RlsConfig {
 }
 
 /// Recursive least squares behind the common front end.
-pub type Rls = AdaptiveFilter<RlsCore>;
+pub type Rls = CoreFilter<RlsCore>;
 
 impl Rls {
     /// A filter of zero weights.

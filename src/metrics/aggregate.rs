@@ -23,10 +23,12 @@ const FITTED: [&str; 5] = [
 ];
 
 /// Curves of points that have intervals of their own.
-const POINT_CURVES: [&str; 3] = [
+const POINT_CURVES: [&str; 5] = [
     "response",
     "frequency_response",
     "frequency_response_vs_raw",
+    "noise_delay_bound",
+    "rate_gain",
 ];
 
 /// Pools independent repeats of the same channel.

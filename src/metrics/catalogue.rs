@@ -201,6 +201,18 @@ const CATALOGUE: &[KnownMetric] = &[
         "least noise gain any fixed filter of as many taps has at this delay with unit DC gain",
     ),
     filter(
+        "noise_gain_over_bound",
+        "1",
+        Applies::Steady,
+        "noise gain over that least one; below 1 the weights adapt or the signal is attenuated",
+    ),
+    filter(
+        "delay_at_dc_ms",
+        "ms",
+        Applies::Steady,
+        "delay at DC of the mean weights, register and latency included",
+    ),
+    filter(
         "delay_vs_raw_ms",
         "ms",
         Applies::Tones,

@@ -1,5 +1,7 @@
 //! From a record to the table of everything it supports.
 
+use std::collections::BTreeMap;
+
 use super::autocovariance::LaggedProducts;
 use super::catalogue::{Applies, PIPELINE_ONLY, known_metrics};
 use super::estimate::{ChannelMetrics, Estimate};
@@ -52,6 +54,7 @@ pub fn measure(
     }
     if let Some(facts) = filter {
         put_dc_gains(facts, &mut metrics);
+        put_rate_gains(facts, &mut metrics);
     }
     drop_not_finite(&mut metrics);
     explain_missing(record, settings, filter.is_some(), &mut metrics);
@@ -200,6 +203,31 @@ fn put_dc_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
             }
             None => metrics.miss(name, "it was not determined for this filter"),
         }
+    }
+}
+
+/// Enters the curve `rate_gain`: Student's t on the blocks.
+fn put_rate_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
+    let mut curve: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for rate in &facts.rate_gains {
+        let pooled = |blocks: &[f64]| interval::from_parts(interval::mean(blocks), blocks);
+        let gain = pooled(&rate.block_gains);
+        let ratio = pooled(&rate.block_mean_ratios);
+        for (column, value) in [
+            ("rate_deg_per_s", rate.rate_deg_per_s),
+            ("gain", gain.value),
+            ("gain_low", gain.low),
+            ("gain_high", gain.high),
+            ("mean_ratio", ratio.value),
+            ("mean_ratio_low", ratio.low),
+            ("mean_ratio_high", ratio.high),
+        ] {
+            curve.entry(column.to_owned()).or_default().push(value);
+        }
+    }
+    let mut values = curve.values().flatten();
+    if !curve.is_empty() && values.all(|value| value.is_finite()) {
+        metrics.curves.insert("rate_gain".to_owned(), curve);
     }
 }
 

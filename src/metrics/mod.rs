@@ -5,7 +5,7 @@
 //!
 //! [`measure`] turns one channel's [`Record`] into a [`ChannelMetrics`]; [`aggregate`] pools
 //! independent repeats. The estimators stand alone as well: [`overlapping_allan`], [`fit_noise`],
-//! [`block_means`], [`welch`], [`fit_swing`], [`noise_delay_bound`], [`wiener_prediction`],
+//! [`block_means`], [`welch`], [`fit_swing`], [`noise_delay_bound`], [`predict`],
 //! [`settling`](fn@settling), [`fit_scale_factor`], [`fit_tones`].
 
 mod aggregate;
@@ -22,6 +22,7 @@ mod delay;
 mod estimate;
 mod interval;
 mod multi_sine;
+mod noise_delay;
 mod noise_fit;
 mod psd;
 mod record;
@@ -34,6 +35,7 @@ mod steady;
 mod support;
 mod swing;
 mod table;
+mod verdict;
 mod weight_noise;
 
 pub use aggregate::aggregate;
@@ -41,8 +43,8 @@ pub use allan::{
     AllanPoint, NoiseType, degrees_of_freedom, overlapping_allan, overlapping_allan_at,
 };
 pub use audit::{
-    WienerPrediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
-    wiener_prediction,
+    Prediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
+    predict,
 };
 pub use bias::{block_means, effective_degrees_of_freedom, expected_bias_stability, samples_in};
 pub use catalogue::{Applies, KnownMetric, known_metrics};
@@ -55,7 +57,7 @@ pub use noise_fit::{
     fit_noise, mixed_degrees_of_freedom,
 };
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
-pub use record::{Dwell, FilterFacts, Motion, Record, Settings, Staircase};
+pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
 pub use response::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
 pub use scale_factor::{
     Asymmetry, RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero,
@@ -65,3 +67,4 @@ pub use scale_factor::{
 pub use settling::{Settling, settling};
 pub use sine_frequency::{FreeSineFit, fit_sine_free_frequency};
 pub use support::{encoder_lack, support, truth_lack};
+pub use verdict::{AgainstOne, Deed, FilterVerdict, Finding, filter_verdict};

@@ -79,6 +79,18 @@ pub struct Dwell {
     pub rate_deg_per_h: f64,
 }
 
+/// What a filter, free to adapt, makes of a constant rate added from the first sample on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RateGain {
+    /// The added rate, deg/s.
+    pub rate_deg_per_s: f64,
+    /// Response over the added rate in each of equally long blocks of the measured record: mean
+    /// output minus that without the rate. Beyond 1 where the weights grow with the rate.
+    pub block_gains: Vec<f64>,
+    /// Mean output over mean input, both with everything else on the axis, in the same blocks.
+    pub block_mean_ratios: Vec<f64>,
+}
+
 /// What is known of a filter besides its output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilterFacts {
@@ -92,6 +104,8 @@ pub struct FilterFacts {
     pub mean_weights: Option<Vec<f64>>,
     /// The added rate, deg/h.
     pub added_rate_deg_per_h: f64,
+    /// Gains for constant rates of other sizes; empty where none was asked for.
+    pub rate_gains: Vec<RateGain>,
     /// How long after their sample's stamp the outputs appear, s: the latency of a pipeline whose
     /// result is used at once; 0 where a register holds it until the next stamp.
     pub latency_s: f64,

@@ -1,11 +1,12 @@
 //! Metrics of a record at rest or at constant rate.
 
 use super::allan::{AllanPoint, overlapping_allan};
-use super::audit::{lags_needed, noise_delay_bound, noise_delay_bound_coloured, wiener_prediction};
+use super::audit::{filter_bound, lags_needed, predict};
 use super::autocovariance::{LaggedProducts, independent_samples};
 use super::bias;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::noise_delay::{put_bound, put_bound_curve, put_over_bound};
 use super::noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise, mixed_degrees_of_freedom,
 };
@@ -47,7 +48,7 @@ pub(crate) fn measure_steady(
         put_noise_gain(&products, &raw, level, metrics);
         measure_mean_ratio(record, metrics);
         measure_weight_noise(record, facts.dc_gain, metrics);
-        measure_predictions(record, facts, &raw, metrics);
+        measure_predictions(record, facts, (&products, &raw), metrics);
         for (name, over) in [
             ("angle_random_walk_deg_per_sqrt_h", WALK_OVER_DC_GAIN),
             (
@@ -284,47 +285,63 @@ pub(crate) fn put_mean_ratio(channel: &[f64], raw: &[f64], metrics: &mut Channel
     );
 }
 
-/// Wiener prediction of the DC gain, and the noise-delay bound at the delay of the mean weights.
+/// Wiener prediction of the DC gain; the delay of the mean weights and the noise-delay bound there.
 ///
 /// Without mean weights the bound is taken at the predicted delay. It holds for fixed weights; ones
 /// that keep adapting to the noise itself can go below.
 fn measure_predictions(
     record: &Record,
     facts: &FilterFacts,
-    raw: &LaggedProducts,
+    (channel, raw): (&LaggedProducts, &LaggedProducts),
     metrics: &mut ChannelMetrics,
 ) {
     let mean_square = interval::mean(record.raw_deg_per_h).powi(2);
     let ran = facts.mean_delay_at_dc_samples();
-    let predict = |autocovariance: &[f64]| {
+    let at = |autocovariance: &[f64]| {
         let second_moment: Vec<f64> = autocovariance
             .iter()
             .map(|value| value + mean_square)
             .collect();
-        let prediction = wiener_prediction(&facts.shape, &second_moment)?;
+        let prediction = predict(&facts.shape, &second_moment)?;
         let delay_samples = ran.unwrap_or_else(|| prediction.delay_at_dc_samples());
-        let bound = noise_delay_bound_coloured(
-            facts.shape.taps,
-            facts.shape.newest_age_samples,
-            delay_samples,
-            autocovariance,
-        );
+        let bound = filter_bound(&facts.shape, delay_samples, autocovariance);
         Some((prediction.dc_gain(), delay_samples, bound))
     };
     let parts: Vec<_> = (0..raw.blocks())
-        .filter_map(|block| predict(&raw.autocovariance_without(block)))
+        .filter_map(|block| at(&raw.autocovariance_without(block)))
         .collect();
-    let Some((dc_gain, delay_samples, bound)) = predict(&raw.autocovariance()) else {
+    let Some((dc_gain, delay_samples, bound)) = at(&raw.autocovariance()) else {
         metrics.miss("dc_gain_predicted", "the raw channel has no power");
-        metrics.miss(
+        for name in [
             "noise_delay_bound_noise_gain",
-            "the raw channel has no power",
-        );
+            "noise_gain_over_bound",
+            "delay_at_dc_ms",
+        ] {
+            metrics.miss(name, "the raw channel has no power");
+        }
         return;
     };
     let gains: Vec<f64> = parts.iter().map(|part| part.0).collect();
     metrics.put("dc_gain_predicted", interval::jackknife(dc_gain, &gains));
-    let bounds: Vec<f64> = parts.iter().filter_map(|part| part.2).collect();
+    let delay_ms = |samples: f64| {
+        let delay_s = samples * record.sample_period_s + facts.latency_s;
+        units::s_to_ms(delay_s)
+    };
+    let delays_ms: Vec<f64> = parts.iter().map(|part| delay_ms(part.1)).collect();
+    let at_dc = interval::jackknife(delay_ms(delay_samples), &delays_ms);
+    metrics.put("delay_at_dc_ms", at_dc);
+    let without: Vec<_> = parts.into_iter().map(|part| part.2).collect();
+    put_over_bound(channel, raw, &bound, &without, metrics);
+    put_bound_curve(
+        facts,
+        &raw.autocovariance(),
+        record.sample_period_s,
+        metrics,
+    );
+    let bounds: Vec<f64> = without
+        .iter()
+        .filter_map(|bound| bound.as_ref().ok().copied())
+        .collect();
     put_bound(
         bound.map(|bound| interval::jackknife(bound, &bounds)),
         facts,
@@ -332,37 +349,6 @@ fn measure_predictions(
         record.sample_period_s,
         metrics,
     );
-}
-
-/// Enters the noise-delay bound with the delay it holds at and the white-noise figure beside it.
-pub(crate) fn put_bound(
-    bound: Option<Estimate>,
-    facts: &FilterFacts,
-    delay_samples: f64,
-    sample_period_s: f64,
-    metrics: &mut ChannelMetrics,
-) {
-    let Some(bound) = bound else {
-        metrics.miss(
-            "noise_delay_bound_noise_gain",
-            format!(
-                "no filter of {} taps and unit DC gain has a delay of {delay_samples:.3} samples",
-                facts.shape.taps
-            ),
-        );
-        return;
-    };
-    let metric = metrics.put("noise_delay_bound_noise_gain", bound);
-    metric
-        .fields
-        .insert("delay_ms", units::s_to_ms(delay_samples * sample_period_s));
-    if let Some(white) = noise_delay_bound(
-        facts.shape.taps,
-        facts.shape.newest_age_samples,
-        delay_samples,
-    ) {
-        metric.fields.insert("white_noise_gain", white);
-    }
 }
 
 /// Enters one metric divided by the DC gain: what is left of the improvement once the scale factor

@@ -2,14 +2,15 @@
 
 use std::f64::consts::TAU;
 
-use super::audit::{lags_needed, noise_delay_bound_coloured, wiener_prediction};
+use super::audit::{filter_bound, lags_needed, predict};
 use super::autocovariance::LaggedProducts;
 use super::correlation::correlation_delay_s;
 use super::delay::{SwingClock, SwingFit, fit_swing};
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
+use super::noise_delay::{put_bound, put_bound_curve};
 use super::record::{FilterFacts, Record};
-use super::steady::{LAGS_MIN, put_bound, put_mean, put_noise_gain, put_noise_std};
+use super::steady::{LAGS_MIN, put_mean, put_noise_gain, put_noise_std};
 use super::support::DELAY_VS_ENCODER;
 use crate::units;
 
@@ -200,7 +201,7 @@ fn measure_predictions(
 ) {
     let turns_per_sample = clock.frequency_hz * clock.sample_period_s;
     let sine = &fits.raw.whole;
-    let predict = |autocovariance: &[f64]| {
+    let under = |autocovariance: &[f64]| {
         let second_moment: Vec<f64> = autocovariance
             .iter()
             .enumerate()
@@ -210,19 +211,19 @@ fn measure_predictions(
                 swing + sine.offset * sine.offset + noise
             })
             .collect();
-        let prediction = wiener_prediction(&facts.shape, &second_moment)?;
+        let prediction = predict(&facts.shape, &second_moment)?;
         let delay_s =
             prediction.delay_s(clock.frequency_hz, clock.sample_period_s) + facts.latency_s;
         let amplitude = prediction.amplitude(clock.frequency_hz, clock.sample_period_s);
         Some((units::s_to_ms(delay_s), prediction.dc_gain(), amplitude))
     };
-    let Some((delay_ms, dc_gain, amplitude)) = predict(&raw.autocovariance()) else {
+    let Some((delay_ms, dc_gain, amplitude)) = under(&raw.autocovariance()) else {
         metrics.miss("delay_predicted_ms", "the raw channel has no power");
         metrics.miss("dc_gain_predicted", "the raw channel has no power");
         return;
     };
     let parts: Vec<_> = (0..raw.blocks())
-        .filter_map(|block| predict(&raw.autocovariance_without(block)))
+        .filter_map(|block| under(&raw.autocovariance_without(block)))
         .collect();
     let delays: Vec<f64> = parts.iter().map(|part| part.0).collect();
     let gains: Vec<f64> = parts.iter().map(|part| part.1).collect();
@@ -248,16 +249,11 @@ fn measure_bound(
         .delay_behind_s(&fits.raw)
         .scaled(1.0 / clock.sample_period_s);
     let at = |delay_samples: f64, autocovariance: &[f64]| {
-        noise_delay_bound_coloured(
-            facts.shape.taps,
-            facts.shape.newest_age_samples,
-            delay_samples,
-            autocovariance,
-        )
+        filter_bound(&facts.shape, delay_samples, autocovariance)
     };
     let autocovariance = raw.autocovariance();
     let left_out: Vec<f64> = (0..raw.blocks())
-        .filter_map(|block| at(delay.value, &raw.autocovariance_without(block)))
+        .filter_map(|block| at(delay.value, &raw.autocovariance_without(block)).ok())
         .collect();
     // The bound is a parabola in the delay: its extremes over the interval are at the ends unless
     // the lowest point lies inside, which the value in the middle stands for. The scatter of the
@@ -270,4 +266,5 @@ fn measure_bound(
         Estimate::with_interval(value, (value - below).max(0.0), value + above)
     });
     put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
+    put_bound_curve(facts, &autocovariance, clock.sample_period_s, metrics);
 }

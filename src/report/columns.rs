@@ -35,6 +35,7 @@ const STATIC: &[(&str, &str)] = &[
     ("noise_std_deg_per_h", "noise std"),
     ("noise_gain", "noise power gain"),
     ("noise_delay_bound_noise_gain", "least at this delay"),
+    ("delay_at_dc_ms", "delay at DC"),
 ];
 
 const SWING: &[(&str, &str)] = &[

@@ -9,7 +9,7 @@ use crate::report::json::{number, object, pretty};
 use crate::report::measured::Measured;
 use crate::report::plot::log_plots;
 use crate::report::summary::{SCHEMA, channel, tool};
-use crate::report::table::{channels_text, failures_text};
+use crate::report::table::{channels_text, failures_text, filter_verdicts};
 use crate::report::text::{Tone, toned, wrapped};
 use crate::scenario::MotionConfig;
 use crate::signal::RunSignals;
@@ -80,6 +80,7 @@ pub fn log_text(report: &LogReport, width: usize, colour: bool) -> String {
     let measured = report.measured();
     text.push_str(&channels_text(&measured, width, colour));
     text.push_str(&failures_text(&measured, &[], width, colour));
+    text.push_str(&filter_verdicts(&measured, width, colour));
     for note in report.notes {
         let note = format!("{} {note}", toned("note:", Tone::Doubt, colour));
         text.push_str(&wrapped(&note, "  ", width));

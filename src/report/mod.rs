@@ -18,6 +18,7 @@ mod suite_table;
 mod summary;
 mod table;
 mod text;
+mod verdict_text;
 
 pub use budget::{budget_csv, budget_json, budget_text};
 pub use csv::{allan_csv, psd_csv};

@@ -3,6 +3,7 @@
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelMetrics, Metric};
 use crate::report::json::{number, object, pretty};
+use crate::report::verdict_text::verdict_text;
 use crate::report::{RunOutcome, RunReport, RunStatus};
 use crate::scenario::{Fidelity, PublishedConfig, portable_place};
 use crate::signal::GyroFacts;
@@ -172,6 +173,9 @@ pub(crate) fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
         .iter()
         .map(|(key, metric)| (key.clone(), estimate(&format!("{name}.{key}"), metric)))
         .collect();
+    if let Some(verdict) = verdict_text(metrics) {
+        record.insert("verdict".to_owned(), verdict.into());
+    }
     if !metrics.curves.is_empty() {
         let curves: Map<String, Value> = metrics
             .curves

@@ -8,6 +8,7 @@ use crate::report::RunReport;
 use crate::report::columns::{Column, columns, matters, unit_text};
 use crate::report::measured::Measured;
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
+use crate::report::verdict_text::verdict_text;
 use crate::scenario::{Fidelity, PublishedConfig};
 
 /// Digits of an interval's half width in tables.
@@ -25,6 +26,7 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     text.push_str(&channels_text(&report.measured(), width, colour));
     let verdicts = report.verdicts;
     text.push_str(&failures_text(&report.measured(), verdicts, width, colour));
+    text.push_str(&filter_verdicts(&report.measured(), width, colour));
     text.push_str(&published(report, colour));
     text.push_str(&gates(report.verdicts, width, colour));
     for note in report.notes {
@@ -177,6 +179,25 @@ pub(crate) fn failures_text(
     for ((key, reason), names) in missing(report) {
         let line = format!("no {key} for {}: {reason}", names.join(", "));
         text.push_str(&wrapped(&line, INDENT, width));
+    }
+    if text.is_empty() {
+        text
+    } else {
+        format!("\n{text}")
+    }
+}
+
+/// What each filter does, in words.
+pub(crate) fn filter_verdicts(measured: &Measured, width: usize, colour: bool) -> String {
+    let mut text = String::new();
+    for (name, metrics) in measured.channels {
+        if let Some(verdict) = verdict_text(metrics) {
+            let line = format!(
+                "{} {verdict}",
+                toned(&format!("{name}:"), Tone::Heading, colour)
+            );
+            text.push_str(&wrapped(&line, INDENT, width));
+        }
     }
     if text.is_empty() {
         text

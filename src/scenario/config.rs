@@ -39,6 +39,8 @@ pub struct Scenario {
     /// Filters, in the order of the file.
     #[serde(default, rename = "filter")]
     pub filters: Vec<FilterConfig>,
+    /// What is measured of the filters beside their words.
+    pub trial: TrialConfig,
     /// Gates, in the order of the file.
     #[serde(default, rename = "gate")]
     pub gates: Vec<GateConfig>,
@@ -57,6 +59,14 @@ pub enum Fidelity {
     Loop,
     /// Output-rate equivalent.
     Rate,
+}
+
+/// What is measured of the filters beside their words.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrialConfig {
+    /// Gain for constant rates from 0.001 to 100 deg/s.
+    pub rate_gain: bool,
 }
 
 /// A limit on a metric.

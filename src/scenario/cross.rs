@@ -36,6 +36,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     };
     checks.names();
     checks.hardware_keys();
+    checks.smoothing_polynomials();
     checks.motion();
     for (key, message) in cross_gyro::check(&resolved.scenario) {
         checks.complain(&key, message);
@@ -93,6 +94,7 @@ impl Checks<'_> {
             let (kind, pipeline, keys) = match &filter.kind {
                 FilterKind::Rls(config) => ("rls", config.pipeline, RLS_HARDWARE_KEYS),
                 FilterKind::Lms(config) => ("lms", config.pipeline, LMS_HARDWARE_KEYS),
+                _ => continue,
             };
             if pipeline == Pipeline::Fpga {
                 continue;
@@ -112,6 +114,24 @@ impl Checks<'_> {
                     );
                     self.complain(&path, message);
                 }
+            }
+        }
+    }
+
+    fn smoothing_polynomials(&mut self) {
+        for (index, filter) in self.resolved.scenario.filters.iter().enumerate() {
+            let FilterKind::SavitzkyGolay(config) = &filter.kind else {
+                continue;
+            };
+            if config.polynomial_order >= config.taps {
+                let path = format!("filter[{index}].savitzky_golay.polynomial_order");
+                let message = format!(
+                    "{path} = {} is too high for {} samples: allowed up to taps - 1 = {}",
+                    config.polynomial_order,
+                    config.taps,
+                    config.taps - 1
+                );
+                self.complain(&path, message);
             }
         }
     }

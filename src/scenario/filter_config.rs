@@ -20,6 +20,18 @@ pub enum FilterKind {
     Rls(RlsFilterConfig),
     /// Least mean squares, normalised or not.
     Lms(LmsFilterConfig),
+    /// Recursive least squares held to unit DC gain.
+    ConstrainedRls(ConstrainedRlsFilterConfig),
+    /// Mean of the newest samples.
+    MovingAverage(MovingAverageFilterConfig),
+    /// Savitzky-Golay filter at the newest sample.
+    SavitzkyGolay(SavitzkyGolayFilterConfig),
+    /// One-pole low pass.
+    OnePole(OnePoleFilterConfig),
+    /// Butterworth low pass.
+    Butterworth(ButterworthFilterConfig),
+    /// Kalman filter for a constant rate.
+    Kalman(KalmanFilterConfig),
 }
 
 /// Recursive least squares.
@@ -80,6 +92,80 @@ pub struct LmsFilterConfig {
     pub number_format: NumberFormat,
     /// Clock of the hardware, MHz.
     pub clock_mhz: f64,
+}
+
+/// Recursive least squares held to unit DC gain.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConstrainedRlsFilterConfig {
+    /// Number of weights p, one more than are free.
+    pub taps: u32,
+    /// Forgetting factor, (0, 1].
+    pub forgetting_factor: f64,
+    /// Initial inverse correlation delta, (deg/h)^-2.
+    pub initial_inverse_correlation: f64,
+    /// Desired signal.
+    pub desired: DesiredSignal,
+    /// Samples by which the regressors lag the desired signal's newest sample.
+    pub input_lag_samples: u32,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+}
+
+/// Mean of the newest samples.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MovingAverageFilterConfig {
+    /// Number of samples.
+    pub taps: u32,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+}
+
+/// Savitzky-Golay filter at the newest sample.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SavitzkyGolayFilterConfig {
+    /// Number of samples the polynomial is fitted to.
+    pub taps: u32,
+    /// Degree of the polynomial.
+    pub polynomial_order: u32,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+}
+
+/// One-pole low pass.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnePoleFilterConfig {
+    /// Half-power frequency, Hz.
+    pub cutoff_hz: f64,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+}
+
+/// Butterworth low pass.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ButterworthFilterConfig {
+    /// Number of poles.
+    pub order: u32,
+    /// Half-power frequency, Hz.
+    pub cutoff_hz: f64,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+}
+
+/// Kalman filter for a rate that walks slowly, in white noise.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KalmanFilterConfig {
+    /// Standard deviation of the white noise of one word, deg/h.
+    pub measurement_noise_deg_per_h: f64,
+    /// Random walk of the rate that the filter reckons with, deg/h/sqrt(s).
+    pub rate_random_walk_deg_per_h_per_sqrt_s: f64,
+    /// When the result appears.
+    pub output_register: OutputRegister,
 }
 
 /// What an adaptive filter aims at.

@@ -47,8 +47,10 @@ pub use defaults::reference_toml;
 pub(crate) use error::portable_place;
 pub use error::{Location, ScenarioError};
 pub use filter_config::{
-    DesiredSignal, Division, FilterConfig, FilterKind, LmsFilterConfig, NumberFormat,
-    OutputRegister, Pipeline, RlsFilterConfig, UpdateOrder, UpdateSign,
+    ButterworthFilterConfig, ConstrainedRlsFilterConfig, DesiredSignal, Division, FilterConfig,
+    FilterKind, KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, NumberFormat,
+    OnePoleFilterConfig, OutputRegister, Pipeline, RlsFilterConfig, SavitzkyGolayFilterConfig,
+    UpdateOrder, UpdateSign,
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use fogbench::metrics::{ChannelMetrics, FilterFacts, Motion, Settings, SwingClock};
 use fogbench::random::Streams;
-use fogbench::signal::FilterShape;
+use fogbench::signal::{FilterShape, WeightRule};
 
 /// Sample period of the gyro under test, s.
 pub(crate) const PERIOD_S: f64 = 64.0 * 3.916_576e-6;
@@ -36,10 +36,13 @@ pub(crate) fn shape(
     desired_weights: Vec<f64>,
 ) -> FilterShape {
     FilterShape {
-        taps,
+        taps: Some(taps),
         newest_age_samples,
-        desired_weights,
         register_samples: 1,
+        rule: WeightRule::Adaptive {
+            desired_weights,
+            is_dc_gain_one: false,
+        },
     }
 }
 
@@ -50,6 +53,7 @@ pub(crate) fn facts() -> FilterFacts {
         dc_gain_adapted: None,
         mean_weights: None,
         added_rate_deg_per_h: 1.0,
+        rate_gains: Vec::new(),
         latency_s: 0.0,
     }
 }

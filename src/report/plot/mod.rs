@@ -6,9 +6,11 @@ mod allan;
 mod axis;
 mod bode;
 mod budget;
+mod noise_delay;
 mod panel;
 mod picture;
 mod rate;
+mod rate_gain;
 mod response;
 mod series;
 mod spectrum;
@@ -31,8 +33,8 @@ pub const SVG_BYTES_MAX: usize = 500_000;
 /// The pictures of one gyro of a run as file name and SVG text: `rate.svg`; `allan.svg` and
 /// `spectrum.svg` where a channel has the curve; `swing.svg` for a swing, `bode.svg` for several
 /// sines, `response.svg` for a staircase of three rates or more; `thermal.svg` where the temperature
-/// changes. Those of an assembly stand behind
-/// the axis, as in `x-rate.svg`: nine channels in one picture would hide one another.
+/// changes; `noise-delay.svg` where a filter's noise was measured at rest or in a swing, and
+/// `rate-gain.svg` where its gain was over the rate. Those of an assembly stand behind the axis, as in `x-rate.svg`: nine channels in one picture would hide one another.
 ///
 /// # Panics
 /// If a picture exceeds [`SVG_BYTES_MAX`], which its fixed number of points rules out.
@@ -60,6 +62,8 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
         ("response.svg", response::picture(report)),
         ("spectrum.svg", spectrum::picture(&report.measured())),
         ("thermal.svg", thermal::picture(report, signals)),
+        ("noise-delay.svg", noise_delay::picture(report)),
+        ("rate-gain.svg", rate_gain::picture(report)),
     ];
     drawn(pictures, &axis)
 }

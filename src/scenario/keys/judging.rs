@@ -1,4 +1,4 @@
-//! Keys of gates, published figures, output and sweep.
+//! Keys of the trial of filters, gates, published figures, output and sweep.
 
 use super::key;
 use crate::scenario::schema::{
@@ -9,6 +9,8 @@ use crate::scenario::schema::{
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
+    key("trial.rate_gain", Kind::Boolean, "", Defaulted,
+        "Measure every filter's gain for constant rates from 0.001 to 100 deg/s."),
     key("gate[].metric", Kind::Text, "", Required,
         "Channel and metric, split at the last dot."),
     key("gate[].min", Kind::Float(Range::ANY), "", Optional,

@@ -97,7 +97,16 @@ pub(crate) const GROUPS: &[Group] = &[
     Group {
         table: "filter[]",
         noun: "filter kind",
-        alternatives: &["rls", "lms"],
+        alternatives: &[
+            "rls",
+            "lms",
+            "constrained_rls",
+            "moving_average",
+            "savitzky_golay",
+            "one_pole",
+            "butterworth",
+            "kalman",
+        ],
     },
 ];
 

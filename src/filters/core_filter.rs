@@ -1,9 +1,9 @@
-//! An adaptive filter: front end, weights and their update, output register, watch.
+//! A filter: front end, weights and their update, output register, watch.
 
 use super::divergence::{Divergence, Fault, Watch};
 use super::filter::{Filter, Output};
-use super::front_end::{FrontEnd, FrontEndConfig, Register};
-use crate::signal::FilterShape;
+use super::front_end::{Desired, FrontEnd, FrontEndConfig, Register};
+use crate::signal::{FilterShape, WeightRule};
 
 /// Weights and the rule that updates them, on regressors and desired values given directly.
 pub trait Core: Send {
@@ -16,13 +16,24 @@ pub trait Core: Send {
     /// What is wrong with the state of the core, in words; the state is then of no use.
     fn update(&mut self, regressors: &[f64], desired: f64) -> Result<Output, Fault>;
 
-    /// Weights after the newest update, the one on the newest regressor first.
+    /// Weights after the newest update, the one on the newest regressor first; none for an
+    /// infinite impulse response.
     fn weights(&self) -> &[f64];
+
+    /// Number of regressors that an update takes.
+    fn regressors(&self) -> usize {
+        self.weights().len()
+    }
+
+    /// How the weights come about.
+    fn rule(&self, desired: Desired) -> WeightRule {
+        desired.rule()
+    }
 }
 
 /// A core behind the common front end, with the output register and the watch for divergence.
 #[derive(Clone, Debug)]
-pub struct AdaptiveFilter<C> {
+pub struct CoreFilter<C> {
     front_end: FrontEnd,
     core: C,
     register: Register,
@@ -32,17 +43,18 @@ pub struct AdaptiveFilter<C> {
     diverged: Option<Divergence>,
 }
 
-impl<C: Core> AdaptiveFilter<C> {
+impl<C: Core> CoreFilter<C> {
     /// Puts `core` behind a front end.
     #[must_use]
     pub fn with_core(core: C, front_end: &FrontEndConfig) -> Self {
-        let taps = core.weights().len();
+        let taps = Some(core.weights().len()).filter(|taps| *taps > 0);
+        let shape = front_end.shape(taps, core.rule(front_end.desired));
         Self {
-            front_end: FrontEnd::new(front_end, taps),
+            front_end: FrontEnd::new(front_end, core.regressors()),
             core,
             register: Register::new(front_end.output_register),
             watch: Watch::new(),
-            shape: front_end.shape(taps),
+            shape,
             samples: 0,
             diverged: None,
         }
@@ -63,7 +75,7 @@ impl<C: Core> AdaptiveFilter<C> {
     }
 }
 
-impl<C: Core> Filter for AdaptiveFilter<C> {
+impl<C: Core> Filter for CoreFilter<C> {
     fn step(&mut self, input_deg_per_h: f64) -> Result<Output, Divergence> {
         if let Some(divergence) = &self.diverged {
             return Err(divergence.clone());

@@ -1,0 +1,150 @@
+//! Textbook filters from their configuration.
+
+use crate::filters::{
+    ConstrainedRls, Desired, Filter, FixedFilter, FrontEndConfig, Kalman, Lms, LmsConfig,
+    Normalisation, OutputRegister as Register, RecursiveFilter, Rls, RlsConfig, UpdateSign as Sign,
+    butterworth, moving_average, one_pole, savitzky_golay,
+};
+use crate::scenario::{
+    ConstrainedRlsFilterConfig, DesiredSignal, FilterKind, LmsFilterConfig, OutputRegister,
+    RlsFilterConfig, UpdateSign,
+};
+
+/// The filter of a kind for words that come every `sample_period_s`.
+///
+/// # Panics
+/// If a constant is one that the reader or the plan refuses.
+pub(super) fn textbook_filter(kind: &FilterKind, sample_period_s: f64) -> Box<dyn Filter> {
+    match kind {
+        FilterKind::Rls(config) => Box::new(Rls::new(&rls(config))),
+        FilterKind::Lms(config) => Box::new(Lms::new(&lms(config))),
+        FilterKind::ConstrainedRls(config) => {
+            Box::new(ConstrainedRls::new(&constrained_rls(config)))
+        }
+        FilterKind::MovingAverage(config) => Box::new(FixedFilter::new(
+            moving_average(config.taps as usize),
+            register(config.output_register),
+        )),
+        FilterKind::SavitzkyGolay(config) => Box::new(FixedFilter::new(
+            savitzky_golay(config.taps as usize, config.polynomial_order as usize),
+            register(config.output_register),
+        )),
+        FilterKind::OnePole(config) => Box::new(RecursiveFilter::new(
+            one_pole(config.cutoff_hz * sample_period_s),
+            register(config.output_register),
+        )),
+        FilterKind::Butterworth(config) => Box::new(RecursiveFilter::new(
+            butterworth(config.order as usize, config.cutoff_hz * sample_period_s),
+            register(config.output_register),
+        )),
+        FilterKind::Kalman(config) => Box::new(Kalman::new(
+            config.measurement_noise_deg_per_h,
+            config.rate_random_walk_deg_per_h_per_sqrt_s * sample_period_s.sqrt(),
+            register(config.output_register),
+        )),
+    }
+}
+
+/// The key to blame and the complaint about a low pass whose cut-off frequency lies beyond the reach
+/// of the words.
+pub(super) fn cutoff_complaint(
+    index: usize,
+    kind: &FilterKind,
+    sample_rate_hz: f64,
+) -> Option<(String, String)> {
+    let (table, cutoff_hz) = match kind {
+        FilterKind::OnePole(config) => ("one_pole", config.cutoff_hz),
+        FilterKind::Butterworth(config) => ("butterworth", config.cutoff_hz),
+        _ => return None,
+    };
+    let limit_hz = 0.5 * sample_rate_hz;
+    (cutoff_hz >= limit_hz).then(|| {
+        let key = format!("filter[{index}].{table}.cutoff_hz");
+        let message = format!(
+            "{key} = {cutoff_hz} Hz is not below half the output rate: allowed (0, {limit_hz:.3}) Hz"
+        );
+        (key, message)
+    })
+}
+
+fn constrained_rls(config: &ConstrainedRlsFilterConfig) -> RlsConfig {
+    RlsConfig {
+        taps: config.taps as usize,
+        forgetting_factor: config.forgetting_factor,
+        initial_inverse_correlation: config.initial_inverse_correlation,
+        update_sign: Sign::Corrected,
+        front_end: front_end(
+            config.desired,
+            config.input_lag_samples,
+            config.output_register,
+        ),
+    }
+}
+
+fn rls(config: &RlsFilterConfig) -> RlsConfig {
+    RlsConfig {
+        taps: config.taps as usize,
+        forgetting_factor: config.forgetting_factor,
+        initial_inverse_correlation: config.initial_inverse_correlation,
+        update_sign: sign(config.update_sign),
+        front_end: front_end(
+            config.desired,
+            config.input_lag_samples,
+            config.output_register,
+        ),
+    }
+}
+
+fn lms(config: &LmsFilterConfig) -> LmsConfig {
+    let regularisation_deg2_per_h2 = config.regularisation_deg2_per_h2;
+    LmsConfig {
+        taps: config.taps as usize,
+        step_size: config.step_size,
+        normalisation: if config.normalised {
+            Normalisation::Energy {
+                regularisation_deg2_per_h2,
+            }
+        } else {
+            Normalisation::None
+        },
+        update_sign: sign(config.update_sign),
+        front_end: front_end(
+            config.desired,
+            config.input_lag_samples,
+            config.output_register,
+        ),
+    }
+}
+
+fn front_end(
+    aim: DesiredSignal,
+    input_lag_samples: u32,
+    output_register: OutputRegister,
+) -> FrontEndConfig {
+    FrontEndConfig {
+        desired: desired(aim),
+        input_lag_samples: input_lag_samples as usize,
+        output_register: register(output_register),
+    }
+}
+
+fn desired(desired: DesiredSignal) -> Desired {
+    match desired {
+        DesiredSignal::Current => Desired::Current,
+        DesiredSignal::TwoSampleMean => Desired::TwoSampleMean,
+    }
+}
+
+fn register(register: OutputRegister) -> Register {
+    match register {
+        OutputRegister::NextSample => Register::NextSample,
+        OutputRegister::Immediate => Register::Immediate,
+    }
+}
+
+fn sign(sign: UpdateSign) -> Sign {
+    match sign {
+        UpdateSign::Corrected => Sign::Corrected,
+        UpdateSign::AsPrinted => Sign::AsPrinted,
+    }
+}

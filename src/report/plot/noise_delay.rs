@@ -1,0 +1,157 @@
+//! `noise-delay.svg`: what every filter leaves of the noise against what it delays, each beside the
+//! least noise that its taps allow with unit DC gain.
+
+use super::axis::Axis;
+use super::panel::{Legend, Panel, WIDTH};
+use super::picture::{Anchor, Picture, Stroke};
+use super::series::{extent, real, shape_of, stroke_of};
+use crate::gate::estimate_text;
+use crate::metrics::{AgainstOne, Estimate, FilterVerdict, filter_verdict};
+use crate::report::RunReport;
+
+/// How far above the highest point the bounds are shown: they rise without end on both sides.
+const ROOM_ABOVE: f64 = 3.0;
+
+/// A filter on the plane.
+struct Point<'a> {
+    index: usize,
+    name: &'a str,
+    verdict: FilterVerdict,
+    delay_ms: Estimate,
+    noise_gain: Estimate,
+    /// Least noise gain over the delay, ms, for the measured colour of the noise.
+    bound: Vec<(f64, f64)>,
+    /// The same for white noise.
+    white: Vec<(f64, f64)>,
+}
+
+/// Noise power gain over delay; `None` where no filter has both.
+pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+    let points = points(report);
+    let ends = |pick: fn(&Point) -> Estimate| {
+        let each = points.iter().map(pick);
+        extent(each.flat_map(|estimate| [estimate.low, estimate.high]))
+    };
+    let delays = ends(|point| point.delay_ms)?;
+    let gains = ends(|point| point.noise_gain)?;
+    let (low, high) = (gains.0.min(1.0), gains.1.max(1.0));
+    // A bound may lie below its point, but never so far that the points no longer fill the frame.
+    let bounds = points.iter().flat_map(|point| &point.bound);
+    let lowest = bounds.map(|(_, gain)| *gain).fold(low, f64::min);
+    let rows = points.len().max(4);
+    let height = 200.0 + 72.0 * real(rows);
+    let mut picture = Picture::new(WIDTH, height);
+    let title = format!("{}: noise against delay", report.scenario.name);
+    picture.heading((90.0, 28.0), &title, 18.0);
+    let x = Axis::linear((delays.0.min(0.0), delays.1), 0.15, "delay behind raw [ms]");
+    let y = (lowest.max(low / 10.0) / 1.3, high * ROOM_ABOVE);
+    let y = Axis::log(y, 0.0, "noise power over that of raw");
+    let panel = Panel::new(&mut picture, (56.0, height - 60.0), x, y);
+    for point in &points {
+        draw_bounds(&mut picture, &panel, point);
+    }
+    let mut legend = Legend::new(56.0);
+    panel.marker(&mut picture, (0.0, 1.0), shape_of(0), stroke_of(0).colour);
+    legend.marker(
+        &mut picture,
+        (shape_of(0), stroke_of(0).colour),
+        "raw: no delay, all of its noise",
+    );
+    for point in &points {
+        draw_point(&mut picture, &panel, point);
+        describe(&mut picture, &mut legend, point);
+    }
+    legend.space();
+    legend.text(&mut picture, "lines: least noise of as many fixed weights");
+    legend.text(&mut picture, "with unit DC gain; dotted: for white noise");
+    legend.text(&mut picture, "numbers at the points: DC gain");
+    legend.text(&mut picture, "bars: 95 % intervals");
+    Some(picture)
+}
+
+/// The filters that have a place on a logarithmic plane.
+fn points<'a>(report: &RunReport<'a>) -> Vec<Point<'a>> {
+    let channels = report.channels.iter().enumerate();
+    let points = channels.filter_map(|(index, (name, metrics))| {
+        let verdict = filter_verdict(metrics)?;
+        let curve = metrics.curves.get("noise_delay_bound");
+        let line = |column: &str| -> Vec<(f64, f64)> {
+            let columns =
+                curve.and_then(|curve| Some((curve.get("delay_ms")?, curve.get(column)?)));
+            columns.map_or_else(Vec::new, |(x, y)| {
+                x.iter().copied().zip(y.iter().copied()).collect()
+            })
+        };
+        let noise_gain = verdict.fast_noise?.estimate;
+        (noise_gain.low > 0.0).then_some(Point {
+            index,
+            name,
+            verdict,
+            delay_ms: verdict.delay_ms?,
+            noise_gain,
+            bound: line("noise_gain"),
+            white: line("white_noise_gain"),
+        })
+    });
+    points.collect()
+}
+
+fn draw_bounds(picture: &mut Picture, panel: &Panel, point: &Point) {
+    let stroke = Stroke {
+        width: 1.25,
+        opacity: 0.8,
+        ..Stroke::solid(stroke_of(point.index).colour, 1.25)
+    };
+    panel.line(picture, &point.bound, stroke);
+    let dotted = Stroke {
+        opacity: 0.5,
+        dash: super::series::truth_stroke().dash,
+        ..stroke
+    };
+    panel.line(picture, &point.white, dotted);
+}
+
+/// Marker, bars, name and DC gain.
+fn draw_point(picture: &mut Picture, panel: &Panel, point: &Point) {
+    let colour = stroke_of(point.index).colour;
+    let bar = Stroke::solid(colour, 1.5);
+    let (delay, gain) = (point.delay_ms, point.noise_gain);
+    let upright = [(delay.value, gain.low), (delay.value, gain.high)];
+    let level = [(delay.low, gain.value), (delay.high, gain.value)];
+    panel.line(picture, &upright, bar);
+    panel.line(picture, &level, bar);
+    let at = (delay.value, gain.value);
+    panel.marker(picture, at, shape_of(point.index), colour);
+    if let Some(dc_gain) = point.verdict.dc_gain {
+        let (x, y) = panel.place(at);
+        let text = format!("{} {:.2}", point.name, dc_gain.estimate.value);
+        // Neighbours in the file often stand close together: their labels take turns.
+        let (shift, anchor) = match point.index % 3 {
+            0 => ((9.0, -10.0), Anchor::Start),
+            1 => ((9.0, 12.0), Anchor::Start),
+            _ => ((-9.0, -10.0), Anchor::End),
+        };
+        picture.text((x + shift.0, y + shift.1), &text, 12.5, anchor);
+    }
+}
+
+/// What the legend says of a filter.
+fn describe(picture: &mut Picture, legend: &mut Legend, point: &Point) {
+    let look = (shape_of(point.index), stroke_of(point.index).colour);
+    legend.marker(picture, look, point.name);
+    let noise = estimate_text(&point.noise_gain, 2);
+    legend.detail(picture, &format!("noise {noise}"));
+    let is_below = |finding: Option<crate::metrics::Finding>| {
+        finding.is_some_and(|finding| finding.against_one == AgainstOne::Below)
+    };
+    let remark = match (
+        is_below(point.verdict.over_bound),
+        is_below(point.verdict.level()),
+    ) {
+        (true, true) => "below its bound: signal removed",
+        (true, false) => "below its bound: weights adapt",
+        (false, true) => "attenuates the signal",
+        (false, false) => return,
+    };
+    legend.detail(picture, remark);
+}

@@ -1,0 +1,209 @@
+//! The verdict on a filter in words.
+
+use crate::gate::{estimate_text, plain};
+use crate::metrics::{
+    AgainstOne, ChannelMetrics, Deed, Estimate, FilterVerdict, Finding, filter_verdict,
+};
+
+/// Digits of an interval's half width.
+const DIGITS: i32 = 2;
+
+/// One sentence on what a filter does, from the intervals of its metrics; `None` for raw and for
+/// channels that failed.
+pub(crate) fn verdict_text(channel: &ChannelMetrics) -> Option<String> {
+    let verdict = filter_verdict(channel)?;
+    let clauses = [
+        Some(head(&verdict)),
+        fast_noise(&verdict),
+        slow_noise(&verdict),
+        verdict.delay_ms.as_ref().map(delay),
+        bound(&verdict),
+    ];
+    let clauses: Vec<String> = clauses.into_iter().flatten().collect();
+    Some(clauses.join("; "))
+}
+
+/// An estimate; one without an interval to three decimals, if it has a digit there.
+fn text(estimate: &Estimate) -> String {
+    let is_exact = estimate.high - estimate.low <= 1e-9 * estimate.value.abs();
+    if is_exact && estimate.value.abs() >= 0.1 {
+        plain((estimate.value * 1e3).round() / 1e3)
+    } else {
+        estimate_text(estimate, DIGITS)
+    }
+}
+
+fn is(finding: Option<Finding>, against_one: AgainstOne) -> bool {
+    finding.is_some_and(|finding| finding.against_one == against_one)
+}
+
+/// What it does, with the gains.
+fn head(verdict: &FilterVerdict) -> String {
+    let what = match verdict.deed {
+        Deed::Attenuates => "reduces noise by attenuating the input",
+        Deed::AttenuatesAndSmooths if is(verdict.slow_noise, AgainstOne::Equal) => {
+            "reduces slow noise by attenuating the input, fast noise by smoothing too"
+        }
+        Deed::AttenuatesAndSmooths => "reduces noise by attenuating the input and smoothing it",
+        Deed::Smooths => "reduces fast noise by smoothing",
+        Deed::Reduces => "reduces noise; whether by attenuating the input cannot be told",
+        Deed::Passes => "leaves fast noise as it is",
+        Deed::Raises => "raises noise",
+        Deed::Undecided => "cannot be told to change fast noise",
+        Deed::NotJudged => "noise not judged",
+    };
+    let gains = [
+        ("amplitude ratio", verdict.motion_gain),
+        ("DC gain", verdict.dc_gain),
+    ];
+    let gains: Vec<String> = gains
+        .into_iter()
+        .filter_map(|(name, gain)| Some(format!("{name} {}", text(&gain?.estimate))))
+        .collect();
+    if gains.is_empty() {
+        what.to_owned()
+    } else {
+        format!("{what}: {}", gains.join(", "))
+    }
+}
+
+/// Whether the scale factor needs restoring.
+fn is_scaled(verdict: &FilterVerdict) -> bool {
+    is(verdict.level(), AgainstOne::Below) || is(verdict.level(), AgainstOne::Above)
+}
+
+fn fast_noise(verdict: &FilterVerdict) -> Option<String> {
+    let ratio = text(&verdict.fast_noise?.estimate);
+    let restored = verdict.fast_noise_restored.filter(|_| is_scaled(verdict));
+    let restored = restored.map_or_else(String::new, |restored| {
+        format!(", {} at restored scale", text(&restored.estimate))
+    });
+    let what = if verdict.deed == Deed::Raises {
+        "times its power"
+    } else {
+        "of its power"
+    };
+    Some(format!("fast noise {ratio} {what}{restored}"))
+}
+
+fn slow_noise(verdict: &FilterVerdict) -> Option<String> {
+    let ratio = verdict.slow_noise?;
+    let scale = if is_scaled(verdict) {
+        " at restored scale"
+    } else {
+        ""
+    };
+    let what = match ratio.against_one {
+        AgainstOne::Below => "lowered",
+        AgainstOne::Equal => "unchanged",
+        AgainstOne::Above => "raised by wandering weights",
+        AgainstOne::Undecided => "not told apart from raw's",
+    };
+    let walk = verdict.walk_restored_deg_per_sqrt_h;
+    let what = match walk.map(|walk| text(&walk)) {
+        Some(walk) => format!("angle random walk{scale} {walk} deg/sqrt(h), {what}"),
+        None => format!("slow noise{scale} {what}"),
+    };
+    let at = verdict
+        .slow_noise_averaging_time_s
+        .map_or_else(String::new, |time_s| format!(" at {} s", plain(time_s)));
+    let ratio = text(&ratio.estimate);
+    Some(format!("{what} (Allan deviation{at} over raw's: {ratio})"))
+}
+
+fn delay(delay_ms: &Estimate) -> String {
+    if delay_ms.high < 0.0 {
+        let lead = Estimate::with_interval(-delay_ms.value, -delay_ms.high, -delay_ms.low);
+        format!("leads by {} ms", text(&lead))
+    } else {
+        format!("delays by {} ms", text(delay_ms))
+    }
+}
+
+/// Noise against the least that unit DC gain allows.
+fn bound(verdict: &FilterVerdict) -> Option<String> {
+    let over = verdict.over_bound?;
+    let ratio = text(&over.estimate);
+    let least = "the least that its taps allow at this delay with unit DC gain";
+    Some(match over.against_one {
+        AgainstOne::Below if is(verdict.level(), AgainstOne::Below) => {
+            format!("its noise is {ratio} of {least}: signal was removed with it")
+        }
+        AgainstOne::Below => {
+            format!(
+                "its noise is {ratio} of {least} and fixed weights: its weights follow the noise"
+            )
+        }
+        AgainstOne::Equal => format!("its noise is {least}"),
+        AgainstOne::Above => format!("its noise is {ratio} times {least}"),
+        AgainstOne::Undecided => format!("its noise is not told apart from {least}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::Metric;
+
+    fn words(entries: &[(&str, f64, f64)]) -> String {
+        let metrics = entries.iter().map(|(name, low, high)| {
+            let estimate = Estimate::with_interval(0.5 * (low + high), *low, *high);
+            let metric = Metric::new(estimate, "1").with("averaging_time_s", 1.0);
+            ((*name).to_owned(), metric)
+        });
+        let channel = ChannelMetrics {
+            metrics: metrics.collect(),
+            ..ChannelMetrics::default()
+        };
+        verdict_text(&channel).expect("a filter has a verdict")
+    }
+
+    #[test]
+    fn attenuation_is_called_attenuation() {
+        let said = words(&[
+            ("dc_gain", 0.49, 0.49),
+            ("noise_gain", 0.11, 0.13),
+            ("weight_noise_ratio", 0.98, 1.02),
+            (
+                "angle_random_walk_over_dc_gain_deg_per_sqrt_h",
+                0.0059,
+                0.0061,
+            ),
+            ("delay_at_dc_ms", 0.75, 0.75),
+            ("noise_delay_bound_noise_gain", 0.3, 0.3),
+        ]);
+        assert_eq!(
+            said,
+            "reduces slow noise by attenuating the input, fast noise by smoothing too: DC gain \
+             0.49; fast noise 0.120 ±0.010 of its power, 0.500 ±0.042 at restored scale; angle \
+             random walk at restored scale 0.00600 ±0.00010 deg/sqrt(h), unchanged (Allan \
+             deviation at 1 s over raw's: 1.000 ±0.020); delays by 0.75 ms; its noise is 0.400 ±0.033 \
+             of the least that its taps allow at this delay with unit DC gain: signal was removed \
+             with it"
+        );
+    }
+
+    #[test]
+    fn smoothing_raising_and_doubt_are_told_apart() {
+        let smooths = words(&[
+            ("dc_gain", 1.0, 1.0),
+            ("noise_gain", 0.48, 0.52),
+            ("weight_noise_ratio", 0.99, 1.01),
+        ]);
+        assert!(smooths.starts_with("reduces fast noise by smoothing: DC gain 1; "));
+        assert!(smooths.contains("slow noise unchanged"), "{smooths}");
+        let raises = words(&[("amplitude_ratio", 1.0, 1.0), ("noise_gain", 1.2, 1.4)]);
+        assert!(
+            raises.starts_with("raises noise: amplitude ratio 1; "),
+            "{raises}"
+        );
+        assert!(raises.contains("fast noise 1.30 ±0.10 times its power"));
+        let doubt = words(&[("dc_gain", 1.0, 1.0), ("noise_gain", 0.8, 1.2)]);
+        assert!(doubt.starts_with("cannot be told to change fast noise"));
+        let wanders = words(&[("dc_gain", 1.0, 1.0), ("weight_noise_ratio", 1.2, 1.4)]);
+        assert!(wanders.starts_with("noise not judged: DC gain 1; "));
+        assert!(wanders.contains("raised by wandering weights"), "{wanders}");
+        let leads = words(&[("dc_gain", 1.0, 1.0), ("delay_vs_raw_ms", -0.2, -0.1)]);
+        assert!(leads.ends_with("leads by 0.150 ±0.050 ms"), "{leads}");
+    }
+}
