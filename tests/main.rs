@@ -1,5 +1,6 @@
 //! The one integration-test binary.
 
+mod allan_coverage;
 mod architecture;
 mod assembly;
 mod bit_exact;
@@ -14,6 +15,7 @@ mod filters;
 mod fpga_health;
 mod frequency_response;
 mod known_answers_allan;
+mod known_answers_allan_variants;
 mod known_answers_gyro;
 mod known_answers_gyro_limits;
 mod known_answers_gyro_loop;
