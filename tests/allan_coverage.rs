@@ -38,10 +38,14 @@ impl Noise {
                 }
             }
             Self::RandomWalk => {
+                // Means of a Brownian path over its steps: the bridge between adds 1/12.
+                let mut bridges = vec![0.0; COUNT];
+                stream.fill_normal(&mut bridges);
                 let mut walk = 0.0;
-                for value in &mut values {
-                    walk += *value;
-                    *value = walk;
+                for (value, bridge) in values.iter_mut().zip(bridges) {
+                    let step = *value;
+                    *value = walk + step / 2.0 + bridge / 12.0_f64.sqrt();
+                    walk += step;
                 }
             }
         }
@@ -51,7 +55,7 @@ impl Noise {
     /// Variance that the estimator estimates, from the covariance of the process.
     ///
     /// A difference is a weighted sum of rates with weights that add up to nothing, so that a walk
-    /// may stand for its generalised covariance `-|lag|/2`.
+    /// may stand for its generalised covariance, the mean of `-|s - t|/2` over two samples.
     fn truth(self, m: usize, estimator: AllanEstimator) -> f64 {
         let covariance = |lag: usize| match self {
             Self::White => f64::from(u8::from(lag == 0)),
@@ -59,6 +63,7 @@ impl Noise {
                 let times = CORRELATION_TIMES.into_iter();
                 times.map(|time| (-(lag as f64) / time).exp()).sum()
             }
+            Self::RandomWalk if lag == 0 => -1.0 / 6.0,
             Self::RandomWalk => -(lag as f64) / 2.0,
         };
         let (blocks, divisor): (&[f64], f64) = match estimator {
