@@ -1,5 +1,6 @@
 //! The one integration-test binary.
 
+mod allan_coverage;
 mod architecture;
 mod assembly;
 mod bit_exact;
@@ -17,6 +18,7 @@ mod fpga_health;
 mod frequency_response;
 mod gyro_effects;
 mod known_answers_allan;
+mod known_answers_allan_variants;
 mod known_answers_gyro;
 mod known_answers_gyro_limits;
 mod known_answers_gyro_loop;

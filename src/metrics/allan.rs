@@ -124,7 +124,9 @@ pub fn overlapping_allan_at(
     sample_period_s: f64,
     averaging_factors: &[usize],
 ) -> Vec<AllanPoint> {
-    let angle = integrate(rate_deg_per_h);
+    // The mean cancels in every second difference; leaving it out keeps the digits of the rest.
+    let mean = interval::mean(rate_deg_per_h);
+    let angle = integrate(rate_deg_per_h.iter().map(|rate| rate - mean));
     let factors: Vec<usize> = averaging_factors
         .iter()
         .copied()
@@ -161,23 +163,20 @@ fn averaging_factors(largest: usize) -> Vec<usize> {
     factors
 }
 
-/// Angle of the record about its mean rate, in units of (deg/h) times one sample period.
-///
-/// The mean cancels in every second difference; leaving it out keeps the digits of the rest.
-fn integrate(rate_deg_per_h: &[f64]) -> Vec<f64> {
-    let mean = interval::mean(rate_deg_per_h);
-    let mut angle = Vec::with_capacity(rate_deg_per_h.len() + 1);
+/// Angle of a record of rates, in units of (deg/h) times one sample period, from zero on.
+pub(crate) fn integrate(rates_deg_per_h: impl ExactSizeIterator<Item = f64>) -> Vec<f64> {
+    let mut angle = Vec::with_capacity(rates_deg_per_h.len() + 1);
     let mut sum = 0.0;
     angle.push(sum);
-    for rate in rate_deg_per_h {
-        sum += rate - mean;
+    for rate in rates_deg_per_h {
+        sum += rate;
         angle.push(sum);
     }
     angle
 }
 
 /// Sum of squared second differences for every averaging factor.
-fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f64> {
+pub(crate) fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f64> {
     let mut sums = vec![0.0; factors.len()];
     let mut start = 0;
     while start < angle.len() {
@@ -197,7 +196,7 @@ fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f64> {
 }
 
 /// `sum (c - 2b + a)^2` in eight interleaved sums, which the compiler turns into vectors.
-fn squared_second_differences(a: &[f64], b: &[f64], c: &[f64]) -> f64 {
+pub(crate) fn squared_second_differences(a: &[f64], b: &[f64], c: &[f64]) -> f64 {
     const LANES: usize = 8;
     let mut lanes = [0.0; LANES];
     let (a_lanes, a_rest) = a.as_chunks::<LANES>();

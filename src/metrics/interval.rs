@@ -1,8 +1,9 @@
 //! Confidence intervals: chi-square, Student t, jackknife.
 //!
-//! All are two-sided at [`CONFIDENCE`](super::estimate::CONFIDENCE), which is 95 %.
+//! All are two-sided at [`CONFIDENCE`](super::estimate::CONFIDENCE), which is 95 %, unless the caller
+//! names another.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
 use super::estimate::Estimate;
 
@@ -16,17 +17,19 @@ const TAIL: f64 = 0.025;
 /// its relative error there is below 1e-8, and the exact one needs a slow incomplete gamma.
 const EXACT_DEGREES_OF_FREEDOM_MAX: f64 = 5000.0;
 
-/// Quantiles 0.025 and 0.975 of the chi-square distribution.
-fn chi_square_quantiles(degrees_of_freedom: f64) -> (f64, f64) {
+/// Quantiles `tail` and `1 - tail` of the chi-square distribution.
+///
+/// `normal_quantile` is the quantile `1 - tail` of the standard normal distribution.
+fn chi_square_quantiles(degrees_of_freedom: f64, tail: f64, normal_quantile: f64) -> (f64, f64) {
     let freedom = degrees_of_freedom.max(0.1);
     if freedom < EXACT_DEGREES_OF_FREEDOM_MAX {
         let distribution = ChiSquared::new(freedom).expect("freedom is positive and finite");
         return (
-            distribution.inverse_cdf(TAIL),
-            distribution.inverse_cdf(1.0 - TAIL),
+            distribution.inverse_cdf(tail),
+            distribution.inverse_cdf(1.0 - tail),
         );
     }
-    let spread = NORMAL_QUANTILE * (2.0 / (9.0 * freedom)).sqrt();
+    let spread = normal_quantile * (2.0 / (9.0 * freedom)).sqrt();
     let centre = 1.0 - 2.0 / (9.0 * freedom);
     (
         freedom * (centre - spread).powi(3),
@@ -42,7 +45,7 @@ pub(crate) fn variance(value: f64, degrees_of_freedom: f64) -> Estimate {
         return Estimate::exact(value);
     }
     let freedom = degrees_of_freedom.max(0.1);
-    let (low, high) = chi_square_quantiles(freedom);
+    let (low, high) = chi_square_quantiles(freedom, TAIL, NORMAL_QUANTILE);
     Estimate::with_interval(value, value * freedom / high, value * freedom / low)
 }
 
@@ -50,6 +53,21 @@ pub(crate) fn variance(value: f64, degrees_of_freedom: f64) -> Estimate {
 pub(crate) fn deviation(value: f64, degrees_of_freedom: f64) -> Estimate {
     let square = variance(value * value, degrees_of_freedom);
     Estimate::with_interval(value, square.low.sqrt(), square.high.sqrt())
+}
+
+/// As [`deviation`] at another two-sided confidence, between 0 and 1 and kept short of both.
+pub(crate) fn deviation_at(value: f64, degrees_of_freedom: f64, confidence: f64) -> Estimate {
+    let confidence = confidence.clamp(1e-6, 1.0 - 1e-9);
+    let tail = (1.0 - confidence) / 2.0;
+    let normal_quantile = Normal::standard().inverse_cdf(1.0 - tail);
+    let freedom = degrees_of_freedom.max(0.1);
+    let (low, high) = chi_square_quantiles(freedom, tail, normal_quantile);
+    Estimate {
+        value,
+        low: value * (freedom / high).sqrt(),
+        high: value * (freedom / low).sqrt(),
+        confidence,
+    }
 }
 
 /// Quantile 0.975 of Student's t distribution.
@@ -141,7 +159,7 @@ mod tests {
     #[test]
     fn quantiles_agree_with_tables() {
         // Abramowitz and Stegun, tables 26.8 and 26.10.
-        let (low, high) = chi_square_quantiles(10.0);
+        let (low, high) = chi_square_quantiles(10.0, TAIL, NORMAL_QUANTILE);
         close(low, 3.246_97, 1e-5);
         close(high, 20.483_18, 1e-6);
         close(student_quantile(9.0), 2.262_157, 1e-6);
@@ -151,8 +169,9 @@ mod tests {
 
     #[test]
     fn chi_square_quantiles_do_not_jump_where_the_formula_changes() {
-        let exact = chi_square_quantiles(EXACT_DEGREES_OF_FREEDOM_MAX * (1.0 - 1e-9));
-        let cube = chi_square_quantiles(EXACT_DEGREES_OF_FREEDOM_MAX * (1.0 + 1e-9));
+        let at = |freedom: f64| chi_square_quantiles(freedom, TAIL, NORMAL_QUANTILE);
+        let exact = at(EXACT_DEGREES_OF_FREEDOM_MAX * (1.0 - 1e-9));
+        let cube = at(EXACT_DEGREES_OF_FREEDOM_MAX * (1.0 + 1e-9));
         close(exact.0, cube.0, 1e-6);
         close(exact.1, cube.1, 1e-6);
     }

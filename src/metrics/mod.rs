@@ -12,11 +12,14 @@ mod aggregate;
 mod allan;
 mod allan_covariance;
 mod allan_least_squares;
+mod allan_stream;
+mod allan_variants;
 mod audit;
 mod autocovariance;
 mod bias;
 mod catalogue;
 mod channel;
+mod combined_freedom;
 mod correlation;
 mod delay;
 mod estimate;
@@ -24,6 +27,7 @@ mod interval;
 mod multi_sine;
 mod noise_delay;
 mod noise_fit;
+mod noise_identification;
 mod psd;
 mod record;
 mod response;
@@ -42,6 +46,10 @@ pub use aggregate::aggregate;
 pub use allan::{
     AllanPoint, NoiseType, degrees_of_freedom, overlapping_allan, overlapping_allan_at,
 };
+pub use allan_stream::AllanStream;
+pub use allan_variants::{
+    AllanEstimator, AllanOptions, AllanVariantPoint, TauGrid, allan_variant, allan_variant_at,
+};
 pub use audit::{
     Prediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
     predict,
@@ -56,6 +64,7 @@ pub use noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
     fit_noise, mixed_degrees_of_freedom,
 };
+pub use noise_identification::PowerLaw;
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
 pub use response::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
