@@ -279,7 +279,7 @@ fn units_and_counts_become_deg_per_h() {
     let log = words("0.01\n", &in_unit(RateUnit::ArcsecPerSample, 1.0));
     assert_close(log[0], 4.0, 1e-14, 0.0);
     // Words in deg/h are not touched.
-    let odd: f64 = 1.0 / 3.0 + 1e-17;
+    let odd = 1.0_f64 / 3.0;
     assert_eq!(
         words(&format!("{odd:?}\n"), &format())[0].to_bits(),
         odd.to_bits()
