@@ -1,8 +1,8 @@
 //! Speed of the overlapping Allan deviation beside allantools, and the memory of the streaming form.
 //!
 //! `cargo bench --bench allan`: 1e7 samples at octave averaging times, then 1e9 streamed samples.
-//! allantools runs in the same go if `python3` can import it; the first line of its script is the
-//! only thing it needs.
+//! allantools runs in the same go if `python3` can import it (`pip install allantools`); else it is
+//! skipped with a message.
 
 use std::fs;
 use std::hint::black_box;
@@ -16,8 +16,8 @@ const BATCH_SAMPLES: usize = 10_000_000;
 const STREAM_SAMPLES: usize = 1_000_000_000;
 const PIECE: usize = 1 << 16;
 
-/// Best of three runs of allantools on as many samples at the same averaging times, and its answer
-/// for the sawtooth that both are given.
+/// Prints the best of three runs of allantools on the same samples and averaging times, and its first
+/// and last answer.
 const SCRIPT: &str = r#"
 import time, numpy, allantools
 n = 10_000_000
