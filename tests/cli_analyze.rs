@@ -36,7 +36,7 @@ samples = \"npy\"
 ";
 
 const SWING: &str = "
-[turntable.motion.swing]
+[turntable.swing]
 rate_amplitude_deg_per_s = 1.0
 frequency_hz = 5.0
 ";
@@ -213,12 +213,15 @@ fn filtering_a_runs_raw_samples_gives_its_words_to_the_bit_and_its_trial() {
     assert!(rate.contains("textbook") && !rate.contains("true rate"));
 }
 
-/// A text of `count` rates that alternate about 8 deg/h.
+/// A text of `count` rates of white noise above 8 deg/h.
 fn text_log(folder: &Path, count: usize) {
     let mut text = "time_s,rate\n".to_owned();
     for k in 0..count {
-        // A multiplicative congruential generator: noise without a library.
-        let noise = (k as u64 + 1).wrapping_mul(6_364_136_223_846_793_005) >> 40;
+        // SplitMix64 (Steele et al. 2014): noise without a library.
+        let mut word = (k as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        let noise = (word ^ (word >> 31)) >> 40;
         text.push_str(&format!(
             "{:?},{:?}\n",
             k as f64 / 100.0,

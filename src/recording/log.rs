@@ -125,7 +125,7 @@ fn rates(
         if rate.is_finite() {
             return Ok(rate);
         }
-        let message = format!("{value} {} is not a finite rate in deg/h", format.unit);
+        let message = format!("{value:?} {} is not a finite rate in deg/h", format.unit);
         Err(LogError::at(path, columns.place(row), message))
     });
     rates.collect()
