@@ -20,7 +20,8 @@ filter = [
 fn column(result: &serde_json::Value, channel: &str, name: &str) -> Vec<f64> {
     let values = &result["channels"][channel]["curves"]["rate_gain"][name];
     let values = values.as_array().expect("a column");
-    values.iter().map(|value| value.as_f64().unwrap()).collect()
+    let numbers = values.iter().map(|value| value.as_f64().expect("a number"));
+    numbers.collect()
 }
 
 #[test]
