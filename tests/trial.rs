@@ -136,3 +136,14 @@ fn the_verdict_on_every_filter_stands_in_text_and_summary() {
     let over = field(&result, "moving-average.noise_gain_over_bound", "low");
     assert!((0.999..1.2).contains(&over), "{over}");
 }
+
+#[test]
+fn least_squares_that_forget_nothing_keep_the_gain_they_learned_at_rest() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = repository("scenarios/audit/static-then-rate.toml");
+    let run = fogbench(folder.path(), &["run", path.to_str().unwrap(), "-o", "out"]);
+    assert_eq!(code(&run), 0, "{}{}", stdout(&run), stderr(&run));
+    let result = summary(&folder.path().join("out"), "static-then-rate");
+    let ratio = |channel: &str| field(&result, &format!("{channel}.mean_ratio"), "value");
+    assert!(ratio("remembering") < 0.7 * ratio("forgetting"));
+}
