@@ -20,7 +20,8 @@ filter = [
 fn column(result: &serde_json::Value, channel: &str, name: &str) -> Vec<f64> {
     let values = &result["channels"][channel]["curves"]["rate_gain"][name];
     let values = values.as_array().expect("a column");
-    values.iter().map(|value| value.as_f64().unwrap()).collect()
+    let numbers = values.iter().map(|value| value.as_f64().expect("a number"));
+    numbers.collect()
 }
 
 #[test]
@@ -134,4 +135,15 @@ fn the_verdict_on_every_filter_stands_in_text_and_summary() {
     // A mean is the best that its taps can do for white noise; the loop's colour leaves it near.
     let over = field(&result, "moving-average.noise_gain_over_bound", "low");
     assert!((0.999..1.2).contains(&over), "{over}");
+}
+
+#[test]
+fn least_squares_that_forget_nothing_keep_the_gain_they_learned_at_rest() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = repository("scenarios/audit/static-then-rate.toml");
+    let run = fogbench(folder.path(), &["run", path.to_str().unwrap(), "-o", "out"]);
+    assert_eq!(code(&run), 0, "{}{}", stdout(&run), stderr(&run));
+    let result = summary(&folder.path().join("out"), "static-then-rate");
+    let ratio = |channel: &str| field(&result, &format!("{channel}.mean_ratio"), "value");
+    assert!(ratio("remembering") < 0.7 * ratio("forgetting"));
 }
