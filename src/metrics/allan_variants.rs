@@ -143,8 +143,8 @@ pub fn allan_variant(
 /// Starts k are one sample apart, or m samples for the plain forms. A difference that touches a
 /// missing sample is left out and counted; a tau without any difference gives no point.
 ///
-/// The noise is identified at each tau ([`identify_noise`]), the interval is chi-square with the
-/// degrees of freedom of that noise ([`combined_degrees_of_freedom`]), times the share of
+/// The noise is identified at each tau (lag-1 autocorrelation), the interval is chi-square with the
+/// degrees of freedom of that noise (Greenhall and Riley), times the share of
 /// differences that gaps have left. `options.taus` is not used.
 ///
 /// Source: NIST SP 1065 (Riley 2008), equations 10, 11, 15, 18 to 20.
