@@ -8,8 +8,8 @@ use fogbench::metrics::{
 };
 use fogbench::random::Streams;
 use fogbench::scenario::{
-    EncoderConfig, Fidelity, GyroConfig, MotionConfig, MultiSineConfig, PhaseRule, ServoConfig,
-    SiteConfig, StaticConfig, TurntableConfig,
+    Fidelity, GyroConfig, MotionConfig, MultiSineConfig, PhaseRule, ServoConfig, SiteConfig,
+    StaticConfig, TurntableConfig,
 };
 use fogbench::turntable::{
     Turntable, command_rate_max_rad_per_s, multi_sine_acceleration_max_rad_per_s2,
@@ -19,7 +19,7 @@ use fogbench::units::{deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 use crate::support::assert_close;
 use crate::support::records::{PERIOD_S, every_metric_is_answered, facts, settings, value, white};
 use crate::support::reference_gyro::reference_gyro;
-use crate::support::turntable_cases::{true_axis, true_mounting};
+use crate::support::turntable_cases::{no_encoder, true_axis, true_mounting};
 use crate::support::{code, field, fogbench, repository, stderr, stdout, summary};
 
 const TONES_HZ: [f64; 5] = [7.0, 31.0, 120.0, 300.0, 480.0];
@@ -151,7 +151,7 @@ fn table(motion: MultiSineConfig) -> TurntableConfig {
     TurntableConfig {
         motion: MotionConfig::MultiSine(motion),
         servo: ServoConfig::Ideal(StaticConfig {}),
-        encoder: EncoderConfig::default(),
+        encoder: no_encoder(),
         axis: true_axis(),
         mounting: true_mounting(),
         site: SiteConfig {

@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use fogbench::scenario::{
-    EncoderConfig, MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig,
-    StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
+    MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
+    StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
 use fogbench::turntable::{
@@ -17,7 +17,7 @@ use fogbench::units::{
 };
 
 use crate::support::assert_close;
-use crate::support::turntable_cases::{true_axis, true_mounting};
+use crate::support::turntable_cases::{no_encoder, true_axis, true_mounting};
 
 /// Four kilohertz, commensurate with the swings, so that records hold whole cycles.
 const PERIOD_S: f64 = 0.000_25;
@@ -65,7 +65,7 @@ fn table(
     let config = TurntableConfig {
         motion,
         servo,
-        encoder: EncoderConfig::default(),
+        encoder: no_encoder(),
         site,
         axis: true_axis(),
         mounting: true_mounting(),

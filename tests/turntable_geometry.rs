@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use fogbench::scenario::{
-    AxisConfig, CaseAxis, EncoderConfig, MotionConfig, MountingConfig, RotationConfig, ServoConfig,
-    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
+    AxisConfig, CaseAxis, MotionConfig, MountingConfig, RotationConfig, ServoConfig, SiteConfig,
+    StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::turntable::{Turntable, earth_rate_rad_per_s, input_axis_bounds};
 use fogbench::units::{
@@ -13,7 +13,7 @@ use fogbench::units::{
 };
 
 use crate::support::assert_close;
-use crate::support::turntable_cases::{true_axis, true_mounting};
+use crate::support::turntable_cases::{no_encoder, true_axis, true_mounting};
 
 const PERIOD_S: f64 = 0.000_25;
 const LATITUDE_DEG: f64 = 34.27;
@@ -46,7 +46,7 @@ fn config(motion: MotionConfig, axis: AxisConfig, mounting: MountingConfig) -> T
     TurntableConfig {
         motion,
         servo: ServoConfig::Ideal(StaticConfig {}),
-        encoder: EncoderConfig::default(),
+        encoder: no_encoder(),
         site: upright(),
         axis,
         mounting,

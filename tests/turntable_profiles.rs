@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use fogbench::scenario::{
-    ChirpConfig, EncoderConfig, MotionConfig, MountingConfig, Progression, ScriptConfig,
-    ScriptPoints, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig, TrapezoidConfig,
+    ChirpConfig, MotionConfig, MountingConfig, Progression, ScriptConfig, ScriptPoints,
+    SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig, TrapezoidConfig,
     TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
@@ -12,7 +12,7 @@ use fogbench::turntable::{Turntable, command_extremes, command_rate_max_rad_per_
 use fogbench::units::{deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_s, rad_to_deg};
 
 use crate::support::assert_close;
-use crate::support::turntable_cases::{true_axis, true_mounting};
+use crate::support::turntable_cases::{no_encoder, true_axis, true_mounting};
 
 const PERIOD_S: f64 = 0.000_25;
 /// Samples of the warm-up.
@@ -22,7 +22,7 @@ fn config(motion: MotionConfig) -> TurntableConfig {
     TurntableConfig {
         motion,
         servo: ServoConfig::Ideal(StaticConfig {}),
-        encoder: EncoderConfig::default(),
+        encoder: no_encoder(),
         // Level and eastward: no Earth rate to speak of.
         site: SiteConfig {
             latitude_deg: 34.27,

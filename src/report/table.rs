@@ -224,7 +224,8 @@ fn missing<'a>(report: &Measured<'a>) -> BTreeMap<(&'a str, &'a str), Vec<&'a st
     for (name, metrics) in report.channels {
         for (key, reason) in &metrics.unavailable {
             let compares = key.contains("_over_") || is_for_filters_only(key);
-            if matters(report.motion, key) && !compares {
+            // An encoder is a choice: nobody misses what a table without one cannot have.
+            if matters(report.motion, key) && !compares && key != "delay_vs_encoder_ms" {
                 missing.entry((key, reason)).or_default().push(name);
             }
         }

@@ -90,7 +90,7 @@ impl DirectDriveServoConfig {
 }
 
 /// Angle encoder of the table: there is one if it has a resolution.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EncoderConfig {
     /// Least step it shows, arcsec; 0 = none.

@@ -8,7 +8,7 @@ use fogbench::scenario::{
 };
 use fogbench::turntable::Turntable;
 
-use super::turntable_cases::{true_axis, true_mounting};
+use super::turntable_cases::{no_encoder, true_axis, true_mounting};
 
 /// Four kilohertz, commensurate with the swings, so that records hold whole cycles.
 pub(crate) const PERIOD_S: f64 = 0.000_25;
@@ -69,7 +69,7 @@ pub(crate) fn ideal_encoder() -> EncoderConfig {
     EncoderConfig {
         resolution_arcsec: Some(0.0),
         lines_per_revolution: 36_000,
-        ..EncoderConfig::default()
+        ..no_encoder()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Tables without faults, from which tests depart.
 
-use fogbench::scenario::{AxisConfig, CaseAxis, MountingConfig};
+use fogbench::scenario::{AxisConfig, CaseAxis, EncoderConfig, MountingConfig};
 
 /// An axis without tilt or wobble.
 pub(crate) fn true_axis() -> AxisConfig {
@@ -19,5 +19,18 @@ pub(crate) fn true_mounting() -> MountingConfig {
         misalignment_azimuth_deg: 0.0,
         start_angle_deg: 0.0,
         axis_along_table: CaseAxis::Z,
+    }
+}
+
+/// A table without an encoder; given a resolution, one without faults.
+pub(crate) fn no_encoder() -> EncoderConfig {
+    EncoderConfig {
+        resolution_arcsec: None,
+        latency_us: 0.0,
+        eccentricity_error_arcsec: 0.0,
+        eccentricity_phase_deg: 0.0,
+        interpolation_error_arcsec: 0.0,
+        interpolation_phase_deg: 0.0,
+        lines_per_revolution: 0,
     }
 }
