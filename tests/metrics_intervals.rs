@@ -3,6 +3,8 @@
 use fogbench::metrics::{ChannelMetrics, Motion, Record, Settings, measure};
 use fogbench::random::Streams;
 
+use crate::support::assert_close;
+
 /// White noise of deviation 0.36 deg/h at 1 s plus flicker of coefficient B, deg/h.
 ///
 /// Flicker: Gauss-Markov processes of variance `B^2 ln 4 / pi`, correlation times in the ratio 4
@@ -137,4 +139,17 @@ fn a_walk_that_is_there_is_found() {
     // Such a walk rules all averaging times beyond 30 s (287 of 300 such records showed it).
     assert!(10 * found >= 8 * RUNS, "{found} of {RUNS}");
     assert!(10 * covered >= 8 * found, "{covered} of {found}");
+}
+
+#[test]
+fn bias_stability_stands_beside_what_the_fitted_noise_makes_one_expect() {
+    let metrics = measured(&gyro_noise(1, 40_000, 0.1, 0.0), 0.1);
+    for (name, averaging_time_s) in [
+        ("bias_stability_1s_deg_per_h", 1.0_f64),
+        ("bias_stability_10s_deg_per_h", 10.0),
+    ] {
+        // White noise alone: N over the root of the time; N of the fit is good to 1.5 % here.
+        let expected = metrics.metrics[name].fields["expected_deg_per_h"];
+        assert_close(expected, 0.36 / averaging_time_s.sqrt(), 0.06, 0.0);
+    }
 }

@@ -7,7 +7,7 @@ use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
 use super::noise_fit::{FitRange, fit_noise};
 use super::steady::{WALK_OVER_DC_GAIN, enter_fit, put_over_dc_gain};
-use super::table::DEGREES_OF_FREEDOM;
+use super::table::{DEGREES_OF_FREEDOM, EXPECTED};
 
 /// From this many repeats on, Student's t on their scatter gives the interval; below, the intervals
 /// of the repeats themselves say more.
@@ -99,6 +99,19 @@ fn pool(name: &str, metrics: &[&Metric]) -> Metric {
             }
             None => pool_mean(&values, metrics),
         };
+    }
+    let expected: Option<Vec<f64>> = metrics
+        .iter()
+        .map(|metric| metric.fields.get(EXPECTED).map(|value| value * value))
+        .collect();
+    match expected {
+        Some(squares) => {
+            let square = interval::mean(&squares);
+            pooled.fields.insert(EXPECTED, square.sqrt());
+        }
+        None => {
+            pooled.fields.remove(EXPECTED);
+        }
     }
     pooled.fields.insert("repeats", metrics.len() as f64);
     pooled

@@ -1,5 +1,7 @@
 //! Overlapping Allan deviation of a rate record.
 
+use rayon::prelude::*;
+
 use super::estimate::Estimate;
 use super::interval::{self, round_to_count};
 
@@ -177,20 +179,30 @@ pub(crate) fn integrate(rates_deg_per_h: impl ExactSizeIterator<Item = f64>) -> 
 
 /// Sum of squared second differences for every averaging factor.
 pub(crate) fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f64> {
-    let mut sums = vec![0.0; factors.len()];
-    let mut start = 0;
-    while start < angle.len() {
-        for (&m, sum) in factors.iter().zip(&mut sums) {
-            let end = (start + BLOCK).min(angle.len() - 2 * m);
-            if start < end {
-                *sum += squared_second_differences(
+    let starts: Vec<usize> = (0..angle.len()).step_by(BLOCK).collect();
+    let parts: Vec<Vec<f64>> = starts
+        .into_par_iter()
+        .map(|start| {
+            let part = |&m: &usize| {
+                let end = (start + BLOCK).min(angle.len() - 2 * m);
+                if start >= end {
+                    return 0.0;
+                }
+                squared_second_differences(
                     &angle[start..end],
                     &angle[start + m..end + m],
                     &angle[start + 2 * m..end + 2 * m],
-                );
-            }
+                )
+            };
+            factors.iter().map(part).collect()
+        })
+        .collect();
+    // In the order of the blocks, whichever thread was first.
+    let mut sums = vec![0.0; factors.len()];
+    for part in parts {
+        for (sum, part) in sums.iter_mut().zip(part) {
+            *sum += part;
         }
-        start += BLOCK;
     }
     sums
 }

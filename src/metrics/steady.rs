@@ -12,7 +12,7 @@ use super::noise_fit::{
 };
 use super::record::{FilterFacts, Record, Settings};
 use super::support::BLOCKS_MIN;
-use super::table::DEGREES_OF_FREEDOM;
+use super::table::{DEGREES_OF_FREEDOM, EXPECTED};
 use super::weight_noise::measure_weight_noise;
 use crate::units;
 
@@ -151,6 +151,12 @@ fn measure_bias(
         metric.fields.insert("block_samples", block as f64);
         metric.fields.insert("count", means.len() as f64);
         metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
+        if let Some(fit) = fit {
+            let coefficients = fit.coefficients();
+            let expected =
+                bias::expected_bias_stability(&coefficients, averaging_time_s, means.len());
+            metric.fields.insert(EXPECTED, expected);
+        }
     }
 }
 

@@ -12,6 +12,9 @@ use crate::units;
 /// Field of every metric whose interval is a chi-square one.
 pub(crate) const DEGREES_OF_FREEDOM: &str = "degrees_of_freedom";
 
+/// Field of a bias stability: what the fitted noise makes one expect.
+pub(crate) const EXPECTED: &str = "expected_deg_per_h";
+
 impl ChannelMetrics {
     /// Enters a metric under its catalogue unit, and returns it for its defining fields.
     pub(crate) fn put(&mut self, name: &'static str, estimate: Estimate) -> &mut Metric {
