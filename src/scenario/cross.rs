@@ -2,14 +2,12 @@
 
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
-use super::address;
 use super::cross_gyro;
 use super::cross_multi_sine;
 use super::cross_optics;
 use super::cross_output;
 use super::cross_servo;
 use super::cross_vibration;
-use super::defaults::default_of;
 use super::error::ScenarioError;
 use super::filter_config::{FilterKind, Pipeline};
 use super::resolved::Resolved;
@@ -101,13 +99,8 @@ impl Checks<'_> {
             }
             for key in keys {
                 let path = format!("filter[{index}].{kind}.{key}");
-                let value = address::parse(&path)
-                    .ok()
-                    .and_then(|steps| self.resolved.value_toml(&steps));
-                let default = default_of(&format!("filter[].{kind}.{key}"));
-                if let Some(value) = value
-                    && default.is_some_and(|default| default.to_toml() != value)
-                {
+                let schema_path = format!("filter[].{kind}.{key}");
+                if let Some(value) = self.resolved.departure(&path, &schema_path) {
                     let message = format!(
                         "{path} = {value} has no effect: pipeline = \"textbook\" has no hardware; \
                          set pipeline = \"fpga\" or leave the key out"

@@ -1,7 +1,5 @@
 //! Checks across the keys of the rate word.
 
-use super::address;
-use super::defaults::default_of;
 use super::error::ScenarioError;
 use super::gyro_config::OutputQuantisation;
 use super::resolved::Resolved;
@@ -18,12 +16,7 @@ fn output_quantisation(resolved: &Resolved) -> Option<ScenarioError> {
         OutputQuantisation::AngleCarry => ("rate_lsb_deg_per_s", "angle-carry", "rate-word"),
     };
     let path = format!("gyro.output.{unread}");
-    let steps = address::parse(&path).ok()?;
-    let value = resolved.value_toml(&steps)?;
-    let is_default = default_of(&path).is_some_and(|default| default.to_toml() == value);
-    if is_default {
-        return None;
-    }
+    let value = resolved.departure(&path, &path)?;
     let message = format!(
         "{path} = {value} has no effect: quantisation = \"{written}\" does not read it; set \
          quantisation = \"{other}\" or leave the key out"

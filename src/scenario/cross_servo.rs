@@ -2,8 +2,6 @@
 
 use crate::units::s_to_us;
 
-use super::address;
-use super::defaults::default_of;
 use super::resolved::Resolved;
 use super::servo_config::DirectDriveServoConfig;
 use super::turntable_config::ServoConfig;
@@ -42,10 +40,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<(String, String)> {
 /// The complaint about a key that would change something where nothing reads it.
 fn idle(resolved: &Resolved, key: &str) -> Option<(String, String)> {
     let path = format!("turntable.encoder.{key}");
-    let value = resolved.value_toml(&address::parse(&path).ok()?)?;
-    if default_of(&path)?.to_toml() == value {
-        return None;
-    }
+    let value = resolved.departure(&path, &path)?;
     let message = format!(
         "{path} = {value} has no effect: the table has no encoder; give \
          turntable.encoder.resolution_arcsec (0.0 for one that does not round)"

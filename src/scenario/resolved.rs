@@ -8,7 +8,7 @@ use super::address::{self, nearest_mark};
 use super::check::{check_presence, check_values};
 use super::config::Scenario;
 use super::cross;
-use super::defaults::fill;
+use super::defaults::{default_of, fill};
 use super::emit::to_toml;
 use super::error::{Location, ScenarioError};
 use super::script;
@@ -175,6 +175,15 @@ impl Draft {
 }
 
 impl Resolved {
+    /// The value at a path if it is not the default of its key, as TOML.
+    ///
+    /// * `schema_path`: the path without indices, as the key table has it.
+    pub(crate) fn departure(&self, path: &str, schema_path: &str) -> Option<String> {
+        let value = self.value_toml(&address::parse(path).ok()?)?;
+        let default = default_of(schema_path)?.to_toml();
+        (value != default).then_some(value)
+    }
+
     /// Folder of the run below the output folder: `<name>`, or `<name>/<nnnn>` in a sweep.
     #[must_use]
     pub fn folder(&self) -> String {
