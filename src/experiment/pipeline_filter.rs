@@ -136,12 +136,8 @@ impl<F: Fp> Filter for PipelineFilter<F> {
         if let Some(divergence) = &self.diverged {
             return Err(divergence.clone());
         }
-        result.map_err(|Fault { kind, message }| {
-            let divergence = Divergence {
-                sample,
-                kind,
-                message,
-            };
+        result.map_err(|fault| {
+            let divergence = fault.at(sample);
             self.diverged = Some(divergence.clone());
             divergence
         })

@@ -82,16 +82,11 @@ impl<C: Core> Filter for CoreFilter<C> {
         }
         let sample = self.samples;
         self.samples += 1;
-        self.advance(input_deg_per_h)
-            .map_err(|Fault { kind, message }| {
-                let divergence = Divergence {
-                    sample,
-                    kind,
-                    message,
-                };
-                self.diverged = Some(divergence.clone());
-                divergence
-            })
+        self.advance(input_deg_per_h).map_err(|fault| {
+            let divergence = fault.at(sample);
+            self.diverged = Some(divergence.clone());
+            divergence
+        })
     }
 
     fn weights(&self) -> &[f64] {

@@ -52,6 +52,18 @@ pub struct Fault {
     pub message: String,
 }
 
+impl Fault {
+    /// The fault as it is reported: in which sample it was seen.
+    #[must_use]
+    pub fn at(self, sample: u64) -> Divergence {
+        Divergence {
+            sample,
+            kind: self.kind,
+            message: self.message,
+        }
+    }
+}
+
 /// Watches the words that enter and leave a core.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
