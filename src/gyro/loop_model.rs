@@ -95,6 +95,7 @@ impl LoopModel {
         let states = half_periods * timing.states_per_half_period;
         let count = f64::from(states);
         let sample_period_s = f64::from(half_periods) * parts.half_period_s;
+        let levels_per_rad = levels_per_rad(&parts);
         let mut model = Self {
             coil: parts.coil,
             controller: parts.controller,
@@ -106,7 +107,7 @@ impl LoopModel {
             detection: Detection::new(config, &parts, streams),
             is_ramp_rounded: parts.modulator.is_quantised,
             codes_per_rad: parts.modulator.codes_per_rad(),
-            levels_per_rad: levels_per_rad(&parts),
+            levels_per_rad,
             times: (0..states).map(|state| f64::from(state) / count).collect(),
             phases_codes: (0..states).map(|_| 0.0).collect(),
             vibration: Vibration::new(&config.vibration, parts.half_period_s, streams)
@@ -120,7 +121,7 @@ impl LoopModel {
             rate_word: RateWord::new(&config.output, &parts.coil, sample_period_s),
             half_period_s: parts.half_period_s,
             timing,
-            full: Box::new(FullLoop::new(&parts, levels_per_rad(&parts), streams)),
+            full: Box::new(FullLoop::new(&parts, levels_per_rad, streams)),
             is_full: parts.optics.is_needed(),
             wrong_fringe_words: 0,
             fringe_error: 0.0,
