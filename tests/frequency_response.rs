@@ -20,7 +20,7 @@ use crate::support::assert_close;
 use crate::support::records::{PERIOD_S, every_metric_is_answered, facts, settings, value, white};
 use crate::support::reference_gyro::reference_gyro;
 use crate::support::turntable_cases::{no_encoder, true_axis, true_mounting};
-use crate::support::{code, field, fogbench, repository, stderr, stdout, summary};
+use crate::support::{field, fogbench, run_audits, stderr, summary};
 
 const TONES_HZ: [f64; 5] = [7.0, 31.0, 120.0, 300.0, 480.0];
 
@@ -387,15 +387,7 @@ fn the_shipped_bandwidths_pass_and_draw_their_response() {
         "loop-bandwidth-2000",
         "loop-response",
     ];
-    let paths = files.map(|name| {
-        let path = repository(&format!("scenarios/audit/{name}.toml"));
-        path.to_string_lossy().into_owned()
-    });
-    let mut arguments = vec!["run"];
-    arguments.extend(paths.iter().map(String::as_str));
-    arguments.extend(["-o", "out"]);
-    let output = fogbench(folder.path(), &arguments);
-    assert_eq!(code(&output), 0, "{}{}", stdout(&output), stderr(&output));
+    run_audits(folder.path(), &files);
     let out = folder.path().join("out");
     for name in files {
         let run = summary(&out, name);

@@ -16,7 +16,7 @@ use fogbench::units::{deg_per_h_to_rad_per_s, deg_per_s_to_rad_per_s, rad_per_s_
 
 use crate::support::gyro_cases::{allan_deviation, budget_of, silent_gyro};
 use crate::support::reference_gyro::reference_gyro;
-use crate::support::{assert_close, code, fogbench, repository, stderr, stdout};
+use crate::support::{assert_close, run_audits, stdout};
 
 fn loop_model(config: &GyroConfig) -> LoopModel {
     LoopModel::new(config, 10.0, &Streams::new(3, 0)).expect("the gyro is sound")
@@ -542,15 +542,7 @@ fn the_shipped_dead_bands_and_errors_of_two_pi_pass() {
         "two-pi-error-second-loop",
         "two-pi-error-demodulated",
     ];
-    let paths = files.map(|name| {
-        let path = repository(&format!("scenarios/audit/{name}.toml"));
-        path.to_string_lossy().into_owned()
-    });
-    let mut arguments = vec!["run"];
-    arguments.extend(paths.iter().map(String::as_str));
-    arguments.extend(["-o", "out"]);
-    let output = fogbench(folder.path(), &arguments);
-    assert_eq!(code(&output), 0, "{}{}", stdout(&output), stderr(&output));
+    let output = run_audits(folder.path(), &files);
     // The jumps of the dithered ramp are no loss of lock.
     assert!(!stdout(&output).contains("out of lock"));
     // The line of theory is drawn where the mean is wrong, and there alone.

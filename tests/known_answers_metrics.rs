@@ -9,7 +9,7 @@ use fogbench::units;
 
 use crate::support::assert_close;
 use crate::support::records::{
-    PERIOD_S, every_metric_is_answered, facts, settings, sine, value, white,
+    PERIOD_S, every_metric_is_answered, facts, raw_record, settings, sine, value, white,
 };
 
 /// A channel that is the two-sample mean of raw, one sample late, as a filter of known answers.
@@ -171,14 +171,7 @@ fn a_step_record_settles() {
         step_deg_per_h: 3600.0,
         staircase: fogbench::metrics::Staircase::default(),
     };
-    let record = Record {
-        channel_deg_per_h: &raw,
-        raw_deg_per_h: &raw,
-        truth_deg_per_h: &truth,
-        encoder_rad: None,
-        sample_period_s: PERIOD_S,
-        first_stamp_s: 0.0,
-    };
+    let record = raw_record(&raw, &truth);
     let metrics = measure(&record, &settings(motion), None);
     every_metric_is_answered(&metrics);
     // ln(100) time constants of 20 samples are 92.1 samples; noise of 1 in a band of 36 moves the

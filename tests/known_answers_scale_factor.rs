@@ -1,12 +1,14 @@
 //! Known answers of the scale factor test.
 
 use fogbench::metrics::{
-    Dwell, Motion, RatePoint, Record, Staircase, StaticZero, fit_scale_factor, measure,
+    Dwell, Motion, RatePoint, Staircase, StaticZero, fit_scale_factor, measure,
     scale_factor_repeatability, scale_factor_temperature_sensitivity, support,
 };
 
 use crate::support::assert_close;
-use crate::support::records::{PERIOD_S, every_metric_is_answered, settings, value, white};
+use crate::support::records::{
+    PERIOD_S, every_metric_is_answered, raw_record, settings, value, white,
+};
 use crate::support::{code, field, fogbench, repository, stderr, stdout, summary};
 
 fn point(input: f64, output: f64) -> RatePoint {
@@ -198,14 +200,7 @@ fn a_staircase_gives_its_scale_factor_and_leaves_the_settling_out() {
         // 200 ppm too much, 4 deg/h of bias, and nonsense while it settles.
         *word += 1.000_2 * rate + 4.0 + if index % 1000 < 100 { 1e4 } else { 0.0 };
     }
-    let record = Record {
-        channel_deg_per_h: &raw,
-        raw_deg_per_h: &raw,
-        truth_deg_per_h: &truth,
-        encoder_rad: None,
-        sample_period_s: PERIOD_S,
-        first_stamp_s: 0.0,
-    };
+    let record = raw_record(&raw, &truth);
     let metrics = measure(&record, &settings(motion), None);
     every_metric_is_answered(&metrics);
     let factor = &metrics.metrics["scale_factor_error_ppm"];

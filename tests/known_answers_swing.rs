@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 
 use fogbench::metrics::{
-    Motion, Record, SwingClock, correlation_delay_s, fit_sine, fit_sine_free_frequency, fit_swing,
-    measure, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain, predict,
+    Motion, SwingClock, correlation_delay_s, fit_sine, fit_sine_free_frequency, fit_swing, measure,
+    noise_delay_bound, noise_delay_bound_coloured, noise_power_gain, predict,
 };
 
 use crate::support::assert_close;
-use crate::support::records::{PERIOD_S, settings, shape, sine, white};
+use crate::support::records::{PERIOD_S, raw_record, settings, shape, sine, white};
 
 #[test]
 fn known_answer_k23_noise_free_sine_fit_is_right_to_a_nanosecond_for_any_window() {
@@ -342,14 +342,7 @@ fn both_estimators_of_a_noisy_swing_agree() {
     for (word, noise) in raw.iter_mut().zip(white(12, 40_000, 23.0)) {
         *word += noise;
     }
-    let record = Record {
-        channel_deg_per_h: &raw,
-        raw_deg_per_h: &raw,
-        truth_deg_per_h: &truth,
-        encoder_rad: None,
-        sample_period_s: PERIOD_S,
-        first_stamp_s: 0.0,
-    };
+    let record = raw_record(&raw, &truth);
     let metrics = measure(
         &record,
         &settings(Motion::Swing { frequency_hz: 5.0 }),

@@ -39,6 +39,22 @@ pub(crate) fn fogbench(folder: &Path, arguments: &[&str]) -> Output {
         .expect("the program starts")
 }
 
+/// Runs shipped scenarios of `scenarios/audit` into `folder/out`; they must pass.
+#[track_caller]
+pub(crate) fn run_audits(folder: &Path, names: &[&str]) -> Output {
+    let paths: Vec<String> = names
+        .iter()
+        .map(|name| repository(&format!("scenarios/audit/{name}.toml")))
+        .map(|path| path.to_string_lossy().into_owned())
+        .collect();
+    let mut arguments = vec!["run"];
+    arguments.extend(paths.iter().map(String::as_str));
+    arguments.extend(["-o", "out"]);
+    let output = fogbench(folder, &arguments);
+    assert_eq!(code(&output), 0, "{}{}", stdout(&output), stderr(&output));
+    output
+}
+
 /// Exit code of a finished program.
 pub(crate) fn code(output: &Output) -> i32 {
     output

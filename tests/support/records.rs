@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use fogbench::metrics::{ChannelMetrics, FilterFacts, Motion, Settings, SwingClock};
+use fogbench::metrics::{ChannelMetrics, FilterFacts, Motion, Record, Settings, SwingClock};
 use fogbench::random::Streams;
 use fogbench::signal::{FilterShape, WeightRule};
 
@@ -63,6 +63,18 @@ pub(crate) fn settings(motion: Motion) -> Settings {
         motion,
         bias_averaging_time_s: 2.0,
         fit_tau_min_s: 10.0 * PERIOD_S,
+    }
+}
+
+/// The record of an unfiltered gyro of [`PERIOD_S`] from time 0 on.
+pub(crate) fn raw_record<'a>(raw: &'a [f64], truth: &'a [f64]) -> Record<'a> {
+    Record {
+        channel_deg_per_h: raw,
+        raw_deg_per_h: raw,
+        truth_deg_per_h: truth,
+        encoder_rad: None,
+        sample_period_s: PERIOD_S,
+        first_stamp_s: 0.0,
     }
 }
 
