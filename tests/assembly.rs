@@ -1,7 +1,5 @@
 //! Three gyros in one case: the patent's equations, independence of the axes, names and refusals.
 
-use std::path::Path;
-
 use fogbench::gyro::{CaseGyro, Gyro, InputAxis};
 use fogbench::random::Streams;
 use fogbench::scenario::{AssemblyConfig, Fidelity, GyroConfig};
@@ -9,7 +7,9 @@ use fogbench::signal::MotionSegment;
 
 use crate::support::gyro_cases::{budget_of, silent_gyro};
 use crate::support::reference_gyro::reference_gyro;
-use crate::support::{assert_close, code, field, fogbench, stderr, stdout, summary, tree, write};
+use crate::support::{
+    assert_close, code, field, fogbench, npy, stderr, stdout, summary, tree, write,
+};
 
 /// Case of three gyros whose errors are those of the worked example of the patent's equations.
 const ASSEMBLY: &str = "[gyro.assembly]\nbias_deg_per_h = [1.0, -2.0, 1.5]\n\
@@ -58,12 +58,6 @@ fn assembly(config: GyroConfig, fidelity: Fidelity) -> Vec<CaseGyro> {
 fn words_at_rest(gyro: &mut CaseGyro, count: usize) -> Vec<f64> {
     let rest = [MotionSegment::constant(0.0); 3];
     (0..count).map(|_| gyro.next_word(&rest)).collect()
-}
-
-fn npy(path: &Path) -> Vec<f64> {
-    let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let file = npyz::NpyFile::new(&bytes[..]).expect("an NPY file");
-    file.into_vec().expect("binary64")
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod allan_coverage;
 mod architecture;
 mod assembly;
+mod average_output;
 mod bit_exact;
 mod cli;
 mod cli_analyze;

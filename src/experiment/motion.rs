@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::assembly_motion::hardest;
-use crate::gyro::MotionExtremes;
+use crate::gyro::{self, MotionExtremes};
 use crate::metrics::{Dwell, Motion, Staircase};
 use crate::scenario::{MotionConfig, Scenario, ServoConfig, StepsConfig};
 use crate::turntable::{
@@ -27,9 +27,10 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
         },
         MotionConfig::Steps(steps) => {
             let rates = &steps.rates_deg_per_s;
-            let last_step_index = step_indices(steps, 0.0, sample_period_s)
+            let words = u64::from(scenario.gyro.output.average_samples);
+            let last_step_index = step_indices(steps, 0.0, word_period_s(scenario))
                 .last()
-                .map_or(0, |&index| usize::try_from(index).unwrap_or(usize::MAX));
+                .map_or(0, |&word| index(word.div_ceil(words)));
             let rise = match rates.as_slice() {
                 [.., before, last] => last - before,
                 _ => 0.0,
@@ -50,9 +51,11 @@ fn staircase(steps: &StepsConfig, scenario: &Scenario, sample_period_s: f64) -> 
     // One more rate than there is, whose step is the end of the last dwell.
     let mut closed = steps.clone();
     closed.rates_deg_per_s.push(0.0);
-    let ends = step_indices(&closed, 0.0, sample_period_s);
-    let starts = std::iter::once(0).chain(ends.iter().copied());
-    let index = |count: u64| usize::try_from(count).unwrap_or(usize::MAX);
+    // The table steps between rate words; samples that see two rates belong to neither dwell.
+    let words = u64::from(scenario.gyro.output.average_samples);
+    let steps_at = step_indices(&closed, 0.0, word_period_s(scenario));
+    let ends: Vec<u64> = steps_at.iter().map(|word| word / words).collect();
+    let starts = std::iter::once(0).chain(steps_at.iter().map(|word| word.div_ceil(words)));
     let dwells = starts.zip(&ends).zip(&steps.rates_deg_per_s);
     Staircase {
         dwells: dwells
@@ -64,6 +67,16 @@ fn staircase(steps: &StepsConfig, scenario: &Scenario, sample_period_s: f64) -> 
         settle_s: steps.settle_s,
         rest_deg_per_h,
     }
+}
+
+/// Period of the words that the table's steps fall between, s.
+fn word_period_s(scenario: &Scenario) -> f64 {
+    gyro::word_period_s(&scenario.gyro)
+}
+
+/// A count of samples as an index into a record.
+fn index(count: u64) -> usize {
+    usize::try_from(count).unwrap_or(usize::MAX)
 }
 
 /// Largest rate the configured motion puts on the input axis, of an assembly on any, deg/h.

@@ -12,7 +12,7 @@ use crate::fpga::export::{
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Desired;
 use crate::fpga::trace::Window;
-use crate::gyro::GyroError;
+use crate::gyro::{self, GyroError};
 use crate::scenario::OutputQuantisation;
 use crate::units::{arcsec_per_s_to_deg_per_h, deg_per_h_to_deg_per_s};
 
@@ -46,11 +46,13 @@ pub fn scenario_stimulus(plan: &Plan, samples: usize) -> Result<Stimulus, GyroEr
     let output = &scenario.gyro.output;
     let lsb = match output.quantisation {
         OutputQuantisation::RateWord => output.rate_lsb_deg_per_s,
-        // One pulse in an output sample.
+        // One pulse in a word.
         OutputQuantisation::AngleCarry => deg_per_h_to_deg_per_s(arcsec_per_s_to_deg_per_h(
-            output.angle_lsb_arcsec / plan.sample_period_s(),
+            output.angle_lsb_arcsec / gyro::word_period_s(&scenario.gyro),
         )),
     };
+    // The mean of rounded words is a multiple of the step over their number.
+    let lsb = lsb / f64::from(output.average_samples);
     let codes = (lsb > 0.0).then(|| IntegerCodes {
         codes: words.iter().map(|word| code(*word, lsb)).collect(),
         lsb,

@@ -61,7 +61,7 @@ impl Plan {
         self.resolved.scenario.channel_names()
     }
 
-    /// Period of the rate words, s.
+    /// Period of the output samples, s.
     pub(super) fn sample_period_s(&self) -> f64 {
         gyro::sample_period_s(&self.resolved.scenario.gyro)
     }
@@ -86,10 +86,10 @@ impl Plan {
     pub(super) fn cost(&self) -> f64 {
         const LOOP_COST: f64 = 10.0;
         let gyros = count(self.resolved.scenario.axis_prefixes().len());
-        let samples = gyros * self.simulated_s() * self.facts.output_rate_hz;
+        let words = gyros * self.simulated_s() / gyro::word_period_s(&self.resolved.scenario.gyro);
         match self.resolved.scenario.fidelity {
-            Fidelity::Loop => LOOP_COST * samples,
-            Fidelity::Rate => samples,
+            Fidelity::Loop => LOOP_COST * words,
+            Fidelity::Rate => words,
         }
     }
 }
@@ -193,7 +193,7 @@ impl Checker<'_> {
                 format!(
                     "duration_s + warm_up_s = {} s at {rate_hz:.2} Hz are {samples:.3e} samples: \
                      at most {SAMPLES_MAX:e} are held in memory; use `repeats`, or a larger \
-                     gyro.output.half_periods_per_sample",
+                     gyro.output.average_samples",
                     duration_s + warm_up_s
                 ),
             );
@@ -207,7 +207,7 @@ impl Checker<'_> {
                     "duration_s + warm_up_s = {} s at {rate_hz:.2} Hz are {words:.3e} words in \
                      {records} records (the true rate and the channels of every gyro): at most \
                      {WORDS_MAX:e} are held in memory; use `repeats`, fewer filters, or a larger \
-                     gyro.output.half_periods_per_sample",
+                     gyro.output.average_samples",
                     duration_s + warm_up_s
                 ),
             );

@@ -199,6 +199,8 @@ struct Source {
     table: Turntable,
     gyros: Gyros,
     sample_period_s: f64,
+    /// Rate words in one output sample.
+    average_samples: u32,
     /// Of each gyro.
     truth_deg_per_h: Vec<Vec<f64>>,
     encoder_rad: Option<Vec<f64>>,
@@ -245,12 +247,16 @@ impl Gyros {
 impl Source {
     fn new(scenario: &Scenario, length: RecordLength, repeat: u32) -> Result<Self, GyroError> {
         let sample_period_s = gyro::sample_period_s(&scenario.gyro);
+        let word_period_s = gyro::word_period_s(&scenario.gyro);
+        let warm_up = RecordLength::new(scenario, sample_period_s).warm_up;
+        let warm_up_s = table_warm_up_s(scenario, warm_up, word_period_s);
         let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
         Ok(Self {
-            table: Turntable::new(&scenario.turntable, scenario.warm_up_s, sample_period_s),
+            table: Turntable::new(&scenario.turntable, warm_up_s, word_period_s),
             encoder_rad: has_encoder.then(|| Vec::with_capacity(length.total())),
             gyros: Gyros::new(scenario, repeat)?,
             sample_period_s,
+            average_samples: scenario.gyro.output.average_samples,
             truth_deg_per_h: scenario
                 .axis_prefixes()
                 .iter()
@@ -260,9 +266,10 @@ impl Source {
         })
     }
 
-    /// The next rate words of each gyro, deg/h; empty when the records are complete.
+    /// The next output samples of each gyro, deg/h; empty when the records are complete.
     fn next_block(&mut self) -> Vec<Vec<f64>> {
         let (table, truth) = (&mut self.table, &mut self.truth_deg_per_h);
+        let average = self.average_samples as usize;
         let encoder = &mut self.encoder_rad;
         let mut read = |table: &Turntable| {
             if let Some(readings) = encoder {
@@ -270,39 +277,67 @@ impl Source {
             }
         };
         let left = self.samples - truth[0].len();
-        let block = left.min(BLOCK_SAMPLES);
+        let block = left.min((BLOCK_SAMPLES / average).max(1));
         match &mut self.gyros {
             Gyros::Alone(gyro) => {
-                let mut words = Vec::with_capacity(block);
+                let mut samples = Vec::with_capacity(block);
                 for _ in 0..block {
-                    let segment = table.next_segment();
-                    words.push(gyro.next_word(&segment));
-                    truth[0].push(rad_per_s_to_deg_per_h(segment.rate_at(1.0)));
+                    let mut end = 0.0;
+                    samples.push(mean(average, || {
+                        let segment = table.next_segment();
+                        end = segment.rate_at(1.0);
+                        gyro.next_word(&segment)
+                    }));
+                    truth[0].push(rad_per_s_to_deg_per_h(end));
                     read(table);
                 }
-                vec![words]
+                vec![samples]
             }
             Gyros::InCase(gyros) => {
-                let case: Vec<_> = (0..block)
-                    .map(|_| {
-                        let segments = table.next_platform_segments();
-                        read(table);
-                        segments
-                    })
-                    .collect();
+                let mut case = Vec::with_capacity(block * average);
+                for _ in 0..block {
+                    case.extend((0..average).map(|_| table.next_platform_segments()));
+                    read(table);
+                }
                 let gyros = gyros.par_iter_mut().zip(truth).enumerate();
                 gyros
                     .map(|(axis, (gyro, truth))| {
-                        let ends = case.iter().map(|segments| segments[axis].rate_at(1.0));
-                        truth.extend(ends.map(rad_per_s_to_deg_per_h));
-                        case.iter()
-                            .map(|segments| gyro.next_word(segments))
-                            .collect()
+                        let ends = case.chunks_exact(average).map(|words| &words[average - 1]);
+                        let rates = ends.map(|segments| segments[axis].rate_at(1.0));
+                        truth.extend(rates.map(rad_per_s_to_deg_per_h));
+                        let mut words = case.iter().map(|segments| gyro.next_word(segments));
+                        let mut next = || words.next().unwrap_or(f64::NAN);
+                        (0..block).map(|_| mean(average, &mut next)).collect()
                     })
                     .collect()
             }
         }
     }
+}
+
+/// Mean of the next `count` words; one word is itself, to the bit.
+#[inline]
+fn mean(count: usize, mut next_word: impl FnMut() -> f64) -> f64 {
+    let first = next_word();
+    if count == 1 {
+        return first;
+    }
+    let mut sum = first;
+    for _ in 1..count {
+        sum += next_word();
+    }
+    sum / self::count(count)
+}
+
+/// Warm-up as the table counts it, s: its record begins with the first measured output sample.
+///
+/// Half a word less than whole words, so that the table's rounding up to whole words cannot go astray.
+fn table_warm_up_s(scenario: &Scenario, warm_up_samples: usize, word_period_s: f64) -> f64 {
+    if scenario.gyro.output.average_samples == 1 || warm_up_samples == 0 {
+        return scenario.warm_up_s;
+    }
+    let words = count(warm_up_samples) * f64::from(scenario.gyro.output.average_samples);
+    (words - 0.5) * word_period_s
 }
 
 #[expect(

@@ -98,13 +98,25 @@ impl Gyro {
     }
 }
 
-/// Time between rate words of a configuration, s.
+/// Time between rate words of a configuration, s: what a [`Gyro`] makes one word of.
 #[must_use]
-pub fn sample_period_s(config: &GyroConfig) -> f64 {
+pub fn word_period_s(config: &GyroConfig) -> f64 {
     f64::from(config.output.half_periods_per_sample) * half_period_s(config)
 }
 
-/// Gain and phase (rad) of the rate words against the motion at ascending frequencies, Hz.
+/// Time between output samples of a configuration, s: so many words are averaged into one.
+#[must_use]
+pub fn sample_period_s(config: &GyroConfig) -> f64 {
+    f64::from(config.output.average_samples) * word_period_s(config)
+}
+
+/// Loop periods averaged into one output sample; the mean of words is the mean over all of theirs.
+fn periods_per_sample(config: &GyroConfig, parts: &Parts) -> f64 {
+    let per_word = parts.half_periods / parts.timing.half_periods;
+    f64::from(config.output.average_samples) * f64::from(per_word)
+}
+
+/// Gain and phase (rad) of the output samples against the motion at ascending frequencies, Hz.
 ///
 /// The phase is continued from one frequency to the next at the delay of the one before, from the
 /// delay at low frequency on.
@@ -118,13 +130,9 @@ pub fn word_response(
     config: &GyroConfig,
     frequencies_hz: &[f64],
 ) -> Result<Vec<(f64, f64)>, GyroError> {
-    let Parts {
-        half_periods,
-        timing,
-        controller,
-        ..
-    } = Parts::new(config)?;
-    let periods = f64::from(half_periods / timing.half_periods);
+    let parts = Parts::new(config)?;
+    let periods = periods_per_sample(config, &parts);
+    let controller = parts.controller;
     let mut delay_s = controller.word_delay_s(periods);
     let response = frequencies_hz.iter().map(|&frequency_hz| {
         let angular = TAU * frequency_hz;
@@ -144,15 +152,15 @@ pub fn word_response(
 /// # Errors
 /// Any [`GyroError`], as [`Gyro::new`].
 pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
+    let parts = Parts::new(config)?;
+    let periods = periods_per_sample(config, &parts);
     let Parts {
-        half_periods,
-        timing,
         coil,
         detector,
         controller,
         condition,
         ..
-    } = Parts::new(config)?;
+    } = parts;
     let is_gain_nominal =
         config.controller.automatic_gain_control || (condition.power_ratio - 1.0).abs() <= 0.0;
     Ok(GyroFacts {
@@ -166,7 +174,7 @@ pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
         } else {
             controller.bandwidth_hz()
         },
-        delay_ms: s_to_ms(controller.word_delay_s(f64::from(half_periods / timing.half_periods))),
+        delay_ms: s_to_ms(controller.word_delay_s(periods)),
         angle_random_walk_budget_deg_per_sqrt_h: NoiseBudget::new(&detector, &coil).entries(),
     })
 }

@@ -64,7 +64,7 @@ pub use condition::{Condition, temperature_record};
 pub use controller::{Controller, gain_limit};
 pub use detector::{CurrentNoise, Detector};
 pub use error::GyroError;
-pub use instrument::{Gyro, facts, sample_period_s, word_response};
+pub use instrument::{Gyro, facts, sample_period_s, word_period_s, word_response};
 pub use limits::{MotionExtremes, cautions};
 pub use loop_faults::LoopFaults;
 pub use loop_model::LoopModel;

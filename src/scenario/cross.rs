@@ -195,13 +195,14 @@ impl Checks<'_> {
         }
     }
 
-    /// Period of the rate words, s, but for errors that the gyro's own check finds.
+    /// Period of the output samples, s, but for errors that the gyro's own check finds.
     pub(super) fn sample_period_s(&self) -> f64 {
         let gyro = &self.resolved.scenario.gyro;
         // A half modulation period is the transit time n L / c of the coil, but for a mismatch.
         let transit_time_s = gyro.coil.group_index * gyro.coil.length_m / SPEED_OF_LIGHT_M_PER_S;
         let half_period_s = transit_time_s * (1.0 + gyro.modulator.half_period_mismatch);
-        half_period_s * f64::from(gyro.output.half_periods_per_sample)
+        let word_s = half_period_s * f64::from(gyro.output.half_periods_per_sample);
+        word_s * f64::from(gyro.output.average_samples)
     }
 
     /// Refuses a frequency that the cubics between samples cannot follow.

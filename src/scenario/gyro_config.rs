@@ -220,6 +220,8 @@ pub struct SlowNoiseConfig {
 pub struct RateOutputConfig {
     /// Half modulation periods averaged into one rate word (even).
     pub half_periods_per_sample: u32,
+    /// Rate words averaged into one sample of the output; 1 puts out every word.
+    pub average_samples: u32,
     /// What is rounded: each rate word, or the angle turned since the start.
     pub quantisation: OutputQuantisation,
     /// Least significant bit of the rate word, deg/s, rounded without carry; 0 = not rounded.

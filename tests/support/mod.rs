@@ -119,3 +119,10 @@ pub(crate) fn field(summary: &serde_json::Value, metric: &str, field: &str) -> f
         .as_f64()
         .unwrap_or_else(|| panic!("no {metric}.{field} in the summary"))
 }
+
+/// The numbers of a one-dimensional NPY file.
+pub(crate) fn npy(path: &Path) -> Vec<f64> {
+    let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let file = npyz::NpyFile::new(&bytes[..]).expect("an NPY file");
+    file.into_vec().expect("binary64")
+}

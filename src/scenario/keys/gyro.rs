@@ -135,6 +135,8 @@ pub(super) const KEYS: &[Key] = &[
         "Phase by which a coherent rate leads the acceleration."),
     key("gyro.output.half_periods_per_sample", Kind::Integer(Integers { min: 2, max: 1_048_576, is_even: true }), "", Defaulted,
         "Half modulation periods averaged into one rate word."),
+    key("gyro.output.average_samples", integer(1, 1_048_576), "", Defaulted,
+        "Rate words averaged into one sample of the output."),
     key("gyro.output.quantisation", Kind::Choice(&["rate-word", "angle-carry"]), "", Defaulted,
         "What is rounded: each rate word, or the angle, with the remainder carried over."),
     key("gyro.output.rate_lsb_deg_per_s", Kind::Float(Range::closed(0.0, 1.0)), "deg/s", Defaulted,
