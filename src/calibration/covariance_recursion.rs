@@ -32,7 +32,11 @@ pub(super) fn covariance_recursion(
         let [wx, wy, wz] = group.design.reference_rate_deg_per_s;
         let row = [wx, wy, wz, 1.0];
         let alpha = SMatrix::<f64, 3, 12>::from_fn(|axis, state| {
-            if state / 4 == axis { row[state % 4] } else { 0.0 }
+            if state / 4 == axis {
+                row[state % 4]
+            } else {
+                0.0
+            }
         });
         let noise = sigma.map(|factor| match settings.reading {
             Reading::Discount | Reading::RowWeight => factor,

@@ -99,11 +99,7 @@ impl ErrorParameters {
     #[must_use]
     pub fn sensitivity(&self) -> [[f64; 3]; 3] {
         let x = self.to_vector();
-        [
-            [x[0], x[1], x[2]],
-            [x[4], x[5], x[6]],
-            [x[8], x[9], x[10]],
-        ]
+        [[x[0], x[1], x[2]], [x[4], x[5], x[6]], [x[8], x[9], x[10]]]
     }
 
     /// `D = K_G + theta_G`, what the sensitivity has beyond the unit matrix.

@@ -122,7 +122,9 @@ impl Estimator {
 
     fn check(&self) -> Result<(), CalibrationError> {
         self.forgetting().0.check()?;
-        let xi = self.recursion().map_or(1.0, |settings| settings.initial_covariance);
+        let xi = self
+            .recursion()
+            .map_or(1.0, |settings| settings.initial_covariance);
         if xi > 0.0 && xi.is_finite() {
             return Ok(());
         }
@@ -165,7 +167,13 @@ pub fn estimate(
     check_plan(&designs, temperature, reference)?;
     let mut fits = Vec::with_capacity(3);
     for axis in 0..3 {
-        fits.push(fit_axis(groups, estimator, axis, reference[axis], &weights[axis])?);
+        fits.push(fit_axis(
+            groups,
+            estimator,
+            axis,
+            reference[axis],
+            &weights[axis],
+        )?);
     }
     let calibration = assemble(groups, estimator, reference, &weights, &fits);
     reject_implausible(groups, &calibration)?;
@@ -200,7 +208,9 @@ impl AxisWeights {
 fn mean_temperature(designs: &[GroupDesign], weights: &[f64], axis: usize) -> f64 {
     let total: f64 = weights.iter().sum();
     let pairs = designs.iter().zip(weights);
-    let sum: f64 = pairs.map(|(design, weight)| design.temperature_c[axis] * weight).sum();
+    let sum: f64 = pairs
+        .map(|(design, weight)| design.temperature_c[axis] * weight)
+        .sum();
     if total > 0.0 { sum / total } else { 0.0 }
 }
 
@@ -232,7 +242,8 @@ fn fit_axis(
         condition_number,
     };
     // Written so that a NaN from 0 / 0 is refused too.
-    if !matches!(condition_number.partial_cmp(&WEIGHTED_CONDITION_MAX), Some(order) if order.is_lt()) {
+    if !matches!(condition_number.partial_cmp(&WEIGHTED_CONDITION_MAX), Some(order) if order.is_lt())
+    {
         return Err(forgotten());
     }
     let outputs = groups.iter().map(|group| group.output_deg_per_s[axis]);
@@ -295,7 +306,12 @@ fn assemble(
             }
         }
         for (index, column) in model.iter().enumerate().skip(4) {
-            temperature.set(*column, axis, solution[index], spread[(index, index)].sqrt());
+            temperature.set(
+                *column,
+                axis,
+                solution[index],
+                spread[(index, index)].sqrt(),
+            );
         }
         let left = outputs - &axis_fit.rows * solution;
         for (residual, value) in residuals.iter_mut().zip(left.iter()) {
@@ -358,7 +374,9 @@ fn reduced_chi_square(
         .map(|(i, j)| (left[(i, j)] * standard_errors[j] / standard_errors[i]).powi(2))
         .sum();
     let scaled = residuals.iter().zip(standard_errors);
-    let sum: f64 = scaled.map(|(residual, error)| (residual / error).powi(2)).sum();
+    let sum: f64 = scaled
+        .map(|(residual, error)| (residual / error).powi(2))
+        .sum();
     Some(sum / expected)
 }
 

@@ -84,7 +84,9 @@ impl Forgetting {
     #[must_use]
     pub fn factors(&self, initial_temperature_c: f64, temperature_c: &[f64]) -> Vec<f64> {
         let before = std::iter::once(&initial_temperature_c).chain(temperature_c);
-        let steps = before.zip(temperature_c).map(|(old, new)| (new - old).abs());
+        let steps = before
+            .zip(temperature_c)
+            .map(|(old, new)| (new - old).abs());
         steps.map(|step_k| self.factor(step_k)).collect()
     }
 

@@ -29,11 +29,18 @@ pub(super) fn inseparable(
 ) -> Vec<Inseparable> {
     let size = |index: usize| {
         let column = scaled.column(index);
-        if column.is_empty() { 0.0 } else { column.amax() }
+        if column.is_empty() {
+            0.0
+        } else {
+            column.amax()
+        }
     };
     let (still, moved): (Vec<usize>, Vec<usize>) =
         (0..model.len()).partition(|index| size(*index) < tolerance);
-    let mut open: Vec<Inseparable> = still.iter().map(|index| describe(&[model[*index]])).collect();
+    let mut open: Vec<Inseparable> = still
+        .iter()
+        .map(|index| describe(&[model[*index]]))
+        .collect();
     let kept = scaled.select_columns(moved.iter());
     for vector in null_vectors(&kept, tolerance) {
         let parts: Vec<Column> = moved
@@ -54,7 +61,9 @@ fn null_vectors(matrix: &DMatrix<f64>, tolerance: f64) -> Vec<Vec<f64>> {
         return Vec::new();
     }
     // Rows of zeros give every column its right singular vector.
-    let square = matrix.clone().resize_vertically(matrix.nrows().max(width), 0.0);
+    let square = matrix
+        .clone()
+        .resize_vertically(matrix.nrows().max(width), 0.0);
     let decomposition = square.svd(false, true);
     let vectors = decomposition.v_t.expect("the right vectors were asked for");
     let largest = decomposition.singular_values.amax();
@@ -73,7 +82,11 @@ fn null_vectors(matrix: &DMatrix<f64>, tolerance: f64) -> Vec<Vec<f64>> {
 fn reduce(basis: &mut [Vec<f64>]) {
     for pivot_row in 0..basis.len() {
         let pivot = (0..basis[pivot_row].len())
-            .max_by(|a, b| basis[pivot_row][*a].abs().total_cmp(&basis[pivot_row][*b].abs()))
+            .max_by(|a, b| {
+                basis[pivot_row][*a]
+                    .abs()
+                    .total_cmp(&basis[pivot_row][*b].abs())
+            })
             .unwrap_or_default();
         let head = basis[pivot_row][pivot];
         let row: Vec<f64> = basis[pivot_row].iter().map(|value| value / head).collect();

@@ -21,7 +21,10 @@ pub(super) fn check_groups(groups: &[GroupObservation]) -> Result<(), Calibratio
         let finite: [(&'static str, [f64; 3]); 5] = [
             ("reference rate (deg/s)", design.reference_rate_deg_per_s),
             ("temperature (deg C)", design.temperature_c),
-            ("temperature rate (K/min)", design.temperature_rate_k_per_min),
+            (
+                "temperature rate (K/min)",
+                design.temperature_rate_k_per_min,
+            ),
             ("output (deg/s)", group.output_deg_per_s),
             ("standard error (deg/s)", group.standard_error_deg_per_s),
         ];

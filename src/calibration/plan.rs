@@ -4,7 +4,9 @@ use std::fmt;
 
 use nalgebra::DMatrix;
 
-use super::design::{Column, GroupDesign, TemperatureColumns, column_scales, columns, design_matrix};
+use super::design::{
+    Column, GroupDesign, TemperatureColumns, column_scales, columns, design_matrix,
+};
 use super::error::CalibrationError;
 use super::inseparable::{Inseparable, inseparable};
 

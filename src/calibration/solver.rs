@@ -72,8 +72,7 @@ impl SquareRootInformation {
             stacked[(columns, index)] = root * value;
         }
         stacked[(columns, columns)] = root * observation;
-        self.triangle
-            .copy_from(&stacked.qr().r().rows(0, columns));
+        self.triangle.copy_from(&stacked.qr().r().rows(0, columns));
     }
 
     /// The coefficients; nothing if `R` has no inverse.
