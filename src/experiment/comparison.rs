@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::plan::Plan;
 use crate::gate::quotient;
-use crate::metrics::{Estimate, Finding, Metric, known_metrics};
+use crate::metrics::{Estimate, Finding, Metric, known_metrics, paired_ratio};
 use crate::report::{
     Assumed, Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
     DrawnFigure, RunOutcome,
@@ -215,7 +215,8 @@ impl Run<'_> {
             None => (own.clone(), published),
             Some(other) => {
                 let below = self.metric(other, &column.metric)?;
-                let estimate = quotient(&own.estimate, &below.estimate)?;
+                let paired = paired_ratio(own, below);
+                let estimate = paired.or_else(|| quotient(&own.estimate, &below.estimate))?;
                 let fields = own.fields.clone();
                 let unit = "1";
                 let figures = published.zip(self.published(other, &column.metric));

@@ -92,7 +92,7 @@ fn blocks(text: &mut String, table: &ComparedTable, colour: bool) {
                 let cell = row.cells[*column].as_ref();
                 if table.is_published(*column) {
                     let published = cell.and_then(|cell| cell.published.as_ref());
-                    cells.push(published.map_or(NOTHING.to_owned(), |(value, _)| plain(*value)));
+                    cells.push(published.map_or(NOTHING.to_owned(), |(value, _)| rounded(*value)));
                 }
                 cells.push(cell.map_or(NOTHING.to_owned(), |cell| number(&cell.simulated)));
             }
@@ -133,6 +133,12 @@ fn number(metric: &Metric) -> String {
         Some(floor) => format!("{value} (noise floor {})", plain(*floor)),
         None => value,
     }
+}
+
+/// A published figure; of a ratio of such no more digits than they have.
+fn rounded(value: f64) -> String {
+    let digits = format!("{value:.2e}");
+    digits.parse().map_or(digits, plain)
 }
 
 /// An estimate; one whose interval is far below what anybody would print to five digits.

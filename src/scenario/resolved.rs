@@ -257,6 +257,14 @@ impl Resolved {
         address::get(&self.tree, path).map(|node| node.value.to_toml())
     }
 
+    /// The canonical text as an element of an array of tables: one of several runs in a document.
+    #[must_use]
+    pub fn to_toml_in_array(&self, array: &str) -> String {
+        let table = self.to_toml_below(array);
+        let rest = table.strip_prefix(&format!("[{array}]")).unwrap_or(&table);
+        format!("[[{array}]]{rest}")
+    }
+
     /// The canonical text as a table of a larger document.
     pub(crate) fn to_toml_below(&self, prefix: &str) -> String {
         to_toml(&self.tree, prefix)
