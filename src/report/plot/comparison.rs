@@ -5,12 +5,14 @@ use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{BLACK, Picture, Shape, Stroke};
 use super::series::{extent, real, stroke_of};
 use crate::report::columns::{heading_of, unit_text};
-use crate::report::comparison::{ComparedCell, ComparedTable};
+use crate::report::comparison::{ComparedCell, ComparedColumn, ComparedTable};
 
 /// Height of one panel with its titles, pixels.
 const PANEL: f64 = 300.0;
 /// Part of a row's room over which its columns are spread.
 const SPREAD: f64 = 0.6;
+/// Distance of a published figure from the simulated one, so that neither hides the other.
+const BESIDE: f64 = 0.05;
 
 /// One panel for each metric and for its ratios: rows along, a colour for each column.
 pub(super) fn picture(table: &ComparedTable) -> Picture {
@@ -38,6 +40,19 @@ fn panels(table: &ComparedTable) -> Vec<Vec<usize>> {
         );
     }
     panels
+}
+
+/// Number of a column's channel among the channels of the table: one colour in every panel.
+fn ordinal(table: &ComparedTable, column: usize) -> usize {
+    let mut seen: Vec<String> = Vec::new();
+    for channels in table.columns.iter().map(ComparedColumn::channels) {
+        if !seen.contains(&channels) {
+            seen.push(channels);
+        }
+    }
+    let own = table.columns[column].channels();
+    let mut places = seen.iter();
+    places.position(|name| *name == own).unwrap_or(0)
 }
 
 fn panel(picture: &mut Picture, table: &ComparedTable, columns: &[usize], top: f64) {
@@ -85,7 +100,7 @@ fn panel(picture: &mut Picture, table: &ComparedTable, columns: &[usize], top: f
     for (place, column) in columns.iter().enumerate() {
         let stroke = Stroke {
             dash: super::picture::Dash::Solid,
-            ..stroke_of(*column)
+            ..stroke_of(ordinal(table, *column))
         };
         let part = (real(place) + 0.5) / real(columns.len()) - 0.5;
         for (index, row) in table.rows.iter().enumerate() {
@@ -98,7 +113,8 @@ fn panel(picture: &mut Picture, table: &ComparedTable, columns: &[usize], top: f
             panel.marker(picture, (at, estimate.value), Shape::Circle, stroke.colour);
             if let Some((value, _)) = &cell.published {
                 has_published = true;
-                panel.marker(picture, (at, *value), Shape::Square, BLACK);
+                let beside = at + BESIDE;
+                panel.marker(picture, (beside, *value), Shape::Square, BLACK);
             }
         }
         let name = table.columns[*column].channels();
