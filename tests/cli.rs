@@ -316,6 +316,28 @@ fn expanded_scenarios_can_be_read_back() {
 }
 
 #[test]
+fn expanded_sweeps_are_one_document() {
+    let folder = scratch();
+    let path = repository("scenarios/paper/variants-latitude.toml");
+    let path = path.to_string_lossy();
+    let expanded = stdout(&fogbench(folder.path(), &["expand", &path]));
+    let document: toml::Table = expanded.parse().expect("valid TOML");
+    let runs = document["run"].as_array().expect("an array of tables");
+    let latitudes: Vec<_> = runs
+        .iter()
+        .filter_map(|run| run["turntable"]["site"]["latitude_deg"].as_float())
+        .collect();
+    assert_eq!(latitudes, [34.27, 26.65, 0.0]);
+    assert_eq!(runs[1]["filter"][1]["name"].as_str(), Some("rls"));
+    // Each element is a scenario of its own.
+    let mut single = runs[1].as_table().expect("a table").clone();
+    single.remove("matrix");
+    write(folder.path(), "one.toml", &single.to_string());
+    let check = fogbench(folder.path(), &["check", "one.toml"]);
+    assert_eq!(code(&check), 0, "{}", stderr(&check));
+}
+
+#[test]
 fn json_formats_are_json() {
     let folder = scratch();
     write(folder.path(), "a.toml", SHORT);

@@ -10,6 +10,7 @@ mod cli_analyze;
 mod cli_budget;
 mod cli_fpga;
 mod closed_loop;
+mod comparison;
 mod comparison_filters;
 mod cycle_exact;
 mod determinism;

@@ -4,8 +4,9 @@ use crate::support::run;
 use fogbench::gate::{Verdict, VerdictKind, judge};
 use fogbench::metrics::ChannelMetrics;
 use fogbench::report::{
-    FolderWriter, RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, allan_csv, junit_xml, plots,
-    psd_csv, run_summary_json, suite_summary_json, suite_text, table_text, write_atomic,
+    Comparison, FolderWriter, RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, allan_csv,
+    junit_xml, plots, psd_csv, run_summary_json, suite_summary_json, suite_text, table_text,
+    write_atomic,
 };
 use fogbench::scenario::{GateConfig, GateDecision, InconclusivePolicy, Scenario};
 use fogbench::signal::{GyroFacts, RunSignals, TheoryCurve, TheoryQuantity};
@@ -285,8 +286,12 @@ fn junit_has_a_case_for_every_gate_and_failure_and_repeats_to_the_byte() {
 
 #[test]
 fn the_suite_is_counted() {
-    let json: serde_json::Value =
-        serde_json::from_str(&suite_summary_json("0.1.0", &suite())).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&suite_summary_json(
+        "0.1.0",
+        &suite(),
+        &Comparison::default(),
+    ))
+    .unwrap();
     assert_eq!(json["runs"][0]["status"], "channel_failed");
     assert_eq!(json["runs"][1]["status"], "pass");
     assert_eq!(json["runs"][2]["status"], "run_failed");

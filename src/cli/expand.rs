@@ -1,4 +1,4 @@
-//! `fogbench expand`: every resolved run, defaults included, as TOML.
+//! `fogbench expand`: every resolved run, defaults included, as one TOML document.
 
 use std::fmt::Write;
 use std::io;
@@ -7,13 +7,15 @@ use super::arguments::SelectOptions;
 use super::exit::Exit;
 use super::{output, select};
 
-/// Prints each resolved run under a comment that names its folder.
+/// Prints each resolved run under a comment that names its folder: a single one as a scenario file,
+/// several as the array of tables `run`.
 pub(super) fn expand(options: &SelectOptions) -> io::Result<Exit> {
     let plans = match select::plans(options) {
         Ok(plans) => plans,
         Err(exit) => return Ok(exit),
     };
     let mut text = String::new();
+    let is_single = plans.len() == 1;
     for (index, plan) in plans.iter().enumerate() {
         let resolved = plan.resolved();
         let gap = if index == 0 { "" } else { "\n" };
@@ -24,7 +26,11 @@ pub(super) fn expand(options: &SelectOptions) -> io::Result<Exit> {
             resolved.folder(),
             resolved.shown_file()
         );
-        text.push_str(&resolved.to_toml());
+        text.push_str(&if is_single {
+            resolved.to_toml()
+        } else {
+            resolved.to_toml_in_array("run")
+        });
     }
     output::data(&text)?;
     Ok(Exit::Success)

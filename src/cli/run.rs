@@ -36,7 +36,7 @@ pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
         }
     };
     progress.printed()?;
-    output::data(&closing(&outcome.runs, options.format))?;
+    output::data(&closing(&outcome, options.format))?;
     output::talk(&format!("results in {}", options.output.display()));
     Ok(exit_of(&outcome))
 }
@@ -53,10 +53,15 @@ fn exit_of(suite: &SuiteOutcome) -> Exit {
     }
 }
 
-fn closing(runs: &[RunOutcome], format: Format) -> String {
+fn closing(suite: &SuiteOutcome, format: Format) -> String {
+    let (runs, across) = (&suite.runs, &suite.comparison);
     match format {
-        Format::Text => report::suite_text(runs, output::width(), output::colour()),
-        Format::Json => report::suite_summary_json(env!("CARGO_PKG_VERSION"), runs),
+        Format::Text => {
+            let (width, colour) = (output::width(), output::colour());
+            let suite = report::suite_text(runs, width, colour);
+            suite + &report::comparison_text(across, width, colour)
+        }
+        Format::Json => report::suite_summary_json(env!("CARGO_PKG_VERSION"), runs, across),
         // Every run has been printed on its own line.
         Format::Jsonl => String::new(),
     }

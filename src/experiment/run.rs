@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::assembly_motion::drop_lacking;
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
+use super::comparison::Layout;
 use super::motion::motion;
 use super::pipeline_metrics;
 use super::plan::{DIVERGED_AT, Plan};
@@ -32,6 +33,7 @@ type Channels = Vec<(String, ChannelMetrics)>;
 pub(super) fn run_scenario(
     plan: &Plan,
     index: usize,
+    layout: &Layout,
     output: &Path,
     observer: &dyn Observer,
 ) -> Result<RunOutcome, SuiteError> {
@@ -72,12 +74,18 @@ pub(super) fn run_scenario(
         notes: &notes,
     };
     let target = output.join(&folder);
-    write_folder(plan, &report, &simulation, &target).map_err(|source| SuiteError::Write {
+    let written = write_folder(plan, &report, &simulation, &target);
+    let pictures = written.map_err(|source| SuiteError::Write {
         path: target,
         source,
     })?;
     observer.finished(index, &report);
-    Ok(RunOutcome::from_report(&report, &folder))
+    let outcome = RunOutcome::from_report(&report, &folder);
+    let outcome = outcome.keeping(&report, layout.metrics_of(&scenario.name));
+    Ok(RunOutcome {
+        pictures,
+        ..outcome
+    })
 }
 
 /// Runs every repeat; the records of the first are kept for the plots and the sample files, those
@@ -102,13 +110,13 @@ fn run_repeats(
     Ok((simulation, combine(first, others), faults))
 }
 
-/// Writes everything of one run beside its place and swaps it in whole.
+/// Writes everything of one run beside its place and swaps it in whole; names its pictures.
 fn write_folder(
     plan: &Plan,
     report: &RunReport,
     simulation: &Simulation,
     target: &Path,
-) -> io::Result<()> {
+) -> io::Result<Vec<String>> {
     let folder = FolderWriter::create(target)?;
     folder.write("summary.json", report::run_summary_json(report).as_bytes())?;
     folder.write(
@@ -123,15 +131,18 @@ fn write_folder(
     }
     let raw_names = report.scenario.raw_channels();
     let gyros = signals(plan, simulation, &raw_names);
+    let mut pictures = Vec::new();
     for signals in &gyros {
         for (name, svg) in report::plots(report, signals) {
             folder.write(&name, svg.as_bytes())?;
+            pictures.push(name);
         }
     }
     if report.scenario.output.samples == SamplesFormat::Npy {
         write_samples(&folder, &gyros)?;
     }
-    folder.commit()
+    folder.commit()?;
+    Ok(pictures)
 }
 
 /// The samples of each gyro.

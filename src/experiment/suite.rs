@@ -8,9 +8,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
+use super::comparison::Layout;
 use super::plan::Plan;
 use super::run::run_scenario;
-use crate::report::{self, RunOutcome, RunReport};
+use crate::report::{self, Comparison, RunOutcome, RunReport};
 
 /// Version of the program, as every result names it.
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -42,6 +43,8 @@ pub trait Observer: Sync {
 pub struct SuiteOutcome {
     /// Runs in the order of the plans.
     pub runs: Vec<RunOutcome>,
+    /// What they say across scenarios.
+    pub comparison: Comparison,
     /// Whether a run was stopped by a broken invariant, which is a defect of the program.
     pub broken: bool,
 }
@@ -86,6 +89,8 @@ pub fn run_suite(
     for name in SUITE_FILES {
         remove(&options.output.join(name))?;
     }
+    remove_tables(&options.output)?;
+    let layout = Layout::of(plans);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build()
@@ -93,19 +98,28 @@ pub fn run_suite(
             threads: options.threads,
             message: error.to_string(),
         })?;
-    let (runs, broken) = pool.install(|| run_all(plans, options, observer))?;
+    let (runs, broken) = pool.install(|| run_all(plans, &layout, options, observer))?;
+    let comparison = layout.fill(plans, &runs);
+    for (name, text) in report::comparison_files(&comparison) {
+        write(&options.output.join(name), &text)?;
+    }
     let [summary, junit] = SUITE_FILES;
     write(
         &options.output.join(summary),
-        &report::suite_summary_json(VERSION, &runs),
+        &report::suite_summary_json(VERSION, &runs, &comparison),
     )?;
     write(&options.output.join(junit), &report::junit_xml(&runs))?;
-    Ok(SuiteOutcome { runs, broken })
+    Ok(SuiteOutcome {
+        runs,
+        comparison,
+        broken,
+    })
 }
 
 /// Runs the plans longest first, so that the last core is not left alone with the longest run.
 fn run_all(
     plans: &[Plan],
+    layout: &Layout,
     options: &SuiteOptions,
     observer: &dyn Observer,
 ) -> Result<(Vec<RunOutcome>, bool), SuiteError> {
@@ -119,7 +133,7 @@ fn run_all(
         .with_max_len(1)
         .filter(|_| !stopped.load(Ordering::Relaxed))
         .map(|&index| {
-            let run = || run_scenario(&plans[index], index, &options.output, observer);
+            let run = || run_scenario(&plans[index], index, layout, &options.output, observer);
             let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
                 broken.store(true, Ordering::Relaxed);
                 Ok(broken_run(&plans[index], &*panic))
@@ -161,6 +175,22 @@ fn remove(path: &Path) -> Result<(), SuiteError> {
         }),
         _ => Ok(()),
     }
+}
+
+/// Removes the tables of an earlier suite: the tool names no other file so.
+fn remove_tables(output: &Path) -> Result<(), SuiteError> {
+    let read = |source| SuiteError::Write {
+        path: output.to_owned(),
+        source,
+    };
+    for entry in std::fs::read_dir(output).map_err(read)? {
+        let entry = entry.map_err(read)?;
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_file && report::is_comparison_file(&entry.file_name().to_string_lossy()) {
+            remove(&entry.path())?;
+        }
+    }
+    Ok(())
 }
 
 fn create_folder(path: &Path) -> Result<(), SuiteError> {

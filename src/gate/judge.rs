@@ -163,6 +163,21 @@ fn ratio(numerator: &Estimate, denominator: &Estimate) -> Quotient {
     }
 }
 
+/// Quotient of two estimates with the interval that a gate with `relative_to` judges: the hull of
+/// the four quotients of the ends. `None` where it has no value or is unbounded.
+#[must_use]
+pub fn quotient(numerator: &Estimate, denominator: &Estimate) -> Option<Estimate> {
+    let quotient = ratio(numerator, denominator);
+    let (low, high) = quotient.interval?;
+    let is_finite = quotient.value.is_finite() && low.is_finite() && high.is_finite();
+    is_finite.then_some(Estimate {
+        value: quotient.value,
+        low,
+        high,
+        confidence: quotient.confidence,
+    })
+}
+
 /// Compares and words the result.
 fn decide(verdict: &mut Verdict, gate: &GateConfig, quotient: &Quotient, unit: &str) {
     let by_value = gate.decide == GateDecision::Value;

@@ -7,6 +7,6 @@ mod judge;
 mod number;
 mod verdict;
 
-pub use judge::judge;
+pub use judge::{judge, quotient};
 pub(crate) use number::{estimate_text, limits_text, plain};
 pub use verdict::{Verdict, VerdictKind};

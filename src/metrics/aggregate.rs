@@ -7,7 +7,7 @@ use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
 use super::noise_fit::{FitRange, fit_noise};
 use super::steady::{WALK_OVER_DC_GAIN, enter_fit, put_over_dc_gain};
-use super::table::{DEGREES_OF_FREEDOM, EXPECTED};
+use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION};
 
 /// From this many repeats on, Student's t on their scatter gives the interval; below, the intervals
 /// of the repeats themselves say more.
@@ -111,6 +111,21 @@ fn pool(name: &str, metrics: &[&Metric]) -> Metric {
         }
         None => {
             pooled.fields.remove(EXPECTED);
+        }
+    }
+    let correlations = metrics
+        .iter()
+        .map(|metric| metric.fields.get(RAW_CORRELATION));
+    match correlations
+        .map(Option::<&f64>::copied)
+        .collect::<Option<Vec<f64>>>()
+    {
+        Some(correlations) => {
+            let mean = interval::mean(&correlations);
+            pooled.fields.insert(RAW_CORRELATION, mean);
+        }
+        None => {
+            pooled.fields.remove(RAW_CORRELATION);
         }
     }
     pooled.fields.insert("repeats", metrics.len() as f64);

@@ -2,8 +2,10 @@
 
 use std::f64::consts::PI;
 
+use super::estimate::{Estimate, Metric};
 use super::interval::{self, round_to_count};
 use super::noise_fit::NoiseCoefficients;
+use super::table::{DEGREES_OF_FREEDOM, RAW_CORRELATION};
 
 /// Means of consecutive blocks of `block_samples`; what is left over at the end is not used.
 #[must_use]
@@ -42,6 +44,47 @@ pub fn expected_bias_stability(
     let walk = square(coefficients.rate_random_walk_deg_per_h_per_sqrt_s) * t / 3.0 * n / 2.0;
     let ramp = square(coefficients.rate_ramp_deg_per_h_per_s * t) * n * (n + 1.0) / 12.0;
     (quantisation + white + flicker + walk + ramp).sqrt()
+}
+
+/// Correlation of two records' means about their averages; `None` where one of them stands still.
+#[must_use]
+pub(crate) fn correlation(own: &[f64], other: &[f64]) -> Option<f64> {
+    let (mean_own, mean_other) = (interval::mean(own), interval::mean(other));
+    let pairs = || own.iter().zip(other);
+    let product: f64 = pairs()
+        .map(|(a, b)| (a - mean_own) * (b - mean_other))
+        .sum();
+    let square = |values: &[f64], mean: f64| -> f64 {
+        values.iter().map(|value| (value - mean).powi(2)).sum()
+    };
+    let scale = (square(own, mean_own) * square(other, mean_other)).sqrt();
+    (scale > 0.0).then(|| (product / scale).clamp(-1.0, 1.0))
+}
+
+/// Ratio of two bias stabilities measured on the same gyro at the same time.
+///
+/// Both hold the same noise, so that their ratio is known far better than each of them. With r the
+/// correlation of their means and nu degrees of freedom the limits are `q / g` and `q g`,
+/// `g^2 = K + sqrt(K^2 - 1)`, `K = 1 + 2 t^2 (1 - r^2) / (nu - 1)`, t the quantile of Student's
+/// distribution with `nu - 1` degrees of freedom. Only the correlation of each with raw is kept:
+/// for a pair of filters the factors g of both multiply, which errs to the wide side. `None` where a
+/// metric has no such correlation.
+///
+/// Source: Pitman, Biometrika 31 (1939) 9, for independent pairs; nu in the place of n - 1 allows
+/// for means that wander together.
+#[must_use]
+pub fn paired_ratio(own: &Metric, other: &Metric) -> Option<Estimate> {
+    let factor = |metric: &Metric| {
+        let correlation = metric.fields.get(RAW_CORRELATION)?;
+        let freedom = metric.fields.get(DEGREES_OF_FREEDOM)? - 1.0;
+        let t = interval::student_quantile(freedom.max(1.0));
+        let k = 1.0 + 2.0 * t * t * (1.0 - correlation * correlation) / freedom.max(1.0);
+        Some((k + (k * k - 1.0).max(0.0).sqrt()).sqrt())
+    };
+    let g = factor(own)? * factor(other)?;
+    let ratio = own.estimate.value / other.estimate.value;
+    let is_sound = ratio.is_finite() && ratio > 0.0;
+    is_sound.then(|| Estimate::with_interval(ratio, ratio / g, ratio * g))
 }
 
 /// Degrees of freedom of the sample variance of block means under a fitted noise model.
@@ -187,5 +230,42 @@ mod tests {
         // A Brownian path's sample variance: eigenvalues 1/(k pi)^2, (sum)^2 / sum of squares = 2.5.
         let freedom = effective_degrees_of_freedom(&walk, 10.0, 500);
         assert!((freedom - 2.5).abs() < 0.02, "{freedom}");
+    }
+
+    #[test]
+    fn the_interval_of_a_paired_ratio_covers_the_true_one() {
+        // Output = half of raw and a tenth of its noise on top, 36 means; normal numbers by the
+        // sum of twelve uniform ones from a linear congruence.
+        let mut state = 1_u64;
+        let mut normal = || -> f64 {
+            let uniform = (0..12).map(|_| {
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
+                (state >> 11) as f64 / (1_u64 << 53) as f64
+            });
+            uniform.sum::<f64>() - 6.0
+        };
+        let (trials, truth) = (2000, 0.26_f64.sqrt());
+        let mut covered = 0;
+        let mut width = 0.0;
+        for _ in 0..trials {
+            let raw: Vec<f64> = (0..36).map(|_| normal()).collect();
+            let own: Vec<f64> = raw.iter().map(|x| 0.5 * x + 0.1 * normal()).collect();
+            let metric = |values: &[f64]| {
+                let deviation = interval::sample_variance(values).sqrt();
+                let correlation = correlation(values, &raw).expect("both move");
+                Metric::new(Estimate::exact(deviation), "deg/h")
+                    .with(DEGREES_OF_FREEDOM, 35.0)
+                    .with(RAW_CORRELATION, correlation)
+            };
+            let ratio = paired_ratio(&metric(&own), &metric(&raw)).expect("both are measured");
+            covered += usize::from((ratio.low..=ratio.high).contains(&truth));
+            width += (ratio.high - ratio.low) / f64::from(trials);
+        }
+        let coverage = covered as f64 / f64::from(trials);
+        assert!((coverage - 0.95).abs() < 0.02, "{coverage}");
+        // Two separate intervals of 35 degrees of freedom would span 0.5 and more.
+        assert!(width < 0.1, "{width}");
     }
 }

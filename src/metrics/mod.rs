@@ -54,7 +54,9 @@ pub use audit::{
     Prediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
     predict,
 };
-pub use bias::{block_means, effective_degrees_of_freedom, expected_bias_stability, samples_in};
+pub use bias::{
+    block_means, effective_degrees_of_freedom, expected_bias_stability, paired_ratio, samples_in,
+};
 pub use catalogue::{Applies, KnownMetric, known_metrics};
 pub use channel::measure;
 pub use correlation::correlation_delay_s;

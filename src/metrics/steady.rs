@@ -12,7 +12,7 @@ use super::noise_fit::{
 };
 use super::record::{FilterFacts, Record, Settings};
 use super::support::BLOCKS_MIN;
-use super::table::{DEGREES_OF_FREEDOM, EXPECTED};
+use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION};
 use super::weight_noise::measure_weight_noise;
 use crate::units;
 
@@ -151,6 +151,10 @@ fn measure_bias(
         metric.fields.insert("block_samples", block as f64);
         metric.fields.insert("count", means.len() as f64);
         metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
+        let raw_means = bias::block_means(record.raw_deg_per_h, block);
+        if let Some(correlation) = bias::correlation(&means, &raw_means) {
+            metric.fields.insert(RAW_CORRELATION, correlation);
+        }
         if let Some(fit) = fit {
             let coefficients = fit.coefficients();
             let expected =

@@ -9,6 +9,8 @@ use super::noise_fit::{NoiseFit, Term};
 use super::psd::Spectrum;
 use crate::units;
 
+/// Field of a bias stability: correlation of its means with those of raw.
+pub(crate) const RAW_CORRELATION: &str = "raw_correlation";
 /// Field of every metric whose interval is a chi-square one.
 pub(crate) const DEGREES_OF_FREEDOM: &str = "degrees_of_freedom";
 

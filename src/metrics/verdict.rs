@@ -31,6 +31,12 @@ pub struct Finding {
 }
 
 impl Finding {
+    /// Judges the interval of a ratio of noise.
+    #[must_use]
+    pub fn of_noise(estimate: Estimate) -> Self {
+        Self::new(estimate, NOISE_TOLERANCE)
+    }
+
     /// Judges the interval of a ratio; within `tolerance` of 1 comes before below and above.
     #[must_use]
     pub fn new(estimate: Estimate, tolerance: f64) -> Self {

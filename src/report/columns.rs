@@ -125,6 +125,21 @@ fn title_of(motion: &MotionConfig, key: &str) -> String {
         .map_or_else(|| key.replace('_', " "), |(_, title)| (*title).to_owned())
 }
 
+/// Heading of a metric whatever the motion; its averaging time stands beside the unit.
+pub(crate) fn heading_of(key: &str) -> String {
+    let key = match key {
+        "bias_stability_1s_deg_per_h"
+        | "bias_stability_10s_deg_per_h"
+        | "bias_stability_100s_deg_per_h" => "bias_stability_deg_per_h",
+        other => other,
+    };
+    let all = [STATIC, SWING, MULTI_SINE, STEPS, ALWAYS];
+    let mut known = all.iter().copied().flatten();
+    known
+        .find(|(other, _)| *other == key)
+        .map_or_else(|| key.replace('_', " "), |(_, title)| (*title).to_owned())
+}
+
 /// The columns that at least one channel fills, in a fixed order; any other prediction of theory
 /// stands behind the known ones.
 pub(crate) fn columns(motion: &MotionConfig, channels: &[(String, ChannelMetrics)]) -> Vec<Column> {

@@ -6,6 +6,10 @@
 
 mod budget;
 mod columns;
+mod comparison;
+mod comparison_files;
+mod comparison_json;
+mod comparison_text;
 mod csv;
 mod files;
 mod json;
@@ -21,6 +25,12 @@ mod text;
 mod verdict_text;
 
 pub use budget::{budget_csv, budget_json, budget_text};
+pub use comparison::{
+    Assumed, Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
+    DrawnFigure,
+};
+pub use comparison_files::{comparison_files, is_comparison_file};
+pub use comparison_text::comparison_text;
 pub use csv::{allan_csv, psd_csv};
 pub use files::{FolderWriter, write_atomic, write_npy};
 pub use junit::junit_xml;

@@ -1,7 +1,9 @@
 //! What a report is made of, and how one run ended.
 
 use crate::gate::{Verdict, VerdictKind};
-use crate::metrics::{ChannelFailure, ChannelMetrics};
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::metrics::{ChannelFailure, ChannelMetrics, Metric};
 use crate::report::columns::headline;
 use crate::scenario::Scenario;
 use crate::signal::{GyroFacts, TheoryCurve};
@@ -83,6 +85,10 @@ pub struct RunOutcome {
     pub channels: Vec<ChannelOutcome>,
     /// Judged gates.
     pub verdicts: Vec<Verdict>,
+    /// Metrics that a table of the suite asks for, by channel and key.
+    pub kept: Vec<(String, BTreeMap<String, Metric>)>,
+    /// Pictures in the folder of the run.
+    pub pictures: Vec<String>,
     /// Why the run could not finish, if it could not.
     pub error: Option<String>,
 }
@@ -114,6 +120,8 @@ impl RunOutcome {
             file: report.file.to_owned(),
             channels,
             verdicts: report.verdicts.to_vec(),
+            kept: Vec::new(),
+            pictures: Vec::new(),
             error: None,
         }
     }
@@ -127,8 +135,23 @@ impl RunOutcome {
             file: file.to_owned(),
             channels: Vec::new(),
             verdicts: Vec::new(),
+            kept: Vec::new(),
+            pictures: Vec::new(),
             error: Some(error),
         }
+    }
+
+    /// The outcome with the metrics `keys` of every channel that has one of them.
+    #[must_use]
+    pub fn keeping(mut self, report: &RunReport, keys: &BTreeSet<&str>) -> Self {
+        let channels = report.channels.iter().map(|(name, metrics)| {
+            let kept = metrics.metrics.iter();
+            let kept = kept.filter(|(key, _)| keys.contains(key.as_str()));
+            let kept = kept.map(|(key, metric)| (key.clone(), metric.clone()));
+            (name.clone(), kept.collect::<BTreeMap<_, _>>())
+        });
+        self.kept = channels.filter(|(_, kept)| !kept.is_empty()).collect();
+        self
     }
 
     /// How the run ended.

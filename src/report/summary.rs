@@ -2,9 +2,10 @@
 
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelMetrics, Metric};
+use crate::report::comparison_json::comparison;
 use crate::report::json::{number, object, pretty};
 use crate::report::verdict_text::verdict_text;
-use crate::report::{RunOutcome, RunReport, RunStatus};
+use crate::report::{Comparison, RunOutcome, RunReport, RunStatus};
 use crate::scenario::{Fidelity, PublishedConfig, portable_place};
 use crate::signal::GyroFacts;
 use serde_json::{Map, Value};
@@ -43,12 +44,13 @@ pub fn run_summary_json(report: &RunReport) -> String {
     pretty(&root.into())
 }
 
-/// The text of the suite's `summary.json`: every run with its folder, verdict counts and status.
+/// The text of the suite's `summary.json`: every run with its folder, verdict counts and status;
+/// then what the suite says across its scenarios.
 ///
 /// # Panics
 /// If a gate's number is not finite.
 #[must_use]
-pub fn suite_summary_json(tool_version: &str, runs: &[RunOutcome]) -> String {
+pub fn suite_summary_json(tool_version: &str, runs: &[RunOutcome], across: &Comparison) -> String {
     let with = |status: RunStatus| runs.iter().filter(|run| run.status() == status).count();
     let verdicts = |kind: VerdictKind| runs.iter().map(|run| run.count(kind)).sum::<usize>();
     let totals = object([
@@ -64,12 +66,13 @@ pub fn suite_summary_json(tool_version: &str, runs: &[RunOutcome]) -> String {
             verdicts(VerdictKind::Inconclusive).into(),
         ),
     ]);
-    let root = object([
+    let mut root = object([
         ("schema", SCHEMA.into()),
         ("tool", tool(tool_version)),
         ("runs", runs.iter().map(run_entry).collect()),
         ("totals", totals.into()),
     ]);
+    root.extend(comparison(across));
     pretty(&root.into())
 }
 
@@ -213,7 +216,7 @@ pub(crate) fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
     record.into()
 }
 
-fn estimate(what: &str, metric: &Metric) -> Value {
+pub(crate) fn estimate(what: &str, metric: &Metric) -> Value {
     let estimate = &metric.estimate;
     let mut record = object([
         ("value", number(estimate.value, what)),

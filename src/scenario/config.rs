@@ -6,6 +6,9 @@
 
 use serde::Deserialize;
 
+use super::comparison_config::{
+    AssumptionConfig, ComparisonConfig, ComparisonRowConfig, FigureConfig,
+};
 use super::filter_config::FilterConfig;
 use super::gyro_config::GyroConfig;
 use super::turntable_config::TurntableConfig;
@@ -47,6 +50,18 @@ pub struct Scenario {
     /// Published figures to print beside the simulated ones.
     #[serde(default)]
     pub published: Vec<PublishedConfig>,
+    /// Tables over several scenarios that close the suite.
+    #[serde(default, rename = "comparison")]
+    pub comparisons: Vec<ComparisonConfig>,
+    /// Rows of these tables.
+    #[serde(default, rename = "comparison_row")]
+    pub comparison_rows: Vec<ComparisonRowConfig>,
+    /// What a publication leaves open, and how it is read.
+    #[serde(default, rename = "assumption")]
+    pub assumptions: Vec<AssumptionConfig>,
+    /// Published figures that are drawn again.
+    #[serde(default, rename = "figure")]
+    pub figures: Vec<FigureConfig>,
     /// What to write.
     pub output: OutputConfig,
 }

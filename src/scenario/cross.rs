@@ -2,6 +2,7 @@
 
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
+use super::cross_comparison;
 use super::cross_gyro;
 use super::cross_multi_sine;
 use super::cross_optics;
@@ -45,6 +46,9 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.gyro();
     checks.gates();
     checks.published();
+    for (key_path, message) in cross_comparison::check(resolved) {
+        checks.complain(&key_path, message);
+    }
     for (key_path, message) in cross_servo::check(resolved) {
         checks.complain(&key_path, message);
     }

@@ -129,6 +129,9 @@ fn leaf(key: &Key) -> Value {
         Kind::Floats(range) => {
             json!({"type": "array", "minItems": 1, "items": number(range)})
         }
+        Kind::Texts => {
+            json!({"type": "array", "minItems": 1, "items": {"type": "string", "minLength": 1}})
+        }
         Kind::Triple(range) => {
             json!({"type": "array", "minItems": 3, "maxItems": 3, "items": number(range)})
         }

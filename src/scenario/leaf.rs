@@ -34,6 +34,14 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), 
             check_elements(key, shown, range, values)?;
             true
         }
+        (Kind::Texts, Value::Array(values)) => {
+            let is_text = |node: &Node| node.as_text().is_some_and(|text| !text.trim().is_empty());
+            if values.is_empty() || !values.iter().all(is_text) {
+                let value = node.value.to_toml();
+                return Err(format!("{shown} = {value}: expected {}", key.expected()).into());
+            }
+            true
+        }
         (Kind::Triple(range), Value::Array(values)) => {
             if values.len() != AXES {
                 let count = values.len();

@@ -43,11 +43,15 @@ pub(crate) fn expand(
                 .error(matrix.mark.unwrap_or(draft.root_mark), message),
         ]);
     };
+    let base = base_values(draft, &axes);
     let mut points = Vec::with_capacity(count);
     let mut errors = Vec::new();
     for index in 0..count {
         match point(draft, &axes, index, count) {
-            Ok(resolved) => points.push(resolved),
+            Ok(mut resolved) => {
+                resolved.is_base_point = base.is_some() && base == values(&resolved, &axes);
+                points.push(resolved);
+            }
             Err(more) => errors.extend(more),
         }
     }
@@ -56,6 +60,21 @@ pub(crate) fn expand(
     } else {
         Err(errors)
     }
+}
+
+/// The values of the swept keys without the sweep; `None` where it is the sweep that gives one.
+fn base_values(draft: &Draft, axes: &[Axis]) -> Option<Vec<String>> {
+    let base = draft.clone().resolve().ok()?;
+    values(&base, axes)
+}
+
+/// The values of the swept keys.
+fn values(resolved: &Resolved, axes: &[Axis]) -> Option<Vec<String>> {
+    let mut paths = axes.iter().map(|axis| &axis.path);
+    paths.try_fold(Vec::new(), |mut values, path| {
+        values.push(resolved.value_toml(path)?);
+        Some(values)
+    })
 }
 
 /// Resolves one point.

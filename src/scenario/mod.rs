@@ -8,8 +8,10 @@ mod address;
 mod assembly_config;
 mod channels;
 mod check;
+mod comparison_config;
 mod config;
 mod cross;
+mod cross_comparison;
 mod cross_gyro;
 mod cross_multi_sine;
 mod cross_optics;
@@ -39,10 +41,15 @@ mod turntable_config;
 mod vibration_config;
 
 pub use assembly_config::AssemblyConfig;
+pub use comparison_config::{
+    AssumptionConfig, ComparisonColumn, ComparisonConfig, ComparisonKind, ComparisonRowConfig,
+    FigureConfig,
+};
 pub use config::{
     Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
     SamplesFormat, Scenario,
 };
+pub(crate) use cross_comparison::slug;
 pub use defaults::reference_toml;
 pub(crate) use error::portable_place;
 pub use error::{Location, ScenarioError};

@@ -52,6 +52,9 @@ pub struct Resolved {
     pub sweep: Option<SweepPoint>,
     /// What is allowed but worth saying about how it was read.
     pub warnings: Vec<String>,
+    /// Whether it is the point of its sweep at which no swept key departs from what the scenario
+    /// says without the sweep.
+    pub is_base_point: bool,
     /// Where its gates were written, if a manifest records that.
     gate_places: Vec<String>,
     /// Every value, defaults included.
@@ -154,6 +157,7 @@ impl Draft {
             inputs: origin.inputs,
             sweep: origin.sweep,
             warnings: self.warnings,
+            is_base_point: false,
             gate_places: origin.gate_places,
             tree: self.root,
             sources: self.sources,
@@ -235,9 +239,30 @@ impl Resolved {
             .is_some()
     }
 
+    /// The settled values.
+    pub(super) fn tree(&self) -> &Table {
+        &self.tree
+    }
+
+    /// The value of a key as people write it in `--set`, in TOML; `None` where the scenario has
+    /// no such key.
+    #[must_use]
+    pub fn value_of(&self, written: &str) -> Option<String> {
+        let (path, _) = address::resolve(&self.tree, written).ok()?;
+        self.value_toml(&path)
+    }
+
     /// The value of a key in TOML.
     pub(crate) fn value_toml(&self, path: &[address::Step]) -> Option<String> {
         address::get(&self.tree, path).map(|node| node.value.to_toml())
+    }
+
+    /// The canonical text as an element of an array of tables: one of several runs in a document.
+    #[must_use]
+    pub fn to_toml_in_array(&self, array: &str) -> String {
+        let table = self.to_toml_below(array);
+        let rest = table.strip_prefix(&format!("[{array}]")).unwrap_or(&table);
+        format!("[[{array}]]{rest}")
     }
 
     /// The canonical text as a table of a larger document.

@@ -40,6 +40,8 @@ pub(crate) enum Kind {
     Choice(&'static [&'static str]),
     /// Non-empty array of binary64.
     Floats(Range),
+    /// Non-empty array of texts, none of them empty.
+    Texts,
     /// Array of three binary64, one for each case axis x, y, z.
     Triple(Range),
     /// A table that holds no keys (an alternative with nothing to set).
@@ -265,7 +267,7 @@ impl Key {
             Kind::Float(range) | Kind::Floats(range) | Kind::Triple(range) => range.to_string(),
             Kind::Integer(range) => range.to_string(),
             Kind::Boolean => "true or false".to_owned(),
-            Kind::Text | Kind::FreeText => "text".to_owned(),
+            Kind::Text | Kind::FreeText | Kind::Texts => "text".to_owned(),
             Kind::Name => "[a-z0-9][a-z0-9_-]{0,63}".to_owned(),
             Kind::Choice(words) => quoted(words),
             Kind::EmptyTable => "a table without keys".to_owned(),
@@ -281,6 +283,7 @@ impl Key {
             Kind::Integer(_) => format!("a whole number, {}", self.allowed()),
             Kind::Choice(_) => format!("one of {}", self.allowed()),
             Kind::Floats(_) => format!("an array of numbers, each {}", self.allowed()),
+            Kind::Texts => "an array of texts, none of them empty".to_owned(),
             Kind::Triple(_) => {
                 format!(
                     "an array of three numbers (x, y, z), each {}",
@@ -310,6 +313,7 @@ impl Key {
             Kind::Integer(range) => format!("Integer {range}"),
             Kind::Boolean => "Boolean true or false".to_owned(),
             Kind::Text | Kind::FreeText => "Text".to_owned(),
+            Kind::Texts => "Array of texts".to_owned(),
             Kind::Name => format!("Name {}", self.allowed()),
             Kind::Choice(words) => format!("Choice {}", quoted(words)),
             Kind::EmptyTable => "Table without keys".to_owned(),

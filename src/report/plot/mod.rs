@@ -6,6 +6,7 @@ mod allan;
 mod axis;
 mod bode;
 mod budget;
+mod comparison;
 mod noise_delay;
 mod panel;
 mod picture;
@@ -23,6 +24,7 @@ pub use budget::budget_svg;
 use picture::Picture;
 
 use crate::report::RunReport;
+use crate::report::comparison::ComparedTable;
 use crate::report::measured::Measured;
 use crate::scenario::MotionConfig;
 use crate::signal::RunSignals;
@@ -66,6 +68,11 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
         ("rate-gain.svg", rate_gain::picture(report)),
     ];
     drawn(pictures, &axis)
+}
+
+/// A table over several scenarios.
+pub(super) fn comparison_svg(table: &ComparedTable) -> String {
+    comparison::picture(table).svg()
 }
 
 /// The pictures of a recorded log: `rate.svg`; `allan.svg` and `spectrum.svg` where a channel has

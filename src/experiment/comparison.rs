@@ -1,0 +1,358 @@
+//! Tables over several scenarios: what they ask of each run, and how they are put together.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::plan::Plan;
+use crate::gate::quotient;
+use crate::metrics::{Estimate, Finding, Metric, known_metrics, paired_ratio};
+use crate::report::{
+    Assumed, Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
+    DrawnFigure, RunOutcome,
+};
+use crate::scenario::{
+    AssumptionConfig, ComparisonColumn, ComparisonConfig, ComparisonKind, ComparisonRowConfig,
+    FigureConfig, ScenarioError, slug,
+};
+
+const DC_GAIN: &str = "dc_gain";
+
+/// Metrics that bear on the cause of a lower noise, beside those of the columns.
+const COMPANIONS: [&str; 5] = [
+    "mean_ratio",
+    "angle_random_walk_over_dc_gain_deg_per_sqrt_h",
+    "weight_noise_ratio",
+    "amplitude_ratio",
+    "noise_gain",
+];
+
+/// Metrics of slow noise, which the DC gain scales and no short filter of unit gain can lower.
+const SLOW_NOISE: [&str; 2] = ["angle_random_walk_", "bias_stability_"];
+
+/// The tables, assumptions and figures that the scenarios of a suite carry, each once.
+#[derive(Debug, Default)]
+pub(super) struct Layout<'a> {
+    comparisons: Vec<&'a ComparisonConfig>,
+    rows: Vec<&'a ComparisonRowConfig>,
+    assumptions: Vec<&'a AssumptionConfig>,
+    figures: Vec<&'a FigureConfig>,
+    metrics: BTreeSet<&'a str>,
+    scenarios: BTreeSet<&'a str>,
+}
+
+impl<'a> Layout<'a> {
+    /// Gathers what the plans carry.
+    pub(super) fn of(plans: &'a [Plan]) -> Self {
+        let mut layout = Self::default();
+        for plan in plans {
+            let scenario = &plan.resolved().scenario;
+            add(&mut layout.comparisons, &scenario.comparisons);
+            add(&mut layout.rows, &scenario.comparison_rows);
+            add(&mut layout.assumptions, &scenario.assumptions);
+            add(&mut layout.figures, &scenario.figures);
+        }
+        let columns = layout.comparisons.iter().flat_map(|one| &one.columns);
+        let columns = columns.filter_map(|column| ComparisonColumn::parse(column));
+        layout.metrics = columns.map(|column| column.metric).collect();
+        if !layout.metrics.is_empty() {
+            layout.metrics.extend(COMPANIONS);
+            layout.metrics.insert(DC_GAIN);
+        }
+        let named = layout.rows.iter().flat_map(|row| &row.scenarios);
+        layout.scenarios = named.map(String::as_str).collect();
+        layout
+    }
+
+    /// The metrics that a table may ask of a scenario; empty where none names it.
+    pub(super) fn metrics_of(&self, scenario: &str) -> &BTreeSet<&'a str> {
+        static NONE: BTreeSet<&str> = BTreeSet::new();
+        if self.scenarios.contains(scenario) {
+            &self.metrics
+        } else {
+            &NONE
+        }
+    }
+
+    /// The tables of a suite that has run; `runs` are those of `plans`, in their order.
+    pub(super) fn fill(&self, plans: &[Plan], runs: &[RunOutcome]) -> Comparison {
+        let suite: Vec<Run> = plans
+            .iter()
+            .zip(runs)
+            .map(|(plan, outcome)| Run { plan, outcome })
+            .collect();
+        let tables: Vec<ComparedTable> = self
+            .comparisons
+            .iter()
+            .map(|comparison| self.table(comparison, &suite))
+            .filter(|table| !table.rows.is_empty())
+            .collect();
+        let assumptions = self.assumptions.iter();
+        let figures = self.figures.iter();
+        Comparison {
+            assumptions: assumptions
+                .map(|one| assumed(one, &suite, &tables))
+                .collect(),
+            figures: figures.filter_map(|figure| drawn(figure, runs)).collect(),
+            tables,
+        }
+    }
+
+    fn table(&self, comparison: &ComparisonConfig, suite: &[Run]) -> ComparedTable {
+        let columns: Vec<ComparedColumn> = comparison
+            .columns
+            .iter()
+            .filter_map(|text| ComparisonColumn::parse(text))
+            .map(|column| ComparedColumn {
+                channel: column.channel.to_owned(),
+                metric: column.metric.to_owned(),
+                relative_to: column.relative_to.map(str::to_owned),
+            })
+            .collect();
+        let mut table = ComparedTable {
+            name: comparison.name.clone(),
+            slug: slug(&comparison.name),
+            title: comparison.title.clone(),
+            kind: comparison.kind,
+            columns,
+            rows: Vec::new(),
+            causes: Vec::new(),
+            lacking: Vec::new(),
+        };
+        let own = self
+            .rows
+            .iter()
+            .filter(|row| row.comparison == comparison.name);
+        for row in own {
+            enter(&mut table, row, suite);
+        }
+        if table.kind == ComparisonKind::Published {
+            for row in &table.rows {
+                table.causes.extend(causes(row, &table.columns, suite));
+            }
+        }
+        table
+    }
+}
+
+/// Adds what is not there yet.
+fn add<'a, T: PartialEq>(all: &mut Vec<&'a T>, more: &'a [T]) {
+    for one in more {
+        if !all.contains(&one) {
+            all.push(one);
+        }
+    }
+}
+
+/// Complaints about tables of a suite that share a file name and are not the same, and about
+/// metrics that nobody knows.
+pub(super) fn contradictions(plans: &[Plan]) -> Vec<ScenarioError> {
+    let mut first: BTreeMap<String, (&Plan, &ComparisonConfig)> = BTreeMap::new();
+    let mut errors = Vec::new();
+    for plan in plans {
+        let resolved = plan.resolved();
+        for (index, comparison) in resolved.scenario.comparisons.iter().enumerate() {
+            let earlier = first.entry(slug(&comparison.name));
+            let (other, known) = *earlier.or_insert((plan, comparison));
+            if known != comparison {
+                let key = format!("comparison[{index}].name");
+                let message = format!(
+                    "{key} = \"{}\" stands for another table in {}: give each table of a suite a \
+                     name of its own",
+                    comparison.name,
+                    other.resolved().shown_file()
+                );
+                errors.push(ScenarioError::at(resolved.locate(&key), message));
+            }
+            let columns = comparison.columns.iter();
+            for column in columns.filter_map(|text| ComparisonColumn::parse(text)) {
+                if known_metrics()
+                    .iter()
+                    .all(|known| known.name != column.metric)
+                {
+                    let key = format!("comparison[{index}].columns");
+                    let message = format!("{key}: there is no metric {}", column.metric);
+                    let error = ScenarioError::at(resolved.locate(&key), message);
+                    if !errors.contains(&error) {
+                        errors.push(error);
+                    }
+                }
+            }
+        }
+    }
+    errors
+}
+
+/// A run with its plan.
+#[derive(Clone, Copy)]
+struct Run<'a> {
+    plan: &'a Plan,
+    outcome: &'a RunOutcome,
+}
+
+impl Run<'_> {
+    fn metric(&self, channel: &str, key: &str) -> Option<&Metric> {
+        let mut kept = self.outcome.kept.iter();
+        let (_, metrics) = kept.find(|(name, _)| name == channel)?;
+        metrics.get(key)
+    }
+
+    fn point(&self) -> &[(String, String)] {
+        let sweep = &self.plan.resolved().sweep;
+        sweep.as_ref().map_or(&[], |point| &point.assignments)
+    }
+
+    /// The published figure for a metric, with its source.
+    fn published(&self, channel: &str, key: &str) -> Option<(f64, String)> {
+        let wanted = format!("{channel}.{key}");
+        let mut figures = self.plan.resolved().scenario.published.iter();
+        let figure = figures.find(|figure| figure.metric == wanted)?;
+        Some((figure.value, figure.source.clone()))
+    }
+
+    fn cell(&self, column: &ComparedColumn) -> Option<ComparedCell> {
+        let own = self.metric(&column.channel, &column.metric)?;
+        let published = self.published(&column.channel, &column.metric);
+        let (simulated, published) = match &column.relative_to {
+            None => (own.clone(), published),
+            Some(other) => {
+                let below = self.metric(other, &column.metric)?;
+                let paired = paired_ratio(own, below);
+                let estimate = paired.or_else(|| quotient(&own.estimate, &below.estimate))?;
+                let fields = own.fields.clone();
+                let unit = "1";
+                let figures = published.zip(self.published(other, &column.metric));
+                let published = figures
+                    .filter(|(_, (below, _))| *below != 0.0)
+                    .map(|((own, source), (below, _))| (own / below, source));
+                (
+                    Metric {
+                        estimate,
+                        unit,
+                        fields,
+                    },
+                    published,
+                )
+            }
+        };
+        Some(ComparedCell {
+            folder: self.outcome.folder.clone(),
+            simulated,
+            published,
+        })
+    }
+}
+
+/// The runs of one scenario.
+fn runs_of<'s, 'a>(suite: &'s [Run<'a>], name: &'s str) -> impl Iterator<Item = &'s Run<'a>> {
+    suite.iter().filter(move |run| run.outcome.name == name)
+}
+
+/// Enters a row, or a row for each point of a sweep, and what it lacks.
+fn enter(table: &mut ComparedTable, row: &ComparisonRowConfig, suite: &[Run]) {
+    let absent = row.scenarios.iter().map(String::as_str);
+    let absent: Vec<&str> = absent
+        .filter(|name| runs_of(suite, name).next().is_none())
+        .collect();
+    if !absent.is_empty() {
+        let lack = format!("{}: {} not run", row.label, absent.join(", "));
+        table.lacking.push(lack);
+    }
+    let mut points: Vec<&[(String, String)]> = Vec::new();
+    for name in &row.scenarios {
+        for run in runs_of(suite, name) {
+            if !points.contains(&run.point()) {
+                points.push(run.point());
+            }
+        }
+    }
+    for point in points {
+        let runs: Vec<&Run> = row
+            .scenarios
+            .iter()
+            .flat_map(|name| runs_of(suite, name))
+            .filter(|run| run.point() == point)
+            .collect();
+        let cells: Vec<_> = table
+            .columns
+            .iter()
+            .map(|column| runs.iter().find_map(|run| run.cell(column)))
+            .collect();
+        if cells.iter().all(Option::is_none) {
+            continue;
+        }
+        let values = point.iter().map(|(_, value)| value.trim_matches('"'));
+        let label: Vec<&str> = std::iter::once(row.label.as_str()).chain(values).collect();
+        table.rows.push(ComparedRow {
+            label: label.join(" "),
+            is_base: runs.iter().any(|run| run.plan.resolved().is_base_point),
+            cells,
+        });
+    }
+}
+
+/// Why slow noise is lower in one channel than in another: a finding for each ratio of a row; for a
+/// ratio of delays what the channel does to noise under the motion.
+fn causes(row: &ComparedRow, columns: &[ComparedColumn], suite: &[Run]) -> Vec<Cause> {
+    let found = columns.iter().zip(&row.cells).filter_map(|(column, cell)| {
+        let (cell, other) = (cell.as_ref()?, column.relative_to.as_ref()?);
+        let mut runs = suite.iter();
+        let run = runs.find(|run| run.outcome.folder == cell.folder)?;
+        let gain = |channel: &str| run.metric(channel, DC_GAIN).map(|metric| metric.estimate);
+        let dc_gain = gain(&column.channel)
+            .zip(gain(other))
+            .and_then(|(own, other)| quotient(&own, &other));
+        let is_slow = SLOW_NOISE
+            .iter()
+            .any(|start| column.metric.starts_with(start));
+        let left = |gain: Estimate| quotient(&cell.simulated.estimate, &gain);
+        let remainder = dc_gain.filter(|_| is_slow).and_then(left);
+        let companions = COMPANIONS.iter().filter_map(|key| {
+            let metric = run.metric(&column.channel, key)?;
+            Some(((*key).to_owned(), metric.clone()))
+        });
+        Some(Cause {
+            label: row.label.clone(),
+            folder: cell.folder.clone(),
+            channel: column.channel.clone(),
+            relative_to: other.clone(),
+            metric: column.metric.clone(),
+            ratio: cell.simulated.estimate,
+            remainder: remainder.map(Finding::of_noise),
+            dc_gain,
+            companions: companions.collect(),
+        })
+    });
+    found.collect()
+}
+
+fn assumed(one: &AssumptionConfig, suite: &[Run], tables: &[ComparedTable]) -> Assumed {
+    let mut values: Vec<String> = Vec::new();
+    for run in suite {
+        let resolved = run.plan.resolved();
+        let carries = resolved.scenario.assumptions.contains(one);
+        if !carries || (resolved.sweep.is_some() && !resolved.is_base_point) {
+            continue;
+        }
+        values.extend(resolved.value_of(&one.key));
+    }
+    values.sort();
+    values.dedup();
+    let table = one.comparison.clone();
+    Assumed {
+        key: one.key.clone(),
+        values,
+        statement: one.statement.clone(),
+        silence: one.silence.clone(),
+        alternatives: one.alternatives.clone(),
+        table: table.filter(|name| tables.iter().any(|table| table.name == *name)),
+    }
+}
+
+fn drawn(figure: &FigureConfig, runs: &[RunOutcome]) -> Option<DrawnFigure> {
+    let mut named = runs.iter().filter(|run| run.name == figure.scenario);
+    let run = named.find(|run| run.pictures.contains(&figure.file))?;
+    Some(DrawnFigure {
+        name: figure.name.clone(),
+        file: format!("{}/{}", run.folder, figure.file),
+        shows: figure.shows.clone(),
+    })
+}

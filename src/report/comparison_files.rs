@@ -1,0 +1,67 @@
+//! The files of a suite's tables: CSV and SVG beside the suite's summary.
+
+use crate::report::comparison::{ComparedTable, Comparison};
+use crate::report::plot::comparison_svg;
+
+/// How the names of these files begin.
+const PREFIXES: [&str; 2] = ["published-", "sensitivity-"];
+/// How they end.
+const EXTENSIONS: [&str; 2] = [".csv", ".svg"];
+
+/// Name and text of every file: `published-<table>.csv` and `.svg`, `sensitivity-<table>.…`.
+#[must_use]
+pub fn comparison_files(across: &Comparison) -> Vec<(String, String)> {
+    let files = across.tables.iter().flat_map(|table| {
+        let stem = table.file_stem();
+        [
+            (format!("{stem}.csv"), csv(table)),
+            (format!("{stem}.svg"), comparison_svg(table)),
+        ]
+    });
+    files.collect()
+}
+
+/// Whether a file of the output folder has the name of such a file.
+#[must_use]
+pub fn is_comparison_file(name: &str) -> bool {
+    PREFIXES.iter().any(|prefix| name.starts_with(prefix))
+        && EXTENSIONS.iter().any(|extension| name.ends_with(extension))
+}
+
+fn csv(table: &ComparedTable) -> String {
+    let mut text =
+        String::from("row,base,metric,unit,published,value,low,high,confidence,folder\n");
+    for row in &table.rows {
+        for (cell, column) in row.cells.iter().zip(&table.columns) {
+            let Some(cell) = cell else {
+                continue;
+            };
+            let estimate = cell.simulated.estimate;
+            let published = cell.published.as_ref();
+            let fields = [
+                quoted(&row.label),
+                row.is_base.to_string(),
+                column.text(),
+                cell.simulated.unit.to_owned(),
+                published.map_or_else(String::new, |(value, _)| value.to_string()),
+                estimate.value.to_string(),
+                estimate.low.to_string(),
+                estimate.high.to_string(),
+                estimate.confidence.to_string(),
+                cell.folder.clone(),
+            ];
+            text.push_str(&fields.join(","));
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// A text of people's, quoted where a comma or a quote would break the row.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}

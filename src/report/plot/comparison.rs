@@ -1,0 +1,127 @@
+//! A table over several scenarios as a picture: intervals beside published figures.
+
+use super::axis::Axis;
+use super::panel::{Legend, Panel, WIDTH};
+use super::picture::{BLACK, Picture, Shape, Stroke};
+use super::series::{extent, real, stroke_of};
+use crate::report::columns::{heading_of, unit_text};
+use crate::report::comparison::{ComparedCell, ComparedColumn, ComparedTable};
+
+/// Height of one panel with its titles, pixels.
+const PANEL: f64 = 300.0;
+/// Part of a row's room over which its columns are spread.
+const SPREAD: f64 = 0.6;
+/// Distance of a published figure from the simulated one, so that neither hides the other.
+const BESIDE: f64 = 0.05;
+
+/// One panel for each metric and for its ratios: rows along, a colour for each column.
+pub(super) fn picture(table: &ComparedTable) -> Picture {
+    let panels = panels(table);
+    let mut picture = Picture::new(WIDTH, 60.0 + PANEL * real(panels.len().max(1)));
+    let heading = format!("{}: {}", table.name, table.title);
+    picture.heading((90.0, 28.0), &heading, 18.0);
+    for (index, columns) in panels.iter().enumerate() {
+        let top = 56.0 + PANEL * real(index);
+        panel(&mut picture, table, columns, top);
+    }
+    picture
+}
+
+/// Columns that share a unit and a metric stand in one panel.
+fn panels(table: &ComparedTable) -> Vec<Vec<usize>> {
+    let mut panels = Vec::new();
+    for (_, columns) in table.metrics() {
+        let is_ratio = |column: &usize| table.columns[*column].relative_to.is_some();
+        let (ratios, values): (Vec<usize>, Vec<usize>) = columns.into_iter().partition(is_ratio);
+        panels.extend(
+            [values, ratios]
+                .into_iter()
+                .filter(|columns| !columns.is_empty()),
+        );
+    }
+    panels
+}
+
+/// Number of a column's channel among the channels of the table: one colour in every panel.
+fn ordinal(table: &ComparedTable, column: usize) -> usize {
+    let mut seen: Vec<String> = Vec::new();
+    for channels in table.columns.iter().map(ComparedColumn::channels) {
+        if !seen.contains(&channels) {
+            seen.push(channels);
+        }
+    }
+    let own = table.columns[column].channels();
+    let mut places = seen.iter();
+    places.position(|name| *name == own).unwrap_or(0)
+}
+
+fn panel(picture: &mut Picture, table: &ComparedTable, columns: &[usize], top: f64) {
+    let cells = || {
+        let rows = table.rows.iter();
+        rows.flat_map(|row| {
+            columns
+                .iter()
+                .filter_map(|column| row.cells[*column].as_ref())
+        })
+    };
+    let ends = |cell: &ComparedCell| {
+        let estimate = cell.simulated.estimate;
+        let published = cell.published.as_ref().map(|(value, _)| *value);
+        [
+            Some(estimate.value),
+            Some(estimate.low),
+            Some(estimate.high),
+            published,
+        ]
+    };
+    let Some(range) = extent(cells().flat_map(ends).flatten()) else {
+        return;
+    };
+    let count = table.rows.len();
+    let mut x = Axis::linear((-0.5, real(count) - 0.5), 0.0, "");
+    let labels = table.rows.iter().enumerate();
+    let labels = labels.map(|(index, row)| {
+        let mark = if row.is_base { " (as read)" } else { "" };
+        (real(index), format!("{}{mark}", row.label))
+    });
+    x.ticks = labels.collect();
+    let definition = &table.columns[columns[0]];
+    let unit = table.sample(columns[0]).map_or_else(String::new, unit_text);
+    let ratio = if definition.relative_to.is_some() {
+        ", ratio"
+    } else {
+        ""
+    };
+    let title = format!("{}{ratio} [{unit}]", heading_of(&definition.metric)).replace(" []", "");
+    let y = Axis::linear(range, 0.08, &title);
+    let panel = Panel::new(picture, (top, top + PANEL - 62.0), x, y);
+    let mut legend = Legend::new(top);
+    let mut has_published = false;
+    for (place, column) in columns.iter().enumerate() {
+        let stroke = Stroke {
+            dash: super::picture::Dash::Solid,
+            ..stroke_of(ordinal(table, *column))
+        };
+        let part = (real(place) + 0.5) / real(columns.len()) - 0.5;
+        for (index, row) in table.rows.iter().enumerate() {
+            let Some(cell) = &row.cells[*column] else {
+                continue;
+            };
+            let at = real(index) + SPREAD * part;
+            let estimate = cell.simulated.estimate;
+            panel.line(picture, &[(at, estimate.low), (at, estimate.high)], stroke);
+            panel.marker(picture, (at, estimate.value), Shape::Circle, stroke.colour);
+            if let Some((value, _)) = &cell.published {
+                has_published = true;
+                let beside = at + BESIDE;
+                panel.marker(picture, (beside, *value), Shape::Square, BLACK);
+            }
+        }
+        let name = table.columns[*column].channels();
+        legend.marker(picture, (Shape::Circle, stroke.colour), &name);
+    }
+    if has_published {
+        legend.marker(picture, (Shape::Square, BLACK), "published");
+    }
+    legend.text(picture, "lines: 95 % interval");
+}
