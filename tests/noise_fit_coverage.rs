@@ -201,34 +201,3 @@ fn fitted_coefficients_lie_in_their_intervals_as_often_as_stated() {
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
-
-#[test]
-fn the_record_itself_says_from_which_averaging_time_a_filter_no_longer_counts() {
-    // White noise through a one-pole low pass of a hundred samples; N^2 = 1 at zero frequency.
-    let decay = (-1.0_f64 / 100.0).exp();
-    let runs = 20;
-    let (mut held, mut mean) = (0, 0.0);
-    for seed in 0..runs {
-        let mut noise = vec![0.0; 100_000];
-        Streams::new(seed, 0)
-            .stream("low pass")
-            .fill_normal(&mut noise);
-        let mut state = 0.0;
-        for value in &mut noise {
-            state += (1.0 - decay) * (*value - state);
-            *value = state;
-        }
-        let range = FitRange {
-            tau_min_s: 10.0,
-            tau_max_s: 1e5 * FIT_TAU_PER_RECORD_MAX,
-        };
-        let fit = fit_noise(&overlapping_allan(&noise, 1.0), range).unwrap();
-        let walk = fit.angle_random_walk_deg_per_h_sqrt_s.estimate();
-        held += i32::from(walk.low <= 1.0 && 1.0 <= walk.high);
-        mean += walk.value / f64::from(u32::try_from(runs).unwrap());
-        // Four time constants at least: the correlation is then 2 % of the variance.
-        assert!(fit.tau_range_s[0] > 300.0, "{:?}", fit.tau_range_s);
-    }
-    assert!(held >= 15, "{held} of {runs}");
-    assert!((mean - 1.0).abs() < 0.05, "{mean}");
-}

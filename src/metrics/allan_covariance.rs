@@ -78,18 +78,12 @@ impl Structure {
         sum
     }
 
-    /// Variance of `sum g AVAR` over the points from `start` on, as a quadratic in one term's
+    /// Variance of `sum g AVAR` over all points, as a quadratic in one term's
     /// square, the others given: the coefficients of its powers 0, 1, 2.
-    pub(crate) fn combined(
-        &self,
-        start: usize,
-        g: &[f64],
-        squares: &[f64; TERMS],
-        term: usize,
-    ) -> [f64; 3] {
+    pub(crate) fn combined(&self, g: &[f64], squares: &[f64; TERMS], term: usize) -> [f64; 3] {
         let mut powers = [0.0; 3];
-        for (first, g1) in (start..).zip(g) {
-            for (second, g2) in (start..).zip(g) {
+        for (first, g1) in g.iter().enumerate() {
+            for (second, g2) in g.iter().enumerate() {
                 let table = &self.products[first * self.points + second];
                 let weight = g1 * g2;
                 for a in 0..TERMS {

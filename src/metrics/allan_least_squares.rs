@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::allan::AllanPoint;
 use super::allan_covariance::Structure;
 pub(crate) use super::allan_covariance::{FLICKER, INVERSE_SQUARE, RAMP, TERMS, WALK, WHITE};
+use super::allan_sampling::{Sampling, THIRD_AT};
 use super::estimate::Estimate;
 use super::interval::NORMAL_QUANTILE;
 use super::noise_fit::FLICKER_ALLAN_VARIANCE;
@@ -15,12 +16,6 @@ const REWEIGHTINGS: usize = 4;
 /// Share of each point's variance that is taken as its own: neighbours repeat each other so nearly
 /// that without it rounding and the model's finest errors would decide between them.
 const NUGGET: f64 = 0.02;
-
-/// Degrees of freedom of a walk over those of white noise at the same averaging time.
-const WALK_OVER_WHITE_FREEDOM: f64 = 0.6;
-
-/// Halvings of an interval in which an end is sought.
-const BISECTIONS: usize = 60;
 
 /// Rounds in which the other squares follow the end of an interval.
 const PROFILE_ROUNDS: usize = 2;
@@ -48,11 +43,7 @@ pub(crate) struct Problem {
     sample_period_s: f64,
     tau: Vec<f64>,
     variance: Vec<f64>,
-    /// Degrees of freedom the points came with.
-    freedom: Vec<f64>,
     structure: Structure,
-    /// Points of the structure that have been left out at its start.
-    left_out: usize,
     /// Independent records the curve is the mean of.
     records: f64,
 }
@@ -79,22 +70,9 @@ impl Problem {
                 .map_or(1.0, |point| point.tau_s / point.averaged_samples as f64),
             tau: factors.iter().map(|&factor| factor as f64).collect(),
             variance: points.iter().map(AllanPoint::variance).collect(),
-            freedom: points
-                .iter()
-                .map(|point| point.degrees_of_freedom)
-                .collect(),
             structure: Structure::new(&factors, &counts),
-            left_out: 0,
             records,
         }
-    }
-
-    /// Leaves out the points of the so many shortest averaging times.
-    pub(crate) fn leave_out(&mut self, points: usize) {
-        self.tau.drain(..points);
-        self.variance.drain(..points);
-        self.freedom.drain(..points);
-        self.left_out += points;
     }
 
     /// Number of points.
@@ -178,7 +156,6 @@ impl Problem {
     }
 
     fn point_covariance(&self, row: usize, column: usize, squares: &[f64; TERMS]) -> f64 {
-        let (row, column) = (row + self.left_out, column + self.left_out);
         self.structure.covariance(row, column, squares)
     }
 
@@ -199,8 +176,7 @@ impl Problem {
     /// Variance of a coefficient as a quadratic in its true square, the other squares given.
     fn powers(&self, solution: &Solution, term: usize, others: &[f64; TERMS]) -> Option<[f64; 3]> {
         let weights = solution.weights[term].as_ref()?;
-        let start = self.left_out;
-        let powers = self.structure.combined(start, weights, others, term);
+        let powers = self.structure.combined(weights, others, term);
         Some(powers.map(|power| power / self.records))
     }
 
@@ -285,109 +261,12 @@ impl Problem {
         let twice = &shared * &shared;
         2.0 * twice.component_mul(&shared.transpose()).sum() / (self.records * self.records)
     }
-
-    /// Largest distance of a point from the fitted curve in standard deviations of its logarithm,
-    /// among points with so many degrees of freedom.
-    ///
-    /// The points' own white-noise degrees of freedom are taken by `0.6`, which makes them those of a
-    /// walk: the fitted mix cannot be asked while it may be wrong.
-    pub(crate) fn misfit(&self, solution: &Solution, freedom_min: f64) -> f64 {
-        (0..self.points())
-            .filter_map(|row| {
-                let freedom = WALK_OVER_WHITE_FREEDOM * self.freedom[row];
-                let fitted = fitted_variance(&solution.squares, self.tau[row]);
-                if freedom < freedom_min {
-                    None
-                } else if fitted > 0.0 {
-                    let distance = (self.variance[row] / fitted).ln().abs();
-                    Some(distance * (freedom / 2.0).sqrt())
-                } else {
-                    Some(f64::INFINITY)
-                }
-            })
-            .fold(0.0, f64::max)
-    }
 }
 
 impl Solution {
     /// Coefficient of a term in units of the sample period.
     pub(crate) fn square(&self, term: usize) -> f64 {
         self.squares[term]
-    }
-}
-
-/// True squares, in units of a scale, at which the third cumulant is worked out.
-const THIRD_AT: [f64; 4] = [0.0, 1.0, 2.0, 4.0];
-
-/// Largest skewness of the shifted gamma variable, that of one degree of freedom.
-const SKEWNESS_MAX: f64 = 2.8;
-
-/// How an estimated square scatters, as a function of the true one.
-struct Sampling {
-    /// Variance: coefficients of the powers 0, 1, 2 of the true square.
-    powers: [f64; 3],
-    /// Third cumulant at [`THIRD_AT`] times the scale; a cubic goes through them.
-    thirds: [f64; 4],
-    scale: f64,
-}
-
-impl Sampling {
-    /// Quantile of the estimate for a true square, given that of the standard normal distribution.
-    ///
-    /// The estimate is taken as a gamma variable shifted to the right mean, variance and third
-    /// cumulant. Source: Wilson and Hilferty, PNAS 17 (1931) 684.
-    fn quantile(&self, truth: f64, normal: f64) -> f64 {
-        let [p0, p1, p2] = self.powers;
-        let deviation = (p0 + p1 * truth + p2 * truth * truth).max(0.0).sqrt();
-        let skewness = self.third(truth) / deviation.powi(3).max(f64::MIN_POSITIVE);
-        let skewness = skewness.clamp(-SKEWNESS_MAX, SKEWNESS_MAX);
-        let standard = if skewness.abs() > 1e-6 {
-            let cube = 1.0 + skewness * normal / 6.0 - skewness * skewness / 36.0;
-            (2.0 / skewness) * (cube.max(0.0).powi(3) - 1.0)
-        } else {
-            normal
-        };
-        truth + deviation * standard
-    }
-
-    /// Third cumulant by Lagrange's cubic.
-    fn third(&self, truth: f64) -> f64 {
-        let x = truth / self.scale.max(f64::MIN_POSITIVE);
-        let weight = |node: usize| -> f64 {
-            (0..THIRD_AT.len())
-                .filter(|&other| other != node)
-                .map(|other| (x - THIRD_AT[other]) / (THIRD_AT[node] - THIRD_AT[other]))
-                .product()
-        };
-        (0..THIRD_AT.len())
-            .map(|node| weight(node) * self.thirds[node])
-            .sum()
-    }
-
-    /// The true square under which the found one is the quantile; 0 at least.
-    fn end(&self, found: f64, normal: f64) -> f64 {
-        let at = |truth: f64| self.quantile(truth, normal);
-        let mut low = 0.0;
-        if at(low) >= found {
-            return low;
-        }
-        let mut high = self.scale;
-        for _ in 0..BISECTIONS {
-            if at(high) >= found {
-                break;
-            }
-            low = high;
-            high *= 2.0;
-        }
-        for _ in 0..BISECTIONS {
-            let middle = (low + high) / 2.0;
-            if at(middle) >= found {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
-        (low + high) / 2.0
     }
 }
 

@@ -12,6 +12,7 @@ mod aggregate;
 mod allan;
 mod allan_covariance;
 mod allan_least_squares;
+mod allan_sampling;
 mod allan_stream;
 mod allan_variants;
 mod audit;

@@ -17,15 +17,6 @@ const SIGNIFICANCE: f64 = 1.645;
 /// differences at the longest of them scatter with a long upper tail.
 const STEEP_SIGNIFICANCE: f64 = 3.0;
 
-/// Standard deviations by which a point may miss the best curve of all five terms before the
-/// shortest averaging times are taken to see something else, and the degrees of freedom that make
-/// such a distance meaningful.
-const MISFIT_MAX: f64 = 4.5;
-const MISFIT_FREEDOM_MIN: f64 = 50.0;
-
-/// Points left out at a time where the shortest averaging times do not fit.
-const POINTS_PER_RETREAT: usize = 1;
-
 /// Standard errors added to the slow terms where a prediction must not trust a lucky record.
 const CAUTION: f64 = 0.5;
 
@@ -191,11 +182,6 @@ pub struct FitRange {
 /// tau (a loop's bandwidth, a filter's taps) has `AVAR = N^2/tau - 3 sum k R(k) T^2/tau^2` exactly,
 /// so that a fit with positive Q only would put N low by as much as 2 % at ten samples.
 ///
-/// The record itself says from which averaging time on this holds: where a point with fifty
-/// degrees of freedom or more lies 4.5 standard deviations off the best curve of all five terms, the
-/// shortest averaging time is left out and the rest is fitted again (noise that a filter
-/// correlates over longer than `range.tau_min_s`).
-///
 /// R, then K leave the model unless they exceed 3 of the standard errors they would have if they
 /// were zero. Intervals are those of the terms in the model and hold all true values, none negative,
 /// under which the estimate lies between its quantiles 0.025 and 0.975: where that begins at zero
@@ -246,15 +232,8 @@ pub fn fit_pooled_noise(
         ));
     }
     let used = thinned(used);
-    let mut problem = Problem::new(&used, records);
-    let mut first = 0;
-    while problem.misfit(&problem.solve(&[true; TERMS]), MISFIT_FREEDOM_MIN) > MISFIT_MAX
-        && enough(&used[first + POINTS_PER_RETREAT..])
-    {
-        first += POINTS_PER_RETREAT;
-        problem.leave_out(POINTS_PER_RETREAT);
-    }
-    let range = [used[first].tau_s, used[used.len() - 1].tau_s];
+    let problem = Problem::new(&used, records);
+    let range = [used[0].tau_s, used[used.len() - 1].tau_s];
     Ok(report(range, &problem))
 }
 
