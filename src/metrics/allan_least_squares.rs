@@ -281,10 +281,8 @@ fn estimator(design: &DMatrix<f64>, mut covariance: DMatrix<f64>) -> Option<DMat
         }
     }
     let mut scaled = design.clone();
-    for row in 0..points {
-        for value in scaled.row_mut(row).iter_mut() {
-            *value /= deviations[row];
-        }
+    for (mut row, deviation) in scaled.row_iter_mut().zip(&deviations) {
+        row /= *deviation;
     }
     let factor = covariance.cholesky()?;
     let whitened = factor.l_dirty().solve_lower_triangular(&scaled)?;
