@@ -10,6 +10,10 @@ const COUNT: usize = 512;
 /// sample to eighteen records.
 const CORRELATION_TIMES: [f64; 8] = [0.57, 2.28, 9.12, 36.48, 145.92, 583.68, 2334.72, 9338.88];
 
+/// First seed: the rules for noise identification were tried on seeds from 0 on, which prove nothing
+/// about them.
+const SEED_BASE: u64 = 7_000_000;
+
 #[derive(Clone, Copy, Debug)]
 enum Noise {
     White,
@@ -114,7 +118,7 @@ fn try_intervals(noise: Noise, estimator: AllanEstimator, runs: u64) -> Vec<Tria
     };
     let mut trials: Vec<Trial> = Vec::new();
     for seed in 0..runs {
-        let mut stream = Streams::new(seed, 0).stream("coverage");
+        let mut stream = Streams::new(SEED_BASE + seed, 0).stream("coverage");
         let points = allan_variant(&noise.record(&mut stream), 1.0, &options);
         if trials.is_empty() {
             trials.extend(points.iter().map(|point| Trial {
@@ -151,6 +155,9 @@ fn ninety_per_cent_intervals_hold_the_truth_nine_times_in_ten() {
         (Noise::White, AllanEstimator::Overlapping),
         (Noise::Flicker, AllanEstimator::Overlapping),
         (Noise::RandomWalk, AllanEstimator::Overlapping),
+        (Noise::White, AllanEstimator::Plain),
+        (Noise::Flicker, AllanEstimator::Plain),
+        (Noise::RandomWalk, AllanEstimator::Plain),
         (Noise::White, AllanEstimator::Modified),
         (Noise::RandomWalk, AllanEstimator::Hadamard),
     ] {
@@ -158,6 +165,9 @@ fn ninety_per_cent_intervals_hold_the_truth_nine_times_in_ten() {
             let many = trial.freedom >= 15.0;
             seen[usize::from(many)] += 1;
             let (least, most) = if many { (0.88, 0.92) } else { (0.88, 0.96) };
+            // One standard error of 4000 runs; the 16 000 of CI do without.
+            let chance = if runs < 16_000 { 0.005 } else { 0.0 };
+            let (least, most) = (least - chance, most + chance);
             // The variance itself is unbiased: five times sqrt(2 / (edf runs)).
             let slack = 5.0 * (2.0 / (trial.freedom * runs as f64)).sqrt();
             if trial.held < least || trial.held > most || (trial.ratio - 1.0).abs() > slack {

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::allan::AllanPoint;
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
-use super::noise_fit::{FitRange, fit_noise};
+use super::noise_fit::{FitRange, fit_pooled_noise};
 use super::steady::{WALK_OVER_DC_GAIN, enter_fit, put_over_dc_gain};
-use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION};
+use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION, TWO_SIDED_PSD};
 
 /// From this many repeats on, Student's t on their scatter gives the interval; below, the intervals
 /// of the repeats themselves say more.
@@ -179,6 +179,10 @@ fn pool_spectra(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
                 "psd_deg2_per_h2_per_hz".to_owned(),
                 mean_of(&density, std::convert::identity),
             ),
+            (
+                TWO_SIDED_PSD.to_owned(),
+                mean_of(&density, |value| value / 2.0),
+            ),
         ]);
         pooled.curves.insert("psd".to_owned(), curve);
     }
@@ -224,21 +228,27 @@ fn pool_allan(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
     let tau = columns(repeats, "allan", "tau_s");
     let deviation = columns(repeats, "allan", "deviation_deg_per_h");
     let freedom = columns(repeats, "allan", "edf");
-    let (Some(tau), Some(deviation), Some(freedom)) = (tau, deviation, freedom) else {
+    let differences = columns(repeats, "allan", "count");
+    let (Some(tau), Some(deviation), Some(freedom), Some(differences)) =
+        (tau, deviation, freedom, differences)
+    else {
         return;
     };
+    // The shortest averaging time is one sample.
+    let sample_period_s = tau[0].first().copied().unwrap_or(1.0);
     let count = repeats.len() as f64;
     let variance = mean_of(&deviation, |value| value * value);
     let freedom = mean_of(&freedom, std::convert::identity);
     let points: Vec<AllanPoint> = tau[0]
         .iter()
         .zip(variance.iter().zip(&freedom))
-        .map(|(&tau_s, (variance, freedom))| AllanPoint {
+        .zip(differences[0])
+        .map(|((&tau_s, (variance, freedom)), differences)| AllanPoint {
             tau_s,
-            averaged_samples: 0,
+            averaged_samples: interval::round_to_count(tau_s / sample_period_s),
             deviation_deg_per_h: interval::deviation(variance.sqrt(), freedom * count),
             degrees_of_freedom: freedom * count,
-            count: 0,
+            count: interval::round_to_count(*differences),
         })
         .collect();
     let range = FITTED.iter().find_map(|&name| {
@@ -248,7 +258,7 @@ fn pool_allan(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
             tau_max_s: *fields.get("tau_max_s")?,
         })
     });
-    let Some(Ok(fit)) = range.map(|range| fit_noise(&points, range)) else {
+    let Some(Ok(fit)) = range.map(|range| fit_pooled_noise(&points, range, count)) else {
         pooled.put_allan_curve(&points, None);
         return;
     };

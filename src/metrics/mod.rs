@@ -12,6 +12,7 @@ mod aggregate;
 mod allan;
 mod allan_covariance;
 mod allan_least_squares;
+mod allan_sampling;
 mod allan_stream;
 mod allan_variants;
 mod audit;
@@ -64,7 +65,7 @@ pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 pub use noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
-    fit_noise, mixed_degrees_of_freedom,
+    fit_noise, fit_pooled_noise, mixed_degrees_of_freedom,
 };
 pub use noise_identification::PowerLaw;
 pub use psd::{Spectrum, log_binned, segment_samples, welch};

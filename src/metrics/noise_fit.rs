@@ -2,24 +2,20 @@
 
 use super::allan::{AllanPoint, NoiseType, degrees_of_freedom};
 use super::allan_least_squares::{
-    FLICKER, INVERSE_SQUARE, Problem, RAMP, Solution, TERMS, WALK, WHITE, basis, fitted_variance,
+    FLICKER, INVERSE_SQUARE, Problem, RAMP, TERMS, WALK, WHITE, basis, fitted_variance,
 };
 use super::estimate::Estimate;
-use super::interval;
 
 /// `AVAR / B^2` of flicker noise, `2 ln 2 / pi`; its square root is the familiar 0.664.
 pub const FLICKER_ALLAN_VARIANCE: f64 = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;
 
-/// N, Q and B stay in the model while they exceed this many of their standard errors.
+/// Q is said to be found from this many standard errors on; N and B as soon as they are positive,
+/// with an interval that may begin at zero.
 const SIGNIFICANCE: f64 = 1.645;
 
 /// K and R must exceed this many: B explains the same averaging times, and the few independent
 /// differences at the longest of them scatter with a long upper tail.
 const STEEP_SIGNIFICANCE: f64 = 3.0;
-
-/// By how much a walk must fit better than flicker to replace it, in the weighted sum of squares of
-/// points that repeat each other; of 300 hours of flicker at the default budget none then reports K.
-const WALK_IMPROVEMENT: f64 = 25.0;
 
 /// Standard errors added to the slow terms where a prediction must not trust a lucky record.
 const CAUTION: f64 = 0.5;
@@ -75,17 +71,31 @@ impl NoiseCoefficients {
 pub enum Term {
     /// The coefficient (not its square) with its 95 % interval.
     Found(Estimate),
-    /// Left out, and why.
-    LeftOut(String),
+    /// Left out, and why; the interval begins at zero.
+    LeftOut {
+        /// The reason, in words, with the upper end of the interval.
+        reason: String,
+        /// What the record still allows: value 0, 95 % interval from 0 on.
+        allowed: Estimate,
+    },
 }
 
 impl Term {
+    /// The estimate; value 0 if left out.
+    #[must_use]
+    pub fn estimate(&self) -> Estimate {
+        match self {
+            Self::Found(estimate) => *estimate,
+            Self::LeftOut { allowed, .. } => *allowed,
+        }
+    }
+
     /// The value, 0 if left out.
     #[must_use]
     pub fn value(&self) -> f64 {
         match self {
             Self::Found(estimate) => estimate.value,
-            Self::LeftOut(_) => 0.0,
+            Self::LeftOut { .. } => 0.0,
         }
     }
 }
@@ -164,30 +174,39 @@ pub struct FitRange {
 /// Fits the five noise terms to an Allan variance curve.
 ///
 /// `AVAR = 3Q^2/tau^2 + N^2/tau + 0.4413 B^2 + K^2 tau/3 + R^2 tau^2/2` is linear in the squares;
-/// they are found by least squares weighted with `edf / 2 AVAR^2` (AVAR of the previous round of the
-/// fit, so that points which happen to lie low get no more say), N^2, B^2, K^2 and R^2 constrained
-/// to be non-negative. With so few terms the constrained optimum is found by trying every active
-/// set: the best feasible one is the exact solution.
+/// they are found by generalised least squares. The covariance of the points, which overlap and
+/// repeat each other, is that of the fitted mix in a record of this length, found in a few rounds.
 ///
-/// The `1/tau^2` term is left free in sign. Noise whose correlation dies out within the shortest
+/// No square is held at zero while it is fitted: a bound on B would put N low on white noise. The
+/// `1/tau^2` term, too, is free in sign. Noise whose correlation dies out within the shortest
 /// tau (a loop's bandwidth, a filter's taps) has `AVAR = N^2/tau - 3 sum k R(k) T^2/tau^2` exactly,
-/// so that a fit with positive Q only would put N low by as much as 2 % at ten samples. Q is
-/// reported when the term is significantly positive.
+/// so that a fit with positive Q only would put N low by as much as 2 % at ten samples.
 ///
-/// R, then K are dropped unless they exceed 3 of their standard errors beside the gentler terms; a
-/// walk takes the place of B only where it fits far better. B is reported from 1.645 on; below, B^2
-/// stays as a floor that is fitted but not reported, so that the interval of N knows of slow noise
-/// too faint to be seen (the price: N is low
-/// by up to 0.4 of its standard error on purely white noise). Standard errors come from the full
-/// covariance of the points, which overlap and repeat each other. Each interval is a chi-square
-/// interval of the square with `2 (square / standard error)^2` degrees of freedom.
+/// R, then K leave the model unless they exceed 3 of the standard errors they would have if they
+/// were zero. Intervals are those of the terms in the model and hold all true values, none negative,
+/// under which the estimate lies between its quantiles 0.025 and 0.975: where that begins at zero
+/// the upper end alone bounds the coefficient. A term left out has the interval it has beside the
+/// others. Where K is left out, the intervals of the others are widened to what they are beside it:
+/// an hour cannot always tell a faint walk from flicker.
 ///
 /// # Errors
 /// The reason, in words, if fewer than eight points or less than a factor of eight in tau lie in
 /// range.
 ///
-/// Source: IEEE Std 952-1997 annex C (model); derived: covariance, signed term.
+/// Source: IEEE Std 952-1997 annex C (model); derived: covariance, signed terms.
 pub fn fit_noise(points: &[AllanPoint], range: FitRange) -> Result<NoiseFit, String> {
+    fit_pooled_noise(points, range, 1.0)
+}
+
+/// As [`fit_noise`] for the mean of the curves of so many independent records.
+///
+/// # Errors
+/// As for [`fit_noise`].
+pub fn fit_pooled_noise(
+    points: &[AllanPoint],
+    range: FitRange,
+    records: f64,
+) -> Result<NoiseFit, String> {
     // A hair of slack keeps a point whose tau equals the limit up to rounding.
     let used: Vec<AllanPoint> = points
         .iter()
@@ -198,11 +217,12 @@ pub fn fit_noise(points: &[AllanPoint], range: FitRange) -> Result<NoiseFit, Str
                 && point.deviation_deg_per_h.value > 0.0
         })
         .collect();
-    let reach = match (used.first(), used.last()) {
+    let reach = |used: &[AllanPoint]| match (used.first(), used.last()) {
         (Some(first), Some(last)) => last.tau_s / first.tau_s,
         _ => 0.0,
     };
-    if used.len() < POINTS_MIN || reach < TAU_RATIO_MIN {
+    let enough = |used: &[AllanPoint]| used.len() >= POINTS_MIN && reach(used) >= TAU_RATIO_MIN;
+    if !enough(&used) {
         return Err(format!(
             "the record offers {} averaging times between {:.4} s and a ninth of its length \
              ({:.4} s); a fit needs at least {POINTS_MIN} over a factor of {TAU_RATIO_MIN}",
@@ -211,10 +231,23 @@ pub fn fit_noise(points: &[AllanPoint], range: FitRange) -> Result<NoiseFit, Str
             range.tau_max_s,
         ));
     }
-    let problem = Problem::new(&used);
-    let active = choose_terms(&problem);
+    let used = thinned(used);
+    let problem = Problem::new(&used, records);
     let range = [used[0].tau_s, used[used.len() - 1].tau_s];
-    Ok(report(range, &problem.solve(&active)))
+    Ok(report(range, &problem))
+}
+
+/// Every second point and the last of a dense curve: neighbours a fifth of tau apart correlate by 0.9
+/// and more.
+fn thinned(used: Vec<AllanPoint>) -> Vec<AllanPoint> {
+    if used.len() < 2 * POINTS_MIN {
+        return used;
+    }
+    let last = used.len() - 1;
+    let kept = used.into_iter().enumerate();
+    kept.filter(|(index, _)| index % 2 == 0 || *index == last)
+        .map(|(_, point)| point)
+        .collect()
 }
 
 /// The terms the points ask for.
@@ -222,22 +255,7 @@ fn choose_terms(problem: &Problem) -> [bool; TERMS] {
     let mut active = [true; TERMS];
     // R first, then K: each must be needed although the gentler ones may explain the same times.
     for term in [RAMP, WALK] {
-        active[term] = problem.solve(&active).significance(term) >= STEEP_SIGNIFICANCE;
-    }
-    if !active[WALK] && !active[RAMP] {
-        // Without B a walk has a smaller standard error; it may take B's place where flicker fits
-        // the points far worse than it does.
-        let mut walking = active;
-        (walking[FLICKER], walking[WALK]) = (false, true);
-        if problem.improvement(&active, &walking) > WALK_IMPROVEMENT
-            && problem.solve(&walking).significance(WALK) >= STEEP_SIGNIFICANCE
-        {
-            return walking;
-        }
-    }
-    let steep = active[WALK] || active[RAMP];
-    if steep && problem.solve(&active).significance(FLICKER) < SIGNIFICANCE {
-        active[FLICKER] = false;
+        active[term] = problem.significance(&problem.solve(&active), term) >= STEEP_SIGNIFICANCE;
     }
     active
 }
@@ -292,29 +310,58 @@ pub fn mixed_degrees_of_freedom(
         .collect()
 }
 
-/// Puts a solution into words and intervals.
-fn report(range: [f64; 2], solution: &Solution) -> NoiseFit {
+/// Puts the solution into words and intervals.
+fn report(range: [f64; 2], problem: &Problem) -> NoiseFit {
+    let active = choose_terms(problem);
+    let solution = problem.solve(&active);
+    let mut walking = active;
+    walking[WALK] = true;
+    let beside_walk = problem.solve(&walking);
     let term = |index: usize, factor: f64, name: &str| -> Term {
-        let square = solution.squares[index] * factor;
-        let significance = solution.significance(index);
-        let needed = if index == WALK || index == RAMP {
-            STEEP_SIGNIFICANCE
-        } else {
-            SIGNIFICANCE
+        let mut with = active;
+        with[index] = true;
+        let own = match index {
+            WALK => beside_walk.clone(),
+            _ if active[index] => solution.clone(),
+            _ => problem.solve(&with),
         };
-        if significance < needed {
-            return Term::LeftOut(format!(
+        let nothing = || Estimate::with_interval(0.0, 0.0, f64::INFINITY);
+        let mut square = problem.interval(&own, index).unwrap_or_else(nothing);
+        if active[index] && !active[WALK] {
+            // A walk too faint to be told from flicker may still be there.
+            let wider = problem
+                .interval(&beside_walk, index)
+                .unwrap_or_else(nothing);
+            square.low = square.low.min(wider.low);
+            square.high = square.high.max(wider.high);
+        }
+        let root = |square: f64| (problem.in_seconds(index, square) * factor).sqrt();
+        let needed = match index {
+            WALK | RAMP => STEEP_SIGNIFICANCE,
+            INVERSE_SQUARE => SIGNIFICANCE,
+            _ => 0.0,
+        };
+        let [value, low, high] = [square.value, square.low, square.high].map(root);
+        if active[index] && value > 0.0 && problem.significance(&own, index) >= needed {
+            return Term::Found(Estimate::with_interval(value, low, high));
+        }
+        Term::LeftOut {
+            reason: format!(
                 "the Allan variance between {:.4} s and {:.4} s does not need {name} \
                  (it must exceed {needed} of its standard errors)",
                 range[0], range[1],
-            ));
+            ),
+            allowed: Estimate::with_interval(0.0, 0.0, high),
         }
-        let squared = interval::variance(square, 2.0 * significance * significance);
-        Term::Found(Estimate::with_interval(
-            square.sqrt(),
-            squared.low.sqrt(),
-            squared.high.sqrt(),
-        ))
+    };
+    let square = |index: usize| {
+        let square = solution.square(index);
+        let bound = if index == INVERSE_SQUARE {
+            square
+        } else {
+            square.max(0.0)
+        };
+        problem.in_seconds(index, bound)
     };
     NoiseFit {
         quantisation_arcsec: term(INVERSE_SQUARE, 1.0 / 3.0, "quantisation"),
@@ -323,7 +370,9 @@ fn report(range: [f64; 2], solution: &Solution) -> NoiseFit {
         rate_random_walk_deg_per_h_per_sqrt_s: term(WALK, 1.0, "rate random walk"),
         rate_ramp_deg_per_h_per_s: term(RAMP, 1.0, "rate ramp"),
         tau_range_s: range,
-        squares: solution.squares,
-        standard_errors: solution.standard_errors(),
+        squares: std::array::from_fn(square),
+        standard_errors: std::array::from_fn(|index| {
+            problem.in_seconds(index, problem.standard_error(&solution, index))
+        }),
     }
 }

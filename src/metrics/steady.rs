@@ -63,8 +63,7 @@ pub(crate) fn measure_steady(
 
 /// Allan curve and noise coefficients.
 ///
-/// The fit runs twice: with the degrees of freedom of white noise, then with those of the noise mix
-/// it found.
+/// The intervals of the points take the degrees of freedom of the noise mix that the fit found.
 fn measure_allan(
     record: &Record,
     settings: &Settings,
@@ -81,17 +80,14 @@ fn measure_allan(
         .windows(2)
         .any(|two| two[0] < two[1] || two[1] < two[0]);
     let constant = || Err("the output does not vary over the record".to_owned());
-    let first = if varies {
+    let fitted = if varies {
         fit_noise(&points, range)
     } else {
         constant()
     };
-    let refined = first.and_then(|first| {
-        let points = mixed_degrees_of_freedom(&points, &first.coefficients(), samples + 1);
-        fit_noise(&points, range).map(|fit| (points, fit))
-    });
-    match refined {
-        Ok((points, fit)) => {
+    match fitted {
+        Ok(fit) => {
+            let points = mixed_degrees_of_freedom(&points, &fit.coefficients(), samples + 1);
             enter_fit(&points, &fit, metrics);
             Some(fit)
         }

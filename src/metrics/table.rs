@@ -17,6 +17,12 @@ pub(crate) const DEGREES_OF_FREEDOM: &str = "degrees_of_freedom";
 /// Field of a bias stability: what the fitted noise makes one expect.
 pub(crate) const EXPECTED: &str = "expected_deg_per_h";
 
+/// Upper end beyond which an interval says nothing, whatever the unit.
+const BOUND_MAX: f64 = 1e6;
+
+/// Column of the two-sided density in the curve `psd`; `psd_deg2_per_h2_per_hz` is one-sided.
+pub(crate) const TWO_SIDED_PSD: &str = "two_sided_psd_deg2_per_h2_per_hz";
+
 impl ChannelMetrics {
     /// Enters a metric under its catalogue unit, and returns it for its defining fields.
     pub(crate) fn put(&mut self, name: &'static str, estimate: Estimate) -> &mut Metric {
@@ -71,9 +77,16 @@ impl ChannelMetrics {
                     metric.fields.insert("tau_min_s", fit.tau_range_s[0]);
                     metric.fields.insert("tau_max_s", fit.tau_range_s[1]);
                 }
-                Term::LeftOut(reason) => {
+                Term::LeftOut { reason, allowed } => {
                     self.metrics.remove(name);
-                    self.miss(name, reason.as_str());
+                    let high = convert(allowed.high);
+                    let unit = catalogue::find(name).map_or("1", |known| known.unit);
+                    let bound = if high < BOUND_MAX {
+                        format!("; it is {high:.2e} {unit} at most (95 % interval from 0)")
+                    } else {
+                        String::new()
+                    };
+                    self.miss(name, format!("{reason}{bound}"));
                 }
             }
         }
@@ -97,6 +110,8 @@ impl ChannelMetrics {
             column(&|point| point.deviation_deg_per_h.high),
         );
         curve.insert("edf".into(), column(&|point| point.degrees_of_freedom));
+        // Second differences of one record.
+        curve.insert("count".into(), column(&|point| point.count as f64));
         if let Some(fit) = fit {
             curve.insert(
                 "fitted_deg_per_h".into(),
@@ -109,6 +124,12 @@ impl ChannelMetrics {
     /// Enters the spectrum.
     pub(crate) fn put_spectrum(&mut self, spectrum: Spectrum) {
         let mut curve = BTreeMap::new();
+        // Half the one-sided density at either sign of the frequency: N^2 of white noise.
+        let halves = spectrum.density_deg2_per_h2_per_hz.iter();
+        curve.insert(
+            TWO_SIDED_PSD.into(),
+            halves.map(|density| density / 2.0).collect(),
+        );
         curve.insert("frequency_hz".into(), spectrum.frequency_hz);
         curve.insert(
             "psd_deg2_per_h2_per_hz".into(),

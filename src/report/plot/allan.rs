@@ -9,7 +9,8 @@ use crate::metrics::ChannelMetrics;
 use crate::report::csv::{abscissa, allan_curve, fitted, interval_end, ordinate};
 use crate::report::measured::Measured;
 use crate::units::{
-    deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s, deg_per_sqrt_h_to_deg_per_h_sqrt_s,
+    deg_per_h_per_s_to_deg_per_h_per_h, deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s,
+    deg_per_sqrt_h_to_deg_per_h_sqrt_s,
 };
 
 /// The flicker floor of the Allan deviation over B: `sqrt(2 ln 2 / pi)` (IEEE Std 952-1997, C).
@@ -59,7 +60,7 @@ pub(super) fn picture(report: &Measured) -> Option<Picture> {
     let title = format!("{}: overlapping Allan deviation", report.name);
     picture.heading((90.0, 28.0), &title, 18.0);
     let x = Axis::log(x, 0.01, "averaging time τ [s]");
-    let y = Axis::log(y, 0.04, "Allan deviation σ(τ) [deg/h]");
+    let y = Axis::log(y, 0.04, "overlapping Allan deviation σ(τ) [deg/h]");
     let panel = Panel::new(&mut picture, (56.0, 640.0), x, y);
     let mut legend = Legend::new(56.0);
     for (index, name, metrics, tau, [deviation, low, high]) in tables() {
@@ -87,7 +88,10 @@ pub(super) fn picture(report: &Measured) -> Option<Picture> {
         &mut picture,
         "bands: 95 % interval; thin: fit, dotted: its terms",
     );
-    legend.text(&mut picture, "circle: σ(1 s) of the -1/2 line is the ARW");
+    legend.text(
+        &mut picture,
+        "circle: σ(1 s) of the -1/2 line is N, the ARW",
+    );
     legend.text(&mut picture, "square: the flat line is 0.664 B");
     legend.text(&mut picture, "triangle: σ(3 s) of the +1/2 line is K");
     Some(picture)
@@ -101,7 +105,7 @@ fn readings(metrics: &ChannelMetrics) -> Vec<Reading> {
         let value = metric.estimate.value;
         (value > 0.0).then(|| (value, format!("{symbol} {text} {unit}")))
     };
-    let walk = read("angle_random_walk_deg_per_sqrt_h", "ARW", "deg/sqrt(h)");
+    let walk = read("angle_random_walk_deg_per_sqrt_h", "N", "deg/sqrt(h)");
     let floor = read("bias_instability_deg_per_h", "B", "deg/h");
     let rate_walk = read(
         "rate_random_walk_deg_per_h_per_sqrt_h",
@@ -130,7 +134,25 @@ fn readings(metrics: &ChannelMetrics) -> Vec<Reading> {
         deviation_deg_per_h: deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(value),
         text,
     });
-    [walk, floor, rate_walk].into_iter().flatten().collect()
+    let ramp = read("rate_ramp_deg_per_h_per_h", "R", "deg/h/h");
+    let angle = read("quantisation_arcsec", "Q", "arcsec");
+    // R tau / sqrt(2) at tau = sqrt(2) s is R in (deg/h)/s; sqrt(3) Q / tau at sqrt(3) s is Q.
+    let ramp = ramp.map(|(value, text)| Reading {
+        shape: Shape::Triangle,
+        slope: 1.0,
+        tau_s: Some(2.0_f64.sqrt()),
+        deviation_deg_per_h: value / deg_per_h_per_s_to_deg_per_h_per_h(1.0),
+        text,
+    });
+    let angle = angle.map(|(value, text)| Reading {
+        shape: Shape::Circle,
+        slope: -1.0,
+        tau_s: Some(3.0_f64.sqrt()),
+        deviation_deg_per_h: value,
+        text,
+    });
+    let all = [angle, walk, floor, rate_walk, ramp];
+    all.into_iter().flatten().collect()
 }
 
 /// The line of a term over the whole frame, and its marker.
