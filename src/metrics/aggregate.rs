@@ -23,8 +23,9 @@ const FITTED: [&str; 5] = [
 ];
 
 /// Curves of points that have intervals of their own.
-const POINT_CURVES: [&str; 5] = [
+const POINT_CURVES: [&str; 6] = [
     "response",
+    "scale_factor",
     "frequency_response",
     "frequency_response_vs_raw",
     "noise_delay_bound",

@@ -285,6 +285,12 @@ const CATALOGUE: &[KnownMetric] = &[
         "largest distance of a dwell from that line over the largest output (of full scale)",
     ),
     any(
+        "scale_factor_nonlinearity_of_reading_ppm",
+        "ppm",
+        Applies::Steps,
+        "largest distance of a dwell from that line over the line there (of reading)",
+    ),
+    any(
         "scale_factor_asymmetry_ppm",
         "ppm",
         Applies::Steps,

@@ -28,6 +28,7 @@ mod multi_sine;
 mod noise_delay;
 mod noise_fit;
 mod noise_identification;
+mod nonlinearity;
 mod psd;
 mod record;
 mod response;
@@ -65,6 +66,7 @@ pub use noise_fit::{
     fit_noise, mixed_degrees_of_freedom,
 };
 pub use noise_identification::PowerLaw;
+pub use nonlinearity::{Nonlinearity, Residual, expected_largest};
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
 pub use response::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};

@@ -71,6 +71,10 @@ const STEPS: &[(&str, &str)] = &[
     ("mean_ratio", "mean / raw mean"),
     ("scale_factor_error_ppm", "scale factor error"),
     ("scale_factor_nonlinearity_ppm", "nonlinearity"),
+    (
+        "scale_factor_nonlinearity_of_reading_ppm",
+        "nonlinearity of reading",
+    ),
     ("scale_factor_asymmetry_ppm", "asymmetry"),
     ("tracking_error_rms_deg_per_h", "tracking error rms"),
     ("noise_std_deg_per_h", "noise std"),
@@ -93,6 +97,13 @@ const STEPS_HEADLINE: &[&str] = &[
     "noise_std_deg_per_h",
 ];
 
+const SCALE_FACTOR_HEADLINE: &[&str] = &[
+    "scale_factor_error_ppm",
+    "scale_factor_nonlinearity_ppm",
+    "scale_factor_nonlinearity_of_reading_ppm",
+    "scale_factor_asymmetry_ppm",
+];
+
 const GENERAL_HEADLINE: &[&str] = &["tracking_error_rms_deg_per_h", "mean_error_deg_per_h"];
 
 /// Metrics of every motion that stand last: how a channel failed, what a pipeline costs.
@@ -109,6 +120,7 @@ fn known(motion: &MotionConfig) -> &'static [(&'static str, &'static str)] {
         MotionConfig::Swing(_) => SWING,
         MotionConfig::MultiSine(_) => MULTI_SINE,
         MotionConfig::Steps(_)
+        | MotionConfig::ScaleFactorTest(_)
         | MotionConfig::Rotation(_)
         | MotionConfig::Trapezoid(_)
         | MotionConfig::Chirp(_)
@@ -174,6 +186,7 @@ pub(crate) fn headline(motion: &MotionConfig, metrics: &ChannelMetrics) -> Vec<(
             GENERAL_HEADLINE
         }
         MotionConfig::MultiSine(_) => MULTI_SINE_HEADLINE,
+        MotionConfig::ScaleFactorTest(_) => SCALE_FACTOR_HEADLINE,
         MotionConfig::Steps(_) | MotionConfig::Rotation(_) => STEPS_HEADLINE,
     };
     keys.iter()
