@@ -10,6 +10,7 @@ use super::scale_factor::{
     RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero, distinct_rates,
     distinct_rates_by_sense, fit_scale_factor, too_few_rates,
 };
+use super::small_input::measure_small_inputs;
 use super::steady::equal_block_means;
 use crate::units::{deg_per_h_to_deg_per_s, ratio_to_ppm};
 
@@ -18,6 +19,9 @@ const DWELL_BLOCKS: usize = 10;
 
 /// Fewest settled samples of a dwell that counts.
 const DWELL_SAMPLES_MIN: usize = 2 * DWELL_BLOCKS;
+
+/// Samples by which a dwell may miss its whole turns: both ends and the settling are rounded.
+const DWELL_SLACK_SAMPLES: f64 = 1.5;
 
 const FACTOR: &str = "scale_factor_error_ppm";
 const NONLINEARITY: &str = "scale_factor_nonlinearity_ppm";
@@ -81,6 +85,7 @@ pub(crate) fn measure_scale_factor(
         .collect();
     let every: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
     put_response(&every, metrics);
+    measure_small_inputs(&every, staircase, metrics);
     let rest = match static_zero(staircase, &mut dwells) {
         Ok(rest) => rest,
         Err(reason) => {
@@ -204,8 +209,8 @@ fn put_rates(
         let counted = dwell.samples.end - dwell.samples.start;
         let measured_s = counted as f64 * sample_period_s;
         let turns = deg_per_h_to_turns_per_s(table_deg_per_h) * measured_s;
-        // A dwell ends with a sample, so that whole turns are whole to half of one.
-        let slack = deg_per_h_to_turns_per_s(table_deg_per_h.abs()) * sample_period_s;
+        let slack =
+            DWELL_SLACK_SAMPLES * deg_per_h_to_turns_per_s(table_deg_per_h.abs()) * sample_period_s;
         let is_whole = turns.round().abs() >= 1.0 && (turns - turns.round()).abs() <= slack;
         let quantile = interval::student_quantile(residual.degrees_of_freedom);
         let half_width = quantile * residual.deviation_deg_per_h;

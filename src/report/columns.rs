@@ -26,6 +26,7 @@ const STATIC: &[(&str, &str)] = &[
         "bias stability / DC gain",
     ),
     ("bias_instability_deg_per_h", "bias instability"),
+    ("bias_repeatability_deg_per_h", "bias repeatability"),
     ("mean_deg_per_h", "mean"),
     ("mean_error_deg_per_h", "mean error"),
     ("mean_ratio", "mean / raw mean"),
@@ -66,6 +67,8 @@ const MULTI_SINE: &[(&str, &str)] = &[
 
 const STEPS: &[(&str, &str)] = &[
     ("settling_time_s", "settling time"),
+    ("rise_time_s", "rise time"),
+    ("overshoot_percent", "overshoot"),
     ("mean_deg_per_h", "mean"),
     ("mean_error_deg_per_h", "mean error"),
     ("mean_ratio", "mean / raw mean"),
@@ -76,6 +79,13 @@ const STEPS: &[(&str, &str)] = &[
         "nonlinearity of reading",
     ),
     ("scale_factor_asymmetry_ppm", "asymmetry"),
+    (
+        "scale_factor_repeatability_ppm",
+        "scale factor repeatability",
+    ),
+    ("threshold_deg_per_h", "threshold"),
+    ("dead_band_deg_per_h", "dead band"),
+    ("resolution_deg_per_h", "resolution"),
     ("tracking_error_rms_deg_per_h", "tracking error rms"),
     ("noise_std_deg_per_h", "noise std"),
     ("noise_gain", "noise power gain"),

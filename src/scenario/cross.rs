@@ -36,6 +36,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.hardware_keys();
     checks.smoothing_polynomials();
     checks.motion();
+    checks.filter_state();
     for (key, message) in cross_gyro::check(&resolved.scenario) {
         checks.complain(&key, message);
     }

@@ -1,5 +1,6 @@
 //! Checks across the values of scale factor tests, trapezoids, chirps and scripts.
 
+use super::config::FilterState;
 use super::cross::{Checks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
 use super::stairs::{Stairs, TEST_RATES_MIN};
 use super::turntable_config::{ChirpConfig, ScaleFactorTestConfig, ScriptPoints, TrapezoidConfig};
@@ -36,6 +37,29 @@ impl Checks<'_> {
             let path = "turntable.trapezoid.cycles";
             let is_written = self.resolved.is_written(path);
             self.complain(if is_written { path } else { "duration_s" }, message);
+        }
+    }
+
+    /// Refuses to reset filters where no rate follows another, and where twins would go on.
+    pub(super) fn filter_state(&mut self) {
+        let scenario = &self.resolved.scenario;
+        if scenario.trial.filter_state == FilterState::Carried {
+            return;
+        }
+        let key = "trial.filter_state";
+        if Stairs::of(&scenario.turntable.motion).is_none() {
+            let message = format!(
+                "{key} = \"reset\" needs dwells to begin afresh at: give [turntable.steps] or \
+                 [turntable.scale_factor_test]"
+            );
+            self.complain(key, message);
+        }
+        if scenario.trial.rate_gain {
+            let message = format!(
+                "{key} = \"reset\" contradicts trial.rate_gain = true, which measures filters \
+                 that go on through the record"
+            );
+            self.complain(key, message);
         }
     }
 

@@ -41,8 +41,8 @@ mod vibration_config;
 
 pub use assembly_config::AssemblyConfig;
 pub use config::{
-    Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
-    SamplesFormat, Scenario,
+    Fidelity, FilterState, GateConfig, GateDecision, InconclusivePolicy, OutputConfig,
+    PublishedConfig, SamplesFormat, Scenario,
 };
 pub use defaults::reference_toml;
 pub(crate) use error::portable_place;
