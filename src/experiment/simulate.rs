@@ -181,7 +181,9 @@ fn channel_filters(
     filters.collect()
 }
 
-/// Where a filter starts afresh: at the first sample of every dwell, if that was asked for.
+/// Where a filter starts afresh, if that was asked for: half-way through the settling of every
+/// dwell. Table and loop settle before, as one word of the old rate would stay in a filter that
+/// forgets nothing, and the filter afterwards.
 fn restarts(scenario: &Scenario, kind: &FilterKind, sample_period_s: f64) -> Option<Restarts> {
     if scenario.trial.filter_state == FilterState::Carried {
         return None;
@@ -189,8 +191,11 @@ fn restarts(scenario: &Scenario, kind: &FilterKind, sample_period_s: f64) -> Opt
     let stairs = Stairs::of(&scenario.turntable.motion)?;
     let first = first_measured_index(scenario.warm_up_s, sample_period_s);
     let changes = step_indices(&stairs, scenario.warm_up_s, sample_period_s);
-    let samples = std::iter::once(first).chain(changes);
-    let samples = samples.map(|index| usize::try_from(index).unwrap_or(usize::MAX));
+    let settled = first_measured_index(0.5 * stairs.settle_s, sample_period_s);
+    let samples = std::iter::once(first).chain(changes).map(|change| {
+        let index = change.saturating_add(settled);
+        usize::try_from(index).unwrap_or(usize::MAX)
+    });
     Some(Restarts::new(samples.collect(), kind, sample_period_s))
 }
 

@@ -14,6 +14,7 @@ mod allan_covariance;
 mod allan_least_squares;
 mod allan_stream;
 mod allan_variants;
+mod applies;
 mod audit;
 mod autocovariance;
 mod bias;

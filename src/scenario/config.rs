@@ -77,7 +77,7 @@ pub struct TrialConfig {
 pub enum FilterState {
     /// They go on with what they have learnt.
     Carried,
-    /// They start afresh with every dwell.
+    /// They start afresh in every dwell, half-way through its settling.
     Reset,
 }
 
