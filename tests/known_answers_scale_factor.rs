@@ -45,7 +45,7 @@ fn known_answer_k27_an_exact_line_has_its_slope_and_offset_and_nothing_else() {
                 0.0,
                 1e-12 * (scale + offset.abs()),
             );
-            assert!(fit.nonlinearity.value < 1e-12);
+            assert!(fit.nonlinearity.value.value < 1e-12);
             let asymmetry = fit.asymmetry.unwrap();
             assert!(asymmetry.value.value < 1e-12);
             assert_close(asymmetry.positive, factor, 1e-12, 0.0);
@@ -77,7 +77,12 @@ fn known_answer_k27_a_square_law_has_the_closed_form_of_asymmetry_and_nonlineari
             assert_close(fit.offset_deg_per_h, q * mean_square, 1e-9, 0.0);
             let at_zero = mean_square - 1.0 / (count * count);
             let largest = q.abs() * (1.0 - mean_square).max(at_zero);
-            assert_close(fit.nonlinearity.value, largest / (1.0 + q.abs()), 1e-9, 0.0);
+            assert_close(
+                fit.nonlinearity.value.value,
+                largest / (1.0 + q.abs()),
+                1e-9,
+                0.0,
+            );
         }
     }
 }
@@ -138,7 +143,7 @@ fn intervals_cover_the_truth() {
         let asymmetry = fit.asymmetry.unwrap().value;
         let holds = [
             (fit.factor.low..=fit.factor.high).contains(&1.0),
-            fit.nonlinearity.low <= 0.0,
+            fit.nonlinearity.value.low <= 0.0,
             asymmetry.low <= 0.0,
         ];
         for (count, holds) in covered.iter_mut().zip(holds) {
@@ -182,6 +187,7 @@ fn staircase() -> (Motion, Vec<f64>) {
             .collect(),
         settle_s: 100.0 * PERIOD_S,
         rest_deg_per_h: 8.0,
+        has_static_zeros: false,
     };
     let motion = Motion::Steps {
         last_step_index: 4000,

@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use fogbench::scenario::{
-    MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig,
-    StepsConfig, SwingConfig, TurntableConfig,
+    MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, Stairs,
+    StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
 use fogbench::turntable::{
@@ -338,7 +338,7 @@ fn staircase() -> StepsConfig {
 #[test]
 fn steps_fall_on_sample_boundaries() {
     const PERIOD: f64 = 64.0 * 3.916_58e-6;
-    let changes = step_indices(&staircase(), 0.05, PERIOD);
+    let changes = step_indices(&Stairs::from(&staircase()), 0.05, PERIOD);
     // 0.05 s = 199.47 samples, 0.1 s = 398.945 samples, 0.2 s = 797.89 samples.
     assert_eq!(first_measured_index(0.05, PERIOD), 200);
     assert_eq!(changes, [599, 998]);
@@ -371,7 +371,7 @@ fn a_staircase_of_one_rate_has_no_step() {
         dwell_s: 0.1,
         settle_s: 0.0,
     };
-    assert!(step_indices(&steps, 1.0, PERIOD_S).is_empty());
+    assert!(step_indices(&Stairs::from(&steps), 1.0, PERIOD_S).is_empty());
     // Settled from the start: no transient with a servo either.
     let table = table(
         MotionConfig::Steps(steps),
@@ -393,7 +393,7 @@ fn a_servo_answers_a_step_as_the_textbook_says() {
         dwell_s: 0.1,
         settle_s: 0.0,
     };
-    let first = usize::try_from(step_indices(&steps, 0.0, PERIOD_S)[0]).unwrap();
+    let first = usize::try_from(step_indices(&Stairs::from(&steps), 0.0, PERIOD_S)[0]).unwrap();
     assert_eq!(first, 400);
     let table = table(
         MotionConfig::Steps(steps),

@@ -61,7 +61,7 @@ pub(super) fn hardest(
 }
 
 /// Metrics of a motion that only the axis has about which the table turns.
-const TURNED_ONLY: [&str; 8] = [
+const TURNED_ONLY: [&str; 15] = [
     "delay_vs_truth_ms",
     "delay_vs_encoder_ms",
     "delay_by_correlation_ms",
@@ -69,7 +69,14 @@ const TURNED_ONLY: [&str; 8] = [
     "settling_time_s",
     "scale_factor_error_ppm",
     "scale_factor_nonlinearity_ppm",
+    "scale_factor_nonlinearity_of_reading_ppm",
     "scale_factor_asymmetry_ppm",
+    "scale_factor_repeatability_ppm",
+    "overshoot_percent",
+    "rise_time_s",
+    "threshold_deg_per_h",
+    "dead_band_deg_per_h",
+    "resolution_deg_per_h",
 ];
 /// The same, of unfiltered channels: those of filters compare with the raw channel.
 const TURNED_RAW_ONLY: &str = "amplitude_ratio";

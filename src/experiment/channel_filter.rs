@@ -29,10 +29,42 @@ pub(super) struct ChannelFilter {
     output_deg_per_h: Vec<f64>,
     warm_up_samples: usize,
     failure: Option<Divergence>,
+    restarts: Option<Restarts>,
     weight_sum_total: f64,
     weight_totals: Vec<f64>,
     twin_difference_total: f64,
     measured: u64,
+}
+
+/// How a filter starts afresh at samples that are told.
+pub(super) struct Restarts {
+    /// Indices of these samples, warm-up included, the next one last.
+    samples: Vec<usize>,
+    kind: FilterKind,
+    sample_period_s: f64,
+}
+
+impl Restarts {
+    /// * `samples`: indices, warm-up included, ascending.
+    pub(super) fn new(mut samples: Vec<usize>, kind: &FilterKind, sample_period_s: f64) -> Self {
+        samples.reverse();
+        Self {
+            samples,
+            kind: kind.clone(),
+            sample_period_s,
+        }
+    }
+
+    /// The filter as it begins, if sample `index` is one of those.
+    fn at(&mut self, index: usize) -> Option<impl Fn() -> Arithmetic> {
+        self.samples.pop_if(|next| *next == index)?;
+        // Nothing of what follows is left out of the health of a matrix.
+        let length = RecordLength {
+            warm_up: 0,
+            measured: 0,
+        };
+        Some(move || Arithmetic::new(&self.kind, length, self.sample_period_s))
+    }
 }
 
 /// A filter channel after its run.
@@ -134,10 +166,16 @@ impl ChannelFilter {
             output_deg_per_h: Vec::with_capacity(length.total()),
             warm_up_samples: length.warm_up,
             failure: None,
+            restarts: None,
             weight_sum_total: 0.0,
             twin_difference_total: 0.0,
             measured: 0,
         }
+    }
+
+    /// The channel with a filter that starts afresh at some samples.
+    pub(super) fn restarting(self, restarts: Option<Restarts>) -> Self {
+        Self { restarts, ..self }
     }
 
     /// Filters the next words of the record.
@@ -156,6 +194,15 @@ impl ChannelFilter {
     #[inline]
     fn step(&mut self, word_deg_per_h: f64) -> Result<(), Divergence> {
         let is_measured = self.output_deg_per_h.len() >= self.warm_up_samples;
+        let index = self.output_deg_per_h.len();
+        if let Some(afresh) = self
+            .restarts
+            .as_mut()
+            .and_then(|restarts| restarts.at(index))
+        {
+            self.filter = afresh();
+            self.twin = self.twin.as_ref().map(|_| afresh());
+        }
         let output = self.filter.step(word_deg_per_h)?;
         self.output_deg_per_h.push(output.value_deg_per_h);
         let twin = self.twin.as_mut();

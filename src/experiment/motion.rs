@@ -5,10 +5,10 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::assembly_motion::hardest;
 use crate::gyro::{self, MotionExtremes};
 use crate::metrics::{Dwell, Motion, Staircase};
-use crate::scenario::{MotionConfig, Scenario, ServoConfig, StepsConfig};
+use crate::scenario::{MotionConfig, Scenario, ServoConfig, Stairs};
 use crate::turntable::{
-    command_extremes, command_rate_max_rad_per_s, earth_rate_rad_per_s, first_measured_index,
-    input_axis_bounds, multi_sine_acceleration_max_rad_per_s2, step_indices,
+    command_extremes, command_rate_max_rad_per_s, dwell_ends, earth_rate_rad_per_s,
+    first_measured_index, input_axis_bounds, multi_sine_acceleration_max_rad_per_s2, step_indices,
 };
 use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
@@ -25,38 +25,39 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
         MotionConfig::MultiSine(multi_sine) => Motion::MultiSine {
             frequencies_hz: multi_sine.frequencies_hz.clone(),
         },
-        MotionConfig::Steps(steps) => {
-            let rates = &steps.rates_deg_per_s;
-            let words = u64::from(scenario.gyro.output.average_samples);
-            let last_step_index = step_indices(steps, 0.0, word_period_s(scenario))
-                .last()
-                .map_or(0, |&word| index(word.div_ceil(words)));
-            let rise = match rates.as_slice() {
-                [.., before, last] => last - before,
-                _ => 0.0,
-            };
-            Motion::Steps {
-                last_step_index,
-                step_deg_per_h: deg_per_s_to_deg_per_h(rise),
-                staircase: staircase(steps, scenario, sample_period_s),
-            }
+        MotionConfig::Steps(steps) => steps_motion(&steps.into(), scenario, sample_period_s),
+        MotionConfig::ScaleFactorTest(test) => {
+            steps_motion(&test.into(), scenario, sample_period_s)
         }
     }
 }
 
+fn steps_motion(stairs: &Stairs, scenario: &Scenario, sample_period_s: f64) -> Motion {
+    let words = u64::from(scenario.gyro.output.average_samples);
+    let last_step_index = step_indices(stairs, 0.0, word_period_s(scenario))
+        .last()
+        .map_or(0, |&word| index(word.div_ceil(words)));
+    let rise = match stairs.rates_deg_per_s.as_slice() {
+        [.., before, last] => last - before,
+        _ => 0.0,
+    };
+    Motion::Steps {
+        last_step_index,
+        step_deg_per_h: deg_per_s_to_deg_per_h(rise),
+        staircase: staircase(stairs, scenario, sample_period_s),
+    }
+}
+
 /// The dwells of a staircase within the record, their settling left out.
-fn staircase(steps: &StepsConfig, scenario: &Scenario, sample_period_s: f64) -> Staircase {
+fn staircase(stairs: &Stairs, scenario: &Scenario, sample_period_s: f64) -> Staircase {
     let rest_deg_per_h = rad_per_s_to_deg_per_h(earth_rate_rad_per_s(&scenario.turntable.site));
-    let settle_samples = first_measured_index(steps.settle_s, sample_period_s);
-    // One more rate than there is, whose step is the end of the last dwell.
-    let mut closed = steps.clone();
-    closed.rates_deg_per_s.push(0.0);
+    let settle_samples = first_measured_index(stairs.settle_s, sample_period_s);
     // The table steps between rate words; samples that see two rates belong to neither dwell.
     let words = u64::from(scenario.gyro.output.average_samples);
-    let steps_at = step_indices(&closed, 0.0, word_period_s(scenario));
+    let steps_at = dwell_ends(stairs, 0.0, word_period_s(scenario));
     let ends: Vec<u64> = steps_at.iter().map(|word| word / words).collect();
     let starts = std::iter::once(0).chain(steps_at.iter().map(|word| word.div_ceil(words)));
-    let dwells = starts.zip(&ends).zip(&steps.rates_deg_per_s);
+    let dwells = starts.zip(&ends).zip(&stairs.rates_deg_per_s);
     Staircase {
         dwells: dwells
             .map(|((start, &end), &rate)| Dwell {
@@ -64,8 +65,9 @@ fn staircase(steps: &StepsConfig, scenario: &Scenario, sample_period_s: f64) -> 
                 rate_deg_per_h: rest_deg_per_h + deg_per_s_to_deg_per_h(rate),
             })
             .collect(),
-        settle_s: steps.settle_s,
+        settle_s: stairs.settle_s,
         rest_deg_per_h,
+        has_static_zeros: stairs.has_static_zeros,
     }
 }
 
@@ -136,8 +138,8 @@ fn table_extremes(scenario: &Scenario) -> MotionExtremes {
             .map_or((0.0, 0.0), |own| {
                 (own.jump_rad_per_s, own.acceleration_rad_per_s2)
             }),
-        MotionConfig::Steps(steps) => {
-            let rates = &steps.rates_deg_per_s;
+        motion @ (MotionConfig::Steps(_) | MotionConfig::ScaleFactorTest(_)) => {
+            let rates = Stairs::of(motion).map_or_else(Vec::new, |stairs| stairs.rates_deg_per_s);
             let first = rates.first().map_or(0.0, |rate| rate.abs());
             let rises = rates.windows(2).map(|pair| (pair[1] - pair[0]).abs());
             let rise = deg_per_s_to_rad_per_s(rises.fold(0.0, f64::max));

@@ -354,7 +354,10 @@ impl Checker<'_> {
             let across = assembly_motion::lacks(scenario, channel, name).map(str::to_owned);
             let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
             let unread = metrics::encoder_lack(name, has_encoder).map(str::to_owned);
-            if let Some(reason) = supported.err().or(lack).or(across).or(unread) {
+            let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
+            let single = metrics::repeats_lack(name, repeats);
+            let reasons = [supported.err(), lack, across, unread, single];
+            if let Some(reason) = reasons.into_iter().flatten().next() {
                 self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
             }
         }

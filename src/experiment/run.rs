@@ -129,6 +129,9 @@ fn write_folder(
     if let Some(csv) = report::psd_csv(report) {
         folder.write("psd.csv", csv.as_bytes())?;
     }
+    if let Some(csv) = report::scale_factor_csv(report) {
+        folder.write("scale-factor.csv", csv.as_bytes())?;
+    }
     let raw_names = report.scenario.raw_channels();
     let gyros = signals(plan, simulation, &raw_names);
     let mut pictures = Vec::new();

@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::channel_filter::{ChannelFilter, FinishedFilter};
+use super::channel_filter::{ChannelFilter, FinishedFilter, Restarts};
 use super::suite::Observer;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
-use crate::scenario::Scenario;
-use crate::turntable::{Turntable, first_measured_index};
+use crate::scenario::{FilterKind, FilterState, Scenario, Stairs};
+use crate::turntable::{Turntable, first_measured_index, step_indices};
 use crate::units::rad_per_s_to_deg_per_h;
 
 /// Samples of one block: long against the cost of handing it over, short against the caches.
@@ -174,10 +174,29 @@ fn channel_filters(
                 sample_period_s,
                 scenario.trial.rate_gain,
             );
-            (gyro, filter)
+            let restarts = restarts(scenario, &config.kind, sample_period_s);
+            (gyro, filter.restarting(restarts))
         })
     });
     filters.collect()
+}
+
+/// Where a filter starts afresh, if that was asked for: half-way through the settling of every
+/// dwell. Table and loop settle before, as one word of the old rate would stay in a filter that
+/// forgets nothing, and the filter afterwards.
+fn restarts(scenario: &Scenario, kind: &FilterKind, sample_period_s: f64) -> Option<Restarts> {
+    if scenario.trial.filter_state == FilterState::Carried {
+        return None;
+    }
+    let stairs = Stairs::of(&scenario.turntable.motion)?;
+    let first = first_measured_index(scenario.warm_up_s, sample_period_s);
+    let changes = step_indices(&stairs, scenario.warm_up_s, sample_period_s);
+    let settled = first_measured_index(0.5 * stairs.settle_s, sample_period_s);
+    let samples = std::iter::once(first).chain(changes).map(|change| {
+        let index = change.saturating_add(settled);
+        usize::try_from(index).unwrap_or(usize::MAX)
+    });
+    Some(Restarts::new(samples.collect(), kind, sample_period_s))
 }
 
 /// The first rate words of the first repeat, deg/h, warm-up included; of an assembly those of x.

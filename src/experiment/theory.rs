@@ -1,7 +1,7 @@
 //! Closed forms of the gyro that the pictures draw beside the measured points.
 
 use crate::gyro::{self, GyroError};
-use crate::scenario::{MotionConfig, Scenario, StepsConfig};
+use crate::scenario::{MotionConfig, Scenario, Stairs};
 use crate::signal::{TheoryCurve, TheoryQuantity};
 use crate::turntable::earth_rate_rad_per_s;
 use crate::units::{deg_per_s_to_rad_per_s, gain_to_db, rad_per_s_to_deg_per_h, rad_to_deg};
@@ -44,7 +44,11 @@ pub(super) fn theory(scenario: &Scenario) -> Result<Vec<TheoryCurve>, GyroError>
                 line(TheoryQuantity::PhaseDeg, phase),
             ])
         }
-        MotionConfig::Steps(steps) => Ok(rate_error(scenario, steps).into_iter().collect()),
+        motion @ (MotionConfig::Steps(_) | MotionConfig::ScaleFactorTest(_)) => {
+            let stairs = Stairs::of(motion);
+            let line = stairs.and_then(|stairs| rate_error(scenario, &stairs));
+            Ok(line.into_iter().collect())
+        }
         _ => Ok(Vec::new()),
     }
 }
@@ -52,12 +56,12 @@ pub(super) fn theory(scenario: &Scenario) -> Result<Vec<TheoryCurve>, GyroError>
 /// Mean error of the rate word over the rates of a staircase, in the temperature of the start.
 ///
 /// None for an assembly, whose axes see other rates, nor for a gyro without systematic error.
-fn rate_error(scenario: &Scenario, steps: &StepsConfig) -> Option<TheoryCurve> {
+fn rate_error(scenario: &Scenario, stairs: &Stairs) -> Option<TheoryCurve> {
     if scenario.gyro.assembly.is_some() {
         return None;
     }
     let earth_rate = earth_rate_rad_per_s(&scenario.turntable.site);
-    let rates = steps.rates_deg_per_s.iter();
+    let rates = stairs.rates_deg_per_s.iter();
     let (low, high) = rates
         .map(|&rate| earth_rate + deg_per_s_to_rad_per_s(rate))
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), rate| {

@@ -49,7 +49,8 @@ const HOLD_UPDATES_MAX: u32 = 256;
 ///   for any Tc (white beneath an output sample). Two-sided density
 ///   `2 s^2 Tc / (1 + (2 pi f Tc)^2)`, Allan variance
 ///   `(2 s^2 Tc / tau) (1 - (Tc / 2 tau) (3 - 4 exp(-tau / Tc) + exp(-2 tau / Tc)))`.
-/// * Ramp: `R t`, taken at the middle of an output sample. Bias: a constant.
+/// * Ramp: `R t`, taken at the middle of an output sample. Bias: a constant, and a normal
+///   deviate drawn once at the start.
 ///
 /// Flicker and walk are held between updates: four output samples, fewer where these are longer
 /// than a millisecond. The Allan deviation of the flicker is flat from 16 samples on.
@@ -132,11 +133,13 @@ impl SlowNoise {
             deg_per_h_to_rad_per_s(deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(
                 config.rate_random_walk_deg_per_h_per_sqrt_h,
             ));
+        let turn_on_deviation = deg_per_h_to_rad_per_s(config.turn_on_bias_deg_per_h);
+        let turn_on_bias = turn_on_deviation * streams.stream("turn_on_bias").normal();
         let ramp_rad_per_s_per_s = deg_per_h_to_rad_per_s(deg_per_h_per_h_to_deg_per_h_per_s(
             config.rate_ramp_deg_per_h_per_h,
         ));
         Self {
-            bias_rad_per_s: deg_per_h_to_rad_per_s(config.bias_deg_per_h),
+            bias_rad_per_s: deg_per_h_to_rad_per_s(config.bias_deg_per_h) + turn_on_bias,
             ramp_rad_per_s_per_sample: ramp_rad_per_s_per_s * sample_period_s,
             flicker_rad_per_s: flicker.iter().map(|process| process.value).sum(),
             flicker,

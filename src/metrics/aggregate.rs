@@ -6,12 +6,24 @@ use super::allan::AllanPoint;
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
 use super::noise_fit::{FitRange, fit_pooled_noise};
+use super::scale_factor::scale_factor_repeatability;
 use super::steady::{WALK_OVER_DC_GAIN, enter_fit, put_over_dc_gain};
+use super::support::repeats_lack;
 use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION, TWO_SIDED_PSD};
+use crate::units::ratio_to_ppm;
 
 /// From this many repeats on, Student's t on their scatter gives the interval; below, the intervals
 /// of the repeats themselves say more.
 const SCATTER_REPEATS_MIN: usize = 6;
+
+/// The metrics that the scatter of the repeats gives, with those that scatter.
+const SCATTER: [(&str, &str); 2] = [
+    ("scale_factor_repeatability_ppm", "scale_factor_error_ppm"),
+    ("bias_repeatability_deg_per_h", "mean_deg_per_h"),
+];
+
+/// Their names.
+pub(crate) const REPEATABILITIES: [&str; 2] = [SCATTER[0].0, SCATTER[1].0];
 
 /// The metrics that a fit to the pooled Allan variance replaces.
 const FITTED: [&str; 5] = [
@@ -23,8 +35,9 @@ const FITTED: [&str; 5] = [
 ];
 
 /// Curves of points that have intervals of their own.
-const POINT_CURVES: [&str; 5] = [
+const POINT_CURVES: [&str; 6] = [
     "response",
+    "scale_factor",
     "frequency_response",
     "frequency_response_vs_raw",
     "noise_delay_bound",
@@ -39,6 +52,8 @@ const POINT_CURVES: [&str; 5] = [
 ///   of freedom. Tracking error: root of the mean square, Student's t on the squares.
 /// * Everything else: mean, Student's t on the scatter of the repeats from six repeats on; with
 ///   fewer, the repeats' own intervals combined in quadrature if each has one.
+///
+/// Repeatabilities: standard deviation of the repeats' values, from six repeats on.
 ///
 /// Each metric gets the field `repeats`, the number of repeats that have it. Allan
 /// deviations and spectra are averaged as powers, other curves as they are. If a repeat failed, the first failed one stands for the channel.
@@ -67,10 +82,50 @@ pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
                 .or_insert_with(|| reason.clone());
         }
     }
+    put_repeatability(repeats, &mut pooled);
     pool_spectra(repeats, &mut pooled);
     pool_points(repeats, &mut pooled);
     pool_allan(repeats, &mut pooled);
     pooled
+}
+
+/// Enters the scatter of scale factor and bias over the repeats, where a single record would have
+/// them but for their number.
+///
+/// Source: IEEE Std 952, repeatability; the interval is the chi-square one of a standard deviation.
+fn put_repeatability(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
+    for (name, source) in SCATTER {
+        let single = repeats_lack(name, 1);
+        if single.is_none() || pooled.unavailable.get(name) != single.as_ref() {
+            continue;
+        }
+        if let Some(reason) = repeats_lack(name, repeats.len()) {
+            pooled.miss(name, reason);
+            continue;
+        }
+        let values: Option<Vec<f64>> = repeats
+            .iter()
+            .map(|repeat| Some(repeat.metrics.get(source)?.estimate.value))
+            .collect();
+        let Some(values) = values else {
+            pooled.miss(name, format!("not every repeat has a {source}"));
+            continue;
+        };
+        let factors: Vec<f64> = values
+            .iter()
+            .map(|ppm| 1.0 + ppm / ratio_to_ppm(1.0))
+            .collect();
+        let scatter = match scale_factor_repeatability(&factors) {
+            Some(ratio) if source == SCATTER[0].1 => ratio_to_ppm(ratio),
+            _ => interval::sample_variance(&values).sqrt(),
+        };
+        let freedom = values.len() as f64 - 1.0;
+        let fields = &mut pooled
+            .put(name, interval::deviation(scatter, freedom))
+            .fields;
+        fields.insert(DEGREES_OF_FREEDOM, freedom);
+        fields.insert("repeats", values.len() as f64);
+    }
 }
 
 /// Pools one metric over the repeats that have it.

@@ -1,29 +1,6 @@
 //! The metrics a channel can have: name, unit, definition.
 
-/// Which records a metric belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Applies {
-    /// Every record.
-    Always,
-    /// Steady motion: at rest or turning at a constant rate.
-    Steady,
-    /// Swing.
-    Swing,
-    /// Swing or several sines at once.
-    Tones,
-    /// Several sines at once.
-    MultiSine,
-    /// Steps.
-    Steps,
-    /// Steady motion or swing.
-    SteadyOrSwing,
-    /// Every motion but rest and constant rate.
-    Moving,
-    /// Steady motion, swing or steps: a signal that can be told from noise.
-    Separable,
-    /// Every record of a filter that is a hardware pipeline.
-    Pipeline,
-}
+pub use super::applies::Applies;
 
 /// Why other channels lack the metrics of pipelines.
 pub(crate) const PIPELINE_ONLY: &str = "only a filter with pipeline = \"fpga\" has it";
@@ -127,6 +104,12 @@ const CATALOGUE: &[KnownMetric] = &[
         "deg/h",
         Applies::Steady,
         "standard deviation of non-overlapping means over the scenario's bias_averaging_time_s",
+    ),
+    any(
+        "bias_repeatability_deg_per_h",
+        "deg/h",
+        Applies::Steady,
+        "standard deviation of the means of six repeats or more, each a start of its own",
     ),
     any(
         "mean_deg_per_h",
@@ -273,6 +256,18 @@ const CATALOGUE: &[KnownMetric] = &[
         "time after the last step until the rate stays within max(1 % of the step, 5 sigma)",
     ),
     any(
+        "overshoot_percent",
+        "%",
+        Applies::Steps,
+        "largest excess over the settled rate after the last step, of the step; 0 within the noise",
+    ),
+    any(
+        "rise_time_s",
+        "s",
+        Applies::Steps,
+        "time from 10 % to 90 % of the last step, linear between samples",
+    ),
+    any(
         "scale_factor_error_ppm",
         "ppm",
         Applies::Steps,
@@ -285,10 +280,40 @@ const CATALOGUE: &[KnownMetric] = &[
         "largest distance of a dwell from that line over the largest output (of full scale)",
     ),
     any(
+        "scale_factor_nonlinearity_of_reading_ppm",
+        "ppm",
+        Applies::Steps,
+        "largest distance of a dwell from that line over the line there (of reading)",
+    ),
+    any(
         "scale_factor_asymmetry_ppm",
         "ppm",
         Applies::Steps,
         "difference of the slopes of separate lines for the two senses over their mean",
+    ),
+    any(
+        "scale_factor_repeatability_ppm",
+        "ppm",
+        Applies::Steps,
+        "standard deviation of the scale factors of six repeats or more over their mean",
+    ),
+    any(
+        "threshold_deg_per_h",
+        "deg/h",
+        Applies::Steps,
+        "smallest input of the record from which on all give half of themselves, from zero input",
+    ),
+    any(
+        "dead_band_deg_per_h",
+        "deg/h",
+        Applies::Steps,
+        "sum of the smallest such inputs of both senses: where the output stays below half",
+    ),
+    any(
+        "resolution_deg_per_h",
+        "deg/h",
+        Applies::Steps,
+        "the same from the rate held most often: smallest answered increment",
     ),
     any(
         "diverged_at_s",

@@ -15,7 +15,8 @@ use super::steady::{
     LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_mean_ratio, measure_steady, put_mean,
     put_noise_gain, put_noise_std,
 };
-use super::support::{NO_TRUTH, SAMPLES_MIN, encoder_lack, support, truth_lack};
+use super::step_shape::{Step, put_step_shape};
+use super::support::{NO_TRUTH, SAMPLES_MIN, encoder_lack, repeats_lack, support, truth_lack};
 use super::swing::measure_swing;
 
 /// Points of the spectrum in the report.
@@ -137,8 +138,20 @@ fn measure_steps(
                 .fields
                 .insert("band_deg_per_h", settled.band_deg_per_h);
             metric.fields.insert("step_deg_per_h", step_deg_per_h);
+            let step = Step {
+                rate_deg_per_h: values,
+                index: last_step_index,
+                height_deg_per_h: step_deg_per_h,
+                settling: settled,
+                sample_period_s: record.sample_period_s,
+            };
+            put_step_shape(&step, metrics);
         }
-        Err(reason) => metrics.miss("settling_time_s", reason),
+        Err(reason) => {
+            for name in ["settling_time_s", "overshoot_percent", "rise_time_s"] {
+                metrics.miss(name, reason.clone());
+            }
+        }
     }
     measure_tracking(record, metrics);
     let start = tail_start(values.len(), last_step_index.min(values.len()));
@@ -287,6 +300,7 @@ fn explain_missing(
         )
         .err()
         .or_else(|| truth_lack(name, record.truth().is_some(), is_filter).map(str::to_owned))
+        .or_else(|| repeats_lack(name, 1))
         .or_else(|| encoder_lack(name, record.encoder_rad.is_some()).map(str::to_owned))
         .unwrap_or_else(|| match known.applies {
             Applies::Pipeline => PIPELINE_ONLY.to_owned(),

@@ -68,6 +68,8 @@ pub struct Staircase {
     pub settle_s: f64,
     /// Rate of the input axis when the table rests, deg/h.
     pub rest_deg_per_h: f64,
+    /// Whether the first and the last dwell are rest, whose mean is the zero of all others.
+    pub has_static_zeros: bool,
 }
 
 /// One rate of a staircase.

@@ -10,6 +10,7 @@
 
 use super::estimate::Estimate;
 use super::interval;
+use super::nonlinearity::{Nonlinearity, Residual};
 
 /// Inputs closer than this part of their span count as the same rate.
 const DISTINCT_PER_SPAN: f64 = 1e-6;
@@ -49,13 +50,15 @@ pub struct ScaleFactorFit {
     pub factor: Estimate,
     /// Offset F0 at the input at rest, deg/h.
     pub offset_deg_per_h: f64,
-    /// Outputs minus the line, deg/h, in the order of the points.
-    pub residuals_deg_per_h: Vec<f64>,
+    /// Distances from the line in the order of the points.
+    pub residuals: Vec<Residual>,
+    /// Largest output in magnitude, that at rest subtracted, deg/h.
+    pub full_scale_deg_per_h: f64,
     /// Largest residual over the largest output, a ratio (of full scale).
-    pub nonlinearity: Estimate,
+    pub nonlinearity: Nonlinearity,
     /// Largest residual over the line's own value at that point, a ratio (of reading); points at
     /// rest left out.
-    pub nonlinearity_of_reading: f64,
+    pub nonlinearity_of_reading: Nonlinearity,
     /// Scale factors of the senses, if each has two distinct rates.
     pub asymmetry: Option<Asymmetry>,
 }
@@ -184,20 +187,18 @@ pub fn fit_scale_factor(points: &[RatePoint], rest: StaticZero) -> Result<ScaleF
         return Err(too_few_rates(rates));
     }
     let line = Line::through(&inputs, &outputs);
-    let residuals: Vec<f64> = inputs
-        .iter()
-        .zip(&outputs)
-        .map(|(input, output)| output - line.at(*input))
-        .collect();
+    let residuals = residuals(points, &inputs, &outputs, &line);
+    let full_scale = outputs.iter().fold(0.0_f64, |max, at| max.max(at.abs()));
     let weighted = inputs.iter().map(|input| line.slope_weight(*input));
     let (deviation, freedom) = spread_of(weighted.zip(points.iter().copied()));
     Ok(ScaleFactorFit {
         factor: Estimate::symmetric(line.slope, interval::student_quantile(freedom) * deviation),
         offset_deg_per_h: line.offset,
-        nonlinearity: nonlinearity(points, &inputs, &outputs, &line, &residuals),
-        nonlinearity_of_reading: of_reading(&inputs, &line, &residuals),
+        full_scale_deg_per_h: full_scale,
+        nonlinearity: Nonlinearity::of_full_scale(&residuals, full_scale),
+        nonlinearity_of_reading: Nonlinearity::of_reading(&residuals),
         asymmetry: asymmetry(points, &inputs, &outputs),
-        residuals_deg_per_h: residuals,
+        residuals,
     })
 }
 
@@ -206,47 +207,30 @@ pub(crate) fn too_few_rates(rates: usize) -> String {
     format!("a scale factor needs {RATES_MIN} distinct rates; there are {rates}")
 }
 
-/// `max_j |F_j - (K W_j + F0)| / |F_max|`.
-///
-/// The interval is simultaneous over the points (Bonferroni): the largest of many residuals is
-/// large by chance, so that its own interval would not hold.
-fn nonlinearity(
-    points: &[RatePoint],
-    inputs: &[f64],
-    outputs: &[f64],
-    line: &Line,
-    residuals: &[f64],
-) -> Estimate {
-    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-    let full_scale = largest(&mut outputs.iter().map(|output| output.abs()));
+/// Distances of the points from the line, each with the noise of all points.
+fn residuals(points: &[RatePoint], inputs: &[f64], outputs: &[f64], line: &Line) -> Vec<Residual> {
     let count = inputs.len();
-    let ends = inputs
-        .iter()
-        .zip(residuals)
-        .enumerate()
-        .map(|(own, (input, residual))| {
+    let moved: Vec<usize> = [1.0, -1.0]
+        .into_iter()
+        .flat_map(|sense| of_sense(inputs, sense))
+        .collect();
+    let pairs = inputs.iter().zip(outputs).enumerate();
+    pairs
+        .map(|(own, (input, output))| {
             let weights = inputs.iter().enumerate().map(|(other, input_other)| {
                 let own_output = if other == own { 1.0 } else { 0.0 };
                 own_output - line.leverage(*input, *input_other, count)
             });
             let (deviation, freedom) = spread_of(weights.zip(points.iter().copied()));
-            let half_width = interval::student_quantile_of_many(freedom, count) * deviation;
-            (residual.abs() - half_width, residual.abs() + half_width)
-        });
-    let (low, high) = ends.fold((0.0_f64, 0.0_f64), |(low, high), ends| {
-        (low.max(ends.0), high.max(ends.1))
-    });
-    let value = largest(&mut residuals.iter().map(|residual| residual.abs()));
-    Estimate::with_interval(value / full_scale, low / full_scale, high / full_scale)
-}
-
-/// `max_j |F_j - (K W_j + F0)| / |K W_j + F0|` without the points at rest.
-fn of_reading(inputs: &[f64], line: &Line, residuals: &[f64]) -> f64 {
-    [1.0, -1.0]
-        .into_iter()
-        .flat_map(|sense| of_sense(inputs, sense))
-        .map(|index| residuals[index].abs() / line.at(inputs[index]).abs())
-        .fold(0.0, f64::max)
+            Residual {
+                value_deg_per_h: output - line.at(*input),
+                deviation_deg_per_h: deviation,
+                degrees_of_freedom: freedom,
+                reading_deg_per_h: line.at(*input),
+                is_moved: moved.contains(&own),
+            }
+        })
+        .collect()
 }
 
 /// `|K+ - K-| / ((K+ + K-) / 2)` of separate lines with offsets of their own.

@@ -27,6 +27,9 @@ pub struct Settling {
     pub final_deg_per_h: f64,
     /// Standard deviation of the last quarter about its own straight line, deg/h.
     pub noise_std_deg_per_h: f64,
+    /// Distance from there that the noise of the samples after the step reaches with a probability
+    /// of 1 % or less, deg/h.
+    pub noise_reach_deg_per_h: f64,
 }
 
 /// First sample of the last quarter after the step, where the rate counts as settled.
@@ -66,8 +69,8 @@ pub fn settling(
     let tail = &rate_deg_per_h[start..];
     let target = interval::mean(tail);
     let noise = deviation_about_line(tail);
-    let band =
-        (BAND_PER_STEP * step_deg_per_h.abs()).max(noise * noise_deviations(samples - step_index));
+    let noise_reach = noise * noise_deviations(samples - step_index);
+    let band = (BAND_PER_STEP * step_deg_per_h.abs()).max(noise_reach);
     let outside = rate_deg_per_h[step_index..]
         .iter()
         .rposition(|rate| (rate - target).abs() > band);
@@ -80,6 +83,7 @@ pub fn settling(
         band_deg_per_h: band,
         final_deg_per_h: target,
         noise_std_deg_per_h: noise,
+        noise_reach_deg_per_h: noise_reach,
     })
 }
 

@@ -10,8 +10,9 @@ use super::scale_factor::{
     RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero, distinct_rates,
     distinct_rates_by_sense, fit_scale_factor, too_few_rates,
 };
+use super::small_input::measure_small_inputs;
 use super::steady::equal_block_means;
-use crate::units::ratio_to_ppm;
+use crate::units::{deg_per_h_to_deg_per_s, ratio_to_ppm};
 
 /// Blocks of a dwell whose scatter gives the error of its mean.
 const DWELL_BLOCKS: usize = 10;
@@ -19,9 +20,14 @@ const DWELL_BLOCKS: usize = 10;
 /// Fewest settled samples of a dwell that counts.
 const DWELL_SAMPLES_MIN: usize = 2 * DWELL_BLOCKS;
 
+/// Samples by which a dwell may miss its whole turns: both ends and the settling are rounded.
+const DWELL_SLACK_SAMPLES: f64 = 1.5;
+
 const FACTOR: &str = "scale_factor_error_ppm";
 const NONLINEARITY: &str = "scale_factor_nonlinearity_ppm";
+const OF_READING: &str = "scale_factor_nonlinearity_of_reading_ppm";
 const ASYMMETRY: &str = "scale_factor_asymmetry_ppm";
+const OF_FIT: [&str; 4] = [FACTOR, NONLINEARITY, OF_READING, ASYMMETRY];
 
 /// The samples of a dwell inside a record of `samples`; `None` where too few of them have settled.
 fn counted(dwell: &Dwell, samples: usize) -> Option<Range<usize>> {
@@ -32,7 +38,7 @@ fn counted(dwell: &Dwell, samples: usize) -> Option<Range<usize>> {
 
 /// Why a staircase cannot support one of the scale factor metrics, if it cannot.
 pub(crate) fn lack(metric: &str, staircase: &Staircase, samples: usize) -> Option<String> {
-    if ![FACTOR, NONLINEARITY, ASYMMETRY].contains(&metric) {
+    if !OF_FIT.contains(&metric) {
         return None;
     }
     let rates: Vec<f64> = staircase
@@ -61,37 +67,81 @@ pub(crate) fn lack(metric: &str, staircase: &Staircase, samples: usize) -> Optio
     })
 }
 
-/// Enters the scale factor, its errors and the response curve.
+/// Enters the scale factor, its errors and the curves.
 ///
-/// Input and output of a dwell are the means of truth and channel over its settled samples. The
-/// Earth's rate, which the axis sees at rest, is subtracted from both.
+/// Input and output of a dwell are the means of truth and channel over its settled samples. What is
+/// there at rest is subtracted from both: the means of the static zeros where there are some,
+/// otherwise the Earth's rate, which the axis sees at rest.
 pub(crate) fn measure_scale_factor(
     record: &Record,
     staircase: &Staircase,
     metrics: &mut ChannelMetrics,
 ) {
     let samples = record.channel_deg_per_h.len();
-    let points: Vec<RatePoint> = staircase
+    let mut dwells: Vec<(&Dwell, RatePoint)> = staircase
         .dwells
         .iter()
-        .filter_map(|dwell| counted(dwell, samples))
-        .map(|range| rate_point(record, range))
+        .filter_map(|dwell| Some((dwell, rate_point(record, counted(dwell, samples)?))))
         .collect();
-    put_response(&points, metrics);
-    let rest = StaticZero {
-        input_deg_per_h: staircase.rest_deg_per_h,
-        output_deg_per_h: staircase.rest_deg_per_h,
+    let every: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
+    put_response(&every, metrics);
+    measure_small_inputs(&every, staircase, metrics);
+    let rest = match static_zero(staircase, &mut dwells) {
+        Ok(rest) => rest,
+        Err(reason) => {
+            for name in OF_FIT {
+                metrics.miss(name, reason.clone());
+            }
+            return;
+        }
     };
+    let points: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
     match fit_scale_factor(&points, rest) {
-        Ok(fit) => put_fit(&fit, staircase, points.len(), metrics),
+        Ok(fit) => {
+            put_fit(&fit, staircase, points.len(), metrics);
+            put_rates(
+                record.sample_period_s,
+                staircase,
+                (&dwells, rest),
+                &fit,
+                metrics,
+            );
+        }
         // The truth may hold fewer rates than were told, under a servo that has not settled.
         Err(reason) => {
-            for name in [FACTOR, NONLINEARITY, ASYMMETRY] {
+            for name in OF_FIT {
                 let told = lack(name, staircase, samples);
                 metrics.miss(name, told.unwrap_or_else(|| reason.clone()));
             }
         }
     }
+}
+
+/// Input and output at rest; takes the static zeros out of the dwells.
+fn static_zero(
+    staircase: &Staircase,
+    dwells: &mut Vec<(&Dwell, RatePoint)>,
+) -> Result<StaticZero, String> {
+    if !staircase.has_static_zeros {
+        return Ok(StaticZero {
+            input_deg_per_h: staircase.rest_deg_per_h,
+            output_deg_per_h: staircase.rest_deg_per_h,
+        });
+    }
+    let is_whole = dwells.len() == staircase.dwells.len() && dwells.len() > 1;
+    if !is_whole {
+        return Err(format!(
+            "the test is not whole: {} of {} dwells hold {DWELL_SAMPLES_MIN} settled samples",
+            dwells.len(),
+            staircase.dwells.len()
+        ));
+    }
+    let (before, after) = (dwells.remove(0).1, dwells.pop().map(|last| last.1));
+    let after = after.unwrap_or(before);
+    Ok(StaticZero {
+        input_deg_per_h: 0.5 * (before.input_deg_per_h + after.input_deg_per_h),
+        output_deg_per_h: 0.5 * (before.output_deg_per_h + after.output_deg_per_h),
+    })
 }
 
 fn rate_point(record: &Record, range: Range<usize>) -> RatePoint {
@@ -116,43 +166,85 @@ fn put_fit(
         value, low, high, ..
     } = fit.factor;
     let error = in_ppm(Estimate::with_interval(value - 1.0, low - 1.0, high - 1.0));
-    let mut put = |name, estimate| {
+    let mut put = |name, estimate, extra: &[(&'static str, f64)]| {
         let fields = &mut metrics.put(name, estimate).fields;
         fields.insert("settle_s", staircase.settle_s);
         fields.insert("count", dwells as f64);
+        let finite = extra.iter().filter(|(_, value)| value.is_finite());
+        fields.extend(finite.copied());
     };
-    put(FACTOR, error);
-    put(NONLINEARITY, in_ppm(fit.nonlinearity));
-    if let Some(asymmetry) = &fit.asymmetry {
-        put(ASYMMETRY, in_ppm(asymmetry.value));
+    put(FACTOR, error, &[("offset_deg_per_h", fit.offset_deg_per_h)]);
+    for (name, found) in [
+        (NONLINEARITY, &fit.nonlinearity),
+        (OF_READING, &fit.nonlinearity_of_reading),
+    ] {
+        let floor = ratio_to_ppm(found.noise_floor);
+        put(name, in_ppm(found.value), &[("noise_floor_ppm", floor)]);
     }
-    let extra = [
-        (FACTOR, "offset_deg_per_h", Some(fit.offset_deg_per_h)),
-        (
-            NONLINEARITY,
-            "of_reading_ppm",
-            Some(ratio_to_ppm(fit.nonlinearity_of_reading)),
-        ),
-        (
-            ASYMMETRY,
-            "positive_error_ppm",
-            fit.asymmetry
-                .map(|sense| ratio_to_ppm(sense.positive - 1.0)),
-        ),
-        (
-            ASYMMETRY,
-            "negative_error_ppm",
-            fit.asymmetry
-                .map(|sense| ratio_to_ppm(sense.negative - 1.0)),
-        ),
-    ];
-    for (name, field, value) in extra {
-        if let (Some(metric), Some(value)) = (metrics.metrics.get_mut(name), value)
-            && value.is_finite()
-        {
-            metric.fields.insert(field, value);
+    if let Some(asymmetry) = &fit.asymmetry {
+        let error_ppm = |factor: f64| ratio_to_ppm(factor - 1.0);
+        let senses = [
+            ("positive_error_ppm", error_ppm(asymmetry.positive)),
+            ("negative_error_ppm", error_ppm(asymmetry.negative)),
+        ];
+        put(ASYMMETRY, in_ppm(asymmetry.value), &senses);
+    }
+}
+
+/// Enters the table of the rates: input and output over rest, distance from the line with its own
+/// interval of 95 %, and how the table turned. Points at rest have no reading and are left out.
+fn put_rates(
+    sample_period_s: f64,
+    staircase: &Staircase,
+    (dwells, rest): (&[(&Dwell, RatePoint)], StaticZero),
+    fit: &ScaleFactorFit,
+    metrics: &mut ChannelMetrics,
+) {
+    let mut curve: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for ((dwell, point), residual) in dwells.iter().zip(&fit.residuals) {
+        if !residual.is_moved {
+            continue;
+        }
+        let table_deg_per_h = dwell.rate_deg_per_h - staircase.rest_deg_per_h;
+        let counted = dwell.samples.end - dwell.samples.start;
+        let measured_s = counted as f64 * sample_period_s;
+        let turns = deg_per_h_to_turns_per_s(table_deg_per_h) * measured_s;
+        let slack =
+            DWELL_SLACK_SAMPLES * deg_per_h_to_turns_per_s(table_deg_per_h.abs()) * sample_period_s;
+        let is_whole = turns.round().abs() >= 1.0 && (turns - turns.round()).abs() <= slack;
+        let quantile = interval::student_quantile(residual.degrees_of_freedom);
+        let half_width = quantile * residual.deviation_deg_per_h;
+        let of_full_scale = ratio_to_ppm(1.0 / fit.full_scale_deg_per_h);
+        let of_reading = ratio_to_ppm(1.0 / residual.reading_deg_per_h.abs());
+        let mut put = |name: &str, value| curve.entry(name.to_owned()).or_default().push(value);
+        put(
+            "input_deg_per_h",
+            point.input_deg_per_h - rest.input_deg_per_h,
+        );
+        put("mean_output_deg_per_h", point.output_deg_per_h);
+        put(
+            "output_deg_per_h",
+            point.output_deg_per_h - rest.output_deg_per_h,
+        );
+        put("measured_s", measured_s);
+        put("turns", turns);
+        put("whole_turns", f64::from(u8::from(is_whole)));
+        for (of, factor) in [("full_scale", of_full_scale), ("reading", of_reading)] {
+            for (end, shift) in [("", 0.0), ("_low", -half_width), ("_high", half_width)] {
+                let value = factor * (residual.value_deg_per_h + shift);
+                put(&format!("residual{end}_ppm_of_{of}"), value);
+            }
         }
     }
+    let mut values = curve.values().flatten();
+    if !curve.is_empty() && values.all(|value| value.is_finite()) {
+        metrics.curves.insert("scale_factor".to_owned(), curve);
+    }
+}
+
+/// Turns of the table per second.
+fn deg_per_h_to_turns_per_s(rate_deg_per_h: f64) -> f64 {
+    deg_per_h_to_deg_per_s(rate_deg_per_h) / 360.0
 }
 
 /// Enters output and error of each dwell, with the interval of the error.

@@ -1,5 +1,6 @@
 //! Whether a record of given length and motion can support a metric at all.
 
+use super::aggregate::REPEATABILITIES;
 use super::catalogue::{Applies, KnownMetric, find, known_metrics};
 use super::delay::{CYCLES_MIN, SwingClock};
 use super::interval::round_to_count;
@@ -136,6 +137,18 @@ pub fn encoder_lack(metric: &str, has_encoder: bool) -> Option<&'static str> {
         .then_some("the table has no encoder: give turntable.encoder.resolution_arcsec")
 }
 
+/// Fewest repeats of which a repeatability is given.
+///
+/// Source: GJB 2426A and IEEE Std 952 ask for six.
+const REPEATS_MIN: usize = 6;
+
+/// Why too few repeats can never have a metric; nothing for other metrics.
+#[must_use]
+pub fn repeats_lack(metric: &str, repeats: usize) -> Option<String> {
+    let is_lacking = REPEATABILITIES.contains(&metric) && repeats < REPEATS_MIN;
+    is_lacking.then(|| format!("it needs {REPEATS_MIN} repeats or more; there are {repeats}"))
+}
+
 /// Why a record without its true rate lacks what is compared with it.
 pub(crate) const NO_TRUTH: &str = "the true rate is not known: a recorded log brings none";
 
@@ -174,7 +187,7 @@ fn samples_in_record(duration_s: f64, sample_period_s: f64) -> usize {
 fn check_tail(metric: &str, samples: usize, last_step_index: usize) -> Result<(), String> {
     let after = samples.saturating_sub(last_step_index);
     let (found, needed) = match metric {
-        "settling_time_s" => (after, STEP_SAMPLES_MIN),
+        "settling_time_s" | "overshoot_percent" | "rise_time_s" => (after, STEP_SAMPLES_MIN),
         "noise_std_deg_per_h" | "noise_gain" => (
             samples.saturating_sub(tail_start(samples, last_step_index)),
             SAMPLES_MIN,

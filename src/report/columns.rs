@@ -26,6 +26,7 @@ const STATIC: &[(&str, &str)] = &[
         "bias stability / DC gain",
     ),
     ("bias_instability_deg_per_h", "bias instability"),
+    ("bias_repeatability_deg_per_h", "bias repeatability"),
     ("mean_deg_per_h", "mean"),
     ("mean_error_deg_per_h", "mean error"),
     ("mean_ratio", "mean / raw mean"),
@@ -66,12 +67,25 @@ const MULTI_SINE: &[(&str, &str)] = &[
 
 const STEPS: &[(&str, &str)] = &[
     ("settling_time_s", "settling time"),
+    ("rise_time_s", "rise time"),
+    ("overshoot_percent", "overshoot"),
     ("mean_deg_per_h", "mean"),
     ("mean_error_deg_per_h", "mean error"),
     ("mean_ratio", "mean / raw mean"),
     ("scale_factor_error_ppm", "scale factor error"),
     ("scale_factor_nonlinearity_ppm", "nonlinearity"),
+    (
+        "scale_factor_nonlinearity_of_reading_ppm",
+        "nonlinearity of reading",
+    ),
     ("scale_factor_asymmetry_ppm", "asymmetry"),
+    (
+        "scale_factor_repeatability_ppm",
+        "scale factor repeatability",
+    ),
+    ("threshold_deg_per_h", "threshold"),
+    ("dead_band_deg_per_h", "dead band"),
+    ("resolution_deg_per_h", "resolution"),
     ("tracking_error_rms_deg_per_h", "tracking error rms"),
     ("noise_std_deg_per_h", "noise std"),
     ("noise_gain", "noise power gain"),
@@ -93,6 +107,13 @@ const STEPS_HEADLINE: &[&str] = &[
     "noise_std_deg_per_h",
 ];
 
+const SCALE_FACTOR_HEADLINE: &[&str] = &[
+    "scale_factor_error_ppm",
+    "scale_factor_nonlinearity_ppm",
+    "scale_factor_nonlinearity_of_reading_ppm",
+    "scale_factor_asymmetry_ppm",
+];
+
 const GENERAL_HEADLINE: &[&str] = &["tracking_error_rms_deg_per_h", "mean_error_deg_per_h"];
 
 /// Metrics of every motion that stand last: how a channel failed, what a pipeline costs.
@@ -109,6 +130,7 @@ fn known(motion: &MotionConfig) -> &'static [(&'static str, &'static str)] {
         MotionConfig::Swing(_) => SWING,
         MotionConfig::MultiSine(_) => MULTI_SINE,
         MotionConfig::Steps(_)
+        | MotionConfig::ScaleFactorTest(_)
         | MotionConfig::Rotation(_)
         | MotionConfig::Trapezoid(_)
         | MotionConfig::Chirp(_)
@@ -189,6 +211,7 @@ pub(crate) fn headline(motion: &MotionConfig, metrics: &ChannelMetrics) -> Vec<(
             GENERAL_HEADLINE
         }
         MotionConfig::MultiSine(_) => MULTI_SINE_HEADLINE,
+        MotionConfig::ScaleFactorTest(_) => SCALE_FACTOR_HEADLINE,
         MotionConfig::Steps(_) | MotionConfig::Rotation(_) => STEPS_HEADLINE,
     };
     keys.iter()

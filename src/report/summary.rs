@@ -4,9 +4,10 @@ use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelMetrics, Metric};
 use crate::report::comparison_json::comparison;
 use crate::report::json::{number, object, pretty};
+use crate::report::scale_factor::filter_state_word;
 use crate::report::verdict_text::verdict_text;
 use crate::report::{Comparison, RunOutcome, RunReport, RunStatus};
-use crate::scenario::{Fidelity, PublishedConfig, portable_place};
+use crate::scenario::{Fidelity, PublishedConfig, Stairs, portable_place};
 use crate::signal::GyroFacts;
 use serde_json::{Map, Value};
 
@@ -132,6 +133,12 @@ fn scenario(report: &RunReport) -> Value {
         ("duration_s", number(scenario.duration_s, "duration_s")),
         ("warm_up_s", number(scenario.warm_up_s, "warm_up_s")),
     ]);
+    if let Some(stairs) = Stairs::of(&scenario.turntable.motion) {
+        let state = filter_state_word(scenario.trial.filter_state);
+        record.insert("filter_state".to_owned(), state.into());
+        let settle_s = number(stairs.settle_s, "settle_s");
+        record.insert("settle_s".to_owned(), settle_s);
+    }
     if let Some(description) = &scenario.description {
         record.insert("description".to_owned(), description.as_str().into());
     }

@@ -7,6 +7,7 @@ use crate::metrics::{ChannelMetrics, Metric, known_metrics};
 use crate::report::RunReport;
 use crate::report::columns::{Column, columns, matters, unit_text};
 use crate::report::measured::Measured;
+use crate::report::scale_factor::scale_factor_text;
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::report::verdict_text::verdict_text;
 use crate::scenario::{Fidelity, PublishedConfig};
@@ -16,6 +17,15 @@ const DIGITS: i32 = 2;
 /// What stands where there is no number.
 const NOTHING: &str = "-";
 const INDENT: &str = "  ";
+/// What an encoder, repeats or small inputs give: nobody misses what was not asked for.
+const BY_CHOICE: [&str; 6] = [
+    "delay_vs_encoder_ms",
+    "bias_repeatability_deg_per_h",
+    "scale_factor_repeatability_ppm",
+    "threshold_deg_per_h",
+    "dead_band_deg_per_h",
+    "resolution_deg_per_h",
+];
 
 /// The table of one run: budget, channels by metrics, published figures beside the simulated
 /// ones, gates, failures and notes. Lines are kept within `width` where words allow it.
@@ -24,6 +34,7 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     let mut text = heading(report, width, colour);
     text.push_str(&budget(report, width));
     text.push_str(&channels_text(&report.measured(), width, colour));
+    text.push_str(&scale_factor_text(report, width, colour));
     let verdicts = report.verdicts;
     text.push_str(&failures_text(&report.measured(), verdicts, width, colour));
     text.push_str(&filter_verdicts(&report.measured(), width, colour));
@@ -224,8 +235,7 @@ fn missing<'a>(report: &Measured<'a>) -> BTreeMap<(&'a str, &'a str), Vec<&'a st
     for (name, metrics) in report.channels {
         for (key, reason) in &metrics.unavailable {
             let compares = key.contains("_over_") || is_for_filters_only(key);
-            // An encoder is a choice: nobody misses what a table without one cannot have.
-            if matters(report.motion, key) && !compares && key != "delay_vs_encoder_ms" {
+            if matters(report.motion, key) && !compares && !BY_CHOICE.contains(&key.as_str()) {
                 missing.entry((key, reason)).or_default().push(name);
             }
         }

@@ -82,6 +82,18 @@ pub enum Fidelity {
 pub struct TrialConfig {
     /// Gain for constant rates from 0.001 to 100 deg/s.
     pub rate_gain: bool,
+    /// What becomes of the filters between the rates of a staircase.
+    pub filter_state: FilterState,
+}
+
+/// What becomes of the filters between the rates of a staircase or a scale factor test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FilterState {
+    /// They go on with what they have learnt.
+    Carried,
+    /// They start afresh in every dwell, half-way through its settling.
+    Reset,
 }
 
 /// A limit on a metric.

@@ -37,6 +37,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.hardware_keys();
     checks.smoothing_polynomials();
     checks.motion();
+    checks.filter_state();
     for (key, message) in cross_gyro::check(&resolved.scenario) {
         checks.complain(&key, message);
     }
@@ -159,6 +160,7 @@ impl Checks<'_> {
             MotionConfig::Trapezoid(trapezoid) => self.trapezoid(trapezoid),
             MotionConfig::Chirp(chirp) => self.chirp(chirp),
             MotionConfig::Script(script) => self.script(&script.points),
+            MotionConfig::ScaleFactorTest(test) => self.scale_factor_test(test),
             MotionConfig::Steps(steps) => {
                 let count = steps.rates_deg_per_s.len();
                 let count_f64 = u32::try_from(count).map_or(f64::INFINITY, f64::from);

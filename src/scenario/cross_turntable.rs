@@ -1,7 +1,9 @@
-//! Checks across the values of trapezoids, chirps and scripts.
+//! Checks across the values of scale factor tests, trapezoids, chirps and scripts.
 
+use super::config::FilterState;
 use super::cross::{Checks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
-use super::turntable_config::{ChirpConfig, ScriptPoints, TrapezoidConfig};
+use super::stairs::{Stairs, TEST_RATES_MIN};
+use super::turntable_config::{ChirpConfig, ScaleFactorTestConfig, ScriptPoints, TrapezoidConfig};
 
 impl Checks<'_> {
     /// Refuses ramps of a few samples and trapezoids that the record cuts off.
@@ -35,6 +37,67 @@ impl Checks<'_> {
             let path = "turntable.trapezoid.cycles";
             let is_written = self.resolved.is_written(path);
             self.complain(if is_written { path } else { "duration_s" }, message);
+        }
+    }
+
+    /// Refuses to reset filters where no rate follows another, and where twins would go on.
+    pub(super) fn filter_state(&mut self) {
+        let scenario = &self.resolved.scenario;
+        if scenario.trial.filter_state == FilterState::Carried {
+            return;
+        }
+        let key = "trial.filter_state";
+        if Stairs::of(&scenario.turntable.motion).is_none() {
+            let message = format!(
+                "{key} = \"reset\" needs dwells to begin afresh at: give [turntable.steps] or \
+                 [turntable.scale_factor_test]"
+            );
+            self.complain(key, message);
+        }
+        if scenario.trial.rate_gain {
+            let message = format!(
+                "{key} = \"reset\" contradicts trial.rate_gain = true, which measures filters \
+                 that go on through the record"
+            );
+            self.complain(key, message);
+        }
+    }
+
+    /// Refuses a scale factor test of too few rates and one that the record cuts off.
+    pub(super) fn scale_factor_test(&mut self, test: &ScaleFactorTestConfig) {
+        let key = |name: &str| format!("turntable.scale_factor_test.{name}");
+        let count = test.rates_deg_per_s().len();
+        if count < TEST_RATES_MIN {
+            let message = format!(
+                "{} = {:?} deg/s leaves {count} rates of each sense up to {:?} deg/s: a scale \
+                 factor test needs {TEST_RATES_MIN}; begin lower, take another series, or use \
+                 [turntable.steps]",
+                key("from_deg_per_s"),
+                test.from_deg_per_s,
+                test.to_deg_per_s
+            );
+            self.complain(&key("from_deg_per_s"), message);
+        }
+        if let Some(longest_s) = test.dwell_max_s
+            && longest_s < test.dwell_s
+        {
+            let message = format!(
+                "{} = {longest_s:?} s is too short: allowed from dwell_s = {:?} s",
+                key("dwell_max_s"),
+                test.dwell_s
+            );
+            self.complain(&key("dwell_max_s"), message);
+        }
+        let duration_s = self.resolved.scenario.duration_s;
+        let needed_s = Stairs::from(test).length_s();
+        if needed_s > duration_s * (1.0 + TIME_SLACK) {
+            let message = format!(
+                "{} = {:?} s is too long: the test of {count} rates of each sense takes \
+                 {needed_s:.6} s, but duration_s = {duration_s:?} s",
+                key("dwell_s"),
+                test.dwell_s
+            );
+            self.complain(&key("dwell_s"), message);
         }
     }
 

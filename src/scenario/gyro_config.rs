@@ -202,6 +202,8 @@ pub enum NoiseDraw {
 pub struct SlowNoiseConfig {
     /// Constant bias, deg/h.
     pub bias_deg_per_h: f64,
+    /// Standard deviation of a bias drawn at each start, deg/h; 0 = none.
+    pub turn_on_bias_deg_per_h: f64,
     /// Flicker (bias instability) coefficient B, deg/h.
     pub bias_instability_deg_per_h: f64,
     /// Standard deviation of an exponentially correlated (Gauss-Markov) rate, deg/h; 0 = none.

@@ -34,6 +34,7 @@ mod schema;
 mod script;
 mod servo_config;
 mod source;
+mod stairs;
 mod suite;
 mod thermal_config;
 mod tree;
@@ -46,8 +47,8 @@ pub use comparison_config::{
     FigureConfig,
 };
 pub use config::{
-    Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
-    SamplesFormat, Scenario,
+    Fidelity, FilterState, GateConfig, GateDecision, InconclusivePolicy, OutputConfig,
+    PublishedConfig, SamplesFormat, Scenario,
 };
 pub(crate) use cross_comparison::slug;
 pub use defaults::reference_toml;
@@ -68,6 +69,7 @@ pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
+pub use stairs::{Stairs, TEST_RATES_MIN};
 pub use suite::{load_base_or_scenario, load_suite};
 pub use thermal_config::{
     ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig, SoakConfig,
@@ -76,8 +78,9 @@ pub use thermal_config::{
 };
 pub use turntable_config::{
     AxisConfig, CaseAxis, ChirpConfig, MotionConfig, MountingConfig, MultiSineConfig, PhaseRule,
-    Progression, RotationConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig,
-    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TrapezoidConfig, TurntableConfig,
+    PreferredSeries, Progression, RotationConfig, ScaleFactorTestConfig, ScriptConfig,
+    ScriptPoints, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig, StepsConfig,
+    SwingConfig, TrapezoidConfig, TurntableConfig,
 };
 pub use vibration_config::{
     RandomVibrationConfig, SineVibrationConfig, VibrationConfig, VibrationMotion,

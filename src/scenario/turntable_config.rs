@@ -34,6 +34,8 @@ pub enum MotionConfig {
     MultiSine(MultiSineConfig),
     /// A staircase of rates.
     Steps(StepsConfig),
+    /// The rates of a scale factor test.
+    ScaleFactorTest(ScaleFactorTestConfig),
     /// Constant rate.
     Rotation(RotationConfig),
     /// Trapezoids of rate.
@@ -114,6 +116,35 @@ pub struct StepsConfig {
     pub dwell_s: f64,
     /// Time at the start of each dwell that the scale factor leaves out, s.
     pub settle_s: f64,
+}
+
+/// Scale factor test: rest, the rates of one sense from small to large, those of the other, rest.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScaleFactorTestConfig {
+    /// Preferred numbers that the rates are taken from.
+    pub preferred_series: PreferredSeries,
+    /// Smallest rate, deg/s; the rates are the members of the series from here on.
+    pub from_deg_per_s: f64,
+    /// Largest rate, deg/s, a member of the series or not.
+    pub to_deg_per_s: f64,
+    /// Time measured at each rate, s, at least.
+    pub dwell_s: f64,
+    /// Longest such time, s, to which a dwell is stretched for the sake of whole turns.
+    pub dwell_max_s: Option<f64>,
+    /// Time measured at rest before and after, s.
+    pub static_s: f64,
+    /// Time left out before each measurement, s.
+    pub settle_s: f64,
+}
+
+/// Series of preferred numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum PreferredSeries {
+    /// Five a decade.
+    R5,
+    /// Ten a decade.
+    R10,
 }
 
 /// Constant rotation.

@@ -13,6 +13,7 @@ mod picture;
 mod rate;
 mod rate_gain;
 mod response;
+mod scale_factor;
 mod series;
 mod spectrum;
 mod swing;
@@ -34,7 +35,8 @@ pub const SVG_BYTES_MAX: usize = 500_000;
 
 /// The pictures of one gyro of a run as file name and SVG text: `rate.svg`; `allan.svg` and
 /// `spectrum.svg` where a channel has the curve; `swing.svg` for a swing, `bode.svg` for several
-/// sines, `response.svg` for a staircase of three rates or more; `thermal.svg` where the temperature
+/// sines, `response.svg` for a staircase of three rates or more and `scale-factor.svg`
+/// for what it leaves of its line; `thermal.svg` where the temperature
 /// changes; `noise-delay.svg` where a filter's noise was measured at rest or in a swing, and
 /// `rate-gain.svg` where its gain was over the rate. Those of an assembly stand behind the axis, as in `x-rate.svg`: nine channels in one picture would hide one another.
 ///
@@ -62,6 +64,7 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
         ("swing.svg", swing),
         ("bode.svg", bode::picture(report)),
         ("response.svg", response::picture(report)),
+        ("scale-factor.svg", scale_factor::picture(report)),
         ("spectrum.svg", spectrum::picture(&report.measured())),
         ("thermal.svg", thermal::picture(report, signals)),
         ("noise-delay.svg", noise_delay::picture(report)),

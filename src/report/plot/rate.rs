@@ -82,7 +82,7 @@ fn window(
             let name = "first cycle of the lowest sine".to_owned();
             Some((0..length, name))
         }
-        MotionConfig::Steps(_) => {
+        MotionConfig::Steps(_) | MotionConfig::ScaleFactorTest(_) => {
             let step = (1..truth.len())
                 .max_by(|a, b| {
                     let rise = |at: usize| (truth[at] - truth[at - 1]).abs();

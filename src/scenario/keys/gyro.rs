@@ -95,6 +95,8 @@ pub(super) const KEYS: &[Key] = &[
         "One normal per half period, or every source and ADC sample drawn on its own."),
     key("gyro.slow_noise.bias_deg_per_h", Kind::Float(Range::closed(-1e6, 1e6)), "deg/h", Defaulted,
         "Constant bias."),
+    key("gyro.slow_noise.turn_on_bias_deg_per_h", Kind::Float(Range::closed(0.0, 1e6)), "deg/h", Defaulted,
+        "Standard deviation of a bias drawn at each start, which is each repeat; 0 is none."),
     key("gyro.slow_noise.bias_instability_deg_per_h", Kind::Float(Range::closed(0.0, 1e6)), "deg/h", Defaulted,
         "Flicker coefficient B (bias instability)."),
     key("gyro.slow_noise.gauss_markov_deg_per_h", Kind::Float(Range::closed(0.0, 1e6)), "deg/h", Defaulted,

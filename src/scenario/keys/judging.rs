@@ -11,6 +11,8 @@ use crate::scenario::schema::{
 pub(super) const KEYS: &[Key] = &[
     key("trial.rate_gain", Kind::Boolean, "", Defaulted,
         "Measure every filter's gain for constant rates from 0.001 to 100 deg/s."),
+    key("trial.filter_state", Kind::Choice(&["carried", "reset"]), "", Defaulted,
+        "Filters go on from one rate of a staircase to the next, or start afresh at each."),
     key("gate[].metric", Kind::Text, "", Required,
         "Channel and metric, split at the last dot."),
     key("gate[].min", Kind::Float(Range::ANY), "", Optional,

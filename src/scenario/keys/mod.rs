@@ -48,6 +48,7 @@ pub(crate) const GROUPS: &[Group] = &[
             "swing",
             "multi_sine",
             "steps",
+            "scale_factor_test",
             "rotation",
             "trapezoid",
             "chirp",

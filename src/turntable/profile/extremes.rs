@@ -29,7 +29,8 @@ pub fn command_extremes(motion: &MotionConfig) -> Option<CommandExtremes> {
         | MotionConfig::Swing(_)
         | MotionConfig::MultiSine(_)
         | MotionConfig::Rotation(_)
-        | MotionConfig::Steps(_) => return None,
+        | MotionConfig::Steps(_)
+        | MotionConfig::ScaleFactorTest(_) => return None,
         MotionConfig::Trapezoid(trapezoid) => (
             0.0,
             deg_per_s_to_rad_per_s(trapezoid.acceleration_deg_per_s2),
@@ -102,6 +103,7 @@ pub fn command_rate_max_rad_per_s(motion: &MotionConfig) -> f64 {
         }
         MotionConfig::Chirp(chirp) => chirp_rate_max(chirp),
         MotionConfig::Script(script) => script_extremes(&script.points).rate,
+        MotionConfig::ScaleFactorTest(test) => deg_per_s_to_rad_per_s(test.to_deg_per_s),
         MotionConfig::Steps(steps) => {
             let rates = steps.rates_deg_per_s.iter().copied();
             rates.fold(0.0, |max, rate| deg_per_s_to_rad_per_s(rate).abs().max(max))

@@ -15,4 +15,4 @@ pub use extremes::{
     CommandExtremes, command_extremes, command_rate_max_rad_per_s,
     multi_sine_acceleration_max_rad_per_s2, swing_rate_amplitude_rad_per_s,
 };
-pub use steps::{first_measured_index, step_indices};
+pub use steps::{dwell_ends, first_measured_index, step_indices};

@@ -9,7 +9,7 @@ use super::soft_start::SoftStart;
 use super::steps::step_indices;
 use super::tones::{Tone, sum_at, tones};
 use super::trapezoid::Trapezoids;
-use crate::scenario::MotionConfig;
+use crate::scenario::{MotionConfig, Stairs};
 use crate::units::deg_per_s_to_rad_per_s;
 
 /// Commanded rate at one instant and its slope per sample.
@@ -86,14 +86,19 @@ impl Shape {
             MotionConfig::Script(config) => {
                 Self::Script(Script::new(&config.points, warm_up_s, sample_period_s))
             }
-            MotionConfig::Steps(steps) => {
-                assert!(!steps.rates_deg_per_s.is_empty(), "a staircase has a rate");
-                let rates = steps.rates_deg_per_s.iter();
-                Self::Steps {
-                    rates: rates.copied().map(deg_per_s_to_rad_per_s).collect(),
-                    changes: step_indices(steps, warm_up_s, sample_period_s),
-                }
+            MotionConfig::Steps(steps) => Self::stairs(&steps.into(), warm_up_s, sample_period_s),
+            MotionConfig::ScaleFactorTest(test) => {
+                Self::stairs(&test.into(), warm_up_s, sample_period_s)
             }
+        }
+    }
+
+    fn stairs(stairs: &Stairs, warm_up_s: f64, sample_period_s: f64) -> Self {
+        let rates = stairs.rates_deg_per_s.iter();
+        assert!(!stairs.rates_deg_per_s.is_empty(), "a staircase has a rate");
+        Self::Steps {
+            rates: rates.copied().map(deg_per_s_to_rad_per_s).collect(),
+            changes: step_indices(stairs, warm_up_s, sample_period_s),
         }
     }
 

@@ -1,0 +1,129 @@
+//! `scale-factor.svg`: how far every rate of a staircase lies from the line through all of them.
+
+use super::axis::Axis;
+use super::panel::{Legend, Panel, WIDTH};
+use super::picture::{Picture, Stroke};
+use super::series::{extent, shape_of, stroke_of, truth_stroke};
+use crate::gate::estimate_text;
+use crate::metrics::ChannelMetrics;
+use crate::report::RunReport;
+use crate::report::scale_factor::filter_state_word;
+use crate::units::deg_per_h_to_deg_per_s;
+
+/// Residual of one rate with the ends of its interval, ppm.
+type Bar = [f64; 3];
+
+/// A channel: rates, deg/s, with their residuals of full scale and of reading.
+struct Channel<'a> {
+    index: usize,
+    name: &'a str,
+    metrics: &'a ChannelMetrics,
+    points: Vec<(f64, Bar, Bar)>,
+}
+
+/// Residuals of full scale over the rate above, those of reading over its size below; `None` where
+/// no channel has a scale factor.
+pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+    let channels = channels(report);
+    let all = || channels.iter().flat_map(|channel| &channel.points);
+    let x = extent(all().map(|point| point.0))?;
+    let sizes = extent(all().map(|point| point.0.abs()))?;
+    let mut picture = Picture::new(WIDTH, 870.0);
+    let title = format!("{}: residuals of the scale factor", report.scenario.name);
+    picture.heading((90.0, 28.0), &title, 18.0);
+    let above = extent(all().flat_map(|point| point.1))?;
+    let upper = Panel::new(
+        &mut picture,
+        (56.0, 400.0),
+        Axis::linear(x, 0.03, "rate [deg/s]"),
+        Axis::linear(above, 0.06, "residual [ppm of full scale]"),
+    );
+    upper.line(&mut picture, &[(x.0, 0.0), (x.1, 0.0)], truth_stroke());
+    let below = extent(all().flat_map(|point| point.2))?;
+    let lower = Panel::new(
+        &mut picture,
+        (466.0, 810.0),
+        Axis::log(sizes, 0.03, "size of the rate, both senses [deg/s]"),
+        Axis::linear(below, 0.06, "residual [ppm of reading]"),
+    );
+    lower.line(
+        &mut picture,
+        &[(sizes.0, 0.0), (sizes.1, 0.0)],
+        truth_stroke(),
+    );
+    for channel in &channels {
+        let points = channel.points.iter();
+        let of_full_scale: Vec<_> = points.clone().map(|point| (point.0, point.1)).collect();
+        draw(&mut picture, &upper, channel.index, &of_full_scale);
+        for sense in [1.0, -1.0] {
+            let own = points.clone().filter(|point| sense * point.0 > 0.0);
+            let of_reading: Vec<_> = own.map(|point| (point.0.abs(), point.2)).collect();
+            draw(&mut picture, &lower, channel.index, &of_reading);
+        }
+    }
+    legends(&mut picture, report, &channels);
+    Some(picture)
+}
+
+fn legends(picture: &mut Picture, report: &RunReport, channels: &[Channel]) {
+    let mut legend = Legend::new(56.0);
+    for channel in channels {
+        legend.line(picture, stroke_of(channel.index), channel.name);
+        for (key, title) in [
+            ("scale_factor_nonlinearity_ppm", "of full scale"),
+            ("scale_factor_nonlinearity_of_reading_ppm", "of reading"),
+        ] {
+            let Some(metric) = channel.metrics.metrics.get(key) else {
+                continue;
+            };
+            let value = estimate_text(&metric.estimate, 2);
+            legend.detail(picture, &format!("{title}: {value} ppm"));
+            if let Some(floor) = metric.fields.get("noise_floor_ppm") {
+                legend.detail(picture, &format!("noise alone: {floor:.3} ppm"));
+            }
+        }
+    }
+    let mut legend = Legend::new(466.0);
+    legend.text(picture, "bars: 95 % interval of each rate");
+    let state = filter_state_word(report.scenario.trial.filter_state);
+    legend.text(picture, &format!("filter state: {state}"));
+}
+
+/// A line through the points of one channel with their bars.
+fn draw(picture: &mut Picture, panel: &Panel, index: usize, points: &[(f64, Bar)]) {
+    let stroke = stroke_of(index);
+    let bar = Stroke::solid(stroke.colour, 1.25);
+    let mut line: Vec<(f64, f64)> = points.iter().map(|(x, bar)| (*x, bar[0])).collect();
+    line.sort_by(|a, b| a.0.total_cmp(&b.0));
+    panel.line(picture, &line, stroke);
+    for (x, [value, low, high]) in points {
+        panel.line(picture, &[(*x, *low), (*x, *high)], bar);
+        panel.marker(picture, (*x, *value), shape_of(index), stroke.colour);
+    }
+}
+
+fn channels<'a>(report: &RunReport<'a>) -> Vec<Channel<'a>> {
+    let channels = report.channels.iter().enumerate();
+    let found = channels.filter_map(|(index, (name, metrics))| {
+        let curve = metrics.curves.get("scale_factor")?;
+        let column = |name: String| curve.get(&name).into_iter().flatten().copied();
+        let bars = |of: &str| {
+            let end = |end: &str| column(format!("residual{end}_ppm_of_{of}"));
+            let ends = end("_low").zip(end("_high"));
+            end("")
+                .zip(ends)
+                .map(|(value, (low, high))| [value, low, high])
+        };
+        let rates = column("input_deg_per_h".to_owned()).map(deg_per_h_to_deg_per_s);
+        let points = rates.zip(bars("full_scale").zip(bars("reading")));
+        Some(Channel {
+            index,
+            name,
+            metrics,
+            points: points
+                .map(|(rate, (of_full_scale, of_reading))| (rate, of_full_scale, of_reading))
+                .collect(),
+        })
+    });
+    found.collect()
+}
