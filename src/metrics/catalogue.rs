@@ -15,6 +15,8 @@ pub enum Applies {
     MultiSine,
     /// Steps.
     Steps,
+    /// A motion that begins within the record: steps, a swing from rest, a script.
+    Onset,
     /// Steady motion or swing.
     SteadyOrSwing,
     /// Every motion but rest and constant rate.
@@ -271,6 +273,18 @@ const CATALOGUE: &[KnownMetric] = &[
         "s",
         Applies::Steps,
         "time after the last step until the rate stays within max(1 % of the step, 5 sigma)",
+    ),
+    filter(
+        "settled_gain",
+        "1",
+        Applies::Steps,
+        "mean of the channel over that of raw in the last quarter after the last step",
+    ),
+    filter(
+        "readaptation_time_s",
+        "s",
+        Applies::Onset,
+        "time from the start of a motion until the gain stays within 1 % of what it teaches",
     ),
     any(
         "scale_factor_error_ppm",

@@ -29,6 +29,7 @@ mod noise_delay;
 mod noise_fit;
 mod noise_identification;
 mod psd;
+mod readaptation;
 mod record;
 mod response;
 mod scale_factor;
@@ -66,6 +67,7 @@ pub use noise_fit::{
 };
 pub use noise_identification::PowerLaw;
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
+pub use readaptation::{GainUnits, Readaptation};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
 pub use response::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
 pub use scale_factor::{

@@ -41,6 +41,11 @@ pub enum Motion {
         /// Swing frequency, Hz.
         frequency_hz: f64,
     },
+    /// Sine swing that begins with the record, after rest.
+    SwingFromRest {
+        /// Swing frequency, Hz.
+        frequency_hz: f64,
+    },
     /// Any other known motion, such as trapezoids or a sweep.
     General,
     /// Sum of sines of rate.

@@ -263,15 +263,20 @@ pub(crate) fn put_noise_gain(
 pub(crate) fn measure_mean_ratio(record: &Record, metrics: &mut ChannelMetrics) {
     let channel = equal_block_means(record.channel_deg_per_h, RATIO_BLOCKS);
     let raw = equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS);
-    put_mean_ratio(&channel, &raw, metrics);
+    put_ratio_of_means("mean_ratio", &channel, &raw, metrics);
 }
 
 /// Enters the ratio of the means of equally long blocks.
-pub(crate) fn put_mean_ratio(channel: &[f64], raw: &[f64], metrics: &mut ChannelMetrics) {
+pub(crate) fn put_ratio_of_means(
+    name: &'static str,
+    channel: &[f64],
+    raw: &[f64],
+    metrics: &mut ChannelMetrics,
+) {
     let raw_mean = interval::from_parts(interval::mean(raw), raw);
     if raw_mean.low <= 0.0 && raw_mean.high >= 0.0 {
         metrics.miss(
-            "mean_ratio",
+            name,
             format!(
                 "the raw mean, {:.4} deg/h, cannot be told from zero",
                 raw_mean.value
@@ -286,7 +291,7 @@ pub(crate) fn put_mean_ratio(channel: &[f64], raw: &[f64], metrics: &mut Channel
         .map(|(own, other)| (channel_sum - own) / (raw_sum - other))
         .collect();
     metrics.put(
-        "mean_ratio",
+        name,
         interval::jackknife(channel_sum / raw_sum, &left_out),
     );
 }

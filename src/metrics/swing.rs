@@ -9,6 +9,7 @@ use super::delay::{SwingClock, SwingFit, fit_swing};
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
 use super::noise_delay::{put_bound, put_bound_curve};
+use super::readaptation::{self, GainUnits};
 use super::record::{FilterFacts, Record};
 use super::steady::{LAGS_MIN, put_mean, put_noise_gain, put_noise_std};
 use super::support::DELAY_VS_ENCODER;
@@ -26,11 +27,14 @@ struct Fits {
 
 /// Measures everything a swing record supports.
 ///
+/// With `is_from_rest` the swing begins with the record, and filters must adapt to it.
+///
 /// # Errors
 /// The reason, in words, if the record holds no three whole cycles.
 pub(crate) fn measure_swing(
     record: &Record,
     frequency_hz: f64,
+    is_from_rest: bool,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) -> Result<(), String> {
@@ -80,6 +84,13 @@ pub(crate) fn measure_swing(
         measure_mean_ratio(&fits, metrics);
         measure_predictions(&fits, &clock, facts, &raw, metrics);
         measure_bound(&fits, &clock, facts, &raw, metrics);
+        let predicted = metrics.metrics.get("delay_predicted_ms");
+        let final_gain = predicted.and_then(|metric| metric.fields.get("amplitude_ratio"));
+        if let Some(&final_gain) = final_gain.filter(|_| is_from_rest) {
+            let (own, other) = (record.channel_deg_per_h, record.raw_deg_per_h);
+            let units = GainUnits::of_swing(own, other, &clock);
+            readaptation::put(&units, final_gain, metrics);
+        }
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Checks across the values of trapezoids, chirps and scripts.
 
 use super::cross::{Checks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
-use super::turntable_config::{ChirpConfig, ScriptPoints, TrapezoidConfig};
+use super::turntable_config::{ChirpConfig, ScriptPoints, SwingConfig, TrapezoidConfig};
 
 impl Checks<'_> {
     /// Refuses ramps of a few samples and trapezoids that the record cuts off.
@@ -35,6 +35,18 @@ impl Checks<'_> {
             let path = "turntable.trapezoid.cycles";
             let is_written = self.resolved.is_written(path);
             self.complain(if is_written { path } else { "duration_s" }, message);
+        }
+    }
+
+    /// Refuses a soft start inside the record.
+    pub(super) fn from_rest(&mut self, swing: &SwingConfig) {
+        if swing.from_rest && swing.soft_start_s > 0.0 {
+            let message = format!(
+                "turntable.swing.from_rest = true swings from the start of the record, at once: give \
+                 turntable.swing.soft_start_s = 0.0 s (is {:?} s)",
+                swing.soft_start_s
+            );
+            self.complain("turntable.swing.from_rest", message);
         }
     }
 
