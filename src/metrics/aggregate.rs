@@ -23,10 +23,11 @@ const FITTED: [&str; 5] = [
 ];
 
 /// Curves of points that have intervals of their own.
-const POINT_CURVES: [&str; 5] = [
+const POINT_CURVES: [&str; 6] = [
     "response",
     "frequency_response",
     "frequency_response_vs_raw",
+    "frozen_response",
     "noise_delay_bound",
     "rate_gain",
 ];

@@ -205,7 +205,7 @@ const CATALOGUE: &[KnownMetric] = &[
     filter(
         "noise_gain_over_bound",
         "1",
-        Applies::Steady,
+        Applies::SteadyOrSwing,
         "noise gain over that least one; below 1 the weights adapt or the signal is attenuated",
     ),
     filter(

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::autocovariance::LaggedProducts;
 use super::catalogue::{Applies, PIPELINE_ONLY, known_metrics};
 use super::estimate::{ChannelMetrics, Estimate};
+use super::frozen_response::put_frozen_response;
 use super::interval;
 use super::multi_sine::measure_multi_sine;
 use super::psd::{log_binned, segment_samples, welch};
@@ -56,6 +57,7 @@ pub fn measure(
     if let Some(facts) = filter {
         put_dc_gains(facts, &mut metrics);
         put_rate_gains(facts, &mut metrics);
+        put_frozen_response(facts, record.sample_period_s, &mut metrics);
     }
     drop_not_finite(&mut metrics);
     explain_missing(record, settings, filter.is_some(), &mut metrics);
@@ -160,7 +162,7 @@ fn measure_steps(
         LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS)
     };
     let channel = products(values);
-    put_noise_std(&channel.autocovariance(), values.len() - start, metrics);
+    put_noise_std(&channel, values.len() - start, metrics);
     if let Some(facts) = filter {
         let level = interval::mean(&record.raw_deg_per_h[start..]).abs();
         put_noise_gain(&channel, &products(record.raw_deg_per_h), level, metrics);

@@ -23,6 +23,7 @@ mod combined_freedom;
 mod correlation;
 mod delay;
 mod estimate;
+mod frozen_response;
 mod interval;
 mod multi_sine;
 mod noise_delay;
@@ -40,6 +41,7 @@ mod steady;
 mod support;
 mod swing;
 mod table;
+mod truth_response;
 mod verdict;
 mod weight_noise;
 

@@ -172,18 +172,18 @@ impl GainUnits {
     }
 }
 
-/// Standard deviation of gains from their differences in the second half, which a slow trend does
-/// not widen.
+/// Standard deviation of gains from their second differences in the second half, which a trend does
+/// not widen: the variance of `a - 2b + c` is six times that of each.
 fn scatter(gains: &[f64]) -> f64 {
     let half = &gains[gains.len() / 2..];
     let squares: Vec<f64> = half
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]) * (pair[1] - pair[0]))
+        .windows(3)
+        .map(|three| (three[0] - 2.0 * three[1] + three[2]).powi(2))
         .collect();
     if squares.is_empty() {
         return f64::INFINITY;
     }
-    (interval::mean(&squares) / 2.0).sqrt()
+    (interval::mean(&squares) / 6.0).sqrt()
 }
 
 /// Enters the readaptation time with what defines it, or the reason for its lack.
@@ -255,7 +255,9 @@ mod tests {
     fn creeping(units: i32, time_constant: f64) -> GainUnits {
         let gain = |unit: i32| 0.98 - 0.48 * (-(f64::from(unit) + 0.5) / time_constant).exp();
         GainUnits {
-            units: (0..units).map(|unit| [[gain(unit), 0.0], [0.6, 0.8]]).collect(),
+            units: (0..units)
+                .map(|unit| [[gain(unit), 0.0], [0.6, 0.8]])
+                .collect(),
             unit_s: 0.2,
         }
     }
@@ -273,7 +275,10 @@ mod tests {
     #[test]
     fn what_does_not_come_back_is_bounded_by_the_record() {
         let reason = creeping(100, 200.0).readaptation(0.98).unwrap_err();
-        assert!(reason.starts_with("not within the record of 20.0000 s"), "{reason}");
+        assert!(
+            reason.starts_with("not within the record of 20.0000 s"),
+            "{reason}"
+        );
         let at_once = creeping(100, 1e-3).readaptation(0.98).unwrap();
         assert!(at_once.time_s.value <= 0.0 && at_once.time_s.high <= 0.21);
     }
