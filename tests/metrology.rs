@@ -42,7 +42,7 @@ fn the_frozen_response_of_given_weights_is_their_closed_form() {
     let metrics = resting(&given(WeightRule::Fixed(vec![0.25; 4]), Some(4)));
     let of = |name: &str| column(&metrics, "frozen_response", name);
     let frequencies = of("frequency_hz");
-    assert_close(frequencies[80], 0.5 / PERIOD_S, 1e-9, 0.0);
+    assert_close(frequencies[120], 0.5 / PERIOD_S, 1e-9, 0.0);
     for (index, frequency_hz) in frequencies.iter().enumerate() {
         // sin(4 x) / (4 sin x) at half the angle, 1 + 1.5 samples late below the first zero.
         let half = PI * frequency_hz * PERIOD_S;
@@ -360,4 +360,20 @@ fn the_earth_rate_on_a_cross_axis_that_turns_is_no_noise() {
     );
     let walk = |is_turning: bool| value(&run(0, is_turning), "angle_random_walk_deg_per_sqrt_h");
     assert_close(walk(true), walk(false), 0.02, 0.0);
+}
+
+#[test]
+fn the_mean_of_words_that_never_change_is_said_to_be_exact_to_the_word() {
+    let (words, truth) = (vec![7.2; 500], vec![7.3; 500]);
+    let metrics = measure(&raw_record(&words, &truth), &settings(Motion::Steady), None);
+    let mean = &metrics.metrics["mean_deg_per_h"];
+    assert_close(mean.estimate.value, 7.2, 1e-12, 0.0);
+    assert!(mean.fields.contains_key("exact_to_word"));
+    let noisy = white(9, 500, 1.0);
+    let metrics = measure(&raw_record(&noisy, &truth), &settings(Motion::Steady), None);
+    assert!(
+        !metrics.metrics["mean_deg_per_h"]
+            .fields
+            .contains_key("exact_to_word")
+    );
 }

@@ -10,10 +10,10 @@ use super::record::FilterFacts;
 use super::response::{ToneResponse, near};
 
 /// Points of the curve, equally spaced by the logarithm of the frequency.
-const POINTS: usize = 81;
+const POINTS: usize = 121;
 
 /// Lowest frequency in cycles per sample; the highest is half a cycle per sample.
-const LOWEST: f64 = 2.5e-5;
+const LOWEST: f64 = 2.5e-4;
 
 /// Enters the curve `frozen_response`: gain, phase and phase delay behind raw over the frequency.
 ///
@@ -39,10 +39,10 @@ pub(crate) fn put_frozen_response(
     if !delay_s.is_finite() {
         delay_s = facts.latency_s;
     }
-    let octaves = (0.5 / LOWEST).ln() / (POINTS as f64 - 1.0);
+    let spacing = (0.5 / LOWEST).ln() / (POINTS as f64 - 1.0);
     let responses: Vec<ToneResponse> = (0..POINTS)
         .map(|point| {
-            let frequency_hz = LOWEST * (octaves * point as f64).exp() / sample_period_s;
+            let frequency_hz = LOWEST * (spacing * point as f64).exp() / sample_period_s;
             let angular = TAU * frequency_hz;
             let phase_of = |response: &Prediction, target: f64| {
                 let delay_s = response.delay_s(frequency_hz, sample_period_s) + facts.latency_s;

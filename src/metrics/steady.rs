@@ -188,6 +188,7 @@ fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMe
         duration_s,
         metrics,
     );
+    metrics.mark_exact(&["mean_deg_per_h", "mean_error_deg_per_h"]);
 }
 
 /// Enters the mean and, where the truth is known, its error against the mean truth.

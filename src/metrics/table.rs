@@ -15,6 +15,9 @@ pub(crate) const DEGREES_OF_FREEDOM: &str = "degrees_of_freedom";
 /// Field of a bias stability: what the fitted noise makes one expect.
 pub(crate) const EXPECTED: &str = "expected_deg_per_h";
 
+/// Width of an interval, as a part of its value, that rounding makes.
+const ROUNDING: f64 = 1e-12;
+
 impl ChannelMetrics {
     /// Enters a metric under its catalogue unit, and returns it for its defining fields.
     pub(crate) fn put(&mut self, name: &'static str, estimate: Estimate) -> &mut Metric {
@@ -29,6 +32,19 @@ impl ChannelMetrics {
     /// Says why a metric is missing.
     pub(crate) fn miss(&mut self, name: &str, reason: impl Into<String>) {
         self.unavailable.insert(name.to_owned(), reason.into());
+    }
+
+    /// Gives metrics without width the field `exact_to_word`: words that never change determine their
+    /// mean exactly, and leave open where within its rounding the rate lies.
+    pub(crate) fn mark_exact(&mut self, names: &[&str]) {
+        for name in names {
+            if let Some(metric) = self.metrics.get_mut(*name)
+                && metric.estimate.high - metric.estimate.low
+                    <= ROUNDING * metric.estimate.value.abs()
+            {
+                metric.fields.insert("exact_to_word", 1.0);
+            }
+        }
     }
 
     /// Enters the five fitted coefficients or the reasons for their absence.

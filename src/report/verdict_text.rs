@@ -63,9 +63,14 @@ fn head(verdict: &FilterVerdict) -> String {
         Deed::Undecided => "cannot be told to change fast noise",
         Deed::NotJudged => "noise not judged",
     };
+    // Weights that adapt may have had another gain before the motion settled.
+    let of_dc = match verdict.motion_gain {
+        Some(_) => "DC gain over the record",
+        None => "DC gain",
+    };
     let gains = [
         ("gain for the motion", verdict.motion_gain),
-        ("DC gain", verdict.dc_gain),
+        (of_dc, verdict.dc_gain),
     ];
     let gains: Vec<String> = gains
         .into_iter()

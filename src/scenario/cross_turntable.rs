@@ -39,7 +39,7 @@ impl Checks<'_> {
     }
 
     /// Refuses a soft start inside the record.
-    pub(super) fn from_rest(&mut self, swing: &SwingConfig) {
+    pub(super) fn swing_from_rest(&mut self, swing: &SwingConfig) {
         if swing.from_rest && swing.soft_start_s > 0.0 {
             let message = format!(
                 "turntable.swing.from_rest = true swings from the start of the record, at once: give \
