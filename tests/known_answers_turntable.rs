@@ -41,6 +41,7 @@ fn swing(frequency_hz: f64, soft_start_s: f64) -> MotionConfig {
         angle_amplitude_deg: None,
         frequency_hz,
         soft_start_s,
+        from_rest: false,
     })
 }
 
@@ -130,6 +131,7 @@ fn known_answer_k29_angle_amplitude_of_a_swing() {
         angle_amplitude_deg: None,
         frequency_hz: 5.0,
         soft_start_s: 1.0,
+        from_rest: false,
     });
     let angle_rad = rate_rad_per_s / (TAU * 5.0);
     assert_close(rad_to_arcsec(angle_rad), 114.592, 0.0, 0.000_5);
@@ -139,6 +141,7 @@ fn known_answer_k29_angle_amplitude_of_a_swing() {
         angle_amplitude_deg: Some(rad_to_deg(angle_rad)),
         frequency_hz: 5.0,
         soft_start_s: 1.0,
+        from_rest: false,
     };
     let rate = swing_rate_amplitude_rad_per_s(&by_angle);
     assert_close(rad_per_s_to_deg_per_s(rate), 1.0, 1e-12, 0.0);
@@ -154,6 +157,7 @@ fn a_swing_with_two_amplitudes_is_refused() {
         angle_amplitude_deg: Some(1.0),
         frequency_hz: 5.0,
         soft_start_s: 1.0,
+        from_rest: false,
     });
 }
 

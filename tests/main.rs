@@ -37,6 +37,7 @@ mod metrics_records;
 mod noise_fit_coverage;
 mod patent_calibration;
 mod patent_known_answers;
+mod metrology;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;

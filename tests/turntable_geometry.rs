@@ -39,6 +39,7 @@ fn swing() -> MotionConfig {
         angle_amplitude_deg: None,
         frequency_hz: 0.7,
         soft_start_s: 0.5,
+        from_rest: false,
     })
 }
 
@@ -475,6 +476,7 @@ fn the_angle_of_a_swing_is_the_integral_of_its_rate() {
         angle_amplitude_deg: Some(3.0),
         frequency_hz: 5.0,
         soft_start_s: 0.0,
+        from_rest: false,
     });
     let mounting = MountingConfig {
         start_angle_deg: -20.0,

@@ -18,6 +18,9 @@ use crate::signal::{FilterShape, WeightRule};
 /// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
 pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
 
+/// Blocks of the record whose mean weights are kept.
+const WEIGHT_BLOCKS: usize = 10;
+
 /// A filter channel while it runs.
 pub(super) struct ChannelFilter {
     name: String,
@@ -28,10 +31,13 @@ pub(super) struct ChannelFilter {
     rate_twins: Option<RateTwins>,
     output_deg_per_h: Vec<f64>,
     warm_up_samples: usize,
+    measured_samples: usize,
     failure: Option<Divergence>,
     restarts: Option<Restarts>,
     weight_sum_total: f64,
-    weight_totals: Vec<f64>,
+    /// Sums of every weight over consecutive blocks of the record, and the samples of each.
+    weight_totals: [Vec<f64>; WEIGHT_BLOCKS],
+    weight_counts: [u32; WEIGHT_BLOCKS],
     twin_difference_total: f64,
     measured: u64,
 }
@@ -104,6 +110,8 @@ pub(super) struct FilterWords {
     /// Time mean of every weight over the measured record, as left by each sample; none for an
     /// infinite impulse response.
     pub(super) mean_weights: Option<Vec<f64>>,
+    /// The same over consecutive blocks of the record; empty where the weights are given.
+    pub(super) block_weights: Vec<Vec<f64>>,
 }
 
 /// Whose arithmetic makes the words.
@@ -159,7 +167,9 @@ impl ChannelFilter {
             name,
             settings: PipelineSettings::of(kind),
             shape: filter.as_filter().shape(),
-            weight_totals: vec![0.0; filter.as_filter().weights().len()],
+            weight_totals: std::array::from_fn(|_| vec![0.0; filter.as_filter().weights().len()]),
+            weight_counts: [0; WEIGHT_BLOCKS],
+            measured_samples: length.measured.max(1),
             filter,
             twin: Some(arithmetic()),
             rate_twins: rate_gain.then(|| RateTwins::new(length, arithmetic)),
@@ -219,10 +229,13 @@ impl ChannelFilter {
         if is_measured {
             self.weight_sum_total += output.weight_sum;
             if let WeightRule::Adaptive { .. } = self.shape.rule {
+                let index = self.output_deg_per_h.len() - 1 - self.warm_up_samples;
+                let block = (index * WEIGHT_BLOCKS / self.measured_samples).min(WEIGHT_BLOCKS - 1);
                 let weights = self.filter.as_filter().weights();
-                for (total, weight) in self.weight_totals.iter_mut().zip(weights) {
+                for (total, weight) in self.weight_totals[block].iter_mut().zip(weights) {
                     *total += weight;
                 }
+                self.weight_counts[block] += 1;
             }
             self.measured += 1;
         }
@@ -247,13 +260,15 @@ impl ChannelFilter {
                     .as_ref()
                     .map_or_else(Vec::new, RateTwins::finish),
                 mean_weights: match &self.shape.rule {
-                    WeightRule::Adaptive { .. } => self
-                        .weight_totals
-                        .iter()
-                        .map(|&total| mean(total))
+                    WeightRule::Adaptive { .. } => (0..self.weight_totals[0].len())
+                        .map(|tap| mean(self.weight_totals.iter().map(|block| block[tap]).sum()))
                         .collect(),
                     WeightRule::Fixed(weights) => Some(weights.clone()),
                     WeightRule::Sections(_) => None,
+                },
+                block_weights: match &self.shape.rule {
+                    WeightRule::Adaptive { .. } => self.block_weights(),
+                    WeightRule::Fixed(_) | WeightRule::Sections(_) => Vec::new(),
                 },
                 dc_gain_adapted: self.twin.as_ref().and_then(|_| {
                     mean(self.twin_difference_total).map(|gain| gain / ADDED_RATE_DEG_PER_H)
@@ -267,6 +282,20 @@ impl ChannelFilter {
             words,
             pipeline,
         }
+    }
+
+    /// Time mean of every weight over each block that has samples.
+    fn block_weights(&self) -> Vec<Vec<f64>> {
+        let blocks = self.weight_totals.iter().zip(self.weight_counts);
+        blocks
+            .filter(|(_, count)| *count > 0)
+            .map(|(totals, count)| {
+                totals
+                    .iter()
+                    .map(|total| total / f64::from(count))
+                    .collect()
+            })
+            .collect()
     }
 
     fn finish_pipeline(&mut self) -> Option<FinishedPipeline> {

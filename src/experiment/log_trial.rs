@@ -216,6 +216,7 @@ fn report_motion(motion: LogMotion) -> MotionConfig {
             angle_amplitude_deg: None,
             frequency_hz,
             soft_start_s: 0.0,
+            from_rest: false,
         }),
     }
 }

@@ -16,9 +16,14 @@ use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_
 pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
     match &scenario.turntable.motion {
         MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
-        MotionConfig::Swing(swing) => Motion::Swing {
-            frequency_hz: swing.frequency_hz,
-        },
+        MotionConfig::Swing(swing) => {
+            let frequency_hz = swing.frequency_hz;
+            if swing.from_rest {
+                Motion::SwingFromRest { frequency_hz }
+            } else {
+                Motion::Swing { frequency_hz }
+            }
+        }
         MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => {
             Motion::General
         }

@@ -308,6 +308,7 @@ fn filter_facts(filter: &FinishedFilter, words: &FilterWords) -> FilterFacts {
         dc_gain: words.dc_gain,
         dc_gain_adapted: words.dc_gain_adapted,
         mean_weights: words.mean_weights.clone(),
+        block_weights: words.block_weights.clone(),
         added_rate_deg_per_h: ADDED_RATE_DEG_PER_H,
         rate_gains: words.rate_gains.clone(),
         latency_s: pipeline_metrics::latency_s(filter.pipeline.as_ref()),

@@ -40,6 +40,7 @@ const POINT_CURVES: [&str; 6] = [
     "scale_factor",
     "frequency_response",
     "frequency_response_vs_raw",
+    "frozen_response",
     "noise_delay_bound",
     "rate_gain",
 ];

@@ -15,6 +15,8 @@ pub enum Applies {
     MultiSine,
     /// Steps.
     Steps,
+    /// A motion that begins within the record: steps, a swing from rest, a script.
+    Onset,
     /// Steady motion or swing.
     SteadyOrSwing,
     /// Every motion but rest and constant rate.

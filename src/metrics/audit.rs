@@ -229,6 +229,24 @@ fn wiener_weights(
 }
 
 impl Prediction {
+    /// The response of given weights, newest sample first, the newest of the given age.
+    #[must_use]
+    pub fn of_weights(weights: Vec<f64>, newest_age_samples: usize) -> Self {
+        Self {
+            response: ImpulseResponse::Finite(weights),
+            newest_age_samples,
+        }
+    }
+
+    /// The response of a cascade whose newest sample has the given age.
+    #[must_use]
+    pub fn of_sections(sections: Vec<Section>, newest_age_samples: usize) -> Self {
+        Self {
+            response: ImpulseResponse::Infinite(sections),
+            newest_age_samples,
+        }
+    }
+
     /// The weights, newest sample first; `None` for an infinite impulse response.
     #[must_use]
     pub fn weights(&self) -> Option<&[f64]> {

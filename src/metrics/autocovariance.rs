@@ -1,5 +1,10 @@
 //! Autocovariance of a record, kept per block of time for the jackknife.
 
+use super::interval::{self, NORMAL_QUANTILE};
+
+/// Fewest blocks whose scatter says how sure a variance is.
+const FREEDOM_BLOCKS_MIN: usize = 10;
+
 /// Samples per pass over the cache.
 const CHUNK: usize = 8192;
 
@@ -55,6 +60,26 @@ impl LaggedProducts {
     /// Autocovariance without the pairs of one block.
     pub(crate) fn autocovariance_without(&self, block: usize) -> Vec<f64> {
         self.mean_products(Some(block))
+    }
+
+    /// Degrees of freedom of the variance from its scatter over the blocks; `None` for fewer than
+    /// [`FREEDOM_BLOCKS_MIN`] blocks or ones that do not scatter.
+    ///
+    /// `2 s^4 / var(s^2)`, where the variance of the mean of n blocks is their sample variance over
+    /// n. As that is uncertain itself, the degrees are cut by the square of the normal quantile over
+    /// Student's t for n - 1.
+    pub(crate) fn variance_freedom(&self) -> Option<f64> {
+        let pairs = self.sums.iter().zip(&self.counts);
+        let variances: Vec<f64> = pairs
+            .filter(|(_, counts)| counts[0] > 0)
+            .map(|(sums, counts)| sums[0] / counts[0] as f64)
+            .collect();
+        let blocks = variances.len() as f64;
+        let of_mean = interval::sample_variance(&variances) / blocks;
+        let power = interval::mean(&variances);
+        let quantiles = NORMAL_QUANTILE / interval::student_quantile(blocks - 1.0);
+        let freedom = 2.0 * power * power / of_mean * quantiles * quantiles;
+        (variances.len() >= FREEDOM_BLOCKS_MIN && freedom.is_finite()).then_some(freedom.max(1.0))
     }
 
     fn mean_products(&self, left_out: Option<usize>) -> Vec<f64> {

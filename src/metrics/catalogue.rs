@@ -186,7 +186,7 @@ const CATALOGUE: &[KnownMetric] = &[
     filter(
         "noise_gain_over_bound",
         "1",
-        Applies::Steady,
+        Applies::SteadyOrSwing,
         "noise gain over that least one; below 1 the weights adapt or the signal is attenuated",
     ),
     filter(
@@ -254,6 +254,18 @@ const CATALOGUE: &[KnownMetric] = &[
         "s",
         Applies::Steps,
         "time after the last step until the rate stays within max(1 % of the step, 5 sigma)",
+    ),
+    filter(
+        "settled_gain",
+        "1",
+        Applies::Steps,
+        "mean of the channel over that of raw in the last quarter after the last step",
+    ),
+    filter(
+        "readaptation_time_s",
+        "s",
+        Applies::Onset,
+        "time from the start of a motion until the gain stays within 1 % of what it teaches",
     ),
     any(
         "overshoot_percent",

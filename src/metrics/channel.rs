@@ -5,15 +5,17 @@ use std::collections::BTreeMap;
 use super::autocovariance::LaggedProducts;
 use super::catalogue::{Applies, PIPELINE_ONLY, known_metrics};
 use super::estimate::{ChannelMetrics, Estimate};
+use super::frozen_response::put_frozen_response;
 use super::interval;
 use super::multi_sine::measure_multi_sine;
 use super::psd::{log_binned, segment_samples, welch};
+use super::readaptation::{READAPTATION, measure_after_step, onset};
 use super::record::{FilterFacts, Motion, Record, Settings};
 use super::settling::{settling, tail_start};
 use super::staircase::measure_scale_factor;
 use super::steady::{
     LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_mean_ratio, measure_steady, put_mean,
-    put_noise_gain, put_noise_std,
+    put_noise_gain, put_noise_std, put_ratio_of_means,
 };
 use super::step_shape::{Step, put_step_shape};
 use super::support::{NO_TRUTH, SAMPLES_MIN, encoder_lack, repeats_lack, support, truth_lack};
@@ -56,6 +58,7 @@ pub fn measure(
     if let Some(facts) = filter {
         put_dc_gains(facts, &mut metrics);
         put_rate_gains(facts, &mut metrics);
+        put_frozen_response(facts, record.sample_period_s, &mut metrics);
     }
     drop_not_finite(&mut metrics);
     explain_missing(record, settings, filter.is_some(), &mut metrics);
@@ -94,14 +97,23 @@ fn measure_motion(
             measure_steady(record, settings, filter, metrics);
             Ok(())
         }
-        Motion::Swing { frequency_hz } => measure_swing(record, *frequency_hz, filter, metrics),
+        Motion::Swing { frequency_hz } => {
+            measure_swing(record, *frequency_hz, false, filter, metrics)
+        }
+        Motion::SwingFromRest { frequency_hz } => {
+            measure_swing(record, *frequency_hz, true, filter, metrics)
+        }
         Motion::MultiSine { frequencies_hz } => {
             measure_multi_sine(record, frequencies_hz, filter, metrics)
         }
         Motion::General => {
             measure_tracking(record, metrics);
-            if filter.is_some() {
+            if let Some(facts) = filter {
                 measure_mean_ratio(record, metrics);
+                match onset(record.truth_deg_per_h) {
+                    Some(start) => measure_after_step(record, start, facts, metrics),
+                    None => metrics.miss(READAPTATION, "the motion does not end at a new rate"),
+                }
             }
             Ok(())
         }
@@ -163,11 +175,15 @@ fn measure_steps(
         LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS)
     };
     let channel = products(values);
-    put_noise_std(&channel.autocovariance(), values.len() - start, metrics);
-    if filter.is_some() {
+    put_noise_std(&channel, values.len() - start, metrics);
+    if let Some(facts) = filter {
         let level = interval::mean(&record.raw_deg_per_h[start..]).abs();
         put_noise_gain(&channel, &products(record.raw_deg_per_h), level, metrics);
         measure_mean_ratio(record, metrics);
+        let own = equal_block_means(&values[start..], RATIO_BLOCKS);
+        let raw = equal_block_means(&record.raw_deg_per_h[start..], RATIO_BLOCKS);
+        put_ratio_of_means("settled_gain", &own, &raw, metrics);
+        measure_after_step(record, last_step_index, facts, metrics);
     }
 }
 

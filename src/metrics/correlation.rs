@@ -15,19 +15,27 @@ struct Window<'a> {
     values_mean: f64,
     /// Largest lag, samples; the window begins as many samples inside the record.
     margin: usize,
-    /// First sample of every block, and the end of the last.
-    borders: Vec<usize>,
+    /// Where every block begins, and the last one ends: samples, not whole ones.
+    borders: Vec<f64>,
+}
+
+/// Sum over a part of the time axis on which sample k stands for `k - 1/2 ... k + 1/2`: those that a
+/// border cuts count in part, so that whole cycles stay whole.
+fn sum_between(ends: &[f64], value: impl Fn(usize) -> f64) -> f64 {
+    let [start, end] = [ends[0], ends[1]].map(|end| (end, round_to_count((end + 0.5).floor())));
+    let inside: f64 = (start.1 + 1..end.1).map(&value).sum();
+    let first = (start.1 as f64 + 0.5 - start.0) * value(start.1);
+    let last = (end.0 - end.1 as f64 + 0.5) * value(end.1);
+    first + inside + last
 }
 
 impl Window<'_> {
     /// `sum x[k] y[k + lag]` over a block, for the lag `shift - margin`.
-    fn block_product(&self, ends: &[usize], shift: usize) -> f64 {
-        let later = &self.values[ends[0] + shift - self.margin..];
-        self.reference[ends[0]..ends[1]]
-            .iter()
-            .zip(later)
-            .map(|(own, other)| (own - self.reference_mean) * (other - self.values_mean))
-            .sum()
+    fn block_product(&self, ends: &[f64], shift: usize) -> f64 {
+        sum_between(ends, |index| {
+            let later = self.values[index + shift - self.margin] - self.values_mean;
+            (self.reference[index] - self.reference_mean) * later
+        })
     }
 
     fn products(&self, shift: usize) -> Vec<f64> {
@@ -69,8 +77,8 @@ impl Window<'_> {
 /// for every lag and lies a quarter of a cycle, the largest lag, inside the record. The usual sum
 /// over whatever overlaps, with fewer terms the larger the lag, is a triangle times a cosine, or has
 /// a part of twice the frequency at its ends: its peak is off by some `1 / (w^2 T)`, which is 1 ms for
-/// a second of 5 Hz. What is left here comes from the half sample by which W misses whole cycles, at
-/// most `1 / (2 w)` over the samples of W; 2 us for ten cycles at 4 kHz. The peak is that of the
+/// a second of 5 Hz. Here a sample that the border of W or of a block cuts counts in part; what is
+/// left goes with the square of the sample period. The peak is that of the
 /// parabola through the three largest sums; on a pure sine it errs by `(w d)^2 / 3 - (w T)^2 / 12` of
 /// the part d of a sample. The interval is jackknifed over blocks of whole cycles.
 ///
@@ -89,7 +97,7 @@ pub fn correlation_delay_s(
     let samples_per_cycle = 1.0 / (clock.frequency_hz * clock.sample_period_s);
     let margin = round_to_count((samples_per_cycle / 4.0).ceil());
     let samples = reference.len().min(values.len());
-    let cycles = clock.whole_cycles(samples.saturating_sub(2 * margin + 1));
+    let cycles = clock.whole_cycles(samples.saturating_sub(2 * margin + 3));
     if cycles < CYCLES_MIN {
         return Err(format!(
             "{cycles} whole cycles lie a quarter of a cycle inside the record; a correlation needs \
@@ -98,14 +106,16 @@ pub fn correlation_delay_s(
     }
     let count = cycles.min(BLOCKS_MAX);
     let border =
-        |block: usize| margin + round_to_count((cycles * block / count) as f64 * samples_per_cycle);
-    let borders: Vec<usize> = (0..=count).map(border).collect();
-    let inner = borders[0]..borders[count];
+        |block: usize| (margin + 1) as f64 + (cycles * block / count) as f64 * samples_per_cycle;
+    let borders: Vec<f64> = (0..=count).map(border).collect();
+    let whole = [borders[0], borders[count]];
+    let mean_of =
+        |values: &[f64]| sum_between(&whole, |index| values[index]) / (whole[1] - whole[0]);
     let window = Window {
         reference,
         values,
-        reference_mean: interval::mean(&reference[inner.clone()]),
-        values_mean: interval::mean(&values[inner]),
+        reference_mean: mean_of(reference),
+        values_mean: mean_of(values),
         margin,
         borders,
     };

@@ -58,7 +58,7 @@ impl SwingClock {
     }
 
     /// Samples nearest to `cycles` whole cycles.
-    fn samples_in(&self, cycles: usize) -> usize {
+    pub(crate) fn samples_in(&self, cycles: usize) -> usize {
         round_to_count(cycles as f64 * self.samples_per_cycle())
     }
 }

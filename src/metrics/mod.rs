@@ -25,6 +25,7 @@ mod combined_freedom;
 mod correlation;
 mod delay;
 mod estimate;
+mod frozen_response;
 mod interval;
 mod multi_sine;
 mod noise_delay;
@@ -32,6 +33,7 @@ mod noise_fit;
 mod noise_identification;
 mod nonlinearity;
 mod psd;
+mod readaptation;
 mod record;
 mod response;
 mod scale_factor;
@@ -44,6 +46,7 @@ mod step_shape;
 mod support;
 mod swing;
 mod table;
+mod truth_response;
 mod verdict;
 mod weight_noise;
 
@@ -74,6 +77,7 @@ pub use noise_fit::{
 pub use noise_identification::PowerLaw;
 pub use nonlinearity::{Nonlinearity, Residual, expected_largest};
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
+pub use readaptation::{GainUnits, Readaptation};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
 pub use response::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
 pub use scale_factor::{

@@ -10,6 +10,7 @@ use super::response::{ToneClock, ToneFits, ToneResponse, fit_tones};
 use super::steady::{
     LAGS_MIN, RATIO_BLOCKS, equal_block_means, put_mean, put_noise_gain, put_noise_std,
 };
+use super::truth_response::{reach, remove_response};
 use crate::units;
 
 /// Order of the series in the joint fit.
@@ -68,7 +69,7 @@ pub(crate) fn measure_multi_sine(
         Err(reason) => metrics.miss("bandwidth_hz", reason),
     }
     measure_tracking(record, metrics);
-    measure_noise(record, &fits, filter.is_some(), metrics);
+    measure_noise(record, &fits, filter, metrics);
     Ok(())
 }
 
@@ -103,7 +104,7 @@ fn put_lowest(name: &'static str, responses: &[ToneResponse], metrics: &mut Chan
 }
 
 /// Enters gain, phase and delay of every tone with their intervals.
-fn put_curve(name: &str, responses: &[ToneResponse], metrics: &mut ChannelMetrics) {
+pub(crate) fn put_curve(name: &str, responses: &[ToneResponse], metrics: &mut ChannelMetrics) {
     type Pick = fn(&ToneResponse) -> Estimate;
     let quantities: [(&str, &str, Pick); 3] = [
         ("gain", "", |response| response.gain),
@@ -164,21 +165,24 @@ fn measure_tracking(record: &Record, metrics: &mut ChannelMetrics) {
 }
 
 /// Noise about the tones; against raw's for a filter.
-fn measure_noise(record: &Record, fits: &ToneFits, is_filter: bool, metrics: &mut ChannelMetrics) {
-    let products = |series: usize, values: &[f64]| {
-        let residuals = fits.residuals(series, values);
+fn measure_noise(
+    record: &Record,
+    fits: &ToneFits,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
+    let motion = fits.residuals(TRUTH, record.truth_deg_per_h);
+    let products = |series: usize, values: &[f64], of: Option<&FilterFacts>| {
+        let mut residuals = fits.residuals(series, values);
+        remove_response(&mut residuals, &motion, reach(of));
         LaggedProducts::new(&residuals, 0.0, LAGS_MIN, RATIO_BLOCKS)
     };
-    let channel = products(CHANNEL, record.channel_deg_per_h);
-    put_noise_std(
-        &channel.autocovariance(),
-        record.channel_deg_per_h.len(),
-        metrics,
-    );
-    if is_filter {
+    let channel = products(CHANNEL, record.channel_deg_per_h, filter);
+    put_noise_std(&channel, record.channel_deg_per_h.len(), metrics);
+    if filter.is_some() {
         let raw = record.raw_deg_per_h;
         let level = raw.iter().fold(0.0_f64, |max, rate| max.max(rate.abs()));
-        put_noise_gain(&channel, &products(RAW, raw), level, metrics);
+        put_noise_gain(&channel, &products(RAW, raw, None), level, metrics);
         let offset = fits.offset(RAW);
         if offset.low <= 0.0 && offset.high >= 0.0 {
             let reason = format!(

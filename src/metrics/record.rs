@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::signal::FilterShape;
+use super::audit::Prediction;
+use crate::signal::{FilterShape, WeightRule};
 
 /// The samples of one channel with the two references it is compared to.
 ///
@@ -38,6 +39,11 @@ pub enum Motion {
     Steady,
     /// Sine swing.
     Swing {
+        /// Swing frequency, Hz.
+        frequency_hz: f64,
+    },
+    /// Sine swing that begins with the record, after rest.
+    SwingFromRest {
         /// Swing frequency, Hz.
         frequency_hz: f64,
     },
@@ -104,6 +110,8 @@ pub struct FilterFacts {
     pub dc_gain_adapted: Option<f64>,
     /// Time mean of every weight over the measured record, newest sample first.
     pub mean_weights: Option<Vec<f64>>,
+    /// The same over consecutive blocks of the record; empty where the weights are given.
+    pub block_weights: Vec<Vec<f64>>,
     /// The added rate, deg/h.
     pub added_rate_deg_per_h: f64,
     /// Gains for constant rates of other sizes; empty where none was asked for.
@@ -114,6 +122,21 @@ pub struct FilterFacts {
 }
 
 impl FilterFacts {
+    /// The filter frozen: at the mean of its weights, or as given; `None` without weights.
+    #[must_use]
+    pub fn frozen(&self) -> Option<Prediction> {
+        let newest = self.shape.newest_age_samples;
+        match (&self.shape.rule, &self.mean_weights) {
+            (WeightRule::Sections(sections), _) => {
+                Some(Prediction::of_sections(sections.clone(), newest))
+            }
+            (WeightRule::Fixed(weights), _) | (WeightRule::Adaptive { .. }, Some(weights)) => {
+                Some(Prediction::of_weights(weights.clone(), newest))
+            }
+            (WeightRule::Adaptive { .. }, None) => None,
+        }
+    }
+
     /// Delay at DC of the mean weights, samples: `sum age w / sum w`, the register included; `None`
     /// without weights or DC gain.
     #[must_use]

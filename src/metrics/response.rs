@@ -279,7 +279,7 @@ fn ratio(fits: &[Parameters], (series, reference): (usize, usize), tone: usize) 
 }
 
 /// The angle plus the whole turns that bring it nearest to another.
-fn near(angle_rad: f64, target_rad: f64) -> f64 {
+pub(crate) fn near(angle_rad: f64, target_rad: f64) -> f64 {
     angle_rad - TAU * ((angle_rad - target_rad) / TAU).round()
 }
 

@@ -13,6 +13,7 @@ use super::noise_fit::{
 use super::record::{FilterFacts, Record, Settings};
 use super::support::BLOCKS_MIN;
 use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION};
+use super::truth_response::without_motion;
 use super::weight_noise::measure_weight_noise;
 use crate::units;
 
@@ -26,22 +27,27 @@ pub(crate) const WALK_OVER_DC_GAIN: &str = "angle_random_walk_over_dc_gain_deg_p
 pub(crate) const LAGS_MIN: usize = 24;
 
 /// Measures everything a steady record supports.
+///
+/// Where the true rate varies, as the Earth's on a cross axis that turns or that of an unsteady
+/// table, what the channel shows of it is taken out first, its mean excepted.
 pub(crate) fn measure_steady(
     record: &Record,
     settings: &Settings,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
+    let still = without_motion(record, filter);
+    let record = &still.as_ref().map_or(*record, |(channel, raw)| Record {
+        channel_deg_per_h: channel,
+        raw_deg_per_h: raw,
+        ..*record
+    });
     let fit = measure_allan(record, settings, metrics);
     measure_bias(record, settings, fit.as_ref(), metrics);
     measure_mean(record, fit.as_ref(), metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let products = products_about_mean(record.channel_deg_per_h, lags);
-    put_noise_std(
-        &products.autocovariance(),
-        record.channel_deg_per_h.len(),
-        metrics,
-    );
+    put_noise_std(&products, record.channel_deg_per_h.len(), metrics);
     if let Some(facts) = filter {
         let raw = products_about_mean(record.raw_deg_per_h, lags);
         let level = interval::mean(record.raw_deg_per_h).abs();
@@ -182,6 +188,7 @@ fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMe
         duration_s,
         metrics,
     );
+    metrics.mark_exact(&["mean_deg_per_h", "mean_error_deg_per_h"]);
 }
 
 /// Enters the mean and, where the truth is known, its error against the mean truth.
@@ -225,9 +232,15 @@ fn products_about_mean(values: &[f64], lags: usize) -> LaggedProducts {
     LaggedProducts::new(values, interval::mean(values), lags, RATIO_BLOCKS)
 }
 
-/// Standard deviation about the signal; correlated samples count for less in its interval.
-pub(crate) fn put_noise_std(autocovariance: &[f64], count: usize, metrics: &mut ChannelMetrics) {
-    let freedom = (independent_samples(autocovariance, count) - 1.0).max(1.0);
+/// Standard deviation about the signal.
+///
+/// The degrees of freedom are those that the scatter of the variance from block to block shows:
+/// noise whose strength changes, as behind weights that follow a swing, has fewer than its
+/// autocovariance tells. Of few blocks the latter is taken.
+pub(crate) fn put_noise_std(products: &LaggedProducts, count: usize, metrics: &mut ChannelMetrics) {
+    let autocovariance = products.autocovariance();
+    let of_lags = (independent_samples(&autocovariance, count) - 1.0).max(1.0);
+    let freedom = products.variance_freedom().unwrap_or(of_lags);
     let metric = metrics.put(
         "noise_std_deg_per_h",
         interval::deviation(autocovariance[0].sqrt(), freedom),
@@ -263,15 +276,20 @@ pub(crate) fn put_noise_gain(
 pub(crate) fn measure_mean_ratio(record: &Record, metrics: &mut ChannelMetrics) {
     let channel = equal_block_means(record.channel_deg_per_h, RATIO_BLOCKS);
     let raw = equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS);
-    put_mean_ratio(&channel, &raw, metrics);
+    put_ratio_of_means("mean_ratio", &channel, &raw, metrics);
 }
 
 /// Enters the ratio of the means of equally long blocks.
-pub(crate) fn put_mean_ratio(channel: &[f64], raw: &[f64], metrics: &mut ChannelMetrics) {
+pub(crate) fn put_ratio_of_means(
+    name: &'static str,
+    channel: &[f64],
+    raw: &[f64],
+    metrics: &mut ChannelMetrics,
+) {
     let raw_mean = interval::from_parts(interval::mean(raw), raw);
     if raw_mean.low <= 0.0 && raw_mean.high >= 0.0 {
         metrics.miss(
-            "mean_ratio",
+            name,
             format!(
                 "the raw mean, {:.4} deg/h, cannot be told from zero",
                 raw_mean.value
@@ -285,10 +303,7 @@ pub(crate) fn put_mean_ratio(channel: &[f64], raw: &[f64], metrics: &mut Channel
         .zip(raw)
         .map(|(own, other)| (channel_sum - own) / (raw_sum - other))
         .collect();
-    metrics.put(
-        "mean_ratio",
-        interval::jackknife(channel_sum / raw_sum, &left_out),
-    );
+    metrics.put(name, interval::jackknife(channel_sum / raw_sum, &left_out));
 }
 
 /// Wiener prediction of the DC gain; the delay of the mean weights and the noise-delay bound there.

@@ -105,7 +105,7 @@ pub fn support(
         ));
     }
     match motion {
-        Motion::Swing { frequency_hz } => {
+        Motion::Swing { frequency_hz } | Motion::SwingFromRest { frequency_hz } => {
             check_cycles(metric, samples, sample_period_s, *frequency_hz)
         }
         Motion::MultiSine { frequencies_hz } => {
@@ -188,7 +188,7 @@ fn check_tail(metric: &str, samples: usize, last_step_index: usize) -> Result<()
     let after = samples.saturating_sub(last_step_index);
     let (found, needed) = match metric {
         "settling_time_s" | "overshoot_percent" | "rise_time_s" => (after, STEP_SAMPLES_MIN),
-        "noise_std_deg_per_h" | "noise_gain" => (
+        "noise_std_deg_per_h" | "noise_gain" | "settled_gain" | "readaptation_time_s" => (
             samples.saturating_sub(tail_start(samples, last_step_index)),
             SAMPLES_MIN,
         ),
@@ -221,7 +221,7 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
                     | Applies::SteadyOrSwing
                     | Applies::Moving
                     | Applies::Separable,
-                Motion::Swing { .. }
+                Motion::Swing { .. } | Motion::SwingFromRest { .. }
             )
             | (
                 Applies::Tones | Applies::MultiSine | Applies::Moving | Applies::Separable,
@@ -230,6 +230,10 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
             | (
                 Applies::Steps | Applies::Moving | Applies::Separable,
                 Motion::Steps { .. }
+            )
+            | (
+                Applies::Onset,
+                Motion::Steps { .. } | Motion::SwingFromRest { .. } | Motion::General
             )
             | (Applies::Moving, Motion::General)
     );
@@ -243,6 +247,7 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
         Applies::Tones => "a swing or several sines",
         Applies::MultiSine => "several sines",
         Applies::Steps => "steps",
+        Applies::Onset => "steps, a swing from rest or a script",
         Applies::SteadyOrSwing => "a swing or a table at rest or at constant rate",
         Applies::Moving => "a moving table",
         Applies::Separable => {

@@ -8,10 +8,12 @@ use super::correlation::correlation_delay_s;
 use super::delay::{SwingClock, SwingFit, fit_swing};
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
-use super::noise_delay::{put_bound, put_bound_curve};
+use super::noise_delay::{put_bound, put_bound_curve, put_over_bound};
+use super::readaptation::{self, GainUnits};
 use super::record::{FilterFacts, Record};
 use super::steady::{LAGS_MIN, put_mean, put_noise_gain, put_noise_std};
 use super::support::DELAY_VS_ENCODER;
+use super::truth_response::{reach, remove_response};
 use crate::units;
 
 /// The sine fits of one swing record.
@@ -26,11 +28,14 @@ struct Fits {
 
 /// Measures everything a swing record supports.
 ///
+/// With `is_from_rest` the swing begins with the record, and filters must adapt to it.
+///
 /// # Errors
 /// The reason, in words, if the record holds no three whole cycles.
 pub(crate) fn measure_swing(
     record: &Record,
     frequency_hz: f64,
+    is_from_rest: bool,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) -> Result<(), String> {
@@ -69,17 +74,30 @@ pub(crate) fn measure_swing(
         "harmonic_distortion_percent",
         fits.channel.harmonic_distortion_percent(&residuals),
     );
-    let channel = LaggedProducts::new(&residuals, 0.0, lags, fits.channel.block_count());
-    drop(residuals);
-    put_noise_std(&channel.autocovariance(), fits.channel.samples(), metrics);
+    let blocks = fits.channel.block_count();
+    let motion = fits.truth.as_ref().zip(record.truth());
+    let motion = motion.map_or_else(Vec::new, |(fit, truth)| fit.residuals(truth));
+    // The table's own harmonics are known, and no noise.
+    let noise = |mut residuals: Vec<f64>, of: Option<&FilterFacts>| {
+        remove_response(&mut residuals, &motion, reach(of));
+        LaggedProducts::new(&residuals, 0.0, lags, blocks)
+    };
+    let channel = noise(residuals, filter);
+    put_noise_std(&channel, fits.channel.samples(), metrics);
     if let Some(facts) = filter {
-        let residuals = fits.raw.residuals(record.raw_deg_per_h);
-        let raw = LaggedProducts::new(&residuals, 0.0, lags, fits.raw.block_count());
+        let raw = noise(fits.raw.residuals(record.raw_deg_per_h), None);
         let level = fits.raw.whole.amplitude + fits.raw.whole.offset.abs();
         put_noise_gain(&channel, &raw, level, metrics);
         measure_mean_ratio(&fits, metrics);
         measure_predictions(&fits, &clock, facts, &raw, metrics);
-        measure_bound(&fits, &clock, facts, &raw, metrics);
+        measure_bound(&fits, &clock, facts, (&channel, &raw), metrics);
+        let predicted = metrics.metrics.get("delay_predicted_ms");
+        let final_gain = predicted.and_then(|metric| metric.fields.get("amplitude_ratio"));
+        if let Some(&final_gain) = final_gain.filter(|_| is_from_rest) {
+            let (own, other) = (record.channel_deg_per_h, record.raw_deg_per_h);
+            let units = GainUnits::of_swing(own, other, &clock);
+            readaptation::put(&units, final_gain, metrics);
+        }
     }
     Ok(())
 }
@@ -95,6 +113,9 @@ fn measure_sines(
     let describe = |metric: &mut Metric| {
         metric.fields.insert("frequency_hz", clock.frequency_hz);
         metric.fields.insert("cycles", fits.channel.cycles as f64);
+        // The start-up before the record, and the part of a cycle at its end.
+        let start_s = (clock.first_stamp_s - clock.sample_period_s).max(0.0);
+        metric.fields.insert("excluded_s", start_s);
     };
     let mut put_delay = |name, reference| {
         let delay_s = later(fits.channel.delay_behind_s(reference), latency_s);
@@ -241,7 +262,7 @@ fn measure_bound(
     fits: &Fits,
     clock: &SwingClock,
     facts: &FilterFacts,
-    raw: &LaggedProducts,
+    (channel, raw): (&LaggedProducts, &LaggedProducts),
     metrics: &mut ChannelMetrics,
 ) {
     let delay = fits
@@ -252,19 +273,50 @@ fn measure_bound(
         filter_bound(&facts.shape, delay_samples, autocovariance)
     };
     let autocovariance = raw.autocovariance();
-    let left_out: Vec<f64> = (0..raw.blocks())
-        .filter_map(|block| at(delay.value, &raw.autocovariance_without(block)).ok())
+    let without: Vec<Result<f64, String>> = (0..raw.blocks())
+        .map(|block| at(delay.value, &raw.autocovariance_without(block)))
         .collect();
+    let left_out: Vec<f64> = without.iter().flatten().copied().collect();
     // The bound is a parabola in the delay: its extremes over the interval are at the ends unless
     // the lowest point lies inside, which the value in the middle stands for. The scatter of the
     // autocovariance adds in quadrature; the two are nearly independent.
-    let bound = at(delay.value, &autocovariance).map(|value| {
+    let bound = at(delay.value, &autocovariance);
+    put_over_bound(channel, raw, &bound, &without, metrics);
+    let bound = bound.map(|value| {
         let ends = [delay.low, delay.high].map(|end| at(end, &autocovariance).unwrap_or(value));
         let colour = interval::jackknife(value, &left_out).high - value;
         let below = (value - ends[0].min(ends[1])).max(0.0).hypot(colour);
         let above = (ends[0].max(ends[1]) - value).max(0.0).hypot(colour);
         Estimate::with_interval(value, (value - below).max(0.0), value + above)
     });
+    if let Ok(bound) = &bound {
+        widen_over_bound(bound, &left_out, metrics);
+    }
     put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
     put_bound_curve(facts, &autocovariance, clock.sample_period_s, metrics);
+}
+
+/// Adds what the uncertain delay does to the bound to the interval of the noise gain over it.
+///
+/// The scatter of the noise is in that interval already, where numerator and bound share it; of the
+/// bound's own interval only what exceeds it comes on top, in quadrature.
+fn widen_over_bound(bound: &Estimate, left_out: &[f64], metrics: &mut ChannelMetrics) {
+    let Some(metric) = metrics.metrics.get_mut("noise_gain_over_bound") else {
+        return;
+    };
+    let colour = interval::jackknife(bound.value, left_out).high - bound.value;
+    let by_delay = |half_width: f64| {
+        let rest = (half_width * half_width - colour * colour).max(0.0).sqrt();
+        rest / bound.value * metric.estimate.value
+    };
+    let below = by_delay(bound.high - bound.value);
+    let above = by_delay(bound.value - bound.low);
+    let Estimate {
+        value, low, high, ..
+    } = metric.estimate;
+    metric.estimate = Estimate::with_interval(
+        value,
+        (value - below.hypot(value - low)).max(0.0),
+        value + above.hypot(high - value),
+    );
 }

@@ -22,6 +22,8 @@ const BOUND_MAX: f64 = 1e6;
 
 /// Column of the two-sided density in the curve `psd`; `psd_deg2_per_h2_per_hz` is one-sided.
 pub(crate) const TWO_SIDED_PSD: &str = "two_sided_psd_deg2_per_h2_per_hz";
+/// Width of an interval, as a part of its value, that rounding makes.
+const ROUNDING: f64 = 1e-12;
 
 impl ChannelMetrics {
     /// Enters a metric under its catalogue unit, and returns it for its defining fields.
@@ -37,6 +39,19 @@ impl ChannelMetrics {
     /// Says why a metric is missing.
     pub(crate) fn miss(&mut self, name: &str, reason: impl Into<String>) {
         self.unavailable.insert(name.to_owned(), reason.into());
+    }
+
+    /// Gives metrics without width the field `exact_to_word`: words that never change determine their
+    /// mean exactly, and leave open where within its rounding the rate lies.
+    pub(crate) fn mark_exact(&mut self, names: &[&str]) {
+        for name in names {
+            if let Some(metric) = self.metrics.get_mut(*name)
+                && metric.estimate.high - metric.estimate.low
+                    <= ROUNDING * metric.estimate.value.abs()
+            {
+                metric.fields.insert("exact_to_word", 1.0);
+            }
+        }
     }
 
     /// Enters the five fitted coefficients or the reasons for their absence.

@@ -85,7 +85,7 @@ pub struct FilterVerdict {
     pub deed: Deed,
     /// Gain for a small added constant rate.
     pub dc_gain: Option<Finding>,
-    /// Gain for the motion itself, where the motion has an amplitude.
+    /// Gain for the motion itself: of a swing its amplitude, of steps the last rate.
     pub motion_gain: Option<Finding>,
     /// Noise power over raw's.
     pub fast_noise: Option<Finding>,
@@ -101,6 +101,8 @@ pub struct FilterVerdict {
     pub delay_ms: Option<Estimate>,
     /// Noise power over the least that as many fixed weights with unit DC gain have at this delay.
     pub over_bound: Option<Finding>,
+    /// Time from the start of a motion within the record until the gain is back, s.
+    pub readaptation_s: Option<Estimate>,
 }
 
 impl FilterVerdict {
@@ -124,14 +126,13 @@ pub fn filter_verdict(channel: &ChannelMetrics) -> Option<FilterVerdict> {
     if channel.error.is_some() || (dc_gain.is_none() && noise_gain.is_none()) {
         return None;
     }
-    let motion_gain = gain("amplitude_ratio");
+    let motion_gain = gain("amplitude_ratio").or_else(|| gain("settled_gain"));
     let level = motion_gain.or(dc_gain);
     let restored = level
         .zip(noise_gain)
         .and_then(|(level, noise)| over_square(noise, level.estimate))
         .map(noise);
     let fast_noise = noise_gain.map(noise);
-    let bound = estimate("noise_delay_bound_noise_gain");
     Some(FilterVerdict {
         deed: deed(level, fast_noise, restored),
         dc_gain,
@@ -143,13 +144,8 @@ pub fn filter_verdict(channel: &ChannelMetrics) -> Option<FilterVerdict> {
             .and_then(|metric| metric.fields.get("averaging_time_s").copied()),
         walk_restored_deg_per_sqrt_h: estimate("angle_random_walk_over_dc_gain_deg_per_sqrt_h"),
         delay_ms: estimate("delay_vs_raw_ms").or_else(|| estimate("delay_at_dc_ms")),
-        over_bound: estimate("noise_gain_over_bound")
-            .or_else(|| {
-                noise_gain
-                    .zip(bound)
-                    .and_then(|(noise, bound)| quotient(noise, bound))
-            })
-            .map(noise),
+        over_bound: estimate("noise_gain_over_bound").map(noise),
+        readaptation_s: estimate("readaptation_time_s"),
     })
 }
 
@@ -173,22 +169,19 @@ fn deed(level: Option<Finding>, fast: Option<Finding>, restored: Option<Finding>
     }
 }
 
-/// Widest quotient of two intervals; `None` where the divisor may be zero.
-fn quotient(above: Estimate, below: Estimate) -> Option<Estimate> {
-    (below.low > 0.0).then(|| {
-        Estimate::with_interval(
-            above.value / below.value,
-            above.low / below.high,
-            above.high / below.low,
-        )
-    })
-}
-
-/// A power over the square of a gain.
+/// A power over the square of a gain; `None` where the gain may be zero.
+///
+/// The relative half widths add in quadrature: the ends of both intervals at once would be far less
+/// probable than either. What power and gain of one record have in common makes it smaller still.
 fn over_square(power: Estimate, gain: Estimate) -> Option<Estimate> {
-    let square = |gain: f64| gain * gain;
-    let squared = Estimate::with_interval(square(gain.value), square(gain.low), square(gain.high));
-    (gain.low > 0.0).then(|| quotient(power, squared)).flatten()
+    let ratio = power.value / (gain.value * gain.value);
+    let of_gain = |end: f64| (gain.value / end).powi(2) - 1.0;
+    let below = (1.0 - power.low / power.value).hypot(of_gain(gain.high));
+    let above = (power.high / power.value - 1.0).hypot(of_gain(gain.low));
+    (gain.low > 0.0 && power.value > 0.0).then(|| {
+        let low = (ratio * (1.0 - below)).max(0.0);
+        Estimate::with_interval(ratio, low, ratio * (1.0 + above))
+    })
 }
 
 #[cfg(test)]
@@ -261,15 +254,17 @@ mod tests {
             ("noise_gain", 0.5, 0.6),
             ("delay_vs_raw_ms", 0.33, 0.35),
             ("delay_at_dc_ms", 0.6, 0.6),
-            ("noise_delay_bound_noise_gain", 0.25, 0.4),
+            ("noise_gain_over_bound", 1.4, 2.0),
         ]))
         .unwrap();
         assert_eq!(verdict.deed, Deed::Smooths);
         assert!((verdict.delay_ms.unwrap().value - 0.34).abs() < 1e-12);
         let over = verdict.over_bound.unwrap();
         assert_eq!(over.against_one, AgainstOne::Above);
-        assert!((over.estimate.low - 0.5 / 0.4).abs() < 1e-12);
-        assert!((over.estimate.high - 0.6 / 0.25).abs() < 1e-12);
+        assert!((over.estimate.low - 1.4).abs() < 1e-12);
+        let restored = verdict.fast_noise_restored.unwrap().estimate;
+        let width = (0.05_f64 / 0.55).hypot(2e-4);
+        assert!((restored.high / restored.value - 1.0 - width).abs() < 1e-6);
     }
 
     #[test]

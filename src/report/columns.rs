@@ -52,6 +52,7 @@ const SWING: &[(&str, &str)] = &[
     ("noise_delay_bound_noise_gain", "least at this delay"),
     ("dc_gain", "DC gain"),
     ("dc_gain_predicted", "DC gain predicted"),
+    ("readaptation_time_s", "readaptation"),
 ];
 
 const MULTI_SINE: &[(&str, &str)] = &[
@@ -90,6 +91,8 @@ const STEPS: &[(&str, &str)] = &[
     ("noise_std_deg_per_h", "noise std"),
     ("noise_gain", "noise power gain"),
     ("dc_gain", "DC gain"),
+    ("settled_gain", "settled gain"),
+    ("readaptation_time_s", "readaptation"),
 ];
 
 const STATIC_HEADLINE: &[&str] = &[

@@ -38,6 +38,7 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     let verdicts = report.verdicts;
     text.push_str(&failures_text(&report.measured(), verdicts, width, colour));
     text.push_str(&filter_verdicts(&report.measured(), width, colour));
+    text.push_str(&sine_fits(report.channels, width));
     text.push_str(&published(report, colour));
     text.push_str(&gates(report.verdicts, width, colour));
     for note in report.notes {
@@ -196,6 +197,29 @@ pub(crate) fn failures_text(
     } else {
         format!("\n{text}")
     }
+}
+
+/// What the sine fits use of the run, and what they leave out.
+fn sine_fits(channels: &[(String, ChannelMetrics)], width: usize) -> String {
+    let mut fits = channels.iter().filter_map(|(_, metrics)| {
+        let fields = &metrics.metrics.get("delay_vs_truth_ms")?.fields;
+        let field = |name: &str| fields.get(name).copied();
+        Some((
+            field("cycles")?,
+            field("frequency_hz")?,
+            field("excluded_s")?,
+        ))
+    });
+    fits.next()
+        .map_or_else(String::new, |(cycles, frequency_hz, excluded_s)| {
+            let line = format!(
+                "sine fits: {} whole cycles of {} Hz after the first {:.4} s, which are left out",
+                plain(cycles),
+                plain(frequency_hz),
+                excluded_s,
+            );
+            format!("\n{}", wrapped(&line, INDENT, width))
+        })
 }
 
 /// What each filter does, in words.

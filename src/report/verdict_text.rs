@@ -12,12 +12,19 @@ const DIGITS: i32 = 2;
 /// channels that failed.
 pub(crate) fn verdict_text(channel: &ChannelMetrics) -> Option<String> {
     let verdict = filter_verdict(channel)?;
+    let mut noise = [fast_noise(&verdict), slow_noise(&verdict)];
+    if is_attenuation(&verdict) {
+        // What a lower angle random walk is worth stands first.
+        noise.reverse();
+    }
+    let [first, second] = noise;
     let clauses = [
         Some(head(&verdict)),
-        fast_noise(&verdict),
-        slow_noise(&verdict),
+        first,
+        second,
         verdict.delay_ms.as_ref().map(delay),
         bound(&verdict),
+        readaptation(channel, &verdict),
     ];
     let clauses: Vec<String> = clauses.into_iter().flatten().collect();
     Some(clauses.join("; "))
@@ -37,13 +44,17 @@ fn is(finding: Option<Finding>, against_one: AgainstOne) -> bool {
     finding.is_some_and(|finding| finding.against_one == against_one)
 }
 
+/// Whether slow noise is lower because the input is, and for no other reason.
+fn is_attenuation(verdict: &FilterVerdict) -> bool {
+    matches!(verdict.deed, Deed::Attenuates | Deed::AttenuatesAndSmooths)
+        && is(verdict.slow_noise, AgainstOne::Equal)
+}
+
 /// What it does, with the gains.
 fn head(verdict: &FilterVerdict) -> String {
     let what = match verdict.deed {
         Deed::Attenuates => "reduces noise by attenuating the input",
-        Deed::AttenuatesAndSmooths if is(verdict.slow_noise, AgainstOne::Equal) => {
-            "reduces slow noise by attenuating the input, fast noise by smoothing too"
-        }
+        _ if is_attenuation(verdict) => "reduces noise by attenuating the input",
         Deed::AttenuatesAndSmooths => "reduces noise by attenuating the input and smoothing it",
         Deed::Smooths => "reduces fast noise by smoothing",
         Deed::Reduces => "reduces noise; whether by attenuating the input cannot be told",
@@ -52,9 +63,14 @@ fn head(verdict: &FilterVerdict) -> String {
         Deed::Undecided => "cannot be told to change fast noise",
         Deed::NotJudged => "noise not judged",
     };
+    // Weights that adapt may have had another gain before the motion settled.
+    let of_dc = match verdict.motion_gain {
+        Some(_) => "DC gain over the record",
+        None => "DC gain",
+    };
     let gains = [
-        ("amplitude ratio", verdict.motion_gain),
-        ("DC gain", verdict.dc_gain),
+        ("gain for the motion", verdict.motion_gain),
+        (of_dc, verdict.dc_gain),
     ];
     let gains: Vec<String> = gains
         .into_iter()
@@ -76,7 +92,12 @@ fn fast_noise(verdict: &FilterVerdict) -> Option<String> {
     let ratio = text(&verdict.fast_noise?.estimate);
     let restored = verdict.fast_noise_restored.filter(|_| is_scaled(verdict));
     let restored = restored.map_or_else(String::new, |restored| {
-        format!(", {} at restored scale", text(&restored.estimate))
+        let by = if verdict.deed == Deed::AttenuatesAndSmooths && is_attenuation(verdict) {
+            ", by smoothing too"
+        } else {
+            ""
+        };
+        format!(", {} at restored scale{by}", text(&restored.estimate))
     });
     let what = if verdict.deed == Deed::Raises {
         "times its power"
@@ -101,7 +122,7 @@ fn slow_noise(verdict: &FilterVerdict) -> Option<String> {
     };
     let walk = verdict.walk_restored_deg_per_sqrt_h;
     let what = match walk.map(|walk| text(&walk)) {
-        Some(walk) => format!("angle random walk{scale} {walk} deg/sqrt(h), {what}"),
+        Some(walk) => format!("ARW{scale} {walk} deg/sqrt(h), {what}"),
         None => format!("slow noise{scale} {what}"),
     };
     let at = verdict
@@ -118,6 +139,19 @@ fn delay(delay_ms: &Estimate) -> String {
     } else {
         format!("delays by {} ms", text(delay_ms))
     }
+}
+
+/// How long it takes to learn a motion that began within the record.
+fn readaptation(channel: &ChannelMetrics, verdict: &FilterVerdict) -> Option<String> {
+    if let Some(time_s) = verdict.readaptation_s {
+        return Some(format!(
+            "passes the new motion to 1 % after {} s",
+            text(&time_s)
+        ));
+    }
+    let reason = channel.unavailable.get("readaptation_time_s")?;
+    let bound = reason.starts_with("not within the record");
+    bound.then(|| format!("does not learn the new motion: {reason}"))
 }
 
 /// Noise against the least that unit DC gain allows.
@@ -170,16 +204,15 @@ mod tests {
                 0.0061,
             ),
             ("delay_at_dc_ms", 0.75, 0.75),
-            ("noise_delay_bound_noise_gain", 0.3, 0.3),
+            ("noise_gain_over_bound", 0.37, 0.43),
         ]);
         assert_eq!(
             said,
-            "reduces slow noise by attenuating the input, fast noise by smoothing too: DC gain \
-             0.49; fast noise 0.120 ±0.010 of its power, 0.500 ±0.042 at restored scale; angle \
-             random walk at restored scale 0.00600 ±0.00010 deg/sqrt(h), unchanged (Allan \
-             deviation at 1 s over raw's: 1.000 ±0.020); delays by 0.75 ms; its noise is 0.400 ±0.033 \
-             of the least that its taps allow at this delay with unit DC gain: signal was removed \
-             with it"
+            "reduces noise by attenuating the input: DC gain 0.49; ARW at restored scale 0.00600 \
+             ±0.00010 deg/sqrt(h), unchanged (Allan deviation at 1 s over raw's: 1.000 ±0.020); fast \
+             noise 0.120 ±0.010 of its power, 0.500 ±0.042 at restored scale, by smoothing too; \
+             delays by 0.75 ms; its noise is 0.400 ±0.030 of the least that its taps allow at this \
+             delay with unit DC gain: signal was removed with it"
         );
     }
 
@@ -194,7 +227,7 @@ mod tests {
         assert!(smooths.contains("slow noise unchanged"), "{smooths}");
         let raises = words(&[("amplitude_ratio", 1.0, 1.0), ("noise_gain", 1.2, 1.4)]);
         assert!(
-            raises.starts_with("raises noise: amplitude ratio 1; "),
+            raises.starts_with("raises noise: gain for the motion 1; "),
             "{raises}"
         );
         assert!(raises.contains("fast noise 1.30 ±0.10 times its power"));

@@ -141,6 +141,7 @@ impl Checks<'_> {
             MotionConfig::Swing(swing) => {
                 self.soft_start("turntable.swing.soft_start_s", swing.soft_start_s);
                 self.frequency("turntable.swing.frequency_hz", swing.frequency_hz);
+                self.swing_from_rest(swing);
             }
             MotionConfig::MultiSine(multi_sine) => {
                 self.soft_start("turntable.multi_sine.soft_start_s", multi_sine.soft_start_s);

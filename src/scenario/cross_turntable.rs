@@ -3,7 +3,9 @@
 use super::config::FilterState;
 use super::cross::{Checks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
 use super::stairs::{Stairs, TEST_RATES_MIN};
-use super::turntable_config::{ChirpConfig, ScaleFactorTestConfig, ScriptPoints, TrapezoidConfig};
+use super::turntable_config::{
+    ChirpConfig, ScaleFactorTestConfig, ScriptPoints, SwingConfig, TrapezoidConfig,
+};
 
 impl Checks<'_> {
     /// Refuses ramps of a few samples and trapezoids that the record cuts off.
@@ -98,6 +100,18 @@ impl Checks<'_> {
                 test.dwell_s
             );
             self.complain(&key("dwell_s"), message);
+        }
+    }
+
+    /// Refuses a soft start inside the record.
+    pub(super) fn swing_from_rest(&mut self, swing: &SwingConfig) {
+        if swing.from_rest && swing.soft_start_s > 0.0 {
+            let message = format!(
+                "turntable.swing.from_rest = true swings from the start of the record, at once: give \
+                 turntable.swing.soft_start_s = 0.0 s (is {:?} s)",
+                swing.soft_start_s
+            );
+            self.complain("turntable.swing.from_rest", message);
         }
     }
 

@@ -63,6 +63,8 @@ pub struct SwingConfig {
     pub frequency_hz: f64,
     /// Raised-cosine soft start, s, inside the warm-up.
     pub soft_start_s: f64,
+    /// Whether the table rests through the warm-up and swings from the start of the record.
+    pub from_rest: bool,
 }
 
 /// Several sines of rate at once, for a frequency response from one record.

@@ -51,6 +51,7 @@ pub(crate) fn facts() -> FilterFacts {
         shape: shape(10, 1, vec![0.5, 0.5]),
         dc_gain: Some(0.8),
         dc_gain_adapted: None,
+        block_weights: Vec::new(),
         mean_weights: None,
         added_rate_deg_per_h: 1.0,
         rate_gains: Vec::new(),

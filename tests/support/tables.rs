@@ -19,6 +19,7 @@ pub(crate) fn swing(rate_amplitude_deg_per_s: f64, frequency_hz: f64) -> MotionC
         angle_amplitude_deg: None,
         frequency_hz,
         soft_start_s: 1.0,
+        from_rest: false,
     })
 }
 

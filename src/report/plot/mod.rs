@@ -7,6 +7,7 @@ mod axis;
 mod bode;
 mod budget;
 mod comparison;
+mod filter_response;
 mod noise_delay;
 mod panel;
 mod picture;
@@ -38,7 +39,8 @@ pub const SVG_BYTES_MAX: usize = 500_000;
 /// sines, `response.svg` for a staircase of three rates or more and `scale-factor.svg`
 /// for what it leaves of its line; `thermal.svg` where the temperature
 /// changes; `noise-delay.svg` where a filter's noise was measured at rest or in a swing, and
-/// `rate-gain.svg` where its gain was over the rate. Those of an assembly stand behind the axis, as in `x-rate.svg`: nine channels in one picture would hide one another.
+/// `rate-gain.svg` where its gain was over the rate; `filter-response.svg` where there are filters.
+/// Those of an assembly stand behind the axis, as in `x-rate.svg`: nine channels in one picture would hide one another.
 ///
 /// # Panics
 /// If a picture exceeds [`SVG_BYTES_MAX`], which its fixed number of points rules out.
@@ -69,6 +71,7 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
         ("thermal.svg", thermal::picture(report, signals)),
         ("noise-delay.svg", noise_delay::picture(report)),
         ("rate-gain.svg", rate_gain::picture(report)),
+        ("filter-response.svg", filter_response::picture(report)),
     ];
     drawn(pictures, &axis)
 }

@@ -5,8 +5,9 @@ use crate::metrics::ChannelMetrics;
 use crate::report::measured::Measured;
 use crate::signal::RunSignals;
 
-/// Colours that colour-blind readers tell apart (Okabe and Ito, 2008), raw first.
-const COLOURS: [Colour; 7] = [
+/// Colours that colour-blind readers tell apart (Okabe and Ito, 2008), raw first, then darker ones
+/// (Tol, 2021). Their number has no factor in common with that of the dashes.
+const COLOURS: [Colour; 13] = [
     (0x8a, 0x8a, 0x8a),
     (0xd5, 0x5e, 0x00),
     (0x00, 0x72, 0xb2),
@@ -14,6 +15,12 @@ const COLOURS: [Colour; 7] = [
     (0xcc, 0x79, 0xa7),
     (0xe6, 0x9f, 0x00),
     (0x56, 0xb4, 0xe9),
+    (0x88, 0x22, 0x55),
+    (0x99, 0x99, 0x33),
+    (0x33, 0x22, 0x88),
+    (0x7f, 0x3b, 0x08),
+    (0x0b, 0x5d, 0x2e),
+    (0xaa, 0x44, 0xdd),
 ];
 const DASHES: [Dash; 4] = [Dash::Solid, Dash::Long, Dash::Mixed, Dash::Dotted];
 
@@ -145,4 +152,22 @@ pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)
             let (low, high) = range.unwrap_or((value, value));
             Some((low.min(value), high.max(value)))
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thirteen_channels_differ_in_colour_and_fifty_two_in_colour_or_dash() {
+        let strokes: Vec<Stroke> = (0..52).map(stroke_of).collect();
+        for (index, own) in strokes.iter().enumerate() {
+            for (before, other) in strokes[..index].iter().enumerate() {
+                assert_ne!(own, other, "{before} and {index}");
+                if index < 13 {
+                    assert_ne!(own.colour, other.colour, "{before} and {index}");
+                }
+            }
+        }
+    }
 }

@@ -19,6 +19,8 @@ pub(super) const KEYS: &[Key] = &[
         "Swing frequency; a cycle must span at least 8 output samples."),
     key("turntable.swing.soft_start_s", Kind::Float(Range::closed(0.0, 1.0)), "s", Defaulted,
         "Raised-cosine start of the motion, inside the warm-up."),
+    key("turntable.swing.from_rest", Kind::Boolean, "", Defaulted,
+        "The table rests through the warm-up and swings from the start of the record, at once."),
     key("turntable.multi_sine.frequencies_hz", Kind::Floats(Range::above(0.0, 100_000.0)), "Hz", Required,
         "Frequencies, ascending, at most 64; a cycle must span at least 8 output samples."),
     key("turntable.multi_sine.rate_amplitudes_deg_per_s", Kind::Floats(Range::above(0.0, 2000.0)), "deg/s", Required,

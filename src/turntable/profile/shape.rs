@@ -6,7 +6,7 @@ use super::chirp::Chirp;
 use super::extremes::swing_rate_amplitude_rad_per_s;
 use super::script::Script;
 use super::soft_start::SoftStart;
-use super::steps::step_indices;
+use super::steps::{first_measured_index, step_indices};
 use super::tones::{Tone, sum_at, tones};
 use super::trapezoid::Trapezoids;
 use crate::scenario::{MotionConfig, Stairs};
@@ -34,11 +34,12 @@ impl Instant {
 pub(super) enum Shape {
     /// `rate`, ramped.
     Rotation { rate: f64, soft_start: SoftStart },
-    /// `amplitude sin(2 pi f t)`, ramped.
+    /// `amplitude sin(2 pi f t)`, ramped, t counted from `first` samples on.
     Swing {
         amplitude: f64,
         cycles_per_sample: f64,
         soft_start: SoftStart,
+        first: f64,
     },
     /// A sum of sines, ramped.
     MultiSine {
@@ -72,6 +73,11 @@ impl Shape {
                 amplitude: swing_rate_amplitude_rad_per_s(swing),
                 cycles_per_sample: swing.frequency_hz * sample_period_s,
                 soft_start: soft_start(swing.soft_start_s),
+                first: if swing.from_rest {
+                    first_measured_index(warm_up_s, sample_period_s) as f64
+                } else {
+                    0.0
+                },
             },
             MotionConfig::MultiSine(multi_sine) => Self::MultiSine {
                 tones: tones(multi_sine, sample_period_s),
@@ -116,7 +122,12 @@ impl Shape {
                 amplitude,
                 cycles_per_sample,
                 soft_start,
+                first,
             } => {
+                let instant = instant - first;
+                if instant < 0.0 {
+                    return Instant::REST;
+                }
                 // Whole cycles are dropped before the sine, which keeps full precision for hours.
                 let (sine, cosine) = (TAU * (cycles_per_sample * instant).fract()).sin_cos();
                 let (ramp, ramp_slope) = soft_start.at(instant);

@@ -1,0 +1,179 @@
+//! `filter-response.svg`: gain and phase delay behind raw of every filter over the frequency, frozen
+//! at its mean weights, and as a motion of several sines found it while it adapted.
+
+use super::axis::Axis;
+use super::panel::{Legend, Panel, WIDTH};
+use super::picture::{Picture, Stroke};
+use super::series::{extent, shape_of, stroke_of};
+use crate::gate::estimate_text;
+use crate::metrics::{ChannelMetrics, Estimate};
+use crate::report::RunReport;
+use crate::report::csv::Curve;
+use crate::units::gain_to_db;
+
+/// Gain down to which the response is shown, dB.
+const LOWEST_DB: f64 = -40.0;
+/// Gain above which a phase delay means something, dB.
+const DELAY_FROM_DB: f64 = -20.0;
+
+/// Frequency, Hz, value and the ends of its interval.
+type Point = (f64, [f64; 3]);
+
+/// A filter with what is drawn of it.
+struct Filter<'a> {
+    index: usize,
+    name: &'a str,
+    metrics: &'a ChannelMetrics,
+    frozen: &'a Curve,
+    live: Option<&'a Curve>,
+}
+
+/// One panel.
+struct Quantity {
+    columns: [&'static str; 3],
+    convert: fn(f64) -> f64,
+    title: &'static str,
+    frame: (f64, f64),
+    /// Metric at zero frequency, marked at the left edge.
+    at_dc: &'static str,
+}
+
+const QUANTITIES: [Quantity; 2] = [
+    Quantity {
+        columns: ["gain", "gain_low", "gain_high"],
+        convert: decibel,
+        title: "gain over raw [dB]",
+        frame: (56.0, 400.0),
+        at_dc: "dc_gain",
+    },
+    Quantity {
+        columns: ["delay_ms", "delay_low_ms", "delay_high_ms"],
+        convert: std::convert::identity,
+        title: "phase delay behind raw [ms]",
+        frame: (466.0, 810.0),
+        at_dc: "delay_at_dc_ms",
+    },
+];
+
+/// Decibel, cut off where the picture ends.
+fn decibel(gain: f64) -> f64 {
+    gain_to_db(gain.max(1e-9)).max(LOWEST_DB)
+}
+
+/// Both panels; `None` where no filter has a response.
+pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+    let channels = report.channels.iter().enumerate();
+    let filters: Vec<Filter> = channels
+        .filter_map(|(index, (name, metrics))| {
+            Some(Filter {
+                index,
+                name,
+                metrics,
+                frozen: metrics.curves.get("frozen_response")?,
+                live: metrics.curves.get("frequency_response_vs_raw"),
+            })
+        })
+        .collect();
+    let frequencies = filters
+        .iter()
+        .filter_map(|filter| filter.frozen.get("frequency_hz"));
+    let x = extent(frequencies.flatten().copied())?;
+    let mut picture = Picture::new(WIDTH, 870.0);
+    let title = format!("{}: response of the filters", report.scenario.name);
+    picture.heading((90.0, 28.0), &title, 18.0);
+    for quantity in &QUANTITIES {
+        draw(&mut picture, quantity, &filters, x)?;
+    }
+    let mut legend = Legend::new(56.0);
+    for filter in &filters {
+        legend.line(&mut picture, stroke_of(filter.index), filter.name);
+        if let Some(gain) = at_dc(filter, "dc_gain") {
+            let text = format!("DC gain {}", estimate_text(&gain, 2));
+            legend.detail(&mut picture, &text);
+        }
+    }
+    legend.space();
+    legend.text(
+        &mut picture,
+        "lines: frozen at the mean weights of the run,",
+    );
+    legend.text(&mut picture, "or at those given; thin: 95 % interval");
+    legend.text(&mut picture, "markers at the left edge: constant rate");
+    if filters.iter().any(|filter| filter.live.is_some()) {
+        legend.text(&mut picture, "other markers: live, several sines at once");
+    }
+    Some(picture)
+}
+
+fn at_dc(filter: &Filter, key: &str) -> Option<Estimate> {
+    Some(filter.metrics.metrics.get(key)?.estimate)
+}
+
+/// The points of a curve that the panel shows.
+fn points(curve: &Curve, quantity: &Quantity) -> Vec<Point> {
+    let column = |name: &str| curve.get(name).map_or(&[][..], Vec::as_slice);
+    let [value, low, high] = quantity.columns.map(column);
+    let frequencies = column("frequency_hz").iter().zip(column("gain"));
+    let ends = value.iter().zip(low).zip(high);
+    frequencies
+        .zip(ends)
+        .filter(|((_, gain), _)| quantity.at_dc == "dc_gain" || decibel(**gain) > DELAY_FROM_DB)
+        .map(|((frequency, _), ((value, low), high))| {
+            (*frequency, [*value, *low, *high].map(quantity.convert))
+        })
+        .collect()
+}
+
+fn draw(
+    picture: &mut Picture,
+    quantity: &Quantity,
+    filters: &[Filter],
+    x: (f64, f64),
+) -> Option<()> {
+    let lines: Vec<Vec<Point>> = filters
+        .iter()
+        .map(|filter| points(filter.frozen, quantity))
+        .collect();
+    let live: Vec<Vec<Point>> = filters
+        .iter()
+        .map(|filter| {
+            filter
+                .live
+                .map_or_else(Vec::new, |curve| points(curve, quantity))
+        })
+        .collect();
+    let values = lines.iter().flatten().map(|(_, ends)| ends[0]);
+    let measured = live.iter().flatten().flat_map(|(_, ends)| *ends);
+    let y = extent(values.chain(measured).chain([0.0]))?;
+    let axis = Axis::log(x, 0.03, "frequency [Hz]");
+    let y = Axis::linear(y, 0.06, quantity.title);
+    let panel = Panel::new(picture, quantity.frame, axis, y);
+    for (filter, (line, live)) in filters.iter().zip(lines.iter().zip(&live)) {
+        let stroke = stroke_of(filter.index);
+        let end = |end: usize| -> Vec<(f64, f64)> {
+            line.iter().map(|(x, ends)| (*x, ends[end])).collect()
+        };
+        let thin = Stroke {
+            opacity: 0.5,
+            ..Stroke::solid(stroke.colour, 0.75)
+        };
+        panel.line(picture, &end(1), thin);
+        panel.line(picture, &end(2), thin);
+        panel.line(picture, &end(0), stroke);
+        for (at, [value, low, high]) in live {
+            let bar = Stroke::solid(stroke.colour, 1.5);
+            panel.line(picture, &[(*at, *low), (*at, *high)], bar);
+            panel.marker(
+                picture,
+                (*at, *value),
+                shape_of(filter.index),
+                stroke.colour,
+            );
+        }
+        if let Some(estimate) = at_dc(filter, quantity.at_dc) {
+            let value = (quantity.convert)(estimate.value);
+            panel.marker(picture, (x.0, value), shape_of(filter.index), stroke.colour);
+        }
+    }
+    Some(())
+}
