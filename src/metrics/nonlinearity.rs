@@ -119,8 +119,14 @@ mod tests {
         let close = |got: f64, want: f64| assert!((got - want).abs() < 1e-5, "{got} {want}");
         // One: sqrt(2 / pi). Two: 2 / sqrt(pi). A silent third changes nothing.
         close(expected_largest(&[1.0]), 0.797_884_56);
-        close(expected_largest(&[1.0, 1.0]), 1.128_379_17);
-        close(expected_largest(&[3.0, 0.0, 3.0]), 3.0 * 1.128_379_17);
+        close(
+            expected_largest(&[1.0, 1.0]),
+            std::f64::consts::FRAC_2_SQRT_PI,
+        );
+        close(
+            expected_largest(&[3.0, 0.0, 3.0]),
+            3.0 * std::f64::consts::FRAC_2_SQRT_PI,
+        );
         // Two unequal ones: sqrt(2 / pi) sqrt(s1^2 + s2^2).
         close(expected_largest(&[3.0, 4.0]), 5.0 * 0.797_884_56);
         assert!(expected_largest(&[]).abs() < f64::MIN_POSITIVE);

@@ -123,7 +123,7 @@ fn decide(answers: &[Answer]) -> Result<Estimate, String> {
             )
         });
     };
-    let below = answers.iter().filter(is_not).last();
+    let below = answers.iter().rfind(is_not);
     Ok(Estimate::with_interval(
         sure.change_deg_per_h,
         below.map_or(0.0, |answer| answer.change_deg_per_h),
