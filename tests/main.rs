@@ -34,10 +34,10 @@ mod known_answers_thermal;
 mod known_answers_turntable;
 mod metrics_intervals;
 mod metrics_records;
+mod metrology;
 mod noise_fit_coverage;
 mod patent_calibration;
 mod patent_known_answers;
-mod metrology;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;

@@ -35,7 +35,7 @@ const FITTED: [&str; 5] = [
 ];
 
 /// Curves of points that have intervals of their own.
-const POINT_CURVES: [&str; 6] = [
+const POINT_CURVES: [&str; 7] = [
     "response",
     "scale_factor",
     "frequency_response",
