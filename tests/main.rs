@@ -32,6 +32,7 @@ mod known_answers_thermal;
 mod known_answers_turntable;
 mod metrics_intervals;
 mod metrics_records;
+mod patent_filter;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
