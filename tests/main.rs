@@ -41,6 +41,7 @@ mod recording;
 mod report;
 mod rtl;
 mod scenario_errors;
+mod sign_lms_hardware;
 mod suite;
 mod support;
 mod timing;

@@ -186,15 +186,15 @@ fn patent_k5_rates_in_degrees_per_second_from_zero_weights() {
 #[test]
 fn patent_known_answers_of_the_norm_and_of_the_normalised_forms() {
     let [k1, k2] = [(50.0, 0.02), (8.0, 10.0)].map(|(mean, noise)| stimulus(mean, noise));
-    for (words, want) in [(&k1, 50_007.206_64), (&k2, 3634.958_857)] {
+    for (words, want) in [(&k1, 50_007.206_64), (&k2, 3_634.958_857)] {
         let mut core = SignLmsCore::new(&patent(SignLmsForm::Sign, 0.0));
         let mut line = vec![0.0; 15];
         line.extend_from_slice(words);
-        for n in 0..words.len() {
+        for (n, word) in words.iter().enumerate() {
             let taps: Vec<f64> = (0..=TAPS)
                 .map(|age| n.checked_sub(age).map_or(0.0, |at| line[at]))
                 .collect();
-            core.update(&taps, words[n]).expect("a sound state");
+            core.update(&taps, *word).expect("a sound state");
         }
         assert_close(core.norm(), want, 2e-10, 0.0);
     }
