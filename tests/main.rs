@@ -37,6 +37,7 @@ mod metrics_records;
 mod metrology;
 mod noise_fit_coverage;
 mod patent_calibration;
+mod patent_filter;
 mod patent_known_answers;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
@@ -47,6 +48,7 @@ mod report;
 mod rtl;
 mod scale_factor_test;
 mod scenario_errors;
+mod sign_lms_hardware;
 mod small_inputs_and_steps;
 mod suite;
 mod support;

@@ -7,6 +7,7 @@ mod assembly_motion;
 mod budget;
 mod channel_filter;
 mod comparison;
+mod line_enhancer;
 mod log_filters;
 mod log_trial;
 mod motion;

@@ -12,6 +12,7 @@ mod comparison_config;
 mod config;
 mod cross;
 mod cross_comparison;
+mod cross_filter;
 mod cross_gyro;
 mod cross_multi_sine;
 mod cross_optics;
@@ -55,10 +56,11 @@ pub use defaults::reference_toml;
 pub(crate) use error::portable_place;
 pub use error::{Location, ScenarioError};
 pub use filter_config::{
-    ButterworthFilterConfig, ConstrainedRlsFilterConfig, DesiredSignal, Division, FilterConfig,
-    FilterKind, KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, NumberFormat,
-    OnePoleFilterConfig, OutputRegister, Pipeline, RlsFilterConfig, SavitzkyGolayFilterConfig,
-    UpdateOrder, UpdateSign,
+    ButterworthFilterConfig, ConstantUnit, ConstrainedRlsFilterConfig, DesiredSignal, Division,
+    FilterConfig, FilterKind, InitialWeights, KalmanFilterConfig, LmsFilterConfig,
+    MovingAverageFilterConfig, NumberFormat, OnePoleFilterConfig, OutputRegister, Pipeline,
+    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig, SignLmsForm, UpdateOrder,
+    UpdateSign,
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,

@@ -101,6 +101,7 @@ pub(crate) const GROUPS: &[Group] = &[
         alternatives: &[
             "rls",
             "lms",
+            "sign_lms",
             "constrained_rls",
             "moving_average",
             "savitzky_golay",
