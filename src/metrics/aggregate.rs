@@ -4,10 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::allan::AllanPoint;
 use super::estimate::{ChannelMetrics, Estimate, Metric};
+use super::fit_entry::enter_fit;
 use super::interval;
 use super::noise_fit::{FitRange, fit_pooled_noise};
 use super::scale_factor::scale_factor_repeatability;
-use super::steady::{WALK_OVER_DC_GAIN, enter_fit, put_over_dc_gain};
+use super::steady::{WALK_OVER_DC_GAIN, put_over_dc_gain};
 use super::support::repeats_lack;
 use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION, TWO_SIDED_PSD};
 use crate::units::ratio_to_ppm;

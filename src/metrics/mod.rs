@@ -25,6 +25,7 @@ mod combined_freedom;
 mod correlation;
 mod delay;
 mod estimate;
+mod fit_entry;
 mod frozen_response;
 mod interval;
 mod multi_sine;

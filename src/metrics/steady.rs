@@ -1,10 +1,11 @@
 //! Metrics of a record at rest or at constant rate.
 
-use super::allan::{AllanPoint, overlapping_allan};
+use super::allan::overlapping_allan;
 use super::audit::{filter_bound, lags_needed, predict};
 use super::autocovariance::{LaggedProducts, independent_samples};
 use super::bias;
 use super::estimate::{ChannelMetrics, Estimate};
+use super::fit_entry::enter_fit;
 use super::interval;
 use super::noise_delay::{put_bound, put_bound_curve, put_over_bound};
 use super::noise_fit::{
@@ -111,12 +112,6 @@ fn measure_allan(
             None
         }
     }
-}
-
-/// Enters a fit and the curve it was made from.
-pub(crate) fn enter_fit(points: &[AllanPoint], fit: &NoiseFit, metrics: &mut ChannelMetrics) {
-    metrics.put_noise_fit(fit);
-    metrics.put_allan_curve(points, Some(fit));
 }
 
 /// Bias stability at the fixed averaging times and at the scenario's.
