@@ -86,13 +86,34 @@ impl<'a> Layout<'a> {
             .filter(|table| !table.rows.is_empty())
             .collect();
         let assumptions = self.assumptions.iter();
+        let readings = self.reproducing(&suite);
         let figures = self.figures.iter();
         Comparison {
             assumptions: assumptions
-                .map(|one| assumed(one, &suite, &tables))
+                .map(|one| assumed(one, &readings, &tables))
                 .collect(),
             figures: figures.filter_map(|figure| drawn(figure, runs)).collect(),
             tables,
+        }
+    }
+
+    /// The runs that stand beside published figures, whose values are the readings of what the
+    /// publication leaves open; all runs if none does.
+    fn reproducing<'b>(&self, suite: &'b [Run<'b>]) -> Vec<&'b Run<'b>> {
+        let is_published = |row: &&&ComparisonRowConfig| {
+            let mut tables = self.comparisons.iter();
+            tables.any(|table| {
+                table.name == row.comparison && table.kind == ComparisonKind::Published
+            })
+        };
+        let rows = self.rows.iter().filter(is_published);
+        let named: BTreeSet<&String> = rows.flat_map(|row| &row.scenarios).collect();
+        let stands = |run: &&Run| named.contains(&run.plan.resolved().scenario.name);
+        let found: Vec<&Run> = suite.iter().filter(stands).collect();
+        if found.is_empty() {
+            suite.iter().collect()
+        } else {
+            found
         }
     }
 
@@ -324,7 +345,7 @@ fn causes(row: &ComparedRow, columns: &[ComparedColumn], suite: &[Run]) -> Vec<C
     found.collect()
 }
 
-fn assumed(one: &AssumptionConfig, suite: &[Run], tables: &[ComparedTable]) -> Assumed {
+fn assumed(one: &AssumptionConfig, suite: &[&Run], tables: &[ComparedTable]) -> Assumed {
     let mut values: Vec<String> = Vec::new();
     for run in suite {
         let resolved = run.plan.resolved();

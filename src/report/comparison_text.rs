@@ -130,7 +130,7 @@ fn plain_grid(table: &ComparedTable, colour: bool) -> String {
 fn number(metric: &Metric) -> String {
     let value = short(&metric.estimate);
     match metric.fields.get(NOISE_FLOOR) {
-        Some(floor) => format!("{value} (noise floor {})", plain(*floor)),
+        Some(floor) => format!("{value} (noise floor {})", rounded(*floor)),
         None => value,
     }
 }
