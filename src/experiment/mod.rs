@@ -21,6 +21,7 @@ mod pipeline_settings;
 mod plan;
 mod published_check;
 mod rate_twins;
+mod record_length;
 mod run;
 mod run_files;
 mod simulate;
