@@ -6,6 +6,7 @@ mod allan;
 mod axis;
 mod bode;
 mod budget;
+mod calibration;
 mod noise_delay;
 mod panel;
 mod picture;
@@ -19,6 +20,7 @@ mod theory;
 mod thermal;
 
 pub use budget::budget_svg;
+pub use calibration::calibration_svg;
 
 use picture::Picture;
 
