@@ -27,6 +27,7 @@ impl Checks<'_> {
             return;
         }
         let along = "turntable.mounting.axis_along_table";
+        // A manifest writes every key: the default is no wish.
         if self.resolved.departure(along, along).is_some() {
             let message = format!(
                 "{along} has no effect beside turntable.calibration, whose axes say it for each group"
