@@ -5,6 +5,10 @@
 
 mod assembly_motion;
 mod budget;
+mod calibration_sheet;
+mod calibration_units;
+mod campaign;
+mod campaign_metrics;
 mod channel_filter;
 mod comparison;
 mod line_enhancer;
@@ -19,13 +23,17 @@ mod pipeline_settings;
 mod plan;
 mod published_check;
 mod rate_twins;
+mod record_length;
 mod run;
+mod run_files;
 mod simulate;
 mod suite;
 mod textbook;
 mod theory;
 
 pub use budget::{GyroBudget, gyro_budget};
+pub use calibration_sheet::calibration_sheet;
+pub use campaign::calibrate_scenario;
 pub use log_filters::{LogFilters, load_log_filters};
 pub use log_trial::{LogMotion, LogSettings, LogTrial, LogTrialError, try_log};
 pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};

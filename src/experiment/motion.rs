@@ -7,8 +7,9 @@ use crate::gyro::{self, MotionExtremes};
 use crate::metrics::{Dwell, Motion, Staircase};
 use crate::scenario::{MotionConfig, Scenario, ServoConfig, Stairs};
 use crate::turntable::{
-    command_extremes, command_rate_max_rad_per_s, dwell_ends, earth_rate_rad_per_s,
-    first_measured_index, input_axis_bounds, multi_sine_acceleration_max_rad_per_s2, step_indices,
+    campaign_command_extremes, command_extremes, command_rate_max_rad_per_s, dwell_ends,
+    earth_rate_rad_per_s, first_measured_index, input_axis_bounds,
+    multi_sine_acceleration_max_rad_per_s2, step_indices,
 };
 use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
@@ -24,9 +25,10 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
                 Motion::Swing { frequency_hz }
             }
         }
-        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => {
-            Motion::General
-        }
+        MotionConfig::Trapezoid(_)
+        | MotionConfig::Chirp(_)
+        | MotionConfig::Script(_)
+        | MotionConfig::Calibration(_) => Motion::General,
         MotionConfig::MultiSine(multi_sine) => Motion::MultiSine {
             frequencies_hz: multi_sine.frequencies_hz.clone(),
         },
@@ -143,6 +145,10 @@ fn table_extremes(scenario: &Scenario) -> MotionExtremes {
             .map_or((0.0, 0.0), |own| {
                 (own.jump_rad_per_s, own.acceleration_rad_per_s2)
             }),
+        MotionConfig::Calibration(campaign) => {
+            let extremes = campaign_command_extremes(campaign, scenario.warm_up_s);
+            (extremes.jump_rad_per_s, extremes.acceleration_rad_per_s2)
+        }
         motion @ (MotionConfig::Steps(_) | MotionConfig::ScaleFactorTest(_)) => {
             let rates = Stairs::of(motion).map_or_else(Vec::new, |stairs| stairs.rates_deg_per_s);
             let first = rates.first().map_or(0.0, |rate| rate.abs());

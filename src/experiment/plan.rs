@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use super::assembly_motion;
+use super::campaign;
 use super::comparison::contradictions;
 use super::line_enhancer;
 use super::motion::{motion, motion_extremes, rate_deg_per_h_max};
@@ -17,25 +18,20 @@ use crate::filters::{
 use crate::gyro;
 use crate::metrics;
 use crate::scenario::{
-    Fidelity, FilterKind, LmsFilterConfig, MotionConfig, Pipeline, Resolved, SamplesFormat,
-    ScenarioError, load_suite,
+    Fidelity, FilterKind, LmsFilterConfig, MotionConfig, Pipeline, Resolved, ScenarioError,
+    load_suite,
 };
 use crate::signal::GyroFacts;
 
 /// Metric that turns the divergence of a channel into an expected result.
 pub(super) const DIVERGED_AT: &str = "diverged_at_s";
-/// Longest record held in memory, samples (two hours at 4 kHz).
-const SAMPLES_MAX: f64 = 3.0e7;
-/// Most words held in memory, truth and channels of every gyro together (1.44 GB): an hour at 4 kHz
-/// of three axes with two filters, or two hours of one with four.
-const WORDS_MAX: f64 = 1.8e8;
-
 /// One run that has passed every check.
 #[derive(Clone, Debug)]
 pub struct Plan {
     resolved: Resolved,
     facts: GyroFacts,
     warnings: Vec<String>,
+    calibration: Option<String>,
 }
 
 impl Plan {
@@ -55,6 +51,12 @@ impl Plan {
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// What a calibration campaign can determine, in a sentence.
+    #[must_use]
+    pub fn calibration(&self) -> Option<&str> {
+        self.calibration.as_deref()
     }
 
     /// Channels in order, raw ones first.
@@ -125,36 +127,43 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
         resolved: &resolved,
         errors: Vec::new(),
         warnings: resolved.warnings.clone(),
+        calibration: None,
     };
     let facts = checker.gyro();
     if let Some(facts) = &facts {
         checker.gyro_limits();
         checker.record_length(facts);
+        checker.campaign();
         checker.filters(facts);
         checker.metrics(facts);
     }
     let Checker {
-        errors, warnings, ..
+        errors,
+        warnings,
+        calibration,
+        ..
     } = checker;
     match facts {
         Some(facts) if errors.is_empty() => Ok(Plan {
             resolved,
             facts,
             warnings,
+            calibration,
         }),
         _ => Err(errors),
     }
 }
 
 /// Collects every complaint about one run.
-struct Checker<'a> {
-    resolved: &'a Resolved,
+pub(super) struct Checker<'a> {
+    pub(super) resolved: &'a Resolved,
     errors: Vec<ScenarioError>,
     warnings: Vec<String>,
+    calibration: Option<String>,
 }
 
 impl Checker<'_> {
-    fn complain(&mut self, key: &str, message: String) {
+    pub(super) fn complain(&mut self, key: &str, message: String) {
         self.errors
             .push(ScenarioError::at(self.resolved.locate(key), message));
     }
@@ -175,55 +184,18 @@ impl Checker<'_> {
         }
     }
 
-    fn record_length(&mut self, facts: &GyroFacts) {
+    /// Refuses a calibration that leaves parameters open, and says what a sound one hides.
+    fn campaign(&mut self) {
         let scenario = &self.resolved.scenario;
-        let rate_hz = facts.output_rate_hz;
-        let (duration_s, warm_up_s) = (scenario.duration_s, scenario.warm_up_s);
-        if duration_s * rate_hz < 1.0 {
-            self.complain(
-                "duration_s",
-                format!(
-                    "duration_s = {duration_s} s holds no sample: one sample of this gyro takes \
-                     {} s",
-                    1.0 / rate_hz
-                ),
-            );
-        }
-        let samples = (duration_s + warm_up_s) * rate_hz;
-        if samples > SAMPLES_MAX {
-            self.complain(
-                "duration_s",
-                format!(
-                    "duration_s + warm_up_s = {} s at {rate_hz:.2} Hz are {samples:.3e} samples: \
-                     at most {SAMPLES_MAX:e} are held in memory; use `repeats`, or a larger \
-                     gyro.output.average_samples",
-                    duration_s + warm_up_s
-                ),
-            );
-        }
-        let records = scenario.channel_names().len() + scenario.axis_prefixes().len();
-        let words = samples * count(records);
-        if samples <= SAMPLES_MAX && words > WORDS_MAX {
-            self.complain(
-                "duration_s",
-                format!(
-                    "duration_s + warm_up_s = {} s at {rate_hz:.2} Hz are {words:.3e} words in \
-                     {records} records (the true rate and the channels of every gyro): at most \
-                     {WORDS_MAX:e} are held in memory; use `repeats`, fewer filters, or a larger \
-                     gyro.output.average_samples",
-                    duration_s + warm_up_s
-                ),
-            );
-        }
-        if scenario.repeats > 1 && scenario.output.samples != SamplesFormat::None {
-            self.complain(
-                "output.samples",
-                format!(
-                    "output.samples needs repeats = 1: {} repeats would write as many records to \
-                     the same files",
-                    scenario.repeats
-                ),
-            );
+        let Some(config) = campaign::campaign(scenario) else {
+            return;
+        };
+        match campaign::check_campaign(scenario, config) {
+            Ok((summary, notes)) => {
+                self.calibration = Some(summary);
+                self.warnings.extend(notes);
+            }
+            Err((key, message)) => self.complain(key, message),
         }
     }
 
@@ -355,6 +327,12 @@ impl Checker<'_> {
             if name == DIVERGED_AT {
                 continue;
             }
+            if let Some(estimator) = campaign::estimator_of(scenario, channel) {
+                if let Err(reason) = campaign::supports(estimator, name) {
+                    self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
+                }
+                continue;
+            }
             let supported = metrics::support(
                 name,
                 scenario.duration_s,
@@ -364,7 +342,9 @@ impl Checker<'_> {
                 scenario.bias_averaging_time_s,
             );
             let lack = pipeline_check::lacks(scenario, channel, name).map(str::to_owned);
-            let across = assembly_motion::lacks(scenario, channel, name).map(str::to_owned);
+            let across = assembly_motion::lacks(scenario, channel, name)
+                .or_else(|| campaign::lacks(scenario, name))
+                .map(str::to_owned);
             let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
             let unread = metrics::encoder_lack(name, has_encoder).map(str::to_owned);
             let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
@@ -385,6 +365,6 @@ const PEAK_SIGMAS: f64 = 4.0;
     clippy::cast_precision_loss,
     reason = "counts of gyros and channels lie far below 2^53"
 )]
-fn count(things: usize) -> f64 {
+pub(super) fn count(things: usize) -> f64 {
     things as f64
 }

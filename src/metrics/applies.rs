@@ -25,4 +25,6 @@ pub enum Applies {
     Separable,
     /// Every record of a filter that is a hardware pipeline.
     Pipeline,
+    /// The estimates of a calibration campaign, which are no records.
+    Calibration,
 }

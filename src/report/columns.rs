@@ -95,6 +95,14 @@ const STEPS: &[(&str, &str)] = &[
     ("readaptation_time_s", "readaptation"),
 ];
 
+/// A record of many rates: what filters do to a constant, and what the estimates are worth.
+const CAMPAIGN: &[(&str, &str)] = &[
+    ("dc_gain", "DC gain"),
+    ("dc_gain_predicted", "DC gain predicted"),
+    ("bias_error_rms_deg_per_h", "bias error rms"),
+    ("scale_factor_error_rms_ppm", "scale factor error rms"),
+];
+
 const STATIC_HEADLINE: &[&str] = &[
     "angle_random_walk_deg_per_sqrt_h",
     "bias_stability_deg_per_h",
@@ -117,7 +125,12 @@ const SCALE_FACTOR_HEADLINE: &[&str] = &[
     "scale_factor_asymmetry_ppm",
 ];
 
-const GENERAL_HEADLINE: &[&str] = &["tracking_error_rms_deg_per_h", "mean_error_deg_per_h"];
+const GENERAL_HEADLINE: &[&str] = &[
+    "tracking_error_rms_deg_per_h",
+    "mean_error_deg_per_h",
+    "bias_error_rms_deg_per_h",
+    "scale_factor_error_rms_ppm",
+];
 
 /// Metrics of every motion that stand last: how a channel failed, what a pipeline costs.
 const ALWAYS: &[(&str, &str)] = &[
@@ -138,6 +151,7 @@ fn known(motion: &MotionConfig) -> &'static [(&'static str, &'static str)] {
         | MotionConfig::Trapezoid(_)
         | MotionConfig::Chirp(_)
         | MotionConfig::Script(_) => STEPS,
+        MotionConfig::Calibration(_) => CAMPAIGN,
     }
 }
 
@@ -210,9 +224,10 @@ pub(crate) fn headline(motion: &MotionConfig, metrics: &ChannelMetrics) -> Vec<(
     let keys = match motion {
         MotionConfig::Static(_) => STATIC_HEADLINE,
         MotionConfig::Swing(_) => SWING_HEADLINE,
-        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => {
-            GENERAL_HEADLINE
-        }
+        MotionConfig::Trapezoid(_)
+        | MotionConfig::Chirp(_)
+        | MotionConfig::Script(_)
+        | MotionConfig::Calibration(_) => GENERAL_HEADLINE,
         MotionConfig::MultiSine(_) => MULTI_SINE_HEADLINE,
         MotionConfig::ScaleFactorTest(_) => SCALE_FACTOR_HEADLINE,
         MotionConfig::Steps(_) | MotionConfig::Rotation(_) => STEPS_HEADLINE,

@@ -5,6 +5,8 @@
 //! a clock, a host name or an environment variable.
 
 mod budget;
+mod calibration;
+mod calibration_text;
 mod columns;
 mod comparison;
 mod comparison_files;
@@ -26,6 +28,8 @@ mod text;
 mod verdict_text;
 
 pub use budget::{budget_csv, budget_json, budget_text};
+pub use calibration::{CalibrationProvenance, calibration_json, calibration_toml, groups_csv};
+pub use calibration_text::calibration_text;
 pub use comparison::{
     Assumed, Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
     DrawnFigure,
@@ -36,7 +40,7 @@ pub use csv::{allan_csv, psd_csv};
 pub use files::{FolderWriter, write_atomic, write_npy};
 pub use junit::junit_xml;
 pub use log::{LogReport, log_files, log_json, log_text};
-pub use plot::{SVG_BYTES_MAX, budget_svg, plots};
+pub use plot::{SVG_BYTES_MAX, budget_svg, calibration_svg, plots};
 pub use record::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
 pub use scale_factor::scale_factor_csv;
 pub use suite_table::suite_text;

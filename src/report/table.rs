@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use crate::gate::{Verdict, VerdictKind, estimate_text, plain};
 use crate::metrics::{ChannelMetrics, Metric, known_metrics};
 use crate::report::RunReport;
+use crate::report::calibration_text::calibration_text;
 use crate::report::columns::{Column, columns, matters, unit_text};
 use crate::report::measured::Measured;
 use crate::report::scale_factor::scale_factor_text;
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::report::verdict_text::verdict_text;
-use crate::scenario::{Fidelity, PublishedConfig};
+use crate::scenario::{Fidelity, MotionConfig, PublishedConfig};
 
 /// Digits of an interval's half width in tables.
 const DIGITS: i32 = 2;
@@ -39,6 +40,9 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     text.push_str(&failures_text(&report.measured(), verdicts, width, colour));
     text.push_str(&filter_verdicts(&report.measured(), width, colour));
     text.push_str(&sine_fits(report.channels, width));
+    if let Some(sheet) = report.calibration {
+        text.push_str(&calibration_text(sheet, width, colour));
+    }
     text.push_str(&published(report, colour));
     text.push_str(&gates(report.verdicts, width, colour));
     for note in report.notes {
@@ -100,6 +104,9 @@ fn budget(report: &RunReport, width: usize) -> String {
 /// The channels, their columns broken into as many blocks as the width asks for.
 pub(crate) fn channels_text(report: &Measured, width: usize, colour: bool) -> String {
     let columns = columns(report.motion, report.channels);
+    if columns.is_empty() && matches!(report.motion, MotionConfig::Calibration(_)) {
+        return String::new();
+    }
     let names = column_of_names(report.channels, colour);
     let mut text = String::new();
     let mut block = vec![names.clone()];

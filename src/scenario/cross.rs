@@ -167,6 +167,7 @@ impl Checks<'_> {
             MotionConfig::Chirp(chirp) => self.chirp(chirp),
             MotionConfig::Script(script) => self.script(&script.points),
             MotionConfig::ScaleFactorTest(test) => self.scale_factor_test(test),
+            MotionConfig::Calibration(campaign) => self.campaign(campaign),
             MotionConfig::Steps(steps) => {
                 let count = steps.rates_deg_per_s.len();
                 let count_f64 = u32::try_from(count).map_or(f64::INFINITY, f64::from);
@@ -286,7 +287,8 @@ impl Checks<'_> {
     }
 
     fn channel(&mut self, path: &str, written: &str, channel: &str) {
-        let known = self.resolved.scenario.channel_names();
+        let scenario = &self.resolved.scenario;
+        let known = [scenario.channel_names(), scenario.calibration_channels()].concat();
         if known.iter().any(|name| name == channel) {
             return;
         }

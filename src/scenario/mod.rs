@@ -6,11 +6,13 @@
 
 mod address;
 mod assembly_config;
+mod calibration_config;
 mod channels;
 mod check;
 mod comparison_config;
 mod config;
 mod cross;
+mod cross_calibration;
 mod cross_comparison;
 mod cross_filter;
 mod cross_gyro;
@@ -43,6 +45,9 @@ mod turntable_config;
 mod vibration_config;
 
 pub use assembly_config::AssemblyConfig;
+pub use calibration_config::{
+    CalibrationConfig, CampaignConfig, CampaignGroup, EstimatorKind, ForgettingLaw,
+};
 pub use comparison_config::{
     AssumptionConfig, ComparisonColumn, ComparisonConfig, ComparisonKind, ComparisonRowConfig,
     FigureConfig,
@@ -52,7 +57,7 @@ pub use config::{
     PublishedConfig, SamplesFormat, Scenario,
 };
 pub(crate) use cross_comparison::slug;
-pub use defaults::reference_toml;
+pub use defaults::{reference_calibration, reference_toml};
 pub(crate) use error::portable_place;
 pub use error::{Location, ScenarioError};
 pub use filter_config::{

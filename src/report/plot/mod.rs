@@ -6,6 +6,7 @@ mod allan;
 mod axis;
 mod bode;
 mod budget;
+mod calibration;
 mod comparison;
 mod filter_response;
 mod noise_delay;
@@ -22,6 +23,7 @@ mod theory;
 mod thermal;
 
 pub use budget::budget_svg;
+pub use calibration::calibration_svg;
 
 use picture::Picture;
 
@@ -53,6 +55,7 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
         .collect();
     let report = &RunReport {
         channels: &own,
+        calibration: None,
         ..report.clone()
     };
     let axis = signals.prefix.replace('_', "-");

@@ -3,6 +3,7 @@
 //! The one source of unknown-key detection, type and range messages, the JSON Schema and the
 //! test of `reference.toml`, which holds the defaults.
 
+mod calibration;
 mod filter;
 mod gyro;
 mod judging;
@@ -53,6 +54,7 @@ pub(crate) const GROUPS: &[Group] = &[
             "trapezoid",
             "chirp",
             "script",
+            "calibration",
         ],
     },
     Group {
@@ -122,6 +124,7 @@ pub(crate) fn keys() -> impl Iterator<Item = &'static Key> {
         turntable::KEYS,
         gyro::KEYS,
         thermal::KEYS,
+        calibration::KEYS,
         filter::KEYS,
         judging::KEYS,
     ]
