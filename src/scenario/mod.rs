@@ -8,8 +8,11 @@ mod address;
 mod assembly_config;
 mod channels;
 mod check;
+mod compensation_config;
+mod compensation_source;
 mod config;
 mod cross;
+mod cross_compensation;
 mod cross_gyro;
 mod cross_multi_sine;
 mod cross_optics;
@@ -39,6 +42,7 @@ mod turntable_config;
 mod vibration_config;
 
 pub use assembly_config::AssemblyConfig;
+pub use compensation_config::{CompensationConfig, CompensationParameters, CompensationRule};
 pub use config::{
     Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
     SamplesFormat, Scenario,

@@ -187,14 +187,32 @@ fn load_drafted(
 
 /// Reads a file and its bases, or a manifest, with the complaints that do not hinder more checks.
 fn load_draft(file: &Path) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
+    load_labelled(file, &Label::of_scenario(file))
+}
+
+/// Reads the scenario of a campaign that another file names, and its bases.
+///
+/// # Errors
+/// Every complaint about the file.
+pub(super) fn load_campaign(file: &Path, label: &Label) -> Result<Draft, Vec<ScenarioError>> {
+    match load_labelled(file, label)? {
+        (draft, errors) if errors.is_empty() => Ok(draft),
+        (_, errors) => Err(errors),
+    }
+}
+
+/// As [`load_draft`], inputs labelled as seen from another file.
+fn load_labelled(
+    file: &Path,
+    label: &Label,
+) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
     let mut chain = Chain::default();
-    let label = Label::of_scenario(file);
-    let (root, source) = chain.read(file, &label, None)?;
+    let (root, source) = chain.read(file, label, None)?;
     if manifest::is_manifest(&root) {
         let draft = manifest::read(root, source, chain.sources, chain.inputs)?;
         return Ok((draft, Vec::new()));
     }
-    let root = chain.merge_bases(file, &label, root, source)?;
+    let root = chain.merge_bases(file, label, root, source)?;
     chain.inputs.reverse();
     let draft = Draft {
         root,
