@@ -17,6 +17,8 @@ pub mod filters;
 
 pub mod metrics;
 
+pub mod calibration;
+
 pub mod recording;
 
 pub mod gate;

@@ -14,6 +14,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ("fpga", &[]),
     ("filters", &["signal"]),
     ("metrics", &["units", "signal"]),
+    ("calibration", &["units", "signal"]),
     ("recording", &["units", "signal"]),
     ("gate", &["metrics", "scenario"]),
     (
@@ -32,6 +33,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "fpga",
             "filters",
             "metrics",
+            "calibration",
             "recording",
             "gate",
             "report",

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 pub(crate) mod gyro_cases;
+pub(crate) mod patent_cases;
 pub(crate) mod reference_gyro;
 pub(crate) mod run;
 pub(crate) mod stimulus;

@@ -1,0 +1,105 @@
+//! Turning outputs back into rates: the patent's first-order form and the exact inverse.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::error::CalibrationError;
+use super::error_model::{ErrorParameters, matrix};
+use super::result::Calibration;
+
+/// How outputs are turned back into rates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CompensationForm {
+    /// `XA^-1 (Wm - XB)`.
+    Exact,
+    /// The patent's `Wm - (K_G Wm + theta_G Wm + B_G)`, equations (23) and (24): the true rate is
+    /// replaced by the output, so that errors of second order remain.
+    FirstOrder,
+}
+
+/// Compensation of an assembly's outputs with given parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compensation {
+    parameters: ErrorParameters,
+    inverse: Matrix3<f64>,
+    temperature_coefficient_deg_per_s_per_k: [f64; 3],
+    reference_temperature_c: [f64; 3],
+}
+
+impl Compensation {
+    /// Compensation with constant biases.
+    ///
+    /// # Errors
+    /// [`CalibrationError::SingularSensitivity`] if `XA` has no inverse.
+    pub fn new(parameters: ErrorParameters) -> Result<Self, CalibrationError> {
+        let inverse = matrix(parameters.sensitivity())
+            .try_inverse()
+            .ok_or(CalibrationError::SingularSensitivity)?;
+        Ok(Self {
+            parameters,
+            inverse,
+            temperature_coefficient_deg_per_s_per_k: [0.0; 3],
+            reference_temperature_c: [0.0; 3],
+        })
+    }
+
+    /// Compensation with a calibration's parameters and its temperature coefficient of the bias.
+    ///
+    /// # Errors
+    /// As [`Compensation::new`].
+    pub fn of(calibration: &Calibration) -> Result<Self, CalibrationError> {
+        let mut compensation = Self::new(calibration.parameters)?;
+        if let Some(bias) = calibration.temperature.bias {
+            compensation.temperature_coefficient_deg_per_s_per_k = bias.value;
+            compensation.reference_temperature_c = calibration.reference_temperature_c;
+        }
+        Ok(compensation)
+    }
+
+    /// Biases at the given temperatures of the gyros, deg/s; none: at the reference temperature.
+    #[must_use]
+    pub fn bias_deg_per_s(&self, temperature_c: Option<[f64; 3]>) -> [f64; 3] {
+        let mut bias = self.parameters.bias_deg_per_s;
+        if let Some(temperature_c) = temperature_c {
+            for (axis, value) in bias.iter_mut().enumerate() {
+                let warmer_k = temperature_c[axis] - self.reference_temperature_c[axis];
+                *value += self.temperature_coefficient_deg_per_s_per_k[axis] * warmer_k;
+            }
+        }
+        bias
+    }
+
+    /// Rates about the case axes for outputs of the gyros x, y, z, deg/s.
+    #[must_use]
+    pub fn rates(
+        &self,
+        form: CompensationForm,
+        output_deg_per_s: [f64; 3],
+        temperature_c: Option<[f64; 3]>,
+    ) -> [f64; 3] {
+        let output = Vector3::from(output_deg_per_s);
+        let bias = Vector3::from(self.bias_deg_per_s(temperature_c));
+        let rates = match form {
+            CompensationForm::Exact => self.inverse * (output - bias),
+            CompensationForm::FirstOrder => {
+                output - (matrix(self.parameters.deviation()) * output + bias)
+            }
+        };
+        rates.into()
+    }
+
+    /// What the form leaves of a true rate with perfect parameters, deg/s.
+    ///
+    /// `-(D D W + D B)` with `D = K_G + theta_G` for the first-order form, nothing for the exact one.
+    #[must_use]
+    pub fn residual(&self, form: CompensationForm, rate_deg_per_s: [f64; 3]) -> [f64; 3] {
+        match form {
+            CompensationForm::Exact => [0.0; 3],
+            CompensationForm::FirstOrder => {
+                let deviation = matrix(self.parameters.deviation());
+                let bias = Vector3::from(self.parameters.bias_deg_per_s);
+                let error = deviation * Vector3::from(rate_deg_per_s) + bias;
+                (-(deviation * error)).into()
+            }
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! Whether a plan of mountings and rates determines the parameters, and which it leaves open.
+
+use std::fmt;
+
+use nalgebra::DMatrix;
+
+use super::design::{
+    Column, GroupDesign, TemperatureColumns, column_scales, columns, design_matrix,
+};
+use super::error::CalibrationError;
+use super::inseparable::{Inseparable, inseparable};
+
+/// Singular values below this part of the largest, columns brought to a common size, count as none.
+///
+/// Earth rate beside 90 deg/s is 2.5e-5: an axis that sees nothing else has not been moved.
+pub const RANK_TOLERANCE: f64 = 1e-4;
+
+/// What a plan can determine for one gyro.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisPlan {
+    /// Singular values of the rows `a_i`, descending, in the module's units (deg/s, 1, K).
+    pub singular_values: Vec<f64>,
+    /// Largest over smallest singular value.
+    pub condition_number: f64,
+    /// Standard deviation of the gyro's own scale factor per standard error of a group mean in
+    /// deg/s, s/deg.
+    pub scale_std_per_sigma: f64,
+    /// Standard deviation of the bias per standard error of a group mean.
+    pub bias_std_per_sigma: f64,
+    /// Correlation of the two.
+    pub scale_bias_correlation: f64,
+}
+
+/// A plan that determines every parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanReport {
+    /// Groups of the plan.
+    pub groups: usize,
+    /// Rank of the rows, equal to the unknowns of a gyro.
+    pub rank: usize,
+    /// Gyros x, y, z; they differ where thermometers do and in which rate is their own.
+    pub axes: [AxisPlan; 3],
+}
+
+/// A plan that leaves parameters open.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanDefect {
+    /// Groups of the plan.
+    pub groups: usize,
+    /// Unknowns of each gyro.
+    pub unknowns: usize,
+    /// Rank of the rows.
+    pub rank: usize,
+    /// Singular values of the rows of the first gyro that is short of rank.
+    pub singular_values: Vec<f64>,
+    /// What cannot be told apart, and why; one entry per missing rank.
+    pub inseparable: Vec<Inseparable>,
+}
+
+impl fmt::Display for PlanDefect {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            out,
+            "{} groups have rank {} for {} unknowns per gyro",
+            self.groups, self.rank, self.unknowns
+        )?;
+        for open in &self.inseparable {
+            write!(out, "; {}: missing {}", open.reason, open.missing)?;
+        }
+        Ok(())
+    }
+}
+
+/// Rank, condition and predicted spread of a plan.
+///
+/// * `groups`: rates and temperatures of the plan, measured or intended.
+/// * `reference_temperature_c`: temperature at which bias and scale factor are to be given, of the
+///   gyros x, y, z; without temperature columns it has no effect.
+///
+/// # Errors
+/// [`CalibrationError::Unobservable`] with what cannot be told apart and the missing motion in words.
+///
+/// # Source
+/// Rows of the patent's equation (12). Known answers: `patent_plan_…`.
+pub fn check_plan(
+    groups: &[GroupDesign],
+    temperature: TemperatureColumns,
+    reference_temperature_c: [f64; 3],
+) -> Result<PlanReport, CalibrationError> {
+    let model = columns(temperature);
+    let mut axes = Vec::with_capacity(3);
+    for (axis, reference) in reference_temperature_c.into_iter().enumerate() {
+        let design = design_matrix(groups, &model, axis, reference);
+        axes.push(check_axis(&design, &model, axis).map_err(CalibrationError::Unobservable)?);
+    }
+    let axes: [AxisPlan; 3] = axes.try_into().expect("three gyros were checked");
+    Ok(PlanReport {
+        groups: groups.len(),
+        rank: model.len(),
+        axes,
+    })
+}
+
+fn check_axis(
+    design: &DMatrix<f64>,
+    model: &[Column],
+    axis: usize,
+) -> Result<AxisPlan, PlanDefect> {
+    let singular_values = descending(design);
+    let mut scaled = design.clone();
+    for (mut column, scale) in scaled.column_iter_mut().zip(column_scales(design, model)) {
+        column /= scale;
+    }
+    let open = inseparable(&scaled, model, RANK_TOLERANCE);
+    if !open.is_empty() {
+        return Err(PlanDefect {
+            groups: design.nrows(),
+            unknowns: model.len(),
+            rank: model.len() - open.len(),
+            singular_values,
+            inseparable: open,
+        });
+    }
+    let inverse = inverse_normal(design);
+    let (scale, bias) = (inverse[(axis, axis)].sqrt(), inverse[(3, 3)].sqrt());
+    Ok(AxisPlan {
+        condition_number: singular_values[0] / singular_values[singular_values.len() - 1],
+        singular_values,
+        scale_std_per_sigma: scale,
+        bias_std_per_sigma: bias,
+        scale_bias_correlation: inverse[(axis, 3)] / (scale * bias),
+    })
+}
+
+/// `(A^T A)^-1` through the triangular factor; for designs of full rank.
+fn inverse_normal(design: &DMatrix<f64>) -> DMatrix<f64> {
+    let size = design.ncols();
+    let inverse = design
+        .clone()
+        .qr()
+        .r()
+        .solve_upper_triangular(&DMatrix::identity(size, size))
+        .expect("the rank was checked");
+    &inverse * inverse.transpose()
+}
+
+/// Singular values, descending; as many as the shorter side.
+pub(super) fn descending(matrix: &DMatrix<f64>) -> Vec<f64> {
+    if matrix.is_empty() {
+        return Vec::new();
+    }
+    let mut values: Vec<f64> = matrix.singular_values().iter().copied().collect();
+    values.sort_by(|a, b| b.total_cmp(a));
+    values
+}
