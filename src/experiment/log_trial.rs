@@ -112,6 +112,7 @@ pub fn try_log(
     let record = GyroRecord {
         truth_deg_per_h: Vec::new(),
         raw_deg_per_h: words,
+        compensated_deg_per_h: None,
     };
     let shortest_s = FIT_SAMPLES_MIN * sample_period_s;
     let metric_settings = Settings {

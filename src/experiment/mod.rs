@@ -6,6 +6,7 @@
 mod assembly_motion;
 mod budget;
 mod channel_filter;
+mod compensation;
 mod log_filters;
 mod log_trial;
 mod motion;

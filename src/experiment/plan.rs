@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use super::assembly_motion;
+use super::compensation::{Parameters, form};
 use super::motion::{motion, motion_extremes, rate_deg_per_h_max};
 use super::pipeline_check;
 use super::pipeline_settings::PipelineSettings;
@@ -22,6 +23,8 @@ use crate::signal::GyroFacts;
 
 /// Metric that turns the divergence of a channel into an expected result.
 pub(super) const DIVERGED_AT: &str = "diverged_at_s";
+/// Key of the parameters of a compensation.
+const PARAMETERS: &str = "compensation.parameters";
 /// Longest record held in memory, samples (two hours at 4 kHz).
 const SAMPLES_MAX: f64 = 3.0e7;
 /// Most words held in memory, truth and channels of every gyro together (1.44 GB): an hour at 4 kHz
@@ -34,6 +37,7 @@ pub struct Plan {
     resolved: Resolved,
     facts: GyroFacts,
     warnings: Vec<String>,
+    compensation: Option<Parameters>,
 }
 
 impl Plan {
@@ -59,6 +63,11 @@ impl Plan {
     #[must_use]
     pub fn channel_names(&self) -> Vec<String> {
         self.resolved.scenario.channel_names()
+    }
+
+    /// What is taken out of the outputs.
+    pub(super) fn compensation(&self) -> Option<&Parameters> {
+        self.compensation.as_ref()
     }
 
     /// Period of the output samples, s.
@@ -124,6 +133,7 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
         warnings: resolved.warnings.clone(),
     };
     let facts = checker.gyro();
+    let compensation = checker.compensation();
     if let Some(facts) = &facts {
         checker.gyro_limits();
         checker.record_length(facts);
@@ -138,6 +148,7 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
             resolved,
             facts,
             warnings,
+            compensation,
         }),
         _ => Err(errors),
     }
@@ -159,6 +170,15 @@ impl Checker<'_> {
     fn gyro(&mut self) -> Option<GyroFacts> {
         gyro::facts(&self.resolved.scenario.gyro)
             .map_err(|error| self.complain(error.key(), format!("{}: {error}", error.key())))
+            .ok()
+    }
+
+    /// Refuses parameters that no rates follow from.
+    fn compensation(&mut self) -> Option<Parameters> {
+        let config = self.resolved.scenario.compensation.as_ref()?;
+        let given = config.parameters.as_ref()?;
+        Parameters::given(form(config), given)
+            .map_err(|error| self.complain(PARAMETERS, format!("{PARAMETERS}: {error}")))
             .ok()
     }
 
@@ -345,7 +365,7 @@ impl Checker<'_> {
                 scenario.duration_s,
                 1.0 / facts.output_rate_hz,
                 &motion,
-                !scenario.is_raw(channel),
+                !scenario.is_unfiltered(channel),
                 scenario.bias_averaging_time_s,
             );
             let lack = pipeline_check::lacks(scenario, channel, name).map(str::to_owned);

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::assembly_motion::drop_lacking;
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
+use super::compensation::RunError;
 use super::motion::motion;
 use super::pipeline_metrics;
 use super::plan::{DIVERGED_AT, Plan};
@@ -15,7 +16,7 @@ use super::suite::{Observer, SuiteError, VERSION};
 use super::theory::theory;
 use crate::filters::Divergence;
 use crate::gate::judge;
-use crate::gyro::{GyroError, temperature_record};
+use crate::gyro::temperature_record;
 use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings, aggregate,
     measure,
@@ -38,7 +39,9 @@ pub(super) fn run_scenario(
     let resolved = plan.resolved();
     let scenario = &resolved.scenario;
     let folder = resolved.folder();
-    let done = theory(scenario).and_then(|curves| Ok((curves, run_repeats(plan, observer)?)));
+    let done = theory(scenario)
+        .map_err(RunError::from)
+        .and_then(|curves| Ok((curves, run_repeats(plan, observer)?)));
     let (theory, (simulation, channels, faults)) = match done {
         Ok(done) => done,
         Err(error) => {
@@ -85,7 +88,7 @@ pub(super) fn run_scenario(
 fn run_repeats(
     plan: &Plan,
     observer: &dyn Observer,
-) -> Result<(Simulation, Channels, Faults), GyroError> {
+) -> Result<(Simulation, Channels, Faults), RunError> {
     let (simulation, first) = run_repeat(plan, 0, observer)?;
     let others: Vec<(Faults, Channels)> = (1..plan.resolved().scenario.repeats)
         .into_par_iter()
@@ -122,7 +125,8 @@ fn write_folder(
         folder.write("psd.csv", csv.as_bytes())?;
     }
     let raw_names = report.scenario.raw_channels();
-    let gyros = signals(plan, simulation, &raw_names);
+    let compensated_names = report.scenario.compensated_channels();
+    let gyros = signals(plan, simulation, (&raw_names, &compensated_names));
     for signals in &gyros {
         for (name, svg) in report::plots(report, signals) {
             folder.write(&name, svg.as_bytes())?;
@@ -138,7 +142,7 @@ fn write_folder(
 fn signals<'a>(
     plan: &Plan,
     simulation: &'a Simulation,
-    raw_names: &'a [String],
+    (raw_names, compensated_names): (&'a [String], &'a [String]),
 ) -> Vec<RunSignals<'a>> {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
@@ -148,6 +152,8 @@ fn signals<'a>(
     let named = gyros.zip(scenario.axis_prefixes().iter().zip(raw_names));
     let signals = named.map(|((gyro, record), (prefix, raw_name))| {
         let raw = (raw_name.as_str(), record.raw_deg_per_h.as_slice());
+        let compensated = record.compensated_deg_per_h.as_deref();
+        let compensated = compensated_names.get(gyro).map(String::as_str).zip(compensated);
         let filters = simulation.filters.iter().filter_map(|(of, filter)| {
             let words = filter.words.as_ref().ok().filter(|_| *of == gyro)?;
             Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
@@ -158,7 +164,10 @@ fn signals<'a>(
             prefix,
             truth_deg_per_h: &record.truth_deg_per_h,
             encoder_rad: simulation.encoder_rad.as_deref(),
-            channels: std::iter::once(raw).chain(filters).collect(),
+            channels: std::iter::once(raw)
+                .chain(compensated)
+                .chain(filters)
+                .collect(),
             temperature: temperature_record(&scenario.gyro, scenario.warm_up_s, end_s),
         }
     });
@@ -191,10 +200,10 @@ fn run_repeat(
     plan: &Plan,
     repeat: u32,
     observer: &dyn Observer,
-) -> Result<(Simulation, Channels), GyroError> {
+) -> Result<(Simulation, Channels), RunError> {
     let scenario = &plan.resolved().scenario;
     let length = RecordLength::new(scenario, plan.sample_period_s());
-    let simulation = simulate(scenario, length, repeat, observer)?;
+    let simulation = simulate(scenario, length, repeat, plan.compensation(), observer)?;
     let channels = measure_repeat(plan, &simulation, length);
     Ok((simulation, channels))
 }
@@ -220,7 +229,10 @@ fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) ->
     let (raw, filters): (Channels, Channels) = rayon::join(
         || {
             let named = cuts.par_iter().zip(scenario.raw_channels());
-            named.map(|(cut, name)| (name, cut.measure_raw())).collect()
+            let raw = named.map(|(cut, name)| (name, cut.measure_raw()));
+            let named = cuts.par_iter().zip(scenario.compensated_channels());
+            raw.chain(named.map(|(cut, name)| (name, cut.measure_compensated())))
+                .collect()
         },
         || {
             let filters = simulation.filters.par_iter();
@@ -247,7 +259,14 @@ pub(super) struct Cut<'a> {
 
 impl Cut<'_> {
     pub(super) fn measure_raw(&self) -> ChannelMetrics {
-        let words = &self.record.raw_deg_per_h;
+        self.measure_unfiltered(&self.record.raw_deg_per_h)
+    }
+
+    fn measure_compensated(&self) -> ChannelMetrics {
+        self.measure_unfiltered(self.record.filter_input_deg_per_h())
+    }
+
+    fn measure_unfiltered(&self, words: &[f64]) -> ChannelMetrics {
         match words.iter().position(|word| !word.is_finite()) {
             Some(sample) => failed(
                 "not finite",
@@ -255,15 +274,20 @@ impl Cut<'_> {
                 format!("the word of the gyro is {}", words[sample]),
                 self.sample_period_s,
             ),
-            None => self.measure(words, None),
+            None => self.measure(words, words, None),
         }
     }
 
-    fn measure(&self, channel_deg_per_h: &[f64], filter: Option<&FilterFacts>) -> ChannelMetrics {
+    fn measure(
+        &self,
+        channel_deg_per_h: &[f64],
+        input_deg_per_h: &[f64],
+        filter: Option<&FilterFacts>,
+    ) -> ChannelMetrics {
         let first = self.length.warm_up;
         let record = Record {
             channel_deg_per_h: &channel_deg_per_h[first..],
-            raw_deg_per_h: &self.record.raw_deg_per_h[first..],
+            raw_deg_per_h: &input_deg_per_h[first..],
             // A recorded log has none.
             truth_deg_per_h: self.record.truth_deg_per_h.get(first..).unwrap_or(&[]),
             encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
@@ -277,7 +301,8 @@ impl Cut<'_> {
         let mut metrics = match &filter.words {
             Ok(words) => {
                 let facts = filter_facts(filter, words);
-                self.measure(&words.output_deg_per_h, Some(&facts))
+                let input = self.record.filter_input_deg_per_h();
+                self.measure(&words.output_deg_per_h, input, Some(&facts))
             }
             Err(divergence) => diverged(divergence, self.sample_period_s),
         };
