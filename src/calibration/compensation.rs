@@ -63,7 +63,9 @@ impl Compensation {
     #[must_use]
     pub fn needs_temperature(&self) -> bool {
         let coefficients = self.temperature_coefficient_deg_per_s_per_k;
-        coefficients.iter().any(|coefficient| coefficient.abs() > 0.0)
+        coefficients
+            .iter()
+            .any(|coefficient| coefficient.abs() > 0.0)
     }
 
     /// Compensation with a calibration's parameters and its temperature coefficient of the bias.

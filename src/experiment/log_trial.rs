@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use super::channel_filter::{ChannelFilter, FinishedFilter};
 use super::log_filters::LogFilters;
+use super::measurement::Cut;
 use super::pipeline_metrics;
-use super::run::Cut;
 use super::simulate::{GyroRecord, RecordLength};
 use super::suite::VERSION;
 use crate::metrics::{ChannelMetrics, Motion, Settings};

@@ -9,6 +9,7 @@ mod channel_filter;
 mod compensation;
 mod log_filters;
 mod log_trial;
+mod measurement;
 mod motion;
 mod pipeline_check;
 mod pipeline_export;

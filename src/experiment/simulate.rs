@@ -381,10 +381,11 @@ fn table_warm_up_s(scenario: &Scenario, warm_up_samples: usize, word_period_s: f
     (words - 0.5) * word_period_s
 }
 
+/// A number of samples as a number.
 #[expect(
     clippy::cast_precision_loss,
     reason = "sample counts are far below 2^53"
 )]
-fn count(samples: usize) -> f64 {
+pub(super) fn count(samples: usize) -> f64 {
     samples as f64
 }

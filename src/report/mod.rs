@@ -6,6 +6,7 @@
 
 mod budget;
 mod columns;
+mod compensation;
 mod csv;
 mod files;
 mod json;
@@ -14,6 +15,7 @@ mod log;
 mod measured;
 mod plot;
 mod record;
+mod repeats;
 mod suite_table;
 mod summary;
 mod table;
@@ -27,6 +29,7 @@ pub use junit::junit_xml;
 pub use log::{LogReport, log_files, log_json, log_text};
 pub use plot::{SVG_BYTES_MAX, budget_svg, plots};
 pub use record::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
+pub use repeats::runs_csv;
 pub use suite_table::suite_text;
 pub use summary::{run_summary_json, suite_summary_json};
 pub use table::table_text;

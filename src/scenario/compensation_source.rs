@@ -107,8 +107,8 @@ fn parameters(
 ) -> Result<Node, ScenarioError> {
     let bytes = named.read(sources)?;
     let digest = blake3::hash(&bytes).to_hex().to_string();
-    let text = String::from_utf8(bytes)
-        .map_err(|_| named.error(sources, "the file is not UTF-8 text"))?;
+    let text =
+        String::from_utf8(bytes).map_err(|_| named.error(sources, "the file is not UTF-8 text"))?;
     let shown = shown_path(&named.path);
     let source = sources.add_file(shown, text.clone(), named.label.clone());
     inputs.push(InputFile {
@@ -121,10 +121,14 @@ fn parameters(
         sources.error(Mark { source, start }, error.message)
     })?;
     let version = root.get("schema");
-    if !matches!(version.map(|node| &node.value), None | Some(Value::Integer(FILE_VERSION))) {
+    if !matches!(
+        version.map(|node| &node.value),
+        None | Some(Value::Integer(FILE_VERSION))
+    ) {
         let mark = version.and_then(|node| node.mark).unwrap_or(start);
-        let message =
-            format!("schema is not supported: this build reads calibration files of schema {FILE_VERSION}");
+        let message = format!(
+            "schema is not supported: this build reads calibration files of schema {FILE_VERSION}"
+        );
         return Err(sources.error(mark, message));
     }
     match root.remove(TABLE) {
@@ -155,7 +159,10 @@ fn written_campaign(
     sources: &Sources,
 ) -> Result<Resolved, Vec<ScenarioError>> {
     let mut own = Sources::default();
-    let shown = format!("{} ({TABLE}.{CAMPAIGN_SCENARIO})", sources.locate(mark).file);
+    let shown = format!(
+        "{} ({TABLE}.{CAMPAIGN_SCENARIO})",
+        sources.locate(mark).file
+    );
     let label = Label::of_scenario(&PathBuf::from(&shown));
     let source = own.add_file(shown, text.to_owned(), label.clone());
     let root = parse_document(source, text).map_err(|error| {
@@ -176,8 +183,14 @@ fn written_campaign(
 /// Resolves a campaign; one that is a sweep or is compensated itself is refused.
 fn resolve(draft: Draft) -> Result<Resolved, Vec<ScenarioError>> {
     for (key, reason) in [
-        ("matrix", "a sweep: one campaign gives one set of parameters"),
-        (TABLE, "compensated itself: a calibration needs the outputs as they are"),
+        (
+            "matrix",
+            "a sweep: one campaign gives one set of parameters",
+        ),
+        (
+            TABLE,
+            "compensated itself: a calibration needs the outputs as they are",
+        ),
     ] {
         if let Some(node) = draft.root.get(key) {
             let mark = node.mark.unwrap_or(draft.root_mark);

@@ -15,7 +15,11 @@ pub(crate) fn check(scenario: &Scenario) -> Vec<(String, String)> {
         complaints.push(("compensation".to_owned(), message.to_owned()));
     }
     let names = scenario.filters.iter().map(|filter| &filter.name);
-    for index in names.enumerate().filter(|(_, name)| *name == COMPENSATED).map(|(index, _)| index) {
+    for index in names
+        .enumerate()
+        .filter(|(_, name)| *name == COMPENSATED)
+        .map(|(index, _)| index)
+    {
         let key = format!("filter[{index}].name");
         let message = format!(
             "{key} = \"{COMPENSATED}\" is the name of the compensated outputs: give the filter \

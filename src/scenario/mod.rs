@@ -21,6 +21,7 @@ mod cross_servo;
 mod cross_turntable;
 mod cross_vibration;
 mod defaults;
+mod discover;
 mod emit;
 mod error;
 mod filter_config;
