@@ -11,6 +11,7 @@ mod cli_budget;
 mod cli_fpga;
 mod closed_loop;
 mod comparison_filters;
+mod compensation;
 mod cycle_exact;
 mod determinism;
 mod encoder;
