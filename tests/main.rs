@@ -34,6 +34,7 @@ mod known_answers_thermal;
 mod known_answers_turntable;
 mod metrics_intervals;
 mod metrics_records;
+mod patent_calibration;
 mod patent_known_answers;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]

@@ -241,7 +241,13 @@ fn assert_row(estimator: &Estimator, biases: [f64; 3], scale_ppm: [f64; 3]) {
     let truth = truth();
     for axis in 0..3 {
         let bias = found.parameters.bias_deg_per_h()[axis];
-        assert_close(bias, biases[axis], 0.0, 0.7e-6);
+        // The table's recursive rows were run in covariance form, whose rounding grows with the
+        // forgetting: up to 1.1e-5 deg/h at a constant factor of 0.5.
+        let rounding = match estimator {
+            Estimator::Recursive(_) => 2e-5,
+            _ => 0.7e-6,
+        };
+        assert_close(bias, biases[axis], 0.0, rounding);
         let scale = found.parameters.scale_error[axis] - truth.scale_error[axis];
         assert_close(scale * 1e6, scale_ppm[axis], 0.0, 0.6e-4);
     }
@@ -304,7 +310,7 @@ fn patent_kat2_every_estimator_of_the_table_gives_its_row() {
     ];
     for (forgetting, biases, scale_ppm) in rows {
         assert_row(
-            &Estimator::Recursive(settings(forgetting, 1e8)),
+            &Estimator::Recursive(settings(forgetting, 1e10)),
             biases,
             scale_ppm,
         );
@@ -422,11 +428,20 @@ fn lost_deg_per_h(constant_per_k: f64, xi: f64) -> f64 {
 
 #[test]
 fn patent_kat2_the_covariance_recursion_loses_what_the_square_root_form_keeps() {
-    // Rounding depends on the order of operations; its size does not.
-    for (constant, xi) in [(0.1, 1e8), (0.1, 1e12), (1.0, 1e4), (1.0, 1e6), (1.0, 1e8)] {
-        eprintln!("{constant} {xi}: {}", lost_deg_per_h(constant, xi));
+    // Rounding depends on the order of operations; its size does not, within a factor of ten. At
+    // F2 c = 1 and xi = 1e6 it is the luck of cancellation: 3e-3 here, 0.89 in another order.
+    let sizes = [(0.1, 1e12, 2e-2), (1.0, 1e4, 7e-5), (1.0, 1e8, 8e-3)];
+    for (constant, xi, lost) in sizes {
+        let got = lost_deg_per_h(constant, xi);
+        assert!(
+            (0.1 * lost..10.0 * lost).contains(&got),
+            "c {constant}, xi {xi}: {got}"
+        );
     }
-    for (constant, xi) in [(0.1, 1e8), (0.1, 1e10), (1.0, 1e8), (1.0, 1e10)] {
+    assert!(lost_deg_per_h(0.1, 1e8) < 1e-5);
+    assert!(lost_deg_per_h(1.0, 1e6) > 1e-4);
+    // The square-root form is the weighted solution but for the prior, 4e-8 at xi = 1e8.
+    for (constant, xi, allowed) in [(0.1, 1e8, 5e-8), (0.1, 1e10, 1e-9), (1.0, 1e8, 1e-9)] {
         let forgetting = thermal(ForgettingForm::Exponential, constant);
         let square = Estimator::Recursive(settings(forgetting, xi));
         let weighted = Estimator::Weighted {
@@ -436,13 +451,9 @@ fn patent_kat2_the_covariance_recursion_loses_what_the_square_root_form_keeps() 
         };
         let square = estimate(&drifting(), &square, None).expect("a calibration");
         let weighted = estimate(&drifting(), &weighted, None).expect("a calibration");
-        for (one, other) in square
-            .parameters
-            .bias_deg_per_h()
-            .iter()
-            .zip(weighted.parameters.bias_deg_per_h())
-        {
-            eprintln!("{constant} {xi}: {:e}", one - other);
+        let weighted = weighted.parameters.bias_deg_per_h();
+        for (one, other) in square.parameters.bias_deg_per_h().iter().zip(weighted) {
+            assert_close(*one, other, 0.0, allowed);
         }
     }
 }

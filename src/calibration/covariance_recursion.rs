@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::estimate::RecursiveSettings;
+use super::estimator::RecursiveSettings;
 use super::forgetting::Reading;
 use super::observations::GroupObservation;
 

@@ -4,6 +4,7 @@
 //! test of `reference.toml`, which holds the defaults.
 
 mod compensation;
+mod calibration;
 mod filter;
 mod gyro;
 mod judging;
@@ -53,6 +54,7 @@ pub(crate) const GROUPS: &[Group] = &[
             "trapezoid",
             "chirp",
             "script",
+            "calibration",
         ],
     },
     Group {
@@ -127,6 +129,7 @@ pub(crate) fn keys() -> impl Iterator<Item = &'static Key> {
         gyro::KEYS,
         thermal::KEYS,
         compensation::KEYS,
+        calibration::KEYS,
         filter::KEYS,
         judging::KEYS,
     ]
