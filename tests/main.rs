@@ -35,6 +35,7 @@ mod known_answers_turntable;
 mod metrics_intervals;
 mod metrics_records;
 mod patent_calibration;
+mod patent_filter;
 mod patent_known_answers;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
@@ -44,6 +45,7 @@ mod recording;
 mod report;
 mod rtl;
 mod scenario_errors;
+mod sign_lms_hardware;
 mod suite;
 mod support;
 mod timing;

@@ -9,6 +9,7 @@ mod calibration_sheet;
 mod calibration_units;
 mod channel_filter;
 mod compensation;
+mod line_enhancer;
 mod log_filters;
 mod log_trial;
 mod measurement;

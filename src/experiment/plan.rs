@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::assembly_motion;
 use super::compensation::{Parameters, form};
+use super::line_enhancer;
 use super::motion::{motion, motion_extremes, rate_deg_per_h_max};
 use super::pipeline_check;
 use super::pipeline_settings::PipelineSettings;
@@ -259,6 +260,18 @@ impl Checker<'_> {
             }
             match &filter.kind {
                 FilterKind::Lms(config) => self.lms(index, config, rate_max),
+                FilterKind::SignLms(config) => {
+                    let scenario = &resolved.scenario;
+                    let met = line_enhancer::Situation {
+                        rate_max_deg_per_h: rate_max,
+                        noise_std_deg_per_h: self.noise_std_deg_per_h(facts),
+                        output_rate_hz: facts.output_rate_hz,
+                        warm_up_s: scenario.warm_up_s,
+                        duration_s: scenario.duration_s,
+                    };
+                    let notes = line_enhancer::notes(&filter.name, config, met);
+                    self.warnings.extend(notes);
+                }
                 FilterKind::Rls(config) if config.pipeline == Pipeline::Textbook => {
                     let delta = config.initial_inverse_correlation;
                     let warning = covariance_digits_warning(delta, config.taps as usize, peak);

@@ -6,8 +6,8 @@
 
 use serde::Deserialize;
 
-use super::compensation_config::CompensationConfig;
 use super::calibration_config::CalibrationConfig;
+use super::compensation_config::CompensationConfig;
 use super::filter_config::FilterConfig;
 use super::gyro_config::GyroConfig;
 use super::turntable_config::TurntableConfig;

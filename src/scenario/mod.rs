@@ -13,8 +13,9 @@ mod compensation_config;
 mod compensation_source;
 mod config;
 mod cross;
-mod cross_compensation;
 mod cross_calibration;
+mod cross_compensation;
+mod cross_filter;
 mod cross_gyro;
 mod cross_multi_sine;
 mod cross_optics;
@@ -45,10 +46,10 @@ mod turntable_config;
 mod vibration_config;
 
 pub use assembly_config::AssemblyConfig;
-pub use compensation_config::{CompensationConfig, CompensationParameters, CompensationRule};
 pub use calibration_config::{
     CalibrationConfig, CampaignConfig, CampaignGroup, EstimatorKind, ForgettingLaw,
 };
+pub use compensation_config::{CompensationConfig, CompensationParameters, CompensationRule};
 pub use config::{
     Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
     SamplesFormat, Scenario,
@@ -57,10 +58,11 @@ pub use defaults::{reference_calibration, reference_toml};
 pub(crate) use error::portable_place;
 pub use error::{Location, ScenarioError};
 pub use filter_config::{
-    ButterworthFilterConfig, ConstrainedRlsFilterConfig, DesiredSignal, Division, FilterConfig,
-    FilterKind, KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, NumberFormat,
-    OnePoleFilterConfig, OutputRegister, Pipeline, RlsFilterConfig, SavitzkyGolayFilterConfig,
-    UpdateOrder, UpdateSign,
+    ButterworthFilterConfig, ConstantUnit, ConstrainedRlsFilterConfig, DesiredSignal, Division,
+    FilterConfig, FilterKind, InitialWeights, KalmanFilterConfig, LmsFilterConfig,
+    MovingAverageFilterConfig, NumberFormat, OnePoleFilterConfig, OutputRegister, Pipeline,
+    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig, SignLmsForm, UpdateOrder,
+    UpdateSign,
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,

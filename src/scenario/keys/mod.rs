@@ -3,8 +3,8 @@
 //! The one source of unknown-key detection, type and range messages, the JSON Schema and the
 //! test of `reference.toml`, which holds the defaults.
 
-mod compensation;
 mod calibration;
+mod compensation;
 mod filter;
 mod gyro;
 mod judging;
@@ -108,6 +108,7 @@ pub(crate) const GROUPS: &[Group] = &[
         alternatives: &[
             "rls",
             "lms",
+            "sign_lms",
             "constrained_rls",
             "moving_average",
             "savitzky_golay",
