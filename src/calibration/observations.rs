@@ -141,11 +141,11 @@ pub fn group_means(
         samples: count,
         averaging_time_s,
     };
-    for axis in 0..3 {
+    for (axis, name) in AXES.into_iter().enumerate() {
         let outputs = samples.output_deg_per_s[axis];
         if count < 2 * BLOCKS || samples.temperature_c[axis].is_empty() {
             return Err(CalibrationError::TooFewSamples {
-                axis: AXES[axis],
+                axis: name,
                 count: count.min(outputs.len()),
                 needed: 2 * BLOCKS,
             });

@@ -88,16 +88,14 @@ pub fn check_plan(
     reference_temperature_c: [f64; 3],
 ) -> Result<PlanReport, CalibrationError> {
     let model = columns(temperature);
-    let mut axes = Vec::with_capacity(3);
-    for (axis, reference) in reference_temperature_c.into_iter().enumerate() {
-        let design = design_matrix(groups, &model, axis, reference);
-        axes.push(check_axis(&design, &model, axis).map_err(CalibrationError::Unobservable)?);
-    }
-    let axes: [AxisPlan; 3] = axes.try_into().expect("three gyros were checked");
+    let [x, y, z] = [0, 1, 2].map(|axis: usize| {
+        let design = design_matrix(groups, &model, axis, reference_temperature_c[axis]);
+        check_axis(&design, &model, axis).map_err(CalibrationError::Unobservable)
+    });
     Ok(PlanReport {
         groups: groups.len(),
         rank: model.len(),
-        axes,
+        axes: [x?, y?, z?],
     })
 }
 

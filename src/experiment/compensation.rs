@@ -1,23 +1,20 @@
 //! The compensation stage: from three words of an assembly to three compensated ones.
 
+use super::campaign::calibrate_scenario;
+use super::suite::Observer;
 use crate::calibration::{
-    CalibrationError, Compensation, CompensationForm, ErrorParameters, Misalignment,
+    Calibration, CalibrationError, Compensation, CompensationForm, ErrorParameters, Misalignment,
 };
-use crate::gyro::{CoilThermometer, GyroError};
-use crate::scenario::{CompensationConfig, CompensationParameters, CompensationRule, GyroConfig};
+use crate::gyro::CoilThermometer;
+use crate::report::{RunOutcome, RunReport};
+use crate::scenario::{
+    CompensationConfig, CompensationParameters, CompensationRule, GyroConfig, Resolved, Scenario,
+};
 use crate::signal::CompensationSheet;
 use crate::units::{
     MICRO, arcsec_to_rad, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, rad_to_arcsec,
     ratio_to_ppm,
 };
-
-/// Why a run could not be carried out.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum RunError {
-    /// The gyro.
-    #[error(transparent)]
-    Gyro(#[from] GyroError),
-}
 
 /// What is taken out of the outputs, and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +31,7 @@ impl Parameters {
     ///
     /// # Errors
     /// [`CalibrationError::SingularSensitivity`] if their matrix has no inverse.
-    pub(super) fn given(
+    fn given(
         form: CompensationForm,
         given: &CompensationParameters,
     ) -> Result<Self, CalibrationError> {
@@ -47,6 +44,23 @@ impl Parameters {
             form,
             found,
             source: "given parameters".to_owned(),
+        })
+    }
+
+    /// The parameters that a campaign has found.
+    ///
+    /// # Errors
+    /// [`CalibrationError::SingularSensitivity`] if their matrix has no inverse.
+    fn found(
+        form: CompensationForm,
+        calibration: &Calibration,
+        source: String,
+    ) -> Result<Self, CalibrationError> {
+        Ok(Self {
+            compensation: Compensation::of(calibration)?,
+            form,
+            found: calibration.parameters,
+            source,
         })
     }
 
@@ -85,8 +99,68 @@ impl Parameters {
     }
 }
 
+/// How a run comes by its parameters.
+#[derive(Clone, Debug)]
+pub(super) enum CompensationPlan {
+    /// They are given.
+    Given(Box<Parameters>),
+    /// A campaign finds them.
+    Campaign {
+        /// The calibration scenario, which has passed the checks of a plan.
+        scenario: Box<Scenario>,
+        /// How rates follow from the outputs.
+        form: CompensationForm,
+    },
+}
+
+impl CompensationPlan {
+    /// The plan of a scenario; none without a compensation. A campaign is still to be checked.
+    ///
+    /// # Errors
+    /// [`CalibrationError::SingularSensitivity`] if given parameters have no inverse.
+    pub(super) fn of(resolved: &Resolved) -> Result<Option<Self>, CalibrationError> {
+        let Some(config) = &resolved.scenario.compensation else {
+            return Ok(None);
+        };
+        let form = form(config);
+        if let Some(campaign) = &resolved.campaign {
+            let scenario = Box::new(campaign.scenario.clone());
+            return Ok(Some(Self::Campaign { scenario, form }));
+        }
+        let given = config.parameters.as_ref();
+        let parameters = given
+            .map(|given| Parameters::given(form, given))
+            .transpose()?;
+        Ok(parameters.map(|known| Self::Given(Box::new(known))))
+    }
+
+    /// The parameters; a campaign is run for them, its first repeat.
+    ///
+    /// # Errors
+    /// In words: why the campaign gives none.
+    pub(super) fn parameters(&self) -> Result<Parameters, String> {
+        let (scenario, form) = match self {
+            Self::Given(known) => return Ok(Parameters::clone(known)),
+            Self::Campaign { scenario, form } => (scenario, *form),
+        };
+        let failed = |error: String| format!("campaign {}: {error}", scenario.name);
+        let (sheet, calibration) = calibrate_scenario(scenario, 0, &Unseen).map_err(failed)?;
+        let source = format!("campaign {}, {}", scenario.name, sheet.applied);
+        Parameters::found(form, &calibration, source).map_err(|error| failed(error.to_string()))
+    }
+}
+
+/// Hears nothing of a campaign, whose time is no part of the run's.
+struct Unseen;
+
+impl Observer for Unseen {
+    fn advanced(&self, _simulated_s: f64) {}
+    fn finished(&self, _index: usize, _report: &RunReport) {}
+    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
+}
+
 /// The form that a scenario asks for.
-pub(super) fn form(config: &CompensationConfig) -> CompensationForm {
+fn form(config: &CompensationConfig) -> CompensationForm {
     match config.form {
         CompensationRule::Exact => CompensationForm::Exact,
         CompensationRule::FirstOrder => CompensationForm::FirstOrder,

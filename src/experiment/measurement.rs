@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::assembly_motion::drop_lacking;
+use super::campaign;
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use super::motion::motion;
 use super::pipeline_metrics;
@@ -57,6 +58,7 @@ pub(super) fn measure_repeat(
     let mut channels: Channels = raw.into_iter().chain(filters).collect();
     for (name, metrics) in &mut channels {
         drop_lacking(scenario, name, metrics);
+        campaign::drop_lacking(scenario, metrics);
     }
     channels
 }

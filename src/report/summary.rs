@@ -2,6 +2,7 @@
 
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelMetrics, Metric};
+use crate::report::calibration::calibration_json;
 use crate::report::compensation::compensation_json;
 use crate::report::json::{number, object, pretty};
 use crate::report::repeats::repeats_json;
@@ -41,6 +42,9 @@ pub fn run_summary_json(report: &RunReport) -> String {
     ]);
     if let Some(sheet) = report.compensation {
         root.insert("compensation".to_owned(), compensation_json(sheet));
+    }
+    if let Some(sheet) = report.calibration {
+        root.insert("calibration".to_owned(), calibration_json(sheet));
     }
     if !report.notes.is_empty() {
         root.insert("notes".to_owned(), report.notes.to_vec().into());

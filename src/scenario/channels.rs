@@ -2,6 +2,7 @@
 
 use super::config::Scenario;
 use super::filter_config::FilterConfig;
+use super::turntable_config::MotionConfig;
 
 /// Prefixes of the channels of an assembly, in the order of its case axes.
 const ASSEMBLY: &[&str] = &["x_", "y_", "z_"];
@@ -12,6 +13,9 @@ const SINGLE: &[&str] = &[""];
 const RAW: &str = "raw";
 /// Name of that output with its constant errors taken out, which is what filters are given.
 pub(super) const COMPENSATED: &str = "compensated";
+
+/// Prefix of the names of estimates.
+const CALIBRATION: &str = "calibration_";
 
 impl Scenario {
     /// Prefix of the channel names of each gyro: one empty one, or `x_`, `y_`, `z_`.
@@ -53,6 +57,18 @@ impl Scenario {
             names.extend(prefixes.map(|prefix| format!("{prefix}{}", filter.name)));
         }
         names
+    }
+
+    /// Names under which gates find the estimates of a calibration campaign, one for each estimator;
+    /// none with another motion.
+    #[must_use]
+    pub fn calibration_channels(&self) -> Vec<String> {
+        if !matches!(self.turntable.motion, MotionConfig::Calibration(_)) {
+            return Vec::new();
+        }
+        let kinds = self.calibration.kinds();
+        let names = kinds.iter().map(|kind| kind.as_str());
+        names.map(|name| format!("{CALIBRATION}{name}")).collect()
     }
 
     /// Whether a channel is the unfiltered output of a gyro.
