@@ -547,7 +547,7 @@ fn yosys_maps_the_control_machines_onto_an_ice40() {
         ("rls_ctrl", "P 4", 16, 70..=95),
         ("lms_ctrl", "N 10", 12, 45..=70),
         // State 4, tap 5, slot 5, head 5, age 20, held 8.
-        ("sign_lms_ctrl", "M 20", 47, 80..=160),
+        ("sign_lms_ctrl", "M 20", 47, 130..=210),
     ] {
         let script = format!(
             "read_verilog {}; chparam -set {parameter} {name}; synth_ice40 -top {name}; \

@@ -109,7 +109,7 @@ fn bits(words: impl Iterator<Item = f64>) -> Vec<u64> {
 }
 
 fn by_engine(settings: SignLmsSettings, stimulus: &[f64]) -> Vec<u64> {
-    let mut engine = SignLmsEngine::<f64>::new(SignLmsConfig::new(settings).unwrap());
+    let mut engine = SignLmsEngine::<f64>::new(SignLmsConfig::new(settings).expect("in range"));
     let mut outputs = Vec::new();
     engine.run(&pairs(stimulus, settings.delay_samples), &mut outputs);
     bits(outputs.into_iter().chain(engine.weights().to_vec()))
@@ -221,7 +221,7 @@ fn a_recursive_norm_in_binary32_is_wrong_a_thousandfold_after_a_fast_rotation() 
                 norm_recompute_samples,
                 ..PATENT
             })
-            .unwrap(),
+            .expect("in range"),
         );
         let noise = samples("white", 200_000);
         let stimulus: Vec<f64> = noise

@@ -98,7 +98,8 @@ pub(super) fn notes(name: &str, config: &SignLmsFilterConfig, met: Situation) ->
     notes
 }
 
-fn unit_note(name: &str, config: &SignLmsFilterConfig) -> String {
+/// The constants with the unit in which they are meant, and in that of the words; the delay.
+pub(super) fn unit_note(name: &str, config: &SignLmsFilterConfig) -> String {
     let unit = match config.unit {
         ConstantUnit::DegPerH => "deg/h",
         ConstantUnit::DegPerS => "deg/s",

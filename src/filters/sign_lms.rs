@@ -92,7 +92,8 @@ impl SignLms {
 /// ```
 ///
 /// The recursive norm never forgets a rounding: after 1e5 samples at 50 deg/s (S = 5e4 in (deg/s)^2)
-/// and as many at rest, binary64 holds 3.044275e-4 for a true 3.04427e-4, binary32 0.339. Every
+/// and as many at rest, an independent simulation in binary64 held 3.044275e-4 for a true
+/// 3.04427e-4, in binary32 0.339. Every
 /// `norm_recompute_samples` it is therefore replaced by a sum of the newest M squares, which is
 /// gathered during the M samples before, one addition in each.
 ///

@@ -33,7 +33,7 @@
 //! `+-x q` needs no product beyond `x q`, because a sign only turns a bit.
 //!
 //! The recursive norm keeps every rounding: after 1e5 samples at 50 deg/s and as many at rest,
-//! binary64 holds 3.044275e-4 for a true 3.04427e-4, binary32 0.339. A sum over the ring would cost
+//! an independent simulation in binary64 held 3.044275e-4 for a true 3.04427e-4, in binary32 0.339. A sum over the ring would cost
 //! M clocks of the one multiplier. T instead gathers the squares that pass anyway: after M samples
 //! it is the sum of the newest M, none of it older, and replaces S in the same clock as ever, so that
 //! every sample takes the same clocks.
