@@ -25,6 +25,7 @@ mod plan;
 mod plan_filters;
 mod published_check;
 mod rate_twins;
+mod record_length;
 mod run;
 mod run_files;
 mod simulate;

@@ -11,17 +11,11 @@ use super::pipeline_check;
 use super::published_check::wrong_unit;
 use crate::gyro;
 use crate::metrics;
-use crate::scenario::{Fidelity, Resolved, SamplesFormat, ScenarioError, load_suite};
+use crate::scenario::{Fidelity, Resolved, ScenarioError, load_suite};
 use crate::signal::GyroFacts;
 
 /// Metric that turns the divergence of a channel into an expected result.
 pub(super) const DIVERGED_AT: &str = "diverged_at_s";
-/// Longest record held in memory, samples (two hours at 4 kHz).
-const SAMPLES_MAX: f64 = 3.0e7;
-/// Most words held in memory, truth and channels of every gyro together (1.44 GB): an hour at 4 kHz
-/// of three axes with two filters, or two hours of one with four.
-const WORDS_MAX: f64 = 1.8e8;
-
 /// One run that has passed every check.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -29,6 +23,7 @@ pub struct Plan {
     facts: GyroFacts,
     warnings: Vec<String>,
     compensation: Option<CompensationPlan>,
+    calibration: Option<String>,
 }
 
 impl Plan {
@@ -48,6 +43,12 @@ impl Plan {
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// What a calibration campaign can determine, in a sentence.
+    #[must_use]
+    pub fn calibration(&self) -> Option<&str> {
+        self.calibration.as_deref()
     }
 
     /// Channels in order, raw ones first.
@@ -122,6 +123,7 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
         resolved: &resolved,
         errors: Vec::new(),
         warnings: resolved.warnings.clone(),
+        calibration: None,
     };
     let facts = checker.gyro();
     let compensation = checker.compensation();
@@ -133,7 +135,10 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
         checker.metrics(facts);
     }
     let Checker {
-        errors, warnings, ..
+        errors,
+        warnings,
+        calibration,
+        ..
     } = checker;
     match facts {
         Some(facts) if errors.is_empty() => Ok(Plan {
@@ -141,6 +146,7 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
             facts,
             warnings,
             compensation,
+            calibration,
         }),
         _ => Err(errors),
     }
@@ -151,6 +157,7 @@ pub(super) struct Checker<'a> {
     pub(super) resolved: &'a Resolved,
     errors: Vec<ScenarioError>,
     pub(super) warnings: Vec<String>,
+    calibration: Option<String>,
 }
 
 impl Checker<'_> {
@@ -207,60 +214,11 @@ impl Checker<'_> {
             return;
         };
         match campaign::check_campaign(scenario, config) {
-            Ok(notes) => self.warnings.extend(notes),
+            Ok((summary, notes)) => {
+                self.calibration = Some(summary);
+                self.warnings.extend(notes);
+            }
             Err((key, message)) => self.complain(key, message),
-        }
-    }
-
-    fn record_length(&mut self, facts: &GyroFacts) {
-        let scenario = &self.resolved.scenario;
-        let rate_hz = facts.output_rate_hz;
-        let (duration_s, warm_up_s) = (scenario.duration_s, scenario.warm_up_s);
-        if duration_s * rate_hz < 1.0 {
-            self.complain(
-                "duration_s",
-                format!(
-                    "duration_s = {duration_s} s holds no sample: one sample of this gyro takes \
-                     {} s",
-                    1.0 / rate_hz
-                ),
-            );
-        }
-        let samples = (duration_s + warm_up_s) * rate_hz;
-        if samples > SAMPLES_MAX {
-            self.complain(
-                "duration_s",
-                format!(
-                    "duration_s + warm_up_s = {} s at {rate_hz:.2} Hz are {samples:.3e} samples: \
-                     at most {SAMPLES_MAX:e} are held in memory; use `repeats`, or a larger \
-                     gyro.output.average_samples",
-                    duration_s + warm_up_s
-                ),
-            );
-        }
-        let records = scenario.channel_names().len() + scenario.axis_prefixes().len();
-        let words = samples * count(records);
-        if samples <= SAMPLES_MAX && words > WORDS_MAX {
-            self.complain(
-                "duration_s",
-                format!(
-                    "duration_s + warm_up_s = {} s at {rate_hz:.2} Hz are {words:.3e} words in \
-                     {records} records (the true rate and the channels of every gyro): at most \
-                     {WORDS_MAX:e} are held in memory; use `repeats`, fewer filters, or a larger \
-                     gyro.output.average_samples",
-                    duration_s + warm_up_s
-                ),
-            );
-        }
-        if scenario.repeats > 1 && scenario.output.samples != SamplesFormat::None {
-            self.complain(
-                "output.samples",
-                format!(
-                    "output.samples needs repeats = 1: {} repeats would write as many records to \
-                     the same files",
-                    scenario.repeats
-                ),
-            );
         }
     }
 
@@ -324,6 +282,6 @@ impl Checker<'_> {
     clippy::cast_precision_loss,
     reason = "counts of gyros and channels lie far below 2^53"
 )]
-fn count(things: usize) -> f64 {
+pub(super) fn count(things: usize) -> f64 {
     things as f64
 }

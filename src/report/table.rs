@@ -12,7 +12,7 @@ use crate::report::measured::Measured;
 use crate::report::repeats::repeats_text;
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::report::verdict_text::verdict_text;
-use crate::scenario::{Fidelity, PublishedConfig};
+use crate::scenario::{Fidelity, MotionConfig, PublishedConfig};
 
 /// Digits of an interval's half width in tables.
 const DIGITS: i32 = 2;
@@ -98,6 +98,9 @@ fn budget(report: &RunReport, width: usize) -> String {
 /// The channels, their columns broken into as many blocks as the width asks for.
 pub(crate) fn channels_text(report: &Measured, width: usize, colour: bool) -> String {
     let columns = columns(report.motion, report.channels);
+    if columns.is_empty() && matches!(report.motion, MotionConfig::Calibration(_)) {
+        return String::new();
+    }
     let names = column_of_names(report.channels, colour);
     let mut text = String::new();
     let mut block = vec![names.clone()];

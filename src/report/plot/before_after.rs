@@ -46,9 +46,8 @@ pub(super) fn picture(report: &RunReport, signals: &RunSignals) -> Option<Pictur
             .zip(truth)
             .map(|(rate, truth)| rate - truth)
             .collect();
-        let time_s = |index: f64| {
-            (real(signals.first_measured + 1) + index) * signals.sample_period_s
-        };
+        let time_s =
+            |index: f64| (real(signals.first_measured + 1) + index) * signals.sample_period_s;
         let y = extent(deviation.iter().copied().chain([0.0]))?;
         let panel = Panel::new(
             &mut picture,
