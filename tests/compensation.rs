@@ -352,3 +352,104 @@ fn every_repeat_of_every_channel_is_kept_printed_and_written() {
     let middle = field(&summary, "z_raw.mean_deg_per_h", "value");
     assert!(smallest < middle && middle < largest);
 }
+
+/// Ten silent words a second.
+fn slow_and_silent() -> String {
+    SILENT.replace(
+        "[gyro.output]\n",
+        "[gyro.output]\nhalf_periods_per_sample = 25532\n",
+    )
+}
+
+/// A campaign of silent gyros, by batch least squares: whole turns of 36 s.
+fn campaign() -> String {
+    format!(
+        "schema = 1\nname = \"campaign\"\nfidelity = \"rate\"\nduration_s = 380.0\nwarm_up_s = 5.0\n\
+         [turntable.calibration]\naxes = [\"x\", \"x\", \"x\", \"y\", \"y\", \"y\", \"z\", \"z\", \"z\"]\n\
+         rates_deg_per_s = [10.0, 50.0, 90.0, 10.0, 50.0, 90.0, 10.0, 50.0, 90.0]\n\
+         record_s = 36.0\nchange_s = 5.0\nremount_s = 10.0\n[calibration]\nestimators = [\"batch\"]\n\
+         apply = \"batch\"\n{}[gyro.assembly]\n{ERRORS}",
+        slow_and_silent()
+    )
+}
+
+/// A run at 50 deg/s whose compensation is the given one.
+fn applied(name: &str, compensation: &str) -> String {
+    format!(
+        "schema = 1\nname = \"{name}\"\nfidelity = \"rate\"\nduration_s = 36.0\nwarm_up_s = 5.0\n\
+         [turntable.rotation]\nrate_deg_per_s = 50.0\n[turntable.mounting]\n\
+         axis_along_table = \"y\"\n[output]\nsamples = \"npy\"\n{}[gyro.assembly]\n{ERRORS}\
+         [compensation]\n{compensation}",
+        slow_and_silent()
+    )
+}
+
+#[test]
+fn a_campaign_is_run_and_its_result_applied() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let at = folder.path();
+    let source = write(at, "plans/campaign.toml", &campaign());
+    write(
+        at,
+        "by-campaign.toml",
+        &applied("by-campaign", "campaign = \"plans/campaign.toml\"\n"),
+    );
+    let printed = run(at, "by-campaign.toml");
+    assert!(printed.contains("campaign campaign, batch"), "{printed}");
+    for error in mean_errors(at, "by-campaign", "raw") {
+        assert!(error.abs() > 1.0, "{error}");
+    }
+    for error in mean_errors(at, "by-campaign", "compensated") {
+        // Groups are cut to whole samples: a part in 360 of the last sample's Earth rate stays.
+        assert!(error.abs() < 0.02, "{error}");
+    }
+    // What the campaign writes of itself, applied as a file, gives the same words but for rounding.
+    run(at, "plans/campaign.toml");
+    write(
+        at,
+        "by-file.toml",
+        &applied("by-file", "file = \"out/campaign/calibration.toml\"\n"),
+    );
+    run(at, "by-file.toml");
+    let words = |name: &str| npy(&at.join(format!("out/{name}/samples/x_compensated.npy")));
+    for (one, other) in words("by-campaign").iter().zip(words("by-file")) {
+        assert_close(*one, other, 1e-12, 1e-8);
+    }
+    // The manifest holds the campaign itself.
+    let first = tree(&at.join("out/by-campaign"));
+    std::fs::copy(
+        at.join("out/by-campaign/manifest.toml"),
+        at.join("again.toml"),
+    )
+    .expect("a copy");
+    std::fs::remove_file(source).expect("removed");
+    run(at, "again.toml");
+    assert_eq!(tree(&at.join("out/by-campaign")), first);
+}
+
+#[test]
+fn a_campaign_that_cannot_be_is_refused_where_it_is_wrong() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let at = folder.path();
+    let named = "[compensation]\ncampaign = \"campaign.toml\"\n";
+    let cases = [
+        (
+            campaign().replace("record_s", "recird_s"),
+            "campaign.toml:9:1: unknown key",
+        ),
+        (turning("exact"), "campaign.toml:"),
+        (
+            "name = \"rest\"\nduration_s = 1.0\n".to_owned(),
+            "x.toml:6:1: compensation.campaign: the scenario rest is no calibration",
+        ),
+        (
+            campaign().replace("\"z\", \"z\", \"z\"", "\"x\", \"x\", \"x\""),
+            "campaign.toml:7:1: turntable.calibration.axes: the plan cannot be calibrated",
+        ),
+    ];
+    for (text, complaint) in cases {
+        write(at, "campaign.toml", &text);
+        let told = refused(at, named, "");
+        assert!(told.contains(complaint), "{text}\n{told}");
+    }
+}
