@@ -5,6 +5,7 @@ mod architecture;
 mod assembly;
 mod average_output;
 mod bit_exact;
+mod calibration_campaign;
 mod cli;
 mod cli_analyze;
 mod cli_budget;
