@@ -13,6 +13,7 @@ mod cli_fpga;
 mod closed_loop;
 mod comparison;
 mod comparison_filters;
+mod compensation;
 mod cycle_exact;
 mod determinism;
 mod encoder;

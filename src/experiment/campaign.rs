@@ -371,7 +371,7 @@ pub fn calibrate_scenario(
 ) -> Result<(CalibrationSheet, Calibration), String> {
     let length = RecordLength::new(scenario, gyro::sample_period_s(&scenario.gyro));
     let simulation =
-        simulate(scenario, length, repeat, observer).map_err(|error| error.to_string())?;
+        simulate(scenario, length, repeat, None, observer).map_err(|error| error.to_string())?;
     calibrate_simulation(scenario, &simulation)
         .map_err(|error| error.to_string())?
         .ok_or_else(|| "the scenario has no [turntable.calibration]".to_owned())

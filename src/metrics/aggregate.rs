@@ -7,6 +7,7 @@ use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::fit_entry::enter_fit;
 use super::interval;
 use super::noise_fit::{FitRange, fit_pooled_noise};
+use super::repeat_statistics::{REPEATED_METRICS, RepeatStatistics};
 use super::scale_factor::scale_factor_repeatability;
 use super::steady::{WALK_OVER_DC_GAIN, put_over_dc_gain};
 use super::support::repeats_lack;
@@ -65,7 +66,8 @@ const POINT_CURVES: [&str; 7] = [
 ///
 /// Repeatabilities: standard deviation of the repeats' values, from six repeats on.
 ///
-/// Each metric gets the field `repeats`, the number of repeats that have it. Allan
+/// Each metric gets the field `repeats`, the number of repeats that have it; the values of the main
+/// ones ([`REPEATED_METRICS`]) are kept repeat by repeat. Allan
 /// deviations and spectra are averaged as powers, other curves as they are. If a repeat failed, the first failed one stands for the channel.
 #[must_use]
 pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
@@ -96,6 +98,10 @@ pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
     pool_spectra(repeats, &mut pooled);
     pool_points(repeats, &mut pooled);
     pool_allan(repeats, &mut pooled);
+    let named = REPEATED_METRICS.into_iter();
+    pooled.repeats = named
+        .filter_map(|name| Some((name.to_owned(), RepeatStatistics::of(repeats, name)?)))
+        .collect();
     pooled
 }
 

@@ -1,24 +1,9 @@
 //! The metrics a channel can have: name, unit, definition.
+//!
+//! `raw` is what a filter is given and compared with: the output of the gyro, or its compensated output
+//! where there is a compensation.
 
-pub use super::applies::Applies;
-
-/// Why other channels lack the metrics of pipelines.
-pub(crate) const PIPELINE_ONLY: &str = "only a filter with pipeline = \"fpga\" has it";
-
-/// One entry of the catalogue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct KnownMetric {
-    /// Key.
-    pub name: &'static str,
-    /// Unit as printed.
-    pub unit: &'static str,
-    /// Definition in one line.
-    pub definition: &'static str,
-    /// Motions it is defined for.
-    pub applies: Applies,
-    /// Whether only filters have it.
-    pub filters_only: bool,
-}
+use super::known_metric::{Applies, KnownMetric};
 
 const fn any(
     name: &'static str,
@@ -126,6 +111,18 @@ const CATALOGUE: &[KnownMetric] = &[
         "deg/h",
         Applies::Always,
         "the mean minus that of the true rate",
+    ),
+    any(
+        "minimum_deg_per_h",
+        "deg/h",
+        Applies::Always,
+        "smallest sample of the record",
+    ),
+    any(
+        "maximum_deg_per_h",
+        "deg/h",
+        Applies::Always,
+        "largest sample of the record",
     ),
     any(
         "noise_std_deg_per_h",

@@ -15,7 +15,6 @@ mod allan_least_squares;
 mod allan_sampling;
 mod allan_stream;
 mod allan_variants;
-mod applies;
 mod audit;
 mod autocovariance;
 mod bias;
@@ -28,6 +27,7 @@ mod estimate;
 mod fit_entry;
 mod frozen_response;
 mod interval;
+mod known_metric;
 mod multi_sine;
 mod noise_delay;
 mod noise_fit;
@@ -36,6 +36,7 @@ mod nonlinearity;
 mod psd;
 mod readaptation;
 mod record;
+mod repeat_statistics;
 mod response;
 mod scale_factor;
 mod settling;
@@ -66,11 +67,12 @@ pub use audit::{
 pub use bias::{
     block_means, effective_degrees_of_freedom, expected_bias_stability, paired_ratio, samples_in,
 };
-pub use catalogue::{Applies, KnownMetric, known_metrics};
+pub use catalogue::known_metrics;
 pub use channel::measure;
 pub use correlation::correlation_delay_s;
 pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
+pub use known_metric::{Applies, KnownMetric};
 pub use noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
     fit_noise, fit_pooled_noise, mixed_degrees_of_freedom,
@@ -80,6 +82,7 @@ pub use nonlinearity::{Nonlinearity, Residual, expected_largest};
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
 pub use readaptation::{GainUnits, Readaptation};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
+pub use repeat_statistics::{REPEATED_METRICS, RepeatStatistics};
 pub use response::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
 pub use scale_factor::{
     Asymmetry, RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero,

@@ -142,12 +142,11 @@ const ALWAYS: &[(&str, &str)] = &[
 
 fn known(motion: &MotionConfig) -> &'static [(&'static str, &'static str)] {
     match motion {
-        MotionConfig::Static(_) => STATIC,
+        MotionConfig::Static(_) | MotionConfig::Rotation(_) => STATIC,
         MotionConfig::Swing(_) => SWING,
         MotionConfig::MultiSine(_) => MULTI_SINE,
         MotionConfig::Steps(_)
         | MotionConfig::ScaleFactorTest(_)
-        | MotionConfig::Rotation(_)
         | MotionConfig::Trapezoid(_)
         | MotionConfig::Chirp(_)
         | MotionConfig::Script(_) => STEPS,

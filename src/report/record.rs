@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::metrics::{ChannelFailure, ChannelMetrics, Metric};
 use crate::report::columns::headline;
 use crate::scenario::Scenario;
-use crate::signal::{CalibrationSheet, GyroFacts, TheoryCurve};
+use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
 
 /// Everything the report of one run shows.
 #[derive(Clone, Debug)]
@@ -23,6 +23,8 @@ pub struct RunReport<'a> {
     pub sweep: Option<(usize, Vec<(String, String)>)>,
     /// The gyro in closed form.
     pub gyro: &'a GyroFacts,
+    /// What was taken out of the outputs, if anything was.
+    pub compensation: Option<&'a CompensationSheet>,
     /// Lines of theory for the pictures.
     pub theory: &'a [TheoryCurve],
     /// Channels, `raw` first, then in the order of the file.

@@ -7,7 +7,9 @@ use crate::metrics::{ChannelMetrics, Metric, known_metrics};
 use crate::report::RunReport;
 use crate::report::calibration_text::calibration_text;
 use crate::report::columns::{Column, columns, matters, unit_text};
+use crate::report::compensation::compensation_text;
 use crate::report::measured::Measured;
+use crate::report::repeats::repeats_text;
 use crate::report::scale_factor::scale_factor_text;
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::report::verdict_text::verdict_text;
@@ -34,8 +36,12 @@ const BY_CHOICE: [&str; 6] = [
 pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     let mut text = heading(report, width, colour);
     text.push_str(&budget(report, width));
+    if let Some(sheet) = report.compensation {
+        text.push_str(&compensation_text(sheet, width));
+    }
     text.push_str(&channels_text(&report.measured(), width, colour));
     text.push_str(&scale_factor_text(report, width, colour));
+    text.push_str(&repeats_text(report, width, colour));
     let verdicts = report.verdicts;
     text.push_str(&failures_text(&report.measured(), verdicts, width, colour));
     text.push_str(&filter_verdicts(&report.measured(), width, colour));

@@ -10,6 +10,7 @@ use super::calibration_config::CalibrationConfig;
 use super::comparison_config::{
     AssumptionConfig, ComparisonConfig, ComparisonRowConfig, FigureConfig,
 };
+use super::compensation_config::CompensationConfig;
 use super::filter_config::FilterConfig;
 use super::gyro_config::GyroConfig;
 use super::turntable_config::TurntableConfig;
@@ -40,6 +41,8 @@ pub struct Scenario {
     pub turntable: TurntableConfig,
     /// The gyro.
     pub gyro: GyroConfig,
+    /// What is taken out of the outputs of an assembly; none leaves them as they are.
+    pub compensation: Option<CompensationConfig>,
     /// What is made of a calibration campaign.
     pub calibration: CalibrationConfig,
     /// Filters, in the order of the file.

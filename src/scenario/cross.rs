@@ -3,6 +3,7 @@
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
 use super::cross_comparison;
+use super::cross_compensation;
 use super::cross_filter;
 use super::cross_gyro;
 use super::cross_multi_sine;
@@ -47,6 +48,9 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     }
     for (key, message) in cross_vibration::check(&resolved.scenario.gyro) {
         checks.complain(key, message);
+    }
+    for (key, message) in cross_compensation::check(&resolved.scenario) {
+        checks.complain(&key, message);
     }
     checks.gyro();
     checks.gates();

@@ -10,10 +10,13 @@ mod calibration_config;
 mod channels;
 mod check;
 mod comparison_config;
+mod compensation_config;
+mod compensation_source;
 mod config;
 mod cross;
 mod cross_calibration;
 mod cross_comparison;
+mod cross_compensation;
 mod cross_filter;
 mod cross_gyro;
 mod cross_multi_sine;
@@ -23,6 +26,7 @@ mod cross_servo;
 mod cross_turntable;
 mod cross_vibration;
 mod defaults;
+mod discover;
 mod emit;
 mod error;
 mod filter_config;
@@ -52,6 +56,7 @@ pub use comparison_config::{
     AssumptionConfig, ComparisonColumn, ComparisonConfig, ComparisonKind, ComparisonRowConfig,
     FigureConfig,
 };
+pub use compensation_config::{CompensationConfig, CompensationParameters, CompensationRule};
 pub use config::{
     Fidelity, FilterState, GateConfig, GateDecision, InconclusivePolicy, OutputConfig,
     PublishedConfig, SamplesFormat, Scenario,

@@ -1,4 +1,4 @@
-//! Which motions a metric is defined for.
+//! What the catalogue says of a metric.
 
 /// Which records a metric belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,4 +27,22 @@ pub enum Applies {
     Pipeline,
     /// The estimates of a calibration campaign, which are no records.
     Calibration,
+}
+
+/// Why other channels lack the metrics of pipelines.
+pub(crate) const PIPELINE_ONLY: &str = "only a filter with pipeline = \"fpga\" has it";
+
+/// One entry of the catalogue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KnownMetric {
+    /// Key.
+    pub name: &'static str,
+    /// Unit as printed.
+    pub unit: &'static str,
+    /// Definition in one line.
+    pub definition: &'static str,
+    /// Motions it is defined for.
+    pub applies: Applies,
+    /// Whether only filters have it.
+    pub filters_only: bool,
 }
