@@ -37,6 +37,8 @@ fn ideal() -> AssemblyConfig {
     AssemblyConfig {
         bias_deg_per_h: [0.0; 3],
         scale_factor_error_ppm: [0.0; 3],
+        bias_deg_per_h_per_k: [0.0; 3],
+        scale_factor_ppm_per_k: [0.0; 3],
         theta_xy_arcsec: 0.0,
         theta_xz_arcsec: 0.0,
         theta_yx_arcsec: 0.0,
@@ -118,7 +120,10 @@ fn known_answer_first_and_last_group_of_the_worked_example() {
         ),
     ];
     let table = ASSEMBLY.split_once('\n').expect("a header line").1;
-    let config: AssemblyConfig = toml::from_str(table).expect("a sound assembly");
+    let table = format!(
+        "{table}bias_deg_per_h_per_k = [0.0, 0.0, 0.0]\nscale_factor_ppm_per_k = [0.0, 0.0, 0.0]\n"
+    );
+    let config: AssemblyConfig = toml::from_str(&table).expect("a sound assembly");
     for (along, rate, expected) in groups {
         let turning_deg_per_s: f64 = rate + 7.977_228_854 / 3600.0;
         let mut case = [MotionSegment::constant(0.0); 3];

@@ -5,6 +5,8 @@
 
 mod assembly_motion;
 mod budget;
+mod calibration_sheet;
+mod calibration_units;
 mod channel_filter;
 mod log_filters;
 mod log_trial;
@@ -24,6 +26,7 @@ mod textbook;
 mod theory;
 
 pub use budget::{GyroBudget, gyro_budget};
+pub use calibration_sheet::calibration_sheet;
 pub use log_filters::{LogFilters, load_log_filters};
 pub use log_trial::{LogMotion, LogSettings, LogTrial, LogTrialError, try_log};
 pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};

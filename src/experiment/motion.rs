@@ -7,8 +7,8 @@ use crate::gyro::{self, MotionExtremes};
 use crate::metrics::{Dwell, Motion, Staircase};
 use crate::scenario::{MotionConfig, Scenario, ServoConfig, StepsConfig};
 use crate::turntable::{
-    command_extremes, command_rate_max_rad_per_s, earth_rate_rad_per_s, first_measured_index,
-    input_axis_bounds, multi_sine_acceleration_max_rad_per_s2, step_indices,
+    campaign_command_extremes, command_extremes, command_rate_max_rad_per_s, earth_rate_rad_per_s,
+    first_measured_index, input_axis_bounds, multi_sine_acceleration_max_rad_per_s2, step_indices,
 };
 use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
@@ -19,9 +19,10 @@ pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
         MotionConfig::Swing(swing) => Motion::Swing {
             frequency_hz: swing.frequency_hz,
         },
-        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => {
-            Motion::General
-        }
+        MotionConfig::Trapezoid(_)
+        | MotionConfig::Chirp(_)
+        | MotionConfig::Script(_)
+        | MotionConfig::Calibration(_) => Motion::General,
         MotionConfig::MultiSine(multi_sine) => Motion::MultiSine {
             frequencies_hz: multi_sine.frequencies_hz.clone(),
         },
@@ -136,6 +137,10 @@ fn table_extremes(scenario: &Scenario) -> MotionExtremes {
             .map_or((0.0, 0.0), |own| {
                 (own.jump_rad_per_s, own.acceleration_rad_per_s2)
             }),
+        MotionConfig::Calibration(campaign) => {
+            let extremes = campaign_command_extremes(campaign, scenario.warm_up_s);
+            (extremes.jump_rad_per_s, extremes.acceleration_rad_per_s2)
+        }
         MotionConfig::Steps(steps) => {
             let rates = &steps.rates_deg_per_s;
             let first = rates.first().map_or(0.0, |rate| rate.abs());

@@ -79,6 +79,17 @@ impl InputAxis {
     }
 }
 
+/// The configuration of gyro `axis` with its own temperature coefficients joined to the common ones.
+///
+/// Bias and expansion of the coil's diameter are linear in the temperature of the coil: the second
+/// acts on the scale factor alone, so that a coefficient of the scale factor is one more of it.
+fn with_own_temperature(config: &GyroConfig, assembly: &AssemblyConfig, axis: usize) -> GyroConfig {
+    let mut own = config.clone();
+    own.thermal.bias_deg_per_h_per_k += assembly.bias_deg_per_h_per_k[axis];
+    own.thermal.diameter_ppm_per_k += assembly.scale_factor_ppm_per_k[axis];
+    own
+}
+
 /// One gyro of an assembly: a whole gyro behind its own input axis, with noise of its own.
 ///
 /// A scale-factor error acts on the sensed rate; the noise, which it would change by the same few
@@ -110,9 +121,11 @@ impl CaseGyro {
         let input_axes = InputAxis::of_assembly(assembly);
         let gyros = AXES.into_iter().zip(input_axes);
         gyros
-            .map(|(axis, input_axis)| {
+            .enumerate()
+            .map(|(index, (axis, input_axis))| {
                 let streams = streams.scoped(axis);
-                let gyro = Gyro::new(config, fidelity, simulated_time_s, &streams)?;
+                let own = with_own_temperature(config, assembly, index);
+                let gyro = Gyro::new(&own, fidelity, simulated_time_s, &streams)?;
                 Ok(Self { input_axis, gyro })
             })
             .collect()
@@ -154,6 +167,8 @@ mod tests {
             let config = AssemblyConfig {
                 bias_deg_per_h: [0.0; 3],
                 scale_factor_error_ppm: [0.0; 3],
+                bias_deg_per_h_per_k: [0.0; 3],
+                scale_factor_ppm_per_k: [0.0; 3],
                 theta_xy_arcsec: angles[0],
                 theta_xz_arcsec: angles[1],
                 theta_yx_arcsec: angles[2],

@@ -112,7 +112,8 @@ fn known(motion: &MotionConfig) -> &'static [(&'static str, &'static str)] {
         | MotionConfig::Rotation(_)
         | MotionConfig::Trapezoid(_)
         | MotionConfig::Chirp(_)
-        | MotionConfig::Script(_) => STEPS,
+        | MotionConfig::Script(_)
+        | MotionConfig::Calibration(_) => STEPS,
     }
 }
 
@@ -170,9 +171,10 @@ pub(crate) fn headline(motion: &MotionConfig, metrics: &ChannelMetrics) -> Vec<(
     let keys = match motion {
         MotionConfig::Static(_) => STATIC_HEADLINE,
         MotionConfig::Swing(_) => SWING_HEADLINE,
-        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => {
-            GENERAL_HEADLINE
-        }
+        MotionConfig::Trapezoid(_)
+        | MotionConfig::Chirp(_)
+        | MotionConfig::Script(_)
+        | MotionConfig::Calibration(_) => GENERAL_HEADLINE,
         MotionConfig::MultiSine(_) => MULTI_SINE_HEADLINE,
         MotionConfig::Steps(_) | MotionConfig::Rotation(_) => STEPS_HEADLINE,
     };

@@ -13,6 +13,10 @@ pub struct AssemblyConfig {
     pub bias_deg_per_h: [f64; 3],
     /// Scale-factor error of the gyros x, y, z, ppm.
     pub scale_factor_error_ppm: [f64; 3],
+    /// Change of the bias per kelvin of the coil beyond `gyro.thermal.reference_c`, deg/h/K.
+    pub bias_deg_per_h_per_k: [f64; 3],
+    /// Change of the scale factor per kelvin of the coil beyond that temperature, ppm/K.
+    pub scale_factor_ppm_per_k: [f64; 3],
     /// Rotation of gyro x about case axis y, arcsec: turns its input axis towards -z.
     pub theta_xy_arcsec: f64,
     /// Rotation of gyro x about case axis z, arcsec: turns its input axis towards +y.

@@ -6,6 +6,7 @@
 
 use serde::Deserialize;
 
+use super::calibration_config::CalibrationConfig;
 use super::filter_config::FilterConfig;
 use super::gyro_config::GyroConfig;
 use super::turntable_config::TurntableConfig;
@@ -36,6 +37,8 @@ pub struct Scenario {
     pub turntable: TurntableConfig,
     /// The gyro.
     pub gyro: GyroConfig,
+    /// What is made of a calibration campaign.
+    pub calibration: CalibrationConfig,
     /// Filters, in the order of the file.
     #[serde(default, rename = "filter")]
     pub filters: Vec<FilterConfig>,

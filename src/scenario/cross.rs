@@ -155,6 +155,7 @@ impl Checks<'_> {
             MotionConfig::Trapezoid(trapezoid) => self.trapezoid(trapezoid),
             MotionConfig::Chirp(chirp) => self.chirp(chirp),
             MotionConfig::Script(script) => self.script(&script.points),
+            MotionConfig::Calibration(campaign) => self.campaign(campaign),
             MotionConfig::Steps(steps) => {
                 let count = steps.rates_deg_per_s.len();
                 let count_f64 = u32::try_from(count).map_or(f64::INFINITY, f64::from);

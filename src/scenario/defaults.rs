@@ -3,7 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
+use serde::Deserialize;
+
+use super::calibration_config::CalibrationConfig;
 use super::keys::OPTIONAL_TABLES;
+use super::resolved::plain_table;
 use super::schema::{self, Child, Group, Presence, join};
 use super::tree::{Node, Table, Value, parse_document};
 
@@ -17,6 +21,18 @@ const ALTERNATIVE: &str = "#| ";
 #[must_use]
 pub fn reference_toml() -> &'static str {
     REFERENCE
+}
+
+/// The calibration settings that stand in the reference: what a file of groups is calibrated with
+/// if nothing else is said.
+#[must_use]
+pub fn reference_calibration() -> CalibrationConfig {
+    let mut root = Table::new();
+    fill(&mut root);
+    let settings = root.get("calibration").and_then(Node::as_table);
+    let settings = settings.expect("the reference has every default, which a test asserts");
+    CalibrationConfig::deserialize(plain_table(settings))
+        .expect("the defaults are valid, which a test asserts")
 }
 
 /// The commented alternatives of the reference, each a document of its own.

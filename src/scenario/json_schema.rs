@@ -148,6 +148,9 @@ fn leaf(key: &Key) -> Value {
             "not": {"enum": RESERVED},
         }),
         Kind::Choice(words) => json!({"type": "string", "enum": words}),
+        Kind::Choices(words) => {
+            json!({"type": "array", "minItems": 1, "items": {"type": "string", "enum": words}})
+        }
         Kind::EmptyTable => {
             json!({"type": "object", "additionalProperties": false, "properties": {}})
         }

@@ -43,6 +43,10 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), 
             check_elements(key, shown, range, values)?;
             true
         }
+        (Kind::Choices(words), Value::Array(values)) => {
+            check_words(key, shown, words, values)?;
+            true
+        }
         (Kind::Name, Value::Text(name)) => is_name(name),
         (Kind::Choice(words), Value::Text(word)) => words.contains(&word.as_str()),
         (Kind::EmptyTable, Value::Table(table)) => {
@@ -63,6 +67,42 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), 
     } else {
         Err(out_of_range(key, shown, &node.value).into())
     }
+}
+
+/// Checks the words of an array; the first wrong one is blamed where it stands.
+fn check_words(key: &Key, shown: &str, words: &[&str], values: &[Node]) -> Result<(), Fault> {
+    if values.is_empty() {
+        return Err(format!("{shown} is empty: expected {}", key.expected()).into());
+    }
+    for (index, node) in values.iter().enumerate() {
+        let shown = format!("{shown}[{index}]");
+        let message = match &node.value {
+            Value::Text(word) if words.contains(&word.as_str()) => continue,
+            Value::Text(word) => format!(
+                "{shown} = \"{word}\" is unknown: expected one of {}{}",
+                key.allowed(),
+                hint(words, word)
+            ),
+            other => format!(
+                "{shown} has the wrong type: expected one of {}, got {}{}",
+                key.allowed(),
+                other.type_name(),
+                scalar_text(other)
+            ),
+        };
+        let mark = node.mark;
+        return Err(Fault { mark, message });
+    }
+    Ok(())
+}
+
+/// The nearest known word, if it may be what was meant.
+fn hint(words: &[&str], word: &str) -> String {
+    let near = words
+        .iter()
+        .min_by_key(|known| strsim::damerau_levenshtein(known, word))
+        .filter(|known| strsim::damerau_levenshtein(known, word) <= 2.max(known.len() / 3));
+    near.map_or_else(String::new, |known| format!(" (did you mean \"{known}\"?)"))
 }
 
 /// Checks the numbers of an array; the first wrong one is blamed where it stands.
@@ -132,15 +172,10 @@ fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
     let text = value.to_toml();
     match (key.kind, value) {
         (Kind::Choice(words), Value::Text(word)) => {
-            let near = words
-                .iter()
-                .min_by_key(|known| strsim::damerau_levenshtein(known, word))
-                .filter(|known| strsim::damerau_levenshtein(known, word) <= 2.max(known.len() / 3));
-            let hint =
-                near.map_or_else(String::new, |known| format!(" (did you mean \"{known}\"?)"));
             format!(
-                "{shown} = {text} is unknown: expected {}{hint}",
-                key.expected()
+                "{shown} = {text} is unknown: expected {}{}",
+                key.expected(),
+                hint(words, word)
             )
         }
         (Kind::Name, _) => format!(

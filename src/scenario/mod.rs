@@ -6,10 +6,12 @@
 
 mod address;
 mod assembly_config;
+mod calibration_config;
 mod channels;
 mod check;
 mod config;
 mod cross;
+mod cross_calibration;
 mod cross_gyro;
 mod cross_multi_sine;
 mod cross_optics;
@@ -39,11 +41,14 @@ mod turntable_config;
 mod vibration_config;
 
 pub use assembly_config::AssemblyConfig;
+pub use calibration_config::{
+    CalibrationConfig, CampaignConfig, CampaignGroup, EstimatorKind, ForgettingLaw,
+};
 pub use config::{
     Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
     SamplesFormat, Scenario,
 };
-pub use defaults::reference_toml;
+pub use defaults::{reference_calibration, reference_toml};
 pub(crate) use error::portable_place;
 pub use error::{Location, ScenarioError};
 pub use filter_config::{

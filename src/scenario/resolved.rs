@@ -257,7 +257,7 @@ fn holds(root: &Table, point: &SweepPoint) -> bool {
 }
 
 /// A checked tree as plain TOML.
-fn plain_table(table: &Table) -> toml::Table {
+pub(super) fn plain_table(table: &Table) -> toml::Table {
     let convert = |(key, node): (&String, &Node)| (key.clone(), plain(node));
     table.iter().map(convert).collect()
 }

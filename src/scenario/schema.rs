@@ -38,6 +38,8 @@ pub(crate) enum Kind {
     Name,
     /// One of a list of words.
     Choice(&'static [&'static str]),
+    /// Non-empty array of words of a list.
+    Choices(&'static [&'static str]),
     /// Non-empty array of binary64.
     Floats(Range),
     /// Array of three binary64, one for each case axis x, y, z.
@@ -267,7 +269,7 @@ impl Key {
             Kind::Boolean => "true or false".to_owned(),
             Kind::Text | Kind::FreeText => "text".to_owned(),
             Kind::Name => "[a-z0-9][a-z0-9_-]{0,63}".to_owned(),
-            Kind::Choice(words) => quoted(words),
+            Kind::Choice(words) | Kind::Choices(words) => quoted(words),
             Kind::EmptyTable => "a table without keys".to_owned(),
             Kind::Matrix => "a table of arrays".to_owned(),
         };
@@ -280,6 +282,7 @@ impl Key {
             Kind::Float(_) => format!("a number, {}", self.allowed()),
             Kind::Integer(_) => format!("a whole number, {}", self.allowed()),
             Kind::Choice(_) => format!("one of {}", self.allowed()),
+            Kind::Choices(_) => format!("an array of words, each one of {}", self.allowed()),
             Kind::Floats(_) => format!("an array of numbers, each {}", self.allowed()),
             Kind::Triple(_) => {
                 format!(
@@ -312,6 +315,7 @@ impl Key {
             Kind::Text | Kind::FreeText => "Text".to_owned(),
             Kind::Name => format!("Name {}", self.allowed()),
             Kind::Choice(words) => format!("Choice {}", quoted(words)),
+            Kind::Choices(words) => format!("Array of choices {}", quoted(words)),
             Kind::EmptyTable => "Table without keys".to_owned(),
             Kind::Matrix => "Table of arrays, quoted key = values".to_owned(),
         };

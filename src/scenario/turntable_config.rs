@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::calibration_config::CampaignConfig;
 use super::servo_config::{DirectDriveServoConfig, EncoderConfig};
 
 /// Rate table: exactly one motion.
@@ -42,6 +43,8 @@ pub enum MotionConfig {
     Chirp(ChirpConfig),
     /// A table of rates or angles.
     Script(ScriptConfig),
+    /// Groups of constant rate in changing mountings.
+    Calibration(CampaignConfig),
 }
 
 /// At rest: nothing to set.

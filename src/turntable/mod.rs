@@ -25,7 +25,8 @@ mod table;
 
 pub use axis::{InputAxisBounds, earth_rate_rad_per_s, input_axis_bounds};
 pub use profile::{
-    CommandExtremes, command_extremes, command_rate_max_rad_per_s, first_measured_index,
-    multi_sine_acceleration_max_rad_per_s2, step_indices, swing_rate_amplitude_rad_per_s,
+    CommandExtremes, campaign_angles_rad, campaign_command_extremes, command_extremes,
+    command_rate_max_rad_per_s, first_measured_index, multi_sine_acceleration_max_rad_per_s2,
+    step_indices, swing_rate_amplitude_rad_per_s,
 };
 pub use table::Turntable;

@@ -1,7 +1,7 @@
 //! The inertial rate of axes fixed in the platform: exact kinematics of an imperfect table.
 
 use super::axis::{Vector, cross, dot, earth_in_table_frame};
-use crate::scenario::{CaseAxis, MountingConfig, TurntableConfig};
+use crate::scenario::{CaseAxis, MotionConfig, MountingConfig, TurntableConfig};
 use crate::signal::MotionSegment;
 use crate::units::{arcsec_to_rad, deg_to_rad};
 
@@ -30,6 +30,7 @@ pub(super) struct Platform {
     case: [Vector; 3],
     /// Which of them lies along the platform normal but for the misalignment.
     input: usize,
+    mounting: MountingConfig,
     sample_period_s: f64,
     /// At the end of the last segment.
     now: Attitude,
@@ -66,7 +67,12 @@ impl Platform {
     /// A platform at `angle` (rad) of the table.
     pub(super) fn new(config: &TurntableConfig, angle: f64, sample_period_s: f64) -> Self {
         let (wobble_sine, wobble_cosine) = arcsec_to_rad(config.axis.wobble_arcsec).sin_cos();
-        let (case, input) = case_axes(&config.mounting);
+        let mut mounting = config.mounting.clone();
+        if let MotionConfig::Calibration(campaign) = &config.motion {
+            let first = campaign.axes.first().copied();
+            mounting.axis_along_table = first.unwrap_or(mounting.axis_along_table);
+        }
+        let (case, input) = case_axes(&mounting);
         let nowhere = [0.0; 3];
         let mut platform = Self {
             earth: earth_in_table_frame(&config.site, &config.axis),
@@ -75,6 +81,7 @@ impl Platform {
             harmonic: f64::from(config.axis.wobble_harmonic),
             case,
             input,
+            mounting,
             sample_period_s,
             now: Attitude {
                 angle,
@@ -86,6 +93,12 @@ impl Platform {
         };
         platform.now = platform.attitude(angle);
         platform
+    }
+
+    /// Mounts the case anew, another of its axes along the normal and the misalignment as before.
+    pub(super) fn mount(&mut self, axis: CaseAxis) {
+        self.mounting.axis_along_table = axis;
+        (self.case, self.input) = case_axes(&self.mounting);
     }
 
     /// The attitude at a table angle, rad.

@@ -3,9 +3,9 @@
 use super::axis::fixed_earth_rate;
 use super::encoder::Encoder;
 use super::platform::Platform;
-use super::profile::Profile;
+use super::profile::{Profile, remountings};
 use super::servo::Servo;
-use crate::scenario::TurntableConfig;
+use crate::scenario::{CaseAxis, MotionConfig, TurntableConfig};
 use crate::signal::MotionSegment;
 use crate::units::deg_to_rad;
 
@@ -21,6 +21,10 @@ pub struct Turntable {
     encoder: Option<Encoder>,
     angle: TableAngle,
     platform: Platform,
+    /// Samples of a campaign's new mountings and the case axis along the table from there, in order.
+    remountings: Vec<(u64, CaseAxis)>,
+    /// Index of the next sample.
+    index: u64,
     /// Rate of the Earth on an input axis that stays along the table axis, rad/s.
     fixed_earth_rate: Option<f64>,
 }
@@ -51,6 +55,13 @@ impl Turntable {
             profile,
             angle: TableAngle::new(start_angle, sample_period_s),
             platform: Platform::new(config, start_angle, sample_period_s),
+            remountings: match &config.motion {
+                MotionConfig::Calibration(campaign) => {
+                    remountings(campaign, warm_up_s, sample_period_s)
+                }
+                _ => Vec::new(),
+            },
+            index: 0,
             fixed_earth_rate: fixed_earth_rate(config),
         }
     }
@@ -80,9 +91,14 @@ impl Turntable {
     /// [`Turntable::next_segment`], misalignment included, up to rounding. The next two of the cycle
     /// x, y, z, x complete it to a right-handed triad: without misalignment the first points along
     /// the mark of the platform, which is the zero of the table angle, the second a quarter turn, in
-    /// the positive sense of rotation, from it. Both functions advance the table by one sample: a
+    /// the positive sense of rotation, from it. A campaign names the axis of each group in its stead;
+    /// how the case is carried from one mounting to the next is not simulated. Both functions advance the table by one sample: a
     /// table is asked by one of them only.
     pub fn next_platform_segments(&mut self) -> [MotionSegment; 3] {
+        while let Some((_, axis)) = self.remountings.first().filter(|(at, _)| *at <= self.index) {
+            self.platform.mount(*axis);
+            self.remountings.remove(0);
+        }
         let motion = self.turn();
         self.platform.case_segments(&motion, self.angle.rad())
     }
@@ -96,6 +112,7 @@ impl Turntable {
 
     /// Motion of the table about its own axis over the next sample.
     fn turn(&mut self) -> MotionSegment {
+        self.index += 1;
         let motion = self.servo.follow(self.profile.next_segment());
         self.angle.add(&motion);
         if let Some(encoder) = &mut self.encoder {

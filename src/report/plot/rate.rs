@@ -94,7 +94,10 @@ fn window(
             (end > start + 1).then(|| (start..end, "around the largest step".to_owned()))
         }
         // Their motion shows in the envelope and in the means.
-        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => None,
+        MotionConfig::Trapezoid(_)
+        | MotionConfig::Chirp(_)
+        | MotionConfig::Script(_)
+        | MotionConfig::Calibration(_) => None,
         MotionConfig::Static(_) | MotionConfig::Rotation(_) => None,
     }
 }

@@ -3,6 +3,7 @@
 //! The one source of unknown-key detection, type and range messages, the JSON Schema and the
 //! test of `reference.toml`, which holds the defaults.
 
+mod calibration;
 mod filter;
 mod gyro;
 mod judging;
@@ -52,6 +53,7 @@ pub(crate) const GROUPS: &[Group] = &[
             "trapezoid",
             "chirp",
             "script",
+            "calibration",
         ],
     },
     Group {
@@ -120,6 +122,7 @@ pub(crate) fn keys() -> impl Iterator<Item = &'static Key> {
         turntable::KEYS,
         gyro::KEYS,
         thermal::KEYS,
+        calibration::KEYS,
         filter::KEYS,
         judging::KEYS,
     ]

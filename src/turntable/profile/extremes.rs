@@ -2,9 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use super::campaign::campaign_extremes;
 use super::chirp::{chirp_frequency_max, chirp_rate_max, chirp_widening_max};
 use super::script::script_extremes;
-use crate::scenario::{MotionConfig, MultiSineConfig, SwingConfig};
+use crate::scenario::{CampaignConfig, MotionConfig, MultiSineConfig, SwingConfig};
 use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
 
 /// What a trapezoid, chirp or script asks of the table at most; see [`command_extremes`].
@@ -17,7 +18,7 @@ pub struct CommandExtremes {
 }
 
 /// Jump and acceleration of a motion whose acceleration is its own; `None` for rest, swing,
-/// rotation and steps, where it depends on the warm-up or the servo.
+/// rotation, campaign and steps, where it depends on the warm-up or the servo.
 ///
 /// # Panics
 /// If a chirp has not exactly one amplitude or a script not either rates or angles; the scenario
@@ -29,6 +30,7 @@ pub fn command_extremes(motion: &MotionConfig) -> Option<CommandExtremes> {
         | MotionConfig::Swing(_)
         | MotionConfig::MultiSine(_)
         | MotionConfig::Rotation(_)
+        | MotionConfig::Calibration(_)
         | MotionConfig::Steps(_) => return None,
         MotionConfig::Trapezoid(trapezoid) => (
             0.0,
@@ -56,6 +58,16 @@ pub fn command_extremes(motion: &MotionConfig) -> Option<CommandExtremes> {
         jump_rad_per_s,
         acceleration_rad_per_s2,
     })
+}
+
+/// Jump and acceleration of a campaign after a warm-up of whole samples, s.
+#[must_use]
+pub fn campaign_command_extremes(config: &CampaignConfig, warm_up_s: f64) -> CommandExtremes {
+    let (jump_rad_per_s, acceleration_rad_per_s2) = campaign_extremes(config, warm_up_s);
+    CommandExtremes {
+        jump_rad_per_s,
+        acceleration_rad_per_s2,
+    }
 }
 
 /// Rate amplitude of a swing, rad/s; `A = 2 pi f theta` where the angle amplitude is given.
@@ -102,6 +114,10 @@ pub fn command_rate_max_rad_per_s(motion: &MotionConfig) -> f64 {
         }
         MotionConfig::Chirp(chirp) => chirp_rate_max(chirp),
         MotionConfig::Script(script) => script_extremes(&script.points).rate,
+        MotionConfig::Calibration(campaign) => {
+            let rates = campaign.rates_deg_per_s.iter().copied();
+            rates.fold(0.0, |max, rate| deg_per_s_to_rad_per_s(rate).abs().max(max))
+        }
         MotionConfig::Steps(steps) => {
             let rates = steps.rates_deg_per_s.iter().copied();
             rates.fold(0.0, |max, rate| deg_per_s_to_rad_per_s(rate).abs().max(max))

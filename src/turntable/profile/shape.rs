@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::campaign::Campaign;
 use super::chirp::Chirp;
 use super::extremes::swing_rate_amplitude_rad_per_s;
 use super::script::Script;
@@ -53,6 +54,8 @@ pub(super) enum Shape {
     Chirp(Chirp),
     /// Tabulated rates or angles.
     Script(Script),
+    /// Groups of constant rate.
+    Campaign(Campaign),
 }
 
 impl Shape {
@@ -85,6 +88,9 @@ impl Shape {
             }
             MotionConfig::Script(config) => {
                 Self::Script(Script::new(&config.points, warm_up_s, sample_period_s))
+            }
+            MotionConfig::Calibration(config) => {
+                Self::Campaign(Campaign::new(config, warm_up_s, sample_period_s))
             }
             MotionConfig::Steps(steps) => {
                 assert!(!steps.rates_deg_per_s.is_empty(), "a staircase has a rate");
@@ -132,6 +138,7 @@ impl Shape {
             Self::Trapezoids(trapezoids) => trapezoids.at(instant),
             Self::Chirp(chirp) => chirp.at(instant),
             Self::Script(script) => script.at(instant),
+            Self::Campaign(campaign) => campaign.at(instant),
             Self::Steps { rates, .. } => Instant {
                 rate: rates[0],
                 slope: 0.0,

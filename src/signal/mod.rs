@@ -2,6 +2,14 @@
 //!
 //! Invariant: no stage knowledge; a stage passes these to the right and never imports another.
 
+mod calibration;
+
+pub use calibration::{
+    AssemblyParameters, AxisCoefficient, CalibrationEstimate, CalibrationGroup, CalibrationPlan,
+    CalibrationRank, CalibrationSheet, CalibrationTruth, CompensationCheck, EstimateError,
+    ParameterRounding,
+};
+
 /// Motion of the gyro's input axis over one output sample interval.
 ///
 /// A cubic in normalised time `u`, 0 at the start of the interval and 1 at its end:
