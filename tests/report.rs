@@ -174,6 +174,7 @@ impl Fixture {
             gyro: &self.gyro,
             theory: &[],
             channels: &self.channels,
+            calibration: None,
             verdicts: &self.verdicts,
             notes: &[],
         }

@@ -2,15 +2,31 @@
 
 use crate::gyro::{InputAxis, MotionExtremes};
 use crate::metrics::ChannelMetrics;
-use crate::scenario::{AssemblyConfig, CaseAxis, Scenario, TurntableConfig};
+use crate::scenario::{AssemblyConfig, CaseAxis, MotionConfig, Scenario, TurntableConfig};
 use crate::units::{EARTH_RATE_RAD_PER_S, arcsec_to_rad};
 
-/// Index of the case axis along the table axis.
-fn index_along(table: &TurntableConfig) -> usize {
-    match table.mounting.axis_along_table {
+/// Index of a case axis.
+pub(super) fn axis_index(axis: CaseAxis) -> usize {
+    match axis {
         CaseAxis::X => 0,
         CaseAxis::Y => 1,
         CaseAxis::Z => 2,
+    }
+}
+
+/// Index of the case axis along the table axis.
+fn index_along(table: &TurntableConfig) -> usize {
+    axis_index(table.mounting.axis_along_table)
+}
+
+/// Indices of the case axes that are ever along the table axis.
+fn indices_along(table: &TurntableConfig) -> Vec<usize> {
+    match &table.motion {
+        MotionConfig::Calibration(campaign) => {
+            let axes = campaign.axes.iter();
+            axes.map(|axis| axis_index(*axis)).collect()
+        }
+        _ => vec![index_along(table)],
     }
 }
 
@@ -37,9 +53,13 @@ pub(super) fn hardest(
         acceleration_rad_per_s2: lean * command.acceleration_rad_per_s2
             + commanded * ((harmonic - 1.0) * wobble * commanded + EARTH_RATE_RAD_PER_S),
     };
-    let index_along = index_along(table);
     let mut hardest = MotionExtremes::default();
-    for input_axis in InputAxis::of_assembly(assembly) {
+    let gyros = InputAxis::of_assembly(assembly);
+    let mountings = indices_along(table);
+    let pairs = mountings
+        .iter()
+        .flat_map(|along| gyros.iter().map(move |gyro| (*along, gyro)));
+    for (index_along, input_axis) in pairs {
         let bias = input_axis.bias_rad_per_s.abs();
         let sensed = |of: fn(&MotionExtremes) -> f64| -> f64 {
             let axes = input_axis.sensitivity.iter().enumerate();

@@ -1,7 +1,7 @@
 //! From group means to a sheet: every estimator side by side, against the truth where it is known.
 
 use super::calibration_units::{
-    calibration_estimate, compensation_checks, error_parameters, observation, plan_table,
+    calibration_estimate, compensation_checks, observation, plan_table,
 };
 use crate::calibration::{
     Calibration, CalibrationError, Estimator, Forgetting, ForgettingForm, GroupDesign,
@@ -45,7 +45,7 @@ pub fn calibration_sheet(
         .collect();
     let mut estimates = Vec::new();
     let mut applied = None;
-    for kind in kinds(settings) {
+    for kind in settings.kinds() {
         match estimate(&observations, &estimator(kind, settings), reference) {
             Ok(calibration) => {
                 estimates.push(calibration_estimate(
@@ -63,7 +63,7 @@ pub fn calibration_sheet(
         }
     }
     let applied = applied.expect("the applied estimator runs or its error is returned above");
-    let fits_temperature = kinds(settings).iter().any(|kind| kind.fits_temperature());
+    let fits_temperature = settings.kinds().iter().any(|kind| kind.fits_temperature());
     let mut sheet = CalibrationSheet {
         plan: plan_table(&plan),
         plan_with_temperature: with_temperature
@@ -82,19 +82,8 @@ pub fn calibration_sheet(
     Ok((sheet, applied))
 }
 
-/// The estimators asked for, each once and in order, the applied one among them.
-pub(super) fn kinds(settings: &CalibrationConfig) -> Vec<EstimatorKind> {
-    let mut kinds: Vec<EstimatorKind> = Vec::new();
-    for kind in settings.estimators.iter().copied().chain([settings.apply]) {
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
-    }
-    kinds
-}
-
 /// The estimator of a kind with its settings.
-pub(super) fn estimator(kind: EstimatorKind, settings: &CalibrationConfig) -> Estimator {
+fn estimator(kind: EstimatorKind, settings: &CalibrationConfig) -> Estimator {
     let form = match settings.forgetting_form {
         ForgettingLaw::Linear => ForgettingForm::Linear,
         ForgettingLaw::Exponential => ForgettingForm::Exponential,

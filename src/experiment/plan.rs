@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use super::assembly_motion;
+use super::campaign;
 use super::motion::{motion, motion_extremes, rate_deg_per_h_max};
 use super::pipeline_check;
 use super::pipeline_settings::PipelineSettings;
@@ -127,6 +128,7 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
     if let Some(facts) = &facts {
         checker.gyro_limits();
         checker.record_length(facts);
+        checker.campaign();
         checker.filters(facts);
         checker.metrics(facts);
     }
@@ -169,6 +171,18 @@ impl Checker<'_> {
         match gyro::cautions(&scenario.gyro, scenario.fidelity, &extremes) {
             Ok(cautions) => self.warnings.extend(cautions),
             Err(error) => self.complain(error.key(), format!("{}: {error}", error.key())),
+        }
+    }
+
+    /// Refuses a calibration that leaves parameters open, and says what a sound one hides.
+    fn campaign(&mut self) {
+        let scenario = &self.resolved.scenario;
+        let Some(config) = campaign::campaign(scenario) else {
+            return;
+        };
+        match campaign::check_campaign(scenario, config) {
+            Ok(notes) => self.warnings.extend(notes),
+            Err((key, message)) => self.complain(key, message),
         }
     }
 
@@ -340,6 +354,12 @@ impl Checker<'_> {
             if name == DIVERGED_AT {
                 continue;
             }
+            if let Some(estimator) = campaign::estimator_of(scenario, channel) {
+                if let Err(reason) = campaign::supports(estimator, name) {
+                    self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
+                }
+                continue;
+            }
             let supported = metrics::support(
                 name,
                 scenario.duration_s,
@@ -349,7 +369,9 @@ impl Checker<'_> {
                 scenario.bias_averaging_time_s,
             );
             let lack = pipeline_check::lacks(scenario, channel, name).map(str::to_owned);
-            let across = assembly_motion::lacks(scenario, channel, name).map(str::to_owned);
+            let across = assembly_motion::lacks(scenario, channel, name)
+                .or_else(|| campaign::lacks(scenario, name))
+                .map(str::to_owned);
             let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
             let unread = metrics::encoder_lack(name, has_encoder).map(str::to_owned);
             if let Some(reason) = supported.err().or(lack).or(across).or(unread) {

@@ -1,29 +1,27 @@
 //! One scenario: its repeats, their measurement, the verdicts and the files.
 
-use std::io;
 use std::path::Path;
 
 use rayon::prelude::*;
 
 use super::assembly_motion::drop_lacking;
+use super::campaign;
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use super::motion::motion;
 use super::pipeline_metrics;
 use super::plan::{DIVERGED_AT, Plan};
+use super::run_files;
 use super::simulate::{Faults, GyroRecord, RecordLength, Simulation, simulate};
 use super::suite::{Observer, SuiteError, VERSION};
 use super::theory::theory;
 use crate::filters::Divergence;
 use crate::gate::judge;
-use crate::gyro::{GyroError, temperature_record};
 use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings, aggregate,
     measure,
 };
-use crate::report::{self, FolderWriter, RunOutcome, RunReport};
-use crate::scenario::{SamplesFormat, manifest_toml};
-use crate::signal::RunSignals;
-use crate::units::rad_to_arcsec;
+use crate::report::{RunOutcome, RunReport};
+use crate::signal::CalibrationSheet;
 
 /// Channels of one repeat with their metrics.
 type Channels = Vec<(String, ChannelMetrics)>;
@@ -38,14 +36,22 @@ pub(super) fn run_scenario(
     let resolved = plan.resolved();
     let scenario = &resolved.scenario;
     let folder = resolved.folder();
-    let done = theory(scenario).and_then(|curves| Ok((curves, run_repeats(plan, observer)?)));
-    let (theory, (simulation, channels, faults)) = match done {
+    let done = theory(scenario)
+        .map_err(|error| error.to_string())
+        .and_then(|curves| Ok((curves, run_repeats(plan, observer)?)));
+    let (theory, repeats) = match done {
         Ok(done) => done,
         Err(error) => {
             let (name, file) = (&scenario.name, &resolved.file);
-            return Ok(RunOutcome::failed(name, &folder, file, error.to_string()));
+            return Ok(RunOutcome::failed(name, &folder, file, error));
         }
     };
+    let Repeats {
+        simulation,
+        channels,
+        faults,
+        calibration,
+    } = repeats;
     let gates = scenario.gates.iter().enumerate();
     let verdicts: Vec<_> = gates
         .map(|(index, gate)| judge(gate, &channels, Some(resolved.gate_place(index))))
@@ -68,135 +74,74 @@ pub(super) fn run_scenario(
         gyro: plan.facts(),
         theory: &theory,
         channels: &channels,
+        calibration: calibration.as_ref(),
         verdicts: &verdicts,
         notes: &notes,
     };
     let target = output.join(&folder);
-    write_folder(plan, &report, &simulation, &target).map_err(|source| SuiteError::Write {
-        path: target,
-        source,
+    run_files::write_folder(plan, &report, &simulation, &target).map_err(|source| {
+        SuiteError::Write {
+            path: target,
+            source,
+        }
     })?;
     observer.finished(index, &report);
     Ok(RunOutcome::from_report(&report, &folder))
 }
 
+/// What the repeats of one run come to.
+struct Repeats {
+    /// Of the first.
+    simulation: Simulation,
+    channels: Channels,
+    faults: Faults,
+    /// Of the first, ranking those of all; none without a campaign.
+    calibration: Option<CalibrationSheet>,
+}
+
 /// Runs every repeat; the records of the first are kept for the plots and the sample files, those
 /// of the others are dropped as soon as they are measured.
-fn run_repeats(
-    plan: &Plan,
-    observer: &dyn Observer,
-) -> Result<(Simulation, Channels, Faults), GyroError> {
-    let (simulation, first) = run_repeat(plan, 0, observer)?;
-    let others: Vec<(Faults, Channels)> = (1..plan.resolved().scenario.repeats)
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|repeat| {
-            run_repeat(plan, repeat, observer)
-                .map(|(simulation, channels)| (simulation.faults, channels))
-        })
-        .collect::<Result<_, _>>()?;
-    let faults = others
-        .iter()
-        .fold(simulation.faults, |sum, (faults, _)| sum.plus(*faults));
-    let others = others.into_iter().map(|(_, channels)| channels).collect();
-    Ok((simulation, combine(first, others), faults))
-}
-
-/// Writes everything of one run beside its place and swaps it in whole.
-fn write_folder(
-    plan: &Plan,
-    report: &RunReport,
-    simulation: &Simulation,
-    target: &Path,
-) -> io::Result<()> {
-    let folder = FolderWriter::create(target)?;
-    folder.write("summary.json", report::run_summary_json(report).as_bytes())?;
-    folder.write(
-        "manifest.toml",
-        manifest_toml(plan.resolved(), VERSION).as_bytes(),
-    )?;
-    if let Some(csv) = report::allan_csv(report) {
-        folder.write("allan.csv", csv.as_bytes())?;
+fn run_repeats(plan: &Plan, observer: &dyn Observer) -> Result<Repeats, String> {
+    let (simulation, first, sheet) = run_repeat(plan, 0, observer)?;
+    let others: Vec<(Faults, Channels, Option<CalibrationSheet>)> =
+        (1..plan.resolved().scenario.repeats)
+            .into_par_iter()
+            .with_max_len(1)
+            .map(|repeat| {
+                run_repeat(plan, repeat, observer)
+                    .map(|(simulation, channels, sheet)| (simulation.faults, channels, sheet))
+            })
+            .collect::<Result<_, _>>()?;
+    let mut faults = simulation.faults;
+    let (mut channels, mut sheets) = (Vec::new(), Vec::from_iter(sheet));
+    for (more, other, sheet) in others {
+        faults = faults.plus(more);
+        channels.push(other);
+        sheets.extend(sheet);
     }
-    if let Some(csv) = report::psd_csv(report) {
-        folder.write("psd.csv", csv.as_bytes())?;
-    }
-    let raw_names = report.scenario.raw_channels();
-    let gyros = signals(plan, simulation, &raw_names);
-    for signals in &gyros {
-        for (name, svg) in report::plots(report, signals) {
-            folder.write(&name, svg.as_bytes())?;
-        }
-    }
-    if report.scenario.output.samples == SamplesFormat::Npy {
-        write_samples(&folder, &gyros)?;
-    }
-    folder.commit()
-}
-
-/// The samples of each gyro.
-fn signals<'a>(
-    plan: &Plan,
-    simulation: &'a Simulation,
-    raw_names: &'a [String],
-) -> Vec<RunSignals<'a>> {
-    let scenario = &plan.resolved().scenario;
-    let sample_period_s = plan.sample_period_s();
-    let first_measured = RecordLength::new(scenario, sample_period_s).warm_up;
-    let end_s = scenario.warm_up_s + scenario.duration_s;
-    let gyros = simulation.gyros.iter().enumerate();
-    let named = gyros.zip(scenario.axis_prefixes().iter().zip(raw_names));
-    let signals = named.map(|((gyro, record), (prefix, raw_name))| {
-        let raw = (raw_name.as_str(), record.raw_deg_per_h.as_slice());
-        let filters = simulation.filters.iter().filter_map(|(of, filter)| {
-            let words = filter.words.as_ref().ok().filter(|_| *of == gyro)?;
-            Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
-        });
-        RunSignals {
-            sample_period_s,
-            first_measured,
-            prefix,
-            truth_deg_per_h: &record.truth_deg_per_h,
-            encoder_rad: simulation.encoder_rad.as_deref(),
-            channels: std::iter::once(raw).chain(filters).collect(),
-            temperature: temperature_record(&scenario.gyro, scenario.warm_up_s, end_s),
-        }
-    });
-    signals.collect()
-}
-
-fn write_samples(folder: &FolderWriter, gyros: &[RunSignals]) -> io::Result<()> {
-    for signals in gyros {
-        for (name, words) in &signals.channels {
-            folder.write_npy(&format!("samples/{name}.npy"), words)?;
-        }
-        let truth = format!("samples/{}truth.npy", signals.prefix);
-        folder.write_npy(&truth, signals.truth_deg_per_h)?;
-    }
-    let Some(first) = gyros.first() else {
-        return Ok(());
-    };
-    if let Some(readings) = first.encoder_rad {
-        let angles: Vec<f64> = readings.iter().copied().map(rad_to_arcsec).collect();
-        folder.write_npy("samples/encoder_arcsec.npy", &angles)?;
-    }
-    let samples = first.truth_deg_per_h.len() as u64;
-    let time_s: Vec<f64> = (0..samples)
-        .map(|index| stamp_s(index, first.sample_period_s))
-        .collect();
-    folder.write_npy("samples/time_s.npy", &time_s)
+    Ok(Repeats {
+        simulation,
+        channels: combine(first, channels),
+        faults,
+        calibration: campaign::ranked(sheets),
+    })
 }
 
 fn run_repeat(
     plan: &Plan,
     repeat: u32,
     observer: &dyn Observer,
-) -> Result<(Simulation, Channels), GyroError> {
+) -> Result<(Simulation, Channels, Option<CalibrationSheet>), String> {
     let scenario = &plan.resolved().scenario;
     let length = RecordLength::new(scenario, plan.sample_period_s());
-    let simulation = simulate(scenario, length, repeat, observer)?;
-    let channels = measure_repeat(plan, &simulation, length);
-    Ok((simulation, channels))
+    let simulation =
+        simulate(scenario, length, repeat, observer).map_err(|error| error.to_string())?;
+    let mut channels = measure_repeat(plan, &simulation, length);
+    let sheet = campaign::calibrate_simulation(scenario, &simulation)
+        .map_err(|error| format!("calibration: {error}"))?
+        .map(|(sheet, _)| sheet);
+    channels.extend(sheet.iter().flat_map(campaign::estimate_channels));
+    Ok((simulation, channels, sheet))
 }
 
 fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) -> Channels {
@@ -232,6 +177,7 @@ fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) ->
     let mut channels: Channels = raw.into_iter().chain(filters).collect();
     for (name, metrics) in &mut channels {
         drop_lacking(scenario, name, metrics);
+        campaign::drop_lacking(scenario, metrics);
     }
     channels
 }
@@ -322,7 +268,7 @@ fn failed(kind: &str, sample: u64, message: String, sample_period_s: f64) -> Cha
 }
 
 /// Stamp of sample `index`, s from the start of the warm-up.
-fn stamp_s(index: u64, sample_period_s: f64) -> f64 {
+pub(super) fn stamp_s(index: u64, sample_period_s: f64) -> f64 {
     #[expect(
         clippy::cast_precision_loss,
         reason = "sample counts are far below 2^53"

@@ -196,6 +196,29 @@ pub fn temperature_record(
     Some(record)
 }
 
+/// Mean temperature of the coil at `count` times from `first_s` on, s from the start of the
+/// simulation: what a thermometer in the coil shows, deg C.
+#[must_use]
+pub fn coil_temperatures_c(
+    config: &GyroConfig,
+    first_s: f64,
+    spacing_s: f64,
+    count: u32,
+) -> Vec<f64> {
+    let mut course = Course::new(config);
+    if course.is_constant() {
+        return (0..count).map(|_| course.state.coil_c()).collect();
+    }
+    travel(&mut course, first_s);
+    let step = course.network.propagator(spacing_s);
+    let temperatures = (0..count).map(|_| {
+        let shown_c = course.state.coil_c();
+        course.advance(&step, spacing_s);
+        shown_c
+    });
+    temperatures.collect()
+}
+
 /// Advances a course by a time in equal steps.
 fn travel(course: &mut Course, time_s: f64) {
     if time_s <= 0.0 {

@@ -22,6 +22,14 @@ const FITTED: [&str; 5] = [
     "quantisation_arcsec",
 ];
 
+/// Root mean squares, which are pooled as squares.
+const ROOT_MEAN_SQUARES: [&str; 4] = [
+    "tracking_error_rms_deg_per_h",
+    "bias_error_rms_deg_per_h",
+    "scale_factor_error_rms_ppm",
+    "misalignment_error_rms_arcsec",
+];
+
 /// Curves of points that have intervals of their own.
 const POINT_CURVES: [&str; 5] = [
     "response",
@@ -36,7 +44,7 @@ const POINT_CURVES: [&str; 5] = [
 /// * Noise coefficients: the Allan variances are averaged, their degrees of freedom added, and the
 ///   fit is made again.
 /// * Standard deviations: root of the mean variance, chi-square interval with the sum of the degrees
-///   of freedom. Tracking error: root of the mean square, Student's t on the squares.
+///   of freedom. Tracking error and errors of a calibration: root of the mean square, Student's t on the squares.
 /// * Everything else: mean, Student's t on the scatter of the repeats from six repeats on; with
 ///   fewer, the repeats' own intervals combined in quadrature if each has one.
 ///
@@ -89,7 +97,7 @@ fn pool(name: &str, metrics: &[&Metric]) -> Metric {
                 pooled.fields.insert(DEGREES_OF_FREEDOM, freedom);
                 interval::deviation(interval::mean(&squares).sqrt(), freedom)
             }
-            None if name == "tracking_error_rms_deg_per_h" => {
+            None if ROOT_MEAN_SQUARES.contains(&name) => {
                 let square = interval::from_parts(interval::mean(&squares), &squares);
                 Estimate::with_interval(
                     square.value.sqrt(),

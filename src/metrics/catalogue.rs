@@ -23,6 +23,8 @@ pub enum Applies {
     Separable,
     /// Every record of a filter that is a hardware pipeline.
     Pipeline,
+    /// The estimates of a calibration campaign, which are no records.
+    Calibration,
 }
 
 /// Why other channels lack the metrics of pipelines.
@@ -71,6 +73,10 @@ const fn filter(
         applies,
         filters_only: true,
     }
+}
+
+const fn estimate(name: &'static str, unit: &'static str, definition: &'static str) -> KnownMetric {
+    any(name, unit, Applies::Calibration, definition)
 }
 
 const CATALOGUE: &[KnownMetric] = &[
@@ -343,6 +349,41 @@ const CATALOGUE: &[KnownMetric] = &[
         "1",
         Applies::Pipeline,
         "largest ratio of the extreme eigenvalues of that matrix",
+    ),
+    estimate(
+        "bias_error_rms_deg_per_h",
+        "deg/h",
+        "root mean square error of the three biases that an estimator finds",
+    ),
+    estimate(
+        "scale_factor_error_rms_ppm",
+        "ppm",
+        "root mean square error of the three scale factors that an estimator finds",
+    ),
+    estimate(
+        "misalignment_error_rms_arcsec",
+        "arcsec",
+        "root mean square error of the six misalignments that an estimator finds",
+    ),
+    estimate(
+        "normalised_error_squared",
+        "1",
+        "squared errors of the twelve parameters over their covariance, 12 if that tells all",
+    ),
+    estimate(
+        "compensated_rate_error_deg_per_h",
+        "deg/h",
+        "largest error of the plan's rates compensated with the estimate, exact form",
+    ),
+    estimate(
+        "plan_condition_number",
+        "1",
+        "largest condition number of the weighted rows of the three gyros",
+    ),
+    estimate(
+        "rounding_loss_deg_per_h",
+        "deg/h",
+        "largest difference of a bias of the covariance recursion from its square-root form",
     ),
 ];
 

@@ -272,6 +272,7 @@ fn explain_missing(
     for known in known_metrics() {
         let name = known.name;
         if name == "diverged_at_s"
+            || known.applies == Applies::Calibration
             || metrics.metrics.contains_key(name)
             || metrics.unavailable.contains_key(name)
         {

@@ -232,6 +232,7 @@ fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
         Applies::Steps => "steps",
         Applies::SteadyOrSwing => "a swing or a table at rest or at constant rate",
         Applies::Moving => "a moving table",
+        Applies::Calibration => "the estimates of a calibration campaign",
         Applies::Separable => {
             "rest, constant rate, sines or steps, where noise can be told from motion,"
         }

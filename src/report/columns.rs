@@ -93,7 +93,12 @@ const STEPS_HEADLINE: &[&str] = &[
     "noise_std_deg_per_h",
 ];
 
-const GENERAL_HEADLINE: &[&str] = &["tracking_error_rms_deg_per_h", "mean_error_deg_per_h"];
+const GENERAL_HEADLINE: &[&str] = &[
+    "tracking_error_rms_deg_per_h",
+    "mean_error_deg_per_h",
+    "bias_error_rms_deg_per_h",
+    "scale_factor_error_rms_ppm",
+];
 
 /// Metrics of every motion that stand last: how a channel failed, what a pipeline costs.
 const ALWAYS: &[(&str, &str)] = &[

@@ -18,10 +18,12 @@ pub(crate) struct Measured<'a> {
 impl<'a> RunReport<'a> {
     /// The measured channels of the run.
     pub(crate) fn measured(&self) -> Measured<'a> {
+        // The estimates of a campaign stand last; they have a table of their own.
+        let estimates = self.calibration.map_or(0, |sheet| sheet.estimates.len());
         Measured {
             name: &self.scenario.name,
             motion: &self.scenario.turntable.motion,
-            channels: self.channels,
+            channels: &self.channels[..self.channels.len() - estimates],
         }
     }
 }

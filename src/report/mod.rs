@@ -5,6 +5,8 @@
 //! a clock, a host name or an environment variable.
 
 mod budget;
+mod calibration;
+mod calibration_text;
 mod columns;
 mod csv;
 mod files;
@@ -21,6 +23,8 @@ mod text;
 mod verdict_text;
 
 pub use budget::{budget_csv, budget_json, budget_text};
+pub use calibration::{CalibrationProvenance, calibration_json, calibration_toml, groups_csv};
+pub use calibration_text::calibration_text;
 pub use csv::{allan_csv, psd_csv};
 pub use files::{FolderWriter, write_atomic, write_npy};
 pub use junit::junit_xml;

@@ -4,7 +4,7 @@ use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelFailure, ChannelMetrics};
 use crate::report::columns::headline;
 use crate::scenario::Scenario;
-use crate::signal::{GyroFacts, TheoryCurve};
+use crate::signal::{CalibrationSheet, GyroFacts, TheoryCurve};
 
 /// Everything the report of one run shows.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ pub struct RunReport<'a> {
     pub theory: &'a [TheoryCurve],
     /// Channels, `raw` first, then in the order of the file.
     pub channels: &'a [(String, ChannelMetrics)],
+    /// What came of a calibration campaign.
+    pub calibration: Option<&'a CalibrationSheet>,
     /// Judged gates, in the order of the file.
     pub verdicts: &'a [Verdict],
     /// Warnings for people, e.g. a filter that loses its digits.

@@ -2,6 +2,7 @@
 
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelMetrics, Metric};
+use crate::report::calibration::calibration_json;
 use crate::report::json::{number, object, pretty};
 use crate::report::verdict_text::verdict_text;
 use crate::report::{RunOutcome, RunReport, RunStatus};
@@ -37,6 +38,9 @@ pub fn run_summary_json(report: &RunReport) -> String {
         ("published", Value::Array(published)),
         ("gates", Value::Array(gates)),
     ]);
+    if let Some(sheet) = report.calibration {
+        root.insert("calibration".to_owned(), calibration_json(sheet));
+    }
     if !report.notes.is_empty() {
         root.insert("notes".to_owned(), report.notes.to_vec().into());
     }

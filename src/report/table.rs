@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::gate::{Verdict, VerdictKind, estimate_text, plain};
 use crate::metrics::{ChannelMetrics, Metric, known_metrics};
 use crate::report::RunReport;
+use crate::report::calibration_text::calibration_text;
 use crate::report::columns::{Column, columns, matters, unit_text};
 use crate::report::measured::Measured;
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
@@ -27,6 +28,9 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     let verdicts = report.verdicts;
     text.push_str(&failures_text(&report.measured(), verdicts, width, colour));
     text.push_str(&filter_verdicts(&report.measured(), width, colour));
+    if let Some(sheet) = report.calibration {
+        text.push_str(&calibration_text(sheet, width, colour));
+    }
     text.push_str(&published(report, colour));
     text.push_str(&gates(report.verdicts, width, colour));
     for note in report.notes {

@@ -100,6 +100,20 @@ pub struct CalibrationConfig {
     pub outlier_threshold: f64,
 }
 
+impl CalibrationConfig {
+    /// The estimators that run, each once and in order, the applied one among them.
+    #[must_use]
+    pub fn kinds(&self) -> Vec<EstimatorKind> {
+        let mut kinds: Vec<EstimatorKind> = Vec::new();
+        for kind in self.estimators.iter().copied().chain([self.apply]) {
+            if !kinds.contains(&kind) {
+                kinds.push(kind);
+            }
+        }
+        kinds
+    }
+}
+
 /// An estimator of the twelve parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -2,6 +2,7 @@
 
 use super::config::Scenario;
 use super::filter_config::FilterConfig;
+use super::turntable_config::MotionConfig;
 
 /// Prefixes of the channels of an assembly, in the order of its case axes.
 const ASSEMBLY: &[&str] = &["x_", "y_", "z_"];
@@ -10,6 +11,9 @@ const SINGLE: &[&str] = &[""];
 
 /// Name of the unfiltered output of a gyro, behind its prefix.
 const RAW: &str = "raw";
+
+/// Prefix of the names of estimates.
+const CALIBRATION: &str = "calibration_";
 
 impl Scenario {
     /// Prefix of the channel names of each gyro: one empty one, or `x_`, `y_`, `z_`.
@@ -37,6 +41,18 @@ impl Scenario {
             names.extend(prefixes.map(|prefix| format!("{prefix}{}", filter.name)));
         }
         names
+    }
+
+    /// Names under which gates find the estimates of a calibration campaign, one for each estimator;
+    /// none with another motion.
+    #[must_use]
+    pub fn calibration_channels(&self) -> Vec<String> {
+        if !matches!(self.turntable.motion, MotionConfig::Calibration(_)) {
+            return Vec::new();
+        }
+        let kinds = self.calibration.kinds();
+        let names = kinds.iter().map(|kind| kind.as_str());
+        names.map(|name| format!("{CALIBRATION}{name}")).collect()
     }
 
     /// Whether a channel is the unfiltered output of a gyro.

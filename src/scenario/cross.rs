@@ -275,7 +275,8 @@ impl Checks<'_> {
     }
 
     fn channel(&mut self, path: &str, written: &str, channel: &str) {
-        let known = self.resolved.scenario.channel_names();
+        let scenario = &self.resolved.scenario;
+        let known = [scenario.channel_names(), scenario.calibration_channels()].concat();
         if known.iter().any(|name| name == channel) {
             return;
         }

@@ -47,6 +47,7 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
         .collect();
     let report = &RunReport {
         channels: &own,
+        calibration: None,
         ..report.clone()
     };
     let axis = signals.prefix.replace('_', "-");

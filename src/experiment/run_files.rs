@@ -1,0 +1,118 @@
+//! The files of one run.
+
+use std::io;
+use std::path::Path;
+
+use super::plan::Plan;
+use super::run::stamp_s;
+use super::simulate::{RecordLength, Simulation};
+use super::suite::VERSION;
+use crate::gyro::temperature_record;
+use crate::report::{self, CalibrationProvenance, FolderWriter, RunReport};
+use crate::scenario::{SamplesFormat, manifest_toml};
+use crate::signal::{CalibrationSheet, RunSignals};
+use crate::units::rad_to_arcsec;
+
+/// Writes everything of one run beside its place and swaps it in whole.
+pub(super) fn write_folder(
+    plan: &Plan,
+    report: &RunReport,
+    simulation: &Simulation,
+    target: &Path,
+) -> io::Result<()> {
+    let folder = FolderWriter::create(target)?;
+    folder.write("summary.json", report::run_summary_json(report).as_bytes())?;
+    folder.write(
+        "manifest.toml",
+        manifest_toml(plan.resolved(), VERSION).as_bytes(),
+    )?;
+    if let Some(csv) = report::allan_csv(report) {
+        folder.write("allan.csv", csv.as_bytes())?;
+    }
+    if let Some(csv) = report::psd_csv(report) {
+        folder.write("psd.csv", csv.as_bytes())?;
+    }
+    if let Some(sheet) = report.calibration {
+        write_calibration(&folder, report, sheet)?;
+    }
+    let raw_names = report.scenario.raw_channels();
+    let gyros = signals(plan, simulation, &raw_names);
+    for signals in &gyros {
+        for (name, svg) in report::plots(report, signals) {
+            folder.write(&name, svg.as_bytes())?;
+        }
+    }
+    if report.scenario.output.samples == SamplesFormat::Npy {
+        write_samples(&folder, &gyros)?;
+    }
+    folder.commit()
+}
+
+/// The groups of a campaign and the parameters to apply.
+fn write_calibration(
+    folder: &FolderWriter,
+    report: &RunReport,
+    sheet: &CalibrationSheet,
+) -> io::Result<()> {
+    let provenance = CalibrationProvenance {
+        tool_version: report.tool_version,
+        file: report.file,
+        digest: report.digest,
+    };
+    let toml = report::calibration_toml(sheet, &provenance);
+    folder.write("calibration.toml", toml.as_bytes())?;
+    folder.write("groups.csv", report::groups_csv(&sheet.groups).as_bytes())
+}
+
+/// The samples of each gyro.
+fn signals<'a>(
+    plan: &Plan,
+    simulation: &'a Simulation,
+    raw_names: &'a [String],
+) -> Vec<RunSignals<'a>> {
+    let scenario = &plan.resolved().scenario;
+    let sample_period_s = plan.sample_period_s();
+    let first_measured = RecordLength::new(scenario, sample_period_s).warm_up;
+    let end_s = scenario.warm_up_s + scenario.duration_s;
+    let gyros = simulation.gyros.iter().enumerate();
+    let named = gyros.zip(scenario.axis_prefixes().iter().zip(raw_names));
+    let signals = named.map(|((gyro, record), (prefix, raw_name))| {
+        let raw = (raw_name.as_str(), record.raw_deg_per_h.as_slice());
+        let filters = simulation.filters.iter().filter_map(|(of, filter)| {
+            let words = filter.words.as_ref().ok().filter(|_| *of == gyro)?;
+            Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
+        });
+        RunSignals {
+            sample_period_s,
+            first_measured,
+            prefix,
+            truth_deg_per_h: &record.truth_deg_per_h,
+            encoder_rad: simulation.encoder_rad.as_deref(),
+            channels: std::iter::once(raw).chain(filters).collect(),
+            temperature: temperature_record(&scenario.gyro, scenario.warm_up_s, end_s),
+        }
+    });
+    signals.collect()
+}
+
+fn write_samples(folder: &FolderWriter, gyros: &[RunSignals]) -> io::Result<()> {
+    for signals in gyros {
+        for (name, words) in &signals.channels {
+            folder.write_npy(&format!("samples/{name}.npy"), words)?;
+        }
+        let truth = format!("samples/{}truth.npy", signals.prefix);
+        folder.write_npy(&truth, signals.truth_deg_per_h)?;
+    }
+    let Some(first) = gyros.first() else {
+        return Ok(());
+    };
+    if let Some(readings) = first.encoder_rad {
+        let angles: Vec<f64> = readings.iter().copied().map(rad_to_arcsec).collect();
+        folder.write_npy("samples/encoder_arcsec.npy", &angles)?;
+    }
+    let samples = first.truth_deg_per_h.len() as u64;
+    let time_s: Vec<f64> = (0..samples)
+        .map(|index| stamp_s(index, first.sample_period_s))
+        .collect();
+    folder.write_npy("samples/time_s.npy", &time_s)
+}
