@@ -5,11 +5,13 @@
 
 mod assembly_motion;
 mod budget;
+mod calibrate;
 mod calibration_sheet;
 mod calibration_units;
 mod campaign;
 mod campaign_metrics;
 mod channel_filter;
+mod group_findings;
 mod log_filters;
 mod log_trial;
 mod motion;
@@ -29,6 +31,9 @@ mod textbook;
 mod theory;
 
 pub use budget::{GyroBudget, gyro_budget};
+pub use calibrate::{
+    CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
+};
 pub use calibration_sheet::calibration_sheet;
 pub use campaign::calibrate_scenario;
 pub use log_filters::{LogFilters, load_log_filters};

@@ -49,7 +49,7 @@ pub struct RecordedGroup {
     pub temperature_c: [f64; 3],
     /// Mean rates of these, K/min.
     pub temperature_rate_k_per_min: Option<[f64; 3]>,
-    /// Time averaged over, s.
+    /// Time averaged over, s; 0: not known.
     pub averaging_time_s: Option<f64>,
     /// Start of the averaging, s.
     pub start_s: Option<f64>,
@@ -201,7 +201,7 @@ impl<'a> Line<'a> {
         let reference = three(|axis| table_rate(Quantity::Reference(axis)))?;
         let temperature = self.common_or_each(Quantity::Temperature, TEMPERATURE_C, "deg C")?;
         let warming = (-WARMING_MAX_K_PER_MIN, WARMING_MAX_K_PER_MIN);
-        let time = (f64::MIN_POSITIVE, f64::MAX);
+        let time = (0.0, f64::MAX);
         Ok(RecordedGroup {
             line,
             name: self.cell(Quantity::Group).map(|(_, cell)| cell.to_owned()),
@@ -248,8 +248,6 @@ impl<'a> Line<'a> {
         }
         let expected = if max < f64::MAX {
             format!("{min} to {max} {unit}")
-        } else if min > 0.0 {
-            format!("above 0 {unit}")
         } else {
             format!("{min} {unit} or more")
         };
