@@ -196,15 +196,15 @@ pub fn diagnose(groups: &[GroupObservation]) -> Vec<Finding> {
     }
     findings.extend(scope(&sights, |sight| sight.ratio < 0.0).map(Finding::ReversedSense));
     findings.extend(UNITS.iter().filter_map(|(ratio, _)| {
-        let is_one = |sight: &Sight| near(sight.ratio, *ratio);
+        let is_one = |sight: &Sight| {
+            unit_ratio(sight.ratio).is_some_and(|known| known.to_bits() == ratio.to_bits())
+        };
         scope(&sights, is_one).map(|scope| Finding::WrongUnit {
             ratio: *ratio,
             scope,
         })
     }));
-    let is_odd = |sight: &Sight| {
-        !near(sight.ratio, 1.0) && !UNITS.iter().any(|(ratio, _)| near(sight.ratio, *ratio))
-    };
+    let is_odd = |sight: &Sight| !near(sight.ratio, 1.0) && unit_ratio(sight.ratio).is_none();
     if let Some(scope) = scope(&sights, is_odd) {
         let odd = || sights.iter().filter(|sight| is_odd(sight));
         #[expect(
@@ -219,6 +219,16 @@ pub fn diagnose(groups: &[GroupObservation]) -> Vec<Finding> {
 
 fn near(ratio: f64, known: f64) -> bool {
     (ratio.abs() / known - 1.0).abs() <= SCALE_ERROR_MAX
+}
+
+/// The known ratio that a ratio comes closest to, within what a scale error may make of it.
+///
+/// Two of them, 180/pi and 20 pi, lie within a tenth of each other: only the closer one is meant.
+fn unit_ratio(ratio: f64) -> Option<f64> {
+    let distance = |known: &f64| (ratio.abs() / known).ln().abs();
+    let known = UNITS.iter().map(|(known, _)| *known);
+    let likely = known.filter(|known| near(ratio, *known));
+    likely.min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
 fn sight(number: usize, group: &GroupObservation, fastest: f64) -> Option<Sight> {

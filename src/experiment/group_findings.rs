@@ -1,24 +1,29 @@
 //! What is wrong with the groups of a file, in its own words: lines and headings.
 
-use crate::calibration::{Finding, Scope};
+use crate::calibration::{Finding, SCALE_ERROR_MAX, Scope};
 use crate::recording::{RateUnit, RecordedGroups};
 
-/// How far the ratio of two units may be from the one found: the scale error that is believed.
-const TOLERANCE: f64 = 0.1;
+/// How far a known ratio of units may be from that of two headings: rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// A finding with the lines it is about, and units as the headings name them.
 pub(super) fn complaint(finding: &Finding, recorded: &RecordedGroups) -> String {
     match finding {
         Finding::WrongUnit { ratio, scope } => {
             let lines = lines(scope, recorded);
-            match readings(*ratio, recorded) {
+            match readings(*ratio, recorded, ROUNDING) {
                 Some(readings) => format!("{readings} {scope}{lines} (ratio {ratio:.4e})"),
                 None => format!("{finding}{lines}"),
             }
         }
-        Finding::ReversedSense(scope)
-        | Finding::SwappedAxes { scope, .. }
-        | Finding::UnknownRatio { scope, .. } => format!("{finding}{}", lines(scope, recorded)),
+        Finding::UnknownRatio { ratio, scope } => {
+            let readings = readings(*ratio, recorded, SCALE_ERROR_MAX);
+            let readings = readings.map_or_else(String::new, |it| format!(": {it}"));
+            format!("{finding}{}{readings}", lines(scope, recorded))
+        }
+        Finding::ReversedSense(scope) | Finding::SwappedAxes { scope, .. } => {
+            format!("{finding}{}", lines(scope, recorded))
+        }
         Finding::MountingMissing(_) => finding.to_string(),
     }
 }
@@ -38,22 +43,22 @@ fn lines(scope: &Scope, recorded: &RecordedGroups) -> String {
 }
 
 /// Which units the columns would have to be in for outputs and rates to agree.
-fn readings(ratio: f64, recorded: &RecordedGroups) -> Option<String> {
+fn readings(ratio: f64, recorded: &RecordedGroups, tolerance: f64) -> Option<String> {
     let [x, y, z] = recorded.output_unit;
     if x != y || y != z {
         return None;
     }
     let unit = |unit: RateUnit| unit.to_deg_per_h(1.0, 1.0);
     let of_size = |size: f64| {
-        let mut units = RateUnit::rates();
-        units.find(|known| (unit(*known) / size - 1.0).abs() < TOLERANCE)
+        let distance = |known: &RateUnit| (unit(*known) / size).ln().abs();
+        let likely = RateUnit::rates().filter(|known| distance(known) < tolerance);
+        likely.min_by(|a, b| distance(a).total_cmp(&distance(b)))
     };
-    let outputs = of_size(unit(x) / ratio)
+    let outputs = of_size(unit(x) / ratio.abs())
         .map(|meant| format!("the outputs look like {meant} under headings of {x}"));
-    let rates = of_size(unit(recorded.rate_unit) * ratio).map(|meant| {
-        let stated = recorded.rate_unit;
-        format!("the table rates look like {meant} under a heading of {stated}")
-    });
+    let stated = recorded.rate_unit;
+    let rates = of_size(unit(stated) * ratio.abs())
+        .map(|meant| format!("the table rates look like {meant} under a heading of {stated}"));
     let found: Vec<String> = outputs.into_iter().chain(rates).collect();
     (!found.is_empty()).then(|| found.join(", or "))
 }

@@ -241,6 +241,9 @@ impl<'a> Line<'a> {
         let Some((name, cell)) = self.cell(quantity) else {
             return Ok(None);
         };
+        if cell.is_empty() {
+            return Err(format!("column {name}: the cell is empty: expected {unit}"));
+        }
         let value = finite(cell, Some(name.to_owned()))
             .map_err(|message| format!("{message}: expected {unit}"))?;
         if (min..=max).contains(&value) {
@@ -267,7 +270,11 @@ impl<'a> Line<'a> {
             (limit / one * digits).round() / digits
         };
         let range = (in_unit(range.0), in_unit(range.1));
-        let value = self.number(quantity, range, &unit.to_string())?;
+        let value = self.number(quantity, range, &unit.to_string());
+        let value = value.map_err(|message| {
+            let hint = "the unit is what the column's name ends with";
+            format!("{message} ({hint})")
+        })?;
         Ok(value.map(|value| unit.to_deg_per_h(value, 1.0)))
     }
 

@@ -242,7 +242,7 @@ fn groups_text(sheet: &CalibrationSheet, colour: bool) -> String {
     let titles = ["group", "residual x, y, z, deg/h", "weight x, y, z"];
     grid.row(titles.map(|title| toned(title, Tone::Heading, colour)));
     for index in 0..sheet.groups.len() {
-        let rest = applied.residual_deg_per_h[index].map(|it| format!("{it:+.4}"));
+        let rest = applied.residual_deg_per_h[index].map(signed);
         let weight = applied.weights[index];
         grid.row([(index + 1).to_string(), rest.join("  "), three(weight, 3)]);
     }
@@ -259,16 +259,8 @@ fn compensation_text(sheet: &CalibrationSheet, width: usize) -> String {
         return String::new();
     };
     let forms = sheet.compensation.iter().map(|check| {
-        let left = check.residual_deg_per_h[fastest].map(|it| format!("{it:+.4}"));
-        let truth = check.error_max_deg_per_h.map_or_else(String::new, |error| {
-            format!(", true error up to {error:.4}")
-        });
-        format!(
-            "{} leaves ({}) deg/h, at most {:.4} over all groups{truth}",
-            check.form,
-            left.join(", "),
-            check.residual_max_deg_per_h
-        )
+        let left = check.residual_deg_per_h[fastest].map(signed);
+        format!("{} leaves ({}) deg/h", check.form, left.join(", "))
     });
     let forms: Vec<String> = forms.collect();
     let line = format!(
@@ -278,4 +270,18 @@ fn compensation_text(sheet: &CalibrationSheet, width: usize) -> String {
         forms.join("; ")
     );
     format!("\n{}", wrapped(&line, INDENT, width))
+}
+
+/// A residual with its sign, zero without one.
+fn signed(value: f64) -> String {
+    let text = format!("{value:+.4}");
+    if text
+        .trim_start_matches(['+', '-'])
+        .chars()
+        .all(|c| "0.".contains(c))
+    {
+        text.trim_start_matches(['+', '-']).to_owned()
+    } else {
+        text
+    }
 }
