@@ -163,6 +163,7 @@ impl Fixture {
 
     fn report(&self) -> RunReport<'_> {
         RunReport {
+            compensation: None,
             tool_version: "0.1.0",
             scenario: &self.scenario,
             file: "scenarios/fixture.toml",

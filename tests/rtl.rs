@@ -14,7 +14,10 @@ use fogbench::fpga::float_unit::{FlushToZero, Fp};
 use fogbench::fpga::front_end::{FrontEnd, Pair, UpdateSign};
 use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsEngine, LmsSettings};
 use fogbench::fpga::rls::{Division, RlsConfig, RlsEngine, RlsSettings};
-use fogbench::fpga::timing::{RlsLoad, UnitTiming, Units, lms_stalled_clocks, stalled_clocks};
+use fogbench::fpga::sign_lms::{SignLmsConfig, SignLmsEngine, SignLmsSettings};
+use fogbench::fpga::timing::{
+    RlsLoad, UnitTiming, Units, lms_stalled_clocks, sign_lms_stalled_clocks, stalled_clocks,
+};
 use fogbench::fpga::trace::hex;
 
 use crate::support::stimulus::{SETUPS, Setup, predictor_pairs, samples};
@@ -126,6 +129,7 @@ fn words_at_once<F: Fp>(pipeline: PipelineConfig<F>, pairs: &[Pair<F>]) -> Strin
     match pipeline {
         PipelineConfig::Rls(config) => RlsEngine::new(config).run(pairs, &mut outputs),
         PipelineConfig::Lms(config) => LmsEngine::new(config).run(pairs, &mut outputs),
+        PipelineConfig::SignLms(config) => SignLmsEngine::new(config).run(pairs, &mut outputs),
     }
     outputs.iter().map(|word| hex(*word) + "\n").collect()
 }
@@ -424,6 +428,103 @@ fn hexadecimal_files_are_complete_and_parameters_name_every_choice() {
     );
 }
 
+/// The line enhancer with the patent's constants, deg/h.
+fn line_enhancer<F: Fp>(settings: SignLmsSettings) -> PipelineConfig<F> {
+    PipelineConfig::SignLms(SignLmsConfig::new(settings).expect("settings are in range"))
+}
+
+const LINE_ENHANCER: SignLmsSettings = SignLmsSettings {
+    tap_count: 20,
+    delay_samples: 15,
+    normalised: false,
+    step: 0.005,
+    regularisation: 1e-4,
+    initial_weight: 0.05,
+    guard: None,
+    norm_recompute_samples: 0,
+};
+
+/// Pairs of the samples behind the delay, with a step of rate in the middle.
+fn delayed_pairs<F: Fp>(count: usize, delay: usize, step: f64) -> Vec<Pair<F>> {
+    let mut front_end = FrontEnd::new(fogbench::fpga::front_end::Desired::Current, delay);
+    samples("white", count)
+        .iter()
+        .enumerate()
+        .map(|(n, sample)| {
+            let rate = if n < count / 2 { 1.0 } else { step };
+            front_end.pair(F::from_f64(rate + 0.5 * sample))
+        })
+        .collect()
+}
+
+#[test]
+fn rtl_of_the_line_enhancer_has_the_words_and_every_clock_of_the_model() {
+    fn check<F: Fp>(settings: SignLmsSettings, count: usize) {
+        let pairs = delayed_pairs::<F>(count, settings.delay_samples, 40.0);
+        export_and_run(line_enhancer(settings), &pairs, count.min(100));
+    }
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    let count = sample_count(10_000, 150);
+    check::<f64>(LINE_ENHANCER, count);
+    let guarded = SignLmsSettings {
+        guard: Some(6.0),
+        norm_recompute_samples: 33,
+        ..LINE_ENHANCER
+    };
+    check::<f64>(guarded, count);
+    check::<f32>(guarded, count);
+    check::<FlushToZero<f64>>(guarded, count);
+    check::<FlushToZero<f32>>(guarded, count);
+    let normalised = SignLmsSettings {
+        normalised: true,
+        initial_weight: 0.0,
+        ..guarded
+    };
+    check::<f64>(normalised, count);
+    for (tap_count, delay_samples, norm_recompute_samples) in [(1, 1, 1), (2, 3, 2), (3, 1, 7)] {
+        let few = SignLmsSettings {
+            tap_count,
+            delay_samples,
+            norm_recompute_samples,
+            ..guarded
+        };
+        check::<f64>(few, 60);
+    }
+}
+
+#[test]
+fn the_line_enhancer_waits_for_a_slow_divider_and_takes_a_nan_as_the_model_does() {
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let pipeline = line_enhancer::<f64>(LINE_ENHANCER);
+    let pairs = delayed_pairs::<f64>(40, 15, 2.0);
+    write_rtl(dir.path(), &settings(pipeline, 20), &pairs).unwrap();
+    let slow = Units {
+        divider: UnitTiming::iterative(56),
+        ..Units::ONE_CLOCK
+    };
+    let clocks = sign_lms_stalled_clocks(20, false, slow).unwrap();
+    assert_eq!(clocks, 122);
+    let report = assert_passes_with(dir.path(), &[("DIV_LATENCY", "56")], &["+GAP=300"]);
+    assert!(report.contains(&format!("period {clocks},")), "{report}");
+    assert_passes_with(dir.path(), &[], &["+WITHDRAW", "+GAP=90", "+GAP_SEED=3"]);
+    let mut pairs = delayed_pairs::<f64>(60, 15, 2.0);
+    pairs[20].input = f64::NAN;
+    pairs[40].desired = f64::INFINITY;
+    for guard in [None, Some(10.0)] {
+        let settings = SignLmsSettings {
+            guard,
+            norm_recompute_samples: 20,
+            ..LINE_ENHANCER
+        };
+        export_and_run(line_enhancer(settings), &pairs, 60);
+    }
+}
+
 /// Number of cells of the statistics whose type starts with `kind`.
 fn cells(statistics: &str, kind: &str) -> usize {
     let lines = statistics.lines().map(str::split_whitespace);
@@ -445,6 +546,8 @@ fn yosys_maps_the_control_machines_onto_an_ice40() {
     for (name, parameter, flip_flops, tables) in [
         ("rls_ctrl", "P 4", 16, 70..=95),
         ("lms_ctrl", "N 10", 12, 45..=70),
+        // State 4, tap 5, slot 5, head 5, age 20, held 8.
+        ("sign_lms_ctrl", "M 20", 47, 130..=210),
     ] {
         let script = format!(
             "read_verilog {}; chparam -set {parameter} {name}; synth_ice40 -top {name}; \
@@ -483,7 +586,7 @@ fn yosys_maps_the_datapaths_onto_distributed_memory() {
     let dir = tempfile::tempdir().unwrap();
     let boxes = dir.path().join("boxes.v");
     fs::write(&boxes, BLACK_BOXES).unwrap();
-    for name in ["rls", "lms"] {
+    for name in ["rls", "lms", "sign_lms"] {
         let file = |suffix: &str| root.join(suffix).display().to_string();
         let script = format!(
             "read_verilog {} {} {} {}; synth_xilinx -flatten -top {name}_core; \

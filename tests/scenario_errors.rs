@@ -368,7 +368,7 @@ fn missing_required_keys_are_named() {
         complaints("[[filter]]\nname = \"a\"\n"),
         [
             "x.toml:4:1: filter[0] needs exactly one filter kind: filter[0].rls, filter[0].lms, \
-         filter[0].constrained_rls, filter[0].moving_average, filter[0].savitzky_golay, \
+         filter[0].sign_lms, filter[0].constrained_rls, filter[0].moving_average, filter[0].savitzky_golay, \
          filter[0].one_pole, filter[0].butterworth, filter[0].kalman"
         ]
     );

@@ -42,6 +42,32 @@ impl Compensation {
         })
     }
 
+    /// The same with biases that follow the temperatures of the gyros.
+    ///
+    /// * `coefficient_deg_per_s_per_k`: of the biases of the gyros x, y, z.
+    /// * `reference_temperature_c`: temperatures at which the biases are those of the parameters.
+    #[must_use]
+    pub fn following_temperature(
+        self,
+        coefficient_deg_per_s_per_k: [f64; 3],
+        reference_temperature_c: [f64; 3],
+    ) -> Self {
+        Self {
+            temperature_coefficient_deg_per_s_per_k: coefficient_deg_per_s_per_k,
+            reference_temperature_c,
+            ..self
+        }
+    }
+
+    /// Whether the biases follow the temperatures of the gyros.
+    #[must_use]
+    pub fn needs_temperature(&self) -> bool {
+        let coefficients = self.temperature_coefficient_deg_per_s_per_k;
+        coefficients
+            .iter()
+            .any(|coefficient| coefficient.abs() > 0.0)
+    }
+
     /// Compensation with a calibration's parameters and its temperature coefficient of the bias.
     ///
     /// # Errors

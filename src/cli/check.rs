@@ -13,6 +13,10 @@ pub(super) fn check(options: &SelectOptions) -> io::Result<Exit> {
         Err(exit) => return Ok(exit),
     };
     for plan in &plans {
+        if let Some(summary) = plan.calibration() {
+            let name = &plan.resolved().scenario.name;
+            output::talk(&format!("{name}: calibration plan: {summary}"));
+        }
         for warning in plan.warnings() {
             output::talk(&format!("warning: {warning}"));
         }

@@ -9,8 +9,14 @@ use crate::experiment::{CoreSettings, PipelineSettings};
 use crate::fpga::front_end::{Desired, UpdateSign};
 use crate::fpga::lms::{DesiredSource, LmsSettings};
 use crate::fpga::rls::{Division, RlsSettings, UpdateOrder};
+use crate::fpga::sign_lms::SignLmsSettings;
 use crate::fpga::timing::{UnitTiming, Units};
 use crate::scenario::{NumberFormat, OutputRegister};
+
+/// Delay of a line enhancer described on the command line, samples; the default of scenarios.
+const LINE_ENHANCER_DELAY: usize = 15;
+/// Samples between two fresh sums of its norm; the default of scenarios.
+const LINE_ENHANCER_RECOMPUTE: u32 = 1000;
 
 /// Kind of filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -21,6 +27,8 @@ pub(super) enum Kind {
     Lms,
     /// Least mean squares, the step divided by the energy of the input
     Nlms,
+    /// Line enhancer by the sign of the error, behind a delay of 15 samples, mean weights at first
+    SignLms,
 }
 
 /// Where recursive least squares divides.
@@ -81,7 +89,7 @@ pub(super) struct FilterOptions {
         default_value_t = 7.716e-4
     )]
     pub(super) initial_inverse_correlation: f64,
-    /// Step size of least mean squares
+    /// Step size of least mean squares; of sign-lms in the words' unit
     #[arg(
         long,
         value_name = "MU",
@@ -89,7 +97,7 @@ pub(super) struct FilterOptions {
         default_value_t = 0.8
     )]
     pub(super) step_size: f64,
-    /// Added to the energy of the input (nlms), in the square of the words' unit
+    /// Added to the energy of the input (nlms, sign-lms), in the square of the words' unit
     #[arg(
         long,
         value_name = "E",
@@ -128,6 +136,19 @@ impl FilterOptions {
                 });
                 (core, Desired::MeanOfTwoNewest, 0)
             }
+            Kind::SignLms => {
+                let core = CoreSettings::SignLms(SignLmsSettings {
+                    tap_count: self.taps,
+                    delay_samples: LINE_ENHANCER_DELAY,
+                    normalised: false,
+                    step: self.step_size,
+                    regularisation: self.regularisation,
+                    initial_weight: self.mean_weight(),
+                    guard: None,
+                    norm_recompute_samples: LINE_ENHANCER_RECOMPUTE,
+                });
+                (core, Desired::Current, LINE_ENHANCER_DELAY)
+            }
         };
         PipelineSettings {
             core,
@@ -142,6 +163,12 @@ impl FilterOptions {
             },
             clock_mhz: self.clock_mhz,
         }
+    }
+
+    /// One over the number of taps.
+    #[expect(clippy::cast_precision_loss, reason = "a handful of taps")]
+    fn mean_weight(&self) -> f64 {
+        1.0 / self.taps.max(1) as f64
     }
 
     /// Division mode in the terms of the hardware.

@@ -13,7 +13,7 @@ use crate::experiment::PipelineTiming;
 use crate::fpga::FpgaError;
 use crate::fpga::timing::{
     RlsLoad, ScheduleReport, ScheduleSettings, TimingRow, lms_stalled_clocks, sample_period_us,
-    sample_rate_max_khz, schedule_clocks, stalled_clocks, table,
+    sample_rate_max_khz, schedule_clocks, sign_lms_stalled_clocks, stalled_clocks, table,
 };
 
 /// Prints Table 1, the counted pipeline, and what units with latency do to it.
@@ -76,6 +76,13 @@ impl<'a> Report<'a> {
                 stalled: lms_stalled_clocks(taps, filter.kind == Kind::Nlms, units)?,
                 interleaved: None,
             },
+            Kind::SignLms => Self {
+                filter,
+                table: Vec::new(),
+                measured,
+                stalled: sign_lms_stalled_clocks(taps, false, units)?,
+                interleaved: None,
+            },
         })
     }
 
@@ -84,6 +91,7 @@ impl<'a> Report<'a> {
             Kind::Rls => "rls",
             Kind::Lms => "lms",
             Kind::Nlms => "nlms",
+            Kind::SignLms => "sign-lms",
         }
     }
 

@@ -98,8 +98,8 @@ const TURNED_RAW_ONLY: &str = "amplitude_ratio";
 pub(super) fn lacks(scenario: &Scenario, channel: &str, metric: &str) -> Option<&'static str> {
     scenario.gyro.assembly.as_ref()?;
     let along = scenario.axis_prefixes()[index_along(&scenario.turntable)];
-    let is_concerned =
-        TURNED_ONLY.contains(&metric) || (scenario.is_raw(channel) && metric == TURNED_RAW_ONLY);
+    let is_concerned = TURNED_ONLY.contains(&metric)
+        || (scenario.is_unfiltered(channel) && metric == TURNED_RAW_ONLY);
     (is_concerned && !channel.starts_with(along))
         .then_some("the table does not turn about this axis")
 }

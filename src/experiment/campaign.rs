@@ -17,8 +17,8 @@ use crate::scenario::{CampaignConfig, CampaignGroup, MotionConfig, Scenario, Tur
 use crate::signal::{AssemblyParameters, CalibrationGroup, CalibrationSheet, CalibrationTruth};
 use crate::turntable::{Turntable, campaign_angles_rad, earth_rate_rad_per_s};
 use crate::units::{
-    EARTH_RATE_RAD_PER_S, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, rad_per_s_to_deg_per_s,
-    rad_to_deg,
+    EARTH_RATE_RAD_PER_S, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, deg_to_rad,
+    rad_per_s_to_deg_per_s, rad_to_deg,
 };
 
 /// The campaign of a scenario; none if the table does something else.
@@ -73,16 +73,17 @@ fn at_rest(table: &TurntableConfig, group: &CampaignGroup, turned_rad: f64) -> [
     segments.map(|segment| rad_per_s_to_deg_per_s(segment.rate_at(1.0)))
 }
 
-/// Temperatures that the thermometer of the coil shows over a group, deg C, about one a second.
-fn temperatures_c(scenario: &Scenario, group: &CampaignGroup) -> Vec<f64> {
+/// Temperatures that the thermometer of the coil shows from `start_s` of the record on, deg C, about
+/// one a second.
+fn temperatures_c(scenario: &Scenario, start_s: f64, time_s: f64) -> Vec<f64> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "the reader bounds the time of a group to 1e6 s"
     )]
-    let count = group.record_s.ceil() as u32;
-    let spacing_s = group.record_s / f64::from(count);
-    let first_s = scenario.warm_up_s + group.start_s + 0.5 * spacing_s;
+    let count = time_s.ceil() as u32;
+    let spacing_s = time_s / f64::from(count);
+    let first_s = scenario.warm_up_s + start_s + 0.5 * spacing_s;
     coil_temperatures_c(&scenario.gyro, first_s, spacing_s, count)
 }
 
@@ -91,7 +92,10 @@ fn planned(scenario: &Scenario, campaign: &CampaignConfig) -> Vec<GroupDesign> {
     let groups = campaign.groups();
     let rates = reference_rates(scenario, campaign);
     let designs = groups.iter().zip(rates).map(|(group, rate)| {
-        let temperature_c = mean(&temperatures_c(scenario, group));
+        let temperature_c = {
+            let time_s = Window::of(campaign, group).time_s;
+            mean(&temperatures_c(scenario, group.start_s, time_s))
+        };
         GroupDesign {
             reference_rate_deg_per_s: rate,
             temperature_c: [temperature_c; 3],
@@ -106,14 +110,14 @@ pub(super) type Complaint = (&'static str, String);
 
 /// Checks whether a campaign can determine what is asked of it, before it runs.
 ///
-/// Returns what is worth saying of a sound plan.
+/// Returns what a sound plan can determine, in a sentence, and what is worth saying of it.
 ///
 /// # Errors
 /// The key to blame and the missing motion in words.
 pub(super) fn check_campaign(
     scenario: &Scenario,
     campaign: &CampaignConfig,
-) -> Result<Vec<String>, Complaint> {
+) -> Result<(String, Vec<String>), Complaint> {
     let designs = planned(scenario, campaign);
     let reference = [scenario.gyro.thermal.reference_c; 3];
     let plan = check_plan(&designs, TemperatureColumns::NONE, reference).map_err(|error| {
@@ -133,8 +137,8 @@ pub(super) fn check_campaign(
         )
     })?;
     let condition = plan.axes.iter().map(|axis| axis.condition_number);
-    let mut notes = vec![format!(
-        "calibration plan: {} groups, rank {} of 4 for each gyro, condition number {:.1}; a standard \
+    let summary = format!(
+        "{} groups, rank {} of 4 for each gyro, condition number {:.1}; a standard \
          error of 1 deg/h of every mean makes {:.3} deg/h in the bias of x, {:.3} of y, {:.3} of z",
         plan.groups,
         plan.rank,
@@ -142,7 +146,8 @@ pub(super) fn check_campaign(
         plan.axes[0].bias_std_per_sigma,
         plan.axes[1].bias_std_per_sigma,
         plan.axes[2].bias_std_per_sigma,
-    )];
+    );
+    let mut notes = Vec::new();
     if scenario
         .calibration
         .kinds()
@@ -165,7 +170,7 @@ pub(super) fn check_campaign(
     notes.extend(one_sense(campaign));
     notes.extend(no_spare(&designs));
     notes.extend(residue(scenario, campaign));
-    Ok(notes)
+    Ok((summary, notes))
 }
 
 /// What one sense of rotation hides.
@@ -242,6 +247,10 @@ pub(super) fn simulated_truth(scenario: &Scenario) -> Option<CalibrationTruth> {
 }
 
 /// Cuts the groups out of the raw channels and reduces them to means.
+///
+/// A group is averaged from its start over whole turns or all of its time, to the nearest sample; the
+/// table has its rate for longer. What goes once round with the table is taken out before the
+/// standard error is judged: over whole turns it has no mean.
 fn groups(
     scenario: &Scenario,
     campaign: &CampaignConfig,
@@ -253,34 +262,29 @@ fn groups(
     let rates = reference_rates(scenario, campaign);
     let planned = campaign.groups();
     let groups = planned.iter().zip(rates).map(|(group, reference)| {
-        let samples = |time_s: f64, up: f64| whole(time_s / period_s + up);
-        // Samples that lie wholly within the record of the group.
-        let start = first + samples(group.start_s, 1.0 - 1e-6);
-        let end = first + samples(group.start_s + group.record_s, 1e-6);
-        let outputs: Vec<Vec<f64>> = simulation
-            .gyros
-            .iter()
-            .map(|gyro| {
-                let words = gyro.raw_deg_per_h.get(start..end).unwrap_or_default();
-                words.iter().copied().map(deg_per_h_to_deg_per_s).collect()
-            })
-            .collect();
-        let temperatures = temperatures_c(scenario, group);
-        let averaging = if campaign.whole_turns {
-            Averaging::WholeTurns(group.rate_deg_per_s)
-        } else {
-            Averaging::FixedTime
+        let window = Window::of(campaign, group);
+        let start = first + whole(group.start_s / period_s + 1e-6);
+        let count = whole(window.time_s / period_s + 0.5);
+        let turned_rad = deg_to_rad(group.rate_deg_per_s) * period_s;
+        let cut = |gyro: usize| -> Vec<f64> {
+            let words = &simulation.gyros[gyro].raw_deg_per_h;
+            let words = words[start..(start + count).min(words.len())].iter();
+            let words = words.copied().map(deg_per_h_to_deg_per_s).collect();
+            if window.turns.is_some() {
+                without_turn(words, turned_rad)
+            } else {
+                words
+            }
         };
-        let means = group_means(
-            &GroupSamples {
-                output_deg_per_s: [&outputs[0], &outputs[1], &outputs[2]],
-                temperature_c: [&temperatures; 3],
-                sample_rate_hz: period_s.recip(),
-            },
-            averaging,
-            (threshold > 0.0).then_some(threshold),
-        )?;
-        let turns = whole_turns_s(group.rate_deg_per_s, group.record_s);
+        let outputs = [0, 1, 2].map(cut);
+        let temperatures = temperatures_c(scenario, group.start_s, window.time_s);
+        let samples = GroupSamples {
+            output_deg_per_s: outputs.each_ref().map(Vec::as_slice),
+            temperature_c: [&temperatures; 3],
+            sample_rate_hz: period_s.recip(),
+        };
+        let threshold = (threshold > 0.0).then_some(threshold);
+        let means = group_means(&samples, Averaging::FixedTime, threshold)?;
         Ok(CalibrationGroup {
             mounting: axis_index(group.axis),
             rate_deg_per_s: group.rate_deg_per_s,
@@ -291,14 +295,47 @@ fn groups(
             standard_error_deg_per_h: means.standard_error_deg_per_s.map(deg_per_s_to_deg_per_h),
             start_s: Some(group.start_s),
             averaging_time_s: means.averaging_time_s,
-            turns: turns
-                .filter(|_| campaign.whole_turns)
-                .map(|(_, turns)| turns),
+            turns: window.turns,
             samples: means.samples,
             rejected: means.rejected,
         })
     });
     groups.collect()
+}
+
+/// What of a group is averaged, from its start.
+struct Window {
+    time_s: f64,
+    /// Whole turns in it, if that is what was asked for and the table turns.
+    turns: Option<f64>,
+}
+
+impl Window {
+    fn of(campaign: &CampaignConfig, group: &CampaignGroup) -> Self {
+        let turns = whole_turns_s(group.rate_deg_per_s, group.record_s);
+        let turns = turns.filter(|_| campaign.whole_turns);
+        Self {
+            time_s: turns.map_or(group.record_s, |(time_s, _)| time_s),
+            turns: turns.map(|(_, turns)| turns),
+        }
+    }
+}
+
+/// Samples without their sine once per turn of the table, `turned_rad` a sample.
+fn without_turn(samples: Vec<f64>, turned_rad: f64) -> Vec<f64> {
+    let angles = (0_u32..).map(|index| turned_rad * (f64::from(index) + 0.5));
+    let (mut cosine, mut sine, mut count) = (0.0, 0.0, 0.0);
+    let centre = mean(&samples);
+    for (sample, angle) in samples.iter().zip(angles.clone()) {
+        cosine += (sample - centre) * angle.cos();
+        sine += (sample - centre) * angle.sin();
+        count += 0.5;
+    }
+    let (cosine, sine) = (cosine / count, sine / count);
+    let pairs = samples.iter().zip(angles);
+    pairs
+        .map(|(sample, angle)| sample - cosine * angle.cos() - sine * angle.sin())
+        .collect()
 }
 
 /// The calibration of a campaign that has been simulated; none if the table did something else.
@@ -334,7 +371,7 @@ pub fn calibrate_scenario(
 ) -> Result<(CalibrationSheet, Calibration), String> {
     let length = RecordLength::new(scenario, gyro::sample_period_s(&scenario.gyro));
     let simulation =
-        simulate(scenario, length, repeat, observer).map_err(|error| error.to_string())?;
+        simulate(scenario, length, repeat, None, observer).map_err(|error| error.to_string())?;
     calibrate_simulation(scenario, &simulation)
         .map_err(|error| error.to_string())?
         .ok_or_else(|| "the scenario has no [turntable.calibration]".to_owned())

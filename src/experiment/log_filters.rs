@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::line_enhancer;
 use super::pipeline_check;
 use super::pipeline_settings::PipelineSettings;
 use super::textbook::cutoff_complaint;
@@ -78,13 +79,17 @@ impl LogFilters {
         (self.resolved.file.clone(), self.resolved.digest.clone())
     }
 
-    /// Warns of filters that words of this size cost their digits.
+    /// Warns of filters that words of this size cost their digits, and says in which unit the constants
+    /// of a line enhancer are meant.
     pub(super) fn warnings(&self, words_deg_per_h: &[f64]) -> Vec<String> {
         let largest = words_deg_per_h
             .iter()
             .fold(0.0, |largest: f64, word| largest.max(word.abs()));
         let warnings = self.configs().iter().filter_map(|filter| {
             let warning = match (PipelineSettings::of(&filter.kind), &filter.kind) {
+                (_, FilterKind::SignLms(config)) => {
+                    return Some(line_enhancer::unit_note(&filter.name, config));
+                }
                 (Some(settings), _) => settings.digits_warning(largest)?.to_string(),
                 (None, FilterKind::Rls(config)) if config.pipeline == Pipeline::Textbook => {
                     let delta = config.initial_inverse_correlation;

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use super::channel_filter::{ChannelFilter, FinishedFilter};
 use super::log_filters::LogFilters;
+use super::measurement::Cut;
 use super::pipeline_metrics;
-use super::run::Cut;
 use super::simulate::{GyroRecord, RecordLength};
 use super::suite::VERSION;
 use crate::metrics::{ChannelMetrics, Motion, Settings};
@@ -112,6 +112,7 @@ pub fn try_log(
     let record = GyroRecord {
         truth_deg_per_h: Vec::new(),
         raw_deg_per_h: words,
+        compensated_deg_per_h: None,
     };
     let shortest_s = FIT_SAMPLES_MIN * sample_period_s;
     let metric_settings = Settings {

@@ -11,6 +11,7 @@ pub(super) fn kind(settings: &PipelineSettings) -> &'static str {
     match settings.core {
         CoreSettings::Rls(..) => "rls",
         CoreSettings::Lms(_) => "lms",
+        CoreSettings::SignLms(_) => "sign_lms",
     }
 }
 

@@ -12,6 +12,7 @@ use crate::fpga::front_end::{FrontEnd, Pair};
 use crate::fpga::health::{ASYMMETRY_LIMIT, HealthMonitor, MatrixHealth, Warning, wind_up_warning};
 use crate::fpga::lms::LmsEngine;
 use crate::fpga::rls::{RlsEngine, UpdateOrder};
+use crate::fpga::sign_lms::SignLmsEngine;
 use crate::signal::FilterShape;
 
 use super::pipeline_settings::{CoreSettings, PipelineSettings};
@@ -58,6 +59,7 @@ pub(super) struct PipelineFilter<F> {
 enum Engine<F> {
     Rls(RlsEngine<F>),
     Lms(LmsEngine<F>),
+    SignLms(SignLmsEngine<F>),
 }
 
 impl<F: Fp> Engine<F> {
@@ -65,6 +67,7 @@ impl<F: Fp> Engine<F> {
         match self {
             Self::Rls(engine) => engine.process(pair),
             Self::Lms(engine) => engine.process(pair),
+            Self::SignLms(engine) => engine.process(pair),
         }
     }
 
@@ -72,6 +75,7 @@ impl<F: Fp> Engine<F> {
         match self {
             Self::Rls(engine) => engine.weights(),
             Self::Lms(engine) => engine.weights(),
+            Self::SignLms(engine) => engine.weights(),
         }
     }
 }
@@ -85,15 +89,16 @@ impl<F: Fp> PipelineFilter<F> {
     ) -> Self {
         let order = match settings.core {
             CoreSettings::Rls(_, order) => order,
-            CoreSettings::Lms(_) => UpdateOrder::Schedule,
+            CoreSettings::Lms(_) | CoreSettings::SignLms(_) => UpdateOrder::Schedule,
         };
         let engine = match constants {
             PipelineConfig::Rls(config) => Engine::Rls(RlsEngine::with_order(config, order)),
             PipelineConfig::Lms(config) => Engine::Lms(LmsEngine::new(config)),
+            PipelineConfig::SignLms(config) => Engine::SignLms(SignLmsEngine::new(config)),
         };
         Self {
             front_end: settings.front_end(),
-            weights: vec![0.0; engine.weights().len()],
+            weights: engine.weights().iter().map(|word| word.to_f64()).collect(),
             engine,
             register: Register::new(settings.register()),
             watch: Watch::new(),

@@ -3,6 +3,7 @@
 //! The scenario says `elementwise`, the hardware [`Division::Element`]: this is the only place
 //! that knows both vocabularies.
 
+use super::line_enhancer;
 use super::pipeline_filter::{HardwareFilter, PipelineFilter};
 use crate::filters::{Desired as BenchDesired, FrontEndConfig, OutputRegister as BenchRegister};
 use crate::fpga::FpgaError;
@@ -12,10 +13,14 @@ use crate::fpga::front_end::{Desired, FrontEnd, UpdateSign};
 use crate::fpga::health::{Warning, gain_first_failure_samples, initial_digits_warning};
 use crate::fpga::lms::{DesiredSource, LmsConfig, LmsSettings};
 use crate::fpga::rls::{Division, RlsConfig, RlsSettings, UpdateOrder};
-use crate::fpga::timing::{Usage, measure_lms, measure_rls, sample_period_us, sample_rate_max_khz};
+use crate::fpga::sign_lms::{SignLmsConfig, SignLmsSettings};
+use crate::fpga::timing::{
+    Usage, measure_lms, measure_rls, measure_sign_lms, sample_period_us, sample_rate_max_khz,
+};
 use crate::scenario::{
     DesiredSignal, Division as DivisionKey, FilterKind, LmsFilterConfig, NumberFormat,
-    OutputRegister, Pipeline, RlsFilterConfig, UpdateOrder as OrderKey, UpdateSign as SignKey,
+    OutputRegister, Pipeline, RlsFilterConfig, SignLmsFilterConfig, UpdateOrder as OrderKey,
+    UpdateSign as SignKey,
 };
 use crate::signal::FilterShape;
 
@@ -26,6 +31,8 @@ pub enum CoreSettings {
     Rls(RlsSettings, UpdateOrder),
     /// Least mean squares, normalised or not.
     Lms(LmsSettings),
+    /// Line enhancer.
+    SignLms(SignLmsSettings),
 }
 
 /// A hardware pipeline with its front end, before any check.
@@ -90,6 +97,9 @@ impl PipelineSettings {
         match kind {
             FilterKind::Rls(config) if config.pipeline == Pipeline::Fpga => Some(rls(config)),
             FilterKind::Lms(config) if config.pipeline == Pipeline::Fpga => Some(lms(config)),
+            FilterKind::SignLms(config) if config.pipeline == Pipeline::Fpga => {
+                Some(sign_lms(config))
+            }
             _ => None,
         }
     }
@@ -100,6 +110,7 @@ impl PipelineSettings {
         match &self.core {
             CoreSettings::Rls(settings, _) => settings.tap_count,
             CoreSettings::Lms(settings) => settings.tap_count,
+            CoreSettings::SignLms(settings) => settings.tap_count,
         }
     }
 
@@ -112,6 +123,7 @@ impl PipelineSettings {
         let usage = with_word!(self.format, F => match self.constants::<F>()? {
             PipelineConfig::Rls(config) => measure_rls(config),
             PipelineConfig::Lms(config) => measure_lms(config),
+            PipelineConfig::SignLms(config) => measure_sign_lms(config),
         });
         let clock_mhz = self.clock_mhz;
         Ok(PipelineTiming {
@@ -162,6 +174,9 @@ impl PipelineSettings {
         match self.core {
             CoreSettings::Rls(settings, _) => RlsConfig::new(settings).map(PipelineConfig::Rls),
             CoreSettings::Lms(settings) => LmsConfig::new(settings).map(PipelineConfig::Lms),
+            CoreSettings::SignLms(settings) => {
+                SignLmsConfig::new(settings).map(PipelineConfig::SignLms)
+            }
         }
     }
 
@@ -237,6 +252,28 @@ fn lms(config: &LmsFilterConfig) -> PipelineSettings {
         core: CoreSettings::Lms(settings),
         desired,
         input_lag_samples,
+        output_register: config.output_register,
+        format: config.number_format,
+        clock_mhz: config.clock_mhz,
+    }
+}
+
+fn sign_lms(config: &SignLmsFilterConfig) -> PipelineSettings {
+    let textbook = line_enhancer::sign_lms(config);
+    PipelineSettings {
+        core: CoreSettings::SignLms(SignLmsSettings {
+            tap_count: textbook.taps,
+            delay_samples: textbook.delay_samples,
+            // The reader has refused the unity-gain form, which is no hardware's.
+            normalised: textbook.form != crate::filters::SignLmsForm::Sign,
+            step: textbook.step,
+            regularisation: textbook.regularisation,
+            initial_weight: textbook.initial_weight,
+            guard: textbook.guard,
+            norm_recompute_samples: config.norm_recompute_samples,
+        }),
+        desired: Desired::Current,
+        input_lag_samples: textbook.delay_samples,
         output_register: config.output_register,
         format: config.number_format,
         clock_mhz: config.clock_mhz,

@@ -4,27 +4,19 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::assembly_motion::drop_lacking;
 use super::campaign;
-use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
-use super::motion::motion;
+use super::compensation::Parameters;
+use super::measurement::{Channels, measure_repeat};
 use super::pipeline_metrics;
-use super::plan::{DIVERGED_AT, Plan};
+use super::plan::Plan;
 use super::run_files;
-use super::simulate::{Faults, GyroRecord, RecordLength, Simulation, simulate};
+use super::simulate::{Faults, RecordLength, Simulation, count, simulate};
 use super::suite::{Observer, SuiteError, VERSION};
 use super::theory::theory;
-use crate::filters::Divergence;
 use crate::gate::judge;
-use crate::metrics::{
-    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings, aggregate,
-    measure,
-};
+use crate::metrics::{ChannelMetrics, aggregate};
 use crate::report::{RunOutcome, RunReport};
 use crate::signal::CalibrationSheet;
-
-/// Channels of one repeat with their metrics.
-type Channels = Vec<(String, ChannelMetrics)>;
 
 /// Runs `plan`, judges it and writes its folder under `output`.
 pub(super) fn run_scenario(
@@ -51,6 +43,7 @@ pub(super) fn run_scenario(
         channels,
         faults,
         calibration,
+        parameters,
     } = repeats;
     let gates = scenario.gates.iter().enumerate();
     let verdicts: Vec<_> = gates
@@ -62,6 +55,7 @@ pub(super) fn run_scenario(
         .flat_map(|(_, filter)| pipeline_metrics::notes(filter, sample_period_s))
         .collect();
     let notes = [plan.warnings().to_vec(), faults.notes(), pipelines].concat();
+    let compensation = parameters.map(|known| known.sheet(mean_true_rates(plan, &simulation)));
     let report = RunReport {
         tool_version: VERSION,
         scenario,
@@ -72,6 +66,7 @@ pub(super) fn run_scenario(
             .as_ref()
             .map(|point| (point.index, point.assignments.clone())),
         gyro: plan.facts(),
+        compensation: compensation.as_ref(),
         theory: &theory,
         channels: &channels,
         calibration: calibration.as_ref(),
@@ -89,6 +84,18 @@ pub(super) fn run_scenario(
     Ok(RunOutcome::from_report(&report, &folder))
 }
 
+/// Means of the true rates about the case axes over the first record, deg/h.
+fn mean_true_rates(plan: &Plan, simulation: &Simulation) -> [f64; 3] {
+    let scenario = &plan.resolved().scenario;
+    let first = RecordLength::new(scenario, plan.sample_period_s()).warm_up;
+    let mut means = [0.0; 3];
+    for (mean, gyro) in means.iter_mut().zip(&simulation.gyros) {
+        let truth = &gyro.truth_deg_per_h[first..];
+        *mean = truth.iter().sum::<f64>() / count(truth.len());
+    }
+    means
+}
+
 /// What the repeats of one run come to.
 struct Repeats {
     /// Of the first.
@@ -97,18 +104,25 @@ struct Repeats {
     faults: Faults,
     /// Of the first, ranking those of all; none without a campaign.
     calibration: Option<CalibrationSheet>,
+    /// What was taken out of the outputs.
+    parameters: Option<Parameters>,
 }
 
 /// Runs every repeat; the records of the first are kept for the plots and the sample files, those
 /// of the others are dropped as soon as they are measured.
 fn run_repeats(plan: &Plan, observer: &dyn Observer) -> Result<Repeats, String> {
-    let (simulation, first, sheet) = run_repeat(plan, 0, observer)?;
+    let parameters = plan
+        .compensation()
+        .map(|plan| plan.parameters())
+        .transpose()?;
+    let known = parameters.as_ref();
+    let (simulation, first, sheet) = run_repeat(plan, 0, known, observer)?;
     let others: Vec<(Faults, Channels, Option<CalibrationSheet>)> =
         (1..plan.resolved().scenario.repeats)
             .into_par_iter()
             .with_max_len(1)
             .map(|repeat| {
-                run_repeat(plan, repeat, observer)
+                run_repeat(plan, repeat, known, observer)
                     .map(|(simulation, channels, sheet)| (simulation.faults, channels, sheet))
             })
             .collect::<Result<_, _>>()?;
@@ -124,157 +138,26 @@ fn run_repeats(plan: &Plan, observer: &dyn Observer) -> Result<Repeats, String> 
         channels: combine(first, channels),
         faults,
         calibration: campaign::ranked(sheets),
+        parameters,
     })
 }
 
 fn run_repeat(
     plan: &Plan,
     repeat: u32,
+    parameters: Option<&Parameters>,
     observer: &dyn Observer,
 ) -> Result<(Simulation, Channels, Option<CalibrationSheet>), String> {
     let scenario = &plan.resolved().scenario;
     let length = RecordLength::new(scenario, plan.sample_period_s());
-    let simulation =
-        simulate(scenario, length, repeat, observer).map_err(|error| error.to_string())?;
+    let simulation = simulate(scenario, length, repeat, parameters, observer)
+        .map_err(|error| error.to_string())?;
     let mut channels = measure_repeat(plan, &simulation, length);
     let sheet = campaign::calibrate_simulation(scenario, &simulation)
         .map_err(|error| format!("calibration: {error}"))?
         .map(|(sheet, _)| sheet);
     channels.extend(sheet.iter().flat_map(campaign::estimate_channels));
     Ok((simulation, channels, sheet))
-}
-
-fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) -> Channels {
-    let scenario = &plan.resolved().scenario;
-    let sample_period_s = plan.sample_period_s();
-    let settings = &Settings {
-        motion: motion(scenario, sample_period_s),
-        bias_averaging_time_s: scenario.bias_averaging_time_s,
-        fit_tau_min_s: plan.fit_tau_min_s(),
-    };
-    let gyros = simulation.gyros.iter();
-    let cuts: Vec<Cut> = gyros
-        .map(|record| Cut {
-            record,
-            encoder_rad: simulation.encoder_rad.as_deref(),
-            length,
-            sample_period_s,
-            settings,
-        })
-        .collect();
-    let (raw, filters): (Channels, Channels) = rayon::join(
-        || {
-            let named = cuts.par_iter().zip(scenario.raw_channels());
-            named.map(|(cut, name)| (name, cut.measure_raw())).collect()
-        },
-        || {
-            let filters = simulation.filters.par_iter();
-            filters
-                .map(|(gyro, filter)| (filter.name.clone(), cuts[*gyro].measure_filter(filter)))
-                .collect()
-        },
-    );
-    let mut channels: Channels = raw.into_iter().chain(filters).collect();
-    for (name, metrics) in &mut channels {
-        drop_lacking(scenario, name, metrics);
-        campaign::drop_lacking(scenario, metrics);
-    }
-    channels
-}
-
-/// The measured part of one gyro's record and how to measure it.
-pub(super) struct Cut<'a> {
-    pub(super) record: &'a GyroRecord,
-    pub(super) encoder_rad: Option<&'a [f64]>,
-    pub(super) length: RecordLength,
-    pub(super) sample_period_s: f64,
-    pub(super) settings: &'a Settings,
-}
-
-impl Cut<'_> {
-    pub(super) fn measure_raw(&self) -> ChannelMetrics {
-        let words = &self.record.raw_deg_per_h;
-        match words.iter().position(|word| !word.is_finite()) {
-            Some(sample) => failed(
-                "not finite",
-                sample as u64,
-                format!("the word of the gyro is {}", words[sample]),
-                self.sample_period_s,
-            ),
-            None => self.measure(words, None),
-        }
-    }
-
-    fn measure(&self, channel_deg_per_h: &[f64], filter: Option<&FilterFacts>) -> ChannelMetrics {
-        let first = self.length.warm_up;
-        let record = Record {
-            channel_deg_per_h: &channel_deg_per_h[first..],
-            raw_deg_per_h: &self.record.raw_deg_per_h[first..],
-            // A recorded log has none.
-            truth_deg_per_h: self.record.truth_deg_per_h.get(first..).unwrap_or(&[]),
-            encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
-            sample_period_s: self.sample_period_s,
-            first_stamp_s: stamp_s(first as u64, self.sample_period_s),
-        };
-        measure(&record, self.settings, filter)
-    }
-
-    pub(super) fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
-        let mut metrics = match &filter.words {
-            Ok(words) => {
-                let facts = filter_facts(filter, words);
-                self.measure(&words.output_deg_per_h, Some(&facts))
-            }
-            Err(divergence) => diverged(divergence, self.sample_period_s),
-        };
-        if let Some(pipeline) = &filter.pipeline {
-            pipeline_metrics::enter(pipeline, self.sample_period_s, &mut metrics);
-        }
-        metrics
-    }
-}
-
-fn filter_facts(filter: &FinishedFilter, words: &FilterWords) -> FilterFacts {
-    FilterFacts {
-        shape: filter.shape.clone(),
-        dc_gain: words.dc_gain,
-        dc_gain_adapted: words.dc_gain_adapted,
-        mean_weights: words.mean_weights.clone(),
-        added_rate_deg_per_h: ADDED_RATE_DEG_PER_H,
-        rate_gains: words.rate_gains.clone(),
-        latency_s: pipeline_metrics::latency_s(filter.pipeline.as_ref()),
-    }
-}
-
-/// A channel that failed has no numbers of its record but the instant of its failure.
-fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
-    let (sample, message) = (divergence.sample, divergence.to_string());
-    failed("diverged", sample, message, sample_period_s)
-}
-
-fn failed(kind: &str, sample: u64, message: String, sample_period_s: f64) -> ChannelMetrics {
-    let mut channel = ChannelMetrics::default();
-    let at_s = stamp_s(sample, sample_period_s);
-    channel.metrics.insert(
-        DIVERGED_AT.to_owned(),
-        Metric::new(Estimate::exact(at_s), "s"),
-    );
-    channel.error = Some(ChannelFailure {
-        kind: kind.to_owned(),
-        sample,
-        message,
-    });
-    channel
-}
-
-/// Stamp of sample `index`, s from the start of the warm-up.
-pub(super) fn stamp_s(index: u64, sample_period_s: f64) -> f64 {
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "sample counts are far below 2^53"
-    )]
-    let ordinal = (index + 1) as f64;
-    ordinal * sample_period_s
 }
 
 /// One table from the tables of all repeats; a channel that failed once has failed.

@@ -3,8 +3,8 @@
 use std::io;
 use std::path::Path;
 
+use super::measurement::stamp_s;
 use super::plan::Plan;
-use super::run::stamp_s;
 use super::simulate::{RecordLength, Simulation};
 use super::suite::VERSION;
 use crate::gyro::temperature_record;
@@ -29,6 +29,9 @@ pub(super) fn write_folder(
     if let Some(csv) = report::allan_csv(report) {
         folder.write("allan.csv", csv.as_bytes())?;
     }
+    if let Some(csv) = report::runs_csv(report) {
+        folder.write("runs.csv", csv.as_bytes())?;
+    }
     if let Some(csv) = report::psd_csv(report) {
         folder.write("psd.csv", csv.as_bytes())?;
     }
@@ -36,7 +39,8 @@ pub(super) fn write_folder(
         write_calibration(&folder, report, sheet)?;
     }
     let raw_names = report.scenario.raw_channels();
-    let gyros = signals(plan, simulation, &raw_names);
+    let compensated_names = report.scenario.compensated_channels();
+    let gyros = signals(plan, simulation, (&raw_names, &compensated_names));
     for signals in &gyros {
         for (name, svg) in report::plots(report, signals) {
             folder.write(&name, svg.as_bytes())?;
@@ -68,7 +72,7 @@ fn write_calibration(
 fn signals<'a>(
     plan: &Plan,
     simulation: &'a Simulation,
-    raw_names: &'a [String],
+    (raw_names, compensated_names): (&'a [String], &'a [String]),
 ) -> Vec<RunSignals<'a>> {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
@@ -78,6 +82,9 @@ fn signals<'a>(
     let named = gyros.zip(scenario.axis_prefixes().iter().zip(raw_names));
     let signals = named.map(|((gyro, record), (prefix, raw_name))| {
         let raw = (raw_name.as_str(), record.raw_deg_per_h.as_slice());
+        let compensated = record.compensated_deg_per_h.as_deref();
+        let name = compensated_names.get(gyro).map(String::as_str);
+        let compensated = name.zip(compensated);
         let filters = simulation.filters.iter().filter_map(|(of, filter)| {
             let words = filter.words.as_ref().ok().filter(|_| *of == gyro)?;
             Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
@@ -88,7 +95,10 @@ fn signals<'a>(
             prefix,
             truth_deg_per_h: &record.truth_deg_per_h,
             encoder_rad: simulation.encoder_rad.as_deref(),
-            channels: std::iter::once(raw).chain(filters).collect(),
+            channels: std::iter::once(raw)
+                .chain(compensated)
+                .chain(filters)
+                .collect(),
             temperature: temperature_record(&scenario.gyro, scenario.warm_up_s, end_s),
         }
     });

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::channel_filter::{ChannelFilter, FinishedFilter};
+use super::compensation::{Compensator, Parameters};
 use super::suite::Observer;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
@@ -62,6 +63,16 @@ pub(super) struct GyroRecord {
     pub(super) truth_deg_per_h: Vec<f64>,
     /// The gyro's rate words, deg/h.
     pub(super) raw_deg_per_h: Vec<f64>,
+    /// The same with the constant errors of the assembly taken out, where that is done, deg/h.
+    pub(super) compensated_deg_per_h: Option<Vec<f64>>,
+}
+
+impl GyroRecord {
+    /// What the filters are given and compared with, deg/h.
+    pub(super) fn filter_input_deg_per_h(&self) -> &[f64] {
+        let compensated = self.compensated_deg_per_h.as_ref();
+        compensated.unwrap_or(&self.raw_deg_per_h)
+    }
 }
 
 /// Half modulation periods in which the gyro did not work as meant.
@@ -113,38 +124,46 @@ pub(super) fn simulate(
     scenario: &Scenario,
     length: RecordLength,
     repeat: u32,
+    parameters: Option<&Parameters>,
     observer: &dyn Observer,
 ) -> Result<Simulation, GyroError> {
     let mut source = Source::new(scenario, length, repeat)?;
-    let mut filters = channel_filters(scenario, length, source.sample_period_s);
-    let mut raw: Vec<Vec<f64>> = scenario
+    let sample_period_s = source.sample_period_s;
+    let mut compensator =
+        parameters.map(|known| Compensator::new(known, &scenario.gyro, sample_period_s));
+    let mut filters = channel_filters(scenario, length, sample_period_s);
+    let mut records: Vec<Words> = scenario
         .axis_prefixes()
         .iter()
-        .map(|_| Vec::with_capacity(length.total()))
+        .map(|_| Words::with_capacity(length.total(), parameters.is_some()))
         .collect();
-    let mut block = source.next_block();
-    while !block[0].is_empty() {
-        let (next, ()) = rayon::join(
-            || source.next_block(),
-            || {
-                filters
-                    .par_iter_mut()
-                    .for_each(|(gyro, filter)| filter.take(&block[*gyro]))
-            },
-        );
-        for (raw, words) in raw.iter_mut().zip(&block) {
-            raw.extend_from_slice(words);
+    let mut next_block = || {
+        let raw = source.next_block();
+        let compensated = compensator.as_mut().map(|stage| stage.take(&raw));
+        (raw, compensated)
+    };
+    let (mut raw, mut compensated) = next_block();
+    while !raw[0].is_empty() {
+        let given = compensated.as_ref().unwrap_or(&raw);
+        let (next, ()) = rayon::join(&mut next_block, || {
+            filters
+                .par_iter_mut()
+                .for_each(|(gyro, filter)| filter.take(&given[*gyro]));
+        });
+        for (gyro, record) in records.iter_mut().enumerate() {
+            record.extend(&raw[gyro], compensated.as_ref().map(|words| &words[gyro]));
         }
-        observer.advanced(source.sample_period_s * count(block[0].len()));
-        block = next;
+        observer.advanced(sample_period_s * count(raw[0].len()));
+        (raw, compensated) = next;
     }
     let faults = source.gyros.faults();
-    let records = source.truth_deg_per_h.into_iter().zip(raw);
+    let records = source.truth_deg_per_h.into_iter().zip(records);
     Ok(Simulation {
         gyros: records
-            .map(|(truth_deg_per_h, raw_deg_per_h)| GyroRecord {
+            .map(|(truth_deg_per_h, words)| GyroRecord {
                 truth_deg_per_h,
-                raw_deg_per_h,
+                raw_deg_per_h: words.raw,
+                compensated_deg_per_h: words.compensated,
             })
             .collect(),
         filters: filters
@@ -154,6 +173,28 @@ pub(super) fn simulate(
         encoder_rad: source.encoder_rad,
         faults,
     })
+}
+
+/// Words of one gyro while they come in, deg/h.
+struct Words {
+    raw: Vec<f64>,
+    compensated: Option<Vec<f64>>,
+}
+
+impl Words {
+    fn with_capacity(samples: usize, is_compensated: bool) -> Self {
+        Self {
+            raw: Vec::with_capacity(samples),
+            compensated: is_compensated.then(|| Vec::with_capacity(samples)),
+        }
+    }
+
+    fn extend(&mut self, raw: &[f64], compensated: Option<&Vec<f64>>) {
+        self.raw.extend_from_slice(raw);
+        if let (Some(record), Some(words)) = (&mut self.compensated, compensated) {
+            record.extend_from_slice(words);
+        }
+    }
 }
 
 /// The filters in the order of the file, each on every gyro in turn, with the index of the gyro.
@@ -340,10 +381,11 @@ fn table_warm_up_s(scenario: &Scenario, warm_up_samples: usize, word_period_s: f
     (words - 0.5) * word_period_s
 }
 
+/// A number of samples as a number.
 #[expect(
     clippy::cast_precision_loss,
     reason = "sample counts are far below 2^53"
 )]
-fn count(samples: usize) -> f64 {
+pub(super) fn count(samples: usize) -> f64 {
     samples as f64
 }

@@ -1,9 +1,10 @@
 //! Textbook filters from their configuration.
 
+use super::line_enhancer::sign_lms;
 use crate::filters::{
     ConstrainedRls, Desired, Filter, FixedFilter, FrontEndConfig, Kalman, Lms, LmsConfig,
-    Normalisation, OutputRegister as Register, RecursiveFilter, Rls, RlsConfig, UpdateSign as Sign,
-    butterworth, moving_average, one_pole, savitzky_golay,
+    Normalisation, OutputRegister as Register, RecursiveFilter, Rls, RlsConfig, SignLms,
+    UpdateSign as Sign, butterworth, moving_average, one_pole, savitzky_golay,
 };
 use crate::scenario::{
     ConstrainedRlsFilterConfig, DesiredSignal, FilterKind, LmsFilterConfig, OutputRegister,
@@ -18,11 +19,13 @@ pub(super) fn textbook_filter(kind: &FilterKind, sample_period_s: f64) -> Box<dy
     match kind {
         FilterKind::Rls(config) => Box::new(Rls::new(&rls(config))),
         FilterKind::Lms(config) => Box::new(Lms::new(&lms(config))),
+        FilterKind::SignLms(config) => Box::new(SignLms::new(&sign_lms(config))),
         FilterKind::ConstrainedRls(config) => {
             Box::new(ConstrainedRls::new(&constrained_rls(config)))
         }
-        FilterKind::MovingAverage(config) => Box::new(FixedFilter::new(
+        FilterKind::MovingAverage(config) => Box::new(FixedFilter::delayed(
             moving_average(config.taps as usize),
+            config.delay_samples as usize,
             register(config.output_register),
         )),
         FilterKind::SavitzkyGolay(config) => Box::new(FixedFilter::new(
@@ -135,7 +138,8 @@ fn desired(desired: DesiredSignal) -> Desired {
     }
 }
 
-fn register(register: OutputRegister) -> Register {
+/// The output register in the terms of the filters.
+pub(super) fn register(register: OutputRegister) -> Register {
     match register {
         OutputRegister::NextSample => Register::NextSample,
         OutputRegister::Immediate => Register::Immediate,

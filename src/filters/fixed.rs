@@ -77,13 +77,31 @@ impl FixedFilter {
     /// If there are no weights.
     #[must_use]
     pub fn new(weights: Vec<f64>, output_register: OutputRegister) -> Self {
+        Self::delayed(weights, 0, output_register)
+    }
+
+    /// The filter with these weights, the first of which stands on the sample of age
+    /// `delay_samples`.
+    ///
+    /// # Panics
+    /// If there are no weights.
+    #[must_use]
+    pub fn delayed(
+        weights: Vec<f64>,
+        delay_samples: usize,
+        output_register: OutputRegister,
+    ) -> Self {
         assert!(!weights.is_empty(), "a filter has at least one tap");
         let weight_sum = weights.iter().sum();
         let core = FixedCore {
             weights,
             weight_sum,
         };
-        Self::with_core(core, &FrontEndConfig::direct(output_register))
+        let front_end = FrontEndConfig {
+            input_lag_samples: delay_samples,
+            ..FrontEndConfig::direct(output_register)
+        };
+        Self::with_core(core, &front_end)
     }
 }
 

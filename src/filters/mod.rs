@@ -8,7 +8,8 @@
 //! ```
 //!
 //! [`Rls`] is the gain form of recursive least squares as the books print it, [`Lms`] the least
-//! mean squares filter, normalised or not. Both share the front end, the output register and the
+//! mean squares filter, normalised or not, [`SignLms`] the line enhancer of patent CN101221046 with
+//! its normalised and unity-gain forms. All share the front end, the output register and the
 //! watch for divergence. Beside them stand [`FixedFilter`] (moving average, Savitzky-Golay),
 //! [`RecursiveFilter`] (one pole, Butterworth), [`Kalman`] for a constant rate, and
 //! [`ConstrainedRls`], least squares among the filters that leave a constant rate alone. A filter that diverges says so in every step from then on and never
@@ -29,6 +30,7 @@ mod front_end;
 mod lms;
 mod recursive;
 mod rls;
+mod sign_lms;
 mod stability;
 mod update_sign;
 
@@ -43,6 +45,10 @@ pub use recursive::{
     Kalman, KalmanCore, RecursiveFilter, SectionsCore, butterworth, kalman_gain, one_pole,
 };
 pub use rls::{Rls, RlsConfig, RlsCore};
+pub use sign_lms::{
+    SignLms, SignLmsConfig, SignLmsCore, SignLmsForm, sign_lms_slew_per_sample,
+    sign_lms_slew_samples,
+};
 pub use stability::{
     constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
 };

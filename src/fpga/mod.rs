@@ -7,7 +7,7 @@
 //!
 //! * [`float_unit`]: number formats and their rounding; [`memory`]: single-port RAM.
 //! * [`front_end`]: from a sample stream to the pairs a core takes.
-//! * [`rls`], [`lms`]: the pipelines and their clock-less engines.
+//! * [`rls`], [`lms`], [`sign_lms`]: the pipelines and their clock-less engines.
 //! * [`health`]: what goes wrong inside and when. [`timing`]: clocks, units, rates.
 //! * [`probe`], [`trace`]: test points and per-clock records. [`export`]: vectors, waveforms, RTL.
 
@@ -20,6 +20,7 @@ pub mod lms;
 pub mod memory;
 pub mod probe;
 pub mod rls;
+pub mod sign_lms;
 pub mod timing;
 pub mod trace;
 

@@ -152,6 +152,33 @@ impl Schedule {
     }
 }
 
+/// A thermometer on the coil: its mean temperature, one reading an output sample.
+#[derive(Clone, Debug)]
+pub struct CoilThermometer {
+    schedule: Option<Schedule>,
+    coil_c: f64,
+}
+
+impl CoilThermometer {
+    /// The thermometer at the start of the simulation.
+    #[must_use]
+    pub fn new(config: &GyroConfig, sample_period_s: f64) -> Self {
+        Self {
+            schedule: Schedule::new(config, sample_period_s),
+            coil_c: Condition::at_start(config).coil_c,
+        }
+    }
+
+    /// The reading of the next output sample, deg C; held for up to 0.25 s, as the conditions are.
+    pub fn next_c(&mut self) -> f64 {
+        let change = self.schedule.as_mut().and_then(Schedule::next_change);
+        if let Some(condition) = change {
+            self.coil_c = condition.coil_c;
+        }
+        self.coil_c
+    }
+}
+
 /// Smallest and largest power ratio of a run.
 ///
 /// # Errors

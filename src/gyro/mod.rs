@@ -60,7 +60,7 @@ mod vibration;
 pub use assembly::{CaseGyro, InputAxis};
 pub use budget::{budget_at, budget_sheet, power_independent_ratio};
 pub use coil::Coil;
-pub use condition::{Condition, coil_temperatures_c, temperature_record};
+pub use condition::{CoilThermometer, Condition, coil_temperatures_c, temperature_record};
 pub use controller::{Controller, gain_limit};
 pub use detector::{CurrentNoise, Detector};
 pub use error::GyroError;

@@ -6,6 +6,7 @@ use super::allan::AllanPoint;
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
 use super::noise_fit::{FitRange, fit_noise};
+use super::repeat_statistics::{REPEATED_METRICS, RepeatStatistics};
 use super::steady::{WALK_OVER_DC_GAIN, enter_fit, put_over_dc_gain};
 use super::table::{DEGREES_OF_FREEDOM, EXPECTED};
 
@@ -48,7 +49,8 @@ const POINT_CURVES: [&str; 5] = [
 /// * Everything else: mean, Student's t on the scatter of the repeats from six repeats on; with
 ///   fewer, the repeats' own intervals combined in quadrature if each has one.
 ///
-/// Each metric gets the field `repeats`, the number of repeats that have it. Allan
+/// Each metric gets the field `repeats`, the number of repeats that have it; the values of the main
+/// ones ([`REPEATED_METRICS`]) are kept repeat by repeat. Allan
 /// deviations and spectra are averaged as powers, other curves as they are. If a repeat failed, the first failed one stands for the channel.
 #[must_use]
 pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
@@ -78,6 +80,10 @@ pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
     pool_spectra(repeats, &mut pooled);
     pool_points(repeats, &mut pooled);
     pool_allan(repeats, &mut pooled);
+    let named = REPEATED_METRICS.into_iter();
+    pooled.repeats = named
+        .filter_map(|name| Some((name.to_owned(), RepeatStatistics::of(repeats, name)?)))
+        .collect();
     pooled
 }
 

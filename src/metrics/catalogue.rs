@@ -147,6 +147,18 @@ const CATALOGUE: &[KnownMetric] = &[
         "the mean minus that of the true rate",
     ),
     any(
+        "minimum_deg_per_h",
+        "deg/h",
+        Applies::Always,
+        "smallest sample of the record",
+    ),
+    any(
+        "maximum_deg_per_h",
+        "deg/h",
+        Applies::Always,
+        "largest sample of the record",
+    ),
+    any(
         "noise_std_deg_per_h",
         "deg/h",
         Applies::Separable,

@@ -83,6 +83,7 @@ fn measure_motion(
         segment_samples(values.len()),
     );
     metrics.put_spectrum(log_binned(&spectrum, SPECTRUM_POINTS_MAX));
+    put_extremes(values, metrics);
     match &settings.motion {
         Motion::MultiSine { .. } | Motion::General | Motion::Steps { .. }
             if record.truth().is_none() =>
@@ -114,6 +115,14 @@ fn measure_motion(
             Ok(())
         }
     }
+}
+
+/// Enters the smallest and the largest sample.
+fn put_extremes(values: &[f64], metrics: &mut ChannelMetrics) {
+    let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    metrics.put("minimum_deg_per_h", Estimate::exact(smallest));
+    metrics.put("maximum_deg_per_h", Estimate::exact(largest));
 }
 
 /// Metrics of a staircase: settling after the last step, noise and means.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use super::repeat_statistics::RepeatStatistics;
+
 /// Confidence of every interval unless a record says otherwise.
 pub(crate) const CONFIDENCE: f64 = 0.95;
 
@@ -116,6 +118,8 @@ pub struct ChannelMetrics {
     pub unavailable: BTreeMap<String, String>,
     /// Curves: name, then column name and values.
     pub curves: BTreeMap<String, BTreeMap<String, Vec<f64>>>,
+    /// The main metrics over the repeats by key; empty for a single record.
+    pub repeats: BTreeMap<String, RepeatStatistics>,
     /// Set when the channel failed; its metrics are then empty but for `diverged_at_s`.
     pub error: Option<ChannelFailure>,
 }

@@ -30,6 +30,7 @@ mod noise_fit;
 mod noise_identification;
 mod psd;
 mod record;
+mod repeat_statistics;
 mod response;
 mod scale_factor;
 mod settling;
@@ -67,6 +68,7 @@ pub use noise_fit::{
 pub use noise_identification::PowerLaw;
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
+pub use repeat_statistics::{REPEATED_METRICS, RepeatStatistics};
 pub use response::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
 pub use scale_factor::{
     Asymmetry, RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero,

@@ -20,6 +20,7 @@ pub fn calibration_text(sheet: &CalibrationSheet, width: usize, colour: bool) ->
     text.push_str(&section(groups(sheet, colour)));
     text.push_str(&section(estimators(sheet, colour)));
     text.push_str(&section(applied(sheet, colour)));
+    text.push_str(&weights(sheet, width));
     text.push_str(&compensation(sheet, width));
     if !sheet.ranking.is_empty() {
         text.push_str(&section(ranking(sheet, colour)));
@@ -169,17 +170,9 @@ fn applied(sheet: &CalibrationSheet, colour: bool) -> Grid {
             format!("{value:.4}"),
             format!("{:.4}", errors[index].2),
             truth.map_or_else(String::new, |truth| format!("{truth:.4}")),
-            String::new(),
         ]);
     }
     slopes(sheet, found, &mut grid);
-    let weights = found.weights.iter().map(|group| format!("{:.3}", group[0]));
-    let weights: Vec<String> = weights.collect();
-    grid.row([
-        "group weights (x)".to_owned(),
-        "1".to_owned(),
-        weights.join(" "),
-    ]);
     grid
 }
 
@@ -213,8 +206,20 @@ fn rows(parameters: &AssemblyParameters) -> Vec<(String, &'static str, f64)> {
         .collect()
 }
 
+/// How much each group counts in the applied estimate.
+fn weights(sheet: &CalibrationSheet, width: usize) -> String {
+    let groups = sheet.applied_estimate().map(|found| &found.weights);
+    let groups: Vec<String> = groups
+        .into_iter()
+        .flatten()
+        .map(|group| triple(group, 3).replace(", ", "/"))
+        .collect();
+    let line = format!("weights of the groups: {}", groups.join(", "));
+    format!("\n{}", wrapped(&line, INDENT, width))
+}
+
 fn compensation(sheet: &CalibrationSheet, width: usize) -> String {
-    let mut text = String::from("\n");
+    let mut text = String::new();
     for check in &sheet.compensation {
         let mut line = format!(
             "compensation, {} form: leaves up to {:.4} deg/h at the rates of the plan",

@@ -78,6 +78,14 @@ const STEPS: &[(&str, &str)] = &[
     ("dc_gain", "DC gain"),
 ];
 
+/// A record of many rates: what filters do to a constant, and what the estimates are worth.
+const CAMPAIGN: &[(&str, &str)] = &[
+    ("dc_gain", "DC gain"),
+    ("dc_gain_predicted", "DC gain predicted"),
+    ("bias_error_rms_deg_per_h", "bias error rms"),
+    ("scale_factor_error_rms_ppm", "scale factor error rms"),
+];
+
 const STATIC_HEADLINE: &[&str] = &[
     "angle_random_walk_deg_per_sqrt_h",
     "bias_stability_deg_per_h",
@@ -110,15 +118,14 @@ const ALWAYS: &[(&str, &str)] = &[
 
 fn known(motion: &MotionConfig) -> &'static [(&'static str, &'static str)] {
     match motion {
-        MotionConfig::Static(_) => STATIC,
+        MotionConfig::Static(_) | MotionConfig::Rotation(_) => STATIC,
         MotionConfig::Swing(_) => SWING,
         MotionConfig::MultiSine(_) => MULTI_SINE,
         MotionConfig::Steps(_)
-        | MotionConfig::Rotation(_)
         | MotionConfig::Trapezoid(_)
         | MotionConfig::Chirp(_)
-        | MotionConfig::Script(_)
-        | MotionConfig::Calibration(_) => STEPS,
+        | MotionConfig::Script(_) => STEPS,
+        MotionConfig::Calibration(_) => CAMPAIGN,
     }
 }
 

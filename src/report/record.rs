@@ -4,7 +4,7 @@ use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelFailure, ChannelMetrics};
 use crate::report::columns::headline;
 use crate::scenario::Scenario;
-use crate::signal::{CalibrationSheet, GyroFacts, TheoryCurve};
+use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
 
 /// Everything the report of one run shows.
 #[derive(Clone, Debug)]
@@ -21,6 +21,8 @@ pub struct RunReport<'a> {
     pub sweep: Option<(usize, Vec<(String, String)>)>,
     /// The gyro in closed form.
     pub gyro: &'a GyroFacts,
+    /// What was taken out of the outputs, if anything was.
+    pub compensation: Option<&'a CompensationSheet>,
     /// Lines of theory for the pictures.
     pub theory: &'a [TheoryCurve],
     /// Channels, `raw` first, then in the order of the file.

@@ -3,7 +3,9 @@
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelMetrics, Metric};
 use crate::report::calibration::calibration_json;
+use crate::report::compensation::compensation_json;
 use crate::report::json::{number, object, pretty};
+use crate::report::repeats::repeats_json;
 use crate::report::verdict_text::verdict_text;
 use crate::report::{RunOutcome, RunReport, RunStatus};
 use crate::scenario::{Fidelity, PublishedConfig, portable_place};
@@ -38,6 +40,9 @@ pub fn run_summary_json(report: &RunReport) -> String {
         ("published", Value::Array(published)),
         ("gates", Value::Array(gates)),
     ]);
+    if let Some(sheet) = report.compensation {
+        root.insert("compensation".to_owned(), compensation_json(sheet));
+    }
     if let Some(sheet) = report.calibration {
         root.insert("calibration".to_owned(), calibration_json(sheet));
     }
@@ -179,6 +184,9 @@ pub(crate) fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
         .collect();
     if let Some(verdict) = verdict_text(metrics) {
         record.insert("verdict".to_owned(), verdict.into());
+    }
+    if !metrics.repeats.is_empty() {
+        record.insert("repeats".to_owned(), repeats_json(name, metrics));
     }
     if !metrics.curves.is_empty() {
         let curves: Map<String, Value> = metrics

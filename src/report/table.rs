@@ -7,10 +7,12 @@ use crate::metrics::{ChannelMetrics, Metric, known_metrics};
 use crate::report::RunReport;
 use crate::report::calibration_text::calibration_text;
 use crate::report::columns::{Column, columns, matters, unit_text};
+use crate::report::compensation::compensation_text;
 use crate::report::measured::Measured;
+use crate::report::repeats::repeats_text;
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::report::verdict_text::verdict_text;
-use crate::scenario::{Fidelity, PublishedConfig};
+use crate::scenario::{Fidelity, MotionConfig, PublishedConfig};
 
 /// Digits of an interval's half width in tables.
 const DIGITS: i32 = 2;
@@ -24,7 +26,11 @@ const INDENT: &str = "  ";
 pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     let mut text = heading(report, width, colour);
     text.push_str(&budget(report, width));
+    if let Some(sheet) = report.compensation {
+        text.push_str(&compensation_text(sheet, width));
+    }
     text.push_str(&channels_text(&report.measured(), width, colour));
+    text.push_str(&repeats_text(report, width, colour));
     let verdicts = report.verdicts;
     text.push_str(&failures_text(&report.measured(), verdicts, width, colour));
     text.push_str(&filter_verdicts(&report.measured(), width, colour));
@@ -92,6 +98,9 @@ fn budget(report: &RunReport, width: usize) -> String {
 /// The channels, their columns broken into as many blocks as the width asks for.
 pub(crate) fn channels_text(report: &Measured, width: usize, colour: bool) -> String {
     let columns = columns(report.motion, report.channels);
+    if columns.is_empty() && matches!(report.motion, MotionConfig::Calibration(_)) {
+        return String::new();
+    }
     let names = column_of_names(report.channels, colour);
     let mut text = String::new();
     let mut block = vec![names.clone()];

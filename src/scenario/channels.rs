@@ -11,6 +11,8 @@ const SINGLE: &[&str] = &[""];
 
 /// Name of the unfiltered output of a gyro, behind its prefix.
 const RAW: &str = "raw";
+/// Name of that output with its constant errors taken out, which is what filters are given.
+pub(super) const COMPENSATED: &str = "compensated";
 
 /// Prefix of the names of estimates.
 const CALIBRATION: &str = "calibration_";
@@ -32,10 +34,24 @@ impl Scenario {
         prefixes.map(|prefix| format!("{prefix}{RAW}")).collect()
     }
 
-    /// Every channel in the order of the report: the unfiltered ones, then those of each filter.
+    /// Names of the compensated channels, one for each gyro; none without a compensation.
+    #[must_use]
+    pub fn compensated_channels(&self) -> Vec<String> {
+        if self.compensation.is_none() {
+            return Vec::new();
+        }
+        let prefixes = self.axis_prefixes().iter();
+        prefixes
+            .map(|prefix| format!("{prefix}{COMPENSATED}"))
+            .collect()
+    }
+
+    /// Every channel in the order of the report: the unfiltered ones, the compensated ones, then
+    /// those of each filter.
     #[must_use]
     pub fn channel_names(&self) -> Vec<String> {
         let mut names = self.raw_channels();
+        names.extend(self.compensated_channels());
         for filter in &self.filters {
             let prefixes = self.axis_prefixes().iter();
             names.extend(prefixes.map(|prefix| format!("{prefix}{}", filter.name)));
@@ -59,6 +75,13 @@ impl Scenario {
     #[must_use]
     pub fn is_raw(&self, channel: &str) -> bool {
         self.raw_channels().iter().any(|raw| raw == channel)
+    }
+
+    /// Whether a channel is no filter's: the output of a gyro, compensated or not.
+    #[must_use]
+    pub fn is_unfiltered(&self, channel: &str) -> bool {
+        let is_compensated = |name: &String| name == channel;
+        self.is_raw(channel) || self.compensated_channels().iter().any(is_compensated)
     }
 
     /// The filter whose words a channel carries; none for an unfiltered or unknown one.

@@ -7,6 +7,7 @@
 use serde::Deserialize;
 
 use super::calibration_config::CalibrationConfig;
+use super::compensation_config::CompensationConfig;
 use super::filter_config::FilterConfig;
 use super::gyro_config::GyroConfig;
 use super::turntable_config::TurntableConfig;
@@ -37,6 +38,8 @@ pub struct Scenario {
     pub turntable: TurntableConfig,
     /// The gyro.
     pub gyro: GyroConfig,
+    /// What is taken out of the outputs of an assembly; none leaves them as they are.
+    pub compensation: Option<CompensationConfig>,
     /// What is made of a calibration campaign.
     pub calibration: CalibrationConfig,
     /// Filters, in the order of the file.

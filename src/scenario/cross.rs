@@ -2,6 +2,8 @@
 
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
+use super::cross_compensation;
+use super::cross_filter;
 use super::cross_gyro;
 use super::cross_multi_sine;
 use super::cross_optics;
@@ -35,12 +37,18 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.names();
     checks.hardware_keys();
     checks.smoothing_polynomials();
+    for (key, message) in cross_filter::check(&resolved.scenario.filters) {
+        checks.complain(&key, message);
+    }
     checks.motion();
     for (key, message) in cross_gyro::check(&resolved.scenario) {
         checks.complain(&key, message);
     }
     for (key, message) in cross_vibration::check(&resolved.scenario.gyro) {
         checks.complain(key, message);
+    }
+    for (key, message) in cross_compensation::check(&resolved.scenario) {
+        checks.complain(&key, message);
     }
     checks.gyro();
     checks.gates();
@@ -92,6 +100,7 @@ impl Checks<'_> {
             let (kind, pipeline, keys) = match &filter.kind {
                 FilterKind::Rls(config) => ("rls", config.pipeline, RLS_HARDWARE_KEYS),
                 FilterKind::Lms(config) => ("lms", config.pipeline, LMS_HARDWARE_KEYS),
+                FilterKind::SignLms(config) => ("sign_lms", config.pipeline, LMS_HARDWARE_KEYS),
                 _ => continue,
             };
             if pipeline == Pipeline::Fpga {

@@ -20,6 +20,8 @@ pub enum FilterKind {
     Rls(RlsFilterConfig),
     /// Least mean squares, normalised or not.
     Lms(LmsFilterConfig),
+    /// Line enhancer with the sign of the error, and its normalised forms.
+    SignLms(SignLmsFilterConfig),
     /// Recursive least squares held to unit DC gain.
     ConstrainedRls(ConstrainedRlsFilterConfig),
     /// Mean of the newest samples.
@@ -94,6 +96,38 @@ pub struct LmsFilterConfig {
     pub clock_mhz: f64,
 }
 
+/// Line enhancer of patent CN101221046.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SignLmsFilterConfig {
+    /// Number of weights M.
+    pub taps: u32,
+    /// Age of the newest weighed sample, samples.
+    pub delay_samples: u32,
+    /// How the weights are corrected.
+    pub form: SignLmsForm,
+    /// Step mu: in `unit` in the sign form, else without unit.
+    pub step: f64,
+    /// Regularisation alpha, in the square of `unit`.
+    pub regularisation: f64,
+    /// Unit of the words in which step and regularisation are meant.
+    pub unit: ConstantUnit,
+    /// Weights at the start.
+    pub initial_weights: InitialWeights,
+    /// Errors beyond this leave the weights alone for at most a delay and a filter length, deg/h.
+    pub guard_deg_per_h: Option<f64>,
+    /// Samples between two fresh sums of the norm; 0 = never.
+    pub norm_recompute_samples: u32,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+    /// Arithmetic.
+    pub pipeline: Pipeline,
+    /// Words of the hardware.
+    pub number_format: NumberFormat,
+    /// Clock of the hardware, MHz.
+    pub clock_mhz: f64,
+}
+
 /// Recursive least squares held to unit DC gain.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -118,6 +152,8 @@ pub struct ConstrainedRlsFilterConfig {
 pub struct MovingAverageFilterConfig {
     /// Number of samples.
     pub taps: u32,
+    /// Age of the newest sample of the mean, samples.
+    pub delay_samples: u32,
     /// When the result appears.
     pub output_register: OutputRegister,
 }
@@ -176,6 +212,42 @@ pub enum DesiredSignal {
     Current,
     /// The mean of the newest two samples.
     TwoSampleMean,
+}
+
+/// How the weights of a line enhancer are corrected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SignLmsForm {
+    /// By the sign of the error, over the energy: the patent's.
+    Sign,
+    /// By the error, over the energy.
+    Nlms,
+    /// By the error, over the energy, the sum of the weights left alone.
+    UnityGain,
+}
+
+/// Unit in which the constants of a line enhancer are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum ConstantUnit {
+    /// Degrees per hour, the unit of the words.
+    #[serde(rename = "deg/h")]
+    DegPerH,
+    /// Degrees per second.
+    #[serde(rename = "deg/s")]
+    DegPerS,
+    /// Radians per second.
+    #[serde(rename = "rad/s")]
+    RadPerS,
+}
+
+/// Weights of a line enhancer at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum InitialWeights {
+    /// 1/M in every tap: the mean of the taps.
+    Mean,
+    /// Zero.
+    Zero,
 }
 
 /// When a filter's result appears.

@@ -9,9 +9,13 @@ mod assembly_config;
 mod calibration_config;
 mod channels;
 mod check;
+mod compensation_config;
+mod compensation_source;
 mod config;
 mod cross;
 mod cross_calibration;
+mod cross_compensation;
+mod cross_filter;
 mod cross_gyro;
 mod cross_multi_sine;
 mod cross_optics;
@@ -20,6 +24,7 @@ mod cross_servo;
 mod cross_turntable;
 mod cross_vibration;
 mod defaults;
+mod discover;
 mod emit;
 mod error;
 mod filter_config;
@@ -44,6 +49,7 @@ pub use assembly_config::AssemblyConfig;
 pub use calibration_config::{
     CalibrationConfig, CampaignConfig, CampaignGroup, EstimatorKind, ForgettingLaw,
 };
+pub use compensation_config::{CompensationConfig, CompensationParameters, CompensationRule};
 pub use config::{
     Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
     SamplesFormat, Scenario,
@@ -52,10 +58,11 @@ pub use defaults::{reference_calibration, reference_toml};
 pub(crate) use error::portable_place;
 pub use error::{Location, ScenarioError};
 pub use filter_config::{
-    ButterworthFilterConfig, ConstrainedRlsFilterConfig, DesiredSignal, Division, FilterConfig,
-    FilterKind, KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, NumberFormat,
-    OnePoleFilterConfig, OutputRegister, Pipeline, RlsFilterConfig, SavitzkyGolayFilterConfig,
-    UpdateOrder, UpdateSign,
+    ButterworthFilterConfig, ConstantUnit, ConstrainedRlsFilterConfig, DesiredSignal, Division,
+    FilterConfig, FilterKind, InitialWeights, KalmanFilterConfig, LmsFilterConfig,
+    MovingAverageFilterConfig, NumberFormat, OnePoleFilterConfig, OutputRegister, Pipeline,
+    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig, SignLmsForm, UpdateOrder,
+    UpdateSign,
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::address::{self, nearest_mark};
 use super::check::{check_presence, check_values};
+use super::compensation_source;
 use super::config::Scenario;
 use super::cross;
 use super::defaults::{default_of, fill};
@@ -52,6 +53,8 @@ pub struct Resolved {
     pub sweep: Option<SweepPoint>,
     /// What is allowed but worth saying about how it was read.
     pub warnings: Vec<String>,
+    /// The calibration scenario whose result its compensation applies.
+    pub campaign: Option<Box<Resolved>>,
     /// Where its gates were written, if a manifest records that.
     gate_places: Vec<String>,
     /// Every value, defaults included.
@@ -116,6 +119,7 @@ impl Draft {
         let sources = Arc::make_mut(&mut self.sources);
         script::read_into(&mut self.root, sources, &mut self.inputs)
             .map_err(|error| vec![error])?;
+        let campaign = compensation_source::read_into(&mut self.root, sources, &mut self.inputs)?;
         let mut errors = check_values(&mut self.root, self.root_mark, &self.sources);
         if errors.is_empty() || !self.is_other_version() {
             fill(&mut self.root);
@@ -154,6 +158,7 @@ impl Draft {
             inputs: origin.inputs,
             sweep: origin.sweep,
             warnings: self.warnings,
+            campaign,
             gate_places: origin.gate_places,
             tree: self.root,
             sources: self.sources,

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use super::address::{self, Step};
 use super::check::check_contradictions;
+use super::discover::{discover, identity};
 use super::error::{Location, ScenarioError};
 use super::manifest;
 use super::matrix;
@@ -78,83 +79,6 @@ fn completed((mut draft, errors): (Draft, Vec<ScenarioError>)) -> (Draft, Vec<Sc
     (draft, errors)
 }
 
-/// The files to load, each once.
-fn discover(paths: &[PathBuf], errors: &mut Vec<ScenarioError>) -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> = Vec::new();
-    for path in paths {
-        if path.is_dir() {
-            let mut found = Vec::new();
-            walk(path, &mut found, errors);
-            found.sort();
-            files.extend(found.into_iter().filter(|file| is_scenario(file)));
-        } else if path.exists() {
-            files.push(path.clone());
-        } else {
-            errors.push(ScenarioError::at(
-                Location::of_file(shown_path(path)),
-                "no such file or folder",
-            ));
-        }
-    }
-    let mut seen: Vec<PathBuf> = Vec::new();
-    files.retain(|file| {
-        let identity = identity(file);
-        let is_new = !seen.contains(&identity);
-        seen.push(identity);
-        is_new
-    });
-    files
-}
-
-/// Gathers the `*.toml` below a folder; hidden entries and linked folders are passed over.
-fn walk(folder: &Path, found: &mut Vec<PathBuf>, errors: &mut Vec<ScenarioError>) {
-    let complain = |error: std::io::Error| {
-        ScenarioError::at(
-            Location::of_file(shown_path(folder)),
-            format!("cannot read the folder: {error}"),
-        )
-    };
-    let entries = match fs::read_dir(folder) {
-        Ok(entries) => entries,
-        Err(error) => return errors.push(complain(error)),
-    };
-    for entry in entries {
-        let entry = match entry {
-            Ok(entry) => entry,
-            Err(error) => {
-                errors.push(complain(error));
-                continue;
-            }
-        };
-        if entry.file_name().to_string_lossy().starts_with('.') {
-            continue;
-        }
-        let path = entry.path();
-        if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-            walk(&path, found, errors);
-        } else if path
-            .extension()
-            .is_some_and(|extension| extension == "toml")
-            && path.is_file()
-        {
-            found.push(path);
-        }
-    }
-}
-
-/// Whether a file of a folder is to be run; one that cannot be parsed is kept for its error.
-fn is_scenario(file: &Path) -> bool {
-    let Ok(text) = fs::read_to_string(file) else {
-        return true;
-    };
-    parse_document(0, &text).map_or(true, |root| root.contains_key("name"))
-}
-
-/// What makes two paths the same file.
-fn identity(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_owned())
-}
-
 /// Loads one file with all points of its sweep.
 fn load_file(file: &Path, sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
     load_drafted(load_draft(file)?, sets)
@@ -187,14 +111,32 @@ fn load_drafted(
 
 /// Reads a file and its bases, or a manifest, with the complaints that do not hinder more checks.
 fn load_draft(file: &Path) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
+    load_labelled(file, &Label::of_scenario(file))
+}
+
+/// Reads the scenario of a campaign that another file names, and its bases.
+///
+/// # Errors
+/// Every complaint about the file.
+pub(super) fn load_campaign(file: &Path, label: &Label) -> Result<Draft, Vec<ScenarioError>> {
+    match load_labelled(file, label)? {
+        (draft, errors) if errors.is_empty() => Ok(draft),
+        (_, errors) => Err(errors),
+    }
+}
+
+/// As [`load_draft`], inputs labelled as seen from another file.
+fn load_labelled(
+    file: &Path,
+    label: &Label,
+) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
     let mut chain = Chain::default();
-    let label = Label::of_scenario(file);
-    let (root, source) = chain.read(file, &label, None)?;
+    let (root, source) = chain.read(file, label, None)?;
     if manifest::is_manifest(&root) {
         let draft = manifest::read(root, source, chain.sources, chain.inputs)?;
         return Ok((draft, Vec::new()));
     }
-    let root = chain.merge_bases(file, &label, root, source)?;
+    let root = chain.merge_bases(file, label, root, source)?;
     chain.inputs.reverse();
     let draft = Draft {
         root,

@@ -131,6 +131,9 @@ fn each_alternative_of_the_reference_validates_when_enabled() {
         std::fs::write(folder.path().join("base.toml"), reference_toml()).unwrap();
         let motion = "time_s,rate_deg_per_s\n0,0\n20,1\n";
         std::fs::write(folder.path().join("motion.csv"), motion).unwrap();
+        let calibration = "schema = 1\n[compensation]\ntheta_xy_arcsec = 1.0\n";
+        std::fs::write(folder.path().join("calibration.toml"), calibration).unwrap();
+        std::fs::write(folder.path().join("campaign.toml"), LEAST).unwrap();
         let file = folder.path().join("x.toml");
         let extends = if base.starts_with("extends") {
             ""

@@ -253,3 +253,26 @@ pub struct RunSignals<'a> {
     /// Temperatures over the measured part; `None` where they never change.
     pub temperature: Option<TemperatureRecord>,
 }
+
+/// What a compensation takes out of the outputs of an assembly, as the report shows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CompensationSheet {
+    /// `exact` or `first-order`.
+    pub form: &'static str,
+    /// Where the parameters come from.
+    pub source: String,
+    /// Biases of the gyros x, y, z, deg/h.
+    pub bias_deg_per_h: [f64; 3],
+    /// Scale-factor errors, ppm.
+    pub scale_factor_error_ppm: [f64; 3],
+    /// Small rotations by name: `xy` is that of gyro x about case axis y, arcsec.
+    pub theta_arcsec: [(&'static str, f64); 6],
+    /// Whether the biases follow the temperature of the coil.
+    pub follows_temperature: bool,
+    /// Mean true rates about the case axes x, y, z over the record, deg/h.
+    pub rate_deg_per_h: [f64; 3],
+    /// What the exact inverse would leave of these rates if the parameters were perfect, deg/h.
+    pub exact_residual_deg_per_h: [f64; 3],
+    /// What the first-order form would leave, deg/h.
+    pub first_order_residual_deg_per_h: [f64; 3],
+}

@@ -34,6 +34,13 @@ fn constants<F: Fp>(pipeline: &PipelineConfig<F>) -> Vec<(&'static str, F)> {
             ("MU", config.step_size()),
             ("EPS", config.regularisation().unwrap_or(F::ZERO)),
         ],
+        PipelineConfig::SignLms(config) => vec![
+            ("ONE", F::ONE),
+            ("MU", config.step()),
+            ("ALPHA", config.regularisation()),
+            ("W0", config.initial_weight()),
+            ("GUARD", config.guard().unwrap_or(F::ZERO)),
+        ],
     }
 }
 
@@ -53,6 +60,19 @@ fn choices<F: Fp>(pipeline: &PipelineConfig<F>) -> Vec<(&'static str, usize)> {
                 ("MEAN", mean),
             ];
             (choices, config.update_sign())
+        }
+        PipelineConfig::SignLms(config) => {
+            let choices = vec![
+                ("M", config.tap_count()),
+                ("NORMALISED", usize::from(config.is_normalised())),
+                ("GUARDED", usize::from(config.guard().is_some())),
+                ("GUARD_HOLD_SAMPLES", config.hold_samples()),
+                (
+                    "NORM_RECOMPUTE_SAMPLES",
+                    config.norm_recompute_samples() as usize,
+                ),
+            ];
+            (choices, UpdateSign::Corrected)
         }
     };
     choices.push(("AS_PRINTED", usize::from(sign == UpdateSign::AsPrinted)));
@@ -89,10 +109,25 @@ pub(super) fn params_vh<F: Fp>(
             ],
             config.update_sign(),
         ),
+        PipelineConfig::SignLms(config) => (
+            config.tap_count(),
+            vec![
+                ("MU", word(config.step())),
+                ("ALPHA", word(config.regularisation())),
+                ("W0", word(config.initial_weight())),
+                ("GUARD", word(config.guard().unwrap_or(F::ZERO))),
+                ("GUARDED", flag(config.guard().is_some())),
+                ("HOLD", config.hold_samples().to_string()),
+                ("NLMS", flag(config.is_normalised())),
+                ("RECOMPUTE", config.norm_recompute_samples().to_string()),
+            ],
+            UpdateSign::Corrected,
+        ),
     };
     let filter = match settings.pipeline {
         PipelineConfig::Rls(_) => "RLS",
         PipelineConfig::Lms(_) => "LMS",
+        PipelineConfig::SignLms(_) => "SIGN_LMS",
     };
     let mut text = format!("// Parameters of this export.\n`define VEC_{filter}\n");
     let mut define = |name: &str, value: String| {
@@ -127,6 +162,7 @@ pub(super) fn params_json<F: Fp>(
     let filter = match &settings.pipeline {
         PipelineConfig::Rls(_) => "rls",
         PipelineConfig::Lms(_) => "lms",
+        PipelineConfig::SignLms(_) => "sign_lms",
     };
     add("filter", quote(filter));
     add("format", quote(F::NAME));

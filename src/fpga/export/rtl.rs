@@ -7,7 +7,7 @@ use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
 
-/// Files of both pipelines.
+/// Files of every pipeline.
 const SHARED: [(&str, &str); 7] = [
     ("README.txt", include_str!("rtl/README.txt")),
     ("fp_sim.v", include_str!("rtl/fp_sim.v")),
@@ -30,6 +30,12 @@ const LMS: [(&str, &str); 3] = [
     ("tb_lms.v", include_str!("rtl/tb_lms.v")),
 ];
 
+const SIGN_LMS: [(&str, &str); 3] = [
+    ("sign_lms_ctrl.v", include_str!("rtl/sign_lms_ctrl.v")),
+    ("sign_lms_core.v", include_str!("rtl/sign_lms_core.v")),
+    ("tb_sign_lms.v", include_str!("rtl/tb_sign_lms.v")),
+];
+
 /// Writes vectors, RTL, testbench, run script and cocotb test; returns the files.
 ///
 /// `sh DIR/run.sh` runs the testbench under Icarus Verilog, with `SIM=verilator` under Verilator;
@@ -46,6 +52,7 @@ pub fn write_rtl<F: Fp>(
     let own = match settings.pipeline {
         PipelineConfig::Rls(_) => RLS,
         PipelineConfig::Lms(_) => LMS,
+        PipelineConfig::SignLms(_) => SIGN_LMS,
     };
     for (name, text) in SHARED.into_iter().chain(own) {
         files.push(write_text(dir, name, text)?);

@@ -12,6 +12,9 @@ use crate::fpga::front_end::{FrontEnd, Pair};
 use crate::fpga::lms::{LmsConfig, LmsPipeline, lms_clocks_per_sample, lms_latency_clocks};
 use crate::fpga::probe::Probe;
 use crate::fpga::rls::{RlsConfig, RlsPipeline, rls_clocks_per_sample, rls_latency_clocks};
+use crate::fpga::sign_lms::{
+    SignLmsConfig, SignLmsPipeline, sign_lms_clocks_per_sample, sign_lms_latency_clocks,
+};
 use crate::fpga::trace::{CSV_HEADER, ClockRecord, Recorder, Window, hex, write_csv_line};
 
 /// The pipeline to export.
@@ -21,6 +24,8 @@ pub enum PipelineConfig<F> {
     Rls(RlsConfig<F>),
     /// Least mean squares, normalised or not.
     Lms(LmsConfig<F>),
+    /// Line enhancer, by the sign of the error or normalised.
+    SignLms(SignLmsConfig<F>),
 }
 
 impl<F: Fp> PipelineConfig<F> {
@@ -30,6 +35,7 @@ impl<F: Fp> PipelineConfig<F> {
         match self {
             Self::Rls(config) => rls_clocks_per_sample(config.tap_count()),
             Self::Lms(config) => lms_clocks_per_sample(config.tap_count(), config.is_normalised()),
+            Self::SignLms(config) => sign_lms_clocks_per_sample(config.tap_count()),
         }
     }
 
@@ -39,6 +45,7 @@ impl<F: Fp> PipelineConfig<F> {
         match self {
             Self::Rls(config) => rls_latency_clocks(config.tap_count()),
             Self::Lms(config) => lms_latency_clocks(config.tap_count(), config.is_normalised()),
+            Self::SignLms(config) => sign_lms_latency_clocks(config.tap_count()),
         }
     }
 }
@@ -135,6 +142,16 @@ pub(super) fn simulate<F: Fp, Q: Probe<F>>(
         }
         PipelineConfig::Lms(config) => {
             let mut pipeline = LmsPipeline::new(*config);
+            let memories_before = [pipeline.rama(), pipeline.ramb()].concat();
+            pipeline.run_probed(pairs, &mut outputs, probe);
+            Simulation {
+                outputs,
+                memories_before,
+                memories_after: [pipeline.rama(), pipeline.ramb()].concat(),
+            }
+        }
+        PipelineConfig::SignLms(config) => {
+            let mut pipeline = SignLmsPipeline::new(*config);
             let memories_before = [pipeline.rama(), pipeline.ramb()].concat();
             pipeline.run_probed(pairs, &mut outputs, probe);
             Simulation {

@@ -18,6 +18,7 @@ use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
 use crate::fpga::lms::LmsState;
 use crate::fpga::rls::RlsState;
+use crate::fpga::sign_lms::SignLmsState;
 use crate::fpga::trace::{ClockRecord, Recorder, Window};
 
 /// Characters of a state name in the FST, which has no strings: an ASCII vector of this length.
@@ -210,6 +211,10 @@ pub fn write_waveform<F: Fp>(
     let (top, filter) = match settings.pipeline {
         PipelineConfig::Rls(_) => ("rls", translate_file(&RlsState::ALL.map(RlsState::name))),
         PipelineConfig::Lms(_) => ("lms", translate_file(&LmsState::ALL.map(LmsState::name))),
+        PipelineConfig::SignLms(_) => (
+            "sign_lms",
+            translate_file(&SignLmsState::ALL.map(SignLmsState::name)),
+        ),
     };
     let half_period_ps = half_period_ps(settings.clock_mhz);
 

@@ -198,6 +198,32 @@ pub fn lms_stalled_clocks(
     Ok(1 + head + lm + n * (lm + la))
 }
 
+/// Clocks per sample of the line enhancer when the control machine waits for every result.
+///
+/// ```text
+/// T = Lm + La + max(La,Lm) + La + (max(La,Lm) + M*La) + max(La,Ld) + (Lm or 1) + M(Lm+La)
+/// ```
+/// GAIN takes Lm clocks in the normalised form, one in the sign form. One clock each: `3M + 7`.
+///
+/// # Errors
+/// [`FpgaError::TapCount`], [`FpgaError::CountOutOfRange`].
+pub fn sign_lms_stalled_clocks(
+    tap_count: usize,
+    normalised: bool,
+    units: Units,
+) -> Result<u64, FpgaError> {
+    check_tap_count(tap_count)?;
+    units.check()?;
+    let m = tap_count as u64;
+    let la = units.adder.latency_clocks;
+    let lm = units.multiplier.latency_clocks;
+    let ld = units.divider.latency_clocks;
+    let norm = lm + la + la.max(lm) + la;
+    let output = la.max(lm) + m * la;
+    let gain = if normalised { lm } else { 1 };
+    Ok(norm + output + la.max(ld) + gain + m * (lm + la))
+}
+
 /// Typical units: starting points for one's own numbers, not promises.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {

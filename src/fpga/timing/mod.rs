@@ -4,7 +4,7 @@
 //! * [`table`]: parallel, serial and pipeline for any tap count and clock.
 //! * [`stalled_clocks`]: the paper's control machine waiting for units with latency.
 //! * [`schedule_clocks`]: the same operations, same bits, interleaved by a list scheduler.
-//! * [`measure_rls`], [`measure_lms`]: clocks per state and port use counted on the model.
+//! * [`measure_rls`], [`measure_lms`], [`measure_sign_lms`]: clocks per state and port use counted on the model.
 //!
 //! Source: Ma et al., Chinese J. Lasers 49(21) 2106004 (2022), Table 1; the rest derived.
 //!
@@ -16,12 +16,13 @@ mod table;
 mod usage;
 
 pub use latency::{
-    Bound, PRESETS, Preset, RlsLoad, UnitTiming, Units, lms_stalled_clocks, stalled_clocks,
+    Bound, PRESETS, Preset, RlsLoad, UnitTiming, Units, lms_stalled_clocks,
+    sign_lms_stalled_clocks, stalled_clocks,
 };
 pub use schedule::{ScheduleReport, ScheduleSettings, schedule_clocks};
 pub(super) use table::check_clock;
 pub use table::{Basis, Design, TimingRow, table};
-pub use usage::{StateClocks, Usage, measure_lms, measure_rls};
+pub use usage::{StateClocks, Usage, measure_lms, measure_rls, measure_sign_lms};
 
 /// Sample rate in kHz at which back-to-back samples take `clocks` each.
 #[must_use]

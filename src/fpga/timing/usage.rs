@@ -5,6 +5,7 @@ use crate::fpga::front_end::Pair;
 use crate::fpga::lms::{LmsConfig, LmsPipeline, LmsState};
 use crate::fpga::probe::{PortView, Probe, RegisterView, Tick};
 use crate::fpga::rls::{RlsConfig, RlsPipeline, RlsState};
+use crate::fpga::sign_lms::{SignLmsConfig, SignLmsPipeline, SignLmsState};
 
 /// Clocks spent in one state per sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,4 +137,14 @@ pub fn measure_lms<F: Fp>(config: LmsConfig<F>) -> Usage {
     Counter::default().run(&LmsState::ALL.map(LmsState::name), |pair, counter| {
         pipeline.tick_probed(Some(pair), counter)
     })
+}
+
+/// Counts one back-to-back sample of the line enhancer, one in which the norm is not replaced.
+#[must_use]
+pub fn measure_sign_lms<F: Fp>(config: SignLmsConfig<F>) -> Usage {
+    let mut pipeline = SignLmsPipeline::new(config);
+    Counter::default().run(
+        &SignLmsState::ALL.map(SignLmsState::name),
+        |pair, counter| pipeline.tick_probed(Some(pair), counter),
+    )
 }

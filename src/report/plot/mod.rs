@@ -4,6 +4,7 @@
 
 mod allan;
 mod axis;
+mod before_after;
 mod bode;
 mod budget;
 mod noise_delay;
@@ -30,7 +31,8 @@ use crate::signal::RunSignals;
 /// Largest size of a picture, bytes: long records are drawn as an envelope per pixel column.
 pub const SVG_BYTES_MAX: usize = 500_000;
 
-/// The pictures of one gyro of a run as file name and SVG text: `rate.svg`; `allan.svg` and
+/// The pictures of one gyro of a run as file name and SVG text: `rate.svg`; `before-after.svg` where
+/// the words are compensated; `allan.svg` and
 /// `spectrum.svg` where a channel has the curve; `swing.svg` for a swing, `bode.svg` for several
 /// sines, `response.svg` for a staircase of three rates or more; `thermal.svg` where the temperature
 /// changes; `noise-delay.svg` where a filter's noise was measured at rest or in a swing, and
@@ -57,6 +59,7 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Vec<(String, String)> 
     };
     let pictures = [
         ("rate.svg", rate::picture(&report.measured(), signals)),
+        ("before-after.svg", before_after::picture(report, signals)),
         ("allan.svg", allan::picture(&report.measured())),
         ("swing.svg", swing),
         ("bode.svg", bode::picture(report)),

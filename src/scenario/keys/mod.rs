@@ -4,6 +4,7 @@
 //! test of `reference.toml`, which holds the defaults.
 
 mod calibration;
+mod compensation;
 mod filter;
 mod gyro;
 mod judging;
@@ -97,11 +98,17 @@ pub(crate) const GROUPS: &[Group] = &[
         alternatives: &["off", "sine", "random"],
     },
     Group {
+        table: "compensation",
+        noun: "source of parameters",
+        alternatives: &["file", "campaign", "campaign_scenario", "parameters"],
+    },
+    Group {
         table: "filter[]",
         noun: "filter kind",
         alternatives: &[
             "rls",
             "lms",
+            "sign_lms",
             "constrained_rls",
             "moving_average",
             "savitzky_golay",
@@ -113,7 +120,7 @@ pub(crate) const GROUPS: &[Group] = &[
 ];
 
 /// Tables that are absent unless a file gives them, though every key inside has a default.
-pub(crate) const OPTIONAL_TABLES: &[&str] = &["gyro.assembly"];
+pub(crate) const OPTIONAL_TABLES: &[&str] = &["gyro.assembly", "compensation"];
 
 /// Every key, in the order in which resolved scenarios are written.
 pub(crate) fn keys() -> impl Iterator<Item = &'static Key> {
@@ -122,6 +129,7 @@ pub(crate) fn keys() -> impl Iterator<Item = &'static Key> {
         turntable::KEYS,
         gyro::KEYS,
         thermal::KEYS,
+        compensation::KEYS,
         calibration::KEYS,
         filter::KEYS,
         judging::KEYS,

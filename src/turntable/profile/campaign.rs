@@ -10,8 +10,8 @@ use crate::units::deg_per_s_to_rad_per_s;
 ///
 /// Rates follow one another along raised cosines, so that rate and acceleration are continuous and
 /// the loop of the gyro follows. A change of rate takes the middle half of its pause. To mount the
-/// case anew the table stops in the first quarter of the pause and runs up in the third, which leaves
-/// the last one for it to settle. The first rate is reached inside the warm-up.
+/// case anew the table stops in a quarter of the pause, rests for the quarter in its middle and runs
+/// up in another, which leaves an eighth at either end. The first rate is reached inside the warm-up.
 #[derive(Clone, Debug)]
 pub(super) struct Campaign {
     ramps: Vec<Ramp>,
@@ -79,8 +79,8 @@ fn ramps(config: &CampaignConfig, warm_up_s: f64) -> Vec<Ramp> {
         if index == 0 {
             push(-warm_up_s, warm_up_s.min(0.5 * config.change_s), next);
         } else if group.is_remounted {
-            push(pause_start_s, 0.25 * pause_s, 0.0);
-            push(pause_start_s + 0.5 * pause_s, 0.25 * pause_s, next);
+            push(pause_start_s + 0.125 * pause_s, 0.25 * pause_s, 0.0);
+            push(pause_start_s + 0.625 * pause_s, 0.25 * pause_s, next);
         } else {
             push(pause_start_s + 0.25 * pause_s, 0.5 * pause_s, next);
         }

@@ -32,8 +32,9 @@ if [ ! -f "$vectors/params.vh" ]; then
 fi
 if grep -q '^`define VEC_RLS' "$vectors/params.vh"; then filter=rls
 elif grep -q '^`define VEC_LMS' "$vectors/params.vh"; then filter=lms
+elif grep -q '^`define VEC_SIGN_LMS' "$vectors/params.vh"; then filter=sign_lms
 else
-    echo "run.sh: $vectors/params.vh defines neither VEC_RLS nor VEC_LMS" >&2
+    echo "run.sh: $vectors/params.vh defines none of VEC_RLS, VEC_LMS, VEC_SIGN_LMS" >&2
     exit 2
 fi
 

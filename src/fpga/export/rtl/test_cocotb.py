@@ -41,11 +41,18 @@ def runner():
 
     folder = vector_folder()
     given = parameters(folder)
-    top = "rls_core" if "RLS" in given else "lms_core"
-    names = {"TAPS": "P" if top == "rls_core" else "N", "WIDTH": "W"}
+    top, taps = next(
+        (f"{filter_name.lower()}_core", taps)
+        for filter_name, taps in (("RLS", "P"), ("SIGN_LMS", "M"), ("LMS", "N"))
+        if filter_name in given
+    )
+    names = {"TAPS": taps, "WIDTH": "W"}
     names |= {key: key for key in ("ALPHA", "IALPHA", "DELTA", "DIV_ELEM", "MU", "EPS", "NLMS",
-                                   "D_PORT", "UPDATE_SUB", "FTZ", "DIV_LATENCY")}
-    sources = [HERE / name for name in (f"{top}.v", f"{top[:3]}_ctrl.v", "sp_ram.v", "fp_sim.v")]
+                                   "D_PORT", "UPDATE_SUB", "FTZ", "DIV_LATENCY", "W0", "GUARD",
+                                   "GUARDED", "HOLD", "RECOMPUTE")}
+    if top == "sign_lms_core":
+        del names["UPDATE_SUB"]
+    sources = [HERE / name for name in (f"{top}.v", f"{top[:-5]}_ctrl.v", "sp_ram.v", "fp_sim.v")]
     simulator = get_runner(os.environ.get("SIM", "icarus"))
     with tempfile.TemporaryDirectory() as build:
         simulator.build(

@@ -1,0 +1,224 @@
+//! The compensation stage: from three words of an assembly to three compensated ones.
+
+use super::campaign::calibrate_scenario;
+use super::suite::Observer;
+use crate::calibration::{
+    Calibration, CalibrationError, Compensation, CompensationForm, ErrorParameters, Misalignment,
+};
+use crate::gyro::CoilThermometer;
+use crate::report::{RunOutcome, RunReport};
+use crate::scenario::{
+    CompensationConfig, CompensationParameters, CompensationRule, GyroConfig, Resolved, Scenario,
+};
+use crate::signal::CompensationSheet;
+use crate::units::{
+    MICRO, arcsec_to_rad, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, rad_to_arcsec,
+    ratio_to_ppm,
+};
+
+/// What is taken out of the outputs, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Parameters {
+    compensation: Compensation,
+    form: CompensationForm,
+    found: ErrorParameters,
+    /// Where the parameters come from, for people.
+    source: String,
+}
+
+impl Parameters {
+    /// The parameters that a scenario gives.
+    ///
+    /// # Errors
+    /// [`CalibrationError::SingularSensitivity`] if their matrix has no inverse.
+    fn given(
+        form: CompensationForm,
+        given: &CompensationParameters,
+    ) -> Result<Self, CalibrationError> {
+        let found = error_parameters(given);
+        let coefficient = given.bias_deg_per_h_per_k.map(deg_per_h_to_deg_per_s);
+        let compensation = Compensation::new(found)?
+            .following_temperature(coefficient, given.reference_temperature_c);
+        Ok(Self {
+            compensation,
+            form,
+            found,
+            source: "given parameters".to_owned(),
+        })
+    }
+
+    /// The parameters that a campaign has found.
+    ///
+    /// # Errors
+    /// [`CalibrationError::SingularSensitivity`] if their matrix has no inverse.
+    fn found(
+        form: CompensationForm,
+        calibration: &Calibration,
+        source: String,
+    ) -> Result<Self, CalibrationError> {
+        Ok(Self {
+            compensation: Compensation::of(calibration)?,
+            form,
+            found: calibration.parameters,
+            source,
+        })
+    }
+
+    /// What the report shows of it.
+    ///
+    /// * `rate_deg_per_h`: mean true rates of the record.
+    pub(super) fn sheet(&self, rate_deg_per_h: [f64; 3]) -> CompensationSheet {
+        let rate_deg_per_s = rate_deg_per_h.map(deg_per_h_to_deg_per_s);
+        let left = |form| {
+            let residual = self.compensation.residual(form, rate_deg_per_s);
+            residual.map(deg_per_s_to_deg_per_h)
+        };
+        let angles = &self.found.misalignment_rad;
+        CompensationSheet {
+            form: match self.form {
+                CompensationForm::Exact => "exact",
+                CompensationForm::FirstOrder => "first-order",
+            },
+            source: self.source.clone(),
+            bias_deg_per_h: self.found.bias_deg_per_h(),
+            scale_factor_error_ppm: self.found.scale_error.map(ratio_to_ppm),
+            theta_arcsec: [
+                ("xy", angles.xy),
+                ("xz", angles.xz),
+                ("yx", angles.yx),
+                ("yz", angles.yz),
+                ("zx", angles.zx),
+                ("zy", angles.zy),
+            ]
+            .map(|(name, angle_rad)| (name, rad_to_arcsec(angle_rad))),
+            follows_temperature: self.compensation.needs_temperature(),
+            rate_deg_per_h,
+            exact_residual_deg_per_h: left(CompensationForm::Exact),
+            first_order_residual_deg_per_h: left(CompensationForm::FirstOrder),
+        }
+    }
+}
+
+/// How a run comes by its parameters.
+#[derive(Clone, Debug)]
+pub(super) enum CompensationPlan {
+    /// They are given.
+    Given(Box<Parameters>),
+    /// A campaign finds them.
+    Campaign {
+        /// The calibration scenario, which has passed the checks of a plan.
+        scenario: Box<Scenario>,
+        /// How rates follow from the outputs.
+        form: CompensationForm,
+    },
+}
+
+impl CompensationPlan {
+    /// The plan of a scenario; none without a compensation. A campaign is still to be checked.
+    ///
+    /// # Errors
+    /// [`CalibrationError::SingularSensitivity`] if given parameters have no inverse.
+    pub(super) fn of(resolved: &Resolved) -> Result<Option<Self>, CalibrationError> {
+        let Some(config) = &resolved.scenario.compensation else {
+            return Ok(None);
+        };
+        let form = form(config);
+        if let Some(campaign) = &resolved.campaign {
+            let scenario = Box::new(campaign.scenario.clone());
+            return Ok(Some(Self::Campaign { scenario, form }));
+        }
+        let given = config.parameters.as_ref();
+        let parameters = given
+            .map(|given| Parameters::given(form, given))
+            .transpose()?;
+        Ok(parameters.map(|known| Self::Given(Box::new(known))))
+    }
+
+    /// The parameters; a campaign is run for them, its first repeat.
+    ///
+    /// # Errors
+    /// In words: why the campaign gives none.
+    pub(super) fn parameters(&self) -> Result<Parameters, String> {
+        let (scenario, form) = match self {
+            Self::Given(known) => return Ok(Parameters::clone(known)),
+            Self::Campaign { scenario, form } => (scenario, *form),
+        };
+        let failed = |error: String| format!("campaign {}: {error}", scenario.name);
+        let (sheet, calibration) = calibrate_scenario(scenario, 0, &Unseen).map_err(failed)?;
+        let source = format!("campaign {}, {}", scenario.name, sheet.applied);
+        Parameters::found(form, &calibration, source).map_err(|error| failed(error.to_string()))
+    }
+}
+
+/// Hears nothing of a campaign, whose time is no part of the run's.
+struct Unseen;
+
+impl Observer for Unseen {
+    fn advanced(&self, _simulated_s: f64) {}
+    fn finished(&self, _index: usize, _report: &RunReport) {}
+    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
+}
+
+/// The form that a scenario asks for.
+fn form(config: &CompensationConfig) -> CompensationForm {
+    match config.form {
+        CompensationRule::Exact => CompensationForm::Exact,
+        CompensationRule::FirstOrder => CompensationForm::FirstOrder,
+    }
+}
+
+/// The twelve parameters in the units of the calibration.
+fn error_parameters(given: &CompensationParameters) -> ErrorParameters {
+    ErrorParameters {
+        scale_error: given.scale_factor_error_ppm.map(|error| MICRO * error),
+        misalignment_rad: Misalignment {
+            xy: arcsec_to_rad(given.theta_xy_arcsec),
+            xz: arcsec_to_rad(given.theta_xz_arcsec),
+            yx: arcsec_to_rad(given.theta_yx_arcsec),
+            yz: arcsec_to_rad(given.theta_yz_arcsec),
+            zx: arcsec_to_rad(given.theta_zx_arcsec),
+            zy: arcsec_to_rad(given.theta_zy_arcsec),
+        },
+        bias_deg_per_s: given.bias_deg_per_h.map(deg_per_h_to_deg_per_s),
+    }
+}
+
+/// The stage while it runs.
+#[derive(Debug)]
+pub(super) struct Compensator {
+    parameters: Parameters,
+    /// One for all three gyros, whose coils share one temperature; none where no bias follows it.
+    thermometer: Option<CoilThermometer>,
+}
+
+impl Compensator {
+    /// The stage before the first sample of the warm-up.
+    pub(super) fn new(parameters: &Parameters, gyro: &GyroConfig, sample_period_s: f64) -> Self {
+        let needs_temperature = parameters.compensation.needs_temperature();
+        Self {
+            parameters: parameters.clone(),
+            thermometer: needs_temperature.then(|| CoilThermometer::new(gyro, sample_period_s)),
+        }
+    }
+
+    /// The next words of the gyros x, y, z, compensated, deg/h.
+    pub(super) fn take(&mut self, raw_deg_per_h: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let [x, y, z] = raw_deg_per_h else {
+            // The reader refuses a compensation without an assembly.
+            return raw_deg_per_h.to_vec();
+        };
+        let mut compensated: [Vec<f64>; 3] = [x, y, z].map(|words| Vec::with_capacity(words.len()));
+        for ((x, y), z) in x.iter().zip(y).zip(z) {
+            let output = [*x, *y, *z].map(deg_per_h_to_deg_per_s);
+            let temperature_c = self.thermometer.as_mut().map(|coil| [coil.next_c(); 3]);
+            let Parameters {
+                compensation, form, ..
+            } = &self.parameters;
+            let rates = compensation.rates(*form, output, temperature_c);
+            for (words, rate) in compensated.iter_mut().zip(rates) {
+                words.push(deg_per_s_to_deg_per_h(rate));
+            }
+        }
+        compensated.into()
+    }
+}

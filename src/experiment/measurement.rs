@@ -1,0 +1,172 @@
+//! Measuring the records of one repeat: which words are compared with which.
+
+use rayon::prelude::*;
+
+use super::assembly_motion::drop_lacking;
+use super::campaign;
+use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
+use super::motion::motion;
+use super::pipeline_metrics;
+use super::plan::{DIVERGED_AT, Plan};
+use super::simulate::{GyroRecord, RecordLength, Simulation};
+use crate::filters::Divergence;
+use crate::metrics::{
+    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings, measure,
+};
+
+/// Channels of one repeat with their metrics.
+pub(super) type Channels = Vec<(String, ChannelMetrics)>;
+
+/// Measures every channel of a repeat, in the order of the report.
+pub(super) fn measure_repeat(
+    plan: &Plan,
+    simulation: &Simulation,
+    length: RecordLength,
+) -> Channels {
+    let scenario = &plan.resolved().scenario;
+    let sample_period_s = plan.sample_period_s();
+    let settings = &Settings {
+        motion: motion(scenario, sample_period_s),
+        bias_averaging_time_s: scenario.bias_averaging_time_s,
+        fit_tau_min_s: plan.fit_tau_min_s(),
+    };
+    let gyros = simulation.gyros.iter();
+    let cuts: Vec<Cut> = gyros
+        .map(|record| Cut {
+            record,
+            encoder_rad: simulation.encoder_rad.as_deref(),
+            length,
+            sample_period_s,
+            settings,
+        })
+        .collect();
+    let (raw, filters): (Channels, Channels) = rayon::join(
+        || {
+            let named = cuts.par_iter().zip(scenario.raw_channels());
+            let raw = named.map(|(cut, name)| (name, cut.measure_raw()));
+            let named = cuts.par_iter().zip(scenario.compensated_channels());
+            raw.chain(named.map(|(cut, name)| (name, cut.measure_compensated())))
+                .collect()
+        },
+        || {
+            let filters = simulation.filters.par_iter();
+            filters
+                .map(|(gyro, filter)| (filter.name.clone(), cuts[*gyro].measure_filter(filter)))
+                .collect()
+        },
+    );
+    let mut channels: Channels = raw.into_iter().chain(filters).collect();
+    for (name, metrics) in &mut channels {
+        drop_lacking(scenario, name, metrics);
+        campaign::drop_lacking(scenario, metrics);
+    }
+    channels
+}
+
+/// The measured part of one gyro's record and how to measure it.
+pub(super) struct Cut<'a> {
+    pub(super) record: &'a GyroRecord,
+    pub(super) encoder_rad: Option<&'a [f64]>,
+    pub(super) length: RecordLength,
+    pub(super) sample_period_s: f64,
+    pub(super) settings: &'a Settings,
+}
+
+impl Cut<'_> {
+    pub(super) fn measure_raw(&self) -> ChannelMetrics {
+        self.measure_unfiltered(&self.record.raw_deg_per_h)
+    }
+
+    fn measure_compensated(&self) -> ChannelMetrics {
+        self.measure_unfiltered(self.record.filter_input_deg_per_h())
+    }
+
+    fn measure_unfiltered(&self, words: &[f64]) -> ChannelMetrics {
+        match words.iter().position(|word| !word.is_finite()) {
+            Some(sample) => failed(
+                "not finite",
+                sample as u64,
+                format!("the word of the gyro is {}", words[sample]),
+                self.sample_period_s,
+            ),
+            None => self.measure(words, words, None),
+        }
+    }
+
+    fn measure(
+        &self,
+        channel_deg_per_h: &[f64],
+        input_deg_per_h: &[f64],
+        filter: Option<&FilterFacts>,
+    ) -> ChannelMetrics {
+        let first = self.length.warm_up;
+        let record = Record {
+            channel_deg_per_h: &channel_deg_per_h[first..],
+            raw_deg_per_h: &input_deg_per_h[first..],
+            // A recorded log has none.
+            truth_deg_per_h: self.record.truth_deg_per_h.get(first..).unwrap_or(&[]),
+            encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
+            sample_period_s: self.sample_period_s,
+            first_stamp_s: stamp_s(first as u64, self.sample_period_s),
+        };
+        measure(&record, self.settings, filter)
+    }
+
+    pub(super) fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
+        let mut metrics = match &filter.words {
+            Ok(words) => {
+                let facts = filter_facts(filter, words);
+                let input = self.record.filter_input_deg_per_h();
+                self.measure(&words.output_deg_per_h, input, Some(&facts))
+            }
+            Err(divergence) => diverged(divergence, self.sample_period_s),
+        };
+        if let Some(pipeline) = &filter.pipeline {
+            pipeline_metrics::enter(pipeline, self.sample_period_s, &mut metrics);
+        }
+        metrics
+    }
+}
+
+fn filter_facts(filter: &FinishedFilter, words: &FilterWords) -> FilterFacts {
+    FilterFacts {
+        shape: filter.shape.clone(),
+        dc_gain: words.dc_gain,
+        dc_gain_adapted: words.dc_gain_adapted,
+        mean_weights: words.mean_weights.clone(),
+        added_rate_deg_per_h: ADDED_RATE_DEG_PER_H,
+        rate_gains: words.rate_gains.clone(),
+        latency_s: pipeline_metrics::latency_s(filter.pipeline.as_ref()),
+    }
+}
+
+/// A channel that failed has no numbers of its record but the instant of its failure.
+fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
+    let (sample, message) = (divergence.sample, divergence.to_string());
+    failed("diverged", sample, message, sample_period_s)
+}
+
+fn failed(kind: &str, sample: u64, message: String, sample_period_s: f64) -> ChannelMetrics {
+    let mut channel = ChannelMetrics::default();
+    let at_s = stamp_s(sample, sample_period_s);
+    channel.metrics.insert(
+        DIVERGED_AT.to_owned(),
+        Metric::new(Estimate::exact(at_s), "s"),
+    );
+    channel.error = Some(ChannelFailure {
+        kind: kind.to_owned(),
+        sample,
+        message,
+    });
+    channel
+}
+
+/// Stamp of sample `index`, s from the start of the warm-up.
+pub(super) fn stamp_s(index: u64, sample_period_s: f64) -> f64 {
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "sample counts are far below 2^53"
+    )]
+    let ordinal = (index + 1) as f64;
+    ordinal * sample_period_s
+}

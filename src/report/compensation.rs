@@ -1,0 +1,77 @@
+//! The compensation of a run: in the table and in the summary.
+
+use serde_json::{Map, Value};
+
+use crate::report::json::{number, object};
+use crate::report::text::wrapped;
+use crate::signal::CompensationSheet;
+
+const INDENT: &str = "  ";
+
+/// Source, form and what both forms leave of the mean rates.
+pub(crate) fn compensation_text(sheet: &CompensationSheet, width: usize) -> String {
+    let form = match sheet.form {
+        "first-order" => "first order (patent, equations 23 and 24)",
+        _ => "exact inverse",
+    };
+    let temperature = if sheet.follows_temperature {
+        ", bias by the temperature of the coil"
+    } else {
+        ""
+    };
+    let line = format!(
+        "compensation: {form}{temperature}, {}; bias {} deg/h, scale factor error {} ppm, {} arcsec",
+        sheet.source,
+        triple(sheet.bias_deg_per_h, 4),
+        triple(sheet.scale_factor_error_ppm, 2),
+        sheet
+            .theta_arcsec
+            .map(|(name, angle)| format!("theta_{name} {angle:.2}"))
+            .join(", "),
+    );
+    let left = format!(
+        "perfect parameters would leave of the mean true rate {} deg/h: exact {} deg/h, first order \
+         {} deg/h",
+        triple(sheet.rate_deg_per_h, 3),
+        triple(sheet.exact_residual_deg_per_h, 4),
+        triple(sheet.first_order_residual_deg_per_h, 4),
+    );
+    wrapped(&line, INDENT, width) + &wrapped(&left, INDENT, width)
+}
+
+fn triple(values: [f64; 3], decimals: usize) -> String {
+    // A zero has no sign worth printing.
+    let texts = values.map(|value| format!("{:.decimals$}", value + 0.0));
+    format!("({})", texts.join(", "))
+}
+
+/// `compensation` of the summary.
+pub(crate) fn compensation_json(sheet: &CompensationSheet) -> Value {
+    let numbers = |what: &str, values: [f64; 3]| -> Value {
+        values.iter().map(|value| number(*value, what)).collect()
+    };
+    let angles: Map<String, Value> = sheet
+        .theta_arcsec
+        .iter()
+        .map(|(name, angle)| (format!("theta_{name}_arcsec"), number(*angle, name)))
+        .collect();
+    let mut record = object([
+        ("form", sheet.form.into()),
+        ("source", sheet.source.as_str().into()),
+        ("follows_temperature", sheet.follows_temperature.into()),
+    ]);
+    for (key, values) in [
+        ("bias_deg_per_h", sheet.bias_deg_per_h),
+        ("scale_factor_error_ppm", sheet.scale_factor_error_ppm),
+        ("rate_deg_per_h", sheet.rate_deg_per_h),
+        ("exact_residual_deg_per_h", sheet.exact_residual_deg_per_h),
+        (
+            "first_order_residual_deg_per_h",
+            sheet.first_order_residual_deg_per_h,
+        ),
+    ] {
+        record.insert(key.to_owned(), numbers(key, values));
+    }
+    record.extend(angles);
+    record.into()
+}
