@@ -14,6 +14,7 @@ mod channel_filter;
 mod compensation;
 mod group_findings;
 mod line_enhancer;
+mod log_compensation;
 mod log_filters;
 mod log_trial;
 mod measurement;
@@ -41,8 +42,11 @@ pub use calibrate::{
 };
 pub use calibration_sheet::calibration_sheet;
 pub use campaign::calibrate_scenario;
+pub use log_compensation::{
+    CompensatedLog, LogCompensation, compensate_log, load_log_compensation,
+};
 pub use log_filters::{LogFilters, load_log_filters};
-pub use log_trial::{LogMotion, LogSettings, LogTrial, LogTrialError, try_log};
+pub use log_trial::{LogInput, LogMotion, LogSettings, LogTrial, LogTrialError, try_log};
 pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{CoreSettings, PipelineSettings, PipelineTiming};

@@ -17,6 +17,6 @@ mod unit;
 pub use csv::csv_text;
 pub use error::LogError;
 pub use groups::{Mounting, RecordedGroup, RecordedGroups, read_groups};
-pub use log::{Log, LogFormat, read_log};
+pub use log::{Log, LogFormat, read_column, read_log};
 pub use timing::{TimeUnit, Timing};
 pub use unit::RateUnit;

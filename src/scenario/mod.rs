@@ -50,6 +50,7 @@ pub use calibration_config::{
     CalibrationConfig, CampaignConfig, CampaignGroup, EstimatorKind, ForgettingLaw,
 };
 pub use compensation_config::{CompensationConfig, CompensationParameters, CompensationRule};
+pub use compensation_source::load_calibration;
 pub use config::{
     Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
     SamplesFormat, Scenario,
