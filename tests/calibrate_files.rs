@@ -134,7 +134,7 @@ fn campaign() -> String {
          [turntable.calibration]\naxes = [\"x\", \"x\", \"x\", \"y\", \"y\", \"y\", \"z\", \"z\", \"z\"]\n\
          rates_deg_per_s = [10.0, 50.0, 90.0, 10.0, 50.0, 90.0, 10.0, 50.0, 90.0]\n\
          record_s = 36.0\nchange_s = 5.0\nremount_s = 10.0\n[calibration]\nestimators = [\"batch\"]\n\
-         apply = \"batch\"\n[gyro.output]\naverage_samples = 40\n[gyro.assembly]\n\
+         apply = \"batch\"\n[gyro.output]\nhalf_periods_per_sample = 25532\n[gyro.assembly]\n\
          bias_deg_per_h = [{x:?}, {y:?}, {z:?}]\nscale_factor_error_ppm = {scale:?}\n"
     )
 }
