@@ -182,8 +182,8 @@ fn a_bias_that_follows_the_coil_is_compensated_by_its_thermometer() {
         format!(
             "schema = 1\nname = \"warm\"\nfidelity = \"rate\"\nduration_s = 600.0\nwarm_up_s = 2.0\n\
              {silent}[gyro.temperature.ramp]\nstart_c = 25.0\nend_c = 45.0\nrate_c_per_min = 4.0\n\
-             [gyro.thermal]\nreference_c = 25.0\nbias_deg_per_h_per_k = 0.3\n\
-             bias_deg_per_h_per_k2 = 0.0\nbias_deg_per_h_per_c_per_min = 0.0\n[gyro.assembly]\n\
+             [gyro.thermal]\nreference_c = 25.0\nindex_per_k = 0.0\nlength_ppm_per_k = 0.0\nbias_deg_per_h_per_k = 0.3\n\
+             diameter_ppm_per_k = 0.0\nbias_deg_per_h_per_k2 = 0.0\nbias_deg_per_h_per_c_per_min = 0.0\n[gyro.assembly]\n\
              [compensation.parameters]\nreference_temperature_c = [25.0, 25.0, 25.0]\n\
              bias_deg_per_h_per_k = [{coefficient:?}, {coefficient:?}, {coefficient:?}]\n"
         )

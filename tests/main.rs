@@ -7,6 +7,7 @@ mod average_output;
 mod bit_exact;
 mod calibrate;
 mod calibrate_files;
+mod calibration_campaign;
 mod cli;
 mod cli_analyze;
 mod cli_budget;

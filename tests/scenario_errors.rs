@@ -440,7 +440,8 @@ fn two_motions_in_one_file_are_refused_but_a_later_file_replaces_the_motion() {
         [
             "x.toml:5:12: turntable.rotation contradicts turntable.static: give exactly one motion: \
           turntable.static, turntable.swing, turntable.multi_sine, turntable.steps, \
-             turntable.rotation, turntable.trapezoid, turntable.chirp, turntable.script"
+             turntable.rotation, turntable.trapezoid, turntable.chirp, turntable.script, \
+             turntable.calibration"
         ]
     );
     let suite = Suite::new(&[

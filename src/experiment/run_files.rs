@@ -65,6 +65,8 @@ fn write_calibration(
     };
     let toml = report::calibration_toml(sheet, &provenance);
     folder.write("calibration.toml", toml.as_bytes())?;
+    let svg = report::calibration_svg(&report.scenario.name, sheet);
+    folder.write("calibration.svg", svg.as_bytes())?;
     folder.write("groups.csv", report::groups_csv(&sheet.groups).as_bytes())
 }
 

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::autocovariance::LaggedProducts;
-use super::catalogue::{Applies, PIPELINE_ONLY, known_metrics};
+use super::catalogue::known_metrics;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::known_metric::{Applies, PIPELINE_ONLY};
 use super::multi_sine::measure_multi_sine;
 use super::psd::{log_binned, segment_samples, welch};
 use super::record::{FilterFacts, Motion, Record, Settings};

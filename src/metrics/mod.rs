@@ -24,6 +24,7 @@ mod correlation;
 mod delay;
 mod estimate;
 mod interval;
+mod known_metric;
 mod multi_sine;
 mod noise_delay;
 mod noise_fit;
@@ -56,11 +57,12 @@ pub use audit::{
     predict,
 };
 pub use bias::{block_means, effective_degrees_of_freedom, expected_bias_stability, samples_in};
-pub use catalogue::{Applies, KnownMetric, known_metrics};
+pub use catalogue::known_metrics;
 pub use channel::measure;
 pub use correlation::correlation_delay_s;
 pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
+pub use known_metric::{Applies, KnownMetric};
 pub use noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
     fit_noise, mixed_degrees_of_freedom,

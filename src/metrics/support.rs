@@ -1,8 +1,9 @@
 //! Whether a record of given length and motion can support a metric at all.
 
-use super::catalogue::{Applies, KnownMetric, find, known_metrics};
+use super::catalogue::{find, known_metrics};
 use super::delay::{CYCLES_MIN, SwingClock};
 use super::interval::round_to_count;
+use super::known_metric::{Applies, KnownMetric};
 use super::record::Motion;
 use super::settling::{STEP_SAMPLES_MIN, tail_start};
 use super::staircase::lack;

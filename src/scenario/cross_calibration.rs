@@ -27,7 +27,8 @@ impl Checks<'_> {
             return;
         }
         let along = "turntable.mounting.axis_along_table";
-        if self.resolved.is_written(along) {
+        // A manifest writes every key: the default is no wish.
+        if self.resolved.departure(along, along).is_some() {
             let message = format!(
                 "{along} has no effect beside turntable.calibration, whose axes say it for each group"
             );

@@ -7,6 +7,7 @@ mod axis;
 mod before_after;
 mod bode;
 mod budget;
+mod calibration;
 mod noise_delay;
 mod panel;
 mod picture;
@@ -20,6 +21,7 @@ mod theory;
 mod thermal;
 
 pub use budget::budget_svg;
+pub use calibration::calibration_svg;
 
 use picture::Picture;
 
