@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use fogbench::gyro::coil_temperatures_c;
-use fogbench::scenario::{Scenario, load_suite};
+use fogbench::scenario::{MotionConfig, Scenario, load_suite};
+use fogbench::signal::MotionSegment;
+use fogbench::turntable::{Turntable, campaign_angles_rad};
 use serde_json::Value;
 
 use crate::support::{
@@ -126,7 +128,7 @@ fn a_campaign_of_the_loop_model_keeps_its_lock_in_the_pauses() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let text = format!(
         "{}fidelity = \"loop\"\nwarm_up_s = 0.5\n[turntable.calibration]\n\
-         axes = [\"x\", \"x\", \"y\", \"z\"]\nrates_deg_per_s = [180.0, -360.0, 360.0, 180.0]\n\
+         axes = [\"x\", \"x\", \"y\", \"z\"]\nrates_deg_per_s = [90.0, -180.0, 180.0, 90.0]\n\
          record_s = 1.0\nwhole_turns = false\nchange_s = 1.0\nremount_s = 2.0\n\
          [gyro.output]\nhalf_periods_per_sample = 64\nrate_lsb_deg_per_s = 0.0\n\
          [calibration]\nestimators = [\"batch\"]\napply = \"batch\"\n{SILENT}{WARM}",
@@ -285,99 +287,18 @@ fn whole_turns_and_outliers_are_told_of_every_group() {
     }
 }
 
-#[test]
-fn plans_that_leave_parameters_open_are_refused_with_the_missing_motion() {
+/// `[turntable.calibration]` with more behind it.
+fn plan(axes: &str, rates: &str, more: &str) -> String {
+    format!("[turntable.calibration]\naxes = {axes}\nrates_deg_per_s = {rates}\n{more}")
+}
+
+const FOUR: &str = "[\"x\", \"x\", \"y\", \"z\"]";
+const SIX: &str = "[\"x\", \"x\", \"y\", \"y\", \"z\", \"z\"]";
+const SIX_RATES: &str = "[10.0, 50.0, 10.0, 50.0, 10.0, 50.0]";
+
+/// Every plan must be refused at its file, all messages said.
+fn assert_refused(cases: &[(String, &[&str])]) {
     let folder = tempfile::tempdir().expect("a scratch folder");
-    let plan = |axes: &str, rates: &str, more: &str| {
-        format!("[turntable.calibration]\naxes = {axes}\nrates_deg_per_s = {rates}\n{more}")
-    };
-    let three = "[\"x\", \"x\", \"y\", \"z\"]";
-    let cases = [
-        (
-            plan(
-                "[\"x\", \"x\", \"y\", \"y\"]",
-                "[10.0, 50.0, 10.0, 50.0]",
-                "",
-            ),
-            vec![
-                "turntable.calibration.axes",
-                "no motion about z",
-                "a mounting with z along the table axis",
-            ],
-        ),
-        (
-            plan("[\"x\", \"y\", \"z\"]", "[50.0, 50.0, 50.0]", ""),
-            vec![
-                "turntable.calibration.rates_deg_per_s",
-                "rank 3 for 4 unknowns",
-                "a second rate",
-            ],
-        ),
-        (
-            plan(three, "[10.0, 50.0, 50.0]", ""),
-            vec!["has 3 values, but turntable.calibration.axes has 4"],
-        ),
-        (
-            plan(three, "[10.0, 50.0, 50.0, 50.0]", "record_s = 6000.0\n"),
-            vec!["duration_s = 6480.0 s is too short", "take 24780.0 s"],
-        ),
-        (
-            plan(three, "[0.5, 50.0, 50.0, 50.0]", ""),
-            vec![
-                "rates_deg_per_s[0] = 0.5 deg/s makes no whole turn",
-                "whole_turns = false",
-            ],
-        ),
-        (
-            plan(three, "[10.0, 50.0, 50.0, 50.0]", "change_s = 1.0\n"),
-            vec!["turntable.calibration.change_s = 1.0 s is too short"],
-        ),
-        (
-            plan(
-                three,
-                "[10.0, 50.0, 50.0, 50.0]",
-                "[turntable.mounting]\naxis_along_table = \"x\"\n",
-            ),
-            vec!["turntable.mounting.axis_along_table has no effect"],
-        ),
-        (
-            plan(
-                "[\"x\", \"x\", \"y\", \"w\"]",
-                "[10.0, 50.0, 50.0, 50.0]",
-                "",
-            ),
-            vec![
-                "turntable.calibration.axes[3] = \"w\" is unknown: expected one of \"x\", \"y\", \"z\"",
-            ],
-        ),
-        (
-            plan(
-                "[\"x\", \"x\", \"y\", \"y\", \"z\", \"z\"]",
-                "[10.0, 50.0, 10.0, 50.0, 10.0, 50.0]",
-                WARM,
-            ),
-            vec![
-                "calibration.apply = \"arls-temperature\"",
-                "the temperature, or its rate, is the same",
-            ],
-        ),
-        (
-            plan(
-                "[\"x\", \"x\", \"y\", \"y\", \"z\", \"z\"]",
-                "[10.0, 50.0, 10.0, 50.0, 10.0, 50.0]",
-                "[[gate]]\nmetric = \"calibration_arls.mean_deg_per_h\"\nmax = 1.0\n",
-            ),
-            vec!["an estimate has bias_error_rms_deg_per_h, "],
-        ),
-        (
-            plan(
-                "[\"x\", \"x\", \"y\", \"y\", \"z\", \"z\"]",
-                "[10.0, 50.0, 10.0, 50.0, 10.0, 50.0]",
-                "[[gate]]\nmetric = \"x_raw.mean_deg_per_h\"\nmax = 1.0\n",
-            ),
-            vec!["x_raw.mean_deg_per_h: the record of a campaign holds many rates"],
-        ),
-    ];
     for (text, messages) in cases {
         let text = format!("{}{text}", base("plan", 6480.0));
         write(folder.path(), "plan.toml", &text);
@@ -385,10 +306,126 @@ fn plans_that_leave_parameters_open_are_refused_with_the_missing_motion() {
         assert_eq!(code(&output), 2, "{text}");
         let said = stderr(&output);
         assert!(said.contains("plan.toml:"), "{said}");
-        for message in messages {
+        for message in *messages {
             assert!(said.contains(message), "{message}\n{said}");
         }
     }
+}
+
+#[test]
+fn plans_that_leave_parameters_open_are_refused_with_the_missing_motion() {
+    let two = "[\"x\", \"x\", \"y\", \"y\"]";
+    let one_rate = "[\"x\", \"y\", \"z\"]";
+    assert_refused(&[
+        (
+            plan(two, "[10.0, 50.0, 10.0, 50.0]", ""),
+            &[
+                "turntable.calibration.axes",
+                "no motion about z",
+                "a mounting with z along the table axis",
+            ],
+        ),
+        (
+            plan(one_rate, "[50.0, 50.0, 50.0]", ""),
+            &[
+                "turntable.calibration.rates_deg_per_s",
+                "rank 3 for 4 unknowns",
+                "a second rate",
+            ],
+        ),
+        (
+            plan(SIX, SIX_RATES, WARM),
+            &[
+                "calibration.apply = \"arls-temperature\"",
+                "the temperature, or its rate, is the same",
+            ],
+        ),
+    ]);
+}
+
+#[test]
+fn contradictions_of_a_campaign_are_refused_where_they_stand() {
+    let rates = "[10.0, 50.0, 50.0, 50.0]";
+    let gate = |metric: &str| {
+        let gate = format!("[[gate]]\nmetric = \"{metric}\"\nmax = 1.0\n");
+        plan(SIX, SIX_RATES, &gate)
+    };
+    let along = "[turntable.mounting]\naxis_along_table = \"x\"\n";
+    assert_refused(&[
+        (
+            plan(FOUR, "[10.0, 50.0, 50.0]", ""),
+            &["has 3 values, but turntable.calibration.axes has 4"],
+        ),
+        (
+            plan(FOUR, rates, "record_s = 6000.0\n"),
+            &["duration_s = 6480.0 s is too short", "take 24780.0 s"],
+        ),
+        (
+            plan(FOUR, "[0.5, 50.0, 50.0, 50.0]", ""),
+            &[
+                "rates_deg_per_s[0] = 0.5 deg/s makes no whole turn",
+                "whole_turns = false",
+            ],
+        ),
+        (
+            plan(FOUR, rates, "change_s = 1.0\n"),
+            &["turntable.calibration.change_s = 1.0 s is too short"],
+        ),
+        (
+            plan(FOUR, rates, along),
+            &["turntable.mounting.axis_along_table has no effect"],
+        ),
+        (
+            plan("[\"x\", \"x\", \"y\", \"w\"]", rates, ""),
+            &[
+                "turntable.calibration.axes[3] = \"w\" is unknown: expected one of \"x\", \"y\", \"z\"",
+            ],
+        ),
+        (
+            gate("calibration_arls.mean_deg_per_h"),
+            &["an estimate has bias_error_rms_deg_per_h, "],
+        ),
+        (
+            gate("x_raw.mean_deg_per_h"),
+            &["x_raw.mean_deg_per_h: the record of a campaign holds many rates"],
+        ),
+    ]);
+}
+
+#[test]
+fn the_table_moves_smoothly_and_is_at_the_angle_of_the_closed_form() {
+    const PERIOD_S: f64 = 0.02;
+    let mut config = shipped("calibration-both-senses").turntable;
+    let MotionConfig::Calibration(campaign) = &mut config.motion else {
+        panic!("a campaign");
+    };
+    campaign.record_s = 20.0;
+    let campaign = campaign.clone();
+    let mut table = Turntable::new(&config, 15.0, PERIOD_S);
+    let angles = campaign_angles_rad(&campaign, 15.0);
+    let mut time_s = 0.0;
+    let mut before: Option<MotionSegment> = None;
+    let mut fastest_change: f64 = 0.0;
+    for (group, angle) in campaign.groups().iter().zip(angles) {
+        while time_s < 15.0 + group.start_s - 0.5 * PERIOD_S {
+            let segments = table.next_platform_segments();
+            let along = segments[2];
+            if let Some(before) = before {
+                // Earth rate changes places with a new mounting: 15 deg/h at most.
+                assert_close(along.rate_at(0.0), before.rate_at(1.0), 1e-12, 2.0 * 7.3e-5);
+            }
+            fastest_change = segments
+                .iter()
+                .map(|segment| segment.slope_at(0.5).abs() / PERIOD_S)
+                .fold(fastest_change, f64::max);
+            before = Some(along);
+            time_s += PERIOD_S;
+        }
+        assert_close(table.angle_rad(), angle, 1e-12, 1e-6);
+    }
+    // 90 deg/s in the run-up of 15 s and 80 in half a minute: pi/2 of the mean slopes.
+    let steepest_rad_per_s2 = (90.0_f64 / 15.0 * std::f64::consts::FRAC_PI_2).to_radians();
+    assert_close(fastest_change, steepest_rad_per_s2, 1e-3, 0.0);
 }
 
 #[test]

@@ -28,6 +28,9 @@ const MISFIT: f64 = 6.0;
 /// # Errors
 /// [`CalibrationError`] of the applied estimator: unusable numbers, a plan that leaves parameters
 /// open, weights that leave too few groups, scale factors that no gyro has.
+///
+/// # Panics
+/// Never: the applied estimator is among those that run.
 pub fn calibration_sheet(
     groups: &[CalibrationGroup],
     settings: &CalibrationConfig,

@@ -25,6 +25,9 @@ pub fn reference_toml() -> &'static str {
 
 /// The calibration settings that stand in the reference: what a file of groups is calibrated with
 /// if nothing else is said.
+///
+/// # Panics
+/// If the reference is not valid, which a test excludes.
 #[must_use]
 pub fn reference_calibration() -> CalibrationConfig {
     let mut root = Table::new();

@@ -34,13 +34,13 @@ pub fn calibration_svg(name: &str, sheet: &CalibrationSheet) -> String {
     weights(&mut picture, sheet);
     let mut legend = Legend::new(56.0);
     for (index, found) in sheet.estimates.iter().enumerate() {
-        let stroke = stroke_of(index);
+        let colour = stroke_of(index).colour;
         let mark = if found.name == sheet.applied {
             " (applied)"
         } else {
             ""
         };
-        let look = (shape_of(index), stroke.colour);
+        let look = (shape_of(index), colour);
         legend.marker(&mut picture, look, &format!("{}{mark}", found.name));
     }
     legend.text(&mut picture, "bars: 95 % intervals from");
