@@ -72,7 +72,7 @@ fn cells_that_are_no_number_out_of_range_or_empty_are_named_with_line_and_column
         ),
         (
             "x,10,2299,1,2,3",
-            "column temperature_c: 2299 deg C is out of range: expected -100 to 200 deg C",
+            "column temperature_c: 2299 deg C is out of range: expected -100 to 150 deg C",
         ),
         (
             "a,10,25,1,2,3",
@@ -308,7 +308,7 @@ fn a_calibration_that_is_none_is_refused_at_its_line() {
         let output = fogbench(folder.path(), &[&log[..], &rest].concat());
         (code(&output), stderr(&output))
     };
-    let wrong = CALIBRATION.replace("206.26480624709636", "3e5");
+    let wrong = CALIBRATION.replace("206.26480624709636", "3e6");
     write(folder.path(), "wrong.toml", &wrong);
     let (exit, words) = analyze("wrong.toml", "gx,gy,gz");
     assert_eq!(exit, 2);

@@ -14,8 +14,8 @@ const TABLE_RATE_MAX_DEG_PER_S: f64 = 2000.0;
 /// Largest rate that an output may stand for, deg/s: wide enough that outputs in a wrong unit come
 /// as far as the comparison with the rates, which names the unit.
 const RATE_MAX_DEG_PER_S: f64 = 1e9;
-/// Believable temperatures, deg C.
-const TEMPERATURE_C: (f64, f64) = (-100.0, 200.0);
+/// Believable temperatures, deg C: those that a compensation takes as its reference.
+const TEMPERATURE_C: (f64, f64) = (-100.0, 150.0);
 /// Fastest change of these, K/min.
 const WARMING_MAX_K_PER_MIN: f64 = 1000.0;
 
