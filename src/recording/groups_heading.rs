@@ -34,6 +34,9 @@ impl Quantity {
     }
 }
 
+/// The quantity of a gyro, 0 to 2.
+type OfAxis = fn(usize) -> Quantity;
+
 /// A column of the file.
 #[derive(Clone, Debug)]
 pub(super) struct HeadedColumn {
@@ -185,9 +188,9 @@ fn missing(columns: &[HeadedColumn]) -> Vec<String> {
             format!("`{stem}_{}`", SUFFIXES[0].0)
         });
     }
-    let some = |of: &dyn Fn(usize) -> Quantity| (0..3).any(|axis| has(of(axis)));
+    let some = |of: OfAxis| (0..3).any(|axis| has(of(axis)));
     if !has(Quantity::Temperature(None)) {
-        if some(&|axis| Quantity::Temperature(Some(axis))) {
+        if some(|axis| Quantity::Temperature(Some(axis))) {
             for (_, name) in axes().filter(|(axis, _)| !has(Quantity::Temperature(Some(*axis)))) {
                 lacking.push(format!("`temperature_{name}_c`"));
             }
@@ -195,17 +198,17 @@ fn missing(columns: &[HeadedColumn]) -> Vec<String> {
             lacking.push("`temperature_c`".to_owned());
         }
     }
-    let threes: [(&dyn Fn(usize) -> Quantity, &str, &str); 4] = [
-        (&Quantity::Reference, "reference", "deg_per_s"),
-        (&Quantity::StandardError, "standard_error", "deg_per_h"),
+    let threes: [(OfAxis, &str, &str); 4] = [
+        (Quantity::Reference, "reference", "deg_per_s"),
+        (Quantity::StandardError, "standard_error", "deg_per_h"),
         (
-            &|axis| Quantity::TemperatureRate(Some(axis)),
+            |axis| Quantity::TemperatureRate(Some(axis)),
             "temperature_rate",
             "k_per_min",
         ),
-        (&Quantity::Rejected, "rejected", ""),
+        (Quantity::Rejected, "rejected", ""),
     ];
-    for (of, stem, suffix) in threes.into_iter().filter(|(of, _, _)| some(of)) {
+    for (of, stem, suffix) in threes.into_iter().filter(|(of, _, _)| some(*of)) {
         for (_, name) in axes().filter(|(axis, _)| !has(of(*axis))) {
             let end = if suffix.is_empty() { "" } else { "_" };
             lacking.push(format!("`{stem}_{name}{end}{suffix}`"));
