@@ -64,9 +64,11 @@ fn samples_text(channels: &[(&str, &ChannelMetrics)], width: usize, colour: bool
         .iter()
         .filter(|(key, _)| has(key))
         .collect();
-    let Some(count) = channels.first().map(|(_, metrics)| repeats_of(metrics)) else {
+    let Some((_, first)) = channels.first().filter(|_| has("mean_deg_per_h")) else {
+        // A record of many rates, as of a campaign, has no mean worth printing.
         return String::new();
     };
+    let count = repeats_of(first);
     let title = format!("statistics of the record, means over {count} runs, deg/h");
     let mut text = format!(
         "\n{}",

@@ -122,6 +122,9 @@ fn each_alternative_of_the_reference_validates_when_enabled() {
             .filter(|line| !block.starts_with(line.split(' ').next().unwrap()))
             .map(|line| format!("{line}\n"))
             .collect();
+        // Four groups of ten minutes and their pauses do not fit into twenty seconds.
+        let is_campaign = block.starts_with("[turntable.calibration]");
+        let least = least.replace("20.0", if is_campaign { "3180.0" } else { "20.0" });
         let base = if block.starts_with("extends") {
             "extends = \"base.toml\"\n".to_owned()
         } else {
