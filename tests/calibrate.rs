@@ -106,7 +106,8 @@ fn assert_row(report: &Value, estimator: &str, biases: [f64; 3], errors_ppm: [f6
     let found = &report["calibration"]["estimates"][estimator]["parameters"];
     let pairs = three(&found["bias_deg_per_h"]).into_iter().zip(biases);
     for (got, want) in pairs {
-        assert_close(got, want, 0.0, 1e-6);
+        // The temperatures are printed to 1 mK, which moves the last digit of weighted answers.
+        assert_close(got, want, 0.0, 2e-6);
     }
     let scales = three(&found["scale_factor_error_ppm"]);
     for (axis, want) in errors_ppm.into_iter().enumerate() {
