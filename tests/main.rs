@@ -5,6 +5,8 @@ mod architecture;
 mod assembly;
 mod average_output;
 mod bit_exact;
+mod calibrate;
+mod calibrate_files;
 mod calibration_campaign;
 mod cli;
 mod cli_analyze;

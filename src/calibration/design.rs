@@ -25,6 +25,17 @@ impl GroupDesign {
 }
 
 /// What the model lets depend on temperature, each an unknown more per gyro.
+///
+/// The model of gyro i with all three is
+///
+/// ```text
+/// Wm_i = XA_i W + B_i + b_i (T_i - T_ref) + d_i dT_i/dt + k_i (T_i - T_ref) W_i
+/// ```
+///
+/// In a warm-up of one exponential `dT/dt` is proportional to `T_end - T`, and the Shupe term d is
+/// then already in the bias column: both together leave a plan without full rank. A temperature
+/// coefficient k of the scale factor, 10 ppm/K say, is 36 deg/h over 11 K at 90 deg/s; only its own
+/// column removes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TemperatureColumns {
     /// Bias linear in the temperature.
@@ -105,6 +116,10 @@ pub(super) fn design_matrix(
 }
 
 /// Factors that bring the columns to a common size before their rank is judged.
+///
+/// Singular values compare columns of different units (deg/s, 1, K): without a common size a bias
+/// column of ones beside rates of 90 deg/s would look nearly absent, and a change of unit would
+/// change the verdict.
 ///
 /// Rates share the largest rate of all, so that an axis that sees nothing but Earth rate counts as
 /// not moved; each other column has its own largest value. A column of zeros keeps factor 1.

@@ -1,4 +1,20 @@
 //! What is wrong with data that do not fit the stated motion.
+//!
+//! A gyro of any use sees the rate about its axis to a few percent and cross rates to a few mrad. The
+//! group means of a turning table therefore tell mistakes of bookkeeping from errors of the gyro
+//! before anything is estimated. With the stated rate `W_s` about axis s and the largest output
+//! `Wm_g` of gyro g:
+//!
+//! | what is found | what it means |
+//! |---|---|
+//! | g is not s | the columns or the mountings are swapped |
+//! | `Wm_g / W_s` near -1 | the sense is reversed; least squares would put K_G near -2 |
+//! | `Wm_g / W_s` near a ratio of units | outputs or rates are in another unit than stated |
+//! | no `W_s` for one s | a mounting is missing |
+//!
+//! Least squares over such data does not fail, it gives wrong numbers: one reversed group of nine at
+//! 10 deg/s leaves a scale-factor error of a few percent, which a poor gyro might have. That is why
+//! this comes first.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -9,7 +25,8 @@ use super::observations::GroupObservation;
 /// Largest scale-factor error that is taken for one; beyond it the data are refused.
 pub const SCALE_ERROR_MAX: f64 = 0.1;
 
-/// Groups slower than this part of the fastest say too little to judge.
+/// Groups slower than this part of the fastest say too little to judge: their biases, horizontal
+/// Earth rate and the cross rates of a tilted table are no longer small against the rate.
 const RATE_SHARE_MIN: f64 = 0.01;
 
 /// Ratios of output to reference that a mistaken unit makes, and how to say so.
@@ -196,15 +213,15 @@ pub fn diagnose(groups: &[GroupObservation]) -> Vec<Finding> {
     }
     findings.extend(scope(&sights, |sight| sight.ratio < 0.0).map(Finding::ReversedSense));
     findings.extend(UNITS.iter().filter_map(|(ratio, _)| {
-        let is_one = |sight: &Sight| near(sight.ratio, *ratio);
+        let is_one = |sight: &Sight| {
+            unit_ratio(sight.ratio).is_some_and(|known| known.to_bits() == ratio.to_bits())
+        };
         scope(&sights, is_one).map(|scope| Finding::WrongUnit {
             ratio: *ratio,
             scope,
         })
     }));
-    let is_odd = |sight: &Sight| {
-        !near(sight.ratio, 1.0) && !UNITS.iter().any(|(ratio, _)| near(sight.ratio, *ratio))
-    };
+    let is_odd = |sight: &Sight| !near(sight.ratio, 1.0) && unit_ratio(sight.ratio).is_none();
     if let Some(scope) = scope(&sights, is_odd) {
         let odd = || sights.iter().filter(|sight| is_odd(sight));
         #[expect(
@@ -217,10 +234,24 @@ pub fn diagnose(groups: &[GroupObservation]) -> Vec<Finding> {
     findings
 }
 
+/// Whether a ratio is a known one, of either sign, as far as a believable scale error goes.
 fn near(ratio: f64, known: f64) -> bool {
     (ratio.abs() / known - 1.0).abs() <= SCALE_ERROR_MAX
 }
 
+/// The known ratio that a ratio comes closest to, within what a scale error may make of it.
+///
+/// Two of them, 180/pi and 20 pi, lie within a tenth of each other: only the closer one is meant.
+fn unit_ratio(ratio: f64) -> Option<f64> {
+    let distance = |known: &f64| (ratio.abs() / known).ln().abs();
+    let known = UNITS.iter().map(|(known, _)| *known);
+    let likely = known.filter(|known| near(ratio, *known));
+    likely.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+/// What a group says: nothing if it turns about no one axis, or too slowly.
+///
+/// * `fastest`: largest rate of all groups, deg/s.
 fn sight(number: usize, group: &GroupObservation, fastest: f64) -> Option<Sight> {
     let rates = group.design.reference_rate_deg_per_s;
     let stated = main_axis(rates)?;

@@ -18,6 +18,13 @@ const WEIGHTED_CONDITION_MAX: f64 = 1e12;
 
 /// Estimates the parameters of an assembly from group means in the order they were taken.
 ///
+/// For each gyro minimises `sum_i w_i (y_i - a_i x)^2` over its unknowns x, with weights `w_i` that are
+/// 1 for a batch and what the recursion leaves otherwise ([`Reading::weights`]): recursive least squares
+/// with forgetting is weighted least squares, apart from the prior `P_0`. The estimate is linear in the
+/// observations, `x = G y`, so that its covariance from independent errors of the means is
+/// `G Sigma G^T`. It holds for any weights, whether or not they are the inverse variances; what the
+/// model lacks (drift, table errors) is not in it, for which see `reduced_chi_square`.
+///
 /// * `groups`: all rates deg/s, temperatures deg C.
 /// * `reference_temperature_c`: temperature of the gyros x, y, z that bias and scale factor are given
 ///   at where the estimator has temperature columns; none: the weighted mean over the groups. Without
@@ -61,6 +68,9 @@ pub fn estimate(
 }
 
 /// Forgetting factors of one gyro and the weights they leave.
+///
+/// Each gyro has its own where each has its own thermometer: the patent's sigma_x, sigma_y, sigma_z
+/// (equation 16). The first factor only discounts the prior.
 struct AxisWeights {
     factors: Vec<f64>,
     rows: Vec<f64>,
@@ -85,6 +95,8 @@ impl AxisWeights {
     }
 }
 
+/// Weighted mean temperature: where the bias of a gyro is best known, and what an estimate without
+/// temperature columns belongs to, deg C.
 fn mean_temperature(designs: &[GroupDesign], weights: &[f64], axis: usize) -> f64 {
     let total: f64 = weights.iter().sum();
     let pairs = designs.iter().zip(weights);
@@ -101,6 +113,10 @@ struct AxisFit {
     condition_number: f64,
 }
 
+/// Fits one gyro.
+///
+/// The plan has full rank, but weights may take it away again: a factor of 1e-3 for every group of a
+/// mounting leaves the other mountings alone to speak. The condition number of `sqrt(w_i) a_i` tells.
 fn fit_axis(
     groups: &[GroupObservation],
     estimator: &Estimator,
@@ -139,6 +155,7 @@ fn fit_axis(
     })
 }
 
+/// The recursion in square-root form over the groups in order.
 fn recursive_fit(
     rows: &DMatrix<f64>,
     outputs: &DVector<f64>,
@@ -157,6 +174,11 @@ fn recursive_fit(
     })
 }
 
+/// Puts the fits of the three gyros together as `x1..x12` and their covariance.
+///
+/// The gyros share no noise, so that the covariance has three blocks of 4 by 4; coefficients of
+/// temperature stand beside it with their standard errors alone. For the literal recursion the
+/// parameters are its own, rounding included, and everything else that of the square-root form.
 fn assemble(
     groups: &[GroupObservation],
     estimator: &Estimator,
@@ -225,7 +247,9 @@ fn assemble(
     }
 }
 
-/// `G Sigma G^T` with the groups' variances on the diagonal of Sigma.
+/// Covariance of the estimate: `G Sigma G^T` with the groups' variances on the diagonal of Sigma.
+///
+/// * `gain`: G, `[columns, groups]`; `standard_errors`: `[groups]`, deg/s.
 fn sandwich(gain: &DMatrix<f64>, standard_errors: &[f64]) -> DMatrix<f64> {
     let mut scaled = gain.clone();
     for (mut column, error) in scaled.column_iter_mut().zip(standard_errors) {

@@ -3,6 +3,8 @@
 use super::error::CalibrationError;
 
 /// Least forgetting factor: what a group behind a large temperature step keeps.
+///
+/// F1 would become negative beyond `c dT = 1`, and factors near zero leave too few groups of weight.
 pub const FORGETTING_FACTOR_MIN: f64 = 1e-3;
 
 /// How the forgetting factor falls with the temperature step `dT = |T_{j+1} - T_j|`.
@@ -37,6 +39,12 @@ pub enum Forgetting {
 }
 
 /// Where equation (15) puts the factor; the printed equation is an image that is lost.
+///
+/// Equation (14) updates the information `P^-1` by `P^-1 <- lambda (P^-1 + a^T a / mu)`. With
+/// `lambda = mu = sigma` this is `sigma P^-1 + a^T a`: old groups lose weight by sigma, the new one
+/// counts in full, and group i ends with the product of all later factors. The other readings are kept
+/// for comparison. R2 gives a group at steady temperature no weight at all; R3 raises the weight of
+/// groups taken while the temperature moves, opposite to the stated aim.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reading {
     /// R1: `lambda = mu = sigma`; `P^-1 <- sigma P^-1 + a^T a`. Row weight `prod_{l>i} sigma_l`.
@@ -90,6 +98,7 @@ impl Forgetting {
         steps.map(|step_k| self.factor(step_k)).collect()
     }
 
+    /// `sigma` for a step of the temperature, K.
     fn factor(&self, step_k: f64) -> f64 {
         let factor = match *self {
             Self::Constant(factor) => factor,

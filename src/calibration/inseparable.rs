@@ -1,4 +1,18 @@
 //! The null space of a plan in words: what cannot be told apart, and which motion is missing.
+//!
+//! A plan of rows `a_i` cannot tell x from `x + n` if `a_i n = 0` for every group: n is then a null
+//! vector of the design. Its non-zero entries say which columns, hence which parameters, take part:
+//!
+//! | null vector | plan | in words |
+//! |---|---|---|
+//! | `Wz` alone | no mounting c | the third column of XA has no effect |
+//! | `Wx`, `Wy`, `Wz`, 1 | one rate w only | a bias b is the same as b / w in all three |
+//! | `Wx`, 1 | x at one rate, y and z at two | the same for x alone |
+//! | `Wx`, `Wy` | tilted case, never turned about one alone | their sum is seen, not their parts |
+//! | 1, T | constant temperature | bias and its coefficient are one |
+//!
+//! Singular vectors of a null space of several dimensions are any mixture of these. Elimination with
+//! pivoting (`reduce`) turns them into vectors of few columns that can be put into words.
 
 use nalgebra::DMatrix;
 
@@ -78,6 +92,8 @@ fn null_vectors(matrix: &DMatrix<f64>, tolerance: f64) -> Vec<Vec<f64>> {
     basis
 }
 
+/// Makes the vectors sparse: each is the only one with an entry at its pivot.
+///
 /// Gauss-Jordan elimination with the largest remaining entry of each row as its pivot.
 fn reduce(basis: &mut [Vec<f64>]) {
     for pivot_row in 0..basis.len() {
@@ -116,6 +132,7 @@ fn parameters(column: Column) -> &'static [&'static str] {
     }
 }
 
+/// A null vector in words, from the columns that take part in it.
 fn describe(parts: &[Column]) -> Inseparable {
     let names: Vec<&'static str> = parts
         .iter()

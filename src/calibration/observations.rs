@@ -1,4 +1,10 @@
 //! Group means: what the estimators see of a record.
+//!
+//! A group is one mounting at one constant rate, minutes long. Its noise averages down as
+//! `ARW / sqrt(t)`: 0.05 deg/sqrt(h) over 600 s leaves 0.12 deg/h. Three things do not average down and
+//! are dealt with here: outliers, of which 0.2 % at 50 standard deviations raise that error two and a
+//! half times; horizontal Earth rate over a part of a turn, up to 0.2 deg/h at 10 deg/s over 600 s;
+//! and the temperature, which belongs to the same stretch of time as the outputs.
 
 use super::design::GroupDesign;
 use super::error::{AXES, CalibrationError};
@@ -48,13 +54,20 @@ pub(super) fn check_groups(groups: &[GroupObservation]) -> Result<(), Calibratio
 }
 
 /// Threshold of the rejection of outliers in robust standard deviations.
+///
+/// A normal sample lies beyond 4 with a probability of 6.3e-5: of 6000 samples none or one goes.
 pub const OUTLIER_THRESHOLD: f64 = 4.0;
 
+/// Factor `1 / Phi^-1(3/4)`.
+///
 /// Median absolute deviation of a normal distribution times this is its standard deviation.
 const MAD_TO_STD: f64 = 1.4826;
+/// Factor `sqrt(pi / 2)`.
+///
 /// Mean absolute deviation of a normal distribution times this is its standard deviation.
 const MEAN_DEVIATION_TO_STD: f64 = 1.2533;
-/// Blocks that the standard error of a mean rests on.
+/// Blocks that the standard error of a mean rests on: few enough to be longer than the correlation of
+/// the samples, enough to know their spread to 16 %.
 const BLOCKS: usize = 20;
 
 /// The samples of one group.
@@ -170,6 +183,7 @@ pub fn group_means(
     Ok(means)
 }
 
+/// Samples to average, from the first: all, or the longest whole turns.
 fn averaged_samples(
     averaging: Averaging,
     available: usize,
@@ -217,6 +231,7 @@ fn without_outliers(samples: &[f64], threshold: Option<f64>) -> Vec<Option<f64>>
         .collect()
 }
 
+/// Middle value, or the mean of the two; NaN sorts to the end.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;

@@ -54,6 +54,8 @@ pub fn horizontal_residue_deg_per_s(
     horizontal_deg_per_s * sinc(half_rad).abs()
 }
 
+/// Longest averaging time after which the horizontal Earth rate has gone round whole times.
+///
 /// Longest time of whole turns of the table within `time_s`, s, and the turns.
 ///
 /// At rest, or in less than a turn, there is none.

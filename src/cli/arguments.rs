@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::calibrate_arguments::CalibrateOptions;
 use super::hardware_arguments::{ExportOptions, TimingOptions};
 use super::log_arguments::{AnalyzeOptions, FilterLogOptions};
 
@@ -44,6 +45,8 @@ pub(super) enum Command {
     Analyze(AnalyzeOptions),
     /// Replay a recorded log through the filters of a scenario and measure what they make of it
     Filter(FilterLogOptions),
+    /// Find the errors of a three-axis assembly from group means or a simulated campaign
+    Calibrate(CalibrateOptions),
     /// Print clocks, units and sample rates of a filter in hardware
     Timing(TimingOptions),
     /// Write golden vectors, waveforms or RTL of a hardware pipeline into a folder

@@ -7,6 +7,7 @@ use clap::Args;
 use super::arguments::Format;
 use crate::experiment::LogMotion;
 use crate::recording::{RateUnit, TimeUnit};
+use crate::scenario::CompensationRule;
 
 /// A log and how to measure it.
 #[derive(Args, Debug)]
@@ -27,6 +28,29 @@ pub(super) struct LogOptions {
     /// Column of a text by its heading or number from 1 [default: the only one beside the time]
     #[arg(long, value_name = "COLUMN")]
     pub(super) column: Option<String>,
+    /// Columns of the gyros x, y, z of an assembly, to be compensated
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        value_delimiter = ',',
+        conflicts_with = "column",
+        requires = "calibration",
+        requires = "axis"
+    )]
+    pub(super) columns: Vec<String>,
+    /// Parameters to take out of these columns: calibration.toml as `calibrate` and `run` write it
+    #[arg(long, value_name = "FILE", requires = "columns")]
+    pub(super) calibration: Option<PathBuf>,
+    /// Axis to measure and to filter after compensation: x, y or z
+    #[arg(long, value_name = "AXIS", requires = "columns", value_parser = axis)]
+    pub(super) axis: Option<usize>,
+    /// Column of the assembly's temperature, deg C, which its biases follow
+    #[arg(long, value_name = "COLUMN", requires = "calibration")]
+    pub(super) temperature_column: Option<String>,
+    /// How rates follow from the outputs: `exact`, or `first-order` as in the patent
+    #[arg(long, value_name = "FORM", default_value = "exact", requires = "calibration",
+          value_parser = rule)]
+    pub(super) compensation_form: Rule,
     /// Column of the time; its stamps must be equally spaced
     #[arg(long, value_name = "COLUMN")]
     pub(super) time: Option<String>,
@@ -75,6 +99,22 @@ pub(super) struct FilterLogOptions {
     /// Write the filtered samples as CSV as well
     #[arg(long, requires = "output")]
     pub(super) csv: bool,
+}
+
+/// How rates follow from outputs.
+pub(super) type Rule = CompensationRule;
+
+fn rule(text: &str) -> Result<Rule, String> {
+    match text {
+        "exact" => Ok(Rule::Exact),
+        "first-order" => Ok(Rule::FirstOrder),
+        _ => Err("expected exact or first-order".to_owned()),
+    }
+}
+
+fn axis(text: &str) -> Result<usize, String> {
+    let found = ["x", "y", "z"].iter().position(|axis| *axis == text);
+    found.ok_or_else(|| "expected x, y or z".to_owned())
 }
 
 fn finite(text: &str) -> Result<f64, String> {

@@ -4,6 +4,8 @@
 
 mod arguments;
 mod budget;
+mod calibrate;
+mod calibrate_arguments;
 mod check;
 mod exit;
 mod expand;
@@ -48,6 +50,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Budget(options) => budget::budget(options),
         Command::Analyze(options) => log::analyze(options),
         Command::Filter(options) => log::filter(options),
+        Command::Calibrate(options) => calibrate::calibrate(options),
         Command::Timing(options) => timing::timing(options),
         Command::Export(options) => export::export(options),
     };

@@ -31,7 +31,7 @@ impl Parameters {
     ///
     /// # Errors
     /// [`CalibrationError::SingularSensitivity`] if their matrix has no inverse.
-    fn given(
+    pub(super) fn given(
         form: CompensationForm,
         given: &CompensationParameters,
     ) -> Result<Self, CalibrationError> {
@@ -62,6 +62,22 @@ impl Parameters {
             found: calibration.parameters,
             source,
         })
+    }
+
+    /// Whether the biases follow the temperatures of the gyros.
+    pub(super) fn needs_temperature(&self) -> bool {
+        self.compensation.needs_temperature()
+    }
+
+    /// Rates about the case axes for one word of each gyro, deg/h.
+    pub(super) fn rates_deg_per_h(
+        &self,
+        output_deg_per_h: [f64; 3],
+        temperature_c: Option<[f64; 3]>,
+    ) -> [f64; 3] {
+        let output = output_deg_per_h.map(deg_per_h_to_deg_per_s);
+        let rates = self.compensation.rates(self.form, output, temperature_c);
+        rates.map(deg_per_s_to_deg_per_h)
     }
 
     /// What the report shows of it.

@@ -7,6 +7,7 @@ use std::str::FromStr;
 use rayon::prelude::*;
 
 use super::channel_filter::{ChannelFilter, FinishedFilter};
+use super::log_compensation::CompensatedLog;
 use super::log_filters::LogFilters;
 use super::measurement::Cut;
 use super::pipeline_metrics;
@@ -24,6 +25,23 @@ const FIT_SAMPLES_MIN: f64 = 10.0;
 
 /// Name of the log's own channel.
 const RAW: &str = "raw";
+/// Name of the channel without the constant errors of its assembly.
+const COMPENSATED: &str = "compensated";
+
+/// What is measured and filtered.
+#[derive(Clone, Debug)]
+pub enum LogInput {
+    /// The words of one gyro.
+    Plain(Log),
+    /// Those of one axis of an assembly, compensated before the filters see them.
+    Compensated(CompensatedLog),
+}
+
+impl From<Log> for LogInput {
+    fn from(log: Log) -> Self {
+        Self::Plain(log)
+    }
+}
 
 /// What the gyro did while the log was taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,26 +112,38 @@ pub struct LogTrial {
 ///
 /// The words enter the filters from the first on, as a run's do, and leave them the same to the
 /// bit; metrics use the samples from `ceil(warm_up_s f)` on. What needs the true rate is
-/// unavailable.
+/// unavailable. Compensated words are a channel of their own and what the filters are given.
 ///
 /// # Errors
-/// A warm-up that leaves no sample; a swing too fast for the sample rate.
+/// A warm-up that leaves no sample; a swing too fast for the sample rate; a filter that has the name
+/// of the compensated channel.
 pub fn try_log(
-    mut log: Log,
+    input: impl Into<LogInput>,
     filters: Option<&LogFilters>,
     settings: &LogSettings,
 ) -> Result<LogTrial, LogTrialError> {
+    let (mut log, compensated, mut notes) = match input.into() {
+        LogInput::Plain(log) => (log, None, Vec::new()),
+        LogInput::Compensated(CompensatedLog { log, words, notes }) => (log, Some(words), notes),
+    };
     let sample_period_s = log.sample_period_s();
     let length = record_length(&log, settings)?;
-    let words = std::mem::take(&mut log.rate_deg_per_h);
-    let finished = filters.map_or_else(Vec::new, |filters| {
-        run(filters, length, sample_period_s, &words)
-    });
     let record = GyroRecord {
         truth_deg_per_h: Vec::new(),
-        raw_deg_per_h: words,
-        compensated_deg_per_h: None,
+        raw_deg_per_h: std::mem::take(&mut log.rate_deg_per_h),
+        compensated_deg_per_h: compensated,
     };
+    let clashes = |filters: &LogFilters| filters.configs().iter().any(|it| it.name == COMPENSATED);
+    if record.compensated_deg_per_h.is_some() && filters.is_some_and(clashes) {
+        return Err(LogTrialError {
+            file: log.file,
+            message: format!("a filter is named `{COMPENSATED}`, as is the channel it is given"),
+        });
+    }
+    let words = record.filter_input_deg_per_h();
+    let finished = filters.map_or_else(Vec::new, |filters| {
+        run(filters, length, sample_period_s, words)
+    });
     let shortest_s = FIT_SAMPLES_MIN * sample_period_s;
     let metric_settings = Settings {
         motion: metric_motion(settings.motion),
@@ -136,13 +166,16 @@ pub fn try_log(
                 .collect()
         },
     );
-    let mut notes = log.notes();
+    notes.splice(0..0, log.notes());
     if let Some(filters) = filters {
         notes.extend(filters.warnings(&record.raw_deg_per_h));
         let of_pipelines = finished.iter();
         notes.extend(of_pipelines.flat_map(|it| pipeline_metrics::notes(it, sample_period_s)));
     }
-    let channels = std::iter::once((RAW.to_owned(), raw)).chain(others);
+    let is_compensated = record.compensated_deg_per_h.is_some();
+    let compensated = is_compensated.then(|| (COMPENSATED.to_owned(), cut.measure_compensated()));
+    let own = std::iter::once((RAW.to_owned(), raw)).chain(compensated);
+    let channels = own.chain(others);
     Ok(LogTrial {
         channels: channels.collect(),
         motion: report_motion(settings.motion),
@@ -268,7 +301,11 @@ impl LogTrial {
             write_atomic(&path, text.as_bytes()).map_err(|error| at(&path, &error))?;
         }
         let samples = folder.join("samples");
-        for (name, words) in self.filter_words() {
+        for (name, words) in self
+            .compensated_words()
+            .into_iter()
+            .chain(self.filter_words())
+        {
             create(&samples)?;
             let path = samples.join(format!("{name}.npy"));
             write_npy(&path, words).map_err(|error| at(&path, &error))?;
@@ -289,6 +326,11 @@ impl LogTrial {
         })
     }
 
+    fn compensated_words(&self) -> Option<(&str, &[f64])> {
+        let words = self.record.compensated_deg_per_h.as_deref();
+        words.map(|words| (COMPENSATED, words))
+    }
+
     fn signals(&self) -> RunSignals<'_> {
         let raw = (RAW, self.record.raw_deg_per_h.as_slice());
         RunSignals {
@@ -297,7 +339,10 @@ impl LogTrial {
             prefix: "",
             truth_deg_per_h: &[],
             encoder_rad: None,
-            channels: std::iter::once(raw).chain(self.filter_words()).collect(),
+            channels: std::iter::once(raw)
+                .chain(self.compensated_words())
+                .chain(self.filter_words())
+                .collect(),
             temperature: None,
         }
     }

@@ -77,7 +77,7 @@ impl Cut<'_> {
         self.measure_unfiltered(&self.record.raw_deg_per_h)
     }
 
-    fn measure_compensated(&self) -> ChannelMetrics {
+    pub(super) fn measure_compensated(&self) -> ChannelMetrics {
         self.measure_unfiltered(self.record.filter_input_deg_per_h())
     }
 

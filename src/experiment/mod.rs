@@ -5,6 +5,7 @@
 
 mod assembly_motion;
 mod budget;
+mod calibrate;
 mod calibration_sheet;
 mod calibration_units;
 mod campaign;
@@ -12,7 +13,9 @@ mod campaign_metrics;
 mod channel_filter;
 mod comparison;
 mod compensation;
+mod group_findings;
 mod line_enhancer;
+mod log_compensation;
 mod log_filters;
 mod log_trial;
 mod measurement;
@@ -35,10 +38,16 @@ mod textbook;
 mod theory;
 
 pub use budget::{GyroBudget, gyro_budget};
+pub use calibrate::{
+    CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
+};
 pub use calibration_sheet::calibration_sheet;
 pub use campaign::calibrate_scenario;
+pub use log_compensation::{
+    CompensatedLog, LogCompensation, compensate_log, load_log_compensation,
+};
 pub use log_filters::{LogFilters, load_log_filters};
-pub use log_trial::{LogMotion, LogSettings, LogTrial, LogTrialError, try_log};
+pub use log_trial::{LogInput, LogMotion, LogSettings, LogTrial, LogTrialError, try_log};
 pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{CoreSettings, PipelineSettings, PipelineTiming};

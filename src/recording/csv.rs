@@ -8,19 +8,20 @@ use super::error::{LogError, Place};
 
 /// What stands between the cells of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Delimiter {
+pub(super) enum Delimiter {
     Character(char),
     Blanks,
 }
 
 impl Delimiter {
     /// The delimiter of the first line that is no comment.
-    fn of(line: &str) -> Self {
+    pub(super) fn of(line: &str) -> Self {
         let found = ['\t', ';', ','].into_iter().find(|c| line.contains(*c));
         found.map_or(Self::Blanks, Self::Character)
     }
 
-    fn cells(self, line: &str) -> Vec<&str> {
+    /// The cells of a line, without the blanks and quotation marks around them.
+    pub(super) fn cells(self, line: &str) -> Vec<&str> {
         match self {
             Self::Character(character) => line.split(character).map(unquoted).collect(),
             Self::Blanks => line.split_whitespace().map(unquoted).collect(),
@@ -124,31 +125,43 @@ pub(super) fn read(
     column: Option<&str>,
     time_column: Option<&str>,
 ) -> Result<Columns, LogError> {
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let before = &bytes[..error.valid_up_to()];
-        let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
-        let message = "neither NPY nor text in UTF-8";
-        LogError::at(path, Place::Line(line), message)
-    })?;
+    let text = text_of(path, bytes, "neither NPY nor text in UTF-8")?;
     let mut reader: Option<Reader> = None;
-    for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
-        let place = Place::Line(index + 1);
-        let complain = |message: String| LogError::at(path, place, message);
-        if line.trim().is_empty() || line.trim_start().starts_with('#') {
-            continue;
-        }
+    for (number, line) in lines(text) {
+        let complain = |message: String| LogError::at(path, Place::Line(number), message);
         match &mut reader {
-            Some(reader) => reader.take(line, index + 1).map_err(complain)?,
+            Some(reader) => reader.take(line, number).map_err(complain)?,
             None => {
                 let mut first = Reader::new(line, column, time_column).map_err(complain)?;
                 if first.layout.names.is_empty() {
-                    first.take(line, index + 1).map_err(complain)?;
+                    first.take(line, number).map_err(complain)?;
                 }
                 reader = Some(first);
             }
         }
     }
     Ok(reader.map(|reader| reader.columns).unwrap_or_default())
+}
+
+/// The text that bytes are, or `message` at the first line that is none.
+pub(super) fn text_of<'a>(
+    path: &Path,
+    bytes: &'a [u8],
+    message: &str,
+) -> Result<&'a str, LogError> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        let before = &bytes[..error.valid_up_to()];
+        let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
+        LogError::at(path, Place::Line(line), message)
+    })
+}
+
+/// The lines that are neither empty nor comments, with their numbers from 1.
+pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
+    lines
+        .filter(|(_, line)| !(line.trim().is_empty() || line.trim_start().starts_with('#')))
+        .map(|(index, line)| (index + 1, line))
 }
 
 /// A file while it is read.
@@ -208,7 +221,7 @@ impl Reader {
 }
 
 /// The number of a cell.
-fn finite(cell: &str, name: Option<String>) -> Result<f64, String> {
+pub(super) fn finite(cell: &str, name: Option<String>) -> Result<f64, String> {
     let column = name.map_or_else(String::new, |name| format!("column {name}: "));
     match cell.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),

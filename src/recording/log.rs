@@ -110,6 +110,19 @@ pub fn read_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
     })
 }
 
+/// Reads one more column of a text as it stands, such as a temperature beside the rates.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_column(path: &Path, column: &str) -> Result<Vec<f64>, LogError> {
+    let bytes = fs::read(path).map_err(|source| LogError::read(path, source))?;
+    if bytes.starts_with(npy::MAGIC) {
+        let message = format!("an NPY file has no columns: leave `{column}` out");
+        return Err(LogError::of_file(path, message));
+    }
+    Ok(csv::read(path, &bytes, Some(column), None)?.data.values)
+}
+
 /// The numbers in deg/h.
 fn rates(
     path: &Path,

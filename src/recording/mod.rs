@@ -1,4 +1,5 @@
-//! Reads recorded logs (NPY, CSV) into rate words, and writes words as CSV.
+//! Reads recorded logs (NPY, CSV) into rate words and group means of a calibration (CSV), and writes
+//! words as CSV.
 //!
 //! Invariant: a log comes out of here whole, finite, equally spaced and in deg/h, or not at all;
 //! every complaint names the file and the place in it.
@@ -6,6 +7,8 @@
 mod column;
 mod csv;
 mod error;
+mod groups;
+mod groups_heading;
 mod log;
 mod npy;
 mod timing;
@@ -13,6 +16,7 @@ mod unit;
 
 pub use csv::csv_text;
 pub use error::LogError;
-pub use log::{Log, LogFormat, read_log};
+pub use groups::{Mounting, RecordedGroup, RecordedGroups, read_groups};
+pub use log::{Log, LogFormat, read_column, read_log};
 pub use timing::{TimeUnit, Timing};
 pub use unit::RateUnit;

@@ -48,7 +48,22 @@ const NAMES: [(&str, RateUnit); 11] = [
     ("urad/sample", RateUnit::MicroRadPerSample),
 ];
 
+/// Units of rates as the ends of column names.
+pub(crate) const SUFFIXES: [(&str, RateUnit); 6] = [
+    ("deg_per_h", RateUnit::DegPerH),
+    ("deg_per_s", RateUnit::DegPerS),
+    ("mdeg_per_s", RateUnit::MilliDegPerS),
+    ("arcsec_per_s", RateUnit::ArcsecPerS),
+    ("rad_per_s", RateUnit::RadPerS),
+    ("rad_per_h", RateUnit::RadPerH),
+];
+
 impl RateUnit {
+    /// The units that are rates, without those of angles per sample.
+    pub fn rates() -> impl Iterator<Item = Self> {
+        SUFFIXES.iter().map(|(_, unit)| *unit)
+    }
+
     /// The rate in deg/h that `value` in this unit stands for.
     ///
     /// An angle per sample is the mean rate over that sample: the angle times `sample_rate_hz`.

@@ -2,7 +2,9 @@
 
 use crate::report::calibration::{AXES, THETAS};
 use crate::report::text::{Grid, Tone, toned, wrapped};
-use crate::signal::{AssemblyParameters, CalibrationEstimate, CalibrationPlan, CalibrationSheet};
+use crate::signal::{
+    AssemblyParameters, CalibrationEstimate, CalibrationGroup, CalibrationPlan, CalibrationSheet,
+};
 
 const INDENT: &str = "  ";
 
@@ -72,9 +74,6 @@ fn groups(sheet: &CalibrationSheet, colour: bool) -> Grid {
         colour,
     );
     for (index, group) in sheet.groups.iter().enumerate() {
-        let turns = group
-            .turns
-            .map_or_else(String::new, |turns| format!(", {turns:.0} turns"));
         let means = group
             .output_deg_per_h
             .iter()
@@ -84,7 +83,7 @@ fn groups(sheet: &CalibrationSheet, colour: bool) -> Grid {
             (index + 1).to_string(),
             AXES[group.mounting % 3].to_owned(),
             format!("{}", group.rate_deg_per_s),
-            format!("{:.1} s{turns}", group.averaging_time_s),
+            averaged(group),
             triple(&group.temperature_c, 3),
         ];
         cells.extend(means);
@@ -93,6 +92,16 @@ fn groups(sheet: &CalibrationSheet, colour: bool) -> Grid {
         grid.row(cells);
     }
     grid
+}
+
+/// Time and turns averaged over, as far as they are known.
+fn averaged(group: &CalibrationGroup) -> String {
+    if group.averaging_time_s <= 0.0 {
+        return "-".to_owned();
+    }
+    let turns = group.turns;
+    let turns = turns.map_or_else(String::new, |turns| format!(", {turns:.0} turns"));
+    format!("{:.1} s{turns}", group.averaging_time_s)
 }
 
 /// One row for each estimator: biases and scale factors, or their errors where the truth is known.

@@ -5,6 +5,7 @@
 //! a clock, a host name or an environment variable.
 
 mod budget;
+mod calibrate;
 mod calibration;
 mod calibration_text;
 mod columns;
@@ -30,6 +31,7 @@ mod text;
 mod verdict_text;
 
 pub use budget::{budget_csv, budget_json, budget_text};
+pub use calibrate::{CalibrateReport, calibrate_json, calibrate_text};
 pub use calibration::{CalibrationProvenance, calibration_json, calibration_toml, groups_csv};
 pub use calibration_text::calibration_text;
 pub use comparison::{

@@ -3,10 +3,11 @@
 //! Both are read where the key that names them was written and take the place of that key, as the
 //! table of a script does: a manifest holds them and needs no other file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::error::ScenarioError;
+use super::compensation_config::CompensationParameters;
+use super::error::{Location, ScenarioError};
 use super::resolved::{Draft, InputFile, Resolved};
 use super::source::{Label, Mark, Sources, shown_path};
 use super::suite;
@@ -58,6 +59,58 @@ pub(crate) fn read_into(
     };
     let text = text.to_owned();
     written_campaign(&text, mark, sources).map(|campaign| Some(Box::new(campaign)))
+}
+
+/// The scenario that a calibration file is checked in where there is none: nothing of it is used.
+const FRAME: &str = "schema = 1\nname = \"calibration\"\nduration_s = 1.0\n[turntable.static]\n\
+                     [gyro.assembly]\n[compensation]\n";
+
+/// Reads the parameters in a calibration file, and its digest.
+///
+/// # Errors
+/// A file that cannot be read or is no such file, values out of range, at their line and column.
+pub fn load_calibration(
+    path: &Path,
+) -> Result<(CompensationParameters, String), Vec<ScenarioError>> {
+    let mut sources = Sources::default();
+    let label = Label::of_scenario(path);
+    let source = sources.add_file(shown_path(path), FRAME.to_owned(), label.clone());
+    let start = Mark { source, start: 0 };
+    let named = Named {
+        key: FILE,
+        mark: start,
+        path: path.to_owned(),
+        label: label.clone(),
+    };
+    let mut inputs = Vec::new();
+    let node = parameters(&named, &mut sources, &mut inputs).map_err(|error| vec![error])?;
+    let mut root =
+        parse_document(source, FRAME).map_err(|error| vec![sources.error(start, error.message)])?;
+    if let Some(table) = root.get_mut(TABLE).and_then(Node::as_table_mut) {
+        table.insert(PARAMETERS.to_owned(), node);
+    }
+    let resolved = Draft {
+        root,
+        root_mark: start,
+        sources: Arc::new(sources),
+        file: label.text(),
+        inputs: inputs.clone(),
+        recorded: None,
+        warnings: Vec::new(),
+    }
+    .resolve()?;
+    let found = resolved.scenario.compensation;
+    let found = found.and_then(|compensation| compensation.parameters);
+    let digest = inputs.into_iter().next().map(|input| input.digest);
+    match (found, digest) {
+        (Some(parameters), Some(digest)) => Ok((parameters, digest)),
+        _ => Err(vec![resolved_error(path)]),
+    }
+}
+
+fn resolved_error(path: &Path) -> ScenarioError {
+    let location = Location::of_file(shown_path(path));
+    ScenarioError::at(location, "it holds no parameters")
 }
 
 /// A file that a key names.

@@ -57,6 +57,7 @@ pub use comparison_config::{
     FigureConfig,
 };
 pub use compensation_config::{CompensationConfig, CompensationParameters, CompensationRule};
+pub use compensation_source::load_calibration;
 pub use config::{
     Fidelity, FilterState, GateConfig, GateDecision, InconclusivePolicy, OutputConfig,
     PublishedConfig, SamplesFormat, Scenario,

@@ -1,0 +1,93 @@
+//! `fogbench calibrate`: twelve parameters from a file of groups or from a simulated campaign.
+
+use std::fmt::Display;
+use std::io;
+
+use super::arguments::Format;
+use super::calibrate_arguments::CalibrateOptions;
+use super::exit::Exit;
+use super::output;
+use crate::experiment::{
+    CalibrateError, CalibrationTrial, Observer, calibrate_campaign, calibrate_groups,
+};
+use crate::recording::LogError;
+use crate::report::{RunOutcome, RunReport, calibrate_json, calibrate_text};
+
+/// Prints the calibration; with a folder, writes `calibration.toml` and `groups.csv` into it.
+pub(super) fn calibrate(options: &CalibrateOptions) -> io::Result<Exit> {
+    let found = if options.is_scenario() {
+        of_scenario(options)
+    } else {
+        of_groups(options)
+    };
+    let found = match found {
+        Ok(found) => found,
+        Err(exit) => return Ok(exit),
+    };
+    if let Some(folder) = &options.output {
+        found.write(folder)?;
+    }
+    let report = found.report();
+    output::data(&match options.format {
+        Format::Text => calibrate_text(&report, output::width(), output::colour()),
+        Format::Json => calibrate_json(&report),
+        Format::Jsonl => {
+            let document: serde_json::Value = serde_json::from_str(&calibrate_json(&report))?;
+            format!("{document}\n")
+        }
+    })?;
+    if let Some(folder) = &options.output {
+        output::talk(&format!("results in {}", folder.display()));
+    }
+    Ok(Exit::Success)
+}
+
+fn of_groups(options: &CalibrateOptions) -> Result<CalibrationTrial, Exit> {
+    if !options.set.is_empty() {
+        return Err(misused(
+            "--set changes keys of a scenario: a groups file has none",
+        ));
+    }
+    calibrate_groups(&options.path, &options.groups_settings()).map_err(|errors| {
+        let is_unreadable =
+            |error: &CalibrateError| matches!(error, CalibrateError::File(LogError::Read { .. }));
+        complain(&errors);
+        if errors.iter().any(is_unreadable) {
+            Exit::Io
+        } else {
+            Exit::Usage
+        }
+    })
+}
+
+fn of_scenario(options: &CalibrateOptions) -> Result<CalibrationTrial, Exit> {
+    if options.latitude_deg.is_some() {
+        return Err(misused(
+            "--latitude-deg belongs to a groups file: a scenario has turntable.site.latitude_deg",
+        ));
+    }
+    calibrate_campaign(&options.path, &options.scenario_sets(), &Silent).map_err(|errors| {
+        complain(&errors);
+        Exit::Usage
+    })
+}
+
+fn misused(message: &str) -> Exit {
+    complain(&[message]);
+    Exit::Usage
+}
+
+fn complain<E: Display>(errors: &[E]) {
+    for error in errors {
+        output::talk(&format!("error: {error}"));
+    }
+}
+
+/// One campaign takes seconds: nothing is said while it runs.
+struct Silent;
+
+impl Observer for Silent {
+    fn advanced(&self, _: f64) {}
+    fn finished(&self, _: usize, _: &RunReport) {}
+    fn failed(&self, _: usize, _: &RunOutcome) {}
+}

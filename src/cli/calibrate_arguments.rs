@@ -1,0 +1,146 @@
+//! What may be said of calibrations.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::arguments::Format;
+use crate::experiment::GroupsSettings;
+use crate::scenario::{EstimatorKind, ForgettingLaw, reference_calibration};
+
+/// Estimators by name.
+const ESTIMATORS: [EstimatorKind; 5] = [
+    EstimatorKind::Batch,
+    EstimatorKind::BatchTemperature,
+    EstimatorKind::Arls,
+    EstimatorKind::ArlsCovariance,
+    EstimatorKind::ArlsTemperature,
+];
+
+/// Laws of forgetting by name.
+const LAWS: [(&str, ForgettingLaw); 4] = [
+    ("linear", ForgettingLaw::Linear),
+    ("exponential", ForgettingLaw::Exponential),
+    ("rational", ForgettingLaw::Rational),
+    ("gaussian", ForgettingLaw::Gaussian),
+];
+
+/// Options of `calibrate`.
+#[derive(Args, Debug)]
+pub(super) struct CalibrateOptions {
+    /// Groups file (CSV with the columns mounting, rate_deg_per_s, temperature_c,
+    /// output_x_deg_per_h, output_y_deg_per_h, output_z_deg_per_h; other rates by the end of the
+    /// name: deg_per_s, mdeg_per_s, arcsec_per_s, rad_per_s, rad_per_h), or a calibration scenario
+    /// (`*.toml`)
+    pub(super) path: PathBuf,
+    /// Latitude for the Earth rate about the table axis, deg; not where the groups file gives
+    /// reference_x_deg_per_s, reference_y_deg_per_s and reference_z_deg_per_s
+    #[arg(long, value_name = "DEG", value_parser = latitude, allow_negative_numbers = true)]
+    pub(super) latitude_deg: Option<f64>,
+    /// Estimator to apply: batch, batch-temperature, arls, arls-covariance, arls-temperature
+    /// [default: calibration.apply; batch where the groups determine no temperature coefficient]
+    #[arg(long, value_name = "NAME", value_parser = estimator)]
+    pub(super) estimator: Option<EstimatorKind>,
+    /// How the forgetting factor falls with the step of temperature: linear, exponential, rational,
+    /// gaussian [default: calibration.forgetting_form]
+    #[arg(long, value_name = "FORM", value_parser = law)]
+    pub(super) forgetting_form: Option<ForgettingLaw>,
+    /// Its constant without a temperature coefficient, 1/K
+    /// [default: calibration.forgetting_constant_per_k]
+    #[arg(long, value_name = "C", value_parser = constant)]
+    pub(super) forgetting_constant_per_k: Option<f64>,
+    /// Its constant beside a temperature coefficient, 1/K
+    /// [default: calibration.forgetting_constant_with_temperature_per_k]
+    #[arg(long, value_name = "C", value_parser = constant)]
+    pub(super) forgetting_constant_with_temperature_per_k: Option<f64>,
+    /// Override a key of the scenario
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(super) set: Vec<String>,
+    /// Folder for calibration.toml and groups.csv [default: neither is written]
+    #[arg(short, long, value_name = "DIR")]
+    pub(super) output: Option<PathBuf>,
+    /// Form of the results on stdout
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+}
+
+impl CalibrateOptions {
+    /// Whether the path is a scenario; anything else is a groups file.
+    pub(super) fn is_scenario(&self) -> bool {
+        self.path.extension().is_some_and(|ending| ending == "toml")
+    }
+
+    /// Settings for a groups file.
+    pub(super) fn groups_settings(&self) -> GroupsSettings {
+        let mut calibration = reference_calibration();
+        let settings = &mut calibration;
+        settings.apply = self.estimator.unwrap_or(settings.apply);
+        settings.forgetting_form = self.forgetting_form.unwrap_or(settings.forgetting_form);
+        settings.forgetting_constant_per_k = self
+            .forgetting_constant_per_k
+            .unwrap_or(settings.forgetting_constant_per_k);
+        settings.forgetting_constant_with_temperature_per_k = self
+            .forgetting_constant_with_temperature_per_k
+            .unwrap_or(settings.forgetting_constant_with_temperature_per_k);
+        GroupsSettings {
+            latitude_deg: self.latitude_deg,
+            calibration,
+            is_estimator_asked_for: self.estimator.is_some(),
+        }
+    }
+
+    /// Overrides of a scenario; the options for estimators stand behind `--set`.
+    pub(super) fn scenario_sets(&self) -> Vec<String> {
+        let law = |wanted: ForgettingLaw| {
+            let named = LAWS.iter().find(|(_, law)| *law == wanted);
+            named.map(|(name, _)| (*name).to_owned())
+        };
+        let given = [
+            ("apply", self.estimator.map(|it| it.as_str().to_owned())),
+            ("forgetting_form", self.forgetting_form.and_then(law)),
+            (
+                "forgetting_constant_per_k",
+                self.forgetting_constant_per_k.map(|it| format!("{it:?}")),
+            ),
+            (
+                "forgetting_constant_with_temperature_per_k",
+                self.forgetting_constant_with_temperature_per_k
+                    .map(|it| format!("{it:?}")),
+            ),
+        ];
+        let named = given
+            .into_iter()
+            .filter_map(|(key, value)| Some(format!("calibration.{key}={}", value?)));
+        self.set.iter().cloned().chain(named).collect()
+    }
+}
+
+fn estimator(text: &str) -> Result<EstimatorKind, String> {
+    let found = ESTIMATORS.into_iter().find(|kind| kind.as_str() == text);
+    found.ok_or_else(|| {
+        let names = ESTIMATORS.map(EstimatorKind::as_str);
+        format!("expected one of {}", names.join(", "))
+    })
+}
+
+fn law(text: &str) -> Result<ForgettingLaw, String> {
+    let found = LAWS.iter().find(|(name, _)| *name == text);
+    found.map(|(_, law)| *law).ok_or_else(|| {
+        let names = LAWS.map(|(name, _)| name);
+        format!("expected one of {}", names.join(", "))
+    })
+}
+
+fn latitude(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (-90.0..=90.0).contains(&number) => Ok(number),
+        _ => Err("expected a latitude from -90 to 90 deg".to_owned()),
+    }
+}
+
+fn constant(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (0.0..=1000.0).contains(&number) => Ok(number),
+        _ => Err("expected a number from 0 to 1000 1/K".to_owned()),
+    }
+}

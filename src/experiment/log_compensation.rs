@@ -1,0 +1,102 @@
+//! A calibration applied to the recorded words of three gyros.
+
+use std::path::Path;
+
+use super::compensation::Parameters;
+use crate::calibration::CompensationForm;
+use crate::recording::Log;
+use crate::scenario::{CompensationRule, Location, ScenarioError, load_calibration};
+
+/// The parameters of a calibration file, to be taken out of a log.
+#[derive(Clone, Debug)]
+pub struct LogCompensation {
+    parameters: Parameters,
+    /// Name of the file, its digest and the form, for people.
+    source: String,
+}
+
+/// Reads a calibration file.
+///
+/// # Errors
+/// Every complaint about the file; parameters whose matrix has no inverse.
+pub fn load_log_compensation(
+    path: &Path,
+    rule: CompensationRule,
+) -> Result<LogCompensation, Vec<ScenarioError>> {
+    let (parameters, digest) = load_calibration(path)?;
+    let (form, words) = match rule {
+        CompensationRule::Exact => (CompensationForm::Exact, "exact inverse"),
+        CompensationRule::FirstOrder => (CompensationForm::FirstOrder, "first-order form"),
+    };
+    let parameters = Parameters::given(form, &parameters).map_err(|error| {
+        let location = Location::of_file(path.display().to_string());
+        vec![ScenarioError::at(location, error.to_string())]
+    })?;
+    let file = path.file_name().unwrap_or(path.as_os_str());
+    let file = file.to_string_lossy();
+    Ok(LogCompensation {
+        parameters,
+        source: format!("{words} with {file} (BLAKE3 {})", &digest[..16]),
+    })
+}
+
+/// One axis of a log with the constant errors of the assembly taken out.
+#[derive(Clone, Debug)]
+pub struct CompensatedLog {
+    /// The words of the gyro as they were recorded.
+    pub(super) log: Log,
+    /// Rates about the case axis of the same name, deg/h.
+    pub(super) words: Vec<f64>,
+    /// What was done.
+    pub(super) notes: Vec<String>,
+}
+
+/// Takes the constant errors of an assembly out of the words of its gyros x, y, z.
+///
+/// * `axis`: the one that is kept, 0 to 2.
+/// * `temperature_c`: of the assembly at each word; none: biases stay at their reference.
+///
+/// # Errors
+/// In words: columns of different length.
+pub fn compensate_log(
+    logs: [Log; 3],
+    temperature_c: Option<&[f64]>,
+    compensation: &LogCompensation,
+    axis: usize,
+) -> Result<CompensatedLog, String> {
+    let [x, y, z] = &logs;
+    let lengths = [x, y, z].map(|log| log.rate_deg_per_h.len());
+    let temperatures = temperature_c.map_or(lengths[0], <[f64]>::len);
+    if lengths != [temperatures; 3] {
+        return Err(format!(
+            "columns of different length: {lengths:?}, {temperatures}"
+        ));
+    }
+    let words = (0..lengths[0]).map(|sample| {
+        let output = [x, y, z].map(|log| log.rate_deg_per_h[sample]);
+        let warmth = temperature_c.map(|all| [all[sample]; 3]);
+        compensation.parameters.rates_deg_per_h(output, warmth)[axis]
+    });
+    let words = words.collect();
+    let mut notes = vec![format!("channel compensated: {}", compensation.source)];
+    let follows = compensation.parameters.needs_temperature();
+    match (follows, temperature_c) {
+        (true, None) => notes.push(
+            "the calibration has temperature coefficients of the biases, which are left at their \
+             reference temperatures: name the column of the temperature with --temperature-column"
+                .to_owned(),
+        ),
+        (false, Some(_)) => notes.push(
+            "the calibration has no temperature coefficient: the temperature column has no effect"
+                .to_owned(),
+        ),
+        _ => {}
+    }
+    let [x, y, z] = logs;
+    let log = match axis {
+        0 => x,
+        1 => y,
+        _ => z,
+    };
+    Ok(CompensatedLog { log, words, notes })
+}

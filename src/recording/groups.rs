@@ -1,0 +1,345 @@
+//! Group means of a calibration that a user took: one line for each mounting and rate.
+
+use std::fs;
+use std::path::Path;
+
+use super::csv::{finite, lines, text_of};
+use super::error::{LogError, Place};
+use super::groups_heading::{Heading, Quantity};
+use super::unit::RateUnit;
+use crate::units::deg_per_h_to_deg_per_s;
+
+/// Fastest rate of a table that is believed, deg/s.
+const TABLE_RATE_MAX_DEG_PER_S: f64 = 2000.0;
+/// Largest rate that an output may stand for, deg/s: wide enough that outputs in a wrong unit come
+/// as far as the comparison with the rates, which names the unit.
+const RATE_MAX_DEG_PER_S: f64 = 1e9;
+/// Believable temperatures, deg C: those that a compensation takes as its reference.
+const TEMPERATURE_C: (f64, f64) = (-100.0, 150.0);
+/// Fastest change of these, K/min.
+const WARMING_MAX_K_PER_MIN: f64 = 1000.0;
+
+/// How the case sits on the table, whose axis is vertical.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mounting {
+    /// Case axis along the table axis: 0 = x, 1 = y, 2 = z.
+    pub axis: usize,
+    /// Whether that case axis points up.
+    pub is_up: bool,
+}
+
+/// One line of a groups file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedGroup {
+    /// Line in the file, from 1.
+    pub line: usize,
+    /// Name or number, where there is a column of it.
+    pub name: Option<String>,
+    /// How the case sat on the table.
+    pub mounting: Mounting,
+    /// Rate of the table, deg/s, counter-clockwise from above positive.
+    pub rate_deg_per_s: f64,
+    /// Rates about the case axes, Earth rate included, where the file gives them; deg/s.
+    pub reference_rate_deg_per_s: Option<[f64; 3]>,
+    /// Mean outputs, deg/h.
+    pub output_deg_per_h: [f64; 3],
+    /// Their standard errors, deg/h.
+    pub standard_error_deg_per_h: Option<[f64; 3]>,
+    /// Mean temperatures of the gyros, deg C.
+    pub temperature_c: [f64; 3],
+    /// Mean rates of these, K/min.
+    pub temperature_rate_k_per_min: Option<[f64; 3]>,
+    /// Time averaged over, s; 0: not known.
+    pub averaging_time_s: Option<f64>,
+    /// Start of the averaging, s.
+    pub start_s: Option<f64>,
+    /// Whole turns averaged over.
+    pub turns: Option<f64>,
+    /// Samples averaged over.
+    pub samples: Option<usize>,
+    /// Samples rejected as outliers.
+    pub rejected: Option<[usize; 3]>,
+}
+
+/// A groups file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedGroups {
+    /// Name of the file without its folder.
+    pub file: String,
+    /// Digest of its bytes (BLAKE3).
+    pub digest: String,
+    /// Unit of the table rates.
+    pub rate_unit: RateUnit,
+    /// Units of the outputs x, y, z.
+    pub output_unit: [RateUnit; 3],
+    /// Groups in the order of the lines; at least one.
+    pub groups: Vec<RecordedGroup>,
+}
+
+impl RecordedGroups {
+    /// What is worth saying about the lines: the same numbers twice, an order other than that of
+    /// taking.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        for (index, group) in self.groups.iter().enumerate() {
+            let same = self.groups[..index]
+                .iter()
+                .find(|other| other.mounting == group.mounting && bits(other).eq(bits(group)));
+            if let Some(other) = same {
+                notes.push(format!(
+                    "lines {} and {} hold the same rate and outputs: a group entered twice counts \
+                     twice",
+                    other.line, group.line
+                ));
+            }
+        }
+        let number = |group: &RecordedGroup| group.name.as_ref()?.parse::<u64>().ok();
+        let pairs = || self.groups.iter().zip(self.groups.iter().skip(1));
+        let by_number = pairs().find(|(old, new)| number(old) > number(new));
+        let by_time = pairs().find(|(old, new)| old.start_s > new.start_s);
+        if let Some((old, new)) = by_time.or(by_number) {
+            notes.push(format!(
+                "lines {} and {} are not in the order of {}: forgetting needs the order in which \
+                 the groups were taken, and takes that of the lines",
+                old.line,
+                new.line,
+                if by_time.is_some() {
+                    "start_s"
+                } else {
+                    "group"
+                },
+            ));
+        }
+        notes
+    }
+}
+
+/// The numbers that make two groups the same.
+fn bits(group: &RecordedGroup) -> impl Iterator<Item = u64> {
+    let rates = std::iter::once(group.rate_deg_per_s).chain(group.output_deg_per_h);
+    rates.map(f64::to_bits)
+}
+
+/// Reads a groups file: CSV with a heading, in the order in which the groups were taken.
+///
+/// Columns go by their names and rates by the unit at the end of theirs; empty lines and lines that
+/// begin with `#` are passed over. Required: `mounting` (x, y or z: the case axis along the table
+/// axis, `-x` or `x down` if it points down), `rate_…`, `output_x_…`, `output_y_…`, `output_z_…` and
+/// `temperature_c` or one temperature for each gyro.
+///
+/// # Errors
+/// [`LogError`]: whatever the file system says; columns unknown, repeated or missing; cells that are
+/// no number or out of range; a group named twice.
+pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
+    let bytes = fs::read(path).map_err(|source| LogError::read(path, source))?;
+    let text = text_of(path, &bytes, "no text in UTF-8")?;
+    let mut lines = lines(text);
+    let Some((number, first)) = lines.next() else {
+        return Err(LogError::of_file(path, "holds no group"));
+    };
+    let complain = |number, message| LogError::at(path, Place::Line(number), message);
+    let heading = Heading::of(first).map_err(|message| complain(number, message))?;
+    let mut groups: Vec<RecordedGroup> = Vec::new();
+    for (number, line) in lines {
+        let cells = heading.delimiter.cells(line);
+        let group = Line::new(&heading, &cells)
+            .and_then(|line| line.group(number))
+            .map_err(|message| complain(number, message))?;
+        let same = groups
+            .iter()
+            .find(|other| other.name.is_some() && other.name == group.name);
+        if let Some(other) = same {
+            let name = other.name.as_deref().unwrap_or_default();
+            let message = format!(
+                "column group: `{name}` is the group of line {} too",
+                other.line
+            );
+            return Err(complain(number, message));
+        }
+        groups.push(group);
+    }
+    if groups.is_empty() {
+        return Err(LogError::of_file(path, "holds no group"));
+    }
+    let unit = |quantity| heading.unit(quantity).unwrap_or(RateUnit::DegPerH);
+    Ok(RecordedGroups {
+        file: path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned(),
+        digest: blake3::hash(&bytes).to_hex().to_string(),
+        rate_unit: unit(Quantity::TableRate),
+        output_unit: [0, 1, 2].map(|axis| unit(Quantity::Output(axis))),
+        groups,
+    })
+}
+
+/// One line under its heading.
+struct Line<'a> {
+    heading: &'a Heading,
+    cells: &'a [&'a str],
+}
+
+impl<'a> Line<'a> {
+    fn new(heading: &'a Heading, cells: &'a [&'a str]) -> Result<Self, String> {
+        let expected = heading.columns.len();
+        if cells.len() != expected {
+            let got = cells.len();
+            return Err(format!("{got} cells where the heading has {expected}"));
+        }
+        Ok(Self { heading, cells })
+    }
+
+    fn group(&self, line: usize) -> Result<RecordedGroup, String> {
+        let table = (-TABLE_RATE_MAX_DEG_PER_S, TABLE_RATE_MAX_DEG_PER_S);
+        let table_rate = |quantity| self.rate(quantity, table);
+        let any = (-RATE_MAX_DEG_PER_S, RATE_MAX_DEG_PER_S);
+        let [x, y, z] = [0, 1, 2].map(|axis| self.rate(Quantity::Output(axis), any));
+        let error = |axis| self.rate(Quantity::StandardError(axis), (0.0, RATE_MAX_DEG_PER_S));
+        let reference = three(|axis| table_rate(Quantity::Reference(axis)))?;
+        let temperature = self.common_or_each(Quantity::Temperature, TEMPERATURE_C, "deg C")?;
+        let warming = (-WARMING_MAX_K_PER_MIN, WARMING_MAX_K_PER_MIN);
+        let time = (0.0, f64::MAX);
+        Ok(RecordedGroup {
+            line,
+            name: self.cell(Quantity::Group).map(|(_, cell)| cell.to_owned()),
+            mounting: self.mounting()?,
+            rate_deg_per_s: deg_per_h_to_deg_per_s(present(table_rate(Quantity::TableRate)?)?),
+            reference_rate_deg_per_s: reference.map(|it| it.map(deg_per_h_to_deg_per_s)),
+            output_deg_per_h: [present(x?)?, present(y?)?, present(z?)?],
+            standard_error_deg_per_h: three(error)?,
+            temperature_c: present(temperature)?,
+            temperature_rate_k_per_min: self.common_or_each(
+                Quantity::TemperatureRate,
+                warming,
+                "K/min",
+            )?,
+            averaging_time_s: self.number(Quantity::AveragingTime, time, "s")?,
+            start_s: self.number(Quantity::Start, (f64::MIN, f64::MAX), "s")?,
+            turns: self.number(Quantity::Turns, (0.0, f64::MAX), "turns")?,
+            samples: self.count(Quantity::Samples)?,
+            rejected: three(|axis| self.count(Quantity::Rejected(axis)))?,
+        })
+    }
+
+    /// Name and cell of a quantity; nothing where there is no such column or the cell is empty.
+    fn cell(&self, quantity: Quantity) -> Option<(&str, &str)> {
+        let index = self.heading.find(quantity)?;
+        let cell = self.cells[index];
+        (!cell.is_empty() || quantity.is_required())
+            .then_some((self.heading.columns[index].name.as_str(), cell))
+    }
+
+    fn number(
+        &self,
+        quantity: Quantity,
+        (min, max): (f64, f64),
+        unit: &str,
+    ) -> Result<Option<f64>, String> {
+        let Some((name, cell)) = self.cell(quantity) else {
+            return Ok(None);
+        };
+        if cell.is_empty() {
+            return Err(format!("column {name}: the cell is empty: expected {unit}"));
+        }
+        let value = finite(cell, Some(name.to_owned()))
+            .map_err(|message| format!("{message}: expected {unit}"))?;
+        if (min..=max).contains(&value) {
+            return Ok(Some(value));
+        }
+        let expected = if max < f64::MAX {
+            format!("{min} to {max} {unit}")
+        } else {
+            format!("{min} {unit} or more")
+        };
+        Err(format!(
+            "column {name}: {value} {unit} is out of range: expected {expected}"
+        ))
+    }
+
+    /// A rate, deg/h; its range is in deg/s.
+    fn rate(&self, quantity: Quantity, range: (f64, f64)) -> Result<Option<f64>, String> {
+        let Some(unit) = self.heading.unit(quantity) else {
+            return Ok(None);
+        };
+        let one = deg_per_h_to_deg_per_s(unit.to_deg_per_h(1.0, 1.0));
+        let in_unit = |limit: f64| {
+            let digits = 1e6;
+            (limit / one * digits).round() / digits
+        };
+        let range = (in_unit(range.0), in_unit(range.1));
+        let value = self.number(quantity, range, &unit.to_string());
+        let value = value.map_err(|message| {
+            let hint = "the unit is what the column's name ends with";
+            format!("{message} ({hint})")
+        })?;
+        Ok(value.map(|value| unit.to_deg_per_h(value, 1.0)))
+    }
+
+    /// A quantity that one column gives for all gyros, or three for one each.
+    fn common_or_each(
+        &self,
+        quantity: fn(Option<usize>) -> Quantity,
+        range: (f64, f64),
+        unit: &str,
+    ) -> Result<Option<[f64; 3]>, String> {
+        match self.number(quantity(None), range, unit)? {
+            Some(value) => Ok(Some([value; 3])),
+            None => three(|axis| self.number(quantity(Some(axis)), range, unit)),
+        }
+    }
+
+    fn count(&self, quantity: Quantity) -> Result<Option<usize>, String> {
+        let Some((name, cell)) = self.cell(quantity) else {
+            return Ok(None);
+        };
+        let count = cell.parse();
+        count.map(Some).map_err(|_| {
+            format!("column {name}: `{cell}` is no count: expected a whole number, 0 or more")
+        })
+    }
+
+    fn mounting(&self) -> Result<Mounting, String> {
+        let (name, cell) = present(self.cell(Quantity::Mounting))?;
+        let (sign, rest) = match cell.strip_prefix(['+', '-']) {
+            Some(rest) => (Some(!cell.starts_with('-')), rest),
+            None => (None, cell),
+        };
+        let mut words = rest.split_whitespace();
+        let axis = words.next().and_then(|word| match word {
+            "x" | "X" => Some(0),
+            "y" | "Y" => Some(1),
+            "z" | "Z" => Some(2),
+            _ => None,
+        });
+        let sense = match (words.next(), sign) {
+            (None, sign) => Some(sign.unwrap_or(true)),
+            (Some("up"), None) => Some(true),
+            (Some("down"), None) => Some(false),
+            _ => None,
+        };
+        match (axis, sense, words.next()) {
+            (Some(axis), Some(is_up), None) => Ok(Mounting { axis, is_up }),
+            _ => Err(format!(
+                "column {name}: `{cell}` is no mounting: expected the case axis along the table \
+                 axis, x, y or z, as `-x` or `x down` where it points down"
+            )),
+        }
+    }
+}
+
+/// Three values of which all or none are there.
+fn three<T>(of: impl Fn(usize) -> Result<Option<T>, String>) -> Result<Option<[T; 3]>, String> {
+    match (of(0)?, of(1)?, of(2)?) {
+        (Some(x), Some(y), Some(z)) => Ok(Some([x, y, z])),
+        (None, None, None) => Ok(None),
+        _ => Err("one of the gyros x, y, z has a value where another has an empty cell".to_owned()),
+    }
+}
+
+/// A value whose column the heading was checked for.
+fn present<T>(value: Option<T>) -> Result<T, String> {
+    value.ok_or_else(|| "an empty cell where a value is needed".to_owned())
+}
