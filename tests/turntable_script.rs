@@ -236,7 +236,8 @@ fn a_general_motion_has_means_and_tracking_error_and_reasons_for_the_rest() {
         1e-12,
         0.0,
     );
-    assert_eq!(metrics.metrics.len(), 3, "{:?}", metrics.metrics.keys());
+    // Mean, its error, smallest and largest word, tracking error.
+    assert_eq!(metrics.metrics.len(), 5, "{:?}", metrics.metrics.keys());
     for known in known_metrics() {
         let supported = support(known.name, 40.0, PERIOD_S, &Motion::General, false, 1.0).is_ok();
         let is_given = metrics.metrics.contains_key(known.name);

@@ -20,6 +20,7 @@ mod log_filters;
 mod log_trial;
 mod measurement;
 mod motion;
+mod output_average;
 mod pipeline_check;
 mod pipeline_export;
 mod pipeline_filter;

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::channel_filter::{ChannelFilter, FinishedFilter, Restarts};
 use super::compensation::{Compensator, Parameters};
+use super::output_average::{mean, table_warm_up_s};
 use super::suite::Observer;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
@@ -373,31 +374,6 @@ impl Source {
             }
         }
     }
-}
-
-/// Mean of the next `count` words; one word is itself, to the bit.
-#[inline]
-fn mean(count: usize, mut next_word: impl FnMut() -> f64) -> f64 {
-    let first = next_word();
-    if count == 1 {
-        return first;
-    }
-    let mut sum = first;
-    for _ in 1..count {
-        sum += next_word();
-    }
-    sum / self::count(count)
-}
-
-/// Warm-up as the table counts it, s: its record begins with the first measured output sample.
-///
-/// Half a word less than whole words, so that the table's rounding up to whole words cannot go astray.
-fn table_warm_up_s(scenario: &Scenario, warm_up_samples: usize, word_period_s: f64) -> f64 {
-    if scenario.gyro.output.average_samples == 1 || warm_up_samples == 0 {
-        return scenario.warm_up_s;
-    }
-    let words = count(warm_up_samples) * f64::from(scenario.gyro.output.average_samples);
-    (words - 0.5) * word_period_s
 }
 
 /// A number of samples as a number.

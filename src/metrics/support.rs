@@ -105,6 +105,9 @@ pub fn support(
              {samples}"
         ));
     }
+    if matches!(metric, "minimum_deg_per_h" | "maximum_deg_per_h") {
+        return Ok(());
+    }
     match motion {
         Motion::Swing { frequency_hz } | Motion::SwingFromRest { frequency_hz } => {
             check_cycles(metric, samples, sample_period_s, *frequency_hz)
