@@ -1,6 +1,7 @@
 //! The family of Allan deviations: plain, overlapping, modified, Hadamard; records with gaps.
 
-use super::allan::{AllanPoint, integrate, second_difference_sums};
+use super::allan::AllanPoint;
+use super::angle::{angle_about_mean, second_difference_sums};
 use super::combined_freedom::{Differences, combined_degrees_of_freedom};
 use super::estimate::CONFIDENCE;
 use super::interval;
@@ -203,17 +204,6 @@ pub fn allan_variant_at(
         });
     }
     points
-}
-
-/// Angle about the mean rate; a missing sample counts as the mean, so that it adds nothing.
-fn angle_about_mean(rate_deg_per_h: &[f64]) -> Vec<f64> {
-    let present = || rate_deg_per_h.iter().filter(|rate| !rate.is_nan());
-    let mean = present().sum::<f64>() / present().count().max(1) as f64;
-    integrate(
-        rate_deg_per_h
-            .iter()
-            .map(|rate| if rate.is_nan() { 0.0 } else { rate - mean }),
-    )
 }
 
 /// Number of missing samples before each angle, or nothing if the record is whole.
