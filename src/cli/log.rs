@@ -10,6 +10,7 @@ use super::output;
 use crate::experiment::{LogFilters, LogSettings, LogTrial, load_log_filters, try_log};
 use crate::recording::{Log, LogError, LogFormat, read_log};
 use crate::report::{log_json, log_text};
+use crate::scenario::AllanConfig;
 
 /// Measures a log.
 pub(super) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
@@ -70,6 +71,10 @@ fn conclude(
         warm_up_s: options.warm_up_s,
         bias_averaging_time_s: options.bias_averaging_time_s,
         fit_tau_min_s: options.fit_tau_min_s,
+        allan: AllanConfig {
+            estimator: options.allan_estimator,
+            averaging_times: options.averaging_times,
+        },
     };
     let trial = match try_log(log, filters, &settings) {
         Ok(trial) => trial,

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
+use super::allan_settings::allan_options;
 use super::assembly_motion::drop_lacking;
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use super::comparison::Layout;
@@ -126,6 +127,9 @@ fn write_folder(
     if let Some(csv) = report::allan_csv(report) {
         folder.write("allan.csv", csv.as_bytes())?;
     }
+    if let Some(csv) = report::autocovariance_csv(report) {
+        folder.write("autocovariance.csv", csv.as_bytes())?;
+    }
     if let Some(csv) = report::psd_csv(report) {
         folder.write("psd.csv", csv.as_bytes())?;
     }
@@ -217,6 +221,7 @@ fn measure_repeat(plan: &Plan, simulation: &Simulation, length: RecordLength) ->
         motion: motion(scenario, sample_period_s),
         bias_averaging_time_s: scenario.bias_averaging_time_s,
         fit_tau_min_s: plan.fit_tau_min_s(),
+        allan: allan_options(scenario.allan),
     };
     let gyros = simulation.gyros.iter();
     let cuts: Vec<Cut> = gyros

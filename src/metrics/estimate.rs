@@ -116,6 +116,8 @@ pub struct ChannelMetrics {
     pub unavailable: BTreeMap<String, String>,
     /// Curves: name, then column name and values.
     pub curves: BTreeMap<String, BTreeMap<String, Vec<f64>>>,
+    /// Columns of words of a curve, by curve and column; a single word holds for all its points.
+    pub curve_labels: BTreeMap<String, BTreeMap<String, Vec<&'static str>>>,
     /// Set when the channel failed; its metrics are then empty but for `diverged_at_s`.
     pub error: Option<ChannelFailure>,
 }

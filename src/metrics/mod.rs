@@ -11,6 +11,7 @@
 mod aggregate;
 mod allan;
 mod allan_covariance;
+mod allan_curves;
 mod allan_least_squares;
 mod allan_sampling;
 mod allan_stream;
@@ -26,6 +27,7 @@ mod correlation;
 mod delay;
 mod estimate;
 mod interval;
+mod memory;
 mod multi_sine;
 mod noise_delay;
 mod noise_fit;
@@ -56,6 +58,7 @@ pub use audit::{
     Prediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
     predict,
 };
+pub use autocovariance::autocovariance;
 pub use bias::{
     block_means, effective_degrees_of_freedom, expected_bias_stability, paired_ratio, samples_in,
 };
@@ -64,6 +67,7 @@ pub use channel::measure;
 pub use correlation::correlation_delay_s;
 pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
+pub use memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
 pub use noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
     fit_noise, fit_pooled_noise, mixed_degrees_of_freedom,

@@ -171,8 +171,9 @@ fn measure_noise(record: &Record, fits: &ToneFits, is_filter: bool, metrics: &mu
     };
     let channel = products(CHANNEL, record.channel_deg_per_h);
     put_noise_std(
-        &channel.autocovariance(),
+        &channel,
         record.channel_deg_per_h.len(),
+        record.sample_period_s,
         metrics,
     );
     if is_filter {

@@ -1,11 +1,14 @@
 //! Metrics of a record at rest or at constant rate.
 
-use super::allan::{AllanPoint, overlapping_allan};
+use super::allan::overlapping_allan;
+use super::allan_curves::{enter_fit, put_curve, put_fit_curve};
+use super::allan_variants::allan_variant;
 use super::audit::{filter_bound, lags_needed, predict};
-use super::autocovariance::{LaggedProducts, independent_samples};
+use super::autocovariance::{CURVE_LAGS, LaggedProducts, independent_samples, put_autocovariance};
 use super::bias;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::memory::fit_tau_min_s;
 use super::noise_delay::{put_bound, put_bound_curve, put_over_bound};
 use super::noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise, mixed_degrees_of_freedom,
@@ -23,7 +26,7 @@ pub(crate) const RATIO_BLOCKS: usize = 20;
 pub(crate) const WALK_OVER_DC_GAIN: &str = "angle_random_walk_over_dc_gain_deg_per_sqrt_h";
 
 /// Lags of the autocovariance, at least; correlation beyond counts as slow noise.
-pub(crate) const LAGS_MIN: usize = 24;
+pub(crate) const LAGS_MIN: usize = CURVE_LAGS;
 
 /// Measures everything a steady record supports.
 pub(crate) fn measure_steady(
@@ -32,16 +35,13 @@ pub(crate) fn measure_steady(
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
-    let fit = measure_allan(record, settings, metrics);
+    let fit = measure_allan(record, settings, filter, metrics);
     measure_bias(record, settings, fit.as_ref(), metrics);
     measure_mean(record, fit.as_ref(), metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let products = products_about_mean(record.channel_deg_per_h, lags);
-    put_noise_std(
-        &products.autocovariance(),
-        record.channel_deg_per_h.len(),
-        metrics,
-    );
+    let samples = record.channel_deg_per_h.len();
+    put_noise_std(&products, samples, record.sample_period_s, metrics);
     if let Some(facts) = filter {
         let raw = products_about_mean(record.raw_deg_per_h, lags);
         let level = interval::mean(record.raw_deg_per_h).abs();
@@ -63,16 +63,20 @@ pub(crate) fn measure_steady(
 
 /// Allan curve and noise coefficients.
 ///
-/// The intervals of the points take the degrees of freedom of the noise mix that the fit found.
+/// The curve `allan` is that of the settings. The noise is fitted to the overlapping Allan deviation,
+/// the curve `allan_fit`, whose points take the degrees of freedom of the noise mix that the fit found.
 fn measure_allan(
     record: &Record,
     settings: &Settings,
+    filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) -> Option<NoiseFit> {
     let points = overlapping_allan(record.channel_deg_per_h, record.sample_period_s);
     let samples = record.channel_deg_per_h.len();
     let range = FitRange {
-        tau_min_s: settings.fit_tau_min_s,
+        tau_min_s: filter.map_or(settings.fit_tau_min_s, |facts| {
+            fit_tau_min_s(&facts.shape, record.sample_period_s, settings.fit_tau_min_s)
+        }),
         tau_max_s: FIT_TAU_PER_RECORD_MAX * samples as f64 * record.sample_period_s,
     };
     let varies = record
@@ -85,6 +89,13 @@ fn measure_allan(
     } else {
         constant()
     };
+    let variant = allan_variant(
+        record.channel_deg_per_h,
+        record.sample_period_s,
+        &settings.allan,
+    );
+    let estimator = settings.allan.estimator;
+    put_curve(&variant, estimator, fitted.as_ref().ok(), metrics);
     match fitted {
         Ok(fit) => {
             let points = mixed_degrees_of_freedom(&points, &fit.coefficients(), samples + 1);
@@ -92,7 +103,7 @@ fn measure_allan(
             Some(fit)
         }
         Err(reason) => {
-            metrics.put_allan_curve(&points, None);
+            put_fit_curve(&points, None, metrics);
             for name in [
                 "angle_random_walk_deg_per_sqrt_h",
                 "bias_instability_deg_per_h",
@@ -105,12 +116,6 @@ fn measure_allan(
             None
         }
     }
-}
-
-/// Enters a fit and the curve it was made from.
-pub(crate) fn enter_fit(points: &[AllanPoint], fit: &NoiseFit, metrics: &mut ChannelMetrics) {
-    metrics.put_noise_fit(fit);
-    metrics.put_allan_curve(points, Some(fit));
 }
 
 /// Bias stability at the fixed averaging times and at the scenario's.
@@ -225,9 +230,17 @@ fn products_about_mean(values: &[f64], lags: usize) -> LaggedProducts {
     LaggedProducts::new(values, interval::mean(values), lags, RATIO_BLOCKS)
 }
 
-/// Standard deviation about the signal; correlated samples count for less in its interval.
-pub(crate) fn put_noise_std(autocovariance: &[f64], count: usize, metrics: &mut ChannelMetrics) {
-    let freedom = (independent_samples(autocovariance, count) - 1.0).max(1.0);
+/// Standard deviation about the signal; correlated samples count for less in its interval. The
+/// correlation of neighbours and the curve of the autocovariance with it.
+pub(crate) fn put_noise_std(
+    products: &LaggedProducts,
+    count: usize,
+    sample_period_s: f64,
+    metrics: &mut ChannelMetrics,
+) {
+    put_autocovariance(products, sample_period_s, metrics);
+    let autocovariance = products.autocovariance();
+    let freedom = (independent_samples(&autocovariance, count) - 1.0).max(1.0);
     let metric = metrics.put(
         "noise_std_deg_per_h",
         interval::deviation(autocovariance[0].sqrt(), freedom),
@@ -369,6 +382,9 @@ pub(crate) fn put_over_dc_gain(
         (Some(metric), Some(gain)) if gain > 1e-6 => {
             let mut fields = metric.fields;
             fields.insert("dc_gain", gain);
+            if let Some(expected) = fields.get_mut(EXPECTED) {
+                *expected /= gain;
+            }
             metrics.put(over, metric.estimate.scaled(1.0 / gain)).fields = fields;
         }
         (Some(_), Some(gain)) => {

@@ -175,7 +175,7 @@ fn check_tail(metric: &str, samples: usize, last_step_index: usize) -> Result<()
     let after = samples.saturating_sub(last_step_index);
     let (found, needed) = match metric {
         "settling_time_s" => (after, STEP_SAMPLES_MIN),
-        "noise_std_deg_per_h" | "noise_gain" => (
+        "noise_std_deg_per_h" | "lag1_correlation" | "noise_gain" => (
             samples.saturating_sub(tail_start(samples, last_step_index)),
             SAMPLES_MIN,
         ),

@@ -71,7 +71,12 @@ pub(crate) fn measure_swing(
     );
     let channel = LaggedProducts::new(&residuals, 0.0, lags, fits.channel.block_count());
     drop(residuals);
-    put_noise_std(&channel.autocovariance(), fits.channel.samples(), metrics);
+    put_noise_std(
+        &channel,
+        fits.channel.samples(),
+        record.sample_period_s,
+        metrics,
+    );
     if let Some(facts) = filter {
         let residuals = fits.raw.residuals(record.raw_deg_per_h);
         let raw = LaggedProducts::new(&residuals, 0.0, lags, fits.raw.block_count());

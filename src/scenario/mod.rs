@@ -46,8 +46,8 @@ pub use comparison_config::{
     FigureConfig,
 };
 pub use config::{
-    Fidelity, GateConfig, GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig,
-    SamplesFormat, Scenario,
+    AllanConfig, AllanEstimatorConfig, AveragingTimes, Fidelity, GateConfig, GateDecision,
+    InconclusivePolicy, OutputConfig, PublishedConfig, SamplesFormat, Scenario,
 };
 pub(crate) use cross_comparison::slug;
 pub use defaults::reference_toml;
