@@ -1,6 +1,6 @@
 //! Overlapping Allan deviation of a rate record.
 
-use super::angle::{angle_about_mean, second_difference_sums};
+use super::allan_sums::second_difference_sums_of_record;
 use super::estimate::Estimate;
 use super::interval::{self, round_to_count};
 
@@ -103,7 +103,7 @@ pub fn degrees_of_freedom(noise: NoiseType, angle_count: usize, averaged_samples
 /// * `sample_period_s`: s, > 0.
 ///
 /// Fewer than four samples give no point. One angle array (8 bytes a sample) is the only large
-/// memory.
+/// memory; octave averaging times ([`overlapping_allan_at`]) do without.
 ///
 /// Source: IEEE Std 952-1997 annex C; NIST SP 1065 section 5.2.4.
 #[must_use]
@@ -121,22 +121,22 @@ pub fn overlapping_allan_at(
     sample_period_s: f64,
     averaging_factors: &[usize],
 ) -> Vec<AllanPoint> {
-    let angle = angle_about_mean(rate_deg_per_h);
+    let angle_count = rate_deg_per_h.len() + 1;
     let factors: Vec<usize> = averaging_factors
         .iter()
         .copied()
-        .filter(|&m| m > 0 && 2 * m < angle.len())
+        .filter(|&m| m > 0 && 2 * m < angle_count)
         .collect();
-    let sums = second_difference_sums(&angle, &factors);
+    let sums = second_difference_sums_of_record(rate_deg_per_h, &factors);
     factors
         .iter()
         .zip(sums)
         .map(|(&m, sum)| {
-            let count = angle.len() - 2 * m;
+            let count = angle_count - 2 * m;
             let m_f = m as f64;
             // The angle is in units of one sample period, which cancels against tau.
             let deviation = (sum / (2.0 * m_f * m_f * count as f64)).sqrt();
-            let freedom = degrees_of_freedom(NoiseType::White, angle.len(), m);
+            let freedom = degrees_of_freedom(NoiseType::White, angle_count, m);
             AllanPoint {
                 tau_s: m_f * sample_period_s,
                 averaged_samples: m,

@@ -13,6 +13,7 @@ use super::interval;
 use super::noise_fit::{FitRange, NoiseFit, fit_pooled_noise};
 use super::noise_identification::PowerLaw;
 use super::steady::{WALK_OVER_DC_GAIN, put_over_dc_gain};
+use super::support::slow_noise_lack;
 
 /// The curve of the settings.
 const CURVE: &str = "allan";
@@ -101,9 +102,20 @@ pub(crate) fn put_fit_curve(
     metrics.curves.insert(FIT_CURVE.to_owned(), curve);
 }
 
-/// Enters a fit and the curve it was made from.
-pub(crate) fn enter_fit(points: &[AllanPoint], fit: &NoiseFit, metrics: &mut ChannelMetrics) {
+/// Enters a fit and the curve it was made from; of a record too short for slow noise without B, K, R.
+pub(crate) fn enter_fit(
+    points: &[AllanPoint],
+    fit: &NoiseFit,
+    duration_s: f64,
+    metrics: &mut ChannelMetrics,
+) {
     metrics.put_noise_fit(fit);
+    for name in FITTED {
+        if let Some(reason) = slow_noise_lack(name, duration_s) {
+            metrics.metrics.remove(name);
+            metrics.miss(name, reason);
+        }
+    }
     put_fit_curve(points, Some(fit), metrics);
 }
 
@@ -153,7 +165,9 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
         put_fit_curve(&points, None, pooled);
         return None;
     };
-    enter_fit(&points, &fit, pooled);
+    let mean = pooled.metrics.get("mean_deg_per_h");
+    let duration_s = mean.and_then(|mean| mean.fields.get("averaging_time_s").copied());
+    enter_fit(&points, &fit, duration_s.unwrap_or(f64::INFINITY), pooled);
     for name in FITTED {
         if let Some(metric) = pooled.metrics.get_mut(name) {
             metric.fields.insert("repeats", count);

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::allan::AllanPoint;
-use super::angle::{angle_about_mean, second_difference_sums};
+use super::allan_sums::second_difference_sums_of_record;
+use super::angle::angle_about_mean;
 use super::combined_freedom::{Differences, combined_degrees_of_freedom};
 use super::estimate::CONFIDENCE;
 use super::interval;
@@ -215,7 +216,7 @@ pub fn allan_variant_at(
     let possible = |m: usize| possible_differences(angle.len(), m, estimator);
     // The overlapping deviation of a whole record goes through the cache once for all tau.
     let sums: Vec<(f64, usize)> = if missing.is_none() && estimator == AllanEstimator::Overlapping {
-        let sums = second_difference_sums(&angle, &factors).into_iter();
+        let sums = second_difference_sums_of_record(rate_deg_per_h, &factors).into_iter();
         sums.zip(&factors)
             .map(|(sum, &m)| (sum, possible(m)))
             .collect()

@@ -8,38 +8,21 @@ use rayon::prelude::*;
 /// Samples that one thread integrates at a time.
 const PART: usize = 1 << 16;
 
-/// Second differences handled per pass over the cache: every short tau visits a block before the
-/// next block is read, so that they read memory once altogether.
+/// Second differences handled per pass over the cache: every tau visits a block before the next
+/// block is read, so that short ones read memory once altogether.
 const BLOCK: usize = 2048;
 
 /// Blocks that one thread handles in a row, so that what the longer of these tau read ahead is
 /// still in its cache when it is their turn.
 const BLOCKS_IN_A_ROW: usize = 32;
 
-/// From this averaging factor on the angles one tau apart no longer share a cache with a block.
-const FAR: usize = 1 << 15;
-
-/// Angles that a pass over all far tau keeps in the cache, 512 kB.
-const FAR_CACHE: usize = 1 << 16;
-
-/// Fewest neighbouring angles that a pass over the far tau takes from one place.
-const FAR_WIDTH_MIN: usize = 32;
-
 /// Angle about the mean rate, `[n + 1]`, in units of (deg/h) times one sample period, from zero on.
 ///
 /// The mean cancels in every second difference; leaving it out keeps the digits of the rest. A
 /// missing sample (NaN) counts as the mean, so that it adds nothing.
 pub(crate) fn angle_about_mean(rate_deg_per_h: &[f64]) -> Vec<f64> {
-    // Sums about a rate near the mean, so that they do not cancel against it.
-    let near = rate_deg_per_h.iter().find(|rate| !rate.is_nan());
-    let near = near.copied().unwrap_or(0.0);
-    let sums: Vec<(f64, usize)> = rate_deg_per_h
-        .par_chunks(PART)
-        .map(|part| sum_about(part, near))
-        .collect();
-    let present: usize = sums.iter().map(|(_, present)| present).sum();
-    let total: f64 = sums.iter().map(|(sum, _)| sum).sum();
-    let rest = total / present.max(1) as f64;
+    let (near, sums) = sums_of_parts(rate_deg_per_h);
+    let rest = rest_of_mean(&sums);
     let mean = near + rest;
     let mut starts = Vec::with_capacity(sums.len());
     let mut start = 0.0;
@@ -60,6 +43,27 @@ pub(crate) fn angle_about_mean(rate_deg_per_h: &[f64]) -> Vec<f64> {
             }
         });
     angle
+}
+
+/// A rate near the mean, and sums about it of every part with the number of rates in it: they do not
+/// cancel against the mean.
+fn sums_of_parts(rates: &[f64]) -> (f64, Vec<(f64, usize)>) {
+    let near = rates.iter().find(|rate| !rate.is_nan());
+    let near = near.copied().unwrap_or(0.0);
+    let parts = rates.par_chunks(PART);
+    (near, parts.map(|part| sum_about(part, near)).collect())
+}
+
+/// Mean of all parts about the rate that their sums are about.
+fn rest_of_mean(sums: &[(f64, usize)]) -> f64 {
+    let present: usize = sums.iter().map(|(_, present)| present).sum();
+    sums.iter().map(|(sum, _)| sum).sum::<f64>() / present.max(1) as f64
+}
+
+/// Mean rate; missing samples (NaN) are left out.
+pub(crate) fn mean_rate(rates: &[f64]) -> f64 {
+    let (near, sums) = sums_of_parts(rates);
+    near + rest_of_mean(&sums)
 }
 
 /// Sum of the rates about one of them in eight interleaved sums, and the number there is.
@@ -83,45 +87,18 @@ fn sum_about(rates: &[f64], near: f64) -> (f64, usize) {
 }
 
 /// Sum of squared second differences `x[k+2m] - 2x[k+m] + x[k]` for every averaging factor m.
-///
-/// Short tau go through memory block by block together. Far tau that are multiples of the shortest
-/// of them, m0, go through it together too: the angles at k, k + m0, k + 2 m0, ... serve all of
-/// them while they are in the cache.
 pub(crate) fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f64> {
-    let far = factors.iter().copied().filter(|&m| m >= FAR).min();
-    let width = far.map_or(0, |m| FAR_CACHE / angle.len().div_ceil(m));
-    let is_together =
-        |m: usize| far.is_some_and(|first| width >= FAR_WIDTH_MIN && m >= first && m % first == 0);
     let blocks: Vec<usize> = (0..angle.len()).step_by(BLOCK * BLOCKS_IN_A_ROW).collect();
     let of_blocks = blocks.into_par_iter().map(|first| {
         let mut sums = vec![0.0; factors.len()];
         for start in (first..angle.len()).step_by(BLOCK).take(BLOCKS_IN_A_ROW) {
             for (sum, &m) in sums.iter_mut().zip(factors) {
-                if !is_together(m) {
-                    *sum += squares_of_starts(angle, start, start + BLOCK, m);
-                }
+                *sum += squares_of_starts(angle, start, start + BLOCK, m);
             }
         }
         sums
     });
-    let mut parts: Vec<Vec<f64>> = of_blocks.collect();
-    if let Some(spacing) = far.filter(|_| width >= FAR_WIDTH_MIN) {
-        let columns: Vec<usize> = (0..spacing).step_by(width).collect();
-        let of_columns = columns.into_par_iter().map(|column| {
-            let end = (column + width).min(spacing);
-            let of_factor = |&m: &usize| {
-                if !is_together(m) {
-                    return 0.0;
-                }
-                let starts = (0..angle.len() - 2 * m).step_by(spacing);
-                starts
-                    .map(|row| squares_of_starts(angle, row + column, row + end, m))
-                    .sum()
-            };
-            factors.iter().map(of_factor).collect()
-        });
-        parts.par_extend(of_columns);
-    }
+    let parts: Vec<Vec<f64>> = of_blocks.collect();
     // In the order of the parts, whichever thread was first.
     let mut sums = vec![0.0; factors.len()];
     for part in parts {
@@ -173,24 +150,21 @@ pub(crate) fn squared_second_differences(a: &[f64], b: &[f64], c: &[f64]) -> f64
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn sums_agree_with_the_plain_sum(angle: &[f64], factors: &[usize]) {
-        let sums = second_difference_sums(angle, factors);
-        for (&m, sum) in factors.iter().zip(sums) {
+    #[test]
+    fn blocks_agree_with_the_plain_sum() {
+        let angle: Vec<f64> = (0..3 * BLOCK + 7)
+            .map(|k| ((k * k) % 1013) as f64)
+            .collect();
+        let factors = [1, 2, 3, 100, BLOCK, 3001];
+        for (m, sum) in factors
+            .into_iter()
+            .zip(second_difference_sums(&angle, &factors))
+        {
             let plain: f64 = (0..angle.len() - 2 * m)
                 .map(|k| (angle[k + 2 * m] - 2.0 * angle[k + m] + angle[k]).powi(2))
                 .sum();
             assert!((sum / plain - 1.0).abs() < 1e-12, "m = {m}: {sum} {plain}");
         }
-    }
-
-    #[test]
-    fn blocks_and_columns_agree_with_the_plain_sum() {
-        let angle: Vec<f64> = (0..5 * FAR + 7).map(|k| ((k * k) % 1013) as f64).collect();
-        sums_agree_with_the_plain_sum(&angle, &[1, 2, 3, 100, BLOCK, 9001]);
-        // Together, apart, and one that is no multiple of the shortest far one.
-        sums_agree_with_the_plain_sum(&angle, &[1, FAR, FAR + 5, 2 * FAR]);
-        sums_agree_with_the_plain_sum(&angle, &[5 * FAR / 2]);
     }
 
     #[test]
@@ -203,7 +177,8 @@ mod tests {
                 rates[gap] = f64::NAN;
             }
             let present: Vec<f64> = rates.iter().copied().filter(|x| !x.is_nan()).collect();
-            let mean = present.iter().sum::<f64>() / present.len() as f64;
+            let above = present.iter().map(|rate| rate - 15.0);
+            let mean = 15.0 + above.sum::<f64>() / present.len() as f64;
             let angle = angle_about_mean(&rates);
             let mut plain = 0.0;
             for (k, rate) in rates.iter().enumerate() {

@@ -15,6 +15,7 @@ mod allan_curves;
 mod allan_least_squares;
 mod allan_sampling;
 mod allan_stream;
+mod allan_sums;
 mod allan_variants;
 mod angle;
 mod audit;

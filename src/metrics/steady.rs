@@ -99,7 +99,8 @@ fn measure_allan(
     match fitted {
         Ok(fit) => {
             let points = mixed_degrees_of_freedom(&points, &fit.coefficients(), samples + 1);
-            enter_fit(&points, &fit, metrics);
+            let duration_s = samples as f64 * record.sample_period_s;
+            enter_fit(&points, &fit, duration_s, metrics);
             Some(fit)
         }
         Err(reason) => {
