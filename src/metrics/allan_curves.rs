@@ -111,9 +111,12 @@ pub(crate) fn enter_fit(
 ) {
     metrics.put_noise_fit(fit);
     for name in FITTED {
-        if let Some(reason) = slow_noise_lack(name, duration_s) {
-            metrics.metrics.remove(name);
-            metrics.miss(name, reason);
+        let Some(reason) = slow_noise_lack(name, duration_s) else {
+            continue;
+        };
+        if let Some(metric) = metrics.metrics.remove(name) {
+            let (high, unit) = (metric.estimate.high, metric.unit);
+            metrics.miss(name, format!("{reason}; it is {high:.2e} {unit} at most"));
         }
     }
     put_fit_curve(points, Some(fit), metrics);
