@@ -81,11 +81,8 @@ pub(super) fn picture(report: &Measured) -> Option<Picture> {
         panel.band(&mut picture, &band, stroke.colour, 0.22);
         let line: Vec<(f64, f64)> = tau.iter().copied().zip(deviation.iter().copied()).collect();
         panel.line(&mut picture, &line, stroke);
-        if let Some(fit) = allan_curve(metrics).and_then(fitted) {
-            let fit: Vec<(f64, f64)> = tau.iter().copied().zip(fit.iter().copied()).collect();
-            let thin = Stroke::solid(stroke.colour, 0.75);
-            panel.line(&mut picture, &fit, thin);
-        }
+        let thin = Stroke::solid(stroke.colour, 0.75);
+        panel.line(&mut picture, &fit_line(metrics, tau), thin);
         legend.line(&mut picture, stroke, name);
         for reading in readings(metrics) {
             if is_read {
@@ -109,6 +106,17 @@ fn deviation_name(estimator: &str) -> &'static str {
         "hadamard" => "overlapping Hadamard deviation",
         _ => "overlapping Allan deviation",
     }
+}
+
+/// The fitted deviation over the range of the fit; below it lies the bandwidth of the channel, which
+/// the fit does not know.
+fn fit_line(metrics: &ChannelMetrics, tau: &[f64]) -> Vec<(f64, f64)> {
+    let walk = metrics.metrics.get("angle_random_walk_deg_per_sqrt_h");
+    let first_s = walk.and_then(|walk| walk.fields.get("tau_min_s").copied());
+    let first_s = first_s.unwrap_or(0.0);
+    let fit = allan_curve(metrics).and_then(fitted).unwrap_or_default();
+    let points = tau.iter().copied().zip(fit.iter().copied());
+    points.filter(|(tau, _)| *tau >= first_s).collect()
 }
 
 /// What the reader of the picture must know, below the legend.
