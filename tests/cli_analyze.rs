@@ -137,7 +137,7 @@ fn analysing_a_runs_raw_samples_gives_the_runs_metrics() {
     assert!(compared >= 6, "{compared} metrics");
     assert!(log["channels"]["raw"]["angle_random_walk_deg_per_sqrt_h"]["value"].is_number());
     let curves = &log["channels"]["raw"]["curves"];
-    assert_eq!(curves.as_object().map(serde_json::Map::len), Some(2));
+    assert_eq!(curves.as_object().map(serde_json::Map::len), Some(4));
     assert_eq!(log["log"]["file"], "raw.npy");
     let samples = run["scenario"]["duration_s"].as_f64().expect("a time")
         * run["gyro"]["output_rate_hz"].as_f64().expect("a rate");
@@ -192,6 +192,7 @@ fn filtering_a_runs_raw_samples_gives_its_words_to_the_bit_and_its_trial() {
     for name in [
         "allan.csv",
         "allan.svg",
+        "autocovariance.csv",
         "psd.csv",
         "rate.svg",
         "samples/lms.csv",

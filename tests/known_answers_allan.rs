@@ -1,8 +1,8 @@
 //! Closed-form and published answers for the Allan variance, its fit and the spectrum.
 
 use fogbench::metrics::{
-    FitRange, Motion, NoiseCoefficients, Record, Settings, Term, aggregate, block_means,
-    expected_bias_stability, fit_noise, fit_pooled_noise, measure, overlapping_allan,
+    AllanOptions, FitRange, Motion, NoiseCoefficients, Record, Settings, Term, aggregate,
+    block_means, expected_bias_stability, fit_noise, fit_pooled_noise, measure, overlapping_allan,
     overlapping_allan_at, welch,
 };
 use fogbench::units;
@@ -309,6 +309,7 @@ fn slow_noise_is_fitted_and_its_intervals_cover_the_truth() {
             motion: Motion::Steady,
             bias_averaging_time_s: 100.0,
             fit_tau_min_s: 1.0,
+            allan: AllanOptions::default(),
         };
         let metrics = measure(&record, &settings, None);
         let covers = |name: &str, wanted: f64| {

@@ -1,6 +1,7 @@
 //! The one integration-test binary.
 
 mod allan_coverage;
+mod allan_curves;
 mod architecture;
 mod assembly;
 mod average_output;

@@ -1,6 +1,6 @@
 //! Whether the intervals of the metrics hold the truth as often as they say.
 
-use fogbench::metrics::{ChannelMetrics, Motion, Record, Settings, measure};
+use fogbench::metrics::{AllanOptions, ChannelMetrics, Motion, Record, Settings, measure};
 use fogbench::random::Streams;
 
 use crate::support::assert_close;
@@ -48,6 +48,7 @@ fn measured(values: &[f64], period_s: f64) -> ChannelMetrics {
         motion: Motion::Steady,
         bias_averaging_time_s: 10.0,
         fit_tau_min_s: period_s,
+        allan: AllanOptions::default(),
     };
     measure(&record, &settings, None)
 }

@@ -25,7 +25,9 @@ fn flicker(noise: &[f64], count: usize) -> Vec<f64> {
         let mut input = forward.make_input_vec();
         input[..values.len()].copy_from_slice(values);
         let mut output = forward.make_output_vec();
-        forward.process(&mut input, &mut output).unwrap();
+        forward
+            .process(&mut input, &mut output)
+            .expect("the buffers are the plan's own");
         output
     };
     let mut response = vec![1.0; 2 * count];
@@ -38,7 +40,9 @@ fn flicker(noise: &[f64], count: usize) -> Vec<f64> {
     }
     let inverse = planner.plan_fft_inverse(length);
     let mut values = inverse.make_output_vec();
-    inverse.process(&mut product, &mut values).unwrap();
+    inverse
+        .process(&mut product, &mut values)
+        .expect("the buffers are the plan's own");
     values[count..2 * count]
         .iter()
         .map(|value| value / length as f64)
@@ -99,7 +103,7 @@ fn trials(truth: &NoiseCoefficients) -> [Trial; 5] {
         .into_par_iter()
         .map(|seed| {
             let points = overlapping_allan(&record(truth, seed), 1.0);
-            let fit = fit_noise(&points, range).unwrap();
+            let fit = fit_noise(&points, range).expect("enough averaging times");
             [
                 &fit.angle_random_walk_deg_per_h_sqrt_s,
                 &fit.bias_instability_deg_per_h,
@@ -122,15 +126,14 @@ fn trials(truth: &NoiseCoefficients) -> [Trial; 5] {
     })
 }
 
-#[test]
-fn fitted_coefficients_lie_in_their_intervals_as_often_as_stated() {
+/// Mixes of noise, each with the term that it adds, how far its mean estimate may lie off and how wide
+/// its interval may be, as a part of the truth.
+fn mixes() -> [(NoiseCoefficients, usize, f64, f64); 6] {
     let white = NoiseCoefficients {
         angle_random_walk_deg_per_h_sqrt_s: 1.0,
         ..NoiseCoefficients::default()
     };
-    // Each mix with the term that it adds, how far its mean estimate may lie off and how wide its
-    // interval may be, as a part of the truth.
-    let mixes = [
+    [
         (white, 0, 0.01, 0.05),
         (
             NoiseCoefficients {
@@ -178,9 +181,13 @@ fn fitted_coefficients_lie_in_their_intervals_as_often_as_stated() {
             0.1,
             0.5,
         ),
-    ];
+    ]
+}
+
+#[test]
+fn fitted_coefficients_lie_in_their_intervals_as_often_as_stated() {
     let mut complaints = Vec::new();
-    for (truth, term, bias_max, error_max) in mixes {
+    for (truth, term, bias_max, error_max) in mixes() {
         let found = trials(&truth);
         for (index, trial) in found.iter().enumerate() {
             // Binomial standard deviation of 500 at 0.95 is 4.9: three of them below 475.

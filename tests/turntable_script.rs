@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use fogbench::metrics::{Applies, Motion, Record, Settings, known_metrics, measure, support};
+use fogbench::metrics::{
+    AllanOptions, Applies, Motion, Record, Settings, known_metrics, measure, support,
+};
 use fogbench::scenario::{MotionConfig, Resolved, ScenarioError, load_suite, manifest_toml};
 
 use crate::support::{assert_close, fogbench};
@@ -226,6 +228,7 @@ fn a_general_motion_has_means_and_tracking_error_and_reasons_for_the_rest() {
         motion: Motion::General,
         bias_averaging_time_s: 1.0,
         fit_tau_min_s: 0.1,
+        allan: AllanOptions::default(),
     };
     let metrics = measure(&record, &settings, None);
     let value = |name: &str| metrics.metrics[name].estimate.value;

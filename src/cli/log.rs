@@ -13,6 +13,7 @@ use crate::experiment::{
 };
 use crate::recording::{Log, LogError, LogFormat, read_column, read_log};
 use crate::report::{log_json, log_text};
+use crate::scenario::AllanConfig;
 
 /// Measures a log.
 pub(super) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
@@ -111,6 +112,10 @@ fn conclude(
         warm_up_s: options.warm_up_s,
         bias_averaging_time_s: options.bias_averaging_time_s,
         fit_tau_min_s: options.fit_tau_min_s,
+        allan: AllanConfig {
+            estimator: options.allan_estimator,
+            averaging_times: options.averaging_times,
+        },
     };
     let trial = match try_log(input, filters, &settings) {
         Ok(trial) => trial,

@@ -8,6 +8,7 @@ use super::arguments::Format;
 use crate::experiment::LogMotion;
 use crate::recording::{RateUnit, TimeUnit};
 use crate::scenario::CompensationRule;
+use crate::scenario::{AllanEstimatorConfig, AveragingTimes};
 
 /// A log and how to measure it.
 #[derive(Args, Debug)]
@@ -67,9 +68,16 @@ pub(super) struct LogOptions {
     #[arg(long, value_name = "S", default_value_t = 100.0, value_parser = above_zero)]
     pub(super) bias_averaging_time_s: f64,
     /// Shortest averaging time of the noise fit, s: longer than the noise is correlated
-    /// [default: ten samples]
+    /// [default: what the correlation of the log asks for, ten samples at least]
     #[arg(long, value_name = "S", value_parser = above_zero)]
     pub(super) fit_tau_min_s: Option<f64>,
+    /// Deviation of the Allan curve: `overlapping`, `plain`, `modified`, `hadamard`; the noise terms are
+    /// fitted to the overlapping one
+    #[arg(long, value_name = "ESTIMATOR", default_value = "overlapping")]
+    pub(super) allan_estimator: AllanEstimatorConfig,
+    /// Averaging times of the Allan curve: `octave`, `decade`, `all` (up to 1000)
+    #[arg(long, value_name = "TIMES", default_value = "octave")]
+    pub(super) averaging_times: AveragingTimes,
     /// Folder for summary.json, curves, pictures and filtered samples [default: none is written]
     #[arg(short, long, value_name = "DIR")]
     pub(super) output: Option<PathBuf>,

@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use rayon::prelude::*;
 
+use super::allan_settings::allan_options;
 use super::channel_filter::{ChannelFilter, FinishedFilter};
 use super::log_compensation::CompensatedLog;
 use super::log_filters::LogFilters;
@@ -13,15 +14,12 @@ use super::measurement::Cut;
 use super::pipeline_metrics;
 use super::simulate::{GyroRecord, RecordLength};
 use super::suite::VERSION;
-use crate::metrics::{ChannelMetrics, Motion, Settings};
+use crate::metrics::{ChannelMetrics, Motion, Settings, record_fit_tau_min_s};
 use crate::recording::{Log, csv_text};
 use crate::report::{LogReport, log_files, write_atomic, write_npy};
-use crate::scenario::{MotionConfig, StaticConfig, SwingConfig};
+use crate::scenario::{AllanConfig, MotionConfig, StaticConfig, SwingConfig};
 use crate::signal::RunSignals;
 use crate::turntable::first_measured_index;
-
-/// Samples of the gyro's low pass that the noise fit leaves out where nothing else is said.
-const FIT_SAMPLES_MIN: f64 = 10.0;
 
 /// Name of the log's own channel.
 const RAW: &str = "raw";
@@ -82,8 +80,11 @@ pub struct LogSettings {
     pub warm_up_s: f64,
     /// Averaging time of the plain `bias_stability_deg_per_h`, s.
     pub bias_averaging_time_s: f64,
-    /// Shortest averaging time of the noise fit, s; none: ten samples.
+    /// Shortest averaging time of the noise fit, s; none: four times as long as the fast noise is
+    /// correlated, ten samples at least.
     pub fit_tau_min_s: Option<f64>,
+    /// Estimator and averaging times of the Allan curve.
+    pub allan: AllanConfig,
 }
 
 /// Why a log was not measured.
@@ -144,11 +145,15 @@ pub fn try_log(
     let finished = filters.map_or_else(Vec::new, |filters| {
         run(filters, length, sample_period_s, words)
     });
-    let shortest_s = FIT_SAMPLES_MIN * sample_period_s;
+    let fit_tau_min_s = settings.fit_tau_min_s.unwrap_or_else(|| {
+        let measured = &record.raw_deg_per_h[length.warm_up..];
+        record_fit_tau_min_s(measured, sample_period_s)
+    });
     let metric_settings = Settings {
         motion: metric_motion(settings.motion),
         bias_averaging_time_s: settings.bias_averaging_time_s,
-        fit_tau_min_s: settings.fit_tau_min_s.unwrap_or(shortest_s),
+        fit_tau_min_s,
+        allan: allan_options(settings.allan),
     };
     let cut = Cut {
         record: &record,

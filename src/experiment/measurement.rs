@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::allan_settings::allan_options;
 use super::assembly_motion::drop_lacking;
 use super::campaign;
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
@@ -29,6 +30,7 @@ pub(super) fn measure_repeat(
         motion: motion(scenario, sample_period_s),
         bias_averaging_time_s: scenario.bias_averaging_time_s,
         fit_tau_min_s: plan.fit_tau_min_s(),
+        allan: allan_options(scenario.allan),
     };
     let gyros = simulation.gyros.iter();
     let cuts: Vec<Cut> = gyros

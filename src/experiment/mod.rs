@@ -3,6 +3,7 @@
 //! Invariant: wiring only; what a stage does stands in the stage. Checks that need physics live in
 //! `plan`, so that `check` and `run` refuse the same files.
 
+mod allan_settings;
 mod assembly_motion;
 mod budget;
 mod calibrate;

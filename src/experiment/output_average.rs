@@ -14,7 +14,7 @@ pub(super) fn mean(count: usize, mut next_word: impl FnMut() -> f64) -> f64 {
     for _ in 1..count {
         sum += next_word();
     }
-    sum / self::super::simulate::count(count)
+    sum / super::simulate::count(count)
 }
 
 /// Warm-up as the table counts it, s: its record begins with the first measured output sample.

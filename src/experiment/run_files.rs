@@ -32,6 +32,9 @@ pub(super) fn write_folder(
     if let Some(csv) = report::runs_csv(report) {
         folder.write("runs.csv", csv.as_bytes())?;
     }
+    if let Some(csv) = report::autocovariance_csv(report) {
+        folder.write("autocovariance.csv", csv.as_bytes())?;
+    }
     if let Some(csv) = report::psd_csv(report) {
         folder.write("psd.csv", csv.as_bytes())?;
     }

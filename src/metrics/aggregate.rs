@@ -2,14 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::allan::AllanPoint;
+use super::allan_curves::pool_allan;
 use super::estimate::{ChannelMetrics, Estimate, Metric};
-use super::fit_entry::enter_fit;
 use super::interval;
-use super::noise_fit::{FitRange, fit_pooled_noise};
 use super::repeat_statistics::{REPEATED_METRICS, RepeatStatistics};
 use super::scale_factor::scale_factor_repeatability;
-use super::steady::{WALK_OVER_DC_GAIN, put_over_dc_gain};
 use super::support::repeats_lack;
 use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION, TWO_SIDED_PSD};
 use crate::units::ratio_to_ppm;
@@ -28,7 +25,7 @@ const SCATTER: [(&str, &str); 2] = [
 pub(crate) const REPEATABILITIES: [&str; 2] = [SCATTER[0].0, SCATTER[1].0];
 
 /// The metrics that a fit to the pooled Allan variance replaces.
-const FITTED: [&str; 5] = [
+pub(crate) const FITTED: [&str; 5] = [
     "angle_random_walk_deg_per_sqrt_h",
     "bias_instability_deg_per_h",
     "rate_random_walk_deg_per_h_per_sqrt_h",
@@ -45,7 +42,8 @@ const ROOT_MEAN_SQUARES: [&str; 4] = [
 ];
 
 /// Curves of points that have intervals of their own.
-const POINT_CURVES: [&str; 7] = [
+const POINT_CURVES: [&str; 8] = [
+    "autocovariance",
     "response",
     "scale_factor",
     "frequency_response",
@@ -218,7 +216,7 @@ fn pool_mean(values: &[f64], metrics: &[&Metric]) -> Estimate {
 }
 
 /// Column of a curve in every repeat; `None` unless all have it in the same length.
-fn columns<'a>(
+pub(crate) fn columns<'a>(
     repeats: &'a [ChannelMetrics],
     curve: &str,
     column: &str,
@@ -231,7 +229,7 @@ fn columns<'a>(
 }
 
 /// Mean over the repeats of `transform(value)`, entry by entry.
-fn mean_of(columns: &[&Vec<f64>], transform: fn(f64) -> f64) -> Vec<f64> {
+pub(crate) fn mean_of(columns: &[&Vec<f64>], transform: fn(f64) -> f64) -> Vec<f64> {
     (0..columns[0].len())
         .map(|index| {
             let sum: f64 = columns.iter().map(|column| transform(column[index])).sum();
@@ -291,60 +289,5 @@ fn pool_points(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
         if let Some(curve) = curve {
             pooled.curves.insert(name.to_owned(), curve);
         }
-    }
-}
-
-/// Pools the Allan curves and fits the noise terms to the result.
-fn pool_allan(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
-    let tau = columns(repeats, "allan", "tau_s");
-    let deviation = columns(repeats, "allan", "deviation_deg_per_h");
-    let freedom = columns(repeats, "allan", "edf");
-    let differences = columns(repeats, "allan", "count");
-    let (Some(tau), Some(deviation), Some(freedom), Some(differences)) =
-        (tau, deviation, freedom, differences)
-    else {
-        return;
-    };
-    // The shortest averaging time is one sample.
-    let sample_period_s = tau[0].first().copied().unwrap_or(1.0);
-    let count = repeats.len() as f64;
-    let variance = mean_of(&deviation, |value| value * value);
-    let freedom = mean_of(&freedom, std::convert::identity);
-    let points: Vec<AllanPoint> = tau[0]
-        .iter()
-        .zip(variance.iter().zip(&freedom))
-        .zip(differences[0])
-        .map(|((&tau_s, (variance, freedom)), differences)| AllanPoint {
-            tau_s,
-            averaged_samples: interval::round_to_count(tau_s / sample_period_s),
-            deviation_deg_per_h: interval::deviation(variance.sqrt(), freedom * count),
-            degrees_of_freedom: freedom * count,
-            count: interval::round_to_count(*differences),
-        })
-        .collect();
-    let range = FITTED.iter().find_map(|&name| {
-        let fields = &pooled.metrics.get(name)?.fields;
-        Some(FitRange {
-            tau_min_s: *fields.get("tau_min_s")?,
-            tau_max_s: *fields.get("tau_max_s")?,
-        })
-    });
-    let Some(Ok(fit)) = range.map(|range| fit_pooled_noise(&points, range, count)) else {
-        pooled.put_allan_curve(&points, None);
-        return;
-    };
-    enter_fit(&points, &fit, pooled);
-    for name in FITTED {
-        if let Some(metric) = pooled.metrics.get_mut(name) {
-            metric.fields.insert("repeats", count);
-        }
-    }
-    let gain = pooled
-        .metrics
-        .get("dc_gain")
-        .map(|gain| gain.estimate.value);
-    if gain.is_some() && pooled.metrics.contains_key(WALK_OVER_DC_GAIN) {
-        pooled.metrics.remove(WALK_OVER_DC_GAIN);
-        put_over_dc_gain(FITTED[0], WALK_OVER_DC_GAIN, gain, pooled);
     }
 }

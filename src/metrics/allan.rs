@@ -1,16 +1,11 @@
 //! Overlapping Allan deviation of a rate record.
 
-use rayon::prelude::*;
-
+use super::allan_sums::second_difference_sums_of_record;
 use super::estimate::Estimate;
 use super::interval::{self, round_to_count};
 
 /// Averaging factors per decade of tau.
 const POINTS_PER_DECADE: f64 = 12.0;
-
-/// Second differences handled per pass over the cache: every tau visits a block before the next
-/// block is read, so that small averaging times read memory once altogether.
-const BLOCK: usize = 8192;
 
 /// One point of an Allan deviation curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +103,7 @@ pub fn degrees_of_freedom(noise: NoiseType, angle_count: usize, averaged_samples
 /// * `sample_period_s`: s, > 0.
 ///
 /// Fewer than four samples give no point. One angle array (8 bytes a sample) is the only large
-/// memory.
+/// memory; octave averaging times ([`overlapping_allan_at`]) do without.
 ///
 /// Source: IEEE Std 952-1997 annex C; NIST SP 1065 section 5.2.4.
 #[must_use]
@@ -126,24 +121,22 @@ pub fn overlapping_allan_at(
     sample_period_s: f64,
     averaging_factors: &[usize],
 ) -> Vec<AllanPoint> {
-    // The mean cancels in every second difference; leaving it out keeps the digits of the rest.
-    let mean = interval::mean(rate_deg_per_h);
-    let angle = integrate(rate_deg_per_h.iter().map(|rate| rate - mean));
+    let angle_count = rate_deg_per_h.len() + 1;
     let factors: Vec<usize> = averaging_factors
         .iter()
         .copied()
-        .filter(|&m| m > 0 && 2 * m < angle.len())
+        .filter(|&m| m > 0 && 2 * m < angle_count)
         .collect();
-    let sums = second_difference_sums(&angle, &factors);
+    let sums = second_difference_sums_of_record(rate_deg_per_h, &factors);
     factors
         .iter()
         .zip(sums)
         .map(|(&m, sum)| {
-            let count = angle.len() - 2 * m;
+            let count = angle_count - 2 * m;
             let m_f = m as f64;
             // The angle is in units of one sample period, which cancels against tau.
             let deviation = (sum / (2.0 * m_f * m_f * count as f64)).sqrt();
-            let freedom = degrees_of_freedom(NoiseType::White, angle.len(), m);
+            let freedom = degrees_of_freedom(NoiseType::White, angle_count, m);
             AllanPoint {
                 tau_s: m_f * sample_period_s,
                 averaged_samples: m,
@@ -165,91 +158,9 @@ fn averaging_factors(largest: usize) -> Vec<usize> {
     factors
 }
 
-/// Angle of a record of rates, in units of (deg/h) times one sample period, from zero on.
-pub(crate) fn integrate(rates_deg_per_h: impl ExactSizeIterator<Item = f64>) -> Vec<f64> {
-    let mut angle = Vec::with_capacity(rates_deg_per_h.len() + 1);
-    let mut sum = 0.0;
-    angle.push(sum);
-    for rate in rates_deg_per_h {
-        sum += rate;
-        angle.push(sum);
-    }
-    angle
-}
-
-/// Sum of squared second differences for every averaging factor.
-pub(crate) fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f64> {
-    let starts: Vec<usize> = (0..angle.len()).step_by(BLOCK).collect();
-    let parts: Vec<Vec<f64>> = starts
-        .into_par_iter()
-        .map(|start| {
-            let part = |&m: &usize| {
-                let end = (start + BLOCK).min(angle.len() - 2 * m);
-                if start >= end {
-                    return 0.0;
-                }
-                squared_second_differences(
-                    &angle[start..end],
-                    &angle[start + m..end + m],
-                    &angle[start + 2 * m..end + 2 * m],
-                )
-            };
-            factors.iter().map(part).collect()
-        })
-        .collect();
-    // In the order of the blocks, whichever thread was first.
-    let mut sums = vec![0.0; factors.len()];
-    for part in parts {
-        for (sum, part) in sums.iter_mut().zip(part) {
-            *sum += part;
-        }
-    }
-    sums
-}
-
-/// `sum (c - 2b + a)^2` in eight interleaved sums, which the compiler turns into vectors.
-pub(crate) fn squared_second_differences(a: &[f64], b: &[f64], c: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let mut lanes = [0.0; LANES];
-    let (a_lanes, a_rest) = a.as_chunks::<LANES>();
-    let (b_lanes, b_rest) = b.as_chunks::<LANES>();
-    let (c_lanes, c_rest) = c.as_chunks::<LANES>();
-    for ((a, b), c) in a_lanes.iter().zip(b_lanes).zip(c_lanes) {
-        for lane in 0..LANES {
-            let difference = (c[lane] - b[lane]) - (b[lane] - a[lane]);
-            lanes[lane] += difference * difference;
-        }
-    }
-    let rest: f64 = a_rest
-        .iter()
-        .zip(b_rest)
-        .zip(c_rest)
-        .map(|((a, b), c)| {
-            let difference = (c - b) - (b - a);
-            difference * difference
-        })
-        .sum();
-    lanes.iter().sum::<f64>() + rest
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn blocks_and_lanes_agree_with_the_plain_sum() {
-        let angle: Vec<f64> = (0..3 * BLOCK + 7)
-            .map(|k| ((k * k) % 1013) as f64)
-            .collect();
-        let factors = [1, 2, 3, 100, BLOCK, 9001];
-        let sums = second_difference_sums(&angle, &factors);
-        for (m, sum) in factors.into_iter().zip(sums) {
-            let plain: f64 = (0..angle.len() - 2 * m)
-                .map(|k| (angle[k + 2 * m] - 2.0 * angle[k + m] + angle[k]).powi(2))
-                .sum();
-            assert!((sum / plain - 1.0).abs() < 1e-12);
-        }
-    }
 
     #[test]
     fn factors_are_distinct_and_reach_a_quarter_of_the_record() {

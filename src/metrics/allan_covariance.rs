@@ -235,8 +235,8 @@ mod tests {
         ] {
             let mut squares = [0.0; TERMS];
             squares[term] = 1.0;
-            for index in first..factors.len() {
-                let m = factors[index] as f64;
+            for (index, &factor) in factors.iter().enumerate().skip(first) {
+                let m = factor as f64;
                 let value: f64 = match term {
                     WHITE => 1.0 / m,
                     FLICKER => 2.0 * std::f64::consts::LN_2 / PI,
@@ -244,7 +244,7 @@ mod tests {
                     _ => 1.0 / (m * m),
                 };
                 let got = 2.0 * value * value / structure.covariance(index, index, &squares);
-                let wanted = degrees_of_freedom(noise, samples + 1, factors[index]);
+                let wanted = degrees_of_freedom(noise, samples + 1, factor);
                 assert!(
                     (got / wanted - 1.0).abs() < rtol,
                     "{noise:?} {m}: {got} {wanted}"

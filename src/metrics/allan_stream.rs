@@ -1,6 +1,7 @@
 //! Overlapping Allan deviation of a record too long to be kept.
 
-use super::allan::{AllanPoint, NoiseType, degrees_of_freedom, squared_second_differences};
+use super::allan::{AllanPoint, NoiseType, degrees_of_freedom};
+use super::angle::squared_second_differences;
 use super::interval;
 
 /// Longest averaging factor, in samples, whose differences start at every sample: 2^18.

@@ -1,10 +1,24 @@
 //! The family of Allan deviations: plain, overlapping, modified, Hadamard; records with gaps.
 
-use super::allan::{AllanPoint, integrate, second_difference_sums};
+use rayon::prelude::*;
+
+use super::allan::AllanPoint;
+use super::allan_sums::second_difference_sums_of_record;
+use super::angle::angle_about_mean;
 use super::combined_freedom::{Differences, combined_degrees_of_freedom};
 use super::estimate::CONFIDENCE;
 use super::interval;
 use super::noise_identification::{PowerLaw, identify_noise};
+
+/// Most averaging times of [`TauGrid::All`].
+const ALL_MAX: usize = 1000;
+
+/// Fewest of them that a long record is cut down to.
+const ALL_MIN: usize = 100;
+
+/// Differences, counted as longest averaging factor times averaging times, up to which there are
+/// more than that: 2e9 in all, since a record is four times its longest factor.
+const ALL_WORK: usize = 500_000_000;
 
 /// Averaging times that a running sum covers before it is formed afresh, an eighth of the work.
 const RUN_PER_TAU: usize = 8;
@@ -35,6 +49,18 @@ impl AllanEstimator {
         }
     }
 
+    /// Name as in a scenario: `overlapping`, `plain`, `modified`, `hadamard`, `plain-hadamard`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Overlapping => "overlapping",
+            Self::Plain => "plain",
+            Self::Modified => "modified",
+            Self::Hadamard => "hadamard",
+            Self::PlainHadamard => "plain-hadamard",
+        }
+    }
+
     /// Order of the difference, whether starts are a sample apart, whether angles are averaged.
     fn differences(self) -> Differences {
         Differences {
@@ -56,7 +82,9 @@ pub enum TauGrid {
     Octave,
     /// Three to the decade: m = 1, 2, 5, 10, 20, 50, ...
     Decade,
-    /// Every m; the work grows with the square of the record.
+    /// Every m of a short record. The work grows with the square of the record, so that there are
+    /// 1000 at most, and fewer, but 100, where they would take more than 2e9 differences: every m at
+    /// the short end, then a constant ratio.
     All,
 }
 
@@ -74,9 +102,27 @@ impl TauGrid {
                 .flat_map(|decade| [1, 2, 5].map(|step: usize| decade.saturating_mul(step)))
                 .take_while(|&factor| factor <= largest)
                 .collect(),
-            Self::All => (1..=largest).collect(),
+            Self::All => {
+                let affordable = ALL_WORK / largest.max(1);
+                spread(largest, affordable.clamp(ALL_MIN, ALL_MAX))
+            }
         }
     }
+}
+
+/// At most `count` factors from 1 to `largest`: each in its turn takes an equal part of the way that is
+/// left, on a logarithmic scale, or one step if that is longer.
+fn spread(largest: usize, count: usize) -> Vec<usize> {
+    let mut factors = Vec::with_capacity(count);
+    let mut factor = 1;
+    while factor <= largest && factors.len() < count {
+        factors.push(factor);
+        let left = (count - factors.len()).max(1) as f64;
+        let ratio = (largest as f64 / factor as f64).powf(1.0 / left);
+        let next = interval::round_to_count(factor as f64 * ratio);
+        factor = next.max(factor + 1);
+    }
+    factors
 }
 
 /// How a curve is estimated.
@@ -157,6 +203,7 @@ pub fn allan_variant_at(
 ) -> Vec<AllanVariantPoint> {
     let angle = angle_about_mean(rate_deg_per_h);
     let missing = missing_before(rate_deg_per_h);
+    let missing = missing.as_deref();
     let estimator = options.estimator;
     let differences = estimator.differences();
     let factors: Vec<usize> = averaging_factors
@@ -164,19 +211,24 @@ pub fn allan_variant_at(
         .copied()
         .filter(|&m| m > 0 && m <= rate_deg_per_h.len() / estimator.span())
         .collect();
+    let identify = |&m: &usize| identify_noise(&angle, missing, m, differences.order);
+    let identified: Vec<Option<PowerLaw>> = factors.par_iter().map(identify).collect();
+    let possible = |m: usize| possible_differences(angle.len(), m, estimator);
     // The overlapping deviation of a whole record goes through the cache once for all tau.
-    let at_once = (missing.is_none() && estimator == AllanEstimator::Overlapping)
-        .then(|| second_difference_sums(&angle, &factors));
+    let sums: Vec<(f64, usize)> = if missing.is_none() && estimator == AllanEstimator::Overlapping {
+        let sums = second_difference_sums_of_record(rate_deg_per_h, &factors).into_iter();
+        sums.zip(&factors)
+            .map(|(sum, &m)| (sum, possible(m)))
+            .collect()
+    } else {
+        let sum = |&m: &usize| sum_of_squares(&angle, missing, m, estimator);
+        factors.par_iter().map(sum).collect()
+    };
     let mut noise = PowerLaw::RateWhite;
     let mut points = Vec::with_capacity(factors.len());
-    for (index, &m) in factors.iter().enumerate() {
-        let found = identify_noise(&angle, missing.as_deref(), m, differences.order);
+    for ((&m, found), (sum, count)) in factors.iter().zip(identified).zip(sums) {
         noise = found.unwrap_or(noise);
-        let possible = possible_differences(angle.len(), m, estimator);
-        let (sum, count) = match &at_once {
-            Some(sums) => (sums[index], possible),
-            None => sum_of_squares(&angle, missing.as_deref(), m, estimator),
-        };
+        let possible = possible(m);
         if count == 0 {
             continue;
         }
@@ -203,17 +255,6 @@ pub fn allan_variant_at(
         });
     }
     points
-}
-
-/// Angle about the mean rate; a missing sample counts as the mean, so that it adds nothing.
-fn angle_about_mean(rate_deg_per_h: &[f64]) -> Vec<f64> {
-    let present = || rate_deg_per_h.iter().filter(|rate| !rate.is_nan());
-    let mean = present().sum::<f64>() / present().count().max(1) as f64;
-    integrate(
-        rate_deg_per_h
-            .iter()
-            .map(|rate| if rate.is_nan() { 0.0 } else { rate - mean }),
-    )
 }
 
 /// Number of missing samples before each angle, or nothing if the record is whole.

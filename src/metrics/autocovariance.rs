@@ -1,5 +1,6 @@
 //! Autocovariance of a record, kept per block of time for the jackknife.
 
+use super::estimate::{ChannelMetrics, Estimate};
 use super::interval::{self, NORMAL_QUANTILE};
 
 /// Fewest blocks whose scatter says how sure a variance is.
@@ -7,6 +8,60 @@ const FREEDOM_BLOCKS_MIN: usize = 10;
 
 /// Samples per pass over the cache.
 const CHUNK: usize = 8192;
+
+/// Largest lag of the curve `autocovariance`, samples.
+pub(crate) const CURVE_LAGS: usize = 50;
+
+/// Autocovariance of a record about its mean at lags `0 ..= largest_lag`, in its unit squared.
+///
+/// The mean lagged product of all pairs, `sum x(k) x(k + l) / (n - l)`: unbiased but for the mean that
+/// is taken from the record; 0 at lags without a pair.
+#[must_use]
+pub fn autocovariance(values: &[f64], largest_lag: usize) -> Vec<f64> {
+    LaggedProducts::new(values, interval::mean(values), largest_lag, 1).autocovariance()
+}
+
+/// Correlation of neighbours, `R(1)/R(0)`, with its jackknife interval; `None` without noise.
+pub(crate) fn lag_one_correlation(products: &LaggedProducts) -> Option<Estimate> {
+    let of = |autocovariance: &[f64]| autocovariance[1] / autocovariance[0];
+    let whole = products.autocovariance();
+    let left_out: Vec<f64> = (0..products.blocks())
+        .map(|block| of(&products.autocovariance_without(block)))
+        .collect();
+    (whole[0] > 0.0).then(|| {
+        let estimate = interval::jackknife(of(&whole), &left_out);
+        let [low, high] = [estimate.low, estimate.high].map(|end| end.clamp(-1.0, 1.0));
+        Estimate::with_interval(
+            estimate.value,
+            low.min(estimate.value),
+            high.max(estimate.value),
+        )
+    })
+}
+
+/// Enters the correlation of neighbours and the first lags of the autocovariance of the noise.
+pub(crate) fn put_autocovariance(
+    products: &LaggedProducts,
+    sample_period_s: f64,
+    metrics: &mut ChannelMetrics,
+) {
+    match lag_one_correlation(products) {
+        Some(correlation) => {
+            metrics.put("lag1_correlation", correlation);
+        }
+        None => metrics.miss("lag1_correlation", "the channel has no noise"),
+    }
+    let mut autocovariance = products.autocovariance();
+    autocovariance.truncate(CURVE_LAGS + 1);
+    let lags = (0..autocovariance.len()).map(|lag| lag as f64 * sample_period_s);
+    let curve = [
+        ("lag_s".to_owned(), lags.collect()),
+        ("autocovariance_deg2_per_h2".to_owned(), autocovariance),
+    ];
+    metrics
+        .curves
+        .insert("autocovariance".to_owned(), curve.into());
+}
 
 /// Sums of lagged products, block by block.
 ///
@@ -110,7 +165,7 @@ pub(crate) fn independent_samples(autocovariance: &[f64], count: usize) -> f64 {
 }
 
 /// Dot product in eight interleaved sums, which the compiler turns into vectors.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let mut lanes = [0.0; LANES];
     let (a_lanes, a_rest) = a.as_chunks::<LANES>();
@@ -156,6 +211,31 @@ mod tests {
                 assert!((got - plain).abs() < 1e-9 * plain.max(1.0), "{count} {lag}");
             }
         }
+    }
+
+    #[test]
+    fn the_correlation_of_neighbours_is_that_of_a_moving_average() {
+        // The sum of two neighbours of a full-period generator: correlation 1/2.
+        let mut state = 1_u64;
+        let mut uniform = || -> f64 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let white: Vec<f64> = (0..20_001).map(|_| uniform()).collect();
+        let sums: Vec<f64> = white.windows(2).map(|two| two[0] + two[1]).collect();
+        let products = LaggedProducts::new(&sums, interval::mean(&sums), 1, 20);
+        let found = lag_one_correlation(&products).unwrap();
+        // Standard error by Bartlett: sqrt((1 - 3/4 + 1/4) / n) = 0.005.
+        assert!(found.low < 0.5 && 0.5 < found.high, "{found:?}");
+        assert!(
+            (0.01..0.05).contains(&(found.high - found.low)),
+            "{found:?}"
+        );
+        assert!(lag_one_correlation(&LaggedProducts::new(&[1.0; 9], 1.0, 1, 3)).is_none());
+        let twelfth = autocovariance(&white, 2);
+        assert!((twelfth[0] * 12.0 - 1.0).abs() < 0.05 && twelfth[2].abs() < 0.003);
     }
 
     #[test]

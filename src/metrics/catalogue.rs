@@ -130,6 +130,12 @@ const CATALOGUE: &[KnownMetric] = &[
         Applies::Separable,
         "standard deviation of the samples about the signal: mean, fitted sine, or settled rate",
     ),
+    any(
+        "lag1_correlation",
+        "1",
+        Applies::Separable,
+        "correlation of neighbouring samples about the signal, autocovariance at lag 1 over lag 0",
+    ),
     filter(
         "mean_ratio",
         "1",

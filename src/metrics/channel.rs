@@ -185,7 +185,12 @@ fn measure_steps(
         LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS)
     };
     let channel = products(values);
-    put_noise_std(&channel, values.len() - start, metrics);
+    put_noise_std(
+        &channel,
+        values.len() - start,
+        record.sample_period_s,
+        metrics,
+    );
     if let Some(facts) = filter {
         let level = interval::mean(&record.raw_deg_per_h[start..]).abs();
         put_noise_gain(&channel, &products(record.raw_deg_per_h), level, metrics);

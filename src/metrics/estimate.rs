@@ -120,6 +120,8 @@ pub struct ChannelMetrics {
     pub curves: BTreeMap<String, BTreeMap<String, Vec<f64>>>,
     /// The main metrics over the repeats by key; empty for a single record.
     pub repeats: BTreeMap<String, RepeatStatistics>,
+    /// Columns of words of a curve, by curve and column; a single word holds for all its points.
+    pub curve_labels: BTreeMap<String, BTreeMap<String, Vec<&'static str>>>,
     /// Set when the channel failed; its metrics are then empty but for `diverged_at_s`.
     pub error: Option<ChannelFailure>,
 }

@@ -11,10 +11,13 @@
 mod aggregate;
 mod allan;
 mod allan_covariance;
+mod allan_curves;
 mod allan_least_squares;
 mod allan_sampling;
 mod allan_stream;
+mod allan_sums;
 mod allan_variants;
+mod angle;
 mod audit;
 mod autocovariance;
 mod bias;
@@ -24,10 +27,10 @@ mod combined_freedom;
 mod correlation;
 mod delay;
 mod estimate;
-mod fit_entry;
 mod frozen_response;
 mod interval;
 mod known_metric;
+mod memory;
 mod multi_sine;
 mod noise_delay;
 mod noise_fit;
@@ -64,6 +67,7 @@ pub use audit::{
     Prediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
     predict,
 };
+pub use autocovariance::autocovariance;
 pub use bias::{
     block_means, effective_degrees_of_freedom, expected_bias_stability, paired_ratio, samples_in,
 };
@@ -73,6 +77,7 @@ pub use correlation::correlation_delay_s;
 pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 pub use known_metric::{Applies, KnownMetric};
+pub use memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
 pub use noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
     fit_noise, fit_pooled_noise, mixed_degrees_of_freedom,

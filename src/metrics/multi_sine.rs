@@ -178,7 +178,12 @@ fn measure_noise(
         LaggedProducts::new(&residuals, 0.0, LAGS_MIN, RATIO_BLOCKS)
     };
     let channel = products(CHANNEL, record.channel_deg_per_h, filter);
-    put_noise_std(&channel, record.channel_deg_per_h.len(), metrics);
+    put_noise_std(
+        &channel,
+        record.channel_deg_per_h.len(),
+        record.sample_period_s,
+        metrics,
+    );
     if filter.is_some() {
         let raw = record.raw_deg_per_h;
         let level = raw.iter().fold(0.0_f64, |max, rate| max.max(rate.abs()));

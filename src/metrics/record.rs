@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::allan_variants::AllanOptions;
 use super::audit::Prediction;
 use crate::signal::{FilterShape, WeightRule};
 
@@ -162,6 +163,10 @@ pub struct Settings {
     /// Averaging time of the plain `bias_stability_deg_per_h`, s.
     pub bias_averaging_time_s: f64,
     /// Shortest averaging time the noise fit uses, s: longer than the correlation of the channel's
-    /// noise (ten samples or some twenty time constants of the loop).
+    /// noise (ten samples or some twenty time constants of the loop). What a filter remembers is seen
+    /// to by [`measure`](super::measure).
     pub fit_tau_min_s: f64,
+    /// Estimator and averaging times of the curve `allan`; the noise is fitted to the overlapping
+    /// Allan variance whatever they are.
+    pub allan: AllanOptions,
 }

@@ -1,12 +1,14 @@
 //! Metrics of a record at rest or at constant rate.
 
 use super::allan::overlapping_allan;
+use super::allan_curves::{enter_fit, put_curve, put_fit_curve};
+use super::allan_variants::allan_variant;
 use super::audit::{filter_bound, lags_needed, predict};
-use super::autocovariance::{LaggedProducts, independent_samples};
+use super::autocovariance::{CURVE_LAGS, LaggedProducts, independent_samples, put_autocovariance};
 use super::bias;
 use super::estimate::{ChannelMetrics, Estimate};
-use super::fit_entry::enter_fit;
 use super::interval;
+use super::memory::fit_tau_min_s;
 use super::noise_delay::{put_bound, put_bound_curve, put_over_bound};
 use super::noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise, mixed_degrees_of_freedom,
@@ -25,7 +27,7 @@ pub(crate) const RATIO_BLOCKS: usize = 20;
 pub(crate) const WALK_OVER_DC_GAIN: &str = "angle_random_walk_over_dc_gain_deg_per_sqrt_h";
 
 /// Lags of the autocovariance, at least; correlation beyond counts as slow noise.
-pub(crate) const LAGS_MIN: usize = 24;
+pub(crate) const LAGS_MIN: usize = CURVE_LAGS;
 
 /// Measures everything a steady record supports.
 ///
@@ -43,12 +45,13 @@ pub(crate) fn measure_steady(
         raw_deg_per_h: raw,
         ..*record
     });
-    let fit = measure_allan(record, settings, metrics);
+    let fit = measure_allan(record, settings, filter, metrics);
     measure_bias(record, settings, fit.as_ref(), metrics);
     measure_mean(record, fit.as_ref(), metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let products = products_about_mean(record.channel_deg_per_h, lags);
-    put_noise_std(&products, record.channel_deg_per_h.len(), metrics);
+    let samples = record.channel_deg_per_h.len();
+    put_noise_std(&products, samples, record.sample_period_s, metrics);
     if let Some(facts) = filter {
         let raw = products_about_mean(record.raw_deg_per_h, lags);
         let level = interval::mean(record.raw_deg_per_h).abs();
@@ -70,16 +73,20 @@ pub(crate) fn measure_steady(
 
 /// Allan curve and noise coefficients.
 ///
-/// The intervals of the points take the degrees of freedom of the noise mix that the fit found.
+/// The curve `allan` is that of the settings. The noise is fitted to the overlapping Allan deviation,
+/// the curve `allan_fit`, whose points take the degrees of freedom of the noise mix that the fit found.
 fn measure_allan(
     record: &Record,
     settings: &Settings,
+    filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) -> Option<NoiseFit> {
     let points = overlapping_allan(record.channel_deg_per_h, record.sample_period_s);
     let samples = record.channel_deg_per_h.len();
     let range = FitRange {
-        tau_min_s: settings.fit_tau_min_s,
+        tau_min_s: filter.map_or(settings.fit_tau_min_s, |facts| {
+            fit_tau_min_s(&facts.shape, record.sample_period_s, settings.fit_tau_min_s)
+        }),
         tau_max_s: FIT_TAU_PER_RECORD_MAX * samples as f64 * record.sample_period_s,
     };
     let varies = record
@@ -92,14 +99,22 @@ fn measure_allan(
     } else {
         constant()
     };
+    let variant = allan_variant(
+        record.channel_deg_per_h,
+        record.sample_period_s,
+        &settings.allan,
+    );
+    let estimator = settings.allan.estimator;
+    put_curve(&variant, estimator, fitted.as_ref().ok(), metrics);
     match fitted {
         Ok(fit) => {
             let points = mixed_degrees_of_freedom(&points, &fit.coefficients(), samples + 1);
-            enter_fit(&points, &fit, metrics);
+            let duration_s = samples as f64 * record.sample_period_s;
+            enter_fit(&points, &fit, duration_s, metrics);
             Some(fit)
         }
         Err(reason) => {
-            metrics.put_allan_curve(&points, None);
+            put_fit_curve(&points, None, metrics);
             for name in [
                 "angle_random_walk_deg_per_sqrt_h",
                 "bias_instability_deg_per_h",
@@ -231,8 +246,15 @@ fn products_about_mean(values: &[f64], lags: usize) -> LaggedProducts {
 ///
 /// The degrees of freedom are those that the scatter of the variance from block to block shows:
 /// noise whose strength changes, as behind weights that follow a swing, has fewer than its
-/// autocovariance tells. Of few blocks the latter is taken.
-pub(crate) fn put_noise_std(products: &LaggedProducts, count: usize, metrics: &mut ChannelMetrics) {
+/// autocovariance tells. Of few blocks the latter is taken. The correlation of neighbours and the
+/// curve of the autocovariance go with it.
+pub(crate) fn put_noise_std(
+    products: &LaggedProducts,
+    count: usize,
+    sample_period_s: f64,
+    metrics: &mut ChannelMetrics,
+) {
+    put_autocovariance(products, sample_period_s, metrics);
     let autocovariance = products.autocovariance();
     let of_lags = (independent_samples(&autocovariance, count) - 1.0).max(1.0);
     let freedom = products.variance_freedom().unwrap_or(of_lags);
@@ -379,6 +401,9 @@ pub(crate) fn put_over_dc_gain(
         (Some(metric), Some(gain)) if gain > 1e-6 => {
             let mut fields = metric.fields;
             fields.insert("dc_gain", gain);
+            if let Some(expected) = fields.get_mut(EXPECTED) {
+                *expected /= gain;
+            }
             metrics.put(over, metric.estimate.scaled(1.0 / gain)).fields = fields;
         }
         (Some(_), Some(gain)) => {

@@ -48,6 +48,24 @@ const FIT_SAMPLES_MIN: f64 = 900.0;
 /// Shortest record, s, of which B, K or R can be fitted: the fit must reach 10 s.
 const SLOW_NOISE_DURATION_MIN_S: f64 = 90.0;
 
+/// B, K and R.
+const SLOW_NOISE: [&str; 3] = [
+    "bias_instability_deg_per_h",
+    "rate_random_walk_deg_per_h_per_sqrt_h",
+    "rate_ramp_deg_per_h_per_h",
+];
+
+/// Why a record cannot show B, K or R; nothing if it can, or for another metric.
+pub(crate) fn slow_noise_lack(metric: &str, duration_s: f64) -> Option<String> {
+    let is_short = duration_s < SLOW_NOISE_DURATION_MIN_S * (1.0 - 1e-9);
+    (SLOW_NOISE.contains(&metric) && is_short)
+        .then(|| too_short(metric, SLOW_NOISE_DURATION_MIN_S, duration_s))
+}
+
+fn too_short(metric: &str, needed_s: f64, duration_s: f64) -> String {
+    format!("`{metric}` needs a record of at least {needed_s} s; this one has {duration_s} s")
+}
+
 /// Whether a record of this length and motion can ever support a metric.
 ///
 /// A metric may still be missing from a particular record whose noise does not show it.
@@ -79,9 +97,7 @@ pub fn support(
         "angle_random_walk_deg_per_sqrt_h"
         | "angle_random_walk_over_dc_gain_deg_per_sqrt_h"
         | "quantisation_arcsec" => FIT_SAMPLES_MIN * sample_period_s,
-        "bias_instability_deg_per_h"
-        | "rate_random_walk_deg_per_h_per_sqrt_h"
-        | "rate_ramp_deg_per_h_per_h" => SLOW_NOISE_DURATION_MIN_S,
+        slow if SLOW_NOISE.contains(&slow) => SLOW_NOISE_DURATION_MIN_S,
         "bias_stability_1s_deg_per_h" => BLOCKS_MIN as f64,
         "bias_stability_10s_deg_per_h" => BLOCKS_MIN as f64 * 10.0,
         "bias_stability_100s_deg_per_h" => BLOCKS_MIN as f64 * 100.0,
@@ -91,9 +107,7 @@ pub fn support(
         _ => 0.0,
     };
     if duration_s < needed_s * (1.0 - 1e-9) {
-        return Err(format!(
-            "`{metric}` needs a record of at least {needed_s} s; this one has {duration_s} s"
-        ));
+        return Err(too_short(metric, needed_s, duration_s));
     }
     if is_independent(known) {
         return Ok(());
@@ -192,7 +206,11 @@ fn check_tail(metric: &str, samples: usize, last_step_index: usize) -> Result<()
     let after = samples.saturating_sub(last_step_index);
     let (found, needed) = match metric {
         "settling_time_s" | "overshoot_percent" | "rise_time_s" => (after, STEP_SAMPLES_MIN),
-        "noise_std_deg_per_h" | "noise_gain" | "settled_gain" | "readaptation_time_s" => (
+        "noise_std_deg_per_h"
+        | "lag1_correlation"
+        | "noise_gain"
+        | "settled_gain"
+        | "readaptation_time_s" => (
             samples.saturating_sub(tail_start(samples, last_step_index)),
             SAMPLES_MIN,
         ),

@@ -83,7 +83,12 @@ pub(crate) fn measure_swing(
         LaggedProducts::new(&residuals, 0.0, lags, blocks)
     };
     let channel = noise(residuals, filter);
-    put_noise_std(&channel, fits.channel.samples(), metrics);
+    put_noise_std(
+        &channel,
+        fits.channel.samples(),
+        record.sample_period_s,
+        metrics,
+    );
     if let Some(facts) = filter {
         let raw = noise(fits.raw.residuals(record.raw_deg_per_h), None);
         let level = fits.raw.whole.amplitude + fits.raw.whole.offset.abs();

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::allan::AllanPoint;
 use super::catalogue;
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::noise_fit::{NoiseFit, Term};
@@ -105,35 +104,6 @@ impl ChannelMetrics {
                 }
             }
         }
-    }
-
-    /// Enters the Allan curve with the fitted deviation; that column is absent without a fit.
-    pub(crate) fn put_allan_curve(&mut self, points: &[AllanPoint], fit: Option<&NoiseFit>) {
-        let column = |pick: &dyn Fn(&AllanPoint) -> f64| points.iter().map(pick).collect();
-        let mut curve: BTreeMap<String, Vec<f64>> = BTreeMap::new();
-        curve.insert("tau_s".into(), column(&|point| point.tau_s));
-        curve.insert(
-            "deviation_deg_per_h".into(),
-            column(&|point| point.deviation_deg_per_h.value),
-        );
-        curve.insert(
-            "low_deg_per_h".into(),
-            column(&|point| point.deviation_deg_per_h.low),
-        );
-        curve.insert(
-            "high_deg_per_h".into(),
-            column(&|point| point.deviation_deg_per_h.high),
-        );
-        curve.insert("edf".into(), column(&|point| point.degrees_of_freedom));
-        // Second differences of one record.
-        curve.insert("count".into(), column(&|point| point.count as f64));
-        if let Some(fit) = fit {
-            curve.insert(
-                "fitted_deg_per_h".into(),
-                column(&|point| fit.deviation_deg_per_h(point.tau_s)),
-            );
-        }
-        self.curves.insert("allan".into(), curve);
     }
 
     /// Enters the spectrum.

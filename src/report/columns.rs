@@ -1,8 +1,12 @@
 //! Which metrics matter for which motion, and how they are headed.
 
+use crate::gate::{estimate_text, plain};
 use crate::metrics::{ChannelMetrics, Metric};
 use crate::scenario::MotionConfig;
 use std::collections::BTreeSet;
+
+/// Digits of an interval's half width in tables.
+pub(crate) const DIGITS: i32 = 2;
 
 /// One column of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -212,9 +216,22 @@ pub(crate) fn matters(motion: &MotionConfig, key: &str) -> bool {
 pub(crate) fn unit_text(metric: &Metric) -> String {
     let unit = if metric.unit == "1" { "" } else { metric.unit };
     match metric.fields.get("averaging_time_s") {
-        Some(time) if unit.is_empty() => format!("{} s", crate::gate::plain(*time)),
-        Some(time) => format!("{unit}, {} s", crate::gate::plain(*time)),
+        Some(time) if unit.is_empty() => format!("{} s", plain(*time)),
+        Some(time) => format!("{unit}, {} s", plain(*time)),
         None => unit.to_owned(),
+    }
+}
+
+/// A metric with its interval and, where the fitted noise makes one expect a value, that beside it.
+pub(crate) fn value_text(metric: &Metric) -> String {
+    let text = estimate_text(&metric.estimate, DIGITS);
+    match metric.fields.get("expected_deg_per_h") {
+        Some(expected) => {
+            // Three digits.
+            let rounded = format!("{expected:.2e}").parse().unwrap_or(*expected);
+            format!("{text}, expected {}", plain(rounded))
+        }
+        None => text,
     }
 }
 
@@ -234,7 +251,7 @@ pub(crate) fn headline(motion: &MotionConfig, metrics: &ChannelMetrics) -> Vec<(
     keys.iter()
         .filter_map(|key| {
             let metric = metrics.metrics.get(*key)?;
-            let value = crate::gate::estimate_text(&metric.estimate, 2);
+            let value = value_text(metric);
             let text = format!("{value} {}", unit_text(metric));
             Some((title_of(motion, key), text.trim_end().to_owned()))
         })

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use crate::gate::plain;
 use crate::metrics::ChannelMetrics;
-use crate::report::csv::{allan_curve, curve_csv, psd_curve};
+use crate::report::csv::{allan_curve, autocovariance_curve, curve_csv, psd_curve};
 use crate::report::json::{number, object, pretty};
 use crate::report::measured::Measured;
 use crate::report::plot::log_plots;
@@ -144,8 +144,15 @@ fn log(report: &LogReport) -> Value {
 #[must_use]
 pub fn log_files(report: &LogReport, signals: &RunSignals) -> Vec<(String, String)> {
     let curves = [
-        ("allan.csv", curve_csv(report.channels, allan_curve)),
-        ("psd.csv", curve_csv(report.channels, psd_curve)),
+        (
+            "allan.csv",
+            curve_csv(report.channels, "allan", allan_curve),
+        ),
+        ("psd.csv", curve_csv(report.channels, "psd", psd_curve)),
+        (
+            "autocovariance.csv",
+            curve_csv(report.channels, "autocovariance", autocovariance_curve),
+        ),
     ];
     let curves = curves
         .into_iter()

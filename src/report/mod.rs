@@ -40,7 +40,7 @@ pub use comparison::{
 };
 pub use comparison_files::{comparison_files, is_comparison_file};
 pub use comparison_text::comparison_text;
-pub use csv::{allan_csv, psd_csv};
+pub use csv::{allan_csv, autocovariance_csv, psd_csv};
 pub use files::{FolderWriter, write_atomic, write_npy};
 pub use junit::junit_xml;
 pub use log::{LogReport, log_files, log_json, log_text};

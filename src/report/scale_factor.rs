@@ -9,12 +9,13 @@ use crate::units::deg_per_h_to_deg_per_s;
 
 const INDENT: &str = "  ";
 
+/// Rates of a staircase.
+const CURVE: &str = "scale_factor";
+
 /// Rates of the staircase of every channel, or nothing if no channel has a scale factor.
 #[must_use]
 pub fn scale_factor_csv(report: &RunReport) -> Option<String> {
-    curve_csv(report.channels, |metrics| {
-        metrics.curves.get("scale_factor")
-    })
+    curve_csv(report.channels, CURVE, |metrics| metrics.curves.get(CURVE))
 }
 
 /// The word of a setting in tables and files.

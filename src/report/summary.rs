@@ -203,6 +203,8 @@ pub(crate) fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
             .curves
             .iter()
             .map(|(curve, columns)| {
+                let labels = metrics.curve_labels.get(curve).into_iter().flatten();
+                let words = labels.map(|(column, words)| (column.clone(), words_of(words)));
                 let columns: Map<String, Value> = columns
                     .iter()
                     .map(|(column, values)| {
@@ -210,6 +212,7 @@ pub(crate) fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
                         let values = values.iter().map(|value| number(*value, &what));
                         (column.clone(), values.collect())
                     })
+                    .chain(words)
                     .collect();
                 (curve.clone(), columns.into())
             })
@@ -233,6 +236,14 @@ pub(crate) fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
         record.insert("error".to_owned(), error.into());
     }
     record.into()
+}
+
+/// A column of words; one that holds for all points stands alone.
+fn words_of(words: &[&str]) -> Value {
+    match words {
+        [one] => (*one).into(),
+        all => all.iter().copied().collect(),
+    }
 }
 
 pub(crate) fn estimate(what: &str, metric: &Metric) -> Value {

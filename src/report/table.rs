@@ -6,7 +6,7 @@ use crate::gate::{Verdict, VerdictKind, estimate_text, plain};
 use crate::metrics::{ChannelMetrics, Metric, known_metrics};
 use crate::report::RunReport;
 use crate::report::calibration_text::calibration_text;
-use crate::report::columns::{Column, columns, matters, unit_text};
+use crate::report::columns::{Column, DIGITS, columns, matters, unit_text, value_text};
 use crate::report::compensation::compensation_text;
 use crate::report::measured::Measured;
 use crate::report::repeats::repeats_text;
@@ -15,8 +15,6 @@ use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::report::verdict_text::verdict_text;
 use crate::scenario::{Fidelity, MotionConfig, PublishedConfig};
 
-/// Digits of an interval's half width in tables.
-const DIGITS: i32 = 2;
 /// What stands where there is no number.
 const NOTHING: &str = "-";
 const INDENT: &str = "  ";
@@ -155,7 +153,7 @@ fn column_cells(column: &Column, channels: &[(String, ChannelMetrics)]) -> Vec<S
         .map(|metric| unit_text(&metric))
         .unwrap_or_default();
     let cells = channels.iter().map(|(_, metrics)| match of(metrics) {
-        Some(metric) => estimate_text(&metric.estimate, DIGITS),
+        Some(metric) => value_text(&metric),
         None => NOTHING.to_owned(),
     });
     [column.title.clone(), unit]

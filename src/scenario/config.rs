@@ -4,6 +4,8 @@
 //! `scenarios/reference.toml`. Values of these types come out of the reader only, which has
 //! checked them; nothing here has a `Default`.
 
+use std::str::FromStr;
+
 use serde::Deserialize;
 
 use super::calibration_config::CalibrationConfig;
@@ -48,6 +50,8 @@ pub struct Scenario {
     /// Filters, in the order of the file.
     #[serde(default, rename = "filter")]
     pub filters: Vec<FilterConfig>,
+    /// The Allan curve of every channel.
+    pub allan: AllanConfig,
     /// What is measured of the filters beside their words.
     pub trial: TrialConfig,
     /// Gates, in the order of the file.
@@ -80,6 +84,69 @@ pub enum Fidelity {
     Loop,
     /// Output-rate equivalent.
     Rate,
+}
+
+/// The Allan curve of every channel; the fit of the noise terms does not depend on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AllanConfig {
+    /// Which deviation.
+    pub estimator: AllanEstimatorConfig,
+    /// At which averaging times.
+    pub averaging_times: AveragingTimes,
+}
+
+/// A deviation of the Allan family.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AllanEstimatorConfig {
+    /// Allan deviation over every start.
+    Overlapping,
+    /// Allan deviation of neighbouring blocks.
+    Plain,
+    /// Modified Allan deviation.
+    Modified,
+    /// Overlapping Hadamard deviation.
+    Hadamard,
+}
+
+/// Averaging times of an Allan curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AveragingTimes {
+    /// 1, 2, 4, 8, ... samples.
+    Octave,
+    /// 1, 2, 5, 10, ... samples.
+    Decade,
+    /// Every number of samples, up to 1000 of them.
+    All,
+}
+
+impl FromStr for AllanEstimatorConfig {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "overlapping" => Ok(Self::Overlapping),
+            "plain" => Ok(Self::Plain),
+            "modified" => Ok(Self::Modified),
+            "hadamard" => Ok(Self::Hadamard),
+            _ => Err("expected overlapping, plain, modified or hadamard".to_owned()),
+        }
+    }
+}
+
+impl FromStr for AveragingTimes {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "octave" => Ok(Self::Octave),
+            "decade" => Ok(Self::Decade),
+            "all" => Ok(Self::All),
+            _ => Err("expected octave, decade or all".to_owned()),
+        }
+    }
 }
 
 /// What is measured of the filters beside their words.

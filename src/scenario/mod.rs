@@ -59,8 +59,8 @@ pub use comparison_config::{
 pub use compensation_config::{CompensationConfig, CompensationParameters, CompensationRule};
 pub use compensation_source::load_calibration;
 pub use config::{
-    Fidelity, FilterState, GateConfig, GateDecision, InconclusivePolicy, OutputConfig,
-    PublishedConfig, SamplesFormat, Scenario,
+    AllanConfig, AllanEstimatorConfig, AveragingTimes, Fidelity, FilterState, GateConfig,
+    GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig, SamplesFormat, Scenario,
 };
 pub(crate) use cross_comparison::slug;
 pub use defaults::{reference_calibration, reference_toml};

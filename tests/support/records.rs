@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use fogbench::metrics::{
-    Applies, ChannelMetrics, FilterFacts, Motion, Record, Settings, SwingClock,
+    AllanOptions, Applies, ChannelMetrics, FilterFacts, Motion, Record, Settings, SwingClock,
 };
 use fogbench::random::Streams;
 use fogbench::signal::{FilterShape, WeightRule};
@@ -66,6 +66,7 @@ pub(crate) fn settings(motion: Motion) -> Settings {
         motion,
         bias_averaging_time_s: 2.0,
         fit_tau_min_s: 10.0 * PERIOD_S,
+        allan: AllanOptions::default(),
     }
 }
 

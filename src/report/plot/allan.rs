@@ -1,4 +1,4 @@
-//! `allan.svg`: overlapping Allan deviation with intervals, fitted lines and labelled markers.
+//! `allan.svg`: the Allan deviation, or another of its family, with intervals, fitted lines and labelled markers.
 
 use super::axis::Axis;
 use super::panel::{Legend, Panel, WIDTH};
@@ -6,7 +6,7 @@ use super::picture::{Dash, Picture, Shape, Stroke};
 use super::series::{extent, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::ChannelMetrics;
-use crate::report::csv::{abscissa, allan_curve, fitted, interval_end, ordinate};
+use crate::report::csv::{abscissa, allan_curve, allan_estimator, fitted, interval_end, ordinate};
 use crate::report::measured::Measured;
 use crate::units::{
     deg_per_h_per_s_to_deg_per_h_per_h, deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s,
@@ -15,6 +15,9 @@ use crate::units::{
 
 /// The flicker floor of the Allan deviation over B: `sqrt(2 ln 2 / pi)` (IEEE Std 952-1997, C).
 const FLOOR_OVER_B: f64 = 0.664;
+
+/// The estimator that the noise is fitted to.
+const OVERLAPPING: &str = "overlapping";
 
 /// A noise term read off its line: the line, and the point at which the standard reads it.
 struct Reading {
@@ -47,6 +50,11 @@ pub(super) fn picture(report: &Measured) -> Option<Picture> {
     let positive = |value: &f64| *value > 0.0;
     let tau = tables().flat_map(|(.., tau, _)| tau.iter().copied());
     let read_at = tables().flat_map(|(_, _, metrics, ..)| readings(metrics));
+    let mut names = report.channels.iter();
+    let estimator = names.find_map(|(_, metrics)| allan_estimator(metrics));
+    let estimator = estimator.unwrap_or(OVERLAPPING);
+    // The terms are read off the Allan deviation; the lines of the others lie elsewhere.
+    let is_read = matches!(estimator, OVERLAPPING | "plain");
     let x = extent(
         tau.chain(read_at.filter_map(|reading| reading.tau_s))
             .filter(positive),
@@ -57,10 +65,11 @@ pub(super) fn picture(report: &Measured) -> Option<Picture> {
     let y = extent(levels.filter(positive))?;
 
     let mut picture = Picture::new(WIDTH, 700.0);
-    let title = format!("{}: overlapping Allan deviation", report.name);
+    let quantity = deviation_name(estimator);
+    let title = format!("{}: {quantity}", report.name);
     picture.heading((90.0, 28.0), &title, 18.0);
     let x = Axis::log(x, 0.01, "averaging time τ [s]");
-    let y = Axis::log(y, 0.04, "overlapping Allan deviation σ(τ) [deg/h]");
+    let y = Axis::log(y, 0.04, &format!("{quantity} σ(τ) [deg/h]"));
     let panel = Panel::new(&mut picture, (56.0, 640.0), x, y);
     let mut legend = Legend::new(56.0);
     for (index, name, metrics, tau, [deviation, low, high]) in tables() {
@@ -72,29 +81,62 @@ pub(super) fn picture(report: &Measured) -> Option<Picture> {
         panel.band(&mut picture, &band, stroke.colour, 0.22);
         let line: Vec<(f64, f64)> = tau.iter().copied().zip(deviation.iter().copied()).collect();
         panel.line(&mut picture, &line, stroke);
-        if let Some(fit) = allan_curve(metrics).and_then(fitted) {
-            let fit: Vec<(f64, f64)> = tau.iter().copied().zip(fit.iter().copied()).collect();
-            let thin = Stroke::solid(stroke.colour, 0.75);
-            panel.line(&mut picture, &fit, thin);
-        }
+        let thin = Stroke::solid(stroke.colour, 0.75);
+        panel.line(&mut picture, &fit_line(metrics, tau), thin);
         legend.line(&mut picture, stroke, name);
         for reading in readings(metrics) {
-            draw_reading(&mut picture, &panel, &reading, stroke);
-            legend.marker(&mut picture, (reading.shape, stroke.colour), &reading.text);
+            if is_read {
+                draw_reading(&mut picture, &panel, &reading, stroke);
+                legend.marker(&mut picture, (reading.shape, stroke.colour), &reading.text);
+            } else {
+                legend.text(&mut picture, &reading.text);
+            }
         }
         legend.space();
     }
-    legend.text(
-        &mut picture,
-        "bands: 95 % interval; thin: fit, dotted: its terms",
-    );
-    legend.text(
-        &mut picture,
-        "circle: σ(1 s) of the -1/2 line is N, the ARW",
-    );
-    legend.text(&mut picture, "square: the flat line is 0.664 B");
-    legend.text(&mut picture, "triangle: σ(3 s) of the +1/2 line is K");
+    notes(&mut legend, &mut picture, is_read);
     Some(picture)
+}
+
+/// A deviation in full.
+fn deviation_name(estimator: &str) -> &'static str {
+    match estimator {
+        "plain" => "Allan deviation",
+        "modified" => "modified Allan deviation",
+        "hadamard" => "overlapping Hadamard deviation",
+        _ => "overlapping Allan deviation",
+    }
+}
+
+/// The fitted deviation over the range of the fit; below it lies the bandwidth of the channel, which
+/// the fit does not know.
+fn fit_line(metrics: &ChannelMetrics, tau: &[f64]) -> Vec<(f64, f64)> {
+    let walk = metrics.metrics.get("angle_random_walk_deg_per_sqrt_h");
+    let first_s = walk.and_then(|walk| walk.fields.get("tau_min_s").copied());
+    let first_s = first_s.unwrap_or(0.0);
+    let fit = allan_curve(metrics).and_then(fitted).unwrap_or_default();
+    let points = tau.iter().copied().zip(fit.iter().copied());
+    points.filter(|(tau, _)| *tau >= first_s).collect()
+}
+
+/// What the reader of the picture must know, below the legend.
+fn notes(legend: &mut Legend, picture: &mut Picture, is_read: bool) {
+    let notes: &[&str] = if is_read {
+        &[
+            "bands: 95 % interval; thin: fit, dotted: its terms",
+            "circle: σ(1 s) of the -1/2 line is N, the ARW",
+            "square: the flat line is 0.664 B",
+            "triangle: σ(3 s) of the +1/2 line is K",
+        ]
+    } else {
+        &[
+            "bands: 95 % interval",
+            "N, B, K: fit to the overlapping Allan deviation",
+        ]
+    };
+    for note in notes {
+        legend.text(picture, note);
+    }
 }
 
 /// The fitted terms of a channel.

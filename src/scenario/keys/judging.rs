@@ -1,4 +1,4 @@
-//! Keys of the trial of filters, gates, published figures, tables of the suite, output and sweep.
+//! Keys of the Allan curve, the trial of filters, gates, published figures, tables of the suite, output and sweep.
 
 use super::key;
 use crate::scenario::schema::{
@@ -9,6 +9,11 @@ use crate::scenario::schema::{
 
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
+    key("allan.estimator",
+        Kind::Choice(&["overlapping", "plain", "modified", "hadamard"]), "", Defaulted,
+        "Which deviation of the Allan family the curve of every channel shows."),
+    key("allan.averaging_times", Kind::Choice(&["octave", "decade", "all"]), "", Defaulted,
+        "The averaging times of that curve."),
     key("trial.rate_gain", Kind::Boolean, "", Defaulted,
         "Measure every filter's gain for constant rates from 0.001 to 100 deg/s."),
     key("trial.filter_state", Kind::Choice(&["carried", "reset"]), "", Defaulted,

@@ -1,0 +1,22 @@
+//! From the keys of the Allan curve to the options of the metrics.
+
+use crate::metrics::{AllanEstimator, AllanOptions, TauGrid};
+use crate::scenario::{AllanConfig, AllanEstimatorConfig, AveragingTimes};
+
+/// The options that the keys stand for, intervals at 95 %.
+pub(super) fn allan_options(config: AllanConfig) -> AllanOptions {
+    AllanOptions {
+        estimator: match config.estimator {
+            AllanEstimatorConfig::Overlapping => AllanEstimator::Overlapping,
+            AllanEstimatorConfig::Plain => AllanEstimator::Plain,
+            AllanEstimatorConfig::Modified => AllanEstimator::Modified,
+            AllanEstimatorConfig::Hadamard => AllanEstimator::Hadamard,
+        },
+        taus: match config.averaging_times {
+            AveragingTimes::Octave => TauGrid::Octave,
+            AveragingTimes::Decade => TauGrid::Decade,
+            AveragingTimes::All => TauGrid::All,
+        },
+        ..AllanOptions::default()
+    }
+}

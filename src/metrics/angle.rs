@@ -1,0 +1,191 @@
+//! The angle of a record of rates and the sums of its squared second differences.
+//!
+//! Work is cut into parts of fixed size and summed in their order: the number of threads leaves no
+//! trace in the result.
+
+use rayon::prelude::*;
+
+/// Samples that one thread integrates at a time.
+const PART: usize = 1 << 16;
+
+/// Second differences handled per pass over the cache: every tau visits a block before the next
+/// block is read, so that short ones read memory once altogether.
+const BLOCK: usize = 2048;
+
+/// Blocks that one thread handles in a row, so that what the longer of these tau read ahead is
+/// still in its cache when it is their turn.
+const BLOCKS_IN_A_ROW: usize = 32;
+
+/// Angle about the mean rate, `[n + 1]`, in units of (deg/h) times one sample period, from zero on.
+///
+/// The mean cancels in every second difference; leaving it out keeps the digits of the rest. A
+/// missing sample (NaN) counts as the mean, so that it adds nothing.
+pub(crate) fn angle_about_mean(rate_deg_per_h: &[f64]) -> Vec<f64> {
+    let (near, sums) = sums_of_parts(rate_deg_per_h);
+    let rest = rest_of_mean(&sums);
+    let mean = near + rest;
+    let mut starts = Vec::with_capacity(sums.len());
+    let mut start = 0.0;
+    for (sum, present) in &sums {
+        starts.push(start);
+        start += sum - *present as f64 * rest;
+    }
+    let mut angle = vec![0.0; rate_deg_per_h.len() + 1];
+    angle[1..]
+        .par_chunks_mut(PART)
+        .zip(rate_deg_per_h.par_chunks(PART))
+        .zip(starts)
+        .for_each(|((angles, rates), mut sum)| {
+            for (angle, rate) in angles.iter_mut().zip(rates) {
+                let step = rate - mean;
+                sum += if step.is_nan() { 0.0 } else { step };
+                *angle = sum;
+            }
+        });
+    angle
+}
+
+/// A rate near the mean, and sums about it of every part with the number of rates in it: they do not
+/// cancel against the mean.
+fn sums_of_parts(rates: &[f64]) -> (f64, Vec<(f64, usize)>) {
+    let near = rates.iter().find(|rate| !rate.is_nan());
+    let near = near.copied().unwrap_or(0.0);
+    let parts = rates.par_chunks(PART);
+    (near, parts.map(|part| sum_about(part, near)).collect())
+}
+
+/// Mean of all parts about the rate that their sums are about.
+fn rest_of_mean(sums: &[(f64, usize)]) -> f64 {
+    let present: usize = sums.iter().map(|(_, present)| present).sum();
+    sums.iter().map(|(sum, _)| sum).sum::<f64>() / present.max(1) as f64
+}
+
+/// Mean rate; missing samples (NaN) are left out.
+pub(crate) fn mean_rate(rates: &[f64]) -> f64 {
+    let (near, sums) = sums_of_parts(rates);
+    near + rest_of_mean(&sums)
+}
+
+/// Sum of the rates about one of them in eight interleaved sums, and the number there is.
+fn sum_about(rates: &[f64], near: f64) -> (f64, usize) {
+    const LANES: usize = 8;
+    let mut lanes = [0.0; LANES];
+    let (chunks, rest) = rates.as_chunks::<LANES>();
+    for chunk in chunks {
+        for lane in 0..LANES {
+            lanes[lane] += chunk[lane] - near;
+        }
+    }
+    let sum = lanes.iter().sum::<f64>() + rest.iter().map(|rate| rate - near).sum::<f64>();
+    if !sum.is_nan() {
+        return (sum, rates.len());
+    }
+    let present = rates.iter().filter(|rate| !rate.is_nan());
+    present.fold((0.0, 0), |(sum, count), rate| {
+        (sum + (rate - near), count + 1)
+    })
+}
+
+/// Sum of squared second differences `x[k+2m] - 2x[k+m] + x[k]` for every averaging factor m.
+pub(crate) fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f64> {
+    let blocks: Vec<usize> = (0..angle.len()).step_by(BLOCK * BLOCKS_IN_A_ROW).collect();
+    let of_blocks = blocks.into_par_iter().map(|first| {
+        let mut sums = vec![0.0; factors.len()];
+        for start in (first..angle.len()).step_by(BLOCK).take(BLOCKS_IN_A_ROW) {
+            for (sum, &m) in sums.iter_mut().zip(factors) {
+                *sum += squares_of_starts(angle, start, start + BLOCK, m);
+            }
+        }
+        sums
+    });
+    let parts: Vec<Vec<f64>> = of_blocks.collect();
+    // In the order of the parts, whichever thread was first.
+    let mut sums = vec![0.0; factors.len()];
+    for part in parts {
+        for (sum, part) in sums.iter_mut().zip(part) {
+            *sum += part;
+        }
+    }
+    sums
+}
+
+/// Sum of the squared second differences that start in a range, as far as there are such.
+fn squares_of_starts(angle: &[f64], start: usize, end: usize, m: usize) -> f64 {
+    let end = end.min(angle.len() - 2 * m);
+    if start >= end {
+        return 0.0;
+    }
+    squared_second_differences(
+        &angle[start..end],
+        &angle[start + m..end + m],
+        &angle[start + 2 * m..end + 2 * m],
+    )
+}
+
+/// `sum (c - 2b + a)^2` in eight interleaved sums, which the compiler turns into vectors.
+pub(crate) fn squared_second_differences(a: &[f64], b: &[f64], c: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut lanes = [0.0; LANES];
+    let (a_lanes, a_rest) = a.as_chunks::<LANES>();
+    let (b_lanes, b_rest) = b.as_chunks::<LANES>();
+    let (c_lanes, c_rest) = c.as_chunks::<LANES>();
+    for ((a, b), c) in a_lanes.iter().zip(b_lanes).zip(c_lanes) {
+        for lane in 0..LANES {
+            let difference = (a[lane] + c[lane]) - 2.0 * b[lane];
+            lanes[lane] += difference * difference;
+        }
+    }
+    let rest: f64 = a_rest
+        .iter()
+        .zip(b_rest)
+        .zip(c_rest)
+        .map(|((a, b), c)| {
+            let difference = (a + c) - 2.0 * b;
+            difference * difference
+        })
+        .sum();
+    lanes.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    #[test]
+    fn blocks_agree_with_the_plain_sum() {
+        let angle: Vec<f64> = (0..3 * BLOCK + 7)
+            .map(|k| ((k * k) % 1013) as f64)
+            .collect();
+        let factors = [1, 2, 3, 100, BLOCK, 3001];
+        for (m, sum) in factors
+            .into_iter()
+            .zip(second_difference_sums(&angle, &factors))
+        {
+            let plain: f64 = (0..angle.len() - 2 * m)
+                .map(|k| (angle[k + 2 * m] - 2.0 * angle[k + m] + angle[k]).powi(2))
+                .sum();
+            assert!((sum / plain - 1.0).abs() < 1e-12, "m = {m}: {sum} {plain}");
+        }
+    }
+
+    #[test]
+    fn the_angle_is_the_running_sum_about_the_mean() {
+        let mut rates: Vec<f64> = (0..2 * PART + 5)
+            .map(|k| 15.0 + ((k * k) % 101) as f64 / 50.0)
+            .collect();
+        for gap in [0, PART + 3] {
+            if gap > 0 {
+                rates[gap] = f64::NAN;
+            }
+            let present: Vec<f64> = rates.iter().copied().filter(|x| !x.is_nan()).collect();
+            let above = present.iter().map(|rate| rate - 15.0);
+            let mean = 15.0 + above.sum::<f64>() / present.len() as f64;
+            let angle = angle_about_mean(&rates);
+            let mut plain = 0.0;
+            for (k, rate) in rates.iter().enumerate() {
+                assert!((angle[k] - plain).abs() < 1e-7, "{k}: {} {plain}", angle[k]);
+                plain += if rate.is_nan() { 0.0 } else { rate - mean };
+            }
+            assert!(angle[rates.len()].abs() < 1e-7);
+        }
+    }
+}
