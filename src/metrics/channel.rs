@@ -9,15 +9,13 @@ use super::frozen_response::put_frozen_response;
 use super::interval;
 use super::known_metric::{Applies, PIPELINE_ONLY};
 use super::multi_sine::measure_multi_sine;
+use super::noise_level::{measure_mean_ratio, put_noise_gain, put_noise_std, put_ratio_of_means};
 use super::psd::{log_binned, segment_samples, welch};
 use super::readaptation::{READAPTATION, measure_after_step, onset};
 use super::record::{FilterFacts, Motion, Record, Settings};
 use super::settling::{settling, tail_start};
 use super::staircase::measure_scale_factor;
-use super::steady::{
-    LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_mean_ratio, measure_steady, put_mean,
-    put_noise_gain, put_noise_std, put_ratio_of_means,
-};
+use super::steady::{LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_steady, put_mean};
 use super::step_shape::{Step, put_step_shape};
 use super::support::{NO_TRUTH, SAMPLES_MIN, encoder_lack, repeats_lack, support, truth_lack};
 use super::swing::measure_swing;

@@ -35,6 +35,7 @@ mod multi_sine;
 mod noise_delay;
 mod noise_fit;
 mod noise_identification;
+mod noise_level;
 mod nonlinearity;
 mod psd;
 mod readaptation;

@@ -5,11 +5,10 @@ use std::collections::BTreeMap;
 use super::autocovariance::LaggedProducts;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::noise_level::{put_noise_gain, put_noise_std};
 use super::record::{FilterFacts, Record};
 use super::response::{ToneClock, ToneFits, ToneResponse, fit_tones};
-use super::steady::{
-    LAGS_MIN, RATIO_BLOCKS, equal_block_means, put_mean, put_noise_gain, put_noise_std,
-};
+use super::steady::{LAGS_MIN, RATIO_BLOCKS, equal_block_means, put_mean};
 use super::truth_response::{reach, remove_response};
 use crate::units;
 

@@ -155,6 +155,13 @@ impl NoiseFit {
             + cautious(RAMP) * duration_s * duration_s / 4.0
     }
 
+    /// Whether the record shows white noise, as that of a gyro does: where it does not, the five terms
+    /// do not describe it, as behind weights that wander, and nothing may be expected from them.
+    #[must_use]
+    pub fn shows_white_noise(&self) -> bool {
+        matches!(self.angle_random_walk_deg_per_h_sqrt_s, Term::Found(_))
+    }
+
     /// Fitted Allan deviation, deg/h, the signed `1/tau^2` term included; never below zero.
     #[must_use]
     pub fn deviation_deg_per_h(&self, tau_s: f64) -> f64 {
@@ -345,10 +352,14 @@ fn report(range: [f64; 2], problem: &Problem) -> NoiseFit {
         if active[index] && value > 0.0 && problem.significance(&own, index) >= needed {
             return Term::Found(Estimate::with_interval(value, low, high));
         }
+        let asked = if needed > 0.0 {
+            format!("its square must exceed {needed} standard errors")
+        } else {
+            "its square comes out below zero".to_owned()
+        };
         Term::LeftOut {
             reason: format!(
-                "the Allan variance between {:.4} s and {:.4} s does not need {name} \
-                 (it must exceed {needed} of its standard errors)",
+                "the Allan variance between {:.2} s and {:.2} s does not show {name}: {asked}",
                 range[0], range[1],
             ),
             allowed: Estimate::with_interval(0.0, 0.0, high),

@@ -95,8 +95,9 @@ impl ChannelMetrics {
                     self.metrics.remove(name);
                     let high = convert(allowed.high);
                     let unit = catalogue::find(name).map_or("1", |known| known.unit);
-                    let bound = if high < BOUND_MAX {
-                        format!("; it is {high:.2e} {unit} at most (95 % interval from 0)")
+                    // A bound of nothing is that of a record that these five terms do not describe.
+                    let bound = if high > 0.0 && high < BOUND_MAX {
+                        format!("; it is {} {unit} at most (95 %)", three_digits(high))
                     } else {
                         String::new()
                     };
@@ -121,5 +122,16 @@ impl ChannelMetrics {
             spectrum.density_deg2_per_h2_per_hz,
         );
         self.curves.insert("psd".into(), curve);
+    }
+}
+
+/// A bound to three digits, as plain as its size allows.
+fn three_digits(value: f64) -> String {
+    if (1e-3..1e4).contains(&value) {
+        let magnitude = value.log10().floor();
+        let decimals = (2.0 - magnitude).max(0.0);
+        format!("{value:.*}", super::interval::round_to_count(decimals))
+    } else {
+        format!("{value:.2e}")
     }
 }

@@ -82,7 +82,9 @@ fn panel(picture: &mut Picture, table: &ComparedTable, columns: &[usize], top: f
     let labels = table.rows.iter().enumerate();
     let labels = labels.map(|(index, row)| {
         let mark = if row.is_base { " (as read)" } else { "" };
-        (real(index), format!("{}{mark}", row.label))
+        // What the points of a sweep have in common, the title says.
+        let label = row.label.rsplit(": ").next().unwrap_or(&row.label);
+        (real(index), format!("{label}{mark}"))
     });
     x.ticks = labels.collect();
     let definition = &table.columns[columns[0]];
