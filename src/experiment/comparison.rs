@@ -90,7 +90,7 @@ impl<'a> Layout<'a> {
         let figures = self.figures.iter();
         Comparison {
             assumptions: assumptions
-                .map(|one| assumed(one, &readings, &tables))
+                .filter_map(|one| assumed(one, &readings, &tables))
                 .collect(),
             figures: figures.filter_map(|figure| drawn(figure, runs)).collect(),
             tables,
@@ -345,7 +345,8 @@ fn causes(row: &ComparedRow, columns: &[ComparedColumn], suite: &[Run]) -> Vec<C
     found.collect()
 }
 
-fn assumed(one: &AssumptionConfig, suite: &[&Run], tables: &[ComparedTable]) -> Assumed {
+/// An assumption with the values that the runs have; none if no run has the key.
+fn assumed(one: &AssumptionConfig, suite: &[&Run], tables: &[ComparedTable]) -> Option<Assumed> {
     let mut values: Vec<String> = Vec::new();
     for run in suite {
         let resolved = run.plan.resolved();
@@ -357,15 +358,24 @@ fn assumed(one: &AssumptionConfig, suite: &[&Run], tables: &[ComparedTable]) -> 
     }
     values.sort();
     values.dedup();
+    if values.is_empty() {
+        return None;
+    }
+    let differs = |value: &&String| {
+        one.reading
+            .as_ref()
+            .is_some_and(|reading| reading != *value)
+    };
     let table = one.comparison.clone();
-    Assumed {
+    Some(Assumed {
         key: one.key.clone(),
+        otherwise: values.iter().filter(differs).cloned().collect(),
         values,
         statement: one.statement.clone(),
         silence: one.silence.clone(),
         alternatives: one.alternatives.clone(),
         table: table.filter(|name| tables.iter().any(|table| table.name == *name)),
-    }
+    })
 }
 
 fn drawn(figure: &FigureConfig, runs: &[RunOutcome]) -> Option<DrawnFigure> {

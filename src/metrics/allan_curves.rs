@@ -8,17 +8,22 @@ use std::collections::BTreeMap;
 use super::aggregate::{FITTED, columns, mean_of};
 use super::allan::AllanPoint;
 use super::allan_variants::{AllanEstimator, AllanVariantPoint};
+use super::bias::expected_bias_stability;
 use super::estimate::ChannelMetrics;
 use super::interval;
 use super::noise_fit::{FitRange, NoiseFit, fit_pooled_noise};
 use super::noise_identification::PowerLaw;
 use super::steady::{WALK_OVER_DC_GAIN, put_over_dc_gain};
 use super::support::slow_noise_lack;
+use super::table::EXPECTED;
 
 /// The curve of the settings.
 const CURVE: &str = "allan";
 /// The curve that is fitted.
 const FIT_CURVE: &str = "allan_fit";
+
+/// Bias stability at restored scale.
+const BIAS_OVER_DC_GAIN: &str = "bias_stability_over_dc_gain_deg_per_h";
 
 /// Columns of the curve that pooling takes the mean of.
 const MEANS: [&str; 2] = ["count", "noise_identified"];
@@ -176,6 +181,7 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
             metric.fields.insert("repeats", count);
         }
     }
+    expect_of_fit(&fit, pooled);
     let gain = pooled.metrics.get("dc_gain");
     let gain = gain.map(|gain| gain.estimate.value);
     if gain.is_some() && pooled.metrics.contains_key(WALK_OVER_DC_GAIN) {
@@ -183,6 +189,34 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
         put_over_dc_gain(FITTED[0], WALK_OVER_DC_GAIN, gain, pooled);
     }
     Some(fit)
+}
+
+/// Replaces the mean of what the repeats' fits expect of the bias stability by what the fit to all of
+/// them does: terms that cannot be negative are too large on average in single records.
+fn expect_of_fit(fit: &NoiseFit, pooled: &mut ChannelMetrics) {
+    let coefficients = fit.coefficients();
+    let gain = pooled.metrics.get("dc_gain");
+    let gain = gain.map_or(1.0, |gain| gain.estimate.value.abs());
+    for (name, metric) in &mut pooled.metrics {
+        let fields = &mut metric.fields;
+        let Some((time_s, count)) = fields
+            .get("averaging_time_s")
+            .copied()
+            .zip(fields.get("count").copied())
+        else {
+            continue;
+        };
+        if let Some(expected) = fields.get_mut(EXPECTED) {
+            let blocks = interval::round_to_count(count);
+            let of_channel = expected_bias_stability(&coefficients, time_s, blocks);
+            let is_restored = name == BIAS_OVER_DC_GAIN;
+            *expected = if is_restored {
+                of_channel / gain
+            } else {
+                of_channel
+            };
+        }
+    }
 }
 
 /// Pools the curve of the settings; the noise is the law nearest to the mean exponent.

@@ -137,6 +137,9 @@ fn put_extremes(values: &[f64], metrics: &mut ChannelMetrics) {
     metrics.put("maximum_deg_per_h", Estimate::exact(largest));
 }
 
+/// Rate after a step over the step below which it counts as rest.
+const REST_PER_STEP: f64 = 0.05;
+
 /// Metrics of a staircase: settling after the last step, noise and means.
 fn measure_steps(
     record: &Record,
@@ -196,7 +199,15 @@ fn measure_steps(
         let own = equal_block_means(&values[start..], RATIO_BLOCKS);
         let raw = equal_block_means(&record.raw_deg_per_h[start..], RATIO_BLOCKS);
         put_ratio_of_means("settled_gain", &own, &raw, metrics);
-        measure_after_step(record, last_step_index, facts, metrics);
+        let rate = interval::mean(&record.raw_deg_per_h[start..]).abs();
+        if rate < REST_PER_STEP * step_deg_per_h.abs() {
+            metrics.miss(
+                READAPTATION,
+                "the last step ends at rest, where lag outweighs gain",
+            );
+        } else {
+            measure_after_step(record, last_step_index, facts, metrics);
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The verdict on a filter: what the intervals of its metrics say it does to signal and noise.
 
 use super::estimate::{ChannelMetrics, Estimate};
+use crate::units::MICRO;
 
 /// Distance of a gain from 1 that counts as none.
 const GAIN_TOLERANCE: f64 = 0.01;
@@ -126,7 +127,11 @@ pub fn filter_verdict(channel: &ChannelMetrics) -> Option<FilterVerdict> {
     if channel.error.is_some() || (dc_gain.is_none() && noise_gain.is_none()) {
         return None;
     }
-    let motion_gain = gain("amplitude_ratio").or_else(|| gain("settled_gain"));
+    // A slope over many rates says more than the gain at the last of them, which may be rest.
+    let slope = estimate("scale_factor_error_ppm");
+    let slope = slope.map(|error| Finding::new(one_plus_ppm(error), GAIN_TOLERANCE));
+    let motion_gain = gain("amplitude_ratio").or(slope);
+    let motion_gain = motion_gain.or_else(|| gain("settled_gain"));
     let level = motion_gain.or(dc_gain);
     let restored = level
         .zip(noise_gain)
@@ -182,6 +187,16 @@ fn over_square(power: Estimate, gain: Estimate) -> Option<Estimate> {
         let low = (ratio * (1.0 - below)).max(0.0);
         Estimate::with_interval(ratio, low, ratio * (1.0 + above))
     })
+}
+
+/// The gain that an error of the scale factor stands for.
+fn one_plus_ppm(error_ppm: Estimate) -> Estimate {
+    let gain = |ppm: f64| 1.0 + MICRO * ppm;
+    Estimate::with_interval(
+        gain(error_ppm.value),
+        gain(error_ppm.low),
+        gain(error_ppm.high),
+    )
 }
 
 #[cfg(test)]

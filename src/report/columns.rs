@@ -43,6 +43,13 @@ const STATIC: &[(&str, &str)] = &[
     ("delay_at_dc_ms", "delay at DC"),
 ];
 
+/// Columns of the same records that need no word where they are absent: most gyros show none.
+const STATIC_IF_SHOWN: &[(&str, &str)] = &[
+    ("rate_random_walk_deg_per_h_per_sqrt_h", "rate random walk"),
+    ("rate_ramp_deg_per_h_per_h", "rate ramp"),
+    ("quantisation_arcsec", "quantisation"),
+];
+
 const SWING: &[(&str, &str)] = &[
     ("delay_vs_raw_ms", "delay vs raw"),
     ("delay_predicted_ms", "predicted"),
@@ -162,6 +169,7 @@ fn known(motion: &MotionConfig) -> &'static [(&'static str, &'static str)] {
 fn title_of(motion: &MotionConfig, key: &str) -> String {
     known(motion)
         .iter()
+        .chain(STATIC_IF_SHOWN)
         .chain(ALWAYS)
         .find(|(other, _)| *other == key)
         .map_or_else(|| key.replace('_', " "), |(_, title)| (*title).to_owned())
@@ -196,6 +204,7 @@ pub(crate) fn columns(motion: &MotionConfig, channels: &[(String, ChannelMetrics
         .copied()
         .filter(|key| key.contains("predict"));
     keys.extend(predictions);
+    keys.extend(STATIC_IF_SHOWN.iter().map(|(key, _)| *key));
     keys.extend(ALWAYS.iter().map(|(key, _)| *key));
     let mut seen = BTreeSet::new();
     keys.into_iter()

@@ -98,6 +98,8 @@ pub struct Assumed {
     pub key: String,
     /// Its values in this suite, sweeps of it aside.
     pub values: Vec<String>,
+    /// Values that differ from the one for which the statement holds.
+    pub otherwise: Vec<String>,
     /// How it is read.
     pub statement: String,
     /// Where the publication is silent.

@@ -117,6 +117,7 @@ fn assumption(assumed: &Assumed) -> Value {
     let mut record = object([
         ("key", assumed.key.as_str().into()),
         ("values", assumed.values.clone().into()),
+        ("values_read_otherwise", assumed.otherwise.clone().into()),
         ("statement", assumed.statement.as_str().into()),
         ("silence", assumed.silence.as_str().into()),
         ("alternatives", assumed.alternatives.as_str().into()),

@@ -255,8 +255,12 @@ fn assumption(assumed: &Assumed, width: usize) -> String {
     let mut text = format!("{INDENT}{}{values}\n", assumed.key);
     let table = assumed.table.as_ref();
     let table = table.map_or_else(String::new, |name| format!(" See table \"{name}\"."));
+    let otherwise = match assumed.otherwise[..] {
+        [] => String::new(),
+        _ => format!(" Not so at {}.", assumed.otherwise.join(", ")),
+    };
     let line = format!(
-        "{}. Open because {}. Other readings: {}.{table}",
+        "{}.{otherwise} Open because {}. Other readings: {}.{table}",
         assumed.statement, assumed.silence, assumed.alternatives
     );
     text.push_str(&wrapped(&line, DEEP, width));

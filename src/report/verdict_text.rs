@@ -168,7 +168,7 @@ fn bound(verdict: &FilterVerdict) -> Option<String> {
                 "its noise is {ratio} of {least} and fixed weights: its weights follow the noise"
             )
         }
-        AgainstOne::Equal => format!("its noise is {least}"),
+        AgainstOne::Equal => format!("its noise is {ratio} times {least}, as good as that"),
         AgainstOne::Above => format!("its noise is {ratio} times {least}"),
         AgainstOne::Undecided => format!("its noise is not told apart from {least}"),
     })

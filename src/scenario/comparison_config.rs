@@ -46,6 +46,8 @@ pub struct AssumptionConfig {
     pub key: String,
     /// How it is read.
     pub statement: String,
+    /// Value of the key for which the statement holds, as TOML writes it.
+    pub reading: Option<String>,
     /// Where the publication is silent.
     pub silence: String,
     /// Other readings.

@@ -124,9 +124,9 @@ fn notes(legend: &mut Legend, picture: &mut Picture, is_read: bool) {
     let notes: &[&str] = if is_read {
         &[
             "bands: 95 % interval; thin: fit, dotted: its terms",
-            "circle: σ(1 s) of the -1/2 line is N, the ARW",
-            "square: the flat line is 0.664 B",
-            "triangle: σ(3 s) of the +1/2 line is K",
+            "circle: 60 N at 1 s (slope -1/2); √3 Q/τ (slope -1)",
+            "square: 0.664 B (flat)",
+            "triangle: K/60 at 3 s (slope 1/2); R τ/√2 (slope 1)",
         ]
     } else {
         &[

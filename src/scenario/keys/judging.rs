@@ -56,6 +56,8 @@ pub(super) const KEYS: &[Key] = &[
         "Key of the scenario that settles what a publication leaves open."),
     key("assumption[].statement", Kind::Text, "", Required,
         "How it is read here."),
+    key("assumption[].reading", Kind::Text, "", Optional,
+        "Value of the key for which the statement holds, written as in a scenario."),
     key("assumption[].silence", Kind::Text, "", Required,
         "Where the publication is silent or ambiguous."),
     key("assumption[].alternatives", Kind::Text, "", Required,
