@@ -24,6 +24,7 @@ mod filters;
 mod fpga_health;
 mod frequency_response;
 mod gyro_effects;
+mod injection;
 mod known_answers_allan;
 mod known_answers_allan_variants;
 mod known_answers_gyro;

@@ -15,7 +15,7 @@ use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_
 
 /// Motion as the metrics see it; a staircase's last step counts from the start of the record.
 pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
-    match &scenario.turntable.motion {
+    match scenario.measured_motion() {
         MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
         MotionConfig::Swing(swing) => {
             let frequency_hz = swing.frequency_hz;
@@ -88,9 +88,9 @@ fn index(count: u64) -> usize {
     usize::try_from(count).unwrap_or(usize::MAX)
 }
 
-/// Largest rate the configured motion puts on the input axis, of an assembly on any, deg/h.
+/// Largest rate that motion and injected signal put on the input axis, of an assembly on any, deg/h.
 pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
-    if scenario.gyro.assembly.is_some() {
+    if scenario.gyro.assembly.is_some() || scenario.gyro.injection.is_some() {
         return rad_per_s_to_deg_per_h(motion_extremes(scenario).rate_rad_per_s);
     }
     let axis = input_axis_bounds(&scenario.turntable);
@@ -101,9 +101,17 @@ pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
 
 /// The hardest motion on the input axis, of an assembly on any; the loop starts from zero rate.
 pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
-    let command = table_extremes(scenario);
+    let command = command_extremes_of(scenario);
     let axis = input_axis_bounds(&scenario.turntable);
     let commanded = command.rate_rad_per_s;
+    if scenario.gyro.injection.is_some() {
+        // The table is at rest, and no mounting comes between the signal and the loop.
+        return MotionExtremes {
+            rate_rad_per_s: axis.earth_rate_rad_per_s + commanded,
+            jump_rad_per_s: axis.earth_rate_rad_per_s + command.jump_rad_per_s,
+            acceleration_rad_per_s2: command.acceleration_rad_per_s2,
+        };
+    }
     let input = MotionExtremes {
         rate_rad_per_s: axis.earth_rate_rad_per_s + axis.rate_ratio * commanded,
         jump_rad_per_s: axis.earth_rate_rad_per_s + axis.rate_ratio * command.jump_rad_per_s,
@@ -116,11 +124,13 @@ pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
     }
 }
 
-/// The hardest motion about the table axis but for the Earth's; the servo starts settled.
-fn table_extremes(scenario: &Scenario) -> MotionExtremes {
-    let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
-    let own = command_extremes(&scenario.turntable.motion);
-    let (jump, acceleration) = match &scenario.turntable.motion {
+/// The hardest motion about the table axis but for the Earth's, or the hardest of an injected signal;
+/// the servo starts settled.
+fn command_extremes_of(scenario: &Scenario) -> MotionExtremes {
+    let motion = scenario.measured_motion();
+    let commanded = command_rate_max_rad_per_s(motion);
+    let own = command_extremes(motion);
+    let (jump, acceleration) = match motion {
         MotionConfig::Static(_) => (0.0, 0.0),
         MotionConfig::Swing(swing) => (0.0, TAU * swing.frequency_hz * commanded),
         MotionConfig::MultiSine(multi_sine) => {

@@ -9,7 +9,7 @@ use super::suite::Observer;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
 use crate::scenario::{FilterKind, FilterState, Scenario, Stairs};
-use crate::turntable::{Turntable, first_measured_index, step_indices};
+use crate::turntable::{InjectedSignal, Turntable, first_measured_index, step_indices};
 use crate::units::rad_per_s_to_deg_per_h;
 
 /// Samples of one block: long against the cost of handing it over, short against the caches.
@@ -59,8 +59,8 @@ pub(super) struct Simulation {
 
 /// What one gyro was given and what it made of it.
 pub(super) struct GyroRecord {
-    /// Inertial rate of the input axis, or of the case axis of an assembly, at each stamp, deg/h;
-    /// empty for a recorded log.
+    /// Inertial rate of the input axis, or of the case axis of an assembly, at each stamp, with the
+    /// rate that an injected signal equals, deg/h; empty for a recorded log.
     pub(super) truth_deg_per_h: Vec<f64>,
     /// The gyro's rate words, deg/h.
     pub(super) raw_deg_per_h: Vec<f64>,
@@ -258,6 +258,8 @@ pub(super) fn first_words(scenario: &Scenario, samples: usize) -> Result<Vec<f64
 /// Table and gyros: where the words come from.
 struct Source {
     table: Turntable,
+    /// Added to what a single gyro feels of the table.
+    injected: Option<InjectedSignal>,
     gyros: Gyros,
     sample_period_s: f64,
     /// Rate words in one output sample.
@@ -314,6 +316,11 @@ impl Source {
         let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
         Ok(Self {
             table: Turntable::new(&scenario.turntable, warm_up_s, word_period_s),
+            injected: scenario
+                .gyro
+                .injection
+                .as_ref()
+                .map(|signal| InjectedSignal::new(signal, warm_up_s, word_period_s)),
             encoder_rad: has_encoder.then(|| Vec::with_capacity(length.total())),
             gyros: Gyros::new(scenario, repeat)?,
             sample_period_s,
@@ -345,7 +352,10 @@ impl Source {
                 for _ in 0..block {
                     let mut end = 0.0;
                     samples.push(mean(average, || {
-                        let segment = table.next_segment();
+                        let mut segment = table.next_segment();
+                        if let Some(signal) = &mut self.injected {
+                            segment = segment.plus(&signal.next_segment());
+                        }
                         end = segment.rate_at(1.0);
                         gyro.next_word(&segment)
                     }));

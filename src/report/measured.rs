@@ -22,7 +22,7 @@ impl<'a> RunReport<'a> {
         let estimates = self.calibration.map_or(0, |sheet| sheet.estimates.len());
         Measured {
             name: &self.scenario.name,
-            motion: &self.scenario.turntable.motion,
+            motion: self.scenario.measured_motion(),
             channels: &self.channels[..self.channels.len() - estimates],
         }
     }

@@ -1,4 +1,5 @@
-//! The channels of a scenario: which there are, in which order, and whose words they carry.
+//! The channels of a scenario: which there are, in which order, whose words they carry and against
+//! which motion they are measured.
 
 use super::config::Scenario;
 use super::filter_config::FilterConfig;
@@ -18,6 +19,15 @@ pub(super) const COMPENSATED: &str = "compensated";
 const CALIBRATION: &str = "calibration_";
 
 impl Scenario {
+    /// The motion that a record is measured against: the table's, or what an injected signal equals.
+    #[must_use]
+    pub fn measured_motion(&self) -> &MotionConfig {
+        match &self.gyro.injection {
+            None => &self.turntable.motion,
+            Some(injection) => injection.equivalent_motion(),
+        }
+    }
+
     /// Prefix of the channel names of each gyro: one empty one, or `x_`, `y_`, `z_`.
     #[must_use]
     pub fn axis_prefixes(&self) -> &'static [&'static str] {

@@ -13,8 +13,9 @@ use super::cross_servo;
 use super::cross_vibration;
 use super::error::ScenarioError;
 use super::filter_config::{FilterKind, Pipeline};
+use super::injection_config::InjectionConfig;
 use super::resolved::Resolved;
-use super::turntable_config::MotionConfig;
+use super::turntable_config::{MotionConfig, MultiSineConfig};
 
 /// Channel names that mean something else.
 pub(crate) const RESERVED: [&str; 4] = ["raw", "truth", "time_s", "encoder_arcsec"];
@@ -42,6 +43,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
         checks.complain(&key, message);
     }
     checks.motion();
+    checks.injection();
     checks.filter_state();
     for (key, message) in cross_gyro::check(&resolved.scenario) {
         checks.complain(&key, message);
@@ -152,18 +154,7 @@ impl Checks<'_> {
                 self.frequency("turntable.swing.frequency_hz", swing.frequency_hz);
                 self.swing_from_rest(swing);
             }
-            MotionConfig::MultiSine(multi_sine) => {
-                self.soft_start("turntable.multi_sine.soft_start_s", multi_sine.soft_start_s);
-                let found = cross_multi_sine::complaints(
-                    multi_sine,
-                    scenario.duration_s,
-                    1.0 / self.sample_period_s(),
-                    SAMPLES_PER_CYCLE_MIN,
-                );
-                for (key, message) in found {
-                    self.complain(&key, message);
-                }
-            }
+            MotionConfig::MultiSine(sines) => self.multi_sine("turntable.multi_sine", sines),
             MotionConfig::Rotation(rotation) => {
                 self.soft_start("turntable.rotation.soft_start_s", rotation.soft_start_s);
             }
@@ -194,6 +185,33 @@ impl Checks<'_> {
                     self.complain(settle, message);
                 }
             }
+        }
+    }
+
+    fn multi_sine(&mut self, table: &str, sines: &MultiSineConfig) {
+        self.soft_start(&format!("{table}.soft_start_s"), sines.soft_start_s);
+        let found = cross_multi_sine::complaints(
+            table,
+            sines,
+            self.resolved.scenario.duration_s,
+            1.0 / self.sample_period_s(),
+            SAMPLES_PER_CYCLE_MIN,
+        );
+        for (key, message) in found {
+            self.complain(&key, message);
+        }
+    }
+
+    fn injection(&mut self) {
+        let scenario = &self.resolved.scenario;
+        for (key, message) in cross_multi_sine::injection_complaints(scenario) {
+            self.complain(key, message);
+        }
+        let injection = scenario.gyro.injection.as_ref();
+        if let Some(MotionConfig::MultiSine(sines)) =
+            injection.map(InjectionConfig::equivalent_motion)
+        {
+            self.multi_sine(cross_multi_sine::INJECTION, sines);
         }
     }
 

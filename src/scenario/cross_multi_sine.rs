@@ -1,6 +1,7 @@
 //! Checks of several sines: can they be sampled, and told apart in the record?
 
-use super::turntable_config::MultiSineConfig;
+use super::config::Scenario;
+use super::turntable_config::{MotionConfig, MultiSineConfig};
 
 /// Most sines: the fit grows with the square of their number.
 const TONES_MAX: usize = 64;
@@ -11,19 +12,40 @@ const CYCLES_MIN: f64 = 3.0;
 /// Relative slack when frequencies are compared, so that 1 Hz apart is told in 1 s.
 const SLACK: f64 = 1e-9;
 
-const FREQUENCIES: &str = "turntable.multi_sine.frequencies_hz";
-const AMPLITUDES: &str = "turntable.multi_sine.rate_amplitudes_deg_per_s";
+/// Where an injected signal stands.
+pub(super) const INJECTION: &str = "gyro.injection";
 
-/// Key and text of every complaint.
+/// Key and text of every complaint about an injected signal but those about its sines.
+pub(super) fn injection_complaints(scenario: &Scenario) -> Vec<(&'static str, String)> {
+    let mut found = Vec::new();
+    if scenario.gyro.injection.is_none() {
+        return found;
+    }
+    if !matches!(scenario.turntable.motion, MotionConfig::Static(_)) {
+        let text = format!(
+            "{INJECTION} needs a table at rest: a motion would add to the response, use turntable.static"
+        );
+        found.push((INJECTION, text));
+    }
+    if scenario.gyro.assembly.is_some() {
+        let text = format!("{INJECTION} is for one gyro: leave out gyro.assembly");
+        found.push((INJECTION, text));
+    }
+    found
+}
+
+/// Key and text of every complaint about the sines of the table `table`.
 ///
 /// A joint least-squares fit tells two sines apart once the record holds one cycle of their
 /// difference; whole cycles are not asked for.
 pub(super) fn complaints(
+    table: &str,
     config: &MultiSineConfig,
     duration_s: f64,
     output_rate_hz: f64,
     samples_per_cycle_min: f64,
 ) -> Vec<(String, String)> {
+    let frequencies = format!("{table}.frequencies_hz");
     let tones = &config.frequencies_hz;
     let mut found = Vec::new();
     let mut complain = |key: String, text: String| {
@@ -32,7 +54,7 @@ pub(super) fn complaints(
     };
     if tones.len() > TONES_MAX {
         let text = format!("holds {} frequencies: at most {TONES_MAX}", tones.len());
-        complain(FREQUENCIES.to_owned(), text);
+        complain(frequencies.clone(), text);
     }
     let amplitudes = config.rate_amplitudes_deg_per_s.len();
     if amplitudes != 1 && amplitudes != tones.len() {
@@ -40,14 +62,14 @@ pub(super) fn complaints(
             "holds {amplitudes} amplitudes for {} frequencies: give one for all, or one for each",
             tones.len()
         );
-        complain(AMPLITUDES.to_owned(), text);
+        complain(format!("{table}.rate_amplitudes_deg_per_s"), text);
     }
     let lowest = tones.first().copied().unwrap_or(0.0);
     if lowest * duration_s < CYCLES_MIN * (1.0 - SLACK) {
         let text = format!(
             "= {lowest:?} Hz is too slow: duration_s = {duration_s:?} s must hold {CYCLES_MIN} cycles"
         );
-        complain(format!("{FREQUENCIES}[0]"), text);
+        complain(format!("{frequencies}[0]"), text);
     }
     let frequency_hz_max = output_rate_hz / samples_per_cycle_min;
     for (index, frequency_hz) in tones.iter().enumerate() {
@@ -56,11 +78,11 @@ pub(super) fn complaints(
                 "= {frequency_hz:?} Hz is too fast: allowed up to {frequency_hz_max:.6} Hz, \
                  {samples_per_cycle_min} samples a cycle at the output rate of {output_rate_hz:.6} Hz"
             );
-            complain(format!("{FREQUENCIES}[{index}]"), text);
+            complain(format!("{frequencies}[{index}]"), text);
         }
     }
     for (index, pair) in tones.windows(2).enumerate() {
-        let key = format!("{FREQUENCIES}[{}]", index + 1);
+        let key = format!("{frequencies}[{}]", index + 1);
         let apart_hz = pair[1] - pair[0];
         if apart_hz <= 0.0 {
             let text = format!("= {:?} Hz does not ascend from {:?} Hz", pair[1], pair[0]);

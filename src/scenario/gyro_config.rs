@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::assembly_config::AssemblyConfig;
+use super::injection_config::InjectionConfig;
 use super::thermal_config::{TemperatureConfig, ThermalConfig};
 use super::vibration_config::VibrationConfig;
 
@@ -32,6 +33,8 @@ pub struct GyroConfig {
     pub thermal: ThermalConfig,
     /// Vibration of the case.
     pub vibration: VibrationConfig,
+    /// Test signal added inside the loop; none is the gyro at work.
+    pub injection: Option<InjectionConfig>,
     /// Rate word.
     pub output: RateOutputConfig,
     /// Three such gyros in one case; none is a single gyro on the table axis.

@@ -31,6 +31,7 @@ mod emit;
 mod error;
 mod filter_config;
 mod gyro_config;
+mod injection_config;
 mod json_schema;
 mod keys;
 mod leaf;
@@ -78,6 +79,7 @@ pub use gyro_config::{
     ModulatorConfig, NoiseConfig, NoiseDraw, OutputQuantisation, RateOutputConfig, ResetSample,
     SlowNoiseConfig, SourceConfig,
 };
+pub use injection_config::InjectionConfig;
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};

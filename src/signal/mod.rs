@@ -45,6 +45,16 @@ impl MotionSegment {
         }
     }
 
+    /// The sum of two rates.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        let mut sum = *self;
+        for (own, more) in sum.rate_rad_per_s.iter_mut().zip(other.rate_rad_per_s) {
+            *own += more;
+        }
+        sum
+    }
+
     /// Rate at normalised time `u` in `[0, 1]`, rad/s.
     #[inline]
     #[must_use]

@@ -121,7 +121,7 @@ pub(crate) const GROUPS: &[Group] = &[
 ];
 
 /// Tables that are absent unless a file gives them, though every key inside has a default.
-pub(crate) const OPTIONAL_TABLES: &[&str] = &["gyro.assembly", "compensation"];
+pub(crate) const OPTIONAL_TABLES: &[&str] = &["gyro.assembly", "gyro.injection", "compensation"];
 
 /// Every key, in the order in which resolved scenarios are written.
 pub(crate) fn keys() -> impl Iterator<Item = &'static Key> {

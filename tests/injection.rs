@@ -1,0 +1,196 @@
+//! Bandwidth by electronic injection (`gyro.injection`).
+
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::path::Path;
+
+use crate::support::{
+    assert_close, code, field, fogbench, npy, run_audits, stderr, summary, write,
+};
+
+/// Transit time of the 800 m of fibre of the default gyro, s.
+const TRANSIT_S: f64 = 800.0 * 1.4677 / 299_792_458.0;
+/// Half modulation periods in a word, and the loop periods in it.
+const HALF_PERIODS: u32 = 4;
+const PERIODS: u32 = HALF_PERIODS / 2;
+
+/// Neither noise nor rounding.
+const QUIET: &str = "[gyro.noise]\nshot = false\nthermal = false\namplifier = false\nrin = false\n\
+                     [gyro.adc]\nbits = 0\n[gyro.modulator]\ndac_bits = 0\n";
+
+/// Gain of `H = g z^-(1+d) / (1 - z^-1 + g z^-(1+d))` from its squared magnitude.
+fn loop_gain(g: f64, latency: i32, frequency_hz: f64) -> f64 {
+    let angle = TAU * frequency_hz * 2.0 * TRANSIT_S;
+    let late = f64::from(1 + latency) * angle;
+    let real = 1.0 - angle.cos() + g * late.cos();
+    let imaginary = angle.sin() - g * late.sin();
+    g / real.hypot(imaginary)
+}
+
+/// The same with the mean of the two half periods of an error and of the registers of a word.
+fn word_gain(g: f64, latency: i32, frequency_hz: f64) -> f64 {
+    let half_angle = TAU * frequency_hz * TRANSIT_S;
+    let count = f64::from(PERIODS);
+    let registers = (count * half_angle).sin() / (count * half_angle.sin());
+    loop_gain(g, latency, frequency_hz) * (0.5 * half_angle).cos() * registers
+}
+
+/// Where a function that changes its sign once does so.
+fn root(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..80 {
+        let middle = 0.5 * (low + high);
+        if function(low) * function(middle) <= 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Integrator gain of a loop of a bandwidth.
+fn gain_of(bandwidth_hz: f64, latency: i32) -> f64 {
+    root(1e-3, 0.5, |g| {
+        loop_gain(g, latency, bandwidth_hz) - FRAC_1_SQRT_2
+    })
+}
+
+fn scenario(name: &str, bandwidth_hz: f64, latency: i32, tones: &[f64], rest: &str) -> String {
+    format!(
+        "schema = 1\nname = \"{name}\"\nduration_s = 0.2\nwarm_up_s = 0.05\n{rest}\
+         [gyro.controller]\nloop_bandwidth_hz = {bandwidth_hz:?}\n\
+         loop_latency_periods = {latency}\n\
+         [gyro.output]\nhalf_periods_per_sample = {HALF_PERIODS}\nrate_lsb_deg_per_s = 0.0\n\
+         [output]\nsamples = \"npy\"\n\
+         [gyro.injection]\nfrequencies_hz = {tones:?}\nrate_amplitudes_deg_per_s = [0.1]\n\
+         soft_start_s = 0.02\n"
+    )
+}
+
+fn run(folder: &Path, name: &str, text: &str) -> serde_json::Value {
+    write(folder, &format!("{name}.toml"), text);
+    let output = fogbench(folder, &["run", &format!("{name}.toml"), "-o", "out"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    summary(&folder.join("out"), name)
+}
+
+#[test]
+fn the_bandwidth_of_both_models_is_that_of_the_closed_form_beyond_any_table() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let parts = [0.05, 0.2, 0.5, 0.8, 0.9, 0.95, 0.98, 1.0, 1.02, 1.05, 1.1];
+    for (bandwidth_hz, latency) in [(1000.0, 0), (2000.0, 1), (5000.0, 1)] {
+        let g = gain_of(bandwidth_hz, latency);
+        let tones = parts.map(|part: f64| (part * bandwidth_hz).round());
+        let limit = FRAC_1_SQRT_2 * word_gain(g, latency, tones[0]);
+        let expected = root(0.5 * bandwidth_hz, 1.5 * bandwidth_hz, |frequency_hz| {
+            word_gain(g, latency, frequency_hz) - limit
+        });
+        for fidelity in ["loop", "rate"] {
+            let name = format!("{fidelity}-{bandwidth_hz}");
+            let model = format!("fidelity = \"{fidelity}\"\n{QUIET}");
+            let text = scenario(&name, bandwidth_hz, latency, &tones, &model);
+            let measured = field(
+                &run(folder.path(), &name, &text),
+                "raw.bandwidth_hz",
+                "value",
+            );
+            assert_close(measured, expected, 3e-4, 0.0);
+            assert!(folder.path().join(format!("out/{name}/bode.svg")).exists());
+        }
+    }
+}
+
+#[test]
+fn truth_is_the_rate_of_the_earth_and_that_which_the_signal_equals() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let site = "[turntable.site]\nlatitude_deg = 30.0\naxis_elevation_deg = 90.0\n";
+    let tones = [200.0, 6000.0];
+    let text = scenario("sum", 2000.0, 1, &tones, site) + "phases = \"zero\"\n";
+    let measured = run(folder.path(), "sum", &text);
+    let truth = npy(&folder.path().join("out/sum/samples/truth.npy"));
+    let times = npy(&folder.path().join("out/sum/samples/time_s.npy"));
+    let earth_deg_per_h = 0.5 * 7.292_115e-5 * 3600.0 * 360.0 / TAU;
+    assert_close(
+        field(&measured, "raw.mean_deg_per_h", "value"),
+        earth_deg_per_h,
+        0.0,
+        5.0,
+    );
+    assert_eq!(truth.len(), times.len());
+    // From the end of the warm-up on, by when the signal has its full size.
+    let samples = times.iter().zip(&truth).filter(|(time, _)| **time > 0.05);
+    assert!(samples.clone().count() > 12_000);
+    for (time_s, truth) in samples {
+        let sines: f64 = tones.iter().map(|tone| (TAU * tone * time_s).sin()).sum();
+        assert_close(*truth, earth_deg_per_h + 360.0 * sines, 0.0, 1e-6);
+    }
+}
+
+#[test]
+fn a_signal_of_no_size_changes_no_byte_of_the_words() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let folder = folder.path();
+    let on = scenario("on", 2000.0, 1, &[200.0], "").replace("[0.1]", "[1e-300]");
+    let (off, _) = on.split_once("[gyro.injection]").expect("the signal");
+    let off = off.replace("\"on\"", "\"off\"");
+    run(folder, "on", &on);
+    run(folder, "off", &off);
+    let words = |name: &str| npy(&folder.join(format!("out/{name}/samples/raw.npy")));
+    assert!(
+        words("on")
+            .iter()
+            .zip(words("off"))
+            .all(|(on, off)| on.to_bits() == off.to_bits())
+    );
+    assert_eq!(words("on").len(), words("off").len());
+}
+
+#[test]
+fn a_signal_needs_a_table_at_rest_one_gyro_and_sines_that_can_be_sampled() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let refused = |rest: &str, tones: &[f64], reason: &str| {
+        write(
+            folder.path(),
+            "x.toml",
+            &scenario("x", 2000.0, 1, tones, rest),
+        );
+        let output = fogbench(folder.path(), &["check", "x.toml"]);
+        let complaints = stderr(&output);
+        assert!(
+            code(&output) != 0 && complaints.contains(reason),
+            "{complaints}"
+        );
+    };
+    let swing = "[turntable.swing]\nrate_amplitude_deg_per_s = 1.0\nfrequency_hz = 10.0\n\
+                 soft_start_s = 0.02\n";
+    refused(swing, &[200.0], "gyro.injection needs a table at rest");
+    refused(
+        "[gyro.assembly]\n",
+        &[200.0],
+        "gyro.injection is for one gyro",
+    );
+    refused(
+        "",
+        &[200.0, 9000.0],
+        "gyro.injection.frequencies_hz[1] = 9000.0 Hz is too fast",
+    );
+    refused(
+        "",
+        &[2.0],
+        "gyro.injection.frequencies_hz[0] = 2.0 Hz is too slow",
+    );
+    let hard = scenario("hard", 2000.0, 1, &[7000.0], "").replace("[0.1]", "[500.0]");
+    write(folder.path(), "hard.toml", &hard);
+    let output = fogbench(folder.path(), &["check", "hard.toml"]);
+    assert!(stderr(&output).contains("lock"), "{}", stderr(&output));
+}
+
+#[test]
+fn the_shipped_bandwidth_is_measured_within_its_gates() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    run_audits(folder.path(), &["injected-bandwidth"]);
+    let out = folder.path().join("out");
+    let run = summary(&out, "injected-bandwidth");
+    let half_width_hz =
+        0.5 * (field(&run, "raw.bandwidth_hz", "high") - field(&run, "raw.bandwidth_hz", "low"));
+    assert!(half_width_hz < 2.0, "{half_width_hz} Hz");
+}
