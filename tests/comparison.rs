@@ -270,6 +270,7 @@ fn table(low: f64, high: f64) -> Comparison {
         rows: vec![ComparedRow {
             label: "row".to_owned(),
             is_base: false,
+            at: None,
             cells: vec![Some(ComparedCell {
                 folder: "f".to_owned(),
                 simulated: simulated.clone(),
@@ -287,6 +288,7 @@ fn table(low: f64, high: f64) -> Comparison {
             dc_gain: Some(Estimate::exact(0.5)),
             companions: Vec::new(),
         }],
+        change: None,
         lacking: Vec::new(),
     };
     Comparison {

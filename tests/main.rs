@@ -15,6 +15,7 @@ mod cli_budget;
 mod cli_fpga;
 mod closed_loop;
 mod comparison;
+mod comparison_change;
 mod comparison_filters;
 mod compensation;
 mod cycle_exact;

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::change_per_unit::{self, change_per_unit};
 use super::plan::Plan;
 use crate::gate::quotient;
 use crate::metrics::{Estimate, Finding, Metric, known_metrics, paired_ratio};
@@ -136,6 +137,7 @@ impl<'a> Layout<'a> {
             columns,
             rows: Vec::new(),
             causes: Vec::new(),
+            change: None,
             lacking: Vec::new(),
         };
         let own = self
@@ -143,7 +145,10 @@ impl<'a> Layout<'a> {
             .iter()
             .filter(|row| row.comparison == comparison.name);
         for row in own {
-            enter(&mut table, row, suite);
+            enter(&mut table, row, comparison.per_change_of.as_deref(), suite);
+        }
+        if let (Some(key), Some(run)) = (&comparison.per_change_of, suite.first()) {
+            table.change = change_per_unit(&table, key, run.plan.resolved().unit_of(key));
         }
         if table.kind == ComparisonKind::Published {
             for row in &table.rows {
@@ -199,6 +204,9 @@ pub(super) fn contradictions(plans: &[Plan]) -> Vec<ScenarioError> {
             }
         }
     }
+    let layout = Layout::of(plans);
+    let changes = change_per_unit::contradictions(&layout.comparisons, &layout.rows, plans);
+    errors.extend(changes);
     errors
 }
 
@@ -268,7 +276,7 @@ fn runs_of<'s, 'a>(suite: &'s [Run<'a>], name: &'s str) -> impl Iterator<Item = 
 }
 
 /// Enters a row, or a row for each point of a sweep, and what it lacks.
-fn enter(table: &mut ComparedTable, row: &ComparisonRowConfig, suite: &[Run]) {
+fn enter(table: &mut ComparedTable, row: &ComparisonRowConfig, key: Option<&str>, suite: &[Run]) {
     let absent = row.scenarios.iter().map(String::as_str);
     let absent: Vec<&str> = absent
         .filter(|name| runs_of(suite, name).next().is_none())
@@ -305,6 +313,7 @@ fn enter(table: &mut ComparedTable, row: &ComparisonRowConfig, suite: &[Run]) {
         table.rows.push(ComparedRow {
             label: label.join(" "),
             is_base: runs.iter().any(|run| run.plan.resolved().is_base_point),
+            at: key.and_then(|key| runs.first()?.plan.resolved().number_of(key)),
             cells,
         });
     }

@@ -11,6 +11,7 @@ mod calibration_sheet;
 mod calibration_units;
 mod campaign;
 mod campaign_metrics;
+mod change_per_unit;
 mod channel_filter;
 mod comparison;
 mod compensation;

@@ -43,6 +43,7 @@ mod record;
 mod repeat_statistics;
 mod response;
 mod scale_factor;
+mod sensitivity;
 mod settling;
 mod sine_frequency;
 mod small_input;
@@ -95,6 +96,7 @@ pub use scale_factor::{
     distinct_rates, distinct_rates_by_sense, fit_scale_factor, scale_factor_repeatability,
     scale_factor_temperature_sensitivity,
 };
+pub use sensitivity::{ConditionPoint, change_divisor, largest_change_per_unit};
 pub use settling::{Settling, settling};
 pub use sine_frequency::{FreeSineFit, fit_sine_free_frequency};
 pub use small_input::smallest_answered;

@@ -31,6 +31,8 @@ pub struct ComparedTable {
     pub rows: Vec<ComparedRow>,
     /// Why noise is lower in one channel than in another, row by row.
     pub causes: Vec<Cause>,
+    /// Largest changes per unit of a key, if the table asks for them.
+    pub change: Option<ChangePerUnit>,
     /// What is missing, and why.
     pub lacking: Vec<String>,
 }
@@ -53,6 +55,8 @@ pub struct ComparedRow {
     pub label: String,
     /// Whether it is the point of a sweep that the other scenarios take.
     pub is_base: bool,
+    /// Value of the key that changes are counted in.
+    pub at: Option<f64>,
     /// Numbers, absent where no scenario of the row gives one.
     pub cells: Vec<Option<ComparedCell>>,
 }
@@ -66,6 +70,32 @@ pub struct ComparedCell {
     pub simulated: Metric,
     /// The published figure and where it was published.
     pub published: Option<(f64, String)>,
+}
+
+/// Largest changes of the columns of a table per unit of a key.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChangePerUnit {
+    /// Key.
+    pub key: String,
+    /// Its unit.
+    pub unit: String,
+    /// Label of the row that they start from.
+    pub from: String,
+    /// One for each column, absent where fewer than two rows give a number.
+    pub columns: Vec<Option<ColumnChange>>,
+}
+
+/// Largest change of one column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColumnChange {
+    /// Magnitude.
+    pub estimate: Estimate,
+    /// Unit, e.g. `ppm per C`.
+    pub unit: String,
+    /// Label of the row where it is largest.
+    pub at: String,
+    /// Folder of the run behind that row.
+    pub folder: String,
 }
 
 /// A ratio of noise beside the ratio of DC gains.
@@ -141,6 +171,27 @@ impl ComparedColumn {
 }
 
 impl ComparedTable {
+    /// The columns that have a change per unit, with it.
+    pub(crate) fn changes(&self) -> Vec<(&ComparedColumn, &ColumnChange)> {
+        let changes = self.change.iter().flat_map(|change| &change.columns);
+        let both = self.columns.iter().zip(changes);
+        both.filter_map(|(column, change)| Some((column, change.as_ref()?)))
+            .collect()
+    }
+
+    /// What these changes are, e.g. `largest change per C of <key> from 25 C`.
+    pub(crate) fn change_heading(&self) -> Option<String> {
+        let change = self.change.as_ref()?;
+        let unit = match change.unit.as_str() {
+            "" => "unit",
+            unit => unit,
+        };
+        Some(format!(
+            "largest change per {unit} of {} from row \"{}\"",
+            change.key, change.from
+        ))
+    }
+
     /// Name of its files without the extension.
     pub(crate) fn file_stem(&self) -> String {
         let kind = match self.kind {

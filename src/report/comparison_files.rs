@@ -54,6 +54,22 @@ fn csv(table: &ComparedTable) -> String {
             text.push('\n');
         }
     }
+    for (column, change) in table.changes() {
+        let fields = [
+            quoted(&table.change_heading().unwrap_or_default()),
+            false.to_string(),
+            column.text(),
+            change.unit.clone(),
+            String::new(),
+            change.estimate.value.to_string(),
+            change.estimate.low.to_string(),
+            change.estimate.high.to_string(),
+            change.estimate.confidence.to_string(),
+            change.folder.clone(),
+        ];
+        text.push_str(&fields.join(","));
+        text.push('\n');
+    }
     text
 }
 

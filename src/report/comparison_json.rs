@@ -3,7 +3,9 @@
 use serde_json::{Map, Value};
 
 use crate::metrics::AgainstOne;
-use crate::report::comparison::{Assumed, Cause, ComparedTable, Comparison};
+use crate::report::comparison::{
+    Assumed, Cause, ColumnChange, ComparedColumn, ComparedTable, Comparison,
+};
 use crate::report::json::{number, object};
 use crate::report::summary::estimate;
 use crate::scenario::ComparisonKind;
@@ -57,11 +59,15 @@ fn table(table: &ComparedTable) -> Value {
                 record.insert("folder".to_owned(), cell.folder.as_str().into());
                 Some(Value::from(record))
             });
-        Value::from(object([
+        let mut record = object([
             ("label", row.label.as_str().into()),
             ("base", row.is_base.into()),
             ("cells", Value::Array(cells.collect())),
-        ]))
+        ]);
+        if let Some(at) = row.at {
+            record.insert("at".to_owned(), number(at, &row.label));
+        }
+        Value::from(record)
     });
     let mut record = object([
         ("name", table.name.as_str().into()),
@@ -75,10 +81,35 @@ fn table(table: &ComparedTable) -> Value {
             table.causes.iter().map(cause).collect(),
         );
     }
+    if let Some(change) = &table.change {
+        let columns = table.changes().into_iter().map(column_change);
+        let record_of_change = object([
+            ("key", change.key.as_str().into()),
+            ("unit", change.unit.as_str().into()),
+            ("from", change.from.as_str().into()),
+            ("columns", Value::Array(columns.collect())),
+        ]);
+        record.insert("change_per_unit".to_owned(), record_of_change.into());
+    }
     if !table.lacking.is_empty() {
         record.insert("lacking".to_owned(), table.lacking.clone().into());
     }
     record.into()
+}
+
+fn column_change((column, change): (&ComparedColumn, &ColumnChange)) -> Value {
+    let what = column.text();
+    object([
+        ("metric", what.as_str().into()),
+        ("value", number(change.estimate.value, &what)),
+        ("low", number(change.estimate.low, &what)),
+        ("high", number(change.estimate.high, &what)),
+        ("confidence", number(change.estimate.confidence, &what)),
+        ("unit", change.unit.as_str().into()),
+        ("at", change.at.as_str().into()),
+        ("folder", change.folder.as_str().into()),
+    ])
+    .into()
 }
 
 fn cause(cause: &Cause) -> Value {

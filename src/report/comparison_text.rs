@@ -30,6 +30,7 @@ pub fn comparison_text(across: &Comparison, width: usize, colour: bool) -> Strin
         } else {
             text.push_str(&plain_grid(table, colour));
         }
+        text.push_str(&change_lines(table));
         for line in cause_lines(table) {
             text.push_str(&wrapped(&line, INDENT, width));
         }
@@ -124,6 +125,22 @@ fn plain_grid(table: &ComparedTable, colour: bool) -> String {
         grid.row(std::iter::once(format!("{}{mark}", row.label)).chain(cells));
     }
     grid.lines(INDENT)
+}
+
+/// The largest change of each column per unit of the key in which the rows differ.
+fn change_lines(table: &ComparedTable) -> String {
+    let Some(heading) = table.change_heading() else {
+        return String::new();
+    };
+    let mut grid = Grid::default();
+    for (column, change) in table.changes() {
+        grid.row([
+            format!("{} {}", column.channels(), heading_of(&column.metric)),
+            format!("{} {}", short(&change.estimate), change.unit),
+            format!("to row \"{}\"", change.at),
+        ]);
+    }
+    format!("{INDENT}{heading}\n{}", grid.lines(DEEP))
 }
 
 /// A number with its interval, and the noise floor where it has one.
@@ -235,16 +252,24 @@ fn under_motion(cause: &Cause) -> Option<String> {
         AgainstOne::Undecided => "does to noise what cannot be told",
     };
     let gain = cause.dc_gain.map_or_else(String::new, |gain| {
-        format!(
-            ", at a DC gain of {} of that of {}",
-            short(&gain),
-            cause.relative_to
-        )
+        format!(", {}", gains_beside(&gain, &cause.relative_to))
     });
     let power = short(&noise.estimate);
     Some(format!(
         "under this motion it {verdict}: {power} of raw's power{gain}"
     ))
+}
+
+/// How the DC gain compares with that of another channel, in words.
+fn gains_beside(gain: &Estimate, other: &str) -> String {
+    const ALIKE: f64 = 0.01;
+    let is_alike = (gain.low - 1.0).abs() < ALIKE && (gain.high - 1.0).abs() < ALIKE;
+    let ratio = short(gain);
+    if is_alike {
+        format!("with a DC gain like that of {other} (ratio {ratio})")
+    } else {
+        format!("with a DC gain {ratio} times that of {other}")
+    }
 }
 
 fn assumption(assumed: &Assumed, width: usize) -> String {

@@ -35,8 +35,8 @@ pub use calibrate::{CalibrateReport, calibrate_json, calibrate_text};
 pub use calibration::{CalibrationProvenance, calibration_json, calibration_toml, groups_csv};
 pub use calibration_text::calibration_text;
 pub use comparison::{
-    Assumed, Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
-    DrawnFigure,
+    Assumed, Cause, ChangePerUnit, ColumnChange, ComparedCell, ComparedColumn, ComparedRow,
+    ComparedTable, Comparison, DrawnFigure,
 };
 pub use comparison_files::{comparison_files, is_comparison_file};
 pub use comparison_text::comparison_text;

@@ -14,6 +14,8 @@ pub struct ComparisonConfig {
     pub kind: ComparisonKind,
     /// `<channel>.<metric>`, or `<channel>.<metric> / <channel>`.
     pub columns: Vec<String>,
+    /// Key of the scenarios per unit of which the columns' largest changes close the table.
+    pub per_change_of: Option<String>,
 }
 
 /// What a table is for.

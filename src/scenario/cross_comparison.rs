@@ -3,6 +3,7 @@
 use super::address;
 use super::comparison_config::ComparisonColumn;
 use super::resolved::Resolved;
+use super::schema::Kind;
 
 /// Key and complaint of everything that refers to nothing.
 pub(super) fn check(resolved: &Resolved) -> Vec<(String, String)> {
@@ -23,6 +24,12 @@ pub(super) fn check(resolved: &Resolved) -> Vec<(String, String)> {
                 comparison.name
             );
             complaints.push((key, message));
+        }
+        if let Some(written) = &comparison.per_change_of
+            && let Err(message) = numeric(resolved, written)
+        {
+            let key = format!("comparison[{index}].per_change_of");
+            complaints.push((key.clone(), format!("{key}: {message}")));
         }
         for column in &comparison.columns {
             if ComparisonColumn::parse(column).is_none() {
@@ -64,6 +71,16 @@ pub(super) fn check(resolved: &Resolved) -> Vec<(String, String)> {
         }
     }
     complaints
+}
+
+/// Whether a key stands for a number; one of a filter may be another scenario's.
+fn numeric(resolved: &Resolved, written: &str) -> Result<(), String> {
+    match address::resolve(resolved.tree(), written) {
+        Ok((_, Some(key))) if matches!(key.kind, Kind::Float(_) | Kind::Integer(_)) => Ok(()),
+        Ok(_) => Err(format!("{written} is not a number")),
+        Err(_) if written.starts_with("filter.") => Ok(()),
+        Err(message) => Err(message),
+    }
 }
 
 /// A name as part of a file name: small letters and digits, everything else a hyphen.

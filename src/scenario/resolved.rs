@@ -257,6 +257,19 @@ impl Resolved {
         self.value_toml(&path)
     }
 
+    /// The value of a numeric key as people write it in `--set`; `None` where the scenario has no
+    /// such number.
+    #[must_use]
+    pub fn number_of(&self, written: &str) -> Option<f64> {
+        self.value_of(written)?.parse().ok()
+    }
+
+    /// The unit of a key as people write it in `--set`; empty where it has none.
+    pub(crate) fn unit_of(&self, written: &str) -> &'static str {
+        let found = address::resolve(&self.tree, written).ok();
+        found.and_then(|(_, key)| key).map_or("", |key| key.unit)
+    }
+
     /// The value of a key in TOML.
     pub(crate) fn value_toml(&self, path: &[address::Step]) -> Option<String> {
         address::get(&self.tree, path).map(|node| node.value.to_toml())

@@ -46,6 +46,8 @@ pub(super) const KEYS: &[Key] = &[
         "Whether it holds simulated against published figures, or how results move."),
     key("comparison[].columns", Kind::Texts, "", Required,
         "Channel and metric, split at the last dot; behind a slash the channel that divides it."),
+    key("comparison[].per_change_of", Kind::Text, "", Optional,
+        "Key in which the rows differ: the largest change of each column per unit of it closes the table."),
     key("comparison_row[].comparison", Kind::Text, "", Required,
         "Name of the table that the row belongs to."),
     key("comparison_row[].label", Kind::Text, "", Required,
