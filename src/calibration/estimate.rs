@@ -19,8 +19,9 @@ const WEIGHTED_CONDITION_MAX: f64 = 1e12;
 /// Estimates the parameters of an assembly from group means in the order they were taken.
 ///
 /// For each gyro minimises `sum_i w_i (y_i - a_i x)^2` over its unknowns x, with weights `w_i` that are
-/// 1 for a batch and what the recursion leaves otherwise ([`Reading::weights`]): recursive least squares
-/// with forgetting is weighted least squares, apart from the prior `P_0`. The estimate is linear in the
+/// 1 for a batch and what the recursion leaves otherwise
+/// ([`Reading::weights`](super::Reading::weights)): recursive least squares with forgetting is weighted
+/// least squares, apart from the prior `P_0`. The estimate is linear in the
 /// observations, `x = G y`, so that its covariance from independent errors of the means is
 /// `G Sigma G^T`. It holds for any weights, whether or not they are the inverse variances; what the
 /// model lacks (drift, table errors) is not in it, for which see `reduced_chi_square`.
