@@ -120,6 +120,8 @@ fn through_a_wandering_gain(deviation: f64) -> ChannelMetrics {
     };
     let facts = FilterFacts {
         dc_gain: Some(0.5),
+        // One weight reaches back no further than its sample.
+        shape: shape(1, 0, vec![1.0]),
         ..facts()
     };
     let settings = Settings {

@@ -115,6 +115,13 @@ fn from_scenario(
             })?)
         }
     };
+    if plan.resolved().scenario.compensation.is_some() {
+        return Err(vec![format!(
+            "{}: its filters are given compensated words, and an export the words of the gyro: put \
+             the words of a run's samples/<axis>_compensated.npy in by --stimulus",
+            path.display()
+        )]);
+    }
     let stimulus =
         scenario_stimulus(plan, options.samples).map_err(|error| vec![error.to_string()])?;
     Ok((settings, stimulus))

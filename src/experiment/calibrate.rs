@@ -6,6 +6,7 @@ use std::path::Path;
 use super::calibration_sheet::calibration_sheet;
 use super::campaign::{calibrate_scenario, campaign};
 use super::group_findings::complaint;
+use super::plan::count;
 use super::plan::plan_suite;
 use super::suite::{Observer, VERSION};
 use crate::calibration::{
@@ -153,7 +154,25 @@ pub fn calibrate_groups(
         .collect();
     let mut notes = recorded.notes();
     notes.extend(horizontal_note(&recorded, settings.latitude_deg));
-    let sheet = sheet(&groups, settings, &mut notes).map_err(|e| vec![refuse(e.to_string())])?;
+    let unsure = |error: CalibrationError| vec![refuse(error.to_string())];
+    let mut sheet = sheet(&groups, settings, &mut notes).map_err(unsure)?;
+    if recorded
+        .groups
+        .iter()
+        .all(|group| group.standard_error_deg_per_h.is_none())
+    {
+        let (errors, note) = errors_of_residuals(&sheet);
+        notes.push(note);
+        let groups: Vec<CalibrationGroup> = groups
+            .into_iter()
+            .map(|group| CalibrationGroup {
+                standard_error_deg_per_h: errors,
+                ..group
+            })
+            .collect();
+        let again = self::sheet(&groups, settings, &mut Vec::new());
+        sheet = again.map_err(unsure)?;
+    }
     Ok(CalibrationTrial {
         file: recorded.file,
         digest: recorded.digest,
@@ -204,6 +223,51 @@ pub fn calibrate_campaign(
         sheet,
         notes: plan.warnings().to_vec(),
     })
+}
+
+/// Standard errors of the means, deg/h, that residuals stand for where a file gives none, and what to
+/// say of them; zero where no group is to spare.
+///
+/// The residuals are those of the estimator without forgetting that fits what the applied one does:
+/// groups that count for less are not fitted as well.
+fn errors_of_residuals(sheet: &CalibrationSheet) -> ([f64; 3], String) {
+    let named = |name: &str| {
+        sheet
+            .estimates
+            .iter()
+            .find(|estimate| estimate.name == name)
+    };
+    let applied = named(&sheet.applied);
+    let fits_temperature = applied.is_some_and(|one| one.bias_deg_per_h_per_k.is_some());
+    let plain = if fits_temperature {
+        EstimatorKind::BatchTemperature
+    } else {
+        EstimatorKind::Batch
+    };
+    let judged = named(plain.as_str()).or(applied);
+    let errors = judged.map_or([0.0; 3], |estimate| {
+        let unknowns = if estimate.bias_deg_per_h_per_k.is_some() {
+            5.0
+        } else {
+            4.0
+        };
+        let groups = count(estimate.residual_deg_per_h.len());
+        let spare = groups - unknowns;
+        estimate.residual_rms_deg_per_h.map(|rms| {
+            if spare > 0.0 {
+                rms * (groups / spare).sqrt()
+            } else {
+                0.0
+            }
+        })
+    });
+    let [x, y, z] = errors;
+    let note = format!(
+        "the file gives no standard errors: those printed follow from the residuals of {}, \
+         {x:.3}, {y:.3} and {z:.3} deg/h for a mean of x, y and z",
+        judged.map_or("no estimator", |estimate| &estimate.name)
+    );
+    (errors, note)
 }
 
 /// The sheet of the groups, by another estimator where the settings leave the choice.

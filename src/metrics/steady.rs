@@ -58,7 +58,7 @@ pub(crate) fn measure_steady(
         let level = interval::mean(record.raw_deg_per_h).abs();
         put_noise_gain(&products, &raw, level, metrics);
         measure_mean_ratio(record, metrics);
-        measure_weight_noise(record, facts.dc_gain, metrics);
+        measure_weight_noise(record, facts, metrics);
         measure_predictions(record, facts, (&products, &raw), metrics);
         for (name, over) in [
             ("angle_random_walk_deg_per_sqrt_h", WALK_OVER_DC_GAIN),

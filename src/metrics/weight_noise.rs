@@ -4,7 +4,8 @@ use super::allan::{NoiseType, degrees_of_freedom};
 use super::bias::samples_in;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
-use super::record::Record;
+use super::memory::memory_samples;
+use super::record::{FilterFacts, Record};
 
 /// Averaging time at which the ratio is taken, s, if the record supports it.
 const AVERAGING_TIME_S: f64 = 1.0;
@@ -12,14 +13,19 @@ const AVERAGING_TIME_S: f64 = 1.0;
 /// Fewest degrees of freedom of the Allan variance of white noise at the averaging time.
 const FREEDOM_MIN: f64 = 20.0;
 
+/// Averaging times asked for, and needed, over the samples that a filter reaches back: an average of p
+/// samples lowers the ratio by p over three averaging times.
+const REACHES: usize = 10;
+const REACHES_MIN: usize = 5;
+
 /// Most and fewest blocks of the jackknife; second differences reach two averaging times, so that
 /// blocks of four are nearly independent.
 const BLOCKS_MAX: usize = 20;
 const BLOCKS_MIN: usize = 3;
 const AVERAGING_TIMES_PER_BLOCK: usize = 4;
 
-/// Enters `weight_noise_ratio`: `ADEV(output) / (DC gain ADEV(raw))` at 1 s, or at the longest
-/// averaging time below at which the record has 20 degrees of freedom.
+/// Enters `weight_noise_ratio`: `ADEV(output) / (DC gain ADEV(raw))` at 1 s or ten reaches of the
+/// filter, or at the longest averaging time below at which the record has 20 degrees of freedom.
 ///
 /// A filter whose weights stand still passes what is slower than its taps with its DC gain, and the
 /// ratio is 1. Weights that wander multiply the mean rate by a noise of their own, which no DC gain
@@ -29,11 +35,11 @@ const AVERAGING_TIMES_PER_BLOCK: usize = 4;
 /// Interval: jackknife over blocks of time, output and raw leaving together. Source: derived.
 pub(crate) fn measure_weight_noise(
     record: &Record,
-    dc_gain: Option<f64>,
+    facts: &FilterFacts,
     metrics: &mut ChannelMetrics,
 ) {
     const NAME: &str = "weight_noise_ratio";
-    let Some(dc_gain) = dc_gain else {
+    let Some(dc_gain) = facts.dc_gain else {
         metrics.miss(NAME, "the DC gain of this filter is not known");
         return;
     };
@@ -42,7 +48,9 @@ pub(crate) fn measure_weight_noise(
         return;
     }
     let count = record.raw_deg_per_h.len();
-    let longest = samples_in(AVERAGING_TIME_S, record.sample_period_s).min(count / 4);
+    let reach = memory_samples(&facts.shape) + facts.shape.newest_age_samples;
+    let asked = samples_in(AVERAGING_TIME_S, record.sample_period_s).max(REACHES * reach);
+    let longest = asked.min(count / 4);
     let supported = |m: &usize| degrees_of_freedom(NoiseType::White, count + 1, *m) >= FREEDOM_MIN;
     let Some(m) = (1..=longest).rev().find(supported) else {
         metrics.miss(
@@ -51,6 +59,15 @@ pub(crate) fn measure_weight_noise(
         );
         return;
     };
+    if m < REACHES_MIN * reach {
+        metrics.miss(
+            NAME,
+            format!(
+                "no averaging time long against the {reach} samples that the filter reaches back"
+            ),
+        );
+        return;
+    }
     let blocks = (count / (AVERAGING_TIMES_PER_BLOCK * m)).clamp(BLOCKS_MIN, BLOCKS_MAX);
     let own = second_difference_squares(record.channel_deg_per_h, m, blocks);
     let raw = second_difference_squares(record.raw_deg_per_h, m, blocks);

@@ -52,7 +52,9 @@ fn is_attenuation(verdict: &FilterVerdict) -> bool {
 
 /// What it does, with the gains.
 fn head(verdict: &FilterVerdict) -> String {
+    let level = verdict.motion_gain.or(verdict.dc_gain);
     let what = match verdict.deed {
+        _ if level.is_some_and(|gain| gain.estimate.high < 0.0) => "inverts the sign of its input",
         Deed::Attenuates => "reduces noise by attenuating the input",
         _ if is_attenuation(verdict) => "reduces noise by attenuating the input",
         Deed::AttenuatesAndSmooths => "reduces noise by attenuating the input and smoothing it",
