@@ -3,6 +3,7 @@
 pub mod random;
 pub mod signal;
 pub mod units;
+mod wording;
 
 // In the order of the data flow.
 pub mod scenario;

@@ -6,20 +6,21 @@ use std::path::{Path, PathBuf};
 /// Module, and the modules of the crate it may import.
 pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ("units", &[]),
+    ("wording", &[]),
     ("random", &["units"]),
     ("signal", &["units"]),
-    ("scenario", &["units"]),
+    ("scenario", &["units", "wording"]),
     ("turntable", &["units", "signal", "random", "scenario"]),
     ("gyro", &["units", "signal", "random", "scenario"]),
     ("fpga", &[]),
     ("filters", &["signal"]),
-    ("metrics", &["units", "signal"]),
+    ("metrics", &["units", "signal", "wording"]),
     ("calibration", &["units", "signal"]),
-    ("recording", &["units", "signal"]),
+    ("recording", &["units", "signal", "wording"]),
     ("gate", &["metrics", "scenario"]),
     (
         "report",
-        &["units", "metrics", "gate", "scenario", "signal"],
+        &["units", "metrics", "gate", "scenario", "signal", "wording"],
     ),
     (
         "experiment",
@@ -37,6 +38,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "recording",
             "gate",
             "report",
+            "wording",
         ],
     ),
     (
@@ -49,6 +51,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "report",
             "scenario",
             "fpga",
+            "wording",
         ],
     ),
 ];
