@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::arguments::{BudgetOptions, Format};
 use super::exit::Exit;
-use super::output;
+use super::{complaint, output};
 use crate::experiment::{GyroBudget, gyro_budget};
 use crate::report::{budget_csv, budget_json, budget_svg, budget_text, write_atomic};
 
@@ -14,9 +14,7 @@ pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
     let budget = match gyro_budget(&options.path, &options.set) {
         Ok(budget) => budget,
         Err(errors) => {
-            for error in &errors {
-                output::talk(&format!("error: {error}"));
-            }
+            complaint::print(&errors);
             return Ok(Exit::Usage);
         }
     };

@@ -5,6 +5,7 @@ use std::io;
 use super::arguments::SelectOptions;
 use super::exit::Exit;
 use super::{output, select};
+use crate::wording::counted;
 
 /// Says for every run that it is sound, or lists what is wrong.
 pub(super) fn check(options: &SelectOptions) -> io::Result<Exit> {
@@ -32,10 +33,4 @@ pub(super) fn check(options: &SelectOptions) -> io::Result<Exit> {
         counted(files.len(), "file")
     ))?;
     Ok(Exit::Success)
-}
-
-/// A number and its noun, in the plural unless there is one.
-fn counted(count: usize, noun: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{plural}")
 }

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use super::complaint::{self, Complaint};
 use super::exit::Exit;
 use super::hardware_arguments::{ExportKind, ExportOptions};
 use super::{output, stimulus};
@@ -12,15 +13,15 @@ use crate::experiment::{
 };
 use crate::fpga::FpgaError;
 use crate::fpga::rls::UpdateOrder;
+use crate::scenario::{FilterConfig, FilterKind};
+use crate::wording::{counted, is_misspelling};
 
 /// Writes the folder and says what stands in it.
 pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
     let (settings, stimulus) = match prepare(options) {
         Ok(prepared) => prepared,
         Err(complaints) => {
-            for complaint in complaints {
-                output::talk(&format!("error: {complaint}"));
-            }
+            complaint::print(&complaints);
             return Ok(Exit::Usage);
         }
     };
@@ -44,7 +45,7 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
                 .map(|file| format!("{}\n", file.display()))
                 .collect();
             output::data(&names)?;
-            output::talk(&format!("{samples} samples"));
+            output::talk(&counted(samples, "sample"));
             if form == ExportForm::Rtl {
                 let script = options.folder.join("run.sh");
                 output::talk(&format!("simulate with: sh {}", script.display()));
@@ -92,13 +93,17 @@ fn from_scenario(
     path: &Path,
     options: &ExportOptions,
 ) -> Result<(Option<PipelineSettings>, Stimulus), Vec<String>> {
-    let plans = plan_suite(&[path.to_path_buf()], &[])
-        .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    let plans = plan_suite(&[path.to_path_buf()], &[]).map_err(|errors| {
+        let texts = errors.iter().map(|error| error.shown(false));
+        texts
+            .map(|text| text.trim_start_matches("error: ").to_owned())
+            .collect::<Vec<_>>()
+    })?;
     let [plan] = plans.as_slice() else {
         return Err(vec![format!(
-            "{}: holds {} runs: expected one",
+            "{}: holds {}: expected one",
             path.display(),
-            plans.len()
+            counted(plans.len(), "run")
         )]);
     };
     let settings = match &options.name {
@@ -107,12 +112,7 @@ fn from_scenario(
             let filters = &plan.resolved().scenario.filters;
             let filter = filters.iter().find(|filter| filter.name == *name);
             let settings = filter.and_then(|filter| PipelineSettings::of(&filter.kind));
-            Some(settings.ok_or_else(|| {
-                vec![format!(
-                    "{}: there is no filter `{name}` with pipeline = \"fpga\"",
-                    path.display()
-                )]
-            })?)
+            Some(settings.ok_or_else(|| vec![no_hardware(path, name, filters)])?)
         }
     };
     if plan.resolved().scenario.compensation.is_some() {
@@ -125,4 +125,34 @@ fn from_scenario(
     let stimulus =
         scenario_stimulus(plan, options.samples).map_err(|error| vec![error.to_string()])?;
     Ok((settings, stimulus))
+}
+
+/// Why a filter of a scenario has no hardware to export, and how to get it.
+fn no_hardware(path: &Path, name: &str, filters: &[FilterConfig]) -> String {
+    let lack = format!(
+        "{}: there is no filter `{name}` with pipeline = \"fpga\"",
+        path.display()
+    );
+    let kind = |filter: &FilterConfig| match filter.kind {
+        FilterKind::Rls(_) => Some("rls"),
+        FilterKind::Lms(_) => Some("lms"),
+        FilterKind::SignLms(_) => Some("sign_lms"),
+        _ => None,
+    };
+    if let Some(filter) = filters.iter().find(|filter| filter.name == name) {
+        return match kind(filter) {
+            Some(kind) => {
+                format!("{lack}: write pipeline = \"fpga\" into its table [filter.{kind}]")
+            }
+            None => format!("{lack}: its kind has no hardware, only rls, lms and sign_lms have"),
+        };
+    }
+    let names = filters.iter().filter(|filter| kind(filter).is_some());
+    let names: Vec<&str> = names.map(|filter| filter.name.as_str()).collect();
+    let mut alike = names.iter().filter(|known| is_misspelling(name, known));
+    match (alike.next(), names.is_empty()) {
+        (Some(known), _) => format!("{lack}: did you mean `{known}`?"),
+        (None, false) => format!("{lack}: expected one of {}", names.join(", ")),
+        (None, true) => format!("{lack}: the scenario has no rls, lms or sign_lms filter"),
+    }
 }

@@ -4,6 +4,7 @@ use std::io;
 use std::path::Path;
 
 use super::arguments::Format;
+use super::complaint::{self, Complaint};
 use super::exit::Exit;
 use super::log_arguments::{AnalyzeOptions, FilterLogOptions, LogOptions};
 use super::output;
@@ -93,10 +94,8 @@ fn unreadable(error: LogError) -> Exit {
     }
 }
 
-fn refused<E: std::fmt::Display>(errors: &[E]) -> Exit {
-    for error in errors {
-        output::talk(&format!("error: {error}"));
-    }
+fn refused<C: Complaint>(errors: &[C]) -> Exit {
+    complaint::print(errors);
     Exit::Usage
 }
 

@@ -20,7 +20,12 @@ pub(super) fn talk(line: &str) {
 
 /// Whether stdout may carry colours: a terminal, and `NO_COLOR` is not set.
 pub(super) fn colour() -> bool {
-    std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()) && io::stdout().is_terminal()
+    !refuses_colour() && io::stdout().is_terminal()
+}
+
+/// Whether `NO_COLOR` is set.
+pub(super) fn refuses_colour() -> bool {
+    std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
 /// Width of tables in columns: `COLUMNS` where it is set, else 100.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::arguments::SelectOptions;
 use super::exit::Exit;
-use super::output;
+use super::{complaint, output};
 use crate::experiment::{Plan, plan_suite};
 
 /// Folder whose sub-folders run when no path is given.
@@ -26,9 +26,7 @@ pub(super) fn plans(options: &SelectOptions) -> Result<Vec<Plan>, Exit> {
         return Err(Exit::NothingSelected);
     }
     let plans = plan_suite(&paths, &options.set).map_err(|errors| {
-        for error in &errors {
-            output::talk(&format!("error: {error}"));
-        }
+        complaint::print(&errors);
         Exit::Usage
     })?;
     if plans.is_empty() {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::change_per_unit::{self, change_per_unit};
 use super::plan::Plan;
 use crate::gate::quotient;
-use crate::metrics::{Estimate, Finding, Metric, known_metrics, paired_ratio};
+use crate::metrics::{Estimate, Finding, Metric, paired_ratio};
 use crate::report::{
     Assumed, Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
     DrawnFigure, RunOutcome,
@@ -168,8 +168,7 @@ fn add<'a, T: PartialEq>(all: &mut Vec<&'a T>, more: &'a [T]) {
     }
 }
 
-/// Complaints about tables of a suite that share a file name and are not the same, and about
-/// metrics that nobody knows.
+/// Complaints about tables of a suite that share a file name and are not the same.
 pub(super) fn contradictions(plans: &[Plan]) -> Vec<ScenarioError> {
     let mut first: BTreeMap<String, (&Plan, &ComparisonConfig)> = BTreeMap::new();
     let mut errors = Vec::new();
@@ -187,20 +186,6 @@ pub(super) fn contradictions(plans: &[Plan]) -> Vec<ScenarioError> {
                     other.resolved().shown_file()
                 );
                 errors.push(ScenarioError::at(resolved.locate(&key), message));
-            }
-            let columns = comparison.columns.iter();
-            for column in columns.filter_map(|text| ComparisonColumn::parse(text)) {
-                if known_metrics()
-                    .iter()
-                    .all(|known| known.name != column.metric)
-                {
-                    let key = format!("comparison[{index}].columns");
-                    let message = format!("{key}: there is no metric {}", column.metric);
-                    let error = ScenarioError::at(resolved.locate(&key), message);
-                    if !errors.contains(&error) {
-                        errors.push(error);
-                    }
-                }
             }
         }
     }

@@ -4,6 +4,7 @@ use super::channel_filter::{FinishedFilter, FinishedPipeline};
 use crate::metrics::{ChannelMetrics, Estimate};
 use crate::scenario::OutputRegister;
 use crate::units::us_to_s;
+use crate::wording::counted;
 
 /// Metrics of the matrix of recursive least squares.
 pub(super) const MATRIX_METRICS: [&str; 3] =
@@ -89,8 +90,8 @@ pub(super) fn notes(filter: &FinishedFilter, sample_period_s: f64) -> Vec<String
         let observed = match &filter.words {
             Ok(_) => "it has not failed in this run".to_owned(),
             Err(divergence) => format!(
-                "it failed after {} samples ({:.3} s)",
-                divergence.sample + 1,
+                "it failed after {} ({:.3} s)",
+                counted(divergence.sample + 1, "sample"),
                 whole(divergence.sample + 1) * sample_period_s
             ),
         };

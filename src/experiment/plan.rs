@@ -3,16 +3,12 @@
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-use super::assembly_motion;
 use super::campaign;
 use super::comparison::contradictions;
 use super::compensation::CompensationPlan;
-use super::motion::{motion, motion_extremes};
-use super::pipeline_check;
-use super::published_check::wrong_unit;
+use super::motion::motion_extremes;
 use crate::gyro;
-use crate::metrics;
-use crate::scenario::{Fidelity, Resolved, ScenarioError, load_suite};
+use crate::scenario::{Fidelity, Resolved, ScenarioError, UnsoundReading, in_order, read_suite};
 use crate::signal::GyroFacts;
 
 /// Metric that turns the divergence of a channel into an expected result.
@@ -101,10 +97,12 @@ impl Plan {
 /// # Errors
 /// Every complaint about every file; then nothing may run.
 pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<ScenarioError>> {
-    let suite = load_suite(paths, sets)?;
-    let mut plans = Vec::with_capacity(suite.len());
-    let mut errors = Vec::new();
-    for resolved in suite {
+    let suite = read_suite(paths, sets);
+    let mut plans = Vec::with_capacity(suite.runs.len());
+    let mut errors = suite.errors;
+    let reading = suite.readings.into_iter().flat_map(unsound);
+    errors.extend(reading);
+    for resolved in suite.runs {
         match plan(resolved) {
             Ok(plan) => plans.push(plan),
             Err(found) => errors.extend(found),
@@ -116,17 +114,33 @@ pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<S
     if errors.is_empty() {
         Ok(plans)
     } else {
-        Err(errors)
+        Err(in_order(errors))
     }
 }
 
+/// What else is wrong with a scenario that is not sound: the complaints that all its variants give.
+fn unsound(reading: UnsoundReading) -> Vec<ScenarioError> {
+    let mut variants = reading.variants.into_iter().map(|resolved| {
+        if reading.is_contradictory {
+            let mut checker = Checker::new(&resolved);
+            checker.names();
+            checker.errors
+        } else {
+            plan(resolved).err().unwrap_or_default()
+        }
+    });
+    let first = variants.next().unwrap_or_default();
+    variants.fold(first, |common, found| {
+        common
+            .into_iter()
+            .filter(|one| found.contains(one))
+            .collect()
+    })
+}
+
 fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
-    let mut checker = Checker {
-        resolved: &resolved,
-        errors: Vec::new(),
-        warnings: resolved.warnings.clone(),
-        calibration: None,
-    };
+    let mut checker = Checker::new(&resolved);
+    checker.names();
     let facts = checker.gyro();
     let compensation = checker.compensation();
     if let Some(facts) = &facts {
@@ -160,6 +174,17 @@ pub(super) struct Checker<'a> {
     errors: Vec<ScenarioError>,
     pub(super) warnings: Vec<String>,
     calibration: Option<String>,
+}
+
+impl<'a> Checker<'a> {
+    fn new(resolved: &'a Resolved) -> Self {
+        Self {
+            resolved,
+            errors: Vec::new(),
+            warnings: resolved.warnings.clone(),
+            calibration: None,
+        }
+    }
 }
 
 impl Checker<'_> {
@@ -221,63 +246,6 @@ impl Checker<'_> {
                 self.warnings.extend(notes);
             }
             Err((key, message)) => self.complain(key, message),
-        }
-    }
-
-    /// Refuses gates and published figures that this record can never support.
-    fn metrics(&mut self, facts: &GyroFacts) {
-        let scenario = &self.resolved.scenario;
-        let motion = motion(scenario, 1.0 / facts.output_rate_hz);
-        let mut requested: Vec<(String, &str, &str)> = Vec::new();
-        for (index, gate) in scenario.gates.iter().enumerate() {
-            // The reader has checked that there is a dot and that the channel exists.
-            let Some((channel, name)) = gate.metric.rsplit_once('.') else {
-                continue;
-            };
-            requested.push((format!("gate[{index}].metric"), channel, name));
-            if let Some(reference) = &gate.relative_to {
-                requested.push((format!("gate[{index}].relative_to"), reference, name));
-            }
-        }
-        for (index, figure) in scenario.published.iter().enumerate() {
-            let Some((channel, name)) = figure.metric.rsplit_once('.') else {
-                continue;
-            };
-            requested.push((format!("published[{index}].metric"), channel, name));
-            if let Some((key, message)) = wrong_unit(index, name, &figure.unit) {
-                self.complain(&key, message);
-            }
-        }
-        for (key, channel, name) in requested {
-            if name == DIVERGED_AT {
-                continue;
-            }
-            if let Some(estimator) = campaign::estimator_of(scenario, channel) {
-                if let Err(reason) = campaign::supports(estimator, name) {
-                    self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
-                }
-                continue;
-            }
-            let supported = metrics::support(
-                name,
-                scenario.duration_s,
-                1.0 / facts.output_rate_hz,
-                &motion,
-                !scenario.is_unfiltered(channel),
-                scenario.bias_averaging_time_s,
-            );
-            let lack = pipeline_check::lacks(scenario, channel, name).map(str::to_owned);
-            let across = assembly_motion::lacks(scenario, channel, name)
-                .or_else(|| campaign::lacks(scenario, name))
-                .map(str::to_owned);
-            let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
-            let unread = metrics::encoder_lack(name, has_encoder).map(str::to_owned);
-            let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
-            let single = metrics::repeats_lack(name, repeats);
-            let reasons = [supported.err(), lack, across, unread, single];
-            if let Some(reason) = reasons.into_iter().flatten().next() {
-                self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
-            }
         }
     }
 }

@@ -32,6 +32,7 @@ mod interval;
 mod known_metric;
 mod memory;
 mod multi_sine;
+mod names;
 mod noise_delay;
 mod noise_fit;
 mod noise_identification;
@@ -73,6 +74,7 @@ pub use autocovariance::autocovariance;
 pub use bias::{
     block_means, effective_degrees_of_freedom, expected_bias_stability, paired_ratio, samples_in,
 };
+pub(crate) use catalogue::find;
 pub use catalogue::known_metrics;
 pub use channel::measure;
 pub use correlation::correlation_delay_s;
@@ -80,6 +82,7 @@ pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 pub use known_metric::{Applies, KnownMetric};
 pub use memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
+pub(crate) use names::{meant, unknown};
 pub use noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
     fit_noise, fit_pooled_noise, mixed_degrees_of_freedom,

@@ -13,6 +13,7 @@ use super::scale_factor::{
 use super::small_input::measure_small_inputs;
 use super::steady::equal_block_means;
 use crate::units::{deg_per_h_to_deg_per_s, ratio_to_ppm};
+use crate::wording::plain;
 
 /// Blocks of a dwell whose scatter gives the error of its mean.
 const DWELL_BLOCKS: usize = 10;
@@ -51,9 +52,10 @@ pub(crate) fn lack(metric: &str, staircase: &Staircase, samples: usize) -> Optio
     let settle_s = staircase.settle_s;
     if distinct < RATES_MIN {
         return Some(format!(
-            "{} among the dwells that hold {DWELL_SAMPLES_MIN} samples after {settle_s} s of \
+            "{} among the dwells that hold {DWELL_SAMPLES_MIN} samples after {} s of \
              settling",
-            too_few_rates(distinct)
+            too_few_rates(distinct),
+            plain(settle_s)
         ));
     }
     let senses = distinct_rates_by_sense(&rates, staircase.rest_deg_per_h);

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::compensation_config::CompensationParameters;
+use super::draft::Draft;
 use super::error::{Location, ScenarioError};
-use super::resolved::{Draft, InputFile, Resolved};
+use super::resolved::{InputFile, Resolved};
 use super::source::{Label, Mark, Sources, shown_path};
 use super::suite;
 use super::tree::{Node, Table, Value, parse_document};
@@ -97,8 +98,11 @@ pub fn load_calibration(
         inputs: inputs.clone(),
         recorded: None,
         warnings: Vec::new(),
+        is_record: true,
+        is_partial: false,
     }
-    .resolve()?;
+    .resolve()
+    .map_err(|unsound| unsound.errors)?;
     let found = resolved.scenario.compensation;
     let found = found.and_then(|compensation| compensation.parameters);
     let digest = inputs.into_iter().next().map(|input| input.digest);
@@ -230,6 +234,8 @@ fn written_campaign(
         inputs: Vec::new(),
         recorded: None,
         warnings: Vec::new(),
+        is_record: true,
+        is_partial: false,
     })
 }
 
@@ -251,5 +257,5 @@ fn resolve(draft: Draft) -> Result<Resolved, Vec<ScenarioError>> {
             return Err(vec![draft.sources.error(mark, message)]);
         }
     }
-    draft.resolve()
+    draft.resolve().map_err(|unsound| unsound.errors)
 }

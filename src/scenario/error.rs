@@ -1,5 +1,6 @@
 //! What is wrong with a scenario, and where.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 /// A place in an input: prints as `file:line:column`, or as the `--set` argument itself.
@@ -11,6 +12,93 @@ pub struct Location {
     pub line: usize,
     /// Column in characters, from 1; 0 for a `--set` argument or a file as a whole.
     pub column: usize,
+    /// The text there; none for a file as a whole.
+    excerpt: Option<Box<Excerpt>>,
+}
+
+/// The line of a place, or a `--set` argument, cut to what surrounds the place.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Excerpt {
+    /// The text.
+    pub(crate) text: String,
+    /// Byte at which the place begins.
+    pub(crate) start: usize,
+}
+
+/// Characters of a long line that are shown before and behind a place.
+const BEFORE_MAX: usize = 40;
+const BEHIND_MAX: usize = 80;
+/// What stands for the rest of a long line.
+const CUT: &str = "...";
+
+impl Excerpt {
+    /// What surrounds a byte of a line.
+    pub(crate) fn of(line: &str, start: usize) -> Self {
+        let (before, behind) = line.split_at(start.min(line.len()));
+        let skipped = before.chars().count().saturating_sub(BEFORE_MAX);
+        let kept: String = before.chars().skip(skipped).collect();
+        let head = if skipped > 0 {
+            format!("{CUT}{kept}")
+        } else {
+            kept
+        };
+        let mut text = head.clone();
+        text.extend(behind.chars().take(BEHIND_MAX));
+        if behind.chars().nth(BEHIND_MAX).is_some() {
+            text.push_str(CUT);
+        }
+        Self {
+            start: head.len(),
+            text,
+        }
+    }
+
+    /// The bytes that a complaint is about: a key, or a key with its value, or a value alone.
+    pub(crate) fn span(&self, is_of_key: bool) -> std::ops::Range<usize> {
+        let rest = &self.text[self.start..];
+        let end = if is_of_key {
+            key_end(rest)
+        } else {
+            value_end(rest)
+        };
+        self.start..self.start + end.max(usize::from(!rest.is_empty()))
+    }
+}
+
+/// End of the key that a text begins with.
+fn key_end(text: &str) -> usize {
+    if let Some(quote) = text.chars().next().filter(|c| matches!(c, '"' | '\'')) {
+        return text[1..].find(quote).map_or(text.len(), |at| at + 2);
+    }
+    let is_end = |c: char| c.is_whitespace() || matches!(c, '=' | ']' | '}' | ',' | '#');
+    text.find(is_end).unwrap_or(text.len())
+}
+
+/// End of the value that a text begins with, or of the pair of key and value: a comma, a bracket of
+/// the table or array around it, or a comment.
+fn value_end(text: &str) -> usize {
+    let mut depth = 0_usize;
+    let mut quote = None;
+    let mut end = text.len();
+    for (at, c) in text.char_indices() {
+        match (quote, c) {
+            (Some(open), c) if c == open => quote = None,
+            (Some(_), _) => {}
+            (None, '"' | '\'') => quote = Some(c),
+            (None, '[' | '{') => depth += 1,
+            (None, ']' | '}') if depth > 0 => depth -= 1,
+            (None, ']' | '}' | '#') => {
+                end = at;
+                break;
+            }
+            (None, ',') if depth == 0 => {
+                end = at;
+                break;
+            }
+            _ => {}
+        }
+    }
+    text[..end].trim_end().len()
 }
 
 impl Location {
@@ -20,7 +108,45 @@ impl Location {
             file: file.into(),
             line: 0,
             column: 0,
+            excerpt: None,
         }
+    }
+
+    /// A `--set` argument.
+    pub(crate) fn of_set(shown: &str) -> Self {
+        const OPTION: &str = "--set ";
+        let start = if shown.starts_with(OPTION) {
+            OPTION.len()
+        } else {
+            0
+        };
+        Self {
+            excerpt: Some(Box::new(Excerpt::of(shown, start))),
+            ..Self::of_file(shown)
+        }
+    }
+
+    /// A byte of a line of a file.
+    pub(crate) fn in_line(file: String, line: usize, text: &str, start: usize) -> Self {
+        Self {
+            file,
+            line,
+            column: text[..start].chars().count() + 1,
+            excerpt: Some(Box::new(Excerpt::of(text, start))),
+        }
+    }
+
+    /// The same place, of which there is nothing to be seen: something is missing there.
+    pub(crate) fn unseen(self) -> Self {
+        Self {
+            excerpt: None,
+            ..self
+        }
+    }
+
+    /// The text there.
+    pub(crate) fn excerpt(&self) -> Option<&Excerpt> {
+        self.excerpt.as_deref()
     }
 }
 
@@ -51,6 +177,8 @@ pub struct ScenarioError {
     pub location: Location,
     /// What is wrong: key, value, unit, allowed range and the way out.
     pub message: String,
+    /// Whether it is about the name of a key and not about its value.
+    is_of_key: bool,
 }
 
 impl ScenarioError {
@@ -60,6 +188,85 @@ impl ScenarioError {
         Self {
             location,
             message: message.into(),
+            is_of_key: false,
         }
+    }
+
+    /// The same complaint, about the name of the key at its place.
+    pub(crate) fn at_key(self) -> Self {
+        Self {
+            is_of_key: true,
+            ..self
+        }
+    }
+
+    /// The text that it is about: a line, its number, and the bytes to point at.
+    #[must_use]
+    pub fn source(&self) -> Option<(&str, usize, std::ops::Range<usize>)> {
+        let excerpt = self.location.excerpt()?;
+        let line = self.location.line.max(1);
+        Some((&excerpt.text, line, excerpt.span(self.is_of_key)))
+    }
+}
+
+/// Complaints in the order of their files and lines, each once.
+pub(crate) fn in_order(errors: Vec<ScenarioError>) -> Vec<ScenarioError> {
+    let mut files: Vec<String> = Vec::new();
+    let mut keyed: Vec<_> = errors
+        .into_iter()
+        .map(|error| {
+            let file = &error.location.file;
+            let known = files.iter().position(|known| known == file);
+            let index = known.unwrap_or_else(|| {
+                files.push(file.clone());
+                files.len() - 1
+            });
+            ((index, error.location.line, error.location.column), error)
+        })
+        .collect();
+    keyed.sort_by_key(|(place, _)| *place);
+    let mut unique: Vec<ScenarioError> = Vec::new();
+    let mut seen: BTreeSet<String> = BTreeSet::new();
+    for (_, error) in keyed {
+        if seen.insert(error.to_string()) {
+            unique.push(error);
+        }
+    }
+    unique
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pointed_at(line: &str, start: usize, is_of_key: bool) -> String {
+        let excerpt = Excerpt::of(line, start);
+        excerpt.text[excerpt.span(is_of_key)].to_owned()
+    }
+
+    #[test]
+    fn the_span_is_the_key_or_the_key_with_its_value() {
+        for (line, start, key, pair) in [
+            ("lenght_m = 800.0", 0, "lenght_m", "lenght_m = 800.0"),
+            ("  a = \"#,\" # note", 2, "a", "a = \"#,\""),
+            ("[turntables]", 1, "turntables", "turntables"),
+            ("x = { a = 1, b = [2, 3] }", 13, "b", "b = [2, 3]"),
+            ("rates = [0.0, 1, 3e3]", 17, "3e3", "3e3"),
+            ("\"a b\" = 1", 0, "\"a b\"", "\"a b\" = 1"),
+            ("é = 1", 0, "é", "é = 1"),
+        ] {
+            assert_eq!(pointed_at(line, start, true), key);
+            assert_eq!(pointed_at(line, start, false), pair);
+        }
+    }
+
+    #[test]
+    fn long_lines_are_cut_around_the_place() {
+        let line = format!("{}here = 1{}", "é".repeat(1000), "x".repeat(1000));
+        let start = 2000;
+        assert!(pointed_at(&line, start, true) == "here");
+        let excerpt = Excerpt::of(&line, start);
+        assert!(excerpt.text.chars().count() <= 126, "{}", excerpt.text);
+        assert!(excerpt.text.starts_with(CUT) && excerpt.text.ends_with(CUT));
     }
 }

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use super::draft::{Draft, Recorded};
 use super::error::{ScenarioError, portable_place};
-use super::resolved::{Draft, InputFile, Recorded, Resolved, SweepPoint};
+use super::resolved::{InputFile, Resolved, SweepPoint};
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
 
@@ -116,6 +117,8 @@ pub(crate) fn read(
         inputs,
         recorded: Some(recorded),
         warnings,
+        is_record: true,
+        is_partial: false,
     })
 }
 

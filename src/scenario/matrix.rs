@@ -4,14 +4,18 @@ use std::cmp::Reverse;
 use std::sync::Arc;
 
 use super::address::{self, Step};
+use super::draft::{Draft, Unsound};
 use super::error::ScenarioError;
-use super::resolved::{Draft, Resolved, SweepPoint};
+use super::resolved::{Resolved, SweepPoint};
 use super::script;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
 
 /// Most points of one sweep: folders are numbered with four digits.
 const POINTS_MAX: usize = 10_000;
+
+/// The path of a swept key, and where the matrix names it.
+pub(crate) type Swept = (Vec<Step>, Mark);
 
 /// A swept key.
 struct Axis {
@@ -29,36 +33,43 @@ pub(crate) fn expand(
     draft: &Draft,
     matrix: &Node,
     set_paths: &[Vec<Step>],
-) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
-    let axes = axes(draft, matrix, set_paths)?;
+) -> Result<(Vec<Resolved>, Vec<Swept>), Unsound> {
+    let (axes, errors) = axes(draft, matrix, set_paths)?;
+    if !errors.is_empty() {
+        // What else is wrong is seen at the first point of the axes that are in order.
+        let mut unsound = point(draft, &axes, 0, 1).err().unwrap_or_default();
+        unsound.errors.splice(0..0, errors);
+        return Err(unsound);
+    }
     let count = axes
         .iter()
         .try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len()))
         .filter(|count| *count <= POINTS_MAX);
     let Some(count) = count else {
         let message = format!("matrix has too many points: allowed 1..={POINTS_MAX}");
-        return Err(vec![
-            draft
-                .sources
-                .error(matrix.mark.unwrap_or(draft.root_mark), message),
-        ]);
+        let mark = matrix.mark.unwrap_or(draft.root_mark);
+        return Err(vec![draft.sources.error(mark, message)].into());
     };
     let base = base_values(draft, &axes);
     let mut points = Vec::with_capacity(count);
-    let mut errors = Vec::new();
+    let mut unsound = Unsound::default();
     for index in 0..count {
         match point(draft, &axes, index, count) {
             Ok(mut resolved) => {
                 resolved.is_base_point = base.is_some() && base == values(&resolved, &axes);
                 points.push(resolved);
             }
-            Err(more) => errors.extend(more),
+            Err(more) => {
+                unsound.errors.extend(more.errors);
+                unsound.reading = unsound.reading.or(more.reading);
+            }
         }
     }
-    if errors.is_empty() {
-        Ok(points)
+    if unsound.errors.is_empty() {
+        let swept = axes.into_iter().map(|axis| (axis.path, axis.mark));
+        Ok((points, swept.collect()))
     } else {
-        Err(errors)
+        Err(unsound)
     }
 }
 
@@ -78,12 +89,7 @@ fn values(resolved: &Resolved, axes: &[Axis]) -> Option<Vec<String>> {
 }
 
 /// Resolves one point.
-fn point(
-    draft: &Draft,
-    axes: &[Axis],
-    index: usize,
-    count: usize,
-) -> Result<Resolved, Vec<ScenarioError>> {
+fn point(draft: &Draft, axes: &[Axis], index: usize, count: usize) -> Result<Resolved, Unsound> {
     let mut draft = draft.clone();
     let mut rest = index;
     // The last axis varies fastest, hence the digits are taken off from the end.
@@ -110,12 +116,12 @@ fn point(
     Ok(resolved)
 }
 
-/// The swept keys in the order of the file, those of bases first.
+/// The swept keys in the order of the file, those of bases first, and what is wrong with others.
 fn axes(
     draft: &Draft,
     matrix: &Node,
     set_paths: &[Vec<Step>],
-) -> Result<Vec<Axis>, Vec<ScenarioError>> {
+) -> Result<(Vec<Axis>, Vec<ScenarioError>), Vec<ScenarioError>> {
     let sources: &Arc<Sources> = &draft.sources;
     let matrix_mark = matrix.mark.unwrap_or(draft.root_mark);
     let Value::Table(table) = &matrix.value else {
@@ -147,11 +153,7 @@ fn axes(
             "matrix is empty: expected keys and their values, as in \"gyro.source.power_uw\" = [0.5, 1.0]",
         ));
     }
-    if errors.is_empty() {
-        Ok(axes)
-    } else {
-        Err(errors)
-    }
+    Ok((axes, errors))
 }
 
 /// Checks one swept key.

@@ -9,6 +9,7 @@ mod assembly_config;
 mod calibration_config;
 mod channels;
 mod check;
+mod clashes;
 mod comparison_config;
 mod compensation_config;
 mod compensation_source;
@@ -21,16 +22,19 @@ mod cross_filter;
 mod cross_gyro;
 mod cross_multi_sine;
 mod cross_optics;
-mod cross_output;
 mod cross_servo;
 mod cross_turntable;
 mod cross_vibration;
 mod defaults;
 mod discover;
+mod draft;
 mod emit;
 mod error;
+mod faults;
 mod filter_config;
 mod gyro_config;
+mod inert;
+mod inert_rules;
 mod injection_config;
 mod json_schema;
 mod keys;
@@ -43,7 +47,10 @@ mod script;
 mod servo_config;
 mod source;
 mod stairs;
+mod stand_in;
+mod suggest;
 mod suite;
+mod synonyms;
 mod thermal_config;
 mod tree;
 mod turntable_config;
@@ -65,8 +72,9 @@ pub use config::{
 };
 pub(crate) use cross_comparison::slug;
 pub use defaults::{reference_calibration, reference_toml};
-pub(crate) use error::portable_place;
+pub(crate) use draft::UnsoundReading;
 pub use error::{Location, ScenarioError};
+pub(crate) use error::{in_order, portable_place};
 pub use filter_config::{
     ButterworthFilterConfig, ConstantUnit, ConstrainedRlsFilterConfig, DesiredSignal, Division,
     FilterConfig, FilterKind, InitialWeights, KalmanFilterConfig, LmsFilterConfig,
@@ -85,6 +93,7 @@ pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
 pub use stairs::{Stairs, TEST_RATES_MIN};
+pub(crate) use suite::read_suite;
 pub use suite::{load_base_or_scenario, load_suite};
 pub use thermal_config::{
     ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig, SoakConfig,
@@ -101,5 +110,7 @@ pub use vibration_config::{
     RandomVibrationConfig, SineVibrationConfig, VibrationConfig, VibrationMotion,
 };
 
+#[cfg(test)]
+mod inert_tests;
 #[cfg(test)]
 mod tests;

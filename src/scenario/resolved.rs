@@ -2,17 +2,10 @@
 
 use std::sync::Arc;
 
-use serde::Deserialize;
-
 use super::address::{self, nearest_mark};
-use super::check::{check_presence, check_values};
-use super::compensation_source;
 use super::config::Scenario;
-use super::cross;
-use super::defaults::{default_of, fill};
 use super::emit::to_toml;
-use super::error::{Location, ScenarioError};
-use super::script;
+use super::error::Location;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
 
@@ -59,13 +52,15 @@ pub struct Resolved {
     /// The calibration scenario whose result its compensation applies.
     pub campaign: Option<Box<Resolved>>,
     /// Where its gates were written, if a manifest records that.
-    gate_places: Vec<String>,
+    pub(super) gate_places: Vec<String>,
     /// Every value, defaults included.
-    tree: Table,
+    pub(super) tree: Table,
     /// What the marks of the tree point into.
-    sources: Arc<Sources>,
+    pub(super) sources: Arc<Sources>,
     /// Beginning of the scenario's own file.
-    root_mark: Mark,
+    pub(super) root_mark: Mark,
+    /// Whether that file is a record rather than a scenario that somebody wrote.
+    pub(super) is_record: bool,
 }
 
 /// Equality of the run; where its values were written does not count.
@@ -79,120 +74,7 @@ impl PartialEq for Resolved {
     }
 }
 
-/// What a scenario is resolved from.
-#[derive(Clone, Debug)]
-pub(crate) struct Draft {
-    /// Merged values, without defaults.
-    pub(crate) root: Table,
-    /// Beginning of the scenario's own file.
-    pub(crate) root_mark: Mark,
-    /// What the marks point into.
-    pub(crate) sources: Arc<Sources>,
-    /// Name of the scenario's own file.
-    pub(crate) file: String,
-    /// Files it was read from.
-    pub(crate) inputs: Vec<InputFile>,
-    /// What a manifest says about the origin of its scenario.
-    pub(crate) recorded: Option<Recorded>,
-    /// What is worth saying about how it was read.
-    pub(crate) warnings: Vec<String>,
-}
-
-/// The origin of a resolved scenario, as a manifest records it.
-#[derive(Clone, Debug)]
-pub(crate) struct Recorded {
-    /// Digest of the scenario that the record is true of.
-    pub(crate) digest: String,
-    /// Name of the scenario's own file.
-    pub(crate) file: String,
-    /// Files it was read from.
-    pub(crate) inputs: Vec<InputFile>,
-    /// Which point of a sweep it was.
-    pub(crate) sweep: Option<SweepPoint>,
-    /// Where its gates were written.
-    pub(crate) gate_places: Vec<String>,
-}
-
-impl Draft {
-    /// Checks every value, fills in the defaults and checks across values.
-    ///
-    /// # Errors
-    /// Every complaint about the scenario.
-    pub(crate) fn resolve(mut self) -> Result<Resolved, Vec<ScenarioError>> {
-        let sources = Arc::make_mut(&mut self.sources);
-        script::read_into(&mut self.root, sources, &mut self.inputs)
-            .map_err(|error| vec![error])?;
-        let campaign = compensation_source::read_into(&mut self.root, sources, &mut self.inputs)?;
-        let mut errors = check_values(&mut self.root, self.root_mark, &self.sources);
-        if errors.is_empty() || !self.is_other_version() {
-            fill(&mut self.root);
-            errors.extend(check_presence(&self.root, self.root_mark, &self.sources));
-        }
-        if !errors.is_empty() {
-            return Err(errors);
-        }
-        let scenario = Scenario::deserialize(plain_table(&self.root)).map_err(|error| {
-            let message = format!(
-                "the scenario does not fit its configuration: {}",
-                error.message()
-            );
-            vec![self.sources.error(self.root_mark, message)]
-        })?;
-        let text = to_toml(&self.root, "");
-        let digest = blake3::hash(text.as_bytes()).to_hex().to_string();
-        let origin = match self.recorded {
-            Some(recorded) if recorded.digest == digest => recorded,
-            // The record is of another scenario: what was read now is the origin. A sweep point
-            // stays one as long as the swept keys have their values.
-            recorded => Recorded {
-                digest,
-                file: self.file,
-                inputs: self.inputs,
-                sweep: recorded
-                    .and_then(|recorded| recorded.sweep)
-                    .filter(|point| holds(&self.root, point)),
-                gate_places: Vec::new(),
-            },
-        };
-        let resolved = Resolved {
-            scenario,
-            file: origin.file,
-            digest: origin.digest,
-            inputs: origin.inputs,
-            sweep: origin.sweep,
-            warnings: self.warnings,
-            is_base_point: false,
-            campaign,
-            gate_places: origin.gate_places,
-            tree: self.root,
-            sources: self.sources,
-            root_mark: self.root_mark,
-        };
-        let errors = cross::check(&resolved);
-        if errors.is_empty() {
-            Ok(resolved)
-        } else {
-            Err(errors)
-        }
-    }
-
-    /// Whether the file is written for another version of the format.
-    fn is_other_version(&self) -> bool {
-        let version = self.root.get("schema").map(|node| &node.value);
-        !matches!(version, None | Some(Value::Integer(1)))
-    }
-}
-
 impl Resolved {
-    /// The value at a path if it is not the default of its key, as TOML.
-    ///
-    /// * `schema_path`: the path without indices, as the key table has it.
-    pub(crate) fn departure(&self, path: &str, schema_path: &str) -> Option<String> {
-        let value = self.value_toml(&address::parse(path).ok()?)?;
-        let default = default_of(schema_path)?.to_toml();
-        (value != default).then_some(value)
-    }
-
     /// Folder of the run below the output folder: `<name>`, or `<name>/<nnnn>` in a sweep.
     #[must_use]
     pub fn folder(&self) -> String {
@@ -217,8 +99,10 @@ impl Resolved {
     #[must_use]
     pub fn locate(&self, key_path: &str) -> Location {
         let path = address::parse(key_path).unwrap_or_default();
-        let mark = nearest_mark(&self.tree, &path).unwrap_or(self.root_mark);
-        self.sources.locate(mark)
+        match nearest_mark(&self.tree, &path) {
+            Some(mark) => self.sources.locate(mark),
+            None => self.sources.locate(self.root_mark).unseen(),
+        }
     }
 
     /// Where the metric of a gate was written: `file:line:column`, or the `--set` argument.
@@ -242,6 +126,35 @@ impl Resolved {
             .ok()
             .and_then(|path| address::get(&self.tree, &path)?.mark)
             .is_some()
+    }
+
+    /// Where a mark points.
+    pub(super) fn place(&self, mark: Mark) -> Location {
+        self.sources.locate(mark)
+    }
+
+    /// Whether a mark lies in a `--set` argument.
+    pub(super) fn is_set_argument(&self, mark: Mark) -> bool {
+        self.sources.is_set_argument(mark)
+    }
+
+    /// Whether a mark lies in the scenario's own file, and what stands there is its author's wish:
+    /// a manifest is a record.
+    pub(super) fn is_own(&self, mark: Mark) -> bool {
+        !self.is_record && mark.source == self.root_mark.source
+    }
+
+    /// Whether every value was written by somebody: a record such as `expand` prints.
+    pub(super) fn is_written_out(&self) -> bool {
+        fn is_written(node: &Node) -> bool {
+            node.mark.is_some()
+                && match &node.value {
+                    Value::Table(table) => table.values().all(is_written),
+                    Value::Array(nodes) => nodes.iter().all(is_written),
+                    _ => true,
+                }
+        }
+        self.tree.values().all(is_written)
     }
 
     /// The settled values.
@@ -287,16 +200,6 @@ impl Resolved {
     pub(crate) fn to_toml_below(&self, prefix: &str) -> String {
         to_toml(&self.tree, prefix)
     }
-}
-
-/// Whether the swept keys of a point have the values of the point.
-fn holds(root: &Table, point: &SweepPoint) -> bool {
-    point.assignments.iter().all(|(key, value)| {
-        address::resolve(root, key)
-            .ok()
-            .and_then(|(path, _)| address::get(root, &path))
-            .is_some_and(|node| node.value.to_toml() == *value)
-    })
 }
 
 /// A checked tree as plain TOML.

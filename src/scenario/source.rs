@@ -60,11 +60,16 @@ impl Sources {
         }
     }
 
+    /// Whether a mark lies in a `--set` argument.
+    pub(crate) fn is_set_argument(&self, mark: Mark) -> bool {
+        self.0[mark.source].label.is_none()
+    }
+
     /// Where a mark points.
     pub(crate) fn locate(&self, mark: Mark) -> Location {
         let source = &self.0[mark.source];
         if source.label.is_none() {
-            return Location::of_file(source.shown.clone());
+            return Location::of_set(&source.shown);
         }
         let mut end = mark.start.min(source.text.len());
         while !source.text.is_char_boundary(end) {
@@ -72,11 +77,10 @@ impl Sources {
         }
         let before = &source.text[..end];
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-        Location {
-            file: source.shown.clone(),
-            line: before.matches('\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
-        }
+        let line = before.matches('\n').count() + 1;
+        let text = source.text[line_start..].lines().next().unwrap_or_default();
+        let start = (end - line_start).min(text.len());
+        Location::in_line(source.shown.clone(), line, text, start)
     }
 
     /// A complaint about a marked place.

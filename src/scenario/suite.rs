@@ -1,19 +1,32 @@
 //! From paths to resolved runs: discovery, the `extends` chain, `--set` and sweeps.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::address::{self, Step};
 use super::check::check_contradictions;
+use super::clashes::name_clashes;
 use super::discover::{discover, identity};
-use super::error::{Location, ScenarioError};
+use super::draft::{Draft, UnsoundReading};
+use super::error::{Location, ScenarioError, in_order};
+use super::inert::{Idle, IdleSet, IdleSets};
 use super::manifest;
 use super::matrix;
-use super::resolved::{Draft, InputFile, Resolved};
+use super::resolved::{InputFile, Resolved};
 use super::source::{Label, Mark, Sources, shown_path};
 use super::tree::{Node, Table, Value, merge, parse_document, parse_value};
+
+/// A suite as far as it could be read.
+#[derive(Debug, Default)]
+pub(crate) struct Suite {
+    /// The runs that are sound.
+    pub(crate) runs: Vec<Resolved>,
+    /// Every complaint so far, each once.
+    pub(crate) errors: Vec<ScenarioError>,
+    /// The scenarios that are not sound, for the checks that are still to come.
+    pub(crate) readings: Vec<UnsoundReading>,
+}
 
 /// Reads, resolves and checks every run of a suite; empty if the folders hold nothing to run.
 ///
@@ -22,27 +35,66 @@ use super::tree::{Node, Table, Value, merge, parse_document, parse_value};
 /// `sets` is `key=value` and applies to every scenario after the files.
 ///
 /// # Errors
-/// Every complaint about every file, in order, each once.
+/// Every complaint about every file, each once, in the order of the files and their lines.
 pub fn load_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
-    let mut runs = Vec::new();
-    let mut errors = Vec::new();
-    for file in discover(paths, &mut errors) {
-        match load_file(&file, sets) {
-            Ok(more) => runs.extend(more),
-            Err(more) => errors.extend(more),
+    let suite = read_suite(paths, sets);
+    if suite.errors.is_empty() {
+        Ok(suite.runs)
+    } else {
+        Err(suite.errors)
+    }
+}
+
+/// As [`load_suite`], with what can be checked further though it is not sound.
+pub(crate) fn read_suite(paths: &[PathBuf], sets: &[String]) -> Suite {
+    let mut suite = Suite::default();
+    let mut idle_sets = IdleSets::default();
+    for file in discover(paths, &mut suite.errors) {
+        let mut read = match load_draft(&file) {
+            Ok(drafted) => load_drafted(drafted, sets),
+            Err(errors) => errors.into(),
+        };
+        suite.runs.append(&mut read.runs);
+        suite.readings.extend(read.reading);
+        suite.errors.append(&mut in_order(read.errors));
+        idle_sets.add(read.idle_sets);
+    }
+    suite.errors.extend(name_clashes(&suite.runs));
+    suite.errors.extend(idle_sets.complaints());
+    suite
+}
+
+/// One file, read.
+#[derive(Default)]
+struct FileReading {
+    runs: Vec<Resolved>,
+    errors: Vec<ScenarioError>,
+    reading: Option<UnsoundReading>,
+    /// Wishes by `--set` that act in no point of it.
+    idle_sets: Vec<IdleSet>,
+}
+
+impl From<Vec<ScenarioError>> for FileReading {
+    fn from(errors: Vec<ScenarioError>) -> Self {
+        Self {
+            errors,
+            ..Self::default()
         }
     }
-    errors.extend(name_clashes(&runs));
-    if errors.is_empty() {
-        return Ok(runs);
-    }
-    let mut unique: Vec<ScenarioError> = Vec::new();
-    for error in errors {
-        if !unique.contains(&error) {
-            unique.push(error);
+}
+
+impl From<FileReading> for Result<Vec<Resolved>, Vec<ScenarioError>> {
+    fn from(read: FileReading) -> Self {
+        let mut idle_sets = IdleSets::default();
+        idle_sets.add(read.idle_sets);
+        let mut errors = in_order(read.errors);
+        errors.extend(idle_sets.complaints());
+        if errors.is_empty() {
+            Ok(read.runs)
+        } else {
+            Err(errors)
         }
     }
-    Err(unique)
 }
 
 /// Reads and checks the runs of one file of which only the gyro or the filters matter.
@@ -63,7 +115,7 @@ pub fn load_base_or_scenario(
             "it is a folder: name one scenario or base file",
         )]);
     }
-    load_drafted(load_draft(file).map(completed)?, sets)
+    load_drafted(load_draft(file).map(completed)?, sets).into()
 }
 
 /// A draft with a name and a duration.
@@ -72,6 +124,7 @@ fn completed((mut draft, errors): (Draft, Vec<ScenarioError>)) -> (Draft, Vec<Sc
         ("name", Value::Text("base".to_owned())),
         ("duration_s", Value::Float(1.0)),
     ];
+    draft.is_record |= !draft.root.contains_key("name");
     for (key, value) in made_up {
         let node = Node { value, mark: None };
         draft.root.entry(key.to_owned()).or_insert(node);
@@ -79,34 +132,63 @@ fn completed((mut draft, errors): (Draft, Vec<ScenarioError>)) -> (Draft, Vec<Sc
     (draft, errors)
 }
 
-/// Loads one file with all points of its sweep.
-fn load_file(file: &Path, sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
-    load_drafted(load_draft(file)?, sets)
-}
-
 /// Applies `--set` to what was read and resolves it, all points of a sweep.
-fn load_drafted(
-    (mut draft, mut errors): (Draft, Vec<ScenarioError>),
-    sets: &[String],
-) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
+fn load_drafted((mut draft, errors): (Draft, Vec<ScenarioError>), sets: &[String]) -> FileReading {
+    let mut read = FileReading::from(errors);
     let matrix = draft.root.remove("matrix");
-    if matrix.is_some() {
+    let is_sweep = matrix.is_some();
+    if is_sweep {
         // A sweep over a manifest is an experiment of its own.
         draft.recorded = None;
     }
-    let set_paths = apply_sets(&mut draft, sets, &mut errors);
+    let set_paths = apply_sets(&mut draft, sets, &mut read.errors);
+    let mut swept = Vec::new();
     let runs = match matrix {
         None => draft.resolve().map(|run| vec![run]),
-        Some(matrix) => matrix::expand(&draft, &matrix, &set_paths),
+        Some(matrix) => matrix::expand(&draft, &matrix, &set_paths).map(|(runs, axes)| {
+            swept = axes;
+            runs
+        }),
     };
     match runs {
-        Ok(runs) if errors.is_empty() => Ok(runs),
-        Ok(_) => Err(errors),
-        Err(more) => {
-            errors.extend(more);
-            Err(errors)
+        Ok(runs) => {
+            let mut points = runs.iter();
+            if let Some(first) = points.next() {
+                let mut idle = Idle::of(first, &swept);
+                for point in points {
+                    if idle.is_empty() {
+                        break;
+                    }
+                    idle.keep_idle(point);
+                }
+                let (own, idle_sets) = idle.complaints(first);
+                read.errors.extend(own);
+                read.idle_sets = idle_sets;
+            }
+            read.runs = runs;
+        }
+        Err(unsound) => {
+            read.errors.extend(unsound.errors);
+            let idle = unsound
+                .reading
+                .as_ref()
+                .map(|reading| &reading.variants[..]);
+            if let (Some([first, more @ ..]), false) = (idle, is_sweep) {
+                let mut idle = Idle::of(first, &swept);
+                more.iter().for_each(|variant| idle.keep_idle(variant));
+                let (mut own, _) = idle.complaints(first);
+                // What is refused for its value need not act as well.
+                own.retain(|one| {
+                    read.errors
+                        .iter()
+                        .all(|other| other.location != one.location)
+                });
+                read.errors.extend(own);
+            }
+            read.reading = unsound.reading;
         }
     }
+    read
 }
 
 /// Reads a file and its bases, or a manifest, with the complaints that do not hinder more checks.
@@ -136,7 +218,7 @@ fn load_labelled(
         let draft = manifest::read(root, source, chain.sources, chain.inputs)?;
         return Ok((draft, Vec::new()));
     }
-    let root = chain.merge_bases(file, label, root, source)?;
+    let root = chain.merge_bases(file, label, root, source);
     chain.inputs.reverse();
     let draft = Draft {
         root,
@@ -146,6 +228,8 @@ fn load_labelled(
         inputs: chain.inputs,
         recorded: None,
         warnings: Vec::new(),
+        is_record: false,
+        is_partial: chain.is_partial,
     };
     Ok((draft, chain.errors))
 }
@@ -159,6 +243,8 @@ struct Chain {
     /// Files read so far, to find cycles.
     open: Vec<PathBuf>,
     errors: Vec<ScenarioError>,
+    /// Whether a base could not be read.
+    is_partial: bool,
 }
 
 impl Chain {
@@ -203,19 +289,13 @@ impl Chain {
         Ok((root, source))
     }
 
-    /// Merges a file onto the bases it extends.
-    fn merge_bases(
-        &mut self,
-        file: &Path,
-        label: &Label,
-        mut root: Table,
-        source: usize,
-    ) -> Result<Table, Vec<ScenarioError>> {
+    /// Merges a file onto the bases it extends, as far as they can be read.
+    fn merge_bases(&mut self, file: &Path, label: &Label, mut root: Table, source: usize) -> Table {
         let start = Mark { source, start: 0 };
         let contradictions = check_contradictions(&root, start, &self.sources);
         self.errors.extend(contradictions);
         let Some(extends) = root.remove("extends") else {
-            return Ok(root);
+            return root;
         };
         let mark = extends.mark.unwrap_or(start);
         let Some(base) = extends.as_text() else {
@@ -223,8 +303,9 @@ impl Chain {
                 "extends has the wrong type: expected the path of a file, got {}",
                 extends.value.type_name()
             );
+            self.is_partial = true;
             self.errors.push(self.sources.error(mark, message));
-            return Ok(root);
+            return root;
         };
         let path = file.parent().unwrap_or(Path::new("")).join(base);
         if self.open.contains(&identity(&path)) {
@@ -232,21 +313,25 @@ impl Chain {
                 "extends = \"{base}\" closes a cycle: {} is being extended already",
                 shown_path(&path)
             );
+            self.is_partial = true;
             self.errors.push(self.sources.error(mark, message));
-            return Err(std::mem::take(&mut self.errors));
+            return root;
         }
         let base_label = label.of_base(base);
-        let (base_root, base_source) =
-            self.read(&path, &base_label, Some(mark))
-                .map_err(|mut errors| {
-                    errors.splice(0..0, std::mem::take(&mut self.errors));
-                    errors
-                })?;
-        let mut merged = self.merge_bases(&path, &base_label, base_root, base_source)?;
-        // The name is the scenario's own: two files may build on one that can be run itself.
-        merged.remove("name");
-        merge("", &mut merged, root);
-        Ok(merged)
+        match self.read(&path, &base_label, Some(mark)) {
+            Ok((base_root, base_source)) => {
+                let mut merged = self.merge_bases(&path, &base_label, base_root, base_source);
+                // The name is the scenario's own: two files may build on one that can be run itself.
+                merged.remove("name");
+                merge("", &mut merged, root);
+                merged
+            }
+            Err(errors) => {
+                self.is_partial = true;
+                self.errors.extend(errors);
+                root
+            }
+        }
     }
 }
 
@@ -303,32 +388,4 @@ fn set_value(text: &str, mark: Mark) -> Result<Node, String> {
         }),
         Err(error) => Err(format!("{} in the value", error.message)),
     }
-}
-
-/// Complaints about runs that would write the same folder, or a scenario beside a sweep in it.
-fn name_clashes(runs: &[Resolved]) -> Vec<ScenarioError> {
-    let mut first: BTreeMap<&str, &Resolved> = BTreeMap::new();
-    let mut folders: BTreeMap<String, &Resolved> = BTreeMap::new();
-    let mut errors = Vec::new();
-    for run in runs {
-        let earlier = *first.entry(&run.scenario.name).or_insert(run);
-        let twin = folders.get(&run.folder()).copied();
-        folders.entry(run.folder()).or_insert(run);
-        let is_same_sweep = earlier.shown_file() == run.shown_file()
-            && earlier.sweep.is_some() == run.sweep.is_some();
-        let clash = match twin {
-            Some(twin) => Some(twin),
-            None if std::ptr::eq(earlier, run) || is_same_sweep => None,
-            None => Some(earlier),
-        };
-        if let Some(other) = clash {
-            let message = format!(
-                "name = \"{}\" is the name of the scenario at {} already: give each scenario its own",
-                run.scenario.name,
-                other.locate("name")
-            );
-            errors.push(ScenarioError::at(run.locate("name"), message));
-        }
-    }
-    errors
 }
