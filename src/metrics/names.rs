@@ -66,7 +66,7 @@ pub(crate) fn unknown(name: &str) -> Option<String> {
         return None;
     }
     let mut names = suggestions(name);
-    if let [] = names[..] {
+    if names.is_empty() {
         names = related(name);
         return Some(if names.is_empty() {
             format!("`{name}` is not a metric; a run's summary.json lists those of its channels")

@@ -104,7 +104,7 @@ impl Draft {
         let missing = check_presence(&whole, self.root_mark, &self.sources, &faults.taken);
         errors.extend(missing);
         if !errors.is_empty() {
-            return Err(self.made_up(&faults.taken, campaign.as_ref(), errors));
+            return Err(self.made_up(&faults.taken, campaign.as_deref(), errors));
         }
         self.root = whole;
         let (resolved, errors) = self.settle(campaign)?;
@@ -143,7 +143,7 @@ impl Draft {
     fn made_up(
         &self,
         taken: &[Taken],
-        campaign: Option<&Box<Resolved>>,
+        campaign: Option<&Resolved>,
         mut errors: Vec<ScenarioError>,
     ) -> Unsound {
         let mut variants = Vec::new();
@@ -152,7 +152,7 @@ impl Draft {
         for variant in Variant::ALL {
             let mut draft = self.clone();
             make_whole(&mut draft.root, taken, variant);
-            let Ok((resolved, found)) = draft.settle(campaign.cloned()) else {
+            let Ok((resolved, found)) = draft.settle(campaign.cloned().map(Box::new)) else {
                 return errors.into();
             };
             is_contradictory |= !found.is_empty();
