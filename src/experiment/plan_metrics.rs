@@ -57,7 +57,7 @@ impl Checker<'_> {
         for (index, comparison) in scenario.comparisons.iter().enumerate() {
             let columns = comparison.columns.iter();
             for column in columns.filter_map(|text| ComparisonColumn::parse(text)) {
-                if let Some(complaint) = metrics::unknown(&column.metric) {
+                if let Some(complaint) = metrics::unknown(column.metric) {
                     let key = format!("comparison[{index}].columns");
                     let message =
                         format!("{key}: there is no metric {}: {complaint}", column.metric);
@@ -101,9 +101,10 @@ impl Checker<'_> {
     pub(super) fn metrics(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
         let motion = motion(scenario, 1.0 / facts.output_rate_hz);
+        let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
+        let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
         let mut requested: Vec<Requested> = Vec::new();
         for (index, gate) in scenario.gates.iter().enumerate() {
-            // A name without a dot is refused with the names; the reader knows the channel.
             let Some((channel, metric)) = gate.metric.rsplit_once('.') else {
                 continue;
             };
@@ -142,7 +143,6 @@ impl Checker<'_> {
         } in requested
         {
             let is_estimate = campaign::estimator_of(scenario, channel).is_some();
-            // Names that nobody knows have been refused as such.
             if name == DIVERGED_AT || (!is_estimate && metrics::find(name).is_none()) {
                 continue;
             }
@@ -164,9 +164,7 @@ impl Checker<'_> {
             let across = assembly_motion::lacks(scenario, channel, name)
                 .or_else(|| campaign::lacks(scenario, name))
                 .map(str::to_owned);
-            let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
             let unread = metrics::encoder_lack(name, has_encoder).map(str::to_owned);
-            let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
             let single = metrics::repeats_lack(name, repeats);
             let reasons = [supported.err(), lack, across, unread, single];
             if let Some(reason) = reasons.into_iter().flatten().next() {
