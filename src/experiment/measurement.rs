@@ -1,5 +1,6 @@
 //! Measuring the records of one repeat: which words are compared with which.
 
+use crate::metrics::catalogue::DIVERGED_AT;
 use rayon::prelude::*;
 
 use super::allan_settings::allan_options;
@@ -8,11 +9,11 @@ use super::campaign;
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use super::motion::motion;
 use super::pipeline_metrics;
-use super::plan::{DIVERGED_AT, Plan};
+use super::plan::Plan;
 use super::simulate::{GyroRecord, RecordLength, Simulation};
 use crate::filters::Divergence;
 use crate::metrics::{
-    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings, measure,
+    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Record, Settings, measure,
 };
 
 /// Channels of one repeat with their metrics.
@@ -152,10 +153,7 @@ fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
 fn failed(kind: &str, sample: u64, message: String, sample_period_s: f64) -> ChannelMetrics {
     let mut channel = ChannelMetrics::default();
     let at_s = stamp_s(sample, sample_period_s);
-    channel.metrics.insert(
-        DIVERGED_AT.to_owned(),
-        Metric::new(Estimate::exact(at_s), "s"),
-    );
+    channel.put(&DIVERGED_AT, Estimate::exact(at_s));
     channel.error = Some(ChannelFailure {
         kind: kind.to_owned(),
         sample,

@@ -11,12 +11,11 @@ use super::motion::{motion, motion_extremes};
 use super::pipeline_check;
 use super::published_check::wrong_unit;
 use crate::gyro;
-use crate::metrics;
-use crate::scenario::{Fidelity, Resolved, ScenarioError, load_suite};
+use crate::metrics::catalogue::DIVERGED_AT;
+use crate::metrics::{self, MetricKey};
+use crate::scenario::{Fidelity, Resolved, Scenario, ScenarioError, load_suite};
 use crate::signal::GyroFacts;
 
-/// Metric that turns the divergence of a channel into an expected result.
-pub(super) const DIVERGED_AT: &str = "diverged_at_s";
 /// One run that has passed every check.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -249,7 +248,8 @@ impl Checker<'_> {
             }
         }
         for (key, channel, name) in requested {
-            if name == DIVERGED_AT {
+            // The divergence of a channel may be what the gate expects.
+            if name == DIVERGED_AT.name {
                 continue;
             }
             if let Some(estimator) = campaign::estimator_of(scenario, channel) {
@@ -266,20 +266,24 @@ impl Checker<'_> {
                 !scenario.is_unfiltered(channel),
                 scenario.bias_averaging_time_s,
             );
-            let lack = pipeline_check::lacks(scenario, channel, name).map(str::to_owned);
-            let across = assembly_motion::lacks(scenario, channel, name)
-                .or_else(|| campaign::lacks(scenario, name))
-                .map(str::to_owned);
-            let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
-            let unread = metrics::encoder_lack(name, has_encoder).map(str::to_owned);
-            let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
-            let single = metrics::repeats_lack(name, repeats);
-            let reasons = [supported.err(), lack, across, unread, single];
-            if let Some(reason) = reasons.into_iter().flatten().next() {
+            let lack = || metrics::find(name).and_then(|key| lacks(scenario, channel, key));
+            if let Some(reason) = supported.err().or_else(lack) {
                 self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
             }
         }
     }
+}
+
+/// Why a channel of this scenario can never have a metric, whatever the length of its record.
+fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<String> {
+    let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
+    let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
+    pipeline_check::lacks(scenario, channel, key)
+        .or_else(|| assembly_motion::lacks(scenario, channel, key))
+        .or_else(|| campaign::lacks(scenario, key))
+        .or_else(|| metrics::encoder_lack(key, has_encoder))
+        .map(str::to_owned)
+        .or_else(|| metrics::repeats_lack(key, repeats))
 }
 
 /// A small count as a number.

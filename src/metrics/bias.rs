@@ -4,8 +4,56 @@ use std::f64::consts::PI;
 
 use super::estimate::{Estimate, Metric};
 use super::interval::{self, round_to_count};
+use super::key::{Applies, Headline, MetricKey, Needs, Table};
 use super::noise_fit::NoiseCoefficients;
 use super::table::{DEGREES_OF_FREEDOM, RAW_CORRELATION};
+
+/// Bias stability over 1 s.
+pub static BIAS_STABILITY_1S: MetricKey = MetricKey::new(
+    "bias_stability_1s_deg_per_h",
+    "deg/h",
+    Applies::Steady,
+    "standard deviation of non-overlapping 1 s means",
+)
+.heading("bias stability")
+.slow_noise()
+.needs(Needs::Blocks(1.0));
+
+/// Bias stability over 10 s.
+pub static BIAS_STABILITY_10S: MetricKey = MetricKey::new(
+    "bias_stability_10s_deg_per_h",
+    "deg/h",
+    Applies::Steady,
+    "standard deviation of non-overlapping 10 s means",
+)
+.heading("bias stability")
+.slow_noise()
+.needs(Needs::Blocks(10.0));
+
+/// Bias stability over 100 s.
+pub static BIAS_STABILITY_100S: MetricKey = MetricKey::new(
+    "bias_stability_100s_deg_per_h",
+    "deg/h",
+    Applies::Steady,
+    "standard deviation of non-overlapping 100 s means",
+)
+.heading("bias stability")
+.slow_noise()
+.needs(Needs::Blocks(100.0));
+
+/// Bias stability.
+pub static BIAS_STABILITY: MetricKey = MetricKey::new(
+    "bias_stability_deg_per_h",
+    "deg/h",
+    Applies::Steady,
+    "standard deviation of non-overlapping means over the scenario's bias_averaging_time_s",
+)
+.heading("bias stability")
+.slow_noise()
+.needs(Needs::ScenarioBlocks)
+.run_column(6)
+.tables(&[Table::Rest])
+.headlines(&[Headline::Rest]);
 
 /// Means of consecutive blocks of `block_samples`; what is left over at the end is not used.
 #[must_use]
