@@ -12,7 +12,8 @@ use super::log_arguments::{AnalyzeOptions, FilterLogOptions};
 ///
 /// Runs TOML scenarios through turntable, gyro, denoising filters and metrics, and judges them.
 /// Exit codes: 0 all well, 1 a gate failed, 2 usage or scenario error, 3 a channel failed,
-/// 4 nothing selected, 70 internal error, 74 input/output error.
+/// 4 nothing selected, 70 internal error, 74 input/output error, 129, 130 and 143 ended by SIGHUP,
+/// SIGINT and SIGTERM.
 #[derive(Debug, Parser)]
 #[command(
     name = "fogbench",
