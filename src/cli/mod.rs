@@ -37,13 +37,13 @@ use signals::Interrupt;
 #[must_use]
 pub fn main() -> ExitCode {
     panics::install();
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
-        Err(error) => return exit::usage(&error),
-    };
     let interrupt = match Interrupt::install() {
         Ok(interrupt) => interrupt,
         Err(error) => return exit::io_failure(error).code(),
+    };
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return exit::usage(&error),
     };
     // The panic hook has already printed what broke, and may have done so on another thread.
     let outcome = catch_unwind(AssertUnwindSafe(|| dispatch(&arguments, &interrupt)));
