@@ -26,6 +26,7 @@ mod fpga_health;
 mod frequency_response;
 mod gyro_effects;
 mod injection;
+mod interruption;
 mod known_answers_allan;
 mod known_answers_allan_variants;
 mod known_answers_gyro;

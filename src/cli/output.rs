@@ -1,15 +1,31 @@
 //! Printing: data on stdout, talk on stderr.
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Writes data to stdout.
+/// Whether whoever read stdout has closed their end.
+static READER_IS_GONE: AtomicBool = AtomicBool::new(false);
+
+/// Writes data to stdout. A reader that closes its end (`| head`) has seen enough: that ends the
+/// printing, not the command, whose verdict stays what it is.
 ///
 /// # Errors
-/// What the stream says, a closed pipe included.
+/// What the stream says, but for a closed pipe.
 pub(super) fn data(text: &str) -> io::Result<()> {
+    if READER_IS_GONE.load(Ordering::Relaxed) {
+        return Ok(());
+    }
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes())?;
-    stdout.flush()
+    let written = stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush());
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+            READER_IS_GONE.store(true, Ordering::Relaxed);
+            Ok(())
+        }
+        written => written,
+    }
 }
 
 /// Writes a line of talk to stderr. Nobody is left to tell when stderr itself is gone.

@@ -16,6 +16,7 @@ mod channel_filter;
 mod comparison;
 mod compensation;
 mod group_findings;
+mod ledger;
 mod line_enhancer;
 mod log_compensation;
 mod log_filters;
@@ -36,9 +37,11 @@ mod record_length;
 mod run;
 mod run_files;
 mod simulate;
+mod stop;
 mod suite;
 mod textbook;
 mod theory;
+mod threads;
 
 pub use budget::{GyroBudget, gyro_budget};
 pub use calibrate::{
@@ -56,3 +59,4 @@ pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{CoreSettings, PipelineSettings, PipelineTiming};
 pub use plan::{Plan, plan_suite};
 pub use suite::{Observer, SuiteError, SuiteOptions, SuiteOutcome, run_suite};
+pub use threads::{THREADS_MAX, start_threads, thread_count};

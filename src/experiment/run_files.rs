@@ -13,13 +13,13 @@ use crate::scenario::{SamplesFormat, manifest_toml};
 use crate::signal::{CalibrationSheet, RunSignals};
 use crate::units::rad_to_arcsec;
 
-/// Writes everything of one run beside its place and swaps it in whole; names its pictures.
+/// Writes everything of one run beside its place, to be swapped in whole; names its pictures.
 pub(super) fn write_folder(
     plan: &Plan,
     report: &RunReport,
     simulation: &Simulation,
     target: &Path,
-) -> io::Result<Vec<String>> {
+) -> io::Result<(FolderWriter, Vec<String>)> {
     let folder = FolderWriter::create(target)?;
     folder.write("summary.json", report::run_summary_json(report).as_bytes())?;
     folder.write(
@@ -57,8 +57,7 @@ pub(super) fn write_folder(
     if report.scenario.output.samples == SamplesFormat::Npy {
         write_samples(&folder, &gyros)?;
     }
-    folder.commit()?;
-    Ok(pictures)
+    Ok((folder, pictures))
 }
 
 /// The groups of a campaign and the parameters to apply.

@@ -63,7 +63,7 @@ pub fn run_summary_json(report: &RunReport) -> String {
 pub fn suite_summary_json(tool_version: &str, runs: &[RunOutcome], across: &Comparison) -> String {
     let with = |status: RunStatus| runs.iter().filter(|run| run.status() == status).count();
     let verdicts = |kind: VerdictKind| runs.iter().map(|run| run.count(kind)).sum::<usize>();
-    let totals = object([
+    let mut totals = object([
         ("runs", runs.len().into()),
         ("passed", with(RunStatus::Pass).into()),
         ("gate_failed", with(RunStatus::GateFailed).into()),
@@ -76,6 +76,11 @@ pub fn suite_summary_json(tool_version: &str, runs: &[RunOutcome], across: &Comp
             verdicts(VerdictKind::Inconclusive).into(),
         ),
     ]);
+    // Only a suite that was stopped has such runs.
+    let not_run = with(RunStatus::NotRun);
+    if not_run > 0 {
+        totals.insert("not_run".to_owned(), not_run.into());
+    }
     let mut root = object([
         ("schema", SCHEMA.into()),
         ("tool", tool(tool_version)),
