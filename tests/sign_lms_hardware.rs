@@ -42,7 +42,7 @@ fn compare<F: Fp>(settings: SignLmsSettings, stimulus: &[f64]) -> Result<(), Str
     let same = words(&by_clock) == words(&at_once)
         && words(pipeline.rama()) == words(&engine.rama())
         && words(pipeline.ramb()) == words(&engine.ramb())
-        && pipeline.registers().norm.to_bits() == engine.norm().to_bits();
+        && pipeline.machine().norm().to_bits() == engine.norm().to_bits();
     if same && by_clock.len() == pairs.len() {
         Ok(())
     } else {

@@ -17,6 +17,7 @@ use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
 use crate::fpga::lms::LmsState;
+use crate::fpga::registers::ControlState;
 use crate::fpga::rls::RlsState;
 use crate::fpga::sign_lms::SignLmsState;
 use crate::fpga::trace::{ClockRecord, Recorder, Window};
@@ -209,12 +210,9 @@ pub fn write_waveform<F: Fp>(
     };
     let layout = Sheet::of(first);
     let (top, filter) = match settings.pipeline {
-        PipelineConfig::Rls(_) => ("rls", translate_file(&RlsState::ALL.map(RlsState::name))),
-        PipelineConfig::Lms(_) => ("lms", translate_file(&LmsState::ALL.map(LmsState::name))),
-        PipelineConfig::SignLms(_) => (
-            "sign_lms",
-            translate_file(&SignLmsState::ALL.map(SignLmsState::name)),
-        ),
+        PipelineConfig::Rls(_) => ("rls", translate_file(RlsState::NAMES)),
+        PipelineConfig::Lms(_) => ("lms", translate_file(LmsState::NAMES)),
+        PipelineConfig::SignLms(_) => ("sign_lms", translate_file(SignLmsState::NAMES)),
     };
     let half_period_ps = half_period_ps(settings.clock_mhz);
 

@@ -8,7 +8,7 @@
 //!              +-----------------------------+
 //! ```
 //!
-//! Ports as in [`crate::fpga::rls`]; the output strobe is up in the clock ERR.
+//! Ports as in [`crate::fpga::machine`]; the output strobe is up in the clock ERR.
 //!
 //! Latency: [`lms_latency_clocks`]. Interval: [`lms_clocks_per_sample`]; one more after idling.
 //!
@@ -32,13 +32,13 @@
 
 mod config;
 mod engine;
-mod pipeline;
+mod machine;
 mod state;
 
 pub use config::{DesiredSource, LmsConfig, LmsSettings};
 pub use engine::LmsEngine;
-pub use pipeline::LmsPipeline;
-pub use state::{LmsRegisters, LmsState};
+pub use machine::{LmsMachine, LmsPipeline};
+pub use state::LmsState;
 
 /// Clocks from one accepted sample to the next, back to back: `3N + 4`, NLMS `4N + 5`.
 #[must_use]

@@ -8,11 +8,7 @@
 //!              +-----------------------------+
 //! ```
 //!
-//! | port | direction | word | meaning |
-//! |---|---|---|---|
-//! | `input` | in | `Option<Pair>`: strobe, `x`, `d` | held until `accepted` |
-//! | `accepted` | out | bit | the pair is taken in this clock (state `RiL_loading`) |
-//! | `output` | out | `Option`: strobe, `y` | registered (Y); strobe in the first RFW clock |
+//! Ports as in [`crate::fpga::machine`]; the output strobe is up in the first RFW clock.
 //!
 //! Latency: [`rls_latency_clocks`] from the accepting clock to the strobe of the result.
 //! Interval: [`rls_clocks_per_sample`] back to back; one more when the machine was idle.
@@ -43,15 +39,14 @@
 
 mod config;
 mod engine;
-mod pipeline;
+mod machine;
 mod state;
-mod steps;
 
 pub use config::{Division, RlsConfig, RlsSettings};
 pub(crate) use config::{check_positive, check_tap_count};
 pub use engine::{RlsEngine, UpdateOrder};
-pub use pipeline::RlsPipeline;
-pub use state::{RlsRegisters, RlsState};
+pub use machine::{RlsMachine, RlsPipeline};
+pub use state::RlsState;
 
 /// Clocks from one accepted sample to the next, back to back: `4 + 6p + 5p^2`.
 #[must_use]

@@ -8,7 +8,7 @@
 //!              +-----------------------------+
 //! ```
 //!
-//! Ports as in [`crate::fpga::rls`]: d is the newest sample, x the one D samples ago, which the front
+//! Ports as in [`crate::fpga::machine`]: d is the newest sample, x the one D samples ago, which the front
 //! end's hold chain keeps. The output strobe is up in the clock ERR.
 //!
 //! Latency: `M + 5` clocks. Interval: `3M + 7`; one more after idling. At M = 20: 25 and 67.
@@ -45,13 +45,13 @@
 
 mod config;
 mod engine;
-mod pipeline;
+mod machine;
 mod state;
 
 pub use config::{SignLmsConfig, SignLmsSettings};
 pub use engine::SignLmsEngine;
-pub use pipeline::SignLmsPipeline;
-pub use state::{SignLmsRegisters, SignLmsState};
+pub use machine::{SignLmsMachine, SignLmsPipeline};
+pub use state::SignLmsState;
 
 /// Clocks from one accepted sample to the next, back to back: `3M + 7`.
 #[must_use]

@@ -4,6 +4,7 @@ use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
 use crate::fpga::lms::{LmsConfig, LmsPipeline, LmsState};
 use crate::fpga::probe::{PortView, Probe, RegisterView, Tick};
+use crate::fpga::registers::ControlState;
 use crate::fpga::rls::{RlsConfig, RlsPipeline, RlsState};
 use crate::fpga::sign_lms::{SignLmsConfig, SignLmsPipeline, SignLmsState};
 
@@ -125,7 +126,7 @@ impl Counter {
 #[must_use]
 pub fn measure_rls<F: Fp>(config: RlsConfig<F>) -> Usage {
     let mut pipeline = RlsPipeline::new(config);
-    Counter::default().run(&RlsState::ALL.map(RlsState::name), |pair, counter| {
+    Counter::default().run(RlsState::NAMES, |pair, counter| {
         pipeline.tick_probed(Some(pair), counter)
     })
 }
@@ -134,7 +135,7 @@ pub fn measure_rls<F: Fp>(config: RlsConfig<F>) -> Usage {
 #[must_use]
 pub fn measure_lms<F: Fp>(config: LmsConfig<F>) -> Usage {
     let mut pipeline = LmsPipeline::new(config);
-    Counter::default().run(&LmsState::ALL.map(LmsState::name), |pair, counter| {
+    Counter::default().run(LmsState::NAMES, |pair, counter| {
         pipeline.tick_probed(Some(pair), counter)
     })
 }
@@ -143,8 +144,7 @@ pub fn measure_lms<F: Fp>(config: LmsConfig<F>) -> Usage {
 #[must_use]
 pub fn measure_sign_lms<F: Fp>(config: SignLmsConfig<F>) -> Usage {
     let mut pipeline = SignLmsPipeline::new(config);
-    Counter::default().run(
-        &SignLmsState::ALL.map(SignLmsState::name),
-        |pair, counter| pipeline.tick_probed(Some(pair), counter),
-    )
+    Counter::default().run(SignLmsState::NAMES, |pair, counter| {
+        pipeline.tick_probed(Some(pair), counter)
+    })
 }
