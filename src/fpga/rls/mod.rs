@@ -37,25 +37,20 @@
 //!
 //! Checked by `cycle_exact`, `bit_exact`.
 
+mod clocks;
 mod config;
+mod declaration;
 mod engine;
 mod machine;
+mod schedule;
 mod state;
+mod table;
 
+pub use clocks::{RlsLoad, rls_clocks_per_sample, rls_latency_clocks, rls_stalled_clocks};
 pub use config::{Division, RlsConfig, RlsSettings};
-pub(crate) use config::{check_positive, check_tap_count};
+pub use declaration::RlsCore;
 pub use engine::{RlsEngine, UpdateOrder};
 pub use machine::{RlsMachine, RlsPipeline};
+pub use schedule::{Bound, ScheduleReport, ScheduleSettings, schedule_clocks};
 pub use state::RlsState;
-
-/// Clocks from one accepted sample to the next, back to back: `4 + 6p + 5p^2`.
-#[must_use]
-pub const fn rls_clocks_per_sample(tap_count: usize) -> usize {
-    4 + 6 * tap_count + 5 * tap_count * tap_count
-}
-
-/// Clocks from accepting a sample until its result can be read: `3 + 4p + 5p^2`.
-#[must_use]
-pub const fn rls_latency_clocks(tap_count: usize) -> usize {
-    3 + 4 * tap_count + 5 * tap_count * tap_count
-}
+pub use table::{Basis, Design, TimingRow, table};
