@@ -126,3 +126,116 @@ kinds! {
     /// Line enhancer, by the sign of the error or normalised.
     SignLms: SignLmsSettings, SignLmsConfig;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fpga::engine::Engine;
+    use crate::fpga::front_end::{Pair, UpdateSign};
+    use crate::fpga::lms::DesiredSource;
+    use crate::fpga::rls::{Division, RlsSettings, UpdateOrder};
+    use crate::fpga::trace::Window;
+
+    /// Settings of every kind, in the order of the list.
+    fn examples() -> [CoreSettings; KINDS.len()] {
+        [
+            CoreSettings::Rls(RlsCore {
+                settings: RlsSettings {
+                    tap_count: 3,
+                    forgetting_factor: 0.98,
+                    initial_inverse_correlation: 1e2,
+                    division: Division::Reciprocal,
+                    update_sign: UpdateSign::Corrected,
+                },
+                order: UpdateOrder::Schedule,
+            }),
+            CoreSettings::Lms(LmsSettings {
+                tap_count: 5,
+                step_size: 0.5,
+                regularisation: Some(1.0),
+                desired: DesiredSource::Port,
+                update_sign: UpdateSign::Corrected,
+            }),
+            CoreSettings::SignLms(SignLmsSettings {
+                tap_count: 4,
+                delay_samples: 2,
+                normalised: true,
+                step: 0.5,
+                regularisation: 1.0,
+                initial_weight: 0.25,
+                guard: None,
+                norm_recompute_samples: 8,
+            }),
+        ]
+    }
+
+    fn pairs() -> Vec<Pair<f64>> {
+        (0..40_u32)
+            .map(|k| {
+                let word = |k: u32| f64::from(k * k % 17) - 8.0;
+                Pair::from_f64(word(k), word(k + 1))
+            })
+            .collect()
+    }
+
+    /// Words of the clock-less engine, and its weights after the last.
+    struct EngineWords;
+
+    impl CoreVisitor for EngineWords {
+        type Outcome = (Vec<u64>, Vec<u64>);
+
+        fn visit<C: Core>(self, core: &C) -> Self::Outcome {
+            let mut engine = core.engine::<f64>().unwrap();
+            let words = pairs().into_iter().map(|pair| engine.process(pair));
+            let words = words.map(f64::to_bits).collect();
+            let weights = engine.weights().iter().map(|word| word.to_bits());
+            (words, weights.collect())
+        }
+    }
+
+    #[test]
+    fn every_kind_has_one_row_with_a_name_of_its_own() {
+        for (example, kind) in examples().iter().zip(KINDS) {
+            assert_eq!(example.kind(), *kind);
+            let config = example.config::<f64>().unwrap();
+            assert_eq!(config.as_pipeline().kind(), *kind);
+            let same = KINDS.iter().filter(|other| other.name == kind.name);
+            assert_eq!(same.count(), 1, "{}", kind.name);
+        }
+    }
+
+    #[test]
+    fn declared_clocks_of_every_kind_are_those_counted_on_its_machine() {
+        for example in examples() {
+            let config = example.config::<f64>().unwrap();
+            let pipeline = config.as_pipeline();
+            let used = pipeline.clocked().usage();
+            let name = example.kind().name;
+            assert_eq!(pipeline.tap_count(), example.tap_count(), "{name}");
+            assert_eq!(pipeline.clocks_per_sample() as u64, used.clocks_per_sample);
+            assert_eq!(pipeline.latency_clocks() as u64, used.latency_clocks);
+            let stalled = example.stalled_clocks(Units::ONE_CLOCK).unwrap();
+            assert_eq!(stalled, used.clocks_per_sample, "{name}");
+            let by_state = used.states.iter().map(|state| state.clocks);
+            assert_eq!(by_state.sum::<u64>(), used.clocks_per_sample, "{name}");
+            assert_eq!(used.states.len(), example.kind().states.len());
+        }
+    }
+
+    #[test]
+    fn engine_of_every_kind_has_the_words_of_its_machine() {
+        for example in examples() {
+            let (words, weights) = example.visit(EngineWords);
+            let config = example.config::<f64>().unwrap();
+            let mut clocked = config.as_pipeline().clocked();
+            let outputs = clocked.record(&pairs(), Window::ALL, &mut |_| {});
+            let outputs: Vec<u64> = outputs.into_iter().map(f64::to_bits).collect();
+            let name = example.kind().name;
+            assert_eq!(outputs, words, "{name}");
+            assert!(words.iter().any(|word| *word != words[0]), "{name}");
+            let memories: Vec<u64> = clocked.memories().into_iter().map(f64::to_bits).collect();
+            let found = memories.windows(weights.len()).any(|held| held == weights);
+            assert!(found, "{name}: no memory holds the weights");
+        }
+    }
+}

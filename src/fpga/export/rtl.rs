@@ -37,3 +37,47 @@ pub fn write_rtl<F: Fp>(
     }
     Ok(files)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::SHARED;
+    use crate::fpga::kinds::KINDS;
+
+    #[test]
+    fn the_readme_states_files_macro_and_state_codes_of_every_kind() {
+        let (_, readme) = SHARED[0];
+        let words = readme.split_whitespace().collect::<Vec<_>>().join(" ");
+        for kind in KINDS {
+            for (name, _) in kind.sources {
+                assert!(words.contains(name), "{name}");
+            }
+            let macro_name = format!("VEC_{}", kind.name.to_uppercase());
+            assert!(words.contains(&macro_name), "{macro_name}");
+            for (code, state) in kind.states.iter().enumerate() {
+                assert!(words.contains(&format!("{code} {state}")), "{code} {state}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_kind_has_the_verilog_that_its_name_tells() {
+        for kind in KINDS {
+            let name = kind.name;
+            let wanted = [
+                format!("{name}_ctrl.v"),
+                format!("{name}_core.v"),
+                format!("tb_{name}.v"),
+            ];
+            assert_eq!(kind.sources.map(|(file, _)| file.to_owned()), wanted);
+            for (file, text) in kind.sources {
+                let module = format!("module {}", file.trim_end_matches(".v"));
+                assert!(text.contains(&module), "{file}: {module}");
+            }
+            // The scripts of the export take the first parameter for the tap count.
+            let (_, core) = kind.sources[1];
+            let first = core.find("parameter").expect("parameters");
+            let line = core[first..].lines().next().expect("a line");
+            assert!(line.contains("// taps"), "{name}: {line}");
+        }
+    }
+}
