@@ -1,4 +1,5 @@
-//! Clocks of the LMS and NLMS pipeline, per sample and to the result, and with units that take more than one.
+//! Clocks of the LMS and NLMS pipeline: per sample, to the result, and with units that take more
+//! than one.
 
 use crate::fpga::check::check_tap_count;
 use crate::fpga::error::FpgaError;

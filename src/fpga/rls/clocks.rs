@@ -1,4 +1,5 @@
-//! Clocks of the RLS pipeline, per sample and to the result, and with units that take more than one.
+//! Clocks of the RLS pipeline: per sample, to the result, and with units that take more
+//! than one.
 
 use super::config::Division;
 use crate::fpga::check::check_tap_count;

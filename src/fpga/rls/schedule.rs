@@ -120,48 +120,22 @@ struct Ports {
     writes_b: u64,
 }
 
-const READ_BOTH: Ports = Ports {
-    reads_a: 1,
-    reads_b: 1,
-    writes_a: 0,
-    writes_b: 0,
-};
-const READ_A: Ports = Ports {
-    reads_a: 1,
-    reads_b: 0,
-    writes_a: 0,
-    writes_b: 0,
-};
-const READ_B: Ports = Ports {
-    reads_a: 0,
-    reads_b: 1,
-    writes_a: 0,
-    writes_b: 0,
-};
-const WRITE_BOTH: Ports = Ports {
-    reads_a: 0,
-    reads_b: 0,
-    writes_a: 1,
-    writes_b: 1,
-};
-const WRITE_A: Ports = Ports {
-    reads_a: 0,
-    reads_b: 0,
-    writes_a: 1,
-    writes_b: 0,
-};
-const WRITE_B: Ports = Ports {
-    reads_a: 0,
-    reads_b: 0,
-    writes_a: 0,
-    writes_b: 1,
-};
-const REGISTER: Ports = Ports {
-    reads_a: 0,
-    reads_b: 0,
-    writes_a: 0,
-    writes_b: 0,
-};
+const fn ports([reads_a, reads_b]: [u64; 2], [writes_a, writes_b]: [u64; 2]) -> Ports {
+    Ports {
+        reads_a,
+        reads_b,
+        writes_a,
+        writes_b,
+    }
+}
+
+const READ_BOTH: Ports = ports([1, 1], [0, 0]);
+const READ_A: Ports = ports([1, 0], [0, 0]);
+const READ_B: Ports = ports([0, 1], [0, 0]);
+const WRITE_BOTH: Ports = ports([0, 0], [1, 1]);
+const WRITE_A: Ports = ports([0, 0], [1, 0]);
+const WRITE_B: Ports = ports([0, 0], [0, 1]);
+const REGISTER: Ports = ports([0, 0], [0, 0]);
 
 #[derive(Clone, Debug)]
 struct Operation {

@@ -1,4 +1,5 @@
-//! Clocks of the line enhancer, per sample and to the result, and with units that take more than one.
+//! Clocks of the line enhancer: per sample, to the result, and with units that take more
+//! than one.
 
 use crate::fpga::check::check_tap_count;
 use crate::fpga::error::FpgaError;

@@ -8,8 +8,8 @@
 //!              +-----------------------------+
 //! ```
 //!
-//! Ports as in [`crate::fpga::machine`]: d is the newest sample, x the one D samples ago, which the front
-//! end's hold chain keeps. The output strobe is up in the clock ERR.
+//! Ports as in [`crate::fpga::machine`]: d is the newest sample, x the one D samples ago, which the
+//! front end's hold chain keeps. The output strobe is up in the clock ERR.
 //!
 //! Latency: `M + 5` clocks. Interval: `3M + 7`; one more after idling. At M = 20: 25 and 67.
 //!
