@@ -169,19 +169,19 @@ impl<M: Machine> Sequencer<M> {
             probe.clock(&self.machine.registers().view(), &ports);
         }
         let datapath = &mut Datapath::new(&mut self.memories, probe);
-        if state == M::LOADING {
+        if state != M::LOADING && state != M::State::IDLE {
+            self.machine.step(input.is_some(), datapath);
+        } else if state == M::LOADING {
             match input {
                 Some(pair) => self.machine.load(pair, datapath),
                 None => self.machine.registers_mut().state = M::State::IDLE,
             }
-        } else if state != M::State::IDLE {
-            self.machine.step(input.is_some(), datapath);
         } else if input.is_some() {
             self.machine.registers_mut().state = M::LOADING;
         }
-        for memory in &mut self.memories {
-            memory.edge();
-        }
+        let [rama, ramb] = &mut self.memories;
+        rama.edge();
+        ramb.edge();
         Tick { accepted, output }
     }
 
