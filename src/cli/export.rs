@@ -7,11 +7,9 @@ use super::exit::Exit;
 use super::hardware_arguments::{ExportKind, ExportOptions};
 use super::{output, stimulus};
 use crate::experiment::{
-    CoreSettings, ExportForm, PipelineSettings, Stimulus, export_pipeline, plan_suite,
-    scenario_stimulus,
+    ExportForm, PipelineSettings, Stimulus, export_pipeline, plan_suite, scenario_stimulus,
 };
 use crate::fpga::FpgaError;
-use crate::fpga::rls::UpdateOrder;
 
 /// Writes the folder and says what stands in it.
 pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
@@ -80,7 +78,7 @@ fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Vec<
         }
         (None, None) => return Err(one("give --scenario or --stimulus".to_owned())),
     };
-    if let CoreSettings::Rls(_, UpdateOrder::GainFirst) = settings.core {
+    if !settings.core.has_hardware() {
         let complaint = "update_order = \"gain-first\" has no hardware to export: use \"schedule\"";
         return Err(one(complaint.to_owned()));
     }

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::arguments::Format;
-use crate::experiment::{CoreSettings, PipelineSettings};
+use crate::experiment::PipelineSettings;
 use crate::fpga::front_end::{Desired, UpdateSign};
+use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
-use crate::fpga::rls::{Division, RlsSettings, UpdateOrder};
+use crate::fpga::rls::{Division, RlsCore, RlsSettings, UpdateOrder};
 use crate::fpga::sign_lms::SignLmsSettings;
 use crate::fpga::timing::{UnitTiming, Units};
 use crate::scenario::{NumberFormat, OutputRegister};
@@ -58,7 +59,7 @@ pub(super) enum FormatOption {
 pub(super) struct FilterOptions {
     /// Kind of filter
     #[arg(long, value_enum, default_value_t = Kind::Rls)]
-    pub(super) kind: Kind,
+    kind: Kind,
     /// Number of weights, 1 to 64
     #[arg(long, value_name = "P", default_value_t = 4)]
     pub(super) taps: usize,
@@ -72,7 +73,7 @@ pub(super) struct FilterOptions {
     pub(super) clock_mhz: f64,
     /// Where recursive least squares divides
     #[arg(long, value_enum, default_value_t = DivisionOption::Reciprocal)]
-    pub(super) division: DivisionOption,
+    division: DivisionOption,
     /// Forgetting factor alpha, (0, 1]
     #[arg(
         long,
@@ -80,7 +81,7 @@ pub(super) struct FilterOptions {
         allow_negative_numbers = true,
         default_value_t = 1.0
     )]
-    pub(super) forgetting_factor: f64,
+    forgetting_factor: f64,
     /// Initial inverse correlation, in the inverse square of the words' unit
     #[arg(
         long,
@@ -123,7 +124,8 @@ impl FilterOptions {
                     division: self.division(),
                     update_sign,
                 };
-                let core = CoreSettings::Rls(settings, UpdateOrder::Schedule);
+                let order = UpdateOrder::Schedule;
+                let core = CoreSettings::Rls(RlsCore { settings, order });
                 (core, Desired::Current, 1)
             }
             Kind::Lms | Kind::Nlms => {
@@ -165,6 +167,12 @@ impl FilterOptions {
         }
     }
 
+    /// Kind of filter, as given.
+    pub(super) fn kind_name(&self) -> String {
+        let value = self.kind.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
     /// One over the number of taps.
     #[expect(clippy::cast_precision_loss, reason = "a handful of taps")]
     fn mean_weight(&self) -> f64 {
@@ -172,7 +180,7 @@ impl FilterOptions {
     }
 
     /// Division mode in the terms of the hardware.
-    pub(super) fn division(&self) -> Division {
+    fn division(&self) -> Division {
         match self.division {
             DivisionOption::Reciprocal => Division::Reciprocal,
             DivisionOption::Elementwise => Division::Element,

@@ -1,8 +1,9 @@
-//! Table 1: three ways to build the filter.
+//! Table 1 of the paper: three ways to build the filter.
 
-use super::{sample_period_us, sample_rate_max_khz};
+use super::config::Division;
+use crate::fpga::check::{check_clock, check_tap_count};
 use crate::fpga::error::FpgaError;
-use crate::fpga::rls::{Division, check_tap_count};
+use crate::fpga::timing::{sample_period_us, sample_rate_max_khz};
 
 /// Way of building the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,18 +136,4 @@ pub fn table(
         row(Design::Serial, Basis::Counted, counted_serial, one_each),
         row(Design::Pipeline, Basis::Counted, pipeline, one_each),
     ])
-}
-
-/// Refuses clocks that are not finite and positive.
-pub(in crate::fpga) fn check_clock(clock_mhz: f64) -> Result<(), FpgaError> {
-    if clock_mhz > 0.0 && clock_mhz.is_finite() {
-        Ok(())
-    } else {
-        Err(FpgaError::OutOfRange {
-            name: "clock",
-            value: clock_mhz,
-            range: "> 0 MHz and finite",
-            format: "binary64",
-        })
-    }
 }

@@ -1,0 +1,45 @@
+//! Ranges that every pipeline checks.
+
+use super::error::FpgaError;
+use super::float_unit::Fp;
+
+/// Refuses tap counts the address ranges cannot hold.
+pub(super) fn check_tap_count(value: usize) -> Result<(), FpgaError> {
+    if (1..=64).contains(&value) {
+        Ok(())
+    } else {
+        Err(FpgaError::TapCount { value })
+    }
+}
+
+/// Refuses values that are not finite and positive in the word format.
+pub(super) fn check_positive<F: Fp>(name: &'static str, value: f64) -> Result<(), FpgaError> {
+    let word = F::from_f64(value);
+    if word > F::ZERO && word.is_finite() {
+        Ok(())
+    } else {
+        Err(FpgaError::OutOfRange {
+            name,
+            value,
+            range: "> 0 and finite",
+            format: F::NAME,
+        })
+    }
+}
+
+/// Refuses clocks that are not finite and positive.
+///
+/// # Errors
+/// [`FpgaError::OutOfRange`].
+pub fn check_clock(clock_mhz: f64) -> Result<(), FpgaError> {
+    if clock_mhz > 0.0 && clock_mhz.is_finite() {
+        Ok(())
+    } else {
+        Err(FpgaError::OutOfRange {
+            name: "clock",
+            value: clock_mhz,
+            range: "> 0 MHz and finite",
+            format: "binary64",
+        })
+    }
+}
