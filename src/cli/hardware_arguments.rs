@@ -249,6 +249,9 @@ pub(super) struct ExportOptions {
     /// Recorded stimulus: one column of numbers, NPY or text
     #[arg(long, value_name = "FILE", conflicts_with = "scenario")]
     pub(super) stimulus: Option<PathBuf>,
+    /// Column of a text by its heading or number from 1 [default: the only one]
+    #[arg(long, value_name = "COLUMN", requires = "stimulus")]
+    pub(super) column: Option<String>,
     /// Samples to export [default: 1000, or all of a shorter file]
     #[arg(long, value_name = "N", default_value_t = 1000)]
     pub(super) samples: usize,

@@ -18,7 +18,6 @@ mod output;
 mod run;
 mod schema;
 mod select;
-mod stimulus;
 mod timing;
 
 use std::process::ExitCode;

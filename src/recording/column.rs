@@ -1,8 +1,8 @@
-//! A column of numbers as a file holds it, before its unit is applied.
+//! Columns of numbers as a file holds them, before their unit is applied.
 
 use super::error::Place;
 
-/// Numbers with the places they came from.
+/// Numbers with the name of their column.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Column {
     /// Name in the heading, or what it was asked for by.
@@ -14,8 +14,8 @@ pub(crate) struct Column {
 /// The columns read from one file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Columns {
-    /// The rate or angle.
-    pub(crate) data: Column,
+    /// Rates, angles and what else was asked for, in that order; all of one length.
+    pub(crate) data: Vec<Column>,
     /// The time, where it was asked for.
     pub(crate) time: Option<Column>,
     /// Where each row stands; rows of an array stand at their index.
@@ -29,5 +29,10 @@ impl Columns {
             Some(line) => Place::Line(*line),
             None => Place::Index(row),
         }
+    }
+
+    /// Number of rows.
+    pub(crate) fn rows(&self) -> usize {
+        self.data.first().map_or(0, |column| column.values.len())
     }
 }

@@ -1,40 +1,23 @@
-//! Columns of numbers in text: `,`, `;`, tab or blanks between them.
+//! Columns of numbers in text.
 
 use std::fmt::Write as _;
+use std::io::BufRead;
 use std::path::Path;
 
 use super::column::{Column, Columns};
 use super::error::{LogError, Place};
+use super::input::{failure, push};
+use super::text::{Delimiter, Lines, TextError, finite, is_heading, listed, shown};
 
-/// What stands between the cells of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Delimiter {
-    Character(char),
-    Blanks,
-}
-
-impl Delimiter {
-    /// The delimiter of the first line that is no comment.
-    pub(super) fn of(line: &str) -> Self {
-        let found = ['\t', ';', ','].into_iter().find(|c| line.contains(*c));
-        found.map_or(Self::Blanks, Self::Character)
-    }
-
-    /// The cells of a line, without the blanks and quotation marks around them.
-    pub(super) fn cells(self, line: &str) -> Vec<&str> {
-        match self {
-            Self::Character(character) => line.split(character).map(unquoted).collect(),
-            Self::Blanks => line.split_whitespace().map(unquoted).collect(),
-        }
-    }
-}
-
-/// A cell without the blanks and quotation marks around it.
-fn unquoted(cell: &str) -> &str {
-    let cell = cell.trim();
-    cell.strip_prefix('"')
-        .and_then(|cell| cell.strip_suffix('"'))
-        .unwrap_or(cell)
+/// What is read from a file.
+#[derive(Clone, Debug)]
+pub(super) struct Wanted<'a> {
+    /// Columns by name or number from 1; none: the only one beside the time.
+    pub(super) columns: Vec<Option<&'a str>>,
+    /// Column of the time, likewise.
+    pub(super) time: Option<&'a str>,
+    /// Samples after which reading ends.
+    pub(super) samples_max: usize,
 }
 
 /// How the lines of a file are cut.
@@ -46,19 +29,18 @@ struct Layout {
 }
 
 impl Layout {
-    fn of(line: &str) -> Self {
+    fn of(line: &str) -> Result<Self, String> {
         let delimiter = Delimiter::of(line);
-        let cells = delimiter.cells(line);
-        let is_heading = cells.iter().all(|cell| cell.parse::<f64>().is_err());
-        Self {
+        let cells = delimiter.first_cells(line);
+        Ok(Self {
             delimiter,
             cells: cells.len(),
-            names: if is_heading {
+            names: if is_heading(&cells)? {
                 cells.into_iter().map(str::to_owned).collect()
             } else {
                 Vec::new()
             },
-        }
+        })
     }
 
     /// Index of the column that was asked for by name or by number from 1.
@@ -101,7 +83,7 @@ impl Layout {
         }
         format!(
             "expected one of {}, or a number from 1 to {}",
-            self.names.join(", "),
+            listed(&self.names),
             self.cells
         )
     }
@@ -112,124 +94,147 @@ impl Layout {
     }
 }
 
-/// Reads one column, and that of the time where it is asked for.
+/// Reads columns, and that of the time where it is asked for.
 ///
-/// Empty lines and lines that begin with `#` are passed over. The first other line is a heading if
-/// none of its cells is a number. Numbers have a decimal point.
+/// The first line is a heading if none of its cells is a number. Numbers have a decimal point.
 ///
 /// # Errors
-/// Unknown columns, lines of another width, cells that are no finite number.
+/// Bytes that are no text, unknown columns and one asked for twice, lines of another width, cells
+/// that are no finite number; a first line that is neither a heading nor a row of numbers.
 pub(super) fn read(
     path: &Path,
-    bytes: &[u8],
-    column: Option<&str>,
-    time_column: Option<&str>,
+    reader: impl BufRead,
+    wanted: &Wanted<'_>,
 ) -> Result<Columns, LogError> {
-    let text = text_of(path, bytes, "neither NPY nor text in UTF-8")?;
-    let mut reader: Option<Reader> = None;
-    for (number, line) in lines(text) {
-        let complain = |message: String| LogError::at(path, Place::Line(number), message);
-        match &mut reader {
-            Some(reader) => reader.take(line, number).map_err(complain)?,
+    let mut lines = Lines::new(reader, "neither NPY nor text in UTF-8");
+    let mut table: Option<Table> = None;
+    while let Some(line) = lines.next_line().map_err(|error| fault(path, error))? {
+        let complain = |message: String| LogError::at(path, Place::Line(line.number), message);
+        let cells = match &mut table {
+            Some(table) => table.row(line.text, line.number).map_err(complain)?,
             None => {
-                let mut first = Reader::new(line, column, time_column).map_err(complain)?;
-                if first.layout.names.is_empty() {
-                    first.take(line, number).map_err(complain)?;
+                let first = Table::new(line.text, wanted).map_err(complain)?;
+                let is_heading = !first.layout.names.is_empty();
+                let first = table.insert(first);
+                if is_heading {
+                    continue;
                 }
-                reader = Some(first);
+                first.first_row(line.text)
             }
+        };
+        let Some(table) = &mut table else { continue };
+        table.take(path, &cells, line.number)?;
+        if table.columns.rows() >= wanted.samples_max {
+            break;
         }
     }
-    Ok(reader.map(|reader| reader.columns).unwrap_or_default())
+    Ok(table.map(|table| table.columns).unwrap_or_default())
 }
 
-/// The text that bytes are, or `message` at the first line that is none.
-pub(super) fn text_of<'a>(
-    path: &Path,
-    bytes: &'a [u8],
-    message: &str,
-) -> Result<&'a str, LogError> {
-    std::str::from_utf8(bytes).map_err(|error| {
-        let before = &bytes[..error.valid_up_to()];
-        let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
-        LogError::at(path, Place::Line(line), message)
-    })
-}
-
-/// The lines that are neither empty nor comments, with their numbers from 1.
-pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
-    lines
-        .filter(|(_, line)| !(line.trim().is_empty() || line.trim_start().starts_with('#')))
-        .map(|(index, line)| (index + 1, line))
+/// An error of a text at its line.
+pub(super) fn fault(path: &Path, error: TextError) -> LogError {
+    match error {
+        TextError::Io(error) => failure(path, error),
+        TextError::Content { line, message } => LogError::at(path, Place::Line(line), message),
+    }
 }
 
 /// A file while it is read.
-struct Reader {
+struct Table {
     layout: Layout,
-    data: usize,
+    data: Vec<usize>,
     time: Option<usize>,
     columns: Columns,
+    /// Cells of a first row that are no numbers; none once the second row was held against it.
+    words: Option<Vec<(usize, String)>>,
 }
 
-impl Reader {
-    fn new(first: &str, column: Option<&str>, time_column: Option<&str>) -> Result<Self, String> {
-        let layout = Layout::of(first);
-        let time = time_column.map(|wanted| layout.find(wanted)).transpose()?;
-        let data = match column {
-            Some(wanted) => layout.find(wanted)?,
-            None => layout.only(time)?,
-        };
-        if time == Some(data) {
-            return Err("the column of the data is that of the time".to_owned());
+impl Table {
+    fn new(first: &str, wanted: &Wanted<'_>) -> Result<Self, String> {
+        let layout = Layout::of(first)?;
+        let time = wanted.time.map(|name| layout.find(name)).transpose()?;
+        let columns = wanted.columns.iter();
+        let data = columns.map(|column| match column {
+            Some(name) => layout.find(name),
+            None => layout.only(time),
+        });
+        let data = data.collect::<Result<Vec<usize>, String>>()?;
+        for (position, index) in data.iter().enumerate() {
+            if time == Some(*index) {
+                return Err("the column of the data is that of the time".to_owned());
+            }
+            if data[..position].contains(index) {
+                let name = layout.name(*index).unwrap_or_default();
+                return Err(format!(
+                    "column {} is named for two quantities: expected another for each",
+                    shown(&name)
+                ));
+            }
         }
-        let named = |index| Column {
+        let named = |index: usize| Column {
             name: layout.name(index),
             values: Vec::new(),
         };
         Ok(Self {
             columns: Columns {
-                data: named(data),
+                data: data.iter().copied().map(named).collect(),
                 time: time.map(named),
                 lines: Some(Vec::new()),
             },
             layout,
             data,
             time,
+            words: None,
         })
     }
 
-    fn take(&mut self, line: &str, number: usize) -> Result<(), String> {
-        let cells = self.layout.delimiter.cells(line);
-        if cells.len() != self.layout.cells {
+    /// The cells of a first line that is a row of numbers.
+    fn first_row<'a>(&mut self, line: &'a str) -> Vec<&'a str> {
+        let cells = self.layout.delimiter.first_cells(line);
+        let is_word = |cell: &str| cell.parse::<f64>().is_err();
+        let words = cells.iter().enumerate().filter(|(_, cell)| is_word(cell));
+        let words: Vec<(usize, String)> = words.map(|(index, cell)| (index, shown(cell))).collect();
+        self.words = (!words.is_empty()).then_some(words);
+        cells
+    }
+
+    /// The cells of any other line, as many as the first has.
+    fn row<'a>(&mut self, line: &'a str, number: usize) -> Result<Vec<&'a str>, String> {
+        let width = self.layout.cells;
+        let cells = self.layout.delimiter.cells_up_to(line, width);
+        if cells.len() != width {
+            let got = cells.len();
+            return Err(format!("{got} cells where the first line has {width}"));
+        }
+        // A heading some of whose names are numbers would be taken for a sample.
+        let words = self.words.take().unwrap_or_default();
+        let is_number = |index: usize| cells[index].parse::<f64>().is_ok();
+        if let Some((index, word)) = words.into_iter().find(|(index, _)| is_number(*index)) {
+            let first = self.columns.lines.as_ref().and_then(|lines| lines.first());
             return Err(format!(
-                "{} cells where the first line has {}",
-                cells.len(),
-                self.layout.cells
+                "column {} has a number where line {} has `{word}`: expected a heading without \
+                 numbers or a first row like this one",
+                index + 1,
+                first.copied().unwrap_or(number),
             ));
         }
-        let value = |index: usize| finite(cells[index], self.layout.name(index));
-        self.columns.data.values.push(value(self.data)?);
-        if let (Some(index), Some(time)) = (self.time, &mut self.columns.time) {
-            time.values.push(value(index)?);
-        }
-        if let Some(lines) = &mut self.columns.lines {
-            lines.push(number);
-        }
-        Ok(())
+        Ok(cells)
     }
-}
 
-/// The number of a cell.
-pub(super) fn finite(cell: &str, name: Option<String>) -> Result<f64, String> {
-    let column = name.map_or_else(String::new, |name| format!("column {name}: "));
-    match cell.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        Ok(number) => Err(format!("{column}{number} is not a finite number")),
-        Err(_) if cell.contains(',') => Err(format!(
-            "{column}`{cell}` is not a number: expected a decimal point"
-        )),
-        Err(_) => Err(format!("{column}`{cell}` is not a number")),
+    /// Takes the numbers of a row.
+    fn take(&mut self, path: &Path, cells: &[&str], line: usize) -> Result<(), LogError> {
+        let indices = self.data.iter().chain(&self.time);
+        let columns = self.columns.data.iter_mut().chain(&mut self.columns.time);
+        for (index, column) in indices.zip(columns) {
+            let value = finite(cells[*index], None)
+                .or_else(|_| finite(cells[*index], column.name.as_deref()))
+                .map_err(|message| LogError::at(path, Place::Line(line), message))?;
+            push(&mut column.values, value).map_err(|error| failure(path, error))?;
+        }
+        match &mut self.columns.lines {
+            Some(lines) => push(lines, line).map_err(|error| failure(path, error)),
+            None => Ok(()),
+        }
     }
 }
 
