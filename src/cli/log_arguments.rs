@@ -56,7 +56,7 @@ pub(super) struct LogOptions {
     #[arg(long, value_name = "COLUMN")]
     pub(super) time: Option<String>,
     /// Unit of the time column: s, ms, us, ns
-    #[arg(long, value_name = "UNIT", default_value = "s")]
+    #[arg(long, value_name = "UNIT", default_value = "s", requires = "time")]
     pub(super) time_unit: TimeUnit,
     /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz
     #[arg(long, value_name = "MOTION", default_value = "static")]

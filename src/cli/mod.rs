@@ -11,6 +11,7 @@ mod exit;
 mod expand;
 mod export;
 mod hardware_arguments;
+mod idle;
 mod list;
 mod log;
 mod log_arguments;
@@ -22,15 +23,13 @@ mod timing;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 use arguments::{Arguments, Command};
 use exit::Exit;
 
 /// Runs the program: parses the arguments, dispatches the command and returns the exit code.
 #[must_use]
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let arguments = match idle::parse() {
         Ok(arguments) => arguments,
         Err(error) => return exit::usage(&error),
     };

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::BufRead;
 use std::path::Path;
 
-use super::column::{Column, Columns};
+use super::column::{Column, Columns, RowLines};
 use super::error::{LogError, Place};
 use super::input::{failure, push};
 use super::text::{Delimiter, Lines, TextError, finite, is_heading, listed, shown};
@@ -111,7 +111,7 @@ pub(super) fn read(
     while let Some(line) = lines.next_line().map_err(|error| fault(path, error))? {
         let complain = |message: String| LogError::at(path, Place::Line(line.number), message);
         let cells = match &mut table {
-            Some(table) => table.row(line.text, line.number).map_err(complain)?,
+            Some(table) => table.row(line.text).map_err(complain)?,
             None => {
                 let first = Table::new(line.text, wanted).map_err(complain)?;
                 let is_heading = !first.layout.names.is_empty();
@@ -135,7 +135,7 @@ pub(super) fn read(
 pub(super) fn fault(path: &Path, error: TextError) -> LogError {
     match error {
         TextError::Io(error) => failure(path, error),
-        TextError::Content { line, message } => LogError::at(path, Place::Line(line), message),
+        TextError::Content { line, message, .. } => LogError::at(path, Place::Line(line), message),
     }
 }
 
@@ -179,7 +179,7 @@ impl Table {
             columns: Columns {
                 data: data.iter().copied().map(named).collect(),
                 time: time.map(named),
-                lines: Some(Vec::new()),
+                lines: Some(RowLines::default()),
             },
             layout,
             data,
@@ -199,7 +199,7 @@ impl Table {
     }
 
     /// The cells of any other line, as many as the first has.
-    fn row<'a>(&mut self, line: &'a str, number: usize) -> Result<Vec<&'a str>, String> {
+    fn row<'a>(&mut self, line: &'a str) -> Result<Vec<&'a str>, String> {
         let width = self.layout.cells;
         let cells = self.layout.delimiter.cells_up_to(line, width);
         if cells.len() != width {
@@ -210,12 +210,14 @@ impl Table {
         let words = self.words.take().unwrap_or_default();
         let is_number = |index: usize| cells[index].parse::<f64>().is_ok();
         if let Some((index, word)) = words.into_iter().find(|(index, _)| is_number(*index)) {
-            let first = self.columns.lines.as_ref().and_then(|lines| lines.first());
+            let first = match self.columns.place(0) {
+                Place::Line(line) => line,
+                Place::Index(_) => 1,
+            };
             return Err(format!(
-                "column {} has a number where line {} has `{word}`: expected a heading without \
+                "column {} has a number where line {first} has `{word}`: expected a heading without \
                  numbers or a first row like this one",
                 index + 1,
-                first.copied().unwrap_or(number),
             ));
         }
         Ok(cells)
@@ -223,6 +225,7 @@ impl Table {
 
     /// Takes the numbers of a row.
     fn take(&mut self, path: &Path, cells: &[&str], line: usize) -> Result<(), LogError> {
+        let row = self.columns.rows();
         let indices = self.data.iter().chain(&self.time);
         let columns = self.columns.data.iter_mut().chain(&mut self.columns.time);
         for (index, column) in indices.zip(columns) {
@@ -232,7 +235,7 @@ impl Table {
             push(&mut column.values, value).map_err(|error| failure(path, error))?;
         }
         match &mut self.columns.lines {
-            Some(lines) => push(lines, line).map_err(|error| failure(path, error)),
+            Some(lines) => lines.take(row, line).map_err(|error| failure(path, error)),
             None => Ok(()),
         }
     }

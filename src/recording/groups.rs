@@ -5,7 +5,7 @@ use std::path::Path;
 use super::csv::fault;
 use super::error::{LogError, Place};
 use super::groups_heading::{Heading, Quantity};
-use super::input::{FileError, TEXT_BYTES_MAX, read_at_most};
+use super::input::read_whole;
 use super::text::{Lines, finite, shown};
 use super::unit::RateUnit;
 use crate::units::deg_per_h_to_deg_per_s;
@@ -135,10 +135,7 @@ fn bits(group: &RecordedGroup) -> impl Iterator<Item = u64> {
 /// [`LogError`]: whatever the file system says; columns unknown, repeated or missing; cells that are
 /// no number or out of range; a group named twice.
 pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
-    let bytes = read_at_most(path, TEXT_BYTES_MAX).map_err(|error| match error {
-        FileError::Io(error) => LogError::read(path, error),
-        other => LogError::of_file(path, other.to_string()),
-    })?;
+    let bytes = read_whole(path)?;
     let mut lines = Lines::new(&bytes[..], "no text in UTF-8");
     let complain = |number, message| LogError::at(path, Place::Line(number), message);
     let first = lines.next_line().map_err(|error| fault(path, error))?;

@@ -1,50 +1,30 @@
 //! The bytes of a file, with bounds: nothing that ends is too long, nothing endless is read to its end.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use super::error::LogError;
 
 /// Most bytes that are taken from a pipe or a device, which need not end.
-const STREAM_BYTES_MAX: u64 = 1 << 30;
-/// Most bytes of a text that is read as a whole: groups, the table of a script, a calibration.
-pub const TEXT_BYTES_MAX: u64 = 16 << 20;
+const STREAM_BYTES_MAX: u64 = 1 << 29;
+/// Most bytes of a text that is read as a whole.
+const TEXT_BYTES_MAX: u64 = 16_000_000;
 
-/// Why a file was not read as a whole.
-#[derive(Debug, thiserror::Error)]
-pub enum FileError {
-    /// The file system refused.
-    #[error("{0}")]
-    Io(#[from] io::Error),
-    /// A folder, a pipe or a device where a file is expected.
-    #[error("it is no regular file")]
-    NotRegular,
-    /// More bytes than such a file may have.
-    #[error("it has more than {0} bytes, the most that such a file may have")]
-    TooLong(u64),
-}
-
-/// The bytes of a regular file of at most `bytes_max` bytes.
+/// The bytes of a text of a few lines, from a file of any kind.
 ///
 /// # Errors
-/// [`FileError`]: whatever the file system says; anything else than a regular file, which is not
-/// opened; a longer file, of which no more is read.
-pub fn read_regular(path: &Path, bytes_max: u64) -> Result<Vec<u8>, FileError> {
-    if !fs::metadata(path)?.is_file() {
-        return Err(FileError::NotRegular);
-    }
-    read_at_most(path, bytes_max)
-}
-
-/// The bytes of a file of any kind, at most `bytes_max`.
-pub(super) fn read_at_most(path: &Path, bytes_max: u64) -> Result<Vec<u8>, FileError> {
+/// [`LogError`]: whatever the file system says; more bytes than such a text may have, of which no
+/// more is read.
+pub(super) fn read_whole(path: &Path) -> Result<Vec<u8>, LogError> {
+    let failed = |error| LogError::read(path, error);
     let mut bytes = Vec::new();
-    let file = File::open(path)?;
-    file.take(bytes_max.saturating_add(1))
-        .read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > bytes_max {
-        return Err(FileError::TooLong(bytes_max));
+    let file = File::open(path).map_err(failed)?;
+    let read = file.take(TEXT_BYTES_MAX + 1).read_to_end(&mut bytes);
+    read.map_err(failed)?;
+    if bytes.len() as u64 > TEXT_BYTES_MAX {
+        let message = format!("more than {TEXT_BYTES_MAX} bytes, the most that it may have");
+        return Err(LogError::of_file(path, message));
     }
     Ok(bytes)
 }
@@ -137,4 +117,31 @@ pub(super) fn push<T>(values: &mut Vec<T>, value: T) -> io::Result<()> {
     reserved.map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))?;
     values.push(value);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines of a file as if it were a pipe of which `bytes_max` bytes are taken.
+    fn streamed(bytes_max: u64) -> Result<String, LogError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("pipe");
+        std::fs::write(&path, "1\n2\n3\n4\n5\n6\n").unwrap();
+        let mut input = Input::open(&path)?;
+        input.left = bytes_max;
+        let mut text = String::new();
+        let read = input.read_to_string(&mut text);
+        read.map_err(|error| failure(&path, error))?;
+        Ok(text)
+    }
+
+    #[test]
+    fn a_stream_that_does_not_end_is_refused_with_its_bound() {
+        assert_eq!(streamed(12).unwrap(), "1\n2\n3\n4\n5\n6\n");
+        let error = streamed(11).unwrap_err();
+        assert!(matches!(error, LogError::Content { .. }), "{error:?}");
+        let message = error.to_string();
+        assert!(message.contains("more than 536870912 bytes"), "{message}");
+    }
 }

@@ -21,9 +21,9 @@ mod unit;
 pub use csv::csv_text;
 pub use error::LogError;
 pub use groups::{GROUPS_MAX, Mounting, RecordedGroup, RecordedGroups, read_groups};
-pub use input::{FileError, TEXT_BYTES_MAX, read_regular};
-pub use log::read_stimulus;
-pub use log::{AssemblyColumns, AssemblyLog, Log, LogFormat, read_assembly_log, read_log};
-pub use text::{Delimiter, LINE_BYTES_MAX, Line, Lines, TextError, text_of};
+pub use log::{
+    AssemblyColumns, AssemblyLog, Log, LogFormat, read_assembly_log, read_log, read_stimulus,
+};
+pub use text::{Delimiter, Line, Lines, TextError};
 pub use timing::{TimeUnit, Timing};
 pub use unit::RateUnit;

@@ -8,7 +8,7 @@
 use std::io::{self, BufRead};
 
 /// Longest line, bytes.
-pub const LINE_BYTES_MAX: usize = 1 << 20;
+const LINE_BYTES_MAX: usize = 1 << 20;
 /// Longest part of a cell that a message repeats, characters.
 const SHOWN_CHARACTERS: usize = 40;
 /// Most names that a message lists.
@@ -49,6 +49,8 @@ pub enum TextError {
     Content {
         /// The line, from 1.
         line: usize,
+        /// Byte of the text at which it starts.
+        start: usize,
         /// What is wrong.
         message: String,
     },
@@ -173,22 +175,10 @@ impl<R: BufRead> Lines<R> {
     fn complaint(&self, message: String) -> TextError {
         TextError::Content {
             line: self.number,
+            start: self.start,
             message,
         }
     }
-}
-
-/// The text that bytes are, byte order mark included.
-///
-/// # Errors
-/// [`TextError`] at the first line that is no text.
-pub fn text_of(bytes: Vec<u8>, encoding: &'static str) -> Result<String, TextError> {
-    let mut lines = Lines::new(&bytes[..], encoding);
-    while lines.next_line()?.is_some() {}
-    String::from_utf8(bytes).map_err(|_| TextError::Content {
-        line: 1,
-        message: encoding.to_owned(),
-    })
 }
 
 /// What stands between the cells of a line.

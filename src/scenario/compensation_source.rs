@@ -9,7 +9,6 @@ use std::sync::Arc;
 use super::compensation_config::CompensationParameters;
 use super::error::{Location, ScenarioError};
 use super::resolved::{Draft, InputFile, Resolved};
-use super::script;
 use super::source::{Label, Mark, Sources, shown_path};
 use super::suite;
 use super::tree::{Node, Table, Value, parse_document};
@@ -145,7 +144,11 @@ impl Named {
 
     /// The bytes of the file.
     fn read(&self, sources: &Sources) -> Result<Vec<u8>, ScenarioError> {
-        script::read_bytes(&self.path).map_err(|message| self.error(sources, &message))
+        std::fs::read(&self.path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => self.error(sources, "no such file"),
+            _ if self.path.is_dir() => self.error(sources, "it is a folder, not a file"),
+            _ => self.error(sources, &format!("cannot read the file: {error}")),
+        })
     }
 }
 

@@ -3,16 +3,14 @@
 //! The file is read where the key that names it was written, and its columns take the place of
 //! that key. What is checked, hashed, recorded and repeated afterwards are the values themselves.
 
-use std::io;
+use std::fs;
 use std::path::Path;
 
 use super::error::ScenarioError;
 use super::resolved::InputFile;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
-use crate::recording::{
-    Delimiter, FileError, Lines, TEXT_BYTES_MAX, TextError, read_regular, text_of,
-};
+use crate::recording::{Delimiter, Lines, TextError};
 
 /// The key that names the file.
 pub(crate) const FILE_KEY: &str = "turntable.script.file";
@@ -22,9 +20,6 @@ const TIME: &str = "time_s";
 
 /// The columns of which a file has one.
 const VALUES: [&str; 2] = ["rate_deg_per_s", "angle_deg"];
-
-/// What is said of bytes that are no text.
-const NO_TEXT: &str = "the file is not UTF-8 text";
 
 /// Most rows of a file: its values stand in the manifest of every run.
 const ROWS_MAX: usize = 100_000;
@@ -58,7 +53,8 @@ pub(crate) fn read_into(
     };
     let bytes = read_bytes(&path).map_err(|message| complain(sources, &message))?;
     let digest = blake3::hash(&bytes).to_hex().to_string();
-    let text = text_of(bytes, NO_TEXT).map_err(|error| complain(sources, &error.to_string()))?;
+    let text =
+        String::from_utf8(bytes).map_err(|_| complain(sources, "the file is not UTF-8 text"))?;
     let source = sources.add_file(
         super::source::shown_path(&path),
         text.clone(),
@@ -81,51 +77,56 @@ pub(crate) fn read_into(
     Ok(())
 }
 
-/// The bytes of a file that a scenario names, or what is wrong with it.
-pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
-    read_regular(path, TEXT_BYTES_MAX).map_err(|error| match error {
-        FileError::Io(error) if error.kind() == io::ErrorKind::NotFound => {
-            "no such file".to_owned()
-        }
+fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+    fs::read(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => "no such file".to_owned(),
         _ if path.is_dir() => "it is a folder, not a file".to_owned(),
-        FileError::Io(error) => format!("cannot read the file: {error}"),
-        other => other.to_string(),
+        _ => format!("cannot read the file: {error}"),
     })
 }
 
 /// A cell and the byte at which it starts.
 type Cell<'a> = (usize, &'a str);
 
-/// The cells with their places in the text; they are parts of the line, which begins at `start`.
-fn placed<'a>(start: usize, line: &'a str, cells: Vec<&'a str>) -> Vec<Cell<'a>> {
+/// The cells of a line that starts at a byte; empty ones beyond a width are none.
+fn cells(delimiter: Delimiter, start: usize, line: &str, width: usize) -> Vec<Cell<'_>> {
     let begin = line.as_ptr() as usize;
-    let place = |cell: &'a str| (start + (cell.as_ptr() as usize - begin), cell);
-    cells.into_iter().map(place).collect()
+    let cells = delimiter.cells_up_to(line, width).into_iter();
+    // Cells are parts of the line.
+    cells
+        .map(|cell| (start + (cell.as_ptr() as usize - begin), cell))
+        .collect()
+}
+
+/// The lines that say something, with the byte at which each starts.
+fn lines(text: &str) -> Result<Vec<(usize, &str)>, (usize, String)> {
+    let mut lines = Lines::new(text.as_bytes(), "the file is not UTF-8 text");
+    let mut found = Vec::new();
+    loop {
+        match lines.next_line() {
+            Ok(Some(line)) => found.push((line.start, &text[line.start..][..line.text.len()])),
+            Ok(None) => return Ok(found),
+            Err(TextError::Content { start, message, .. }) => return Err((start, message)),
+            Err(TextError::Io(error)) => return Err((0, error.to_string())),
+        }
+    }
 }
 
 /// The columns of a table, every value marked where it stands.
 fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
-    // The text was read once already: what it holds are lines of text.
-    let fault = |error: TextError| (0, error.to_string());
-    let mut lines = Lines::new(text.as_bytes(), NO_TEXT);
-    let Some(first) = lines.next_line().map_err(fault)? else {
-        return Err((0, format!("the file is empty: expected {}", expected())));
-    };
-    let delimiter = Delimiter::of(first.text);
-    let names = delimiter.first_cells(first.text);
-    let names = placed(first.start, first.text, names);
-    check_header(first.start, &names)?;
-    let header: Vec<(usize, String)> = names
-        .into_iter()
-        .map(|(at, name)| (at, name.to_owned()))
-        .collect();
+    let mut lines = lines(text)?.into_iter();
+    let (start, header) = lines
+        .next()
+        .ok_or_else(|| (0, format!("the file is empty: expected {}", expected())))?;
+    let delimiter = Delimiter::of(header);
+    let header = cells(delimiter, start, header, 0);
+    check_header(start, &header)?;
     let mut values: [Vec<Node>; 2] = [Vec::new(), Vec::new()];
-    while let Some(line) = lines.next_line().map_err(fault)? {
-        let start = line.start;
+    for (start, line) in lines {
         if values[0].len() == ROWS_MAX {
             return Err((start, format!("too many rows: allowed up to {ROWS_MAX}")));
         }
-        let row = delimiter.cells_up_to(line.text, header.len());
+        let row = cells(delimiter, start, line, header.len());
         if row.len() != header.len() {
             let count = row.len();
             return Err((
@@ -133,7 +134,6 @@ fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
                 format!("{count} values in the row: expected 2, one a column"),
             ));
         }
-        let row = placed(start, line.text, row);
         for ((at, cell), (column, (_, name))) in row.iter().zip(values.iter_mut().zip(&header)) {
             let number: f64 = cell.parse().map_err(|_| {
                 let message =
@@ -146,12 +146,12 @@ fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
             });
         }
     }
-    let table = header.into_iter().zip(values).map(|((at, name), values)| {
+    let table = header.iter().zip(values).map(|((at, name), values)| {
         let node = Node {
             value: Value::Array(values),
-            mark: Some(Mark { source, start: at }),
+            mark: Some(Mark { source, start: *at }),
         };
-        (name, node)
+        ((*name).to_owned(), node)
     });
     Ok(table.collect())
 }
