@@ -29,13 +29,22 @@ struct Layout {
 }
 
 impl Layout {
-    fn of(line: &str) -> Result<Self, String> {
+    /// The layout that a first line, heading or not, has above the first row.
+    fn of(line: &str, first_row: &str) -> Result<Self, String> {
         let delimiter = Delimiter::of(line);
-        let cells = delimiter.first_cells(line);
+        let mut cells = delimiter.first_cells(line);
+        let is_heading = is_heading(&cells)?;
+        // Blanks in the heading of a single column are part of its name.
+        if is_heading
+            && delimiter == Delimiter::Blanks
+            && delimiter.first_cells(first_row).len() == 1
+        {
+            cells = vec![line.trim()];
+        }
         Ok(Self {
             delimiter,
             cells: cells.len(),
-            names: if is_heading(&cells)? {
+            names: if is_heading {
                 cells.into_iter().map(str::to_owned).collect()
             } else {
                 Vec::new()
@@ -107,22 +116,27 @@ pub(super) fn read(
     wanted: &Wanted<'_>,
 ) -> Result<Columns, LogError> {
     let mut lines = Lines::new(reader, "neither NPY nor text in UTF-8");
+    let mut heading: Option<(String, usize)> = None;
     let mut table: Option<Table> = None;
     while let Some(line) = lines.next_line().map_err(|error| fault(path, error))? {
-        let complain = |message: String| LogError::at(path, Place::Line(line.number), message);
-        let cells = match &mut table {
-            Some(table) => table.row(line.text).map_err(complain)?,
+        let at = |number: usize| move |text| LogError::at(path, Place::Line(number), text);
+        let table = match &mut table {
+            Some(table) => table,
             None => {
-                let first = Table::new(line.text, wanted).map_err(complain)?;
-                let is_heading = !first.layout.names.is_empty();
-                let first = table.insert(first);
-                if is_heading {
+                let first = heading.take();
+                let (first, number) = match &first {
+                    Some((text, number)) => (text.as_str(), *number),
+                    None => (line.text, line.number),
+                };
+                let layout = Layout::of(first, line.text).map_err(at(number))?;
+                if !layout.names.is_empty() && number == line.number {
+                    heading = Some((line.text.to_owned(), line.number));
                     continue;
                 }
-                first.first_row(line.text)
+                table.insert(Table::new(layout, wanted).map_err(at(number))?)
             }
         };
-        let Some(table) = &mut table else { continue };
+        let cells = table.row(line.text).map_err(at(line.number))?;
         table.take(path, &cells, line.number)?;
         if table.columns.rows() >= wanted.samples_max {
             break;
@@ -146,12 +160,11 @@ struct Table {
     time: Option<usize>,
     columns: Columns,
     /// Cells of a first row that are no numbers; none once the second row was held against it.
-    words: Option<Vec<(usize, String)>>,
+    words: Vec<(usize, String)>,
 }
 
 impl Table {
-    fn new(first: &str, wanted: &Wanted<'_>) -> Result<Self, String> {
-        let layout = Layout::of(first)?;
+    fn new(layout: Layout, wanted: &Wanted<'_>) -> Result<Self, String> {
         let time = wanted.time.map(|name| layout.find(name)).transpose()?;
         let columns = wanted.columns.iter();
         let data = columns.map(|column| match column {
@@ -184,21 +197,11 @@ impl Table {
             layout,
             data,
             time,
-            words: None,
+            words: Vec::new(),
         })
     }
 
-    /// The cells of a first line that is a row of numbers.
-    fn first_row<'a>(&mut self, line: &'a str) -> Vec<&'a str> {
-        let cells = self.layout.delimiter.first_cells(line);
-        let is_word = |cell: &str| cell.parse::<f64>().is_err();
-        let words = cells.iter().enumerate().filter(|(_, cell)| is_word(cell));
-        let words: Vec<(usize, String)> = words.map(|(index, cell)| (index, shown(cell))).collect();
-        self.words = (!words.is_empty()).then_some(words);
-        cells
-    }
-
-    /// The cells of any other line, as many as the first has.
+    /// The cells of a row, as many as the first line has.
     fn row<'a>(&mut self, line: &'a str) -> Result<Vec<&'a str>, String> {
         let width = self.layout.cells;
         let cells = self.layout.delimiter.cells_up_to(line, width);
@@ -206,21 +209,33 @@ impl Table {
             let got = cells.len();
             return Err(format!("{got} cells where the first line has {width}"));
         }
-        // A heading some of whose names are numbers would be taken for a sample.
-        let words = self.words.take().unwrap_or_default();
-        let is_number = |index: usize| cells[index].parse::<f64>().is_ok();
-        if let Some((index, word)) = words.into_iter().find(|(index, _)| is_number(*index)) {
-            let first = match self.columns.place(0) {
-                Place::Line(line) => line,
-                Place::Index(_) => 1,
-            };
-            return Err(format!(
-                "column {} has a number where line {first} has `{word}`: expected a heading without \
-                 numbers or a first row like this one",
-                index + 1,
-            ));
+        if self.layout.names.is_empty() && self.columns.rows() < 2 {
+            self.hold_against_first(&cells)?;
         }
         Ok(cells)
+    }
+
+    /// Refuses a first row that may be a heading some of whose names are numbers: one that has words
+    /// where the second has numbers. It would be taken for a sample.
+    fn hold_against_first(&mut self, cells: &[&str]) -> Result<(), String> {
+        let is_number = |cell: &str| cell.parse::<f64>().is_ok();
+        if self.columns.rows() == 0 {
+            let words = cells.iter().enumerate();
+            let words = words.filter(|(_, cell)| !is_number(cell));
+            self.words = words.map(|(index, cell)| (index, shown(cell))).collect();
+            return Ok(());
+        }
+        let words = std::mem::take(&mut self.words);
+        let found = words
+            .into_iter()
+            .find(|(index, _)| is_number(cells[*index]));
+        found.map_or(Ok(()), |(index, word)| {
+            Err(format!(
+                "column {} has a number where the first row has `{word}`: expected a heading without \
+                 numbers, or a first row like this one",
+                index + 1,
+            ))
+        })
     }
 
     /// Takes the numbers of a row.
