@@ -319,7 +319,7 @@ fn what_is_no_text_is_refused_alike_by_every_reader() {
         }
     }
     // Nothing is repeated in full.
-    for message in complaints(&vec![b'1'; 1 << 20]) {
+    for message in &complaints(&vec![b'1'; 1 << 20])[..4] {
         assert!(message.len() < 400, "{message}");
     }
 }

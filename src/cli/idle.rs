@@ -2,7 +2,8 @@
 //!
 //! Invariant: an option that is given acts, or the command ends with a usage error; a default never is
 //! an error. What clap can say (`requires`, `conflicts_with`) stands at the options; here stands what
-//! depends on the value of another one.
+//! depends on the value of another one. Clap need not ask for what an option requires if a third one
+//! excludes it: where it does not, the two exclude each other by themselves.
 
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
@@ -290,6 +291,12 @@ mod tests {
         let log = "fogbench analyze a.csv --unit deg/h --rate-hz 100";
         for (line, lacking) in [
             (format!("{log} --axis x"), "--columns"),
+            (format!("{log} --axis x --column gx"), "--column"),
+            (format!("{log} --calibration c --column gx"), "--column"),
+            (
+                format!("{log} --columns a,b,c --axis x --calibration c --column gx"),
+                "--column",
+            ),
             (format!("{log} --calibration c.toml"), "--columns"),
             (format!("{log} --columns a,b,c"), "--calibration"),
             (format!("{log} --temperature-column t"), "--calibration"),
@@ -301,11 +308,11 @@ mod tests {
             ),
             (
                 "fogbench export rtl o --scenario a.toml --column 2".to_owned(),
-                "--stimulus",
+                "--scenario",
             ),
             (
                 "fogbench export rtl o --stimulus a.csv --filter rls".to_owned(),
-                "--scenario",
+                "--stimulus",
             ),
         ] {
             let text = refused(&line);

@@ -40,7 +40,12 @@ pub(super) struct LogOptions {
     )]
     pub(super) columns: Vec<String>,
     /// Parameters to take out of these columns: calibration.toml as `calibrate` and `run` write it
-    #[arg(long, value_name = "FILE", requires = "columns")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "columns",
+        conflicts_with = "column"
+    )]
     pub(super) calibration: Option<PathBuf>,
     /// Axis to measure and to filter after compensation: x, y or z
     #[arg(long, value_name = "AXIS", requires = "columns", value_parser = axis)]

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::error::LogError;
 
 /// Most bytes that are taken from a pipe or a device, which need not end.
-const STREAM_BYTES_MAX: u64 = 1 << 29;
+const STREAM_BYTES_MAX: u64 = 1 << 28;
 /// Most bytes of a text that is read as a whole.
 const TEXT_BYTES_MAX: u64 = 16_000_000;
 
@@ -142,6 +142,6 @@ mod tests {
         let error = streamed(11).unwrap_err();
         assert!(matches!(error, LogError::Content { .. }), "{error:?}");
         let message = error.to_string();
-        assert!(message.contains("more than 536870912 bytes"), "{message}");
+        assert!(message.contains("more than 268435456 bytes"), "{message}");
     }
 }

@@ -1,11 +1,12 @@
 //! Groups files: columns in every combination, numbers near those of a real assembly and far from it.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use fogbench::experiment::{GroupsSettings, calibrate_groups};
 use fogbench::recording::read_groups;
 use fogbench::report::{calibrate_json, calibrate_text};
-use fogbench::scenario::{EstimatorKind, reference_calibration};
+use fogbench::scenario::{CalibrationConfig, EstimatorKind, reference_calibration};
 use fogbench::units::{deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h};
 
 use super::values::{Spelling, mutate_bytes, mutate_table};
@@ -200,7 +201,8 @@ fn case(draws: &mut Draws, folder: &Path) -> Outcome {
         .groups
         .iter()
         .all(|it| it.reference_rate_deg_per_s.is_some());
-    let mut calibration = reference_calibration();
+    static REFERENCE: LazyLock<CalibrationConfig> = LazyLock::new(reference_calibration);
+    let mut calibration = REFERENCE.clone();
     let kinds = [
         EstimatorKind::Batch,
         EstimatorKind::BatchTemperature,

@@ -132,8 +132,8 @@ pub(super) fn measure(draws: &mut Draws, log: Log, folder: &Path) -> Outcome {
         log.sample_rate_hz
     );
     let settings = settings(draws, &log);
-    let filters = draws.chance(0.25).then(filters);
-    let is_written = draws.chance(0.01);
+    let filters = draws.chance(0.12).then(filters);
+    let is_written = draws.chance(0.002);
     match try_log(log, filters, &settings) {
         Ok(trial) => {
             assert_document(&trial.with_report(log_json));

@@ -5,11 +5,12 @@
 //! length, one kind at a time:
 //!
 //! ```text
-//! FOGBENCH_MUTANTS=100000 FOGBENCH_SEED=7 cargo test --test integration mutation::logs -- --nocapture
+//! FOGBENCH_MUTANTS=100000 FOGBENCH_SEED=7 \
+//!     cargo test --release --test integration mutation::logs -- --nocapture
 //! ```
 //!
 //! ends when so many were accepted. A case that fails is named by its seed and drawn again alone by
-//! `FOGBENCH_MUTANT=<seed>`.
+//! `FOGBENCH_MUTANT=<seed>`, which keeps its files below the target folder.
 
 mod groups;
 mod logs;
@@ -55,11 +56,15 @@ fn setting(name: &str) -> Option<u64> {
 /// Runs cases of a kind until `accepted` of them were read, or as many as the environment asks for.
 #[track_caller]
 fn campaign(kind: &str, accepted: u64, case: impl Fn(&mut Draws, &Path) -> Outcome) {
-    let folder = tempfile::tempdir().expect("a scratch folder");
     if let Some(seed) = setting("FOGBENCH_MUTANT") {
-        println!("{kind}: {:?}", case(&mut Draws::new(seed), folder.path()));
+        // Its files stay, to be looked at.
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{kind}-{seed}"));
+        std::fs::create_dir_all(&folder).expect("writable");
+        println!("{kind}: {}", folder.display());
+        println!("{kind}: {:?}", case(&mut Draws::new(seed), &folder));
         return;
     }
+    let folder = tempfile::tempdir().expect("a scratch folder");
     let wanted = setting("FOGBENCH_MUTANTS").unwrap_or(accepted);
     let campaign_seed = setting("FOGBENCH_SEED").unwrap_or(1);
     let watch = watch(kind);
