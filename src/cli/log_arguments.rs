@@ -48,7 +48,8 @@ pub(super) struct LogOptions {
     )]
     pub(super) calibration: Option<PathBuf>,
     /// Axis to measure and to filter after compensation: x, y or z
-    #[arg(long, value_name = "AXIS", requires = "columns", value_parser = axis)]
+    #[arg(long, value_name = "AXIS", requires = "columns", conflicts_with = "column",
+          value_parser = axis)]
     pub(super) axis: Option<usize>,
     /// Column of the assembly's temperature, deg C, which its biases follow
     #[arg(long, value_name = "COLUMN", requires = "calibration")]

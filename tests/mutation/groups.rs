@@ -246,5 +246,5 @@ fn case(draws: &mut Draws, folder: &Path) -> Outcome {
 fn mutated_groups_are_calibrated_or_refused() {
     let one = deg_per_h_to_deg_per_s(3600.0);
     assert!((one - 1.0).abs() < 1e-12, "the units of the table above");
-    campaign("groups", 400, case);
+    campaign("groups", 100, case);
 }

@@ -260,5 +260,5 @@ fn case(draws: &mut Draws, folder: &Path) -> Outcome {
 
 #[test]
 fn a_mutated_log_is_measured_or_refused() {
-    campaign("logs", 400, case);
+    campaign("logs", 200, case);
 }

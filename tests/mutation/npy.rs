@@ -120,5 +120,5 @@ fn case(draws: &mut Draws, folder: &Path) -> Outcome {
 
 #[test]
 fn a_mutated_npy_file_is_measured_or_refused() {
-    campaign("npy", 400, case);
+    campaign("npy", 200, case);
 }
