@@ -203,87 +203,99 @@ mod tests {
         assert!(Arguments::try_parse_from(["fogbench", "schema"]).is_ok());
     }
 
-    #[test]
-    fn every_option_that_would_do_nothing_is_named() {
-        let swing = "fogbench analyze a.csv --unit deg/h --rate-hz 100 --motion swing:5";
-        let scenario = "fogbench export rtl out --scenario a.toml --filter rls";
-        let stimulus = "fogbench export waveform out --stimulus a.csv";
-        for (line, options, reason) in [
-            (
-                format!(
-                    "{swing} --bias-averaging-time-s 1 --fit-tau-min-s 1 --allan-estimator plain \
-                     --averaging-times all"
-                ),
-                &[
-                    "--bias-averaging-time-s",
-                    "--fit-tau-min-s",
-                    "--allan-estimator",
-                    "--averaging-times",
-                ][..],
-                "on a swing",
-            ),
-            (
-                format!(
-                    "{scenario} --kind rls --taps 4 --clock-mhz 40 --division elementwise \
-                     --forgetting-factor 1 --initial-inverse-correlation 1 --step-size 1 \
-                     --regularisation 1 --number-format binary32"
-                ),
-                &[
-                    "--kind",
-                    "--taps",
-                    "--clock-mhz",
-                    "--division",
-                    "--forgetting-factor",
-                    "--initial-inverse-correlation",
-                    "--step-size",
-                    "--regularisation",
-                    "--number-format",
-                ],
-                "beside --filter rls",
-            ),
-            (
-                "fogbench timing --step-size 1 --regularisation 1".to_owned(),
-                &["--step-size", "--regularisation"],
-                "on --kind rls",
-            ),
-            (
-                "fogbench timing --kind lms --division elementwise --forgetting-factor 0.9 \
-                 --initial-inverse-correlation 1 --regularisation 1 --ram-ports 2 --divider-latency 9"
-                    .to_owned(),
-                &[
-                    "--division",
-                    "--forgetting-factor",
-                    "--initial-inverse-correlation",
-                    "--regularisation",
-                    "--ram-ports",
-                    "--divider-latency",
-                ],
-                "--kind lms",
-            ),
-            (
-                format!("{stimulus} --samples 20 --kind nlms --division reciprocal"),
-                &["--samples 20", "--division"],
-                "has no effect on",
-            ),
-            (
-                format!("{stimulus} --kind sign-lms --forgetting-factor 0.5"),
-                &["--forgetting-factor"],
-                "on --kind sign-lms",
-            ),
-            (
-                "fogbench calibrate a.toml --estimator batch --set calibration.apply=arls".to_owned(),
-                &["--estimator and --set calibration.apply"],
-                "leave one of them out",
-            ),
-        ] {
-            let text = refused(&line);
-            assert!(text.contains(reason), "{line}: {text}");
-            for option in options {
-                assert!(text.contains(&format!("error: {option} ")), "{line}: {text}");
-            }
-            let complaints = text.matches("error: ").count();
-            assert_eq!(complaints, options.len(), "{line}: {text}");
+    /// Asserts that a command line is refused for some options, each with the reason.
+    #[track_caller]
+    fn assert_idle(line: &str, options: &[&str], reason: &str) {
+        let text = refused(line);
+        assert!(text.contains(reason), "{line}: {text}");
+        for option in options {
+            assert!(
+                text.contains(&format!("error: {option} ")),
+                "{line}: {text}"
+            );
         }
+        let complaints = text.matches("error: ").count();
+        assert_eq!(complaints, options.len(), "{line}: {text}");
+    }
+
+    #[test]
+    fn options_of_a_record_at_rest_are_refused_beside_a_swing() {
+        assert_idle(
+            "fogbench analyze a.csv --unit deg/h --rate-hz 100 --motion swing:5 \
+             --bias-averaging-time-s 1 --fit-tau-min-s 1 --allan-estimator plain \
+             --averaging-times all",
+            &[
+                "--bias-averaging-time-s",
+                "--fit-tau-min-s",
+                "--allan-estimator",
+                "--averaging-times",
+            ],
+            "on a swing",
+        );
+    }
+
+    #[test]
+    fn options_that_describe_a_filter_are_refused_beside_one_of_a_scenario() {
+        assert_idle(
+            "fogbench export rtl out --scenario a.toml --filter rls --kind rls --taps 4 \
+             --clock-mhz 40 --division elementwise --forgetting-factor 1 \
+             --initial-inverse-correlation 1 --step-size 1 --regularisation 1 \
+             --number-format binary32",
+            &[
+                "--kind",
+                "--taps",
+                "--clock-mhz",
+                "--division",
+                "--forgetting-factor",
+                "--initial-inverse-correlation",
+                "--step-size",
+                "--regularisation",
+                "--number-format",
+            ],
+            "beside --filter rls",
+        );
+    }
+
+    #[test]
+    fn constants_that_a_kind_of_filter_lacks_are_refused() {
+        let stimulus = "fogbench export waveform out --stimulus a.csv";
+        assert_idle(
+            "fogbench timing --step-size 1 --regularisation 1",
+            &["--step-size", "--regularisation"],
+            "on --kind rls",
+        );
+        assert_idle(
+            "fogbench timing --kind lms --division elementwise --forgetting-factor 0.9 \
+             --initial-inverse-correlation 1 --regularisation 1 --ram-ports 2 --divider-latency 9",
+            &[
+                "--division",
+                "--forgetting-factor",
+                "--initial-inverse-correlation",
+                "--regularisation",
+                "--ram-ports",
+                "--divider-latency",
+            ],
+            "--kind lms",
+        );
+        assert_idle(
+            &format!("{stimulus} --samples 20 --kind nlms --division reciprocal"),
+            &["--samples 20", "--division"],
+            "has no effect on",
+        );
+        assert_idle(
+            &format!("{stimulus} --kind sign-lms --forgetting-factor 0.5"),
+            &["--forgetting-factor"],
+            "on --kind sign-lms",
+        );
+    }
+
+    #[test]
+    fn a_key_given_twice_is_refused() {
+        assert_idle(
+            "fogbench calibrate a.toml --estimator batch --set calibration.apply=arls",
+            &["--estimator and --set calibration.apply"],
+            "leave one of them out",
+        );
     }
 
     #[test]

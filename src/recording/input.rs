@@ -54,7 +54,7 @@ impl Input {
         let file = File::open(path).map_err(failed)?;
         let metadata = file.metadata().map_err(failed)?;
         // Files that the system makes up while they are read have no length.
-        let length = (metadata.is_file() && metadata.len() > 0).then(|| metadata.len());
+        let length = (metadata.is_file() && metadata.len() > 0).then_some(metadata.len());
         let mut reader = BufReader::with_capacity(1 << 16, file);
         let mut first = Vec::new();
         let read = reader.by_ref().take(FIRST).read_to_end(&mut first);

@@ -242,7 +242,7 @@ impl Delimiter {
 
 /// The characters outside quotation marks, with their bytes; all of them where the marks do not pair.
 fn outside_quotes(line: &str) -> impl Iterator<Item = (usize, char)> {
-    let is_paired = line.matches('"').count() % 2 == 0;
+    let is_paired = line.matches('"').count().is_multiple_of(2);
     let mut is_inside = false;
     line.char_indices().filter(move |(_, character)| {
         if *character == '"' && is_paired {
