@@ -94,55 +94,57 @@ impl Columns {
     }
 }
 
-/// A campaign: some rates in each mounting, noise and a drift of the biases with temperature.
-fn lines(draws: &mut Draws) -> Vec<Vec<String>> {
-    let columns = Columns::draw(draws);
-    let count = if draws.chance(0.05) {
-        draws.below(4)
-    } else {
-        3 * (2 + draws.below(4))
-    };
-    let noise_deg_per_h = if draws.chance(0.2) {
+/// What the groups of a campaign have in common.
+struct Campaign {
+    columns: Columns,
+    noise_deg_per_h: f64,
+    drift_deg_per_h_per_k: f64,
+    step_c: f64,
+    error_deg_per_h: f64,
+}
+
+/// Zero at times, else a number of any size between two.
+fn zero_or(draws: &mut Draws, zeros: f64, low: f64, high: f64) -> f64 {
+    if draws.chance(zeros) {
         0.0
     } else {
-        draws.log_uniform(1e-6, 10.0)
-    };
-    let drift = if draws.chance(0.3) {
-        0.0
-    } else {
-        draws.unit() - 0.5
-    };
-    let step_c = if draws.chance(0.3) {
-        0.0
-    } else {
-        draws.log_uniform(1e-6, 10.0)
-    };
-    let error = if draws.chance(0.2) {
-        0.0
-    } else {
-        draws.log_uniform(1e-9, 100.0)
-    };
-    let known = [10.0, 50.0, 90.0, -10.0, -90.0, 0.0, 100.0, 0.01, 1e-9];
-    let mut lines = vec![columns.heading()];
-    for index in 0..count {
+        draws.log_uniform(low, high)
+    }
+}
+
+impl Campaign {
+    fn draw(draws: &mut Draws) -> Self {
+        Self {
+            columns: Columns::draw(draws),
+            noise_deg_per_h: zero_or(draws, 0.2, 1e-6, 10.0),
+            drift_deg_per_h_per_k: zero_or(draws, 0.3, 1e-3, 1.0),
+            step_c: zero_or(draws, 0.3, 1e-6, 10.0),
+            error_deg_per_h: zero_or(draws, 0.2, 1e-9, 100.0),
+        }
+    }
+
+    /// The cells of a group: the three mountings in turn, a few known rates and others.
+    fn cells(&self, draws: &mut Draws, index: usize) -> Vec<String> {
+        let columns = &self.columns;
+        let known = [10.0, 50.0, 90.0, -10.0, -90.0, 0.0, 100.0, 0.01, 1e-9];
         let axis = index % 3;
+        let usual = known[(index / 3) % 3 + 3 * draws.below(2)];
         let rate = if draws.chance(0.9) {
-            known[(index / 3) % 3 + 3 * draws.below(2)]
+            usual
         } else {
             *draws.pick(&known)
         };
         let is_up = draws.chance(0.95);
         let mut seen = rates((axis, rate));
         seen[axis] *= if is_up { 1.0 } else { -1.0 };
-        let warmth = 20.0 + step_c * index as f64;
-        let outputs = truth().predict(seen).map(deg_per_s_to_deg_per_h);
+        let warmth = 20.0 + self.step_c * index as f64;
         let mut cells = vec![
             format!("{}{}", if is_up { "" } else { "-" }, ["x", "y", "z"][axis]),
             format!("{:?}", deg_per_s_to_deg_per_h(rate) * columns.rate_unit.1),
         ];
-        for output in outputs {
-            let noise = noise_deg_per_h * (draws.unit() + draws.unit() - 1.0);
-            let output = output + noise + drift * (warmth - 25.0);
+        for output in truth().predict(seen).map(deg_per_s_to_deg_per_h) {
+            let noise = self.noise_deg_per_h * (draws.unit() + draws.unit() - 1.0);
+            let output = output + noise + self.drift_deg_per_h_per_k * (warmth - 25.0);
             cells.push(format!("{:?}", output * columns.output_unit.1));
         }
         let mut each = |is_there: bool, values: [f64; 3]| {
@@ -150,11 +152,12 @@ fn lines(draws: &mut Draws) -> Vec<Vec<String>> {
                 cells.extend(values.map(|value| format!("{value:?}")));
             }
         };
+        let error = self.error_deg_per_h;
         each(
             columns.each_temperature,
             [warmth, warmth + 0.5, warmth - 0.5],
         );
-        each(columns.warming, [step_c / 3.0; 3]);
+        each(columns.warming, [self.step_c / 3.0; 3]);
         each(columns.errors, [error, error * 2.0, error]);
         each(columns.references, seen);
         if columns.counts {
@@ -164,16 +167,26 @@ fn lines(draws: &mut Draws) -> Vec<Vec<String>> {
             cells.push(format!("{warmth:?}"));
         }
         if columns.times {
-            cells.extend([
-                format!("{}", 36 * (1 + index)),
-                format!("{}", 400 * index),
-                "10".to_owned(),
-            ]);
+            cells.extend([36 * (1 + index), 400 * index, 10].map(|number| number.to_string()));
         }
         if columns.names {
-            cells.push(format!("{}", index + 1));
+            cells.push((index + 1).to_string());
         }
-        lines.push(cells);
+        cells
+    }
+}
+
+/// A campaign: some rates in each mounting, noise and a drift of the biases with temperature.
+fn lines(draws: &mut Draws) -> Vec<Vec<String>> {
+    let campaign = Campaign::draw(draws);
+    let count = if draws.chance(0.05) {
+        draws.below(4)
+    } else {
+        3 * (2 + draws.below(4))
+    };
+    let mut lines = vec![campaign.columns.heading()];
+    for index in 0..count {
+        lines.push(campaign.cells(draws, index));
     }
     lines
 }
