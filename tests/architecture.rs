@@ -8,7 +8,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("random", &["units"]),
     ("signal", &["units"]),
-    ("scenario", &["units"]),
+    ("scenario", &["units", "recording"]),
     ("turntable", &["units", "signal", "random", "scenario"]),
     ("gyro", &["units", "signal", "random", "scenario"]),
     ("fpga", &[]),

@@ -67,14 +67,22 @@ fn bad_hardware_parameters_exit_2_and_say_the_range() {
             export(&[&good[..], &["--initial-inverse-correlation=-1"]].concat()),
             "initial inverse correlation = -1",
         ),
-        (export(&["--stimulus", "bad.csv"]), "bad.csv:3: NaN"),
-        (export(&["--stimulus", "words.csv"]), "words.csv:3: `two`"),
-        (export(&["--stimulus", "none.csv"]), "none.csv"),
+        (
+            export(&["--stimulus", "bad.csv"]),
+            "bad.csv:3: column rate: NaN",
+        ),
+        (
+            export(&["--stimulus", "words.csv"]),
+            "words.csv:3: column rate: `two`",
+        ),
     ] {
         let output = fogbench(folder.path(), &arguments);
         assert_eq!(code(&output), 2, "{arguments:?}");
         assert!(stderr(&output).contains(part), "{}", stderr(&output));
     }
+    let missing = fogbench(folder.path(), &export(&["--stimulus", "none.csv"]));
+    assert_eq!(code(&missing), 74, "{}", stderr(&missing));
+    assert!(stderr(&missing).contains("cannot read none.csv"));
     assert!(
         !folder.path().join("out").exists(),
         "nothing is written in error"

@@ -43,6 +43,7 @@ mod known_answers_turntable;
 mod metrics_intervals;
 mod metrics_records;
 mod metrology;
+mod mutation;
 mod noise_fit_coverage;
 mod patent_calibration;
 mod patent_filter;
@@ -50,6 +51,7 @@ mod patent_known_answers;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
+mod readers;
 mod readme;
 mod recording;
 mod report;

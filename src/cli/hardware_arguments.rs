@@ -252,11 +252,24 @@ pub(super) struct ExportOptions {
     #[arg(long, value_name = "FILE", required_unless_present = "stimulus")]
     pub(super) scenario: Option<PathBuf>,
     /// Filter of the scenario to export; without it the options below describe one
-    #[arg(long = "filter", value_name = "NAME", requires = "scenario")]
+    #[arg(
+        long = "filter",
+        value_name = "NAME",
+        requires = "scenario",
+        conflicts_with = "stimulus"
+    )]
     pub(super) name: Option<String>,
     /// Recorded stimulus: one column of numbers, NPY or text
     #[arg(long, value_name = "FILE", conflicts_with = "scenario")]
     pub(super) stimulus: Option<PathBuf>,
+    /// Column of a text by its heading or number from 1 [default: the only one]
+    #[arg(
+        long,
+        value_name = "COLUMN",
+        requires = "stimulus",
+        conflicts_with = "scenario"
+    )]
+    pub(super) column: Option<String>,
     /// Samples to export [default: 1000, or all of a shorter file]
     #[arg(long, value_name = "N", default_value_t = 1000)]
     pub(super) samples: usize,

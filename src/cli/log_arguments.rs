@@ -40,10 +40,16 @@ pub(super) struct LogOptions {
     )]
     pub(super) columns: Vec<String>,
     /// Parameters to take out of these columns: calibration.toml as `calibrate` and `run` write it
-    #[arg(long, value_name = "FILE", requires = "columns")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "columns",
+        conflicts_with = "column"
+    )]
     pub(super) calibration: Option<PathBuf>,
     /// Axis to measure and to filter after compensation: x, y or z
-    #[arg(long, value_name = "AXIS", requires = "columns", value_parser = axis)]
+    #[arg(long, value_name = "AXIS", requires = "columns", conflicts_with = "column",
+          value_parser = axis)]
     pub(super) axis: Option<usize>,
     /// Column of the assembly's temperature, deg C, which its biases follow
     #[arg(long, value_name = "COLUMN", requires = "calibration")]
@@ -56,7 +62,7 @@ pub(super) struct LogOptions {
     #[arg(long, value_name = "COLUMN")]
     pub(super) time: Option<String>,
     /// Unit of the time column: s, ms, us, ns
-    #[arg(long, value_name = "UNIT", default_value = "s")]
+    #[arg(long, value_name = "UNIT", default_value = "s", requires = "time")]
     pub(super) time_unit: TimeUnit,
     /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz
     #[arg(long, value_name = "MOTION", default_value = "static")]

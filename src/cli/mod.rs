@@ -11,6 +11,7 @@ mod exit;
 mod expand;
 mod export;
 mod hardware_arguments;
+mod idle;
 mod list;
 mod log;
 mod log_arguments;
@@ -20,13 +21,10 @@ mod run;
 mod schema;
 mod select;
 mod signals;
-mod stimulus;
 mod timing;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
-
-use clap::Parser;
 
 use crate::experiment::start_threads;
 use arguments::{Arguments, Command};
@@ -41,7 +39,7 @@ pub fn main() -> ExitCode {
         Ok(interrupt) => interrupt,
         Err(error) => return exit::io_failure(error).code(),
     };
-    let arguments = match Arguments::try_parse() {
+    let arguments = match idle::parse() {
         Ok(arguments) => arguments,
         Err(error) => return exit::usage(&error),
     };

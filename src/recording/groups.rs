@@ -1,11 +1,12 @@
 //! Group means of a calibration that a user took: one line for each mounting and rate.
 
-use std::fs;
 use std::path::Path;
 
-use super::csv::{finite, lines, text_of};
+use super::csv::fault;
 use super::error::{LogError, Place};
 use super::groups_heading::{Heading, Quantity};
+use super::input::read_whole;
+use super::text::{Lines, finite, shown};
 use super::unit::RateUnit;
 use crate::units::deg_per_h_to_deg_per_s;
 
@@ -15,7 +16,9 @@ const TABLE_RATE_MAX_DEG_PER_S: f64 = 2000.0;
 /// as far as the comparison with the rates, which names the unit.
 const RATE_MAX_DEG_PER_S: f64 = 1e9;
 /// Believable temperatures, deg C: those that a compensation takes as its reference.
-const TEMPERATURE_C: (f64, f64) = (-100.0, 150.0);
+pub(super) const TEMPERATURE_C: (f64, f64) = (-100.0, 150.0);
+/// Most groups of a file.
+pub const GROUPS_MAX: usize = 10_000;
 /// Fastest change of these, K/min.
 const WARMING_MAX_K_PER_MIN: f64 = 1000.0;
 
@@ -132,17 +135,23 @@ fn bits(group: &RecordedGroup) -> impl Iterator<Item = u64> {
 /// [`LogError`]: whatever the file system says; columns unknown, repeated or missing; cells that are
 /// no number or out of range; a group named twice.
 pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
-    let bytes = fs::read(path).map_err(|source| LogError::read(path, source))?;
-    let text = text_of(path, &bytes, "no text in UTF-8")?;
-    let mut lines = lines(text);
-    let Some((number, first)) = lines.next() else {
+    let bytes = read_whole(path)?;
+    let mut lines = Lines::new(&bytes[..], "no text in UTF-8");
+    let complain = |number, message| LogError::at(path, Place::Line(number), message);
+    let first = lines.next_line().map_err(|error| fault(path, error))?;
+    let Some(first) = first else {
         return Err(LogError::of_file(path, "holds no group"));
     };
-    let complain = |number, message| LogError::at(path, Place::Line(number), message);
-    let heading = Heading::of(first).map_err(|message| complain(number, message))?;
+    let heading = Heading::of(first.text).map_err(|message| complain(first.number, message))?;
     let mut groups: Vec<RecordedGroup> = Vec::new();
-    for (number, line) in lines {
-        let cells = heading.delimiter.cells(line);
+    while let Some(line) = lines.next_line().map_err(|error| fault(path, error))? {
+        let number = line.number;
+        if groups.len() == GROUPS_MAX {
+            let message = format!("more than {GROUPS_MAX} groups, the most that a file may have");
+            return Err(complain(number, message));
+        }
+        let width = heading.columns.len();
+        let cells = heading.delimiter.cells_up_to(line.text, width);
         let group = Line::new(&heading, &cells)
             .and_then(|line| line.group(number))
             .map_err(|message| complain(number, message))?;
@@ -150,7 +159,7 @@ pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
             .iter()
             .find(|other| other.name.is_some() && other.name == group.name);
         if let Some(other) = same {
-            let name = other.name.as_deref().unwrap_or_default();
+            let name = shown(other.name.as_deref().unwrap_or_default());
             let message = format!(
                 "column group: `{name}` is the group of line {} too",
                 other.line
@@ -244,8 +253,8 @@ impl<'a> Line<'a> {
         if cell.is_empty() {
             return Err(format!("column {name}: the cell is empty: expected {unit}"));
         }
-        let value = finite(cell, Some(name.to_owned()))
-            .map_err(|message| format!("{message}: expected {unit}"))?;
+        let value =
+            finite(cell, Some(name)).map_err(|message| format!("{message}: expected {unit}"))?;
         if (min..=max).contains(&value) {
             return Ok(Some(value));
         }
@@ -297,7 +306,10 @@ impl<'a> Line<'a> {
         };
         let count = cell.parse();
         count.map(Some).map_err(|_| {
-            format!("column {name}: `{cell}` is no count: expected a whole number, 0 or more")
+            format!(
+                "column {name}: `{}` is no count: expected a whole number, 0 or more",
+                shown(cell)
+            )
         })
     }
 
@@ -323,8 +335,9 @@ impl<'a> Line<'a> {
         match (axis, sense, words.next()) {
             (Some(axis), Some(is_up), None) => Ok(Mounting { axis, is_up }),
             _ => Err(format!(
-                "column {name}: `{cell}` is no mounting: expected the case axis along the table \
-                 axis, x, y or z, as `-x` or `x down` where it points down"
+                "column {name}: `{}` is no mounting: expected the case axis along the table axis, \
+                 x, y or z, as `-x` or `x down` where it points down",
+                shown(cell)
             )),
         }
     }

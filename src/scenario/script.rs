@@ -10,6 +10,7 @@ use super::error::ScenarioError;
 use super::resolved::InputFile;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
+use crate::recording::{Delimiter, Lines, TextError};
 
 /// The key that names the file.
 pub(crate) const FILE_KEY: &str = "turntable.script.file";
@@ -87,45 +88,45 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
 /// A cell and the byte at which it starts.
 type Cell<'a> = (usize, &'a str);
 
-/// The cells of a line, spaces taken off.
-fn cells(start: usize, line: &str) -> Vec<Cell<'_>> {
-    let mut at = start;
-    let cell = |cell| {
-        let begin = at;
-        at += str::len(cell) + 1;
-        let bare = str::trim_start(cell);
-        (begin + cell.len() - bare.len(), bare.trim_end())
-    };
-    line.split(',').map(cell).collect()
+/// The cells of a line that starts at a byte; empty ones beyond a width are none.
+fn cells(delimiter: Delimiter, start: usize, line: &str, width: usize) -> Vec<Cell<'_>> {
+    let begin = line.as_ptr() as usize;
+    let cells = delimiter.cells_up_to(line, width).into_iter();
+    // Cells are parts of the line.
+    cells
+        .map(|cell| (start + (cell.as_ptr() as usize - begin), cell))
+        .collect()
 }
 
-/// The lines that say something, with the byte at which each starts; the byte order mark that
-/// spreadsheets put before them is left out.
-fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let bare = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut start = text.len() - bare.len();
-    let placed = bare.split_inclusive('\n').map(move |line| {
-        let at = start;
-        start += line.len();
-        (at, line.trim_end())
-    });
-    placed.filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'))
+/// The lines that say something, with the byte at which each starts.
+fn lines(text: &str) -> Result<Vec<(usize, &str)>, (usize, String)> {
+    let mut lines = Lines::new(text.as_bytes(), "the file is not UTF-8 text");
+    let mut found = Vec::new();
+    loop {
+        match lines.next_line() {
+            Ok(Some(line)) => found.push((line.start, &text[line.start..][..line.text.len()])),
+            Ok(None) => return Ok(found),
+            Err(TextError::Content { start, message, .. }) => return Err((start, message)),
+            Err(TextError::Io(error)) => return Err((0, error.to_string())),
+        }
+    }
 }
 
 /// The columns of a table, every value marked where it stands.
 fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
-    let mut lines = lines(text);
+    let mut lines = lines(text)?.into_iter();
     let (start, header) = lines
         .next()
         .ok_or_else(|| (0, format!("the file is empty: expected {}", expected())))?;
-    let header = cells(start, header);
+    let delimiter = Delimiter::of(header);
+    let header = cells(delimiter, start, header, 0);
     check_header(start, &header)?;
     let mut values: [Vec<Node>; 2] = [Vec::new(), Vec::new()];
     for (start, line) in lines {
         if values[0].len() == ROWS_MAX {
             return Err((start, format!("too many rows: allowed up to {ROWS_MAX}")));
         }
-        let row = cells(start, line);
+        let row = cells(delimiter, start, line, header.len());
         if row.len() != header.len() {
             let count = row.len();
             return Err((
