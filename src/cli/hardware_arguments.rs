@@ -59,7 +59,7 @@ pub(super) enum FormatOption {
 pub(super) struct FilterOptions {
     /// Kind of filter
     #[arg(long, value_enum, default_value_t = Kind::Rls)]
-    kind: Kind,
+    pub(super) kind: Kind,
     /// Number of weights, 1 to 64
     #[arg(long, value_name = "P", default_value_t = 4)]
     pub(super) taps: usize,
