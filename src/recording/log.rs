@@ -137,10 +137,13 @@ fn rates(
         let rate = format
             .unit
             .to_deg_per_h(value * format.scale, sample_rate_hz);
-        check_rate(rate).map(|()| rate).map_err(|message| {
-            let message = format!("{value:?} {}: {message}", format.unit);
-            LogError::at(path, columns.place(row), message)
-        })
+        let unit = format.unit;
+        let message = match check_rate(rate) {
+            Ok(()) => return Ok(rate),
+            Err(message) if rate.is_finite() => format!("{value:?} {unit}: {message}"),
+            Err(_) => format!("{value:?} {unit} is not a finite rate in deg/h"),
+        };
+        Err(LogError::at(path, columns.place(row), message))
     });
     rates.collect()
 }
