@@ -15,6 +15,7 @@ mod idle;
 mod list;
 mod log;
 mod log_arguments;
+mod numbers;
 mod output;
 mod panics;
 mod run;

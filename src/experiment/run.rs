@@ -80,16 +80,22 @@ pub(super) fn run_scenario(
         verdicts: &verdicts,
         notes: &notes,
     };
+    let pictures = run_files::draw(plan, &report, &simulation);
+    let notes = [&notes[..], &pictures.notes].concat();
+    let report = RunReport {
+        notes: &notes,
+        ..report
+    };
     let target = output.join(&folder);
     let unwritten = |source| SuiteError::Write {
         path: target.clone(),
         source,
     };
-    let (written, pictures) =
-        run_files::write_folder(plan, &report, &simulation, &target).map_err(unwritten)?;
+    let written = run_files::write_folder(plan, &report, &simulation, &pictures, &target)
+        .map_err(unwritten)?;
     let outcome = RunOutcome::from_report(&report, &folder);
     let outcome = RunOutcome {
-        pictures,
+        pictures: pictures.drawn.iter().map(|(name, _)| name.clone()).collect(),
         ..outcome.keeping(&report, layout.metrics_of(&scenario.name))
     };
     let entered = ledger.commit(index, &outcome, || written.commit());
@@ -172,6 +178,7 @@ fn run_repeat(
         .map_err(|error| Unfinished::Failed(format!("calibration: {error}")))?
         .map(|(sheet, _)| sheet);
     channels.extend(sheet.iter().flat_map(campaign::estimate_channels));
+    keep_finite(&mut channels);
     Ok((simulation, channels, sheet))
 }
 
@@ -192,5 +199,14 @@ fn combine(first: Channels, others: Vec<Channels>) -> Channels {
         let table = failed.cloned().unwrap_or_else(|| aggregate(&tables));
         (name, table)
     });
-    combined.collect()
+    let mut combined = combined.collect();
+    keep_finite(&mut combined);
+    combined
+}
+
+/// Leaves only finite numbers in the tables; see [`ChannelMetrics::keep_finite`].
+fn keep_finite(channels: &mut Channels) {
+    for (_, metrics) in channels {
+        metrics.keep_finite();
+    }
 }

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use super::bounds::{TEMPERATURE_C, check_rate, check_sample_rate};
 use super::column::Columns;
 use super::csv::{self, Wanted};
 use super::error::LogError;
-use super::groups::TEMPERATURE_C;
 use super::input::Input;
 use super::timing::{TimeUnit, Timing, timing};
 use super::unit::RateUnit;
@@ -190,6 +190,7 @@ fn spacing(
         let message = "the sample rate is not known: give --rate-hz, or a time column with --time";
         return Err(LogError::of_file(path, message));
     };
+    check_sample_rate(sample_rate_hz).map_err(|message| LogError::of_file(path, message))?;
     Ok((timing, sample_rate_hz))
 }
 
@@ -225,10 +226,12 @@ fn rates(
         let rate = format
             .unit
             .to_deg_per_h(value * format.scale, sample_rate_hz);
-        if rate.is_finite() {
-            return Ok(rate);
-        }
-        let message = format!("{value:?} {} is not a finite rate in deg/h", format.unit);
+        let unit = format.unit;
+        let message = match check_rate(rate) {
+            Ok(()) => return Ok(rate),
+            Err(message) if rate.is_finite() => format!("{value:?} {unit}: {message}"),
+            Err(_) => format!("{value:?} {unit} is not a finite rate in deg/h"),
+        };
         Err(LogError::at(path, columns.place(row), message))
     });
     rates.collect()

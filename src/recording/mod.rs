@@ -5,6 +5,7 @@
 //! every complaint names the file and the place in it. Every command that takes numbers from a file
 //! takes them through this module, and what it says of text and NPY holds for all of them.
 
+mod bounds;
 mod column;
 mod csv;
 mod error;
@@ -18,6 +19,10 @@ mod text;
 mod timing;
 mod unit;
 
+pub use bounds::{
+    RATE_MAX_DEG_PER_H, SAMPLE_RATE_HZ, STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C, check_rate,
+    check_sample_rate, check_temperature,
+};
 pub use csv::csv_text;
 pub use error::LogError;
 pub use groups::{GROUPS_MAX, Mounting, RecordedGroup, RecordedGroups, read_groups};

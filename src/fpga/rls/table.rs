@@ -80,7 +80,7 @@ pub struct TimingRow {
 /// `3p^2+p` additions, 1 division. Element division: `p^2` divisions instead of `p^2` of the
 /// multiplications. Serial: three clocks for each of them, the division included.
 ///
-/// * `forgets`: whether alpha differs from 1; `clock_mhz`: > 0, finite.
+/// * `forgets`: whether alpha differs from 1; `clock_mhz`: 0.001 to 10000.
 ///
 /// # Errors
 /// [`FpgaError::TapCount`], [`FpgaError::OutOfRange`] for the clock.
