@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::assembly_motion;
 use super::campaign;
@@ -12,7 +13,7 @@ use super::pipeline_check;
 use super::published_check::wrong_unit;
 use crate::gyro;
 use crate::metrics;
-use crate::scenario::{Fidelity, Resolved, ScenarioError, load_suite};
+use crate::scenario::{Fidelity, Resolved, ScenarioError, visit_suite};
 use crate::signal::GyroFacts;
 
 /// Metric that turns the divergence of a channel into an expected result.
@@ -101,15 +102,13 @@ impl Plan {
 /// # Errors
 /// Every complaint about every file; then nothing may run.
 pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<ScenarioError>> {
-    let suite = load_suite(paths, sets)?;
-    let mut plans = Vec::with_capacity(suite.len());
-    let mut errors = Vec::new();
-    for resolved in suite {
-        match plan(resolved) {
-            Ok(plan) => plans.push(plan),
-            Err(found) => errors.extend(found),
-        }
-    }
+    let (mut plans, mut errors) = (Vec::new(), Vec::new());
+    let mut campaigns = SoundCampaigns::default();
+    let mut take = |resolved| match plan(resolved, &mut campaigns) {
+        Ok(plan) => plans.push(plan),
+        Err(found) => errors.extend(found),
+    };
+    visit_suite(paths, sets, &mut take)?;
     // By folder, so that the order of the arguments leaves no trace in the results.
     plans.sort_by_cached_key(|plan: &Plan| plan.resolved.folder());
     errors.extend(contradictions(&plans));
@@ -120,7 +119,23 @@ pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<S
     }
 }
 
-fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
+/// The campaign that passed its checks last: the points of a sweep share one.
+#[derive(Default)]
+struct SoundCampaigns(Option<Arc<Resolved>>);
+
+impl SoundCampaigns {
+    /// Checks a campaign unless it has just been checked.
+    fn check(&mut self, campaign: &Arc<Resolved>) -> Result<(), Vec<ScenarioError>> {
+        let is_last = |last: &Arc<Resolved>| Arc::ptr_eq(last, campaign);
+        if !self.0.as_ref().is_some_and(is_last) {
+            plan(Resolved::clone(campaign), &mut Self::default())?;
+            self.0 = Some(Arc::clone(campaign));
+        }
+        Ok(())
+    }
+}
+
+fn plan(resolved: Resolved, campaigns: &mut SoundCampaigns) -> Result<Plan, Vec<ScenarioError>> {
     let mut checker = Checker {
         resolved: &resolved,
         errors: Vec::new(),
@@ -128,7 +143,7 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
         calibration: None,
     };
     let facts = checker.gyro();
-    let compensation = checker.compensation();
+    let compensation = checker.compensation(campaigns);
     if let Some(facts) = &facts {
         checker.gyro_limits();
         checker.record_length(facts);
@@ -175,7 +190,7 @@ impl Checker<'_> {
     }
 
     /// Refuses parameters that no rates follow from, and campaigns that cannot be run.
-    fn compensation(&mut self) -> Option<CompensationPlan> {
+    fn compensation(&mut self, campaigns: &mut SoundCampaigns) -> Option<CompensationPlan> {
         const CAMPAIGN: &str = "compensation.campaign_scenario";
         const PARAMETERS: &str = "compensation.parameters";
         if let Some(campaign) = &self.resolved.campaign {
@@ -188,7 +203,7 @@ impl Checker<'_> {
                 self.complain(CAMPAIGN, message);
                 return None;
             }
-            if let Err(errors) = plan(Resolved::clone(campaign)) {
+            if let Err(errors) = campaigns.check(campaign) {
                 self.errors.extend(errors);
                 return None;
             }

@@ -4,6 +4,8 @@
 //! from 0; a filter is also `filter.<name>.<key>`, where the kind of the filter need not be said:
 //! `filter.rls.taps` is the key `taps` of whatever kind the filter named `rls` is.
 
+use std::sync::Arc;
+
 use super::check::unknown_key;
 use super::schema::{self, Child, Group, Key, join};
 use super::source::Mark;
@@ -177,7 +179,7 @@ pub(crate) fn assign(
             let table = Table::from([(name.clone(), over)]);
             let is_new = get(root, &path[..outer.len() + depth]).is_none();
             over = Node {
-                value: Value::Table(table),
+                value: table.into(),
                 mark: is_new.then_some(mark),
             };
         }
@@ -187,7 +189,7 @@ pub(crate) fn assign(
     };
     match outer {
         [] => {
-            super::tree::merge("", root, over_table);
+            super::tree::merge("", root, Arc::unwrap_or_clone(over_table));
             Ok(())
         }
         [Step::Key(array), Step::Index(index)] => {
@@ -227,6 +229,19 @@ pub(crate) fn nearest_mark(root: &Table, path: &[Step]) -> Option<Mark> {
             None => return mark,
         }
     }
+}
+
+/// The value at a path to change.
+pub(crate) fn get_mut<'a>(root: &'a mut Table, path: &[Step]) -> Option<&'a mut Node> {
+    let (first, rest) = path.split_first()?;
+    let Step::Key(first) = first else {
+        return None;
+    };
+    rest.iter()
+        .try_fold(root.get_mut(first)?, |node, step| match step {
+            Step::Key(name) => node.as_table_mut()?.get_mut(name),
+            Step::Index(index) => node.as_array_mut()?.get_mut(*index),
+        })
 }
 
 /// The value at a path.

@@ -32,9 +32,8 @@ fn root_place(root: Mark) -> Place<'static> {
     }
 }
 
-/// Refuses unknown keys, wrong types and values out of range; turns whole numbers given for
-/// binary64 keys into binary64.
-pub(crate) fn check_values(root: &mut Table, mark: Mark, sources: &Sources) -> Vec<ScenarioError> {
+/// Refuses unknown keys, wrong types and values out of range.
+pub(crate) fn check_values(root: &Table, mark: Mark, sources: &Sources) -> Vec<ScenarioError> {
     if let Some(error) = wrong_version(root, sources, mark) {
         return vec![error];
     }
@@ -89,8 +88,8 @@ impl Checker<'_> {
         self.errors.push(self.sources.error(mark, message));
     }
 
-    fn table(&mut self, place: Place<'_>, table: &mut Table) {
-        for (name, node) in table.iter_mut() {
+    fn table(&mut self, place: Place<'_>, table: &Table) {
+        for (name, node) in table {
             let shown = join(place.shown_path, name);
             let below = join(place.schema_path, name);
             let mark = node.mark.unwrap_or(place.mark);
@@ -102,7 +101,7 @@ impl Checker<'_> {
             match schema::child(place.schema_path, name) {
                 None => self.unknown(place, name, mark),
                 Some(Child::Leaf(key)) => self.leaf(key, inner, node),
-                Some(Child::Table) => match &mut node.value {
+                Some(Child::Table) => match &node.value {
                     Value::Table(table) => self.table(inner, table),
                     other => self.not_a_table(inner, other, &format!("[{shown}]")),
                 },
@@ -111,19 +110,19 @@ impl Checker<'_> {
         }
     }
 
-    fn tables(&mut self, place: Place<'_>, node: &mut Node) {
-        let Value::Array(elements) = &mut node.value else {
+    fn tables(&mut self, place: Place<'_>, node: &Node) {
+        let Value::Array(elements) = &node.value else {
             let header = format!("[[{}]]", place.shown_path);
             return self.not_a_table(place, &node.value, &header);
         };
-        for (index, element) in elements.iter_mut().enumerate() {
+        for (index, element) in elements.iter().enumerate() {
             let shown = format!("{}[{index}]", place.shown_path);
             let inner = Place {
                 schema_path: &format!("{}[]", place.schema_path),
                 shown_path: &shown,
                 mark: element.mark.unwrap_or(place.mark),
             };
-            match &mut element.value {
+            match &element.value {
                 Value::Table(table) => self.table(inner, table),
                 other => self.not_a_table(inner, other, &format!("[[{}]]", place.shown_path)),
             }
@@ -144,7 +143,7 @@ impl Checker<'_> {
         self.complain(mark, unknown_key(place.schema_path, &shown, name));
     }
 
-    fn leaf(&mut self, key: &Key, place: Place<'_>, node: &mut Node) {
+    fn leaf(&mut self, key: &Key, place: Place<'_>, node: &Node) {
         if let Err(fault) = check_leaf(key, place.shown_path, node) {
             self.complain(fault.mark.unwrap_or(place.mark), fault.message);
         }

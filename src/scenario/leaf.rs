@@ -22,9 +22,9 @@ impl From<String> for Fault {
     }
 }
 
-/// Checks one value and converts whole numbers where binary64 is asked for.
-pub(crate) fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), Fault> {
-    let is_allowed = match (key.kind, &mut node.value) {
+/// Checks one value.
+pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Fault> {
+    let is_allowed = match (key.kind, &node.value) {
         (Kind::Float(range), value) => check_float(key, shown, range, value)?,
         (Kind::Integer(range), Value::Integer(value)) => range.contains(*value),
         (Kind::Floats(range), Value::Array(values)) => {
@@ -118,36 +118,44 @@ fn check_elements(
     key: &Key,
     shown: &str,
     range: schema::Range,
-    values: &mut [Node],
+    values: &[Node],
 ) -> Result<(), Fault> {
-    for (index, node) in values.iter_mut().enumerate() {
+    for (index, node) in values.iter().enumerate() {
+        // Most numbers are in order: the name is made for those that are not.
+        if binary64(&node.value).is_some_and(|number| range.contains(number)) {
+            continue;
+        }
         let shown = format!("{shown}[{index}]");
         let mark = node.mark;
-        let is_allowed = check_float(key, &shown, range, &mut node.value)
-            .map_err(|message| Fault { mark, message })?;
-        if !is_allowed {
-            let message = out_of_range(key, &shown, &node.value);
-            return Err(Fault { mark, message });
-        }
+        check_float(key, &shown, range, &node.value).map_err(|message| Fault { mark, message })?;
+        let message = out_of_range(key, &shown, &node.value);
+        return Err(Fault { mark, message });
     }
     Ok(())
 }
 
-/// Whether a number is inside a range; converts it to binary64.
-fn check_float(
-    key: &Key,
-    shown: &str,
-    range: schema::Range,
-    value: &mut Value,
-) -> Result<bool, String> {
-    let number = match *value {
-        Value::Float(number) => number,
+/// A number as binary64.
+pub(crate) fn binary64(value: &Value) -> Option<f64> {
+    match *value {
+        Value::Float(number) => Some(number),
         #[expect(
             clippy::cast_precision_loss,
             reason = "a whole number beyond 2^53 rounds as it would if written with a fraction"
         )]
-        Value::Integer(number) => number as f64,
-        ref other => return Err(wrong_element(key, shown, other)),
+        Value::Integer(number) => Some(number as f64),
+        _ => None,
+    }
+}
+
+/// Whether a number is inside a range.
+fn check_float(
+    key: &Key,
+    shown: &str,
+    range: schema::Range,
+    value: &Value,
+) -> Result<bool, String> {
+    let Some(number) = binary64(value) else {
+        return Err(wrong_element(key, shown, value));
     };
     if !number.is_finite() {
         return Err(format!(
@@ -156,11 +164,7 @@ fn check_float(
             key.allowed()
         ));
     }
-    if range.contains(number) {
-        *value = Value::Float(number);
-        return Ok(true);
-    }
-    Ok(false)
+    Ok(range.contains(number))
 }
 
 /// Whether a text is a valid name of a scenario or channel.

@@ -109,7 +109,7 @@ pub(crate) fn read(
     let file = file.unwrap_or_default();
     let warnings = other_version(&file, &version).into_iter().collect();
     Ok(Draft {
-        root: scenario,
+        root: Arc::unwrap_or_clone(scenario),
         root_mark: mark.unwrap_or(start),
         sources: Arc::new(sources),
         file,

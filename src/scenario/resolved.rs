@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use serde::Deserialize;
-
 use super::address::{self, nearest_mark};
 use super::check::{check_presence, check_values};
 use super::compensation_source;
 use super::config::Scenario;
 use super::cross;
 use super::defaults::{default_of, fill};
+use super::deserialize::from_table;
 use super::emit::to_toml;
 use super::error::{Location, ScenarioError};
+use super::numbers;
 use super::script;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
@@ -57,7 +57,7 @@ pub struct Resolved {
     /// says without the sweep.
     pub is_base_point: bool,
     /// The calibration scenario whose result its compensation applies.
-    pub campaign: Option<Box<Resolved>>,
+    pub campaign: Option<Arc<Resolved>>,
     /// Where its gates were written, if a manifest records that.
     gate_places: Vec<String>,
     /// Every value, defaults included.
@@ -123,7 +123,8 @@ impl Draft {
         script::read_into(&mut self.root, sources, &mut self.inputs)
             .map_err(|error| vec![error])?;
         let campaign = compensation_source::read_into(&mut self.root, sources, &mut self.inputs)?;
-        let mut errors = check_values(&mut self.root, self.root_mark, &self.sources);
+        let mut errors = check_values(&self.root, self.root_mark, &self.sources);
+        numbers::settle(&mut self.root);
         if errors.is_empty() || !self.is_other_version() {
             fill(&mut self.root);
             errors.extend(check_presence(&self.root, self.root_mark, &self.sources));
@@ -131,15 +132,8 @@ impl Draft {
         if !errors.is_empty() {
             return Err(errors);
         }
-        let scenario = Scenario::deserialize(plain_table(&self.root)).map_err(|error| {
-            let message = format!(
-                "the scenario does not fit its configuration: {}",
-                error.message()
-            );
-            vec![self.sources.error(self.root_mark, message)]
-        })?;
-        let text = to_toml(&self.root, "");
-        let digest = blake3::hash(text.as_bytes()).to_hex().to_string();
+        let scenario = configuration(&self.root, self.root_mark, &self.sources)?;
+        let digest = digest(&to_toml(&self.root, ""));
         let origin = match self.recorded {
             Some(recorded) if recorded.digest == digest => recorded,
             // The record is of another scenario: what was read now is the origin. A sweep point
@@ -184,6 +178,47 @@ impl Draft {
 }
 
 impl Resolved {
+    /// The run with other values, all of them checked one by one, and their canonical text.
+    ///
+    /// # Errors
+    /// Every contradiction between the values.
+    pub(super) fn with_tree(&self, tree: Table, text: &str) -> Result<Self, Vec<ScenarioError>> {
+        let other = Self {
+            scenario: configuration(&tree, self.root_mark, &self.sources)?,
+            digest: digest(text),
+            tree,
+            ..self.clone()
+        };
+        let errors = cross::check(&other);
+        if errors.is_empty() {
+            Ok(other)
+        } else {
+            Err(errors)
+        }
+    }
+
+    /// Count of the numbers that its scripts and profiles hold.
+    pub(super) fn numbers_in_arrays(&self) -> usize {
+        fn of(value: &Value) -> usize {
+            match value {
+                Value::Array(nodes) => {
+                    let numbers = nodes.iter();
+                    let inside: usize = nodes.iter().map(|node| of(&node.value)).sum();
+                    let is_number = |node: &&Node| matches!(node.value, Value::Float(_));
+                    inside + numbers.filter(is_number).count()
+                }
+                Value::Table(table) => table.values().map(|node| of(&node.value)).sum(),
+                _ => 0,
+            }
+        }
+        self.tree.values().map(|node| of(&node.value)).sum()
+    }
+
+    /// A complaint about a marked place.
+    pub(super) fn error(&self, mark: Option<Mark>, message: String) -> ScenarioError {
+        self.sources.error(mark.unwrap_or(self.root_mark), message)
+    }
+
     /// The value at a path if it is not the default of its key, as TOML.
     ///
     /// * `schema_path`: the path without indices, as the key table has it.
@@ -289,6 +324,23 @@ impl Resolved {
     }
 }
 
+/// The configuration in a checked and filled tree.
+fn configuration(
+    root: &Table,
+    root_mark: Mark,
+    sources: &Sources,
+) -> Result<Scenario, Vec<ScenarioError>> {
+    from_table(root).map_err(|error| {
+        let message = format!("the scenario does not fit its configuration: {error}");
+        vec![sources.error(root_mark, message)]
+    })
+}
+
+/// BLAKE3 of a canonical text, hexadecimal.
+fn digest(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
 /// Whether the swept keys of a point have the values of the point.
 fn holds(root: &Table, point: &SweepPoint) -> bool {
     point.assignments.iter().all(|(key, value)| {
@@ -297,24 +349,4 @@ fn holds(root: &Table, point: &SweepPoint) -> bool {
             .and_then(|(path, _)| address::get(root, &path))
             .is_some_and(|node| node.value.to_toml() == *value)
     })
-}
-
-/// A checked tree as plain TOML.
-pub(super) fn plain_table(table: &Table) -> toml::Table {
-    let convert = |(key, node): (&String, &Node)| (key.clone(), plain(node));
-    table.iter().map(convert).collect()
-}
-
-/// A checked value as plain TOML.
-fn plain(node: &Node) -> toml::Value {
-    match &node.value {
-        Value::Text(text) | Value::Beyond(text, _) | Value::Date(text) => {
-            toml::Value::String(text.clone())
-        }
-        Value::Integer(number) => toml::Value::Integer(*number),
-        Value::Float(number) => toml::Value::Float(*number),
-        Value::Boolean(is_set) => toml::Value::Boolean(*is_set),
-        Value::Array(nodes) => toml::Value::Array(nodes.iter().map(plain).collect()),
-        Value::Table(table) => toml::Value::Table(plain_table(table)),
-    }
 }
