@@ -18,9 +18,7 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
     let (settings, stimulus) = match prepare(options) {
         Ok(prepared) => prepared,
         Err(complaints) => {
-            for complaint in complaints {
-                output::talk(&format!("error: {complaint}"));
-            }
+            output::complain(&complaints);
             return Ok(Exit::Usage);
         }
     };

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use super::check::unknown_key;
+use super::excerpt::excerpt;
 use super::schema::{self, Child, Group, Key, join};
 use super::source::Mark;
 use super::tree::{Node, Table, Value, merge_node};
@@ -30,6 +31,7 @@ pub(crate) fn parse(path: &str) -> Result<Vec<Step>, String> {
         let (name, indices) = part.split_at(part.find('[').unwrap_or(part.len()));
         let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || !name.chars().all(is_bare) {
+            let path = excerpt(path);
             return Err(format!(
                 "`{path}` is not a key path: expected names separated by dots, as in gyro.coil.length_m"
             ));
@@ -45,6 +47,7 @@ pub(crate) fn parse(path: &str) -> Result<Vec<Step>, String> {
         match index {
             Some(index) => steps.push(Step::Index(index)),
             None => {
+                let path = excerpt(path);
                 return Err(format!(
                     "`{path}` is not a key path: expected an index from 0 in brackets, as in gate[2].max"
                 ));
@@ -141,9 +144,13 @@ fn element_index(array: &str, elements: &[Node], selector: &Step) -> Result<usiz
                     == Some(name)
             });
             position.ok_or_else(|| match names[..] {
-                [] => format!("there is no {array} named {name}: give an index, as in {array}[0]"),
+                [] => format!(
+                    "there is no {array} named {}: give an index, as in {array}[0]",
+                    excerpt(name)
+                ),
                 _ => format!(
-                    "there is no {array} named {name}: expected one of {}",
+                    "there is no {array} named {}: expected one of {}",
+                    excerpt(name),
                     names.join(", ")
                 ),
             })

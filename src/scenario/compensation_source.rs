@@ -98,6 +98,7 @@ pub fn load_calibration(
         inputs: inputs.clone(),
         recorded: None,
         warnings: Vec::new(),
+        remarks: Vec::new(),
     }
     .resolve()?;
     let found = resolved.scenario.compensation;
@@ -224,6 +225,7 @@ fn written_campaign(
         inputs: Vec::new(),
         recorded: None,
         warnings: Vec::new(),
+        remarks: Vec::new(),
     })
 }
 

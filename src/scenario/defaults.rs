@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use super::calibration_config::CalibrationConfig;
 use super::deserialize::from_table;
 use super::keys::OPTIONAL_TABLES;
-use super::schema::{self, Child, Group, Presence, join};
+use super::schema::{self, Child, Entry, Group, Presence, join};
 use super::tree::{Node, Table, Value, parse_document};
 
 /// The reference, embedded.
@@ -63,7 +63,7 @@ struct Defaults {
 
 /// Tables outside arrays as they are where nothing of them is written, by schema path.
 fn absent_table(schema_path: &str) -> Arc<Table> {
-    static ABSENT: OnceLock<BTreeMap<String, Arc<Table>>> = OnceLock::new();
+    static ABSENT: OnceLock<BTreeMap<&str, Arc<Table>>> = OnceLock::new();
     let absent = ABSENT.get_or_init(|| {
         let mut absent = BTreeMap::new();
         gather_absent("", Some(&defaults().live), &mut absent);
@@ -76,15 +76,14 @@ fn absent_table(schema_path: &str) -> Arc<Table> {
 fn gather_absent(
     schema_path: &str,
     live: Option<&Table>,
-    absent: &mut BTreeMap<String, Arc<Table>>,
+    absent: &mut BTreeMap<&'static str, Arc<Table>>,
 ) {
-    for (name, child) in schema::children(schema_path) {
+    for Entry { name, child, path } in schema::entries(schema_path).iter().copied() {
         if let Child::Table = child {
-            let path = join(schema_path, name);
             let live = live.and_then(|live| live.get(name)?.as_table());
-            gather_absent(&path, live, absent);
+            gather_absent(path, live, absent);
             let inner = |path: &str| absent.get(path).cloned().unwrap_or_default();
-            let table = filled(&path, &Table::new(), live, &inner).unwrap_or_default();
+            let table = filled(path, &Table::new(), live, &inner).unwrap_or_default();
             absent.insert(path, Arc::new(table));
         }
     }
@@ -189,26 +188,25 @@ fn filled(
         alternatives.any(|name| table.contains_key(*name))
     });
     let mut result = None;
-    for (name, child) in schema::children(schema_path) {
-        let path = join(schema_path, name);
+    for Entry { name, child, path } in schema::entries(schema_path).iter().copied() {
         let live = live.and_then(|live| live.get(name));
         let is_alternative = group.is_some_and(|group| group.alternatives.contains(&name));
         let may_add = if is_alternative {
             !is_chosen && live.is_some()
         } else {
-            !OPTIONAL_TABLES.contains(&path.as_str())
+            !OPTIONAL_TABLES.contains(&path)
         };
         let inside_live = live.and_then(Node::as_table);
         let node = match (table.get(name), child) {
             (Some(node), Child::Table | Child::Tables) => {
-                filled_node(&path, node, child, inside_live, absent)
+                filled_node(path, node, child, inside_live, absent)
             }
-            (None, Child::Leaf(_)) if may_add => default_of(&path).map(|value| Node {
+            (None, Child::Leaf(_)) if may_add => default_of(path).map(|value| Node {
                 value: value.clone(),
                 mark: None,
             }),
             (None, Child::Table) if may_add => Some(Node {
-                value: Value::Table(absent_in(&path, inside_live, absent)),
+                value: Value::Table(absent_in(path, inside_live, absent)),
                 mark: None,
             }),
             _ => None,
@@ -223,11 +221,7 @@ fn filled(
 
 /// A table of which nothing was written, filled. Those inside arrays have no counterpart in the
 /// reference and are not kept.
-fn absent_in(
-    path: &str,
-    live: Option<&Table>,
-    absent: &dyn Fn(&str) -> Arc<Table>,
-) -> Arc<Table> {
+fn absent_in(path: &str, live: Option<&Table>, absent: &dyn Fn(&str) -> Arc<Table>) -> Arc<Table> {
     if path.contains("[]") {
         Arc::new(filled(path, &Table::new(), live, absent).unwrap_or_default())
     } else {
@@ -235,7 +229,8 @@ fn absent_in(
     }
 }
 
-/// A table or an array of tables with what is lacking inside; `None` if nothing is.
+/// A table or an array of tables with what is lacking inside; `None` if nothing is. The path is
+/// that of the table, or of an element of the array.
 fn filled_node(
     path: &str,
     node: &Node,
@@ -246,11 +241,10 @@ fn filled_node(
     let value = match (&node.value, child) {
         (Value::Table(table), _) => filled(path, table, live, absent).map(Value::from),
         (Value::Array(elements), Child::Tables) => {
-            let path = format!("{path}[]");
             let mut result = None;
             for (index, element) in elements.iter().enumerate() {
                 let table = element.as_table();
-                if let Some(table) = table.and_then(|table| filled(&path, table, None, absent)) {
+                if let Some(table) = table.and_then(|table| filled(path, table, None, absent)) {
                     let changed = result.get_or_insert_with(|| elements.to_vec());
                     changed[index].value = table.into();
                 }

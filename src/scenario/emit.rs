@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::schema::{self, Child, join};
+use super::schema::{self, Child, Entry, join};
 use super::tree::{Node, Table};
 
 /// The tree as TOML; `prefix` is the table it stands in, empty at the root.
@@ -17,7 +17,10 @@ pub(crate) fn to_toml(root: &Table, prefix: &str) -> String {
 
 /// The tree as TOML, and where in it the values of some nodes of the tree stand: their indices with
 /// the bytes, in the order of the text.
-pub(crate) fn to_toml_around(root: &Table, nodes: &[&Node]) -> (String, Vec<(usize, Range<usize>)>) {
+pub(crate) fn to_toml_around(
+    root: &Table,
+    nodes: &[&Node],
+) -> (String, Vec<(usize, Range<usize>)>) {
     let mut emitter = Emitter {
         nodes,
         ..Emitter::default()
@@ -38,34 +41,35 @@ struct Emitter<'a> {
 impl Emitter<'_> {
     /// Writes the values of a table, then the tables inside it.
     fn table(&mut self, schema_path: &str, written_path: &str, values: &Table) {
-        for (name, child) in schema::children(schema_path) {
-            if let (Child::Leaf(_), Some(node)) = (child, values.get(name))
+        let entries = schema::entries(schema_path);
+        for Entry { name, child, .. } in entries {
+            if let (Child::Leaf(_), Some(node)) = (child, values.get(*name))
                 && node.as_table().is_none()
             {
                 self.value(name, node);
             }
         }
-        for (name, child) in schema::children(schema_path) {
-            let Some(node) = values.get(name) else {
+        for Entry { name, child, path } in entries {
+            let Some(node) = values.get(*name) else {
                 continue;
             };
-            let below = join(schema_path, name);
-            let written = join(written_path, name);
             match child {
                 Child::Tables => {
+                    let written = join(written_path, name);
                     let elements = node.as_array().unwrap_or_default();
                     for inner in elements.iter().filter_map(Node::as_table) {
                         self.text.push_str(&format!("\n[[{written}]]\n"));
-                        self.table(&format!("{below}[]"), &written, inner);
+                        self.table(path, &written, inner);
                     }
                 }
                 Child::Leaf(_) | Child::Table => {
                     if let Some(inner) = node.as_table() {
+                        let written = join(written_path, name);
                         let is_value = |node: &Node| node.as_table().is_none();
                         if inner.is_empty() || inner.values().any(is_value) {
                             self.text.push_str(&format!("\n[{written}]\n"));
                         }
-                        self.table(&below, &written, inner);
+                        self.table(path, &written, inner);
                     }
                 }
             }
@@ -79,7 +83,10 @@ impl Emitter<'_> {
         let start = self.text.len();
         node.value.write_toml(&mut self.text);
         let place = start..self.text.len();
-        let asked = self.nodes.iter().position(|asked| std::ptr::eq(*asked, node));
+        let asked = self
+            .nodes
+            .iter()
+            .position(|asked| std::ptr::eq(*asked, node));
         self.places.extend(asked.map(|index| (index, place)));
         self.text.push('\n');
     }

@@ -29,7 +29,11 @@ fn shortened(text: &str, characters_max: usize) -> Cow<'_, str> {
     if count <= characters_max {
         return Cow::Borrowed(text);
     }
-    let at = |index: usize| text.char_indices().nth(index).map_or(text.len(), |(at, _)| at);
+    let at = |index: usize| {
+        text.char_indices()
+            .nth(index)
+            .map_or(text.len(), |(at, _)| at)
+    };
     let head = &text[..at(characters_max * 2 / 3)];
     let tail = &text[at(count - characters_max / 3)..];
     Cow::Owned(format!("{head} ... ({count} characters) ... {tail}"))
@@ -46,7 +50,10 @@ mod tests {
         assert_eq!(excerpt(&exact), exact, "characters count, not bytes");
         let long = format!("begin{}end", "é".repeat(120_000));
         let short = excerpt(&long);
-        assert!(short.starts_with("begin") && short.ends_with("end"), "{short}");
+        assert!(
+            short.starts_with("begin") && short.ends_with("end"),
+            "{short}"
+        );
         assert!(short.contains("(120008 characters)"), "{short}");
         assert!(short.chars().count() < VALUE_CHARACTERS_MAX + 40, "{short}");
     }

@@ -1,8 +1,12 @@
 //! Checks of single values: type and range.
 
+use super::excerpt::excerpt;
 use super::schema::{self, Key, Kind, join};
 use super::source::Mark;
 use super::tree::{Node, Value};
+
+/// Most values of an array: as many as the rows of a script.
+const ELEMENTS_MAX: usize = 100_000;
 
 /// Elements of a [`Kind::Triple`].
 const AXES: usize = 3;
@@ -24,6 +28,13 @@ impl From<String> for Fault {
 
 /// Checks one value.
 pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Fault> {
+    if let Value::Array(values) = &node.value
+        && values.len() > ELEMENTS_MAX
+    {
+        let count = values.len();
+        let message = format!("{shown} holds {count} values: allowed up to {ELEMENTS_MAX}");
+        return Err(message.into());
+    }
     let is_allowed = match (key.kind, &node.value) {
         (Kind::Float(range), value) => check_float(key, shown, range, value)?,
         (Kind::Integer(range), Value::Integer(value)) => range.contains(*value),
@@ -38,6 +49,7 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
             let is_text = |node: &Node| node.as_text().is_some_and(|text| !text.trim().is_empty());
             if values.is_empty() || !values.iter().all(is_text) {
                 let value = node.value.to_toml();
+                let value = excerpt(&value);
                 return Err(format!("{shown} = {value}: expected {}", key.expected()).into());
             }
             true
@@ -60,6 +72,7 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
         (Kind::EmptyTable, Value::Table(table)) => {
             if let Some(name) = table.keys().next() {
                 let unknown = join(shown, name);
+                let unknown = excerpt(&unknown);
                 return Err(
                     format!("unknown key {unknown}: {shown} is a table without keys").into(),
                 );
@@ -87,7 +100,8 @@ fn check_words(key: &Key, shown: &str, words: &[&str], values: &[Node]) -> Resul
         let message = match &node.value {
             Value::Text(word) if words.contains(&word.as_str()) => continue,
             Value::Text(word) => format!(
-                "{shown} = \"{word}\" is unknown: expected one of {}{}",
+                "{shown} = \"{}\" is unknown: expected one of {}{}",
+                excerpt(word),
                 key.allowed(),
                 hint(words, word)
             ),
@@ -104,8 +118,14 @@ fn check_words(key: &Key, shown: &str, words: &[&str], values: &[Node]) -> Resul
     Ok(())
 }
 
+/// Most bytes of a word that may stand for a known one: all are shorter.
+const WORD_LENGTH_MAX: usize = 128;
+
 /// The nearest known word, if it may be what was meant.
 fn hint(words: &[&str], word: &str) -> String {
+    if word.len() > WORD_LENGTH_MAX {
+        return String::new();
+    }
     let near = words
         .iter()
         .min_by_key(|known| strsim::damerau_levenshtein(known, word))
@@ -182,6 +202,7 @@ fn is_name(name: &str) -> bool {
 /// The complaint about a value outside the allowed ones.
 fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
     let text = value.to_toml();
+    let text = excerpt(&text);
     match (key.kind, value) {
         (Kind::Choice(words), Value::Text(word)) => {
             format!(
@@ -226,7 +247,8 @@ fn wrong_type(key: &Key, shown: &str, value: &Value) -> String {
         && is_number
     {
         return format!(
-            "{shown} = {text} is {}: allowed {}",
+            "{shown} = {} is {}: allowed {}",
+            excerpt(text),
             number_type.overflow(),
             key.allowed()
         );
@@ -243,6 +265,6 @@ fn wrong_type(key: &Key, shown: &str, value: &Value) -> String {
 fn scalar_text(value: &Value) -> String {
     match value {
         Value::Array(_) | Value::Table(_) => String::new(),
-        scalar => format!(" {}", scalar.to_toml()),
+        scalar => format!(" {}", excerpt(&scalar.to_toml())),
     }
 }

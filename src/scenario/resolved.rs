@@ -53,6 +53,9 @@ pub struct Resolved {
     pub sweep: Option<SweepPoint>,
     /// What is allowed but worth saying about how it was read.
     pub warnings: Vec<String>,
+    /// What is worth saying to whoever runs it, but no part of the results: these depend on the
+    /// scenario alone.
+    pub remarks: Vec<String>,
     /// Whether it is the point of its sweep at which no swept key departs from what the scenario
     /// says without the sweep.
     pub is_base_point: bool,
@@ -96,6 +99,8 @@ pub(crate) struct Draft {
     pub(crate) recorded: Option<Recorded>,
     /// What is worth saying about how it was read.
     pub(crate) warnings: Vec<String>,
+    /// What is worth saying but must not stand in results.
+    pub(crate) remarks: Vec<String>,
 }
 
 /// The origin of a resolved scenario, as a manifest records it.
@@ -111,6 +116,13 @@ pub(crate) struct Recorded {
     pub(crate) sweep: Option<SweepPoint>,
     /// Where its gates were written.
     pub(crate) gate_places: Vec<String>,
+}
+
+impl Recorded {
+    /// The first swept key that has another value than the record says, and what that is.
+    pub(crate) fn broken_point(&self, root: &Table) -> Option<(&str, &str)> {
+        broken(root, self.sweep.as_ref()?)
+    }
 }
 
 impl Draft {
@@ -135,7 +147,11 @@ impl Draft {
         let scenario = configuration(&self.root, self.root_mark, &self.sources)?;
         let digest = digest(&to_toml(&self.root, ""));
         let origin = match self.recorded {
-            Some(recorded) if recorded.digest == digest => recorded,
+            Some(recorded)
+                if recorded.digest == digest && recorded.broken_point(&self.root).is_none() =>
+            {
+                recorded
+            }
             // The record is of another scenario: what was read now is the origin. A sweep point
             // stays one as long as the swept keys have their values.
             recorded => Recorded {
@@ -144,7 +160,7 @@ impl Draft {
                 inputs: self.inputs,
                 sweep: recorded
                     .and_then(|recorded| recorded.sweep)
-                    .filter(|point| holds(&self.root, point)),
+                    .filter(|point| broken(&self.root, point).is_none()),
                 gate_places: Vec::new(),
             },
         };
@@ -155,6 +171,7 @@ impl Draft {
             inputs: origin.inputs,
             sweep: origin.sweep,
             warnings: self.warnings,
+            remarks: self.remarks,
             is_base_point: false,
             campaign,
             gate_places: origin.gate_places,
@@ -223,7 +240,10 @@ impl Resolved {
     ///
     /// * `schema_path`: the path without indices, as the key table has it.
     pub(crate) fn departure(&self, path: &str, schema_path: &str) -> Option<String> {
-        let value = self.value_toml(&address::parse(path).ok()?)?;
+        let node = address::get(&self.tree, &address::parse(path).ok()?)?;
+        // What nobody has written is the default.
+        node.mark?;
+        let value = node.value.to_toml();
         let default = default_of(schema_path)?.to_toml();
         (value != default).then_some(value)
     }
@@ -341,12 +361,15 @@ fn digest(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// Whether the swept keys of a point have the values of the point.
-fn holds(root: &Table, point: &SweepPoint) -> bool {
-    point.assignments.iter().all(|(key, value)| {
+/// The first swept key of a point that has another value than the point says, and what that is.
+fn broken<'a>(root: &Table, point: &'a SweepPoint) -> Option<(&'a str, &'a str)> {
+    let is_true = |(key, value): &&(String, String)| {
         address::resolve(root, key)
             .ok()
             .and_then(|(path, _)| address::get(root, &path))
             .is_some_and(|node| node.value.to_toml() == *value)
-    })
+    };
+    let mut assignments = point.assignments.iter();
+    let (key, value) = assignments.find(|assignment| !is_true(assignment))?;
+    Some((key, value))
 }

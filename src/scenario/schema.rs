@@ -189,8 +189,19 @@ pub(crate) enum Child {
     Tables,
 }
 
+/// A name inside a table.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entry {
+    /// The name.
+    pub(crate) name: &'static str,
+    /// What it stands for.
+    pub(crate) child: Child,
+    /// Schema path of it, of an element if it is an array of tables.
+    pub(crate) path: &'static str,
+}
+
 /// What each table may hold, in the order of the key table, by schema path.
-type Tables = BTreeMap<&'static str, Vec<(&'static str, Child)>>;
+type Tables = BTreeMap<&'static str, Vec<Entry>>;
 
 /// The key table by tables, worked out once.
 fn tables() -> &'static Tables {
@@ -208,8 +219,9 @@ fn tables() -> &'static Tables {
                     None => (part, Child::Table),
                 };
                 let found = tables.entry(table).or_default();
-                if found.iter().all(|(known, _)| *known != name) {
-                    found.push((name, child));
+                if found.iter().all(|known| known.name != name) {
+                    let path = &key.path[..end];
+                    found.push(Entry { name, child, path });
                 }
                 start = end + 1;
             }
@@ -218,12 +230,16 @@ fn tables() -> &'static Tables {
     })
 }
 
+/// What a table may hold, in the order of the key table.
+pub(crate) fn entries(schema_path: &str) -> &'static [Entry] {
+    tables().get(schema_path).map_or(&[], Vec::as_slice)
+}
+
 /// Names a table may hold, in the order of the key table.
-pub(crate) fn children(
-    schema_path: &str,
-) -> impl Iterator<Item = (&'static str, Child)> + use<> {
-    let found = tables().get(schema_path).map_or(&[][..], Vec::as_slice);
-    found.iter().copied()
+pub(crate) fn children(schema_path: &str) -> impl Iterator<Item = (&'static str, Child)> {
+    entries(schema_path)
+        .iter()
+        .map(|entry| (entry.name, entry.child))
 }
 
 /// What a name inside a table stands for; `None` if unknown.

@@ -159,7 +159,11 @@ fn check_header(start: usize, header: &[Cell<'_>]) -> Result<(), (usize, String)
     if let Some((at, name)) = header.iter().find(|(_, name)| !is_known(name)) {
         return Err((
             *at,
-            format!("unknown column `{}`: expected {}", excerpt(name), expected()),
+            format!(
+                "unknown column `{}`: expected {}",
+                excerpt(name),
+                expected()
+            ),
         ));
     }
     let times = header.iter().filter(|(_, name)| *name == TIME).count();

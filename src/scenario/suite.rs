@@ -8,8 +8,8 @@ use super::address::{self, Step};
 use super::check::check_contradictions;
 use super::discover::{Found, discover, identity};
 use super::error::{Location, ScenarioError};
-use super::input::{self, Input, InputError};
 use super::excerpt::excerpt;
+use super::input::{self, Input, InputError};
 use super::manifest;
 use super::matrix;
 use super::resolved::{Draft, InputFile, Resolved};
@@ -195,6 +195,7 @@ fn load_labelled(
         inputs: chain.inputs,
         recorded: None,
         warnings: Vec::new(),
+        remarks: Vec::new(),
     };
     Ok(Some((draft, chain.errors)))
 }
@@ -354,6 +355,7 @@ fn apply_set(root: &mut Table, argument: &str, mark: Mark) -> Result<Vec<Step>, 
     match key.split('.').next() {
         Some("extends") => return Err("extends cannot be set: write it into a file".to_owned()),
         Some("matrix") => {
+            let key = excerpt(key);
             return Err(format!(
                 "{key} cannot be set: write the sweep into a file, or give one value, as in seed=2"
             ));

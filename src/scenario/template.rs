@@ -48,7 +48,9 @@ impl Template {
         if slots.iter().any(is_file) {
             return None;
         }
-        let nodes = slots.iter().map(|slot| address::get(run.tree(), &slot.path));
+        let nodes = slots
+            .iter()
+            .map(|slot| address::get(run.tree(), &slot.path));
         let nodes: Vec<&Node> = nodes.collect::<Option<_>>()?;
         let (text, places) = to_toml_around(run.tree(), &nodes);
         // A value that is no part of a line, as an empty table, has no place of its own.

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::excerpt::excerpt;
 use super::schema::{Group, join};
 use super::source::Mark;
 use super::weight;
@@ -203,7 +204,7 @@ impl SyntaxError {
         if error.message() == DUPLICATE
             && let Some(key) = text.get(span.clone())
         {
-            message.push_str(&format!(" {}", key.trim()));
+            message.push_str(&format!(" {}", excerpt(key.trim())));
         }
         Self {
             message,

@@ -101,7 +101,10 @@ mod tests {
         assert_eq!(parts("a = [1.5, 2.5]\nb = 1\n"), 4 * VALUE_BYTES);
         assert_eq!(parts("a = [\n1.5,\n2.5]\n"), 3 * VALUE_BYTES);
         assert_eq!(parts("[a.b]\n"), 2 * TABLE_BYTES);
-        assert_eq!(parts("a = [{ b.c = 1 }]\n"), 2 * TABLE_BYTES + 3 * VALUE_BYTES);
+        assert_eq!(
+            parts("a = [{ b.c = 1 }]\n"),
+            2 * TABLE_BYTES + 3 * VALUE_BYTES
+        );
     }
 
     #[test]
