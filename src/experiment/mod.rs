@@ -37,6 +37,7 @@ mod run;
 mod run_files;
 mod simulate;
 mod suite;
+mod survey;
 mod textbook;
 mod theory;
 
@@ -54,5 +55,6 @@ pub use log_trial::{LogInput, LogMotion, LogSettings, LogTrial, LogTrialError, t
 pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{CoreSettings, PipelineSettings, PipelineTiming};
-pub use plan::{Plan, Sound, check_suite, plan_suite};
+pub use plan::{Plan, plan_suite};
 pub use suite::{Observer, SuiteError, SuiteOptions, SuiteOutcome, run_suite};
+pub use survey::{Sound, check_suite};

@@ -98,65 +98,22 @@ impl Plan {
     }
 }
 
-/// What is worth saying about one run that has passed every check.
-#[derive(Clone, Debug)]
-pub struct Sound {
-    /// Folder of the run below the output folder.
-    pub folder: String,
-    /// The scenario's own file as messages show it.
-    pub file: String,
-    /// Name of the scenario.
-    pub name: String,
-    /// What a calibration campaign can determine, in a sentence.
-    pub calibration: Option<String>,
-    /// What is allowed but worth saying.
-    pub warnings: Vec<String>,
-    /// What is worth saying about the file, but no part of the results.
-    pub remarks: Vec<String>,
-}
-
-impl From<&Plan> for Sound {
-    fn from(plan: &Plan) -> Self {
-        Self {
-            folder: plan.resolved.folder(),
-            file: plan.resolved.shown_file(),
-            name: plan.resolved.scenario.name.clone(),
-            calibration: plan.calibration.clone(),
-            warnings: plan.warnings.clone(),
-            remarks: plan.resolved.remarks.clone(),
-        }
-    }
-}
-
-/// Checks everything under `paths` as [`plan_suite`] does, without holding the plans in memory.
-///
-/// # Errors
-/// As [`plan_suite`].
-pub fn check_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Sound>, Vec<ScenarioError>> {
-    let mut sound = Vec::new();
-    let mut has_tables = false;
-    visit_plans(paths, sets, &mut |plan| {
-        let scenario = &plan.resolved.scenario;
-        has_tables |= !scenario.comparisons.is_empty() || !scenario.comparison_rows.is_empty();
-        sound.push(Sound::from(&plan));
-    })?;
-    if has_tables {
-        // A table over several scenarios is checked against all of them.
-        let plans = plan_suite(paths, sets)?;
-        return Ok(plans.iter().map(Sound::from).collect());
-    }
-    sound.sort_by(|one, other| one.folder.cmp(&other.folder));
-    Ok(sound)
-}
-
 /// Reads and checks everything under `paths`, `--set` overrides applied.
 ///
 /// # Errors
 /// Every complaint about every file; then nothing may run.
 pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<ScenarioError>> {
     let mut plans = Vec::new();
-    let visited = visit_plans(paths, sets, &mut |plan| plans.push(plan));
-    let mut errors = visited.err().unwrap_or_default();
+    let errors = visit_plans(paths, sets, &mut |plan| plans.push(plan))?;
+    compared(plans, errors)
+}
+
+/// The plans of a suite in their order, if they do not contradict one another and nothing was wrong
+/// before.
+pub(super) fn compared(
+    mut plans: Vec<Plan>,
+    mut errors: Vec<ScenarioError>,
+) -> Result<Vec<Plan>, Vec<ScenarioError>> {
     // By folder, so that the order of the arguments leaves no trace in the results.
     plans.sort_by_cached_key(|plan: &Plan| plan.resolved.folder());
     errors.extend(contradictions(&plans));
@@ -167,12 +124,16 @@ pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<S
     }
 }
 
-/// Reads everything under `paths` and hands over each run that passes its own checks.
-fn visit_plans(
+/// Reads everything under `paths` and hands over each run that passes its own checks; returns the
+/// complaints about the others, each once.
+///
+/// # Errors
+/// Every complaint, if there are some about what was read.
+pub(super) fn visit_plans(
     paths: &[PathBuf],
     sets: &[String],
     visit: &mut dyn FnMut(Plan),
-) -> Result<(), Vec<ScenarioError>> {
+) -> Result<Vec<ScenarioError>, Vec<ScenarioError>> {
     let (mut errors, mut known) = (Vec::new(), BTreeSet::new());
     let mut campaigns = SoundCampaigns::default();
     let mut take = |resolved| match plan(resolved, &mut campaigns) {
@@ -184,11 +145,12 @@ fn visit_plans(
                 .filter(|error| known.insert(error.clone())),
         ),
     };
-    visit_suite(paths, sets, &mut take)?;
-    if errors.is_empty() {
-        Ok(())
-    } else {
-        Err(errors)
+    match visit_suite(paths, sets, &mut take) {
+        Ok(()) => Ok(errors),
+        Err(mut read) => {
+            read.extend(errors);
+            Err(read)
+        }
     }
 }
 

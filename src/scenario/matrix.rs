@@ -15,6 +15,9 @@ use super::tree::{Node, Table, Value};
 /// Most points of one sweep: folders are numbered with four digits.
 pub(super) const POINTS_MAX: usize = 10_000;
 
+/// Points tried, if none of them is sound: what they share is said by then.
+const TRIALS_MAX: usize = 100;
+
 /// Most numbers in the arrays of all points of one sweep: a script has two in a row.
 const NUMBERS_MAX: usize = 10_000_000;
 
@@ -84,6 +87,9 @@ pub(crate) fn expand(
                 visit(resolved);
             }
             Err(more) => errors.extend(more),
+        }
+        if template.is_none() && index + 1 >= TRIALS_MAX && !errors.is_empty() {
+            break;
         }
     }
     if errors.is_empty() {

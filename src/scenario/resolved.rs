@@ -204,7 +204,16 @@ impl Resolved {
             scenario: configuration(&tree, self.root_mark, &self.sources)?,
             digest: digest(text),
             tree,
-            ..self.clone()
+            file: self.file.clone(),
+            inputs: self.inputs.clone(),
+            sweep: None,
+            warnings: self.warnings.clone(),
+            remarks: self.remarks.clone(),
+            is_base_point: false,
+            campaign: self.campaign.clone(),
+            gate_places: self.gate_places.clone(),
+            sources: Arc::clone(&self.sources),
+            root_mark: self.root_mark,
         };
         let errors = cross::check(&other);
         if errors.is_empty() {
