@@ -28,10 +28,13 @@ pub(super) fn sound(options: &SelectOptions) -> Result<Vec<Sound>, Exit> {
     selected(options, check_suite)
 }
 
+/// What a reader finds, or every complaint.
+type Found<T> = Result<Vec<T>, Vec<ScenarioError>>;
+
 /// What one of the readers makes of a selection.
 fn selected<T>(
     options: &SelectOptions,
-    read: fn(&[PathBuf], &[String]) -> Result<Vec<T>, Vec<ScenarioError>>,
+    read: impl Fn(&[PathBuf], &[String]) -> Found<T>,
 ) -> Result<Vec<T>, Exit> {
     let paths = if options.paths.is_empty() {
         vec![PathBuf::from(DEFAULT_FOLDER)]
