@@ -14,9 +14,7 @@ pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
     let budget = match gyro_budget(&options.path, &options.set) {
         Ok(budget) => budget,
         Err(errors) => {
-            for error in &errors {
-                output::talk(&format!("error: {error}"));
-            }
+            output::complain(&errors);
             return Ok(Exit::Usage);
         }
     };

@@ -1,9 +1,11 @@
 //! Exit codes: the contract with shells and CI jobs.
 
+use std::borrow::Cow;
 use std::io;
 use std::process::ExitCode;
 
 use super::output;
+use crate::scenario::bounded;
 
 /// How the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,8 +75,13 @@ impl Exit {
 
 /// Prints what clap has to say (help and version are no errors) and gives its exit code.
 pub(super) fn usage(error: &clap::Error) -> ExitCode {
-    // Whoever closed the stream does not want to read it; the code stays what it is.
-    drop(error.print());
+    let text = error.render().to_string();
+    match bounded(&text) {
+        // An argument of many kilobytes is not echoed whole.
+        Cow::Owned(short) if error.use_stderr() => output::talk(&short),
+        // Whoever closed the stream does not want to read it; the code stays what it is.
+        _ => drop(error.print()),
+    }
     if error.use_stderr() {
         Exit::Usage.code()
     } else {

@@ -86,9 +86,7 @@ fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Exit
 }
 
 fn refused(complaints: &[String]) -> Exit {
-    for complaint in complaints {
-        output::talk(&format!("error: {complaint}"));
-    }
+    output::complain(complaints);
     Exit::Usage
 }
 

@@ -92,9 +92,7 @@ pub(super) fn unreadable(error: &LogError) -> Exit {
 }
 
 fn refused<E: std::fmt::Display>(errors: &[E]) -> Exit {
-    for error in errors {
-        output::talk(&format!("error: {error}"));
-    }
+    output::complain(errors);
     Exit::Usage
 }
 

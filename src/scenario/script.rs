@@ -3,10 +3,9 @@
 //! The file is read where the key that names it was written, and its columns take the place of
 //! that key. What is checked, hashed, recorded and repeated afterwards are the values themselves.
 
-use std::fs;
-use std::path::Path;
-
 use super::error::ScenarioError;
+use super::excerpt::excerpt;
+use super::input::{self, Input};
 use super::resolved::InputFile;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
@@ -51,10 +50,8 @@ pub(crate) fn read_into(
         let shown = super::source::shown_path(&path);
         sources.error(mark, format!("{FILE_KEY} = {shown}: {message}"))
     };
-    let bytes = read_bytes(&path).map_err(|message| complain(sources, &message))?;
-    let digest = blake3::hash(&bytes).to_hex().to_string();
-    let text =
-        String::from_utf8(bytes).map_err(|_| complain(sources, "the file is not UTF-8 text"))?;
+    let Input { text, digest } =
+        input::read(&path).map_err(|error| complain(sources, &error.to_string()))?;
     let source = sources.add_file(
         super::source::shown_path(&path),
         text.clone(),
@@ -70,19 +67,11 @@ pub(crate) fn read_into(
     })?;
     script.remove("file");
     let node = Node {
-        value: Value::Table(points),
+        value: points.into(),
         mark: Some(mark),
     };
     script.insert("points".to_owned(), node);
     Ok(())
-}
-
-fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
-    fs::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => "no such file".to_owned(),
-        _ if path.is_dir() => "it is a folder, not a file".to_owned(),
-        _ => format!("cannot read the file: {error}"),
-    })
 }
 
 /// A cell and the byte at which it starts.
@@ -136,6 +125,7 @@ fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
         }
         for ((at, cell), (column, (_, name))) in row.iter().zip(values.iter_mut().zip(&header)) {
             let number: f64 = cell.parse().map_err(|_| {
+                let cell = excerpt(cell);
                 let message =
                     format!("{name} = `{cell}` is not a number: expected one such as 0.5");
                 (*at, message)
@@ -148,7 +138,7 @@ fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
     }
     let table = header.iter().zip(values).map(|((at, name), values)| {
         let node = Node {
-            value: Value::Array(values),
+            value: values.into(),
             mark: Some(Mark { source, start: *at }),
         };
         ((*name).to_owned(), node)
@@ -170,7 +160,11 @@ fn check_header(start: usize, header: &[Cell<'_>]) -> Result<(), (usize, String)
     if let Some((at, name)) = header.iter().find(|(_, name)| !is_known(name)) {
         return Err((
             *at,
-            format!("unknown column `{name}`: expected {}", expected()),
+            format!(
+                "unknown column `{}`: expected {}",
+                excerpt(name),
+                expected()
+            ),
         ));
     }
     let times = header.iter().filter(|(_, name)| *name == TIME).count();

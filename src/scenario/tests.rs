@@ -275,7 +275,7 @@ fn trees() -> impl Strategy<Value = Table> {
     });
     let node = leaf.prop_recursive(3, 24, 4, |inner| {
         prop::collection::btree_map("[a-c]", inner, 0..4).prop_map(|table| Node {
-            value: Value::Table(table),
+            value: table.into(),
             mark: None,
         })
     });
