@@ -9,6 +9,7 @@ mod bit_exact;
 mod calibrate;
 mod calibrate_files;
 mod calibration_campaign;
+mod campaign;
 mod cli;
 mod cli_analyze;
 mod cli_budget;
