@@ -213,13 +213,19 @@ fn redraw_or_remove(
     let count = draft.count_beside(index, draws);
     let line = &mut draft.lines[index];
     line.blamed += 1;
+    let leaf = leaves.get(&line.schema_path);
+    let is_time = leaf.is_some_and(|leaf| leaf.unit.as_deref() == Some("s"));
+    // A time that does not fit is too long, but an array of times lasts as long as the record.
+    let shorter = if is_time && !line.value.starts_with('[') {
+        draws.log_uniform(0.02, 1.0)
+    } else {
+        1.0
+    };
     let milder = Setting {
         extreme: 0.0,
-        // Times that did not fit were too long, frequencies too low or too high.
-        duration_s: setting.duration_s * draws.log_uniform(0.02, 1.0),
+        duration_s: setting.duration_s * shorter,
         count,
     };
-    let leaf = leaves.get(&line.schema_path);
     match leaf.and_then(|leaf| values::value(draws, leaf, milder)) {
         Some(value) if line.is_needed && line.blamed <= REDRAWS_MAX => line.value = value,
         _ => draft.remove(index),

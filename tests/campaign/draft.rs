@@ -19,6 +19,8 @@ pub(crate) struct Line {
     pub(crate) value: String,
     /// Optional part of the file the key belongs to, `0/2` for the part 2 inside the part 0.
     pub(crate) part: String,
+    /// Table that must stay when its last key goes, by key and by schema path.
+    pub(crate) stem: Option<(String, String)>,
     /// Whether the part cannot do without it.
     pub(crate) is_needed: bool,
     /// How often it has been blamed.
@@ -83,11 +85,15 @@ impl Draft {
         let (_, owners) = self.render();
         let mut found: Vec<usize> = Vec::new();
         for error in errors {
+            // A complaint about a key that is not written stands at whatever is near.
             let by_line = owners.get(error.location.line).copied().flatten();
             let by_line = by_line.filter(|&index| self.may_change(index));
-            if let Some(index) = by_line.or_else(|| self.named_in(&error.message)) {
-                found.push(index);
-            }
+            let is_meant = |index: &usize| error.message.contains(&self.lines[*index].key);
+            let index = by_line
+                .filter(is_meant)
+                .or_else(|| self.named_in(&error.message))
+                .or_else(|| by_line.filter(|&index| !self.lines[index].is_needed));
+            found.extend(index);
         }
         found.sort_unstable();
         found.dedup();
@@ -127,12 +133,33 @@ impl Draft {
     pub(crate) fn remove(&mut self, index: usize) {
         let line = &self.lines[index];
         if !line.is_needed || line.part == FILE {
-            self.lines.remove(index);
+            self.remove_one(index);
             return;
         }
         let part = line.part.clone();
         let inner = format!("{part}/");
         self.lines
             .retain(|line| line.part != part && !line.part.starts_with(&inner));
+    }
+
+    /// Takes one key away; the table that somebody chose stays, without keys.
+    fn remove_one(&mut self, index: usize) {
+        let line = self.lines.remove(index);
+        let Some((key, schema_path)) = line.stem.clone() else {
+            return;
+        };
+        let is_beside = |other: &Line| other.stem == line.stem && other.element == line.element;
+        if !self.lines.iter().any(is_beside) {
+            self.lines.insert(
+                index,
+                Line {
+                    key,
+                    schema_path,
+                    value: "{}".to_owned(),
+                    is_needed: true,
+                    ..line
+                },
+            );
+        }
     }
 }

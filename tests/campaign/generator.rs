@@ -29,6 +29,7 @@ struct Place {
     element: Option<(String, usize)>,
     key: String,
     part: String,
+    stem: Option<(String, String)>,
 }
 
 impl<'a> Generator<'a> {
@@ -57,6 +58,7 @@ impl<'a> Generator<'a> {
             element: None,
             key: String::new(),
             part: FILE.to_owned(),
+            stem: None,
         };
         let schema = self.schema;
         self.table(schema, &root);
@@ -90,6 +92,7 @@ impl<'a> Generator<'a> {
                 key: key.to_owned(),
                 value,
                 part: FILE.to_owned(),
+                stem: None,
                 is_needed: true,
                 blamed: 0,
             });
@@ -139,13 +142,17 @@ impl<'a> Generator<'a> {
             return;
         }
         let mut place = place.clone();
-        if is_chosen || is_optional {
+        // An element is nothing without its alternative; a table falls back to the default one.
+        if place.element.is_none() && (is_chosen || is_optional) {
             place.part = self.new_part(&place.part);
+        }
+        if is_chosen {
+            place.stem = Some((place.key.clone(), place.schema_path.clone()));
         }
         let before = self.draft.lines.len();
         self.table(table, &place);
         if is_chosen && self.draft.lines.len() == before {
-            self.push(&place, "{}".to_owned(), false);
+            self.push(&place, "{}".to_owned(), true);
         }
     }
 
@@ -163,6 +170,7 @@ impl<'a> Generator<'a> {
                 element: Some((place.key.clone(), index)),
                 key: String::new(),
                 part,
+                stem: None,
             };
             self.table(table, &element);
         }
@@ -199,6 +207,7 @@ impl<'a> Generator<'a> {
             key: place.key.clone(),
             value,
             part: place.part.clone(),
+            stem: place.stem.clone(),
             is_needed,
             blamed: 0,
         });

@@ -5,8 +5,14 @@ use super::schema::{self, Table};
 use super::values::{Setting, quoted, toml, value};
 use crate::support::seeded::Draws;
 
+/// Index of an element behind all that are drawn.
+const LAST: usize = 1000;
+
 /// Mends what would be refused for sure, most of the time.
 pub(crate) fn apply(draft: &mut Draft, draws: &mut Draws, schema: &Table, setting: Setting) {
+    if draws.chance(0.06) {
+        unstable_filter(draft, draws);
+    }
     if draws.chance(0.1) {
         return;
     }
@@ -41,8 +47,34 @@ fn line(path: &str, value: String) -> Line {
         key: path.to_owned(),
         value,
         part: FILE.to_owned(),
+        stem: None,
         is_needed: false,
         blamed: 0,
+    }
+}
+
+/// A filter that diverges, half of the time with the gate that expects it.
+fn unstable_filter(draft: &mut Draft, draws: &mut Draws) {
+    let mut element = |array: &str, key: &str, value: &str| {
+        draft.lines.push(Line {
+            schema_path: format!("{array}[].{key}"),
+            element: Some((array.to_owned(), LAST)),
+            key: key.to_owned(),
+            value: value.to_owned(),
+            part: format!("unstable {array}"),
+            stem: None,
+            is_needed: true,
+            blamed: 0,
+        });
+    };
+    element("filter", "name", "\"unstable\"");
+    element("filter", "lms.normalised", "false");
+    element("filter", "lms.allow_unstable", "true");
+    element("filter", "lms.step_size", "2.0");
+    if draws.chance(0.5) {
+        element("gate", "metric", "\"unstable.diverged_at_s\"");
+        element("gate", "min", "0.0");
+        element("gate", "decide", "\"value\"");
     }
 }
 
@@ -52,7 +84,7 @@ fn campaign(draft: &mut Draft, draws: &mut Draws, setting: Setting) {
     let groups = 3 * each;
     let axes = (0..groups).map(|index| quoted(["x", "y", "z"][index / each]));
     let rates = (0..groups).map(|index| {
-        let rate = draws.log_uniform(1e-3, 2000.0);
+        let rate = draws.log_uniform(1e-3, 195.0);
         toml(match index % 3 {
             0 => rate,
             1 => -rate,
@@ -65,13 +97,31 @@ fn campaign(draft: &mut Draft, draws: &mut Draws, setting: Setting) {
     let path = |name: &str| format!("turntable.calibration.{name}");
     draft.set(&path("axes"), format!("[{}]", axes.join(", ")));
     draft.set(&path("rates_deg_per_s"), format!("[{}]", rates.join(", ")));
-    let slot_s = setting.duration_s / groups as f64;
+    // A mean takes forty samples and a ramp eight, at four thousand in a second.
+    let slot_s = (setting.duration_s / groups as f64).max(0.04);
+    draft.set("duration_s", toml(slot_s * groups as f64));
     draft.set(
         &path("record_s"),
-        toml(slot_s * draws.log_uniform(0.1, 0.6)),
+        toml(slot_s * draws.log_uniform(0.3, 0.6)),
     );
     for name in ["change_s", "remount_s"] {
-        draft.set(&path(name), toml(slot_s * draws.log_uniform(0.05, 0.35)));
+        draft.set(&path(name), toml(slot_s * draws.log_uniform(0.15, 0.35)));
+    }
+    if draft.value(&path("whole_turns")).is_none() && draws.chance(0.9) {
+        draft
+            .lines
+            .push(line(&path("whole_turns"), "false".to_owned()));
+    }
+    if draws.chance(0.7) {
+        // These two need no change of temperature.
+        let estimator = quoted(draws.pick::<&str>(&["batch", "arls"]));
+        for (key, value) in [
+            ("calibration.estimators", format!("[{estimator}]")),
+            ("calibration.apply", estimator),
+        ] {
+            draft.lines.retain(|line| line.key != key);
+            draft.lines.push(line(key, value));
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use fogbench::experiment::Plan;
-use fogbench::report::RunStatus;
+use fogbench::report::{RunOutcome, RunStatus};
 
 use super::case::{Complaint, Fault, Ran, Refusal, Workshop, accept};
 use super::draft::{Draft, Line};
@@ -16,6 +16,7 @@ use super::tally::Tally;
 use super::values::{quoted, toml};
 use super::watchdog::Watchdog;
 use crate::support::seeded::{Draws, case_seed};
+use crate::support::{code, fogbench, stderr};
 
 /// Seed of the small form.
 const SEED: u64 = 20_221_105;
@@ -87,7 +88,11 @@ fn one(seed: u64, schema: &Table, tally: &mut Tally) {
         }
     };
     tally.count("ran");
-    let kind = *draws.pick(&KINDS);
+    let kind = if draws.chance(PROGRAM) {
+        Extra::Program
+    } else {
+        *draws.pick(&KINDS)
+    };
     describe(&draft, &plans, schema, tally);
     match examine(&workshop, &draft, &plans, kind, &mut draws, tally) {
         Ok(()) => {}
@@ -120,7 +125,12 @@ enum Extra {
     Again,
     /// Gates at both sides of a measured value.
     Gates,
+    /// The program itself writes the same files and ends with the code of the verdict.
+    Program,
 }
+
+/// Share of the cases that the program runs: a process takes as long as a case.
+const PROGRAM: f64 = 0.02;
 
 const KINDS: [Extra; 8] = [
     Extra::Nothing,
@@ -159,7 +169,28 @@ fn examine(
             same("again", &ran.output, &again.output)
         }
         Extra::Gates => gates(workshop, draft, &ran, draws, tally),
+        Extra::Program => program(workshop, &ran),
     }
+}
+
+/// Runs the program on the file; the same bytes, and the exit code of the worst run.
+fn program(workshop: &Workshop, ran: &Ran) -> Result<(), Fault> {
+    let output = fogbench(workshop.path(), &["run", "case.toml", "-o", "program"]);
+    let worst = ran.outcome.runs.iter().map(RunOutcome::status).max();
+    let expected = match worst {
+        None | Some(RunStatus::Pass) => 0,
+        Some(RunStatus::GateFailed) => 1,
+        Some(RunStatus::ChannelFailed | RunStatus::RunFailed) => 3,
+    };
+    if code(&output) != expected {
+        let message = format!(
+            "{}, expected {expected}: {}",
+            code(&output),
+            stderr(&output)
+        );
+        return Err(Fault::new("wrong exit code", message));
+    }
+    same("program", &ran.output, &workshop.path().join("program"))
 }
 
 /// Runs the manifest of every run; its folder must hold the same bytes.
@@ -230,6 +261,7 @@ fn gates(
             key: key.to_owned(),
             value,
             part: "gate".to_owned(),
+            stem: None,
             is_needed: true,
             blamed: 0,
         });

@@ -61,10 +61,16 @@ pub(crate) fn numbers(
     count: usize,
     setting: Setting,
 ) -> String {
-    let mut values: Vec<f64> = (0..count)
-        .map(|_| number(draws, leaf, range, setting))
-        .collect();
     let unit = leaf.unit.as_deref();
+    let spread = unit == Some("s") && draws.chance(0.8);
+    let values = (0..count).map(|_| {
+        if spread {
+            within(draws.unit() * setting.duration_s, range)
+        } else {
+            number(draws, leaf, range, setting)
+        }
+    });
+    let mut values: Vec<f64> = values.collect();
     if matches!(unit, Some("s" | "Hz")) && draws.chance(0.9) {
         values.sort_by(f64::total_cmp);
     }
@@ -79,7 +85,7 @@ pub(crate) fn numbers(
 fn number(draws: &mut Draws, leaf: &Leaf, range: Range, setting: Setting) -> f64 {
     let value = if draws.chance(setting.extreme) {
         extreme(draws, range)
-    } else if draws.chance(USUAL) {
+    } else if setting.extreme <= 0.0 || draws.chance(USUAL) {
         usual(draws, leaf, range, setting)
     } else {
         between(draws, range)
@@ -110,8 +116,9 @@ fn usual(draws: &mut Draws, leaf: &Leaf, range: Range, setting: Setting) -> f64 
         (Some("s"), _) if range.low == 0.0 && !range.is_low_open && draws.chance(0.2) => 0.0,
         (Some("s"), _) => draws.log_uniform(setting.duration_s * 3e-3, setting.duration_s),
         (Some("Hz"), None) => {
-            let lowest = (0.3 / setting.duration_s).min(500.0);
-            draws.log_uniform(lowest, 2000.0)
+            // A record holds three cycles of the lowest of several sines.
+            let lowest = (3.5 / setting.duration_s).min(400.0);
+            draws.log_uniform(lowest, 450.0)
         }
         (_, Some(default)) if default != 0.0 => default * draws.log_uniform(0.1, 10.0),
         _ => {
