@@ -285,7 +285,7 @@ fn bad_logs_and_usage_exit_2_and_unreadable_files_74() {
     };
     for (command, more, part) in [
         ("analyze", &["90"][..], "contradicts the time column"),
-        ("analyze", &["0"], "expected a number above 0"),
+        ("analyze", &["0"], "expected a number from 1e-6 to 1e9 Hz"),
         (
             "analyze",
             &["100", "--warm-up-s", "3"],
@@ -304,7 +304,7 @@ fn bad_logs_and_usage_exit_2_and_unreadable_files_74() {
         (
             "analyze",
             &["100", "--scale", "0"],
-            "expected another number than 0",
+            "expected a number from 1e-30 to 1e30",
         ),
         ("filter", &["100"], "--filters"),
         (

@@ -22,6 +22,7 @@ mod compensation;
 mod cycle_exact;
 mod determinism;
 mod encoder;
+mod extremes;
 mod filters;
 mod fpga_health;
 mod frequency_response;

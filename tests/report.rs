@@ -360,7 +360,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
         channels: vec![("raw", &raw), ("lms", &lms), ("rls", &raw), ("bad", &raw)],
         temperature: None,
     };
-    let pictures = plots(&fixture.report(), &signals);
+    let pictures = plots(&fixture.report(), &signals).drawn;
     let names: Vec<&str> = pictures.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["rate.svg", "allan.svg", "swing.svg"]);
     for (name, svg) in &pictures {
@@ -374,7 +374,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
         );
     }
     assert!(pictures[2].1.contains("behind raw"));
-    assert_eq!(pictures, plots(&fixture.report(), &signals));
+    assert_eq!(pictures, plots(&fixture.report(), &signals).drawn);
 }
 
 /// Samples for pictures that are drawn from curves.
@@ -431,7 +431,7 @@ fn several_sines_are_drawn_with_the_line_of_theory() {
             theory,
             ..fixture.report()
         };
-        let pictures = plots(&report, &quiet_signals(&zeros));
+        let pictures = plots(&report, &quiet_signals(&zeros)).drawn;
         let bode = pictures.into_iter().find(|(name, _)| name == "bode.svg");
         bode.expect("a response is drawn").1
     };
@@ -468,7 +468,7 @@ fn a_staircase_of_three_rates_is_drawn_as_a_response() {
             theory: &lines,
             ..fixture.report()
         };
-        let pictures = plots(&report, &quiet_signals(&zeros));
+        let pictures = plots(&report, &quiet_signals(&zeros)).drawn;
         pictures
             .into_iter()
             .find(|(name, _)| name == "response.svg")

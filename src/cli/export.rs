@@ -64,9 +64,6 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
 /// Pipeline and stimulus, both checked before anything is written.
 fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Vec<String>> {
     let one = |complaint: String| vec![complaint];
-    if options.samples == 0 {
-        return Err(one("--samples 0: expected at least 1".to_owned()));
-    }
     let mut settings = options.filter.settings();
     let stimulus = match (&options.stimulus, &options.scenario) {
         (Some(path), _) => Stimulus {

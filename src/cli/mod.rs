@@ -14,6 +14,7 @@ mod hardware_arguments;
 mod list;
 mod log;
 mod log_arguments;
+mod numbers;
 mod output;
 mod run;
 mod schema;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::compensation::Parameters;
 use crate::calibration::CompensationForm;
-use crate::recording::Log;
+use crate::recording::{Log, check_temperature};
 use crate::scenario::{CompensationRule, Location, ScenarioError, load_calibration};
 
 /// The parameters of a calibration file, to be taken out of a log.
@@ -57,7 +57,7 @@ pub struct CompensatedLog {
 /// * `temperature_c`: of the assembly at each word; none: biases stay at their reference.
 ///
 /// # Errors
-/// In words: columns of different length.
+/// In words: columns of different length; a temperature that no gyro works at.
 pub fn compensate_log(
     logs: [Log; 3],
     temperature_c: Option<&[f64]>,
@@ -71,6 +71,10 @@ pub fn compensate_log(
         return Err(format!(
             "columns of different length: {lengths:?}, {temperatures}"
         ));
+    }
+    for (sample, warmth) in temperature_c.into_iter().flatten().enumerate() {
+        check_temperature(*warmth)
+            .map_err(|message| format!("temperature column, sample {sample}: {message}"))?;
     }
     let words = (0..lengths[0]).map(|sample| {
         let output = [x, y, z].map(|log| log.rate_deg_per_h[sample]);

@@ -75,9 +75,15 @@ pub(super) fn run_scenario(
         verdicts: &verdicts,
         notes: &notes,
     };
+    let pictures = run_files::draw(plan, &report, &simulation);
+    let notes = [&notes[..], &pictures.notes].concat();
+    let report = RunReport {
+        notes: &notes,
+        ..report
+    };
     let target = output.join(&folder);
-    let written = run_files::write_folder(plan, &report, &simulation, &target);
-    let pictures = written.map_err(|source| SuiteError::Write {
+    let written = run_files::write_folder(plan, &report, &simulation, &pictures, &target);
+    written.map_err(|source| SuiteError::Write {
         path: target,
         source,
     })?;
@@ -85,7 +91,7 @@ pub(super) fn run_scenario(
     let outcome = RunOutcome::from_report(&report, &folder);
     let outcome = outcome.keeping(&report, layout.metrics_of(&scenario.name));
     Ok(RunOutcome {
-        pictures,
+        pictures: pictures.drawn.into_iter().map(|(name, _)| name).collect(),
         ..outcome
     })
 }
@@ -163,6 +169,7 @@ fn run_repeat(
         .map_err(|error| format!("calibration: {error}"))?
         .map(|(sheet, _)| sheet);
     channels.extend(sheet.iter().flat_map(campaign::estimate_channels));
+    keep_finite(&mut channels);
     Ok((simulation, channels, sheet))
 }
 
@@ -183,5 +190,14 @@ fn combine(first: Channels, others: Vec<Channels>) -> Channels {
         let table = failed.cloned().unwrap_or_else(|| aggregate(&tables));
         (name, table)
     });
-    combined.collect()
+    let mut combined = combined.collect();
+    keep_finite(&mut combined);
+    combined
+}
+
+/// Leaves only finite numbers in the tables; see [`ChannelMetrics::keep_finite`].
+fn keep_finite(channels: &mut Channels) {
+    for (_, metrics) in channels {
+        metrics.keep_finite();
+    }
 }

@@ -1,6 +1,7 @@
 //! Whether a record of given length and motion can support a metric at all.
 
 use super::aggregate::REPEATABILITIES;
+use super::bias::is_sample_or_longer;
 use super::catalogue::{find, known_metrics};
 use super::delay::{CYCLES_MIN, SwingClock};
 use super::interval::round_to_count;
@@ -66,6 +67,16 @@ fn too_short(metric: &str, needed_s: f64, duration_s: f64) -> String {
     format!("`{metric}` needs a record of at least {needed_s} s; this one has {duration_s} s")
 }
 
+/// Why samples of a period cannot be averaged over a time; nothing if they can.
+pub(crate) fn averaging_lack(averaging_time_s: f64, sample_period_s: f64) -> Option<String> {
+    (!is_sample_or_longer(averaging_time_s, sample_period_s)).then(|| {
+        format!(
+            "an averaging time of {averaging_time_s} s is shorter than a sample, which takes \
+             {sample_period_s} s"
+        )
+    })
+}
+
 /// Whether a record of this length and motion can ever support a metric.
 ///
 /// A metric may still be missing from a particular record whose noise does not show it.
@@ -93,18 +104,24 @@ pub fn support(
         ));
     }
     check_motion(known, motion)?;
+    let averaging_time_s = match metric {
+        "bias_stability_1s_deg_per_h" => Some(1.0),
+        "bias_stability_10s_deg_per_h" => Some(10.0),
+        "bias_stability_100s_deg_per_h" => Some(100.0),
+        "bias_stability_deg_per_h" | "bias_stability_over_dc_gain_deg_per_h" => {
+            Some(bias_averaging_time_s)
+        }
+        _ => None,
+    };
+    if let Some(lack) = averaging_time_s.and_then(|it| averaging_lack(it, sample_period_s)) {
+        return Err(format!("`{metric}`: {lack}"));
+    }
     let needed_s = match metric {
         "angle_random_walk_deg_per_sqrt_h"
         | "angle_random_walk_over_dc_gain_deg_per_sqrt_h"
         | "quantisation_arcsec" => FIT_SAMPLES_MIN * sample_period_s,
         slow if SLOW_NOISE.contains(&slow) => SLOW_NOISE_DURATION_MIN_S,
-        "bias_stability_1s_deg_per_h" => BLOCKS_MIN as f64,
-        "bias_stability_10s_deg_per_h" => BLOCKS_MIN as f64 * 10.0,
-        "bias_stability_100s_deg_per_h" => BLOCKS_MIN as f64 * 100.0,
-        "bias_stability_deg_per_h" | "bias_stability_over_dc_gain_deg_per_h" => {
-            BLOCKS_MIN as f64 * bias_averaging_time_s
-        }
-        _ => 0.0,
+        _ => averaging_time_s.map_or(0.0, |it| BLOCKS_MIN as f64 * it),
     };
     if duration_s < needed_s * (1.0 - 1e-9) {
         return Err(too_short(metric, needed_s, duration_s));

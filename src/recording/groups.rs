@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use super::bounds::{STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C};
 use super::csv::{finite, lines, text_of};
 use super::error::{LogError, Place};
 use super::groups_heading::{Heading, Quantity};
@@ -14,10 +15,12 @@ const TABLE_RATE_MAX_DEG_PER_S: f64 = 2000.0;
 /// Largest rate that an output may stand for, deg/s: wide enough that outputs in a wrong unit come
 /// as far as the comparison with the rates, which names the unit.
 const RATE_MAX_DEG_PER_S: f64 = 1e9;
-/// Believable temperatures, deg C: those that a compensation takes as its reference.
-const TEMPERATURE_C: (f64, f64) = (-100.0, 150.0);
-/// Fastest change of these, K/min.
+/// Fastest change of temperatures, K/min.
 const WARMING_MAX_K_PER_MIN: f64 = 1000.0;
+/// Longest time and most turns that are believed: thirty years, in s, and as many turns.
+const TIME_MAX_S: f64 = 1e9;
+/// Latest start, s: stamps of a clock that counts from 1970, in s or ms.
+const START_MAX_S: f64 = 1e13;
 
 /// How the case sits on the table, whose axis is vertical.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,6 +165,7 @@ pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
     if groups.is_empty() {
         return Err(LogError::of_file(path, "holds no group"));
     }
+    check_standard_errors(&groups).map_err(|(number, message)| complain(number, message))?;
     let unit = |quantity| heading.unit(quantity).unwrap_or(RateUnit::DegPerH);
     Ok(RecordedGroups {
         file: path
@@ -174,6 +178,33 @@ pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
         output_unit: [0, 1, 2].map(|axis| unit(Quantity::Output(axis))),
         groups,
     })
+}
+
+/// Refuses standard errors that no mean has: the covariance and the weighted residuals rest on their
+/// ratios. Noise-free data have 0 in every line of a gyro.
+///
+/// # Errors
+/// Line and complaint.
+fn check_standard_errors(groups: &[RecordedGroup]) -> Result<(), (usize, String)> {
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let errors = || {
+            let lines = groups.iter();
+            lines.filter_map(|group| Some((group.line, group.standard_error_deg_per_h?[axis])))
+        };
+        if errors().all(|(_, error)| error <= 0.0) {
+            continue;
+        }
+        let small = errors().find(|(_, error)| *error < STANDARD_ERROR_MIN_DEG_PER_H);
+        if let Some((line, error)) = small {
+            let message = format!(
+                "the standard error of {name}, {error:?} deg/h, is out of range: allowed from \
+                 {STANDARD_ERROR_MIN_DEG_PER_H:e} deg/h on, or 0 in every line of {name} for data \
+                 without noise"
+            );
+            return Err((line, message));
+        }
+    }
+    Ok(())
 }
 
 /// One line under its heading.
@@ -201,7 +232,7 @@ impl<'a> Line<'a> {
         let reference = three(|axis| table_rate(Quantity::Reference(axis)))?;
         let temperature = self.common_or_each(Quantity::Temperature, TEMPERATURE_C, "deg C")?;
         let warming = (-WARMING_MAX_K_PER_MIN, WARMING_MAX_K_PER_MIN);
-        let time = (0.0, f64::MAX);
+        let time = (0.0, TIME_MAX_S);
         Ok(RecordedGroup {
             line,
             name: self.cell(Quantity::Group).map(|(_, cell)| cell.to_owned()),
@@ -217,8 +248,8 @@ impl<'a> Line<'a> {
                 "K/min",
             )?,
             averaging_time_s: self.number(Quantity::AveragingTime, time, "s")?,
-            start_s: self.number(Quantity::Start, (f64::MIN, f64::MAX), "s")?,
-            turns: self.number(Quantity::Turns, (0.0, f64::MAX), "turns")?,
+            start_s: self.number(Quantity::Start, (-START_MAX_S, START_MAX_S), "s")?,
+            turns: self.number(Quantity::Turns, time, "turns")?,
             samples: self.count(Quantity::Samples)?,
             rejected: three(|axis| self.count(Quantity::Rejected(axis)))?,
         })
@@ -249,13 +280,8 @@ impl<'a> Line<'a> {
         if (min..=max).contains(&value) {
             return Ok(Some(value));
         }
-        let expected = if max < f64::MAX {
-            format!("{min} to {max} {unit}")
-        } else {
-            format!("{min} {unit} or more")
-        };
         Err(format!(
-            "column {name}: {value} {unit} is out of range: expected {expected}"
+            "column {name}: {value} {unit} is out of range: expected {min} to {max} {unit}"
         ))
     }
 

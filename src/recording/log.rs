@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use super::bounds::{check_rate, check_sample_rate};
 use super::column::Columns;
 use super::error::LogError;
 use super::timing::{TimeUnit, Timing, timing};
@@ -98,6 +99,7 @@ pub fn read_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
         let message = "the sample rate is not known: give --rate-hz, or a time column with --time";
         return Err(LogError::of_file(path, message));
     };
+    check_sample_rate(sample_rate_hz).map_err(|message| LogError::of_file(path, message))?;
     let rate_deg_per_h = rates(path, &columns, format, sample_rate_hz)?;
     let name = path.file_name().unwrap_or(path.as_os_str());
     Ok(Log {
@@ -135,11 +137,10 @@ fn rates(
         let rate = format
             .unit
             .to_deg_per_h(value * format.scale, sample_rate_hz);
-        if rate.is_finite() {
-            return Ok(rate);
-        }
-        let message = format!("{value:?} {} is not a finite rate in deg/h", format.unit);
-        Err(LogError::at(path, columns.place(row), message))
+        check_rate(rate).map(|()| rate).map_err(|message| {
+            let message = format!("{value:?} {}: {message}", format.unit);
+            LogError::at(path, columns.place(row), message)
+        })
     });
     rates.collect()
 }

@@ -63,64 +63,36 @@ pub(crate) enum Presence {
     Optional,
 }
 
-/// Interval of binary64 values; each end may be open.
+/// Closed interval of finite binary64 values.
+///
+/// No end is open: just above an open 0 lie numbers, as 5e-324, whose reciprocals and squares are no
+/// numbers any more. Each least value is one of the physics or of the arithmetic behind the key.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Range {
-    low: f64,
-    is_low_open: bool,
-    high: f64,
+    /// Least value.
+    pub(crate) low: f64,
+    /// Greatest value.
+    pub(crate) high: f64,
 }
 
 impl Range {
-    /// Every finite number.
-    pub(crate) const ANY: Self = Self::closed(f64::NEG_INFINITY, f64::INFINITY);
+    /// Limits and published figures in the unit of any metric, whose squares are finite too.
+    pub(crate) const ANY_METRIC: Self = Self::closed(-1e30, 1e30);
 
     /// `[low, high]`.
     pub(crate) const fn closed(low: f64, high: f64) -> Self {
-        Self {
-            low,
-            is_low_open: false,
-            high,
-        }
-    }
-
-    /// `(low, high]`.
-    pub(crate) const fn above(low: f64, high: f64) -> Self {
-        Self {
-            low,
-            is_low_open: true,
-            high,
-        }
+        Self { low, high }
     }
 
     /// Whether a value is finite and inside.
     pub(crate) fn contains(&self, value: f64) -> bool {
-        let is_above = if self.is_low_open {
-            value > self.low
-        } else {
-            value >= self.low
-        };
-        value.is_finite() && is_above && value <= self.high
-    }
-
-    /// Lower end and whether it is open; `None` if unbounded.
-    pub(crate) fn low(&self) -> Option<(f64, bool)> {
-        self.low.is_finite().then_some((self.low, self.is_low_open))
-    }
-
-    /// Upper end (always closed); `None` if unbounded.
-    pub(crate) fn high(&self) -> Option<f64> {
-        self.high.is_finite().then_some(self.high)
+        value.is_finite() && (self.low..=self.high).contains(&value)
     }
 }
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.low.is_infinite() {
-            return f.write_str("any finite number");
-        }
-        let bracket = if self.is_low_open { '(' } else { '[' };
-        write!(f, "{bracket}{}, {}]", number(self.low), number(self.high))
+        write!(f, "[{}, {}]", number(self.low), number(self.high))
     }
 }
 

@@ -209,7 +209,7 @@ fn suggestions_prefer_the_same_table_and_say_when_nothing_is_near() {
 fn json_schema_follows_the_key_table() {
     let document = super::json_schema();
     let length = &document["properties"]["gyro"]["properties"]["coil"]["properties"]["length_m"];
-    assert_eq!(length["exclusiveMinimum"], 0.0);
+    assert_eq!(length["minimum"], 1.0);
     assert_eq!(length["maximum"], 50_000.0);
     assert_eq!(length["default"], 800.0);
     let rls = &document["properties"]["filter"]["items"]["properties"]["rls"]["properties"];
