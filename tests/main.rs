@@ -10,6 +10,7 @@ mod bounds;
 mod calibrate;
 mod calibrate_files;
 mod calibration_campaign;
+mod campaign;
 mod cli;
 mod cli_analyze;
 mod cli_budget;
