@@ -48,7 +48,7 @@ mod tests {
     #[test]
     fn values_and_vectors_are_those_of_the_unbounded_iteration_to_the_bit() {
         let matrix = DMatrix::from_fn(6, 4, |row, column| {
-            ((3 * row + 7 * column) as f64).sin() * 10_f64.powi(row as i32)
+            ((3 * row + 7 * column) as f64).sin() * 10_f64.powf(row as f64)
         });
         let bounded = singular_value_decomposition(matrix.clone(), true, true).unwrap();
         let plain = matrix.svd(true, true);

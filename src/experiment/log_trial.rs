@@ -186,12 +186,9 @@ pub fn try_log(
     let is_compensated = record.compensated_deg_per_h.is_some();
     let compensated = is_compensated.then(|| (COMPENSATED.to_owned(), cut.measure_compensated()));
     let own = std::iter::once((RAW.to_owned(), raw)).chain(compensated);
-    let mut channels: Vec<_> = own.chain(others).collect();
-    for (_, metrics) in &mut channels {
-        metrics.keep_finite();
-    }
+    let channels = own.chain(others);
     Ok(LogTrial {
-        channels,
+        channels: channels.collect(),
         motion: report_motion(settings.motion),
         source: filters.map(LogFilters::source),
         filters: finished,

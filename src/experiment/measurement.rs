@@ -134,6 +134,7 @@ impl Cut<'_> {
         };
         if let Some(pipeline) = &filter.pipeline {
             pipeline_metrics::enter(pipeline, self.sample_period_s, &mut metrics);
+            metrics.keep_finite();
         }
         metrics
     }
