@@ -180,7 +180,7 @@ fn program(workshop: &Workshop, ran: &Ran) -> Result<(), Fault> {
     let expected = match worst {
         None | Some(RunStatus::Pass) => 0,
         Some(RunStatus::GateFailed) => 1,
-        Some(RunStatus::ChannelFailed | RunStatus::RunFailed) => 3,
+        Some(RunStatus::ChannelFailed | RunStatus::RunFailed | RunStatus::NotRun) => 3,
     };
     if code(&output) != expected {
         let message = format!(
