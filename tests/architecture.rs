@@ -6,15 +6,16 @@ use std::path::{Path, PathBuf};
 /// Module, and the modules of the crate it may import.
 pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ("units", &[]),
+    ("linear_algebra", &[]),
     ("random", &["units"]),
     ("signal", &["units"]),
-    ("scenario", &["units"]),
+    ("scenario", &["units", "recording"]),
     ("turntable", &["units", "signal", "random", "scenario"]),
     ("gyro", &["units", "signal", "random", "scenario"]),
     ("fpga", &[]),
     ("filters", &["signal"]),
-    ("metrics", &["units", "signal"]),
-    ("calibration", &["units", "signal"]),
+    ("metrics", &["units", "linear_algebra", "signal"]),
+    ("calibration", &["units", "linear_algebra", "signal"]),
     ("recording", &["units", "signal"]),
     ("gate", &["metrics", "scenario"]),
     (

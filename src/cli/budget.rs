@@ -14,19 +14,15 @@ pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
     let budget = match gyro_budget(&options.path, &options.set) {
         Ok(budget) => budget,
         Err(errors) => {
-            for error in &errors {
-                output::talk(&format!("error: {error}"));
-            }
+            output::complain(&errors);
             return Ok(Exit::Usage);
         }
     };
     let GyroBudget { file, sheet } = &budget;
     if let Some(folder) = &options.output {
         std::fs::create_dir_all(folder).map_err(|error| at(folder, &error))?;
-        for (name, text) in [
-            ("budget.svg", budget_svg(file, sheet)),
-            ("budget.csv", budget_csv(sheet)),
-        ] {
+        let svg = budget_svg(file, sheet).map(|svg| ("budget.svg", svg));
+        for (name, text) in svg.into_iter().chain([("budget.csv", budget_csv(sheet))]) {
             let path = folder.join(name);
             write_atomic(&path, text.as_bytes()).map_err(|error| at(&path, &error))?;
         }

@@ -1,6 +1,5 @@
 //! `fogbench calibrate`: twelve parameters from a file of groups or from a simulated campaign.
 
-use std::fmt::Display;
 use std::io;
 
 use super::arguments::Format;
@@ -51,7 +50,7 @@ fn of_groups(options: &CalibrateOptions) -> Result<CalibrationTrial, Exit> {
     calibrate_groups(&options.path, &options.groups_settings()).map_err(|errors| {
         let is_unreadable =
             |error: &CalibrateError| matches!(error, CalibrateError::File(LogError::Read { .. }));
-        complain(&errors);
+        output::complain(&errors);
         if errors.iter().any(is_unreadable) {
             Exit::Io
         } else {
@@ -67,20 +66,14 @@ fn of_scenario(options: &CalibrateOptions) -> Result<CalibrationTrial, Exit> {
         ));
     }
     calibrate_campaign(&options.path, &options.scenario_sets(), &Silent).map_err(|errors| {
-        complain(&errors);
+        output::complain(&errors);
         Exit::Usage
     })
 }
 
 fn misused(message: &str) -> Exit {
-    complain(&[message]);
+    output::complain(&[message]);
     Exit::Usage
-}
-
-fn complain<E: Display>(errors: &[E]) {
-    for error in errors {
-        output::talk(&format!("error: {error}"));
-    }
 }
 
 /// One campaign takes seconds: nothing is said while it runs.

@@ -5,31 +5,29 @@ use std::path::Path;
 
 use super::exit::Exit;
 use super::hardware_arguments::{ExportKind, ExportOptions};
-use super::{output, stimulus};
+use super::log::unreadable;
+use super::output;
 use crate::experiment::{
-    CoreSettings, ExportForm, PipelineSettings, Stimulus, export_pipeline, plan_suite,
-    scenario_stimulus,
+    ExportForm, PipelineSettings, Stimulus, export_pipeline, plan_suite, scenario_stimulus,
 };
 use crate::fpga::FpgaError;
-use crate::fpga::rls::UpdateOrder;
+use crate::recording::read_stimulus;
 
 /// Writes the folder and says what stands in it.
 pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
     let (settings, stimulus) = match prepare(options) {
         Ok(prepared) => prepared,
-        Err(complaints) => {
-            for complaint in complaints {
-                output::talk(&format!("error: {complaint}"));
-            }
-            return Ok(Exit::Usage);
-        }
+        Err(exit) => return Ok(exit),
     };
     let form = match options.what {
         ExportKind::Vectors => ExportForm::Vectors,
         ExportKind::Waveform => ExportForm::Waveform,
         ExportKind::Rtl => ExportForm::Rtl,
     };
-    let samples = stimulus.words.len();
+    let samples = match form {
+        ExportForm::Waveform => stimulus.words.len().min(options.trace_samples),
+        _ => stimulus.words.len(),
+    };
     let written = export_pipeline(
         &options.folder,
         form,
@@ -62,30 +60,34 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
 }
 
 /// Pipeline and stimulus, both checked before anything is written.
-fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Vec<String>> {
-    let one = |complaint: String| vec![complaint];
-    if options.samples == 0 {
-        return Err(one("--samples 0: expected at least 1".to_owned()));
-    }
+fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Exit> {
+    let one = |complaint: String| refused(&[complaint]);
     let mut settings = options.filter.settings();
     let stimulus = match (&options.stimulus, &options.scenario) {
         (Some(path), _) => Stimulus {
-            words: stimulus::read(path, options.samples).map_err(one)?,
+            words: read_stimulus(path, options.column.as_deref(), options.samples)
+                .map_err(|error| unreadable(&error))?,
             codes: None,
         },
         (None, Some(path)) => {
-            let (found, stimulus) = from_scenario(path, options)?;
+            let (found, stimulus) =
+                from_scenario(path, options).map_err(|complaints| refused(&complaints))?;
             settings = found.unwrap_or(settings);
             stimulus
         }
         (None, None) => return Err(one("give --scenario or --stimulus".to_owned())),
     };
-    if let CoreSettings::Rls(_, UpdateOrder::GainFirst) = settings.core {
+    if !settings.core.has_hardware() {
         let complaint = "update_order = \"gain-first\" has no hardware to export: use \"schedule\"";
         return Err(one(complaint.to_owned()));
     }
     settings.timing().map_err(|error| one(error.to_string()))?;
     Ok((settings, stimulus))
+}
+
+fn refused(complaints: &[String]) -> Exit {
+    output::complain(complaints);
+    Exit::Usage
 }
 
 fn from_scenario(

@@ -77,6 +77,7 @@ impl<'a> Layout<'a> {
         let suite: Vec<Run> = plans
             .iter()
             .zip(runs)
+            .filter(|(_, outcome)| !outcome.is_not_run)
             .map(|(plan, outcome)| Run { plan, outcome })
             .collect();
         let tables: Vec<ComparedTable> = self

@@ -11,6 +11,8 @@ use super::motion::motion;
 use super::pipeline_metrics;
 use super::plan::Plan;
 use super::simulate::{GyroRecord, RecordLength, Simulation};
+use super::stop::{Unfinished, unless_stopped};
+use super::suite::Observer;
 use crate::filters::Divergence;
 use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Record, Settings, measure,
@@ -19,12 +21,14 @@ use crate::metrics::{
 /// Channels of one repeat with their metrics.
 pub(super) type Channels = Vec<(String, ChannelMetrics)>;
 
-/// Measures every channel of a repeat, in the order of the report.
+/// Measures every channel of a repeat, in the order of the report; the observer can stop it between
+/// two channels.
 pub(super) fn measure_repeat(
     plan: &Plan,
     simulation: &Simulation,
     length: RecordLength,
-) -> Channels {
+    observer: &dyn Observer,
+) -> Result<Channels, Unfinished> {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
     let settings = &Settings {
@@ -43,27 +47,32 @@ pub(super) fn measure_repeat(
             settings,
         })
         .collect();
-    let (raw, filters): (Channels, Channels) = rayon::join(
+    let measured = |name: String, measure: &dyn Fn() -> ChannelMetrics| {
+        unless_stopped(observer)?;
+        Ok((name, measure()))
+    };
+    let (raw, filters): (Result<Channels, Unfinished>, Result<Channels, Unfinished>) = rayon::join(
         || {
             let named = cuts.par_iter().zip(scenario.raw_channels());
-            let raw = named.map(|(cut, name)| (name, cut.measure_raw()));
+            let raw = named.map(|(cut, name)| measured(name, &|| cut.measure_raw()));
             let named = cuts.par_iter().zip(scenario.compensated_channels());
-            raw.chain(named.map(|(cut, name)| (name, cut.measure_compensated())))
+            raw.chain(named.map(|(cut, name)| measured(name, &|| cut.measure_compensated())))
                 .collect()
         },
         || {
             let filters = simulation.filters.par_iter();
-            filters
-                .map(|(gyro, filter)| (filter.name.clone(), cuts[*gyro].measure_filter(filter)))
-                .collect()
+            let measure = |(gyro, filter): &(usize, FinishedFilter)| {
+                measured(filter.name.clone(), &|| cuts[*gyro].measure_filter(filter))
+            };
+            filters.map(measure).collect()
         },
     );
-    let mut channels: Channels = raw.into_iter().chain(filters).collect();
+    let mut channels: Channels = raw?.into_iter().chain(filters?).collect();
     for (name, metrics) in &mut channels {
         drop_lacking(scenario, name, metrics);
         campaign::drop_lacking(scenario, metrics);
     }
-    channels
+    Ok(channels)
 }
 
 /// The measured part of one gyro's record and how to measure it.
@@ -126,6 +135,7 @@ impl Cut<'_> {
         };
         if let Some(pipeline) = &filter.pipeline {
             pipeline_metrics::enter(pipeline, self.sample_period_s, &mut metrics);
+            metrics.keep_finite();
         }
         metrics
     }

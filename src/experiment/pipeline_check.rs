@@ -1,7 +1,7 @@
 //! What can be wrong with a hardware pipeline before it runs.
 
 use super::pipeline_metrics::MATRIX_METRICS;
-use super::pipeline_settings::{CoreSettings, PipelineSettings};
+use super::pipeline_settings::PipelineSettings;
 use crate::metrics::catalogue::PREDICTED_FAILURE;
 use crate::metrics::{Applies, MetricKey};
 use crate::scenario::Scenario;
@@ -9,11 +9,7 @@ use crate::units::s_to_us;
 
 /// The table of the filter in its scenario.
 pub(super) fn kind(settings: &PipelineSettings) -> &'static str {
-    match settings.core {
-        CoreSettings::Rls(..) => "rls",
-        CoreSettings::Lms(_) => "lms",
-        CoreSettings::SignLms(_) => "sign_lms",
-    }
+    settings.core.kind().name
 }
 
 /// Checks the constants in their word format, and that a sample is done before the next arrives.
@@ -54,7 +50,7 @@ pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Opti
     let Some(settings) = PipelineSettings::of(&filter.kind) else {
         return Some("only a filter with pipeline = \"fpga\" has it");
     };
-    if MATRIX_METRICS.contains(&key) && kind(&settings) != "rls" {
+    if MATRIX_METRICS.contains(&key) && !settings.core.kind().has_matrix {
         return Some("a least-mean-squares filter has no matrix");
     }
     if *key == PREDICTED_FAILURE && settings.failure_samples().is_none() {

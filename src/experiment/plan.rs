@@ -1,7 +1,9 @@
 //! From scenario files to checked plans: the checks that need physics or metrics.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::assembly_motion;
 use super::campaign;
@@ -13,7 +15,7 @@ use super::published_check::wrong_unit;
 use crate::gyro;
 use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{self, MetricKey};
-use crate::scenario::{Fidelity, Resolved, Scenario, ScenarioError, load_suite};
+use crate::scenario::{Fidelity, Resolved, Scenario, ScenarioError, visit_suite};
 use crate::signal::GyroFacts;
 
 /// One run that has passed every check.
@@ -100,15 +102,17 @@ impl Plan {
 /// # Errors
 /// Every complaint about every file; then nothing may run.
 pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<ScenarioError>> {
-    let suite = load_suite(paths, sets)?;
-    let mut plans = Vec::with_capacity(suite.len());
-    let mut errors = Vec::new();
-    for resolved in suite {
-        match plan(resolved) {
-            Ok(plan) => plans.push(plan),
-            Err(found) => errors.extend(found),
-        }
-    }
+    let mut plans = Vec::new();
+    let errors = visit_plans(paths, sets, &mut |plan| plans.push(plan))?;
+    compared(plans, errors)
+}
+
+/// The plans of a suite in their order, if they do not contradict one another and nothing was wrong
+/// before.
+pub(super) fn compared(
+    mut plans: Vec<Plan>,
+    mut errors: Vec<ScenarioError>,
+) -> Result<Vec<Plan>, Vec<ScenarioError>> {
     // By folder, so that the order of the arguments leaves no trace in the results.
     plans.sort_by_cached_key(|plan: &Plan| plan.resolved.folder());
     errors.extend(contradictions(&plans));
@@ -119,7 +123,53 @@ pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<S
     }
 }
 
-fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
+/// Reads everything under `paths` and hands over each run that passes its own checks; returns the
+/// complaints about the others, each once.
+///
+/// # Errors
+/// Every complaint, if there are some about what was read.
+pub(super) fn visit_plans(
+    paths: &[PathBuf],
+    sets: &[String],
+    visit: &mut dyn FnMut(Plan),
+) -> Result<Vec<ScenarioError>, Vec<ScenarioError>> {
+    let (mut errors, mut known) = (Vec::new(), BTreeSet::new());
+    let mut campaigns = SoundCampaigns::default();
+    let mut take = |resolved| match plan(resolved, &mut campaigns) {
+        Ok(plan) => visit(plan),
+        // The points of a sweep share most of what is wrong with them.
+        Err(found) => errors.extend(
+            found
+                .into_iter()
+                .filter(|error| known.insert(error.clone())),
+        ),
+    };
+    match visit_suite(paths, sets, &mut take) {
+        Ok(()) => Ok(errors),
+        Err(mut read) => {
+            read.extend(errors);
+            Err(read)
+        }
+    }
+}
+
+/// The campaign that passed its checks last: the points of a sweep share one.
+#[derive(Default)]
+struct SoundCampaigns(Option<Arc<Resolved>>);
+
+impl SoundCampaigns {
+    /// Checks a campaign unless it has just been checked.
+    fn check(&mut self, campaign: &Arc<Resolved>) -> Result<(), Vec<ScenarioError>> {
+        let is_last = |last: &Arc<Resolved>| Arc::ptr_eq(last, campaign);
+        if !self.0.as_ref().is_some_and(is_last) {
+            plan(Resolved::clone(campaign), &mut Self::default())?;
+            self.0 = Some(Arc::clone(campaign));
+        }
+        Ok(())
+    }
+}
+
+fn plan(resolved: Resolved, campaigns: &mut SoundCampaigns) -> Result<Plan, Vec<ScenarioError>> {
     let mut checker = Checker {
         resolved: &resolved,
         errors: Vec::new(),
@@ -127,7 +177,7 @@ fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
         calibration: None,
     };
     let facts = checker.gyro();
-    let compensation = checker.compensation();
+    let compensation = checker.compensation(campaigns);
     if let Some(facts) = &facts {
         checker.gyro_limits();
         checker.record_length(facts);
@@ -174,7 +224,7 @@ impl Checker<'_> {
     }
 
     /// Refuses parameters that no rates follow from, and campaigns that cannot be run.
-    fn compensation(&mut self) -> Option<CompensationPlan> {
+    fn compensation(&mut self, campaigns: &mut SoundCampaigns) -> Option<CompensationPlan> {
         const CAMPAIGN: &str = "compensation.campaign_scenario";
         const PARAMETERS: &str = "compensation.parameters";
         if let Some(campaign) = &self.resolved.campaign {
@@ -187,7 +237,7 @@ impl Checker<'_> {
                 self.complain(CAMPAIGN, message);
                 return None;
             }
-            if let Err(errors) = plan(Resolved::clone(campaign)) {
+            if let Err(errors) = campaigns.check(campaign) {
                 self.errors.extend(errors);
                 return None;
             }

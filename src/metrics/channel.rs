@@ -161,7 +161,7 @@ pub fn measure(
         put_rate_gains(facts, &mut metrics);
         put_frozen_response(facts, record.sample_period_s, &mut metrics);
     }
-    drop_not_finite(&mut metrics);
+    metrics.keep_finite();
     explain_missing(record, settings, filter.is_some(), &mut metrics);
     metrics
 }
@@ -379,29 +379,8 @@ fn put_rate_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
             curve.entry(column.to_owned()).or_default().push(value);
         }
     }
-    let mut values = curve.values().flatten();
-    if !curve.is_empty() && values.all(|value| value.is_finite()) {
+    if !curve.is_empty() {
         metrics.curves.insert("rate_gain".to_owned(), curve);
-    }
-}
-
-/// Moves what came out as not a number (a ratio to nothing) to the unavailable metrics.
-fn drop_not_finite(metrics: &mut ChannelMetrics) {
-    let finite = |estimate: &Estimate| {
-        [estimate.value, estimate.low, estimate.high]
-            .iter()
-            .all(|value| value.is_finite())
-    };
-    let dropped: Vec<String> = metrics
-        .metrics
-        .iter()
-        .filter(|(_, metric)| !finite(&metric.estimate))
-        .map(|(name, _)| name.clone())
-        .collect();
-    for name in dropped {
-        metrics.metrics.remove(&name);
-        let reason = "the record gives no finite number".to_owned();
-        metrics.unavailable.insert(name, reason);
     }
 }
 

@@ -73,7 +73,8 @@ pub use audit::{
 };
 pub use autocovariance::autocovariance;
 pub use bias::{
-    block_means, effective_degrees_of_freedom, expected_bias_stability, paired_ratio, samples_in,
+    block_label_s, block_means, effective_degrees_of_freedom, expected_bias_stability,
+    is_sample_or_longer, paired_ratio, samples_in,
 };
 pub use catalogue::{find, known_metrics, repeated_metrics};
 pub use channel::measure;

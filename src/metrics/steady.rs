@@ -20,7 +20,7 @@ use super::noise_fit::{
 };
 use super::noise_level::{measure_mean_ratio, put_noise_gain, put_noise_std};
 use super::record::{FilterFacts, Record, Settings};
-use super::support::BLOCKS_MIN;
+use super::support::{BLOCKS_MIN, averaging_lack};
 use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION};
 use super::truth_response::without_motion;
 use super::weight_noise::measure_weight_noise;
@@ -209,7 +209,12 @@ fn measure_bias(
         (&BIAS_STABILITY_100S, 100.0),
         (&BIAS_STABILITY, settings.bias_averaging_time_s),
     ] {
+        if let Some(reason) = averaging_lack(averaging_time_s, record.sample_period_s) {
+            metrics.miss(name, reason);
+            continue;
+        }
         let block = bias::samples_in(averaging_time_s, record.sample_period_s);
+        let averaging_time_s = bias::block_label_s(averaging_time_s, record.sample_period_s);
         let means = bias::block_means(record.channel_deg_per_h, block);
         if means.len() < BLOCKS_MIN {
             let reason = format!(
@@ -225,7 +230,6 @@ fn measure_bias(
         });
         let deviation = interval::sample_variance(&means).sqrt();
         let metric = metrics.put(name, interval::deviation(deviation, freedom));
-        // The time asked for; the nearest whole number of samples is what was averaged.
         metric.fields.insert("averaging_time_s", averaging_time_s);
         metric.fields.insert("block_samples", block as f64);
         metric.fields.insert("count", means.len() as f64);

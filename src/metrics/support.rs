@@ -1,5 +1,6 @@
 //! Whether a record of given length and motion can support a metric at all.
 
+use super::bias::is_sample_or_longer;
 use super::catalogue::{find, known_metrics};
 use super::delay::{CYCLES_MIN, SwingClock};
 use super::interval::round_to_count;
@@ -55,6 +56,16 @@ fn too_short(metric: &str, needed_s: f64, duration_s: f64) -> String {
     format!("`{metric}` needs a record of at least {needed_s} s; this one has {duration_s} s")
 }
 
+/// Why samples of a period cannot be averaged over a time; nothing if they can.
+pub(crate) fn averaging_lack(averaging_time_s: f64, sample_period_s: f64) -> Option<String> {
+    (!is_sample_or_longer(averaging_time_s, sample_period_s)).then(|| {
+        format!(
+            "an averaging time of {averaging_time_s} s is shorter than a sample, which takes \
+             {sample_period_s} s"
+        )
+    })
+}
+
 /// Whether a record of this length and motion can ever support a metric.
 ///
 /// A metric may still be missing from a particular record whose noise does not show it.
@@ -82,12 +93,18 @@ pub fn support(
         ));
     }
     check_motion(known, motion)?;
+    let averaging_time_s = match known.needs {
+        Needs::Blocks(averaging_time_s) => Some(averaging_time_s),
+        Needs::ScenarioBlocks => Some(bias_averaging_time_s),
+        _ => None,
+    };
+    if let Some(lack) = averaging_time_s.and_then(|it| averaging_lack(it, sample_period_s)) {
+        return Err(format!("`{metric}`: {lack}"));
+    }
     let needed_s = match known.needs {
         Needs::AllanFit => FIT_SAMPLES_MIN * sample_period_s,
         Needs::SlowNoiseFit => SLOW_NOISE_DURATION_MIN_S,
-        Needs::Blocks(averaging_time_s) => BLOCKS_MIN as f64 * averaging_time_s,
-        Needs::ScenarioBlocks => BLOCKS_MIN as f64 * bias_averaging_time_s,
-        _ => 0.0,
+        _ => averaging_time_s.map_or(0.0, |it| BLOCKS_MIN as f64 * it),
     };
     if duration_s < needed_s * (1.0 - 1e-9) {
         return Err(too_short(metric, needed_s, duration_s));

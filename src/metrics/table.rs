@@ -23,6 +23,8 @@ const BOUND_MAX: f64 = 1e6;
 
 /// Column of the two-sided density in the curve `psd`; `psd_deg2_per_h2_per_hz` is one-sided.
 pub(crate) const TWO_SIDED_PSD: &str = "two_sided_psd_deg2_per_h2_per_hz";
+/// Reason of a metric or curve that came out as no finite number.
+const NOT_FINITE: &str = "the record gives no finite number";
 /// Width of an interval, as a part of its value, that rounding makes.
 const ROUNDING: f64 = 1e-12;
 
@@ -62,6 +64,52 @@ impl ChannelMetrics {
     #[must_use]
     pub fn why_unavailable(&self, key: &MetricKey) -> Option<&str> {
         self.unavailable.get(key.name).map(String::as_str)
+    }
+
+    /// Leaves only finite numbers in the table: the one gate between measuring and reporting.
+    ///
+    /// A metric whose value or interval came out as no number (a ratio to nothing, a sum beyond
+    /// binary64) becomes unavailable with the reason, a curve with such a point is left out whole and
+    /// stands among the unavailable ones as `curves.<name>`. A defining field that is no number says
+    /// nothing and is dropped from its metric, as are statistics over repeats.
+    pub fn keep_finite(&mut self) {
+        let is_finite = |estimate: &Estimate| {
+            let Estimate {
+                value,
+                low,
+                high,
+                confidence,
+            } = *estimate;
+            [value, low, high, confidence]
+                .iter()
+                .all(|it| it.is_finite())
+        };
+        let mut lost: Vec<(String, String)> = Vec::new();
+        self.metrics.retain(|name, metric| {
+            metric.fields.retain(|_, value| value.is_finite());
+            let is_kept = is_finite(&metric.estimate);
+            if !is_kept {
+                lost.push((name.clone(), NOT_FINITE.to_owned()));
+            }
+            is_kept
+        });
+        self.curves.retain(|name, columns| {
+            let mut columns = columns.iter();
+            let broken = columns.find(|(_, values)| !values.iter().all(|it| it.is_finite()));
+            if let Some((column, _)) = broken {
+                let reason = format!("{NOT_FINITE} for a point of {column}");
+                lost.push((format!("curves.{name}"), reason));
+            }
+            broken.is_none()
+        });
+        let curves = &self.curves;
+        self.curve_labels
+            .retain(|name, _| curves.contains_key(name));
+        self.repeats.retain(|_, of| {
+            let own = [of.mean, of.standard_deviation, of.minimum, of.maximum];
+            own.iter().chain(&of.values).all(|it| it.is_finite())
+        });
+        self.unavailable.extend(lost);
     }
 
     /// Gives metrics without width the field `exact_to_word`: words that never change determine their

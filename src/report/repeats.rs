@@ -8,7 +8,7 @@ use crate::gate::plain;
 use crate::metrics::catalogue::{BIAS_STABILITY, MAXIMUM, MEAN, MINIMUM, NOISE_STD};
 use crate::metrics::{ChannelMetrics, MetricKey, RepeatStatistics, repeated_metrics};
 use crate::report::RunReport;
-use crate::report::json::{number, object};
+use crate::report::json::{numbers, object, put_array};
 use crate::report::text::{Grid, Tone, toned, wrapped};
 
 const INDENT: &str = "  ";
@@ -180,24 +180,16 @@ fn repeats_of(metrics: &ChannelMetrics) -> usize {
 }
 
 /// `channels.<name>.repeats` of the summary.
-pub(crate) fn repeats_json(name: &str, metrics: &ChannelMetrics) -> Value {
+pub(crate) fn repeats_json(metrics: &ChannelMetrics) -> Value {
     let of = |(key, statistics): (&String, &RepeatStatistics)| {
-        let what = format!("{name}.repeats.{key}");
-        let values = statistics.values.iter();
-        let record = object([
-            ("unit", statistics.unit.into()),
-            (
-                "values",
-                values.map(|value| number(*value, &what)).collect(),
-            ),
-            ("mean", number(statistics.mean, &what)),
-            (
-                "standard_deviation",
-                number(statistics.standard_deviation, &what),
-            ),
-            ("minimum", number(statistics.minimum, &what)),
-            ("maximum", number(statistics.maximum, &what)),
-        ]);
+        let mut record = object([("unit", statistics.unit.into())]);
+        put_array(&mut record, "values", &statistics.values);
+        record.extend(numbers([
+            ("mean", statistics.mean),
+            ("standard_deviation", statistics.standard_deviation),
+            ("minimum", statistics.minimum),
+            ("maximum", statistics.maximum),
+        ]));
         (key.clone(), Value::Object(record))
     };
     let records: Map<String, Value> = metrics.repeats.iter().map(of).collect();

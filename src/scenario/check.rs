@@ -1,6 +1,7 @@
 //! Checks of single keys: known, of the right type, inside the range, present.
 
 use super::error::ScenarioError;
+use super::excerpt::excerpt;
 use super::leaf::check_leaf;
 use super::schema::{self, Child, Group, Key, Presence, join};
 use super::source::{Mark, Sources};
@@ -8,6 +9,15 @@ use super::tree::{Node, Table, Value};
 
 /// The version of the file format this build reads.
 const SCHEMA_VERSION: i64 = 1;
+
+/// Most complaints of a scenario that say what may have been meant.
+const HINTS_MAX: usize = 64;
+
+/// Most tables of an array.
+const TABLES_MAX: usize = 10_000;
+
+/// Most bytes of a name that may stand for a known one: all are shorter.
+const KNOWN_LENGTH_MAX: usize = 128;
 
 /// Walks a tree and gathers complaints.
 pub(crate) struct Checker<'a> {
@@ -32,9 +42,8 @@ fn root_place(root: Mark) -> Place<'static> {
     }
 }
 
-/// Refuses unknown keys, wrong types and values out of range; turns whole numbers given for
-/// binary64 keys into binary64.
-pub(crate) fn check_values(root: &mut Table, mark: Mark, sources: &Sources) -> Vec<ScenarioError> {
+/// Refuses unknown keys, wrong types and values out of range.
+pub(crate) fn check_values(root: &Table, mark: Mark, sources: &Sources) -> Vec<ScenarioError> {
     if let Some(error) = wrong_version(root, sources, mark) {
         return vec![error];
     }
@@ -89,8 +98,8 @@ impl Checker<'_> {
         self.errors.push(self.sources.error(mark, message));
     }
 
-    fn table(&mut self, place: Place<'_>, table: &mut Table) {
-        for (name, node) in table.iter_mut() {
+    fn table(&mut self, place: Place<'_>, table: &Table) {
+        for (name, node) in table {
             let shown = join(place.shown_path, name);
             let below = join(place.schema_path, name);
             let mark = node.mark.unwrap_or(place.mark);
@@ -102,7 +111,7 @@ impl Checker<'_> {
             match schema::child(place.schema_path, name) {
                 None => self.unknown(place, name, mark),
                 Some(Child::Leaf(key)) => self.leaf(key, inner, node),
-                Some(Child::Table) => match &mut node.value {
+                Some(Child::Table) => match &node.value {
                     Value::Table(table) => self.table(inner, table),
                     other => self.not_a_table(inner, other, &format!("[{shown}]")),
                 },
@@ -111,19 +120,25 @@ impl Checker<'_> {
         }
     }
 
-    fn tables(&mut self, place: Place<'_>, node: &mut Node) {
-        let Value::Array(elements) = &mut node.value else {
+    fn tables(&mut self, place: Place<'_>, node: &Node) {
+        let Value::Array(elements) = &node.value else {
             let header = format!("[[{}]]", place.shown_path);
             return self.not_a_table(place, &node.value, &header);
         };
-        for (index, element) in elements.iter_mut().enumerate() {
+        if elements.len() > TABLES_MAX {
+            let count = elements.len();
+            let shown = place.shown_path;
+            let message = format!("{shown} holds {count} tables: allowed up to {TABLES_MAX}");
+            return self.complain(place.mark, message);
+        }
+        for (index, element) in elements.iter().enumerate() {
             let shown = format!("{}[{index}]", place.shown_path);
             let inner = Place {
                 schema_path: &format!("{}[]", place.schema_path),
                 shown_path: &shown,
                 mark: element.mark.unwrap_or(place.mark),
             };
-            match &mut element.value {
+            match &element.value {
                 Value::Table(table) => self.table(inner, table),
                 other => self.not_a_table(inner, other, &format!("[[{}]]", place.shown_path)),
             }
@@ -141,10 +156,16 @@ impl Checker<'_> {
 
     fn unknown(&mut self, place: Place<'_>, name: &str, mark: Mark) {
         let shown = join(place.shown_path, name);
-        self.complain(mark, unknown_key(place.schema_path, &shown, name));
+        // The search for what was meant takes longest, and nobody reads the thousandth complaint.
+        let message = if self.errors.len() < HINTS_MAX {
+            unknown_key(place.schema_path, &shown, name)
+        } else {
+            format!("unknown key {}", excerpt(&shown))
+        };
+        self.complain(mark, message);
     }
 
-    fn leaf(&mut self, key: &Key, place: Place<'_>, node: &mut Node) {
+    fn leaf(&mut self, key: &Key, place: Place<'_>, node: &Node) {
         if let Err(fault) = check_leaf(key, place.shown_path, node) {
             self.complain(fault.mark.unwrap_or(place.mark), fault.message);
         }
@@ -167,9 +188,16 @@ impl Checker<'_> {
             self.complain(place.mark, message);
         }
         for (name, child) in schema::children(place.schema_path) {
+            let node = table.get(name);
+            let is_settled = match child {
+                Child::Leaf(key) => node.is_some() || key.presence != Presence::Required,
+                Child::Table | Child::Tables => node.is_none(),
+            };
+            if is_settled {
+                continue;
+            }
             let shown = join(place.shown_path, name);
             let below = join(place.schema_path, name);
-            let node = table.get(name);
             let mark = node.and_then(|node| node.mark).unwrap_or(place.mark);
             match (child, node) {
                 (Child::Leaf(key), None) if key.presence == Presence::Required => {
@@ -266,6 +294,10 @@ fn choices(group: &Group, shown_path: &str) -> String {
 
 /// The complaint about a key that nobody knows.
 pub(crate) fn unknown_key(schema_path: &str, shown: &str, name: &str) -> String {
+    let shown = excerpt(shown);
+    if name.len() > KNOWN_LENGTH_MAX {
+        return format!("unknown key {shown}");
+    }
     match schema::nearest(schema_path, name) {
         (nearest, true) => format!("unknown key {shown}: did you mean {nearest}?"),
         (nearest, false) => format!("unknown key {shown}: the nearest known key is {nearest}"),

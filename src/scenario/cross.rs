@@ -45,6 +45,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.motion();
     checks.injection();
     checks.filter_state();
+    checks.averaging_time();
     for (key, message) in cross_gyro::check(&resolved.scenario) {
         checks.complain(&key, message);
     }
@@ -250,6 +251,23 @@ impl Checks<'_> {
                  {frequency_hz_max:.6} Hz, 8 samples a cycle at the output rate of {output_rate_hz:.6} Hz"
             );
             self.complain(path, message);
+        }
+    }
+
+    /// Refuses an averaging time below a sample. The default is no wish: coarse words merely have no
+    /// bias stability over it.
+    fn averaging_time(&mut self) {
+        const KEY: &str = "bias_averaging_time_s";
+        let (asked_s, sample_s) = (
+            self.resolved.scenario.bias_averaging_time_s,
+            self.sample_period_s(),
+        );
+        if asked_s < sample_s * (1.0 - TIME_SLACK) && self.resolved.is_written(KEY) {
+            let message = format!(
+                "{KEY} = {asked_s:?} s is shorter than a sample of this gyro: allowed from \
+                 {sample_s:.9} s on, or make the samples of gyro.output shorter"
+            );
+            self.complain(KEY, message);
         }
     }
 

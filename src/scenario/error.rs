@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::excerpt::bounded;
+
 /// A place in an input: prints as `file:line:column`, or as the `--set` argument itself.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Location {
@@ -59,7 +61,7 @@ impl ScenarioError {
     pub fn at(location: Location, message: impl Into<String>) -> Self {
         Self {
             location,
-            message: message.into(),
+            message: bounded(&message.into()).into_owned(),
         }
     }
 }

@@ -6,19 +6,37 @@ use std::sync::Arc;
 use super::address::{self, Step};
 use super::error::ScenarioError;
 use super::resolved::{Draft, Resolved, SweepPoint};
+use super::schema::Key;
 use super::script;
 use super::source::{Mark, Sources};
+use super::template::Template;
 use super::tree::{Node, Table, Value};
 
 /// Most points of one sweep: folders are numbered with four digits.
-const POINTS_MAX: usize = 10_000;
+pub(super) const POINTS_MAX: usize = 10_000;
+
+/// Points tried, if none of them is sound: what they share is said by then.
+const TRIALS_MAX: usize = 100;
+
+/// Most numbers in the arrays of all points of one sweep: a script has two in a row.
+const NUMBERS_MAX: usize = 10_000_000;
 
 /// A swept key.
 struct Axis {
     written: String,
     path: Vec<Step>,
+    key: &'static Key,
     mark: Mark,
     values: Vec<Node>,
+}
+
+impl Axis {
+    /// The value of one point, pointing at itself.
+    fn value(&self, index: usize) -> Node {
+        let mut value = self.values[index].clone();
+        value.mark = value.mark.or(Some(self.mark));
+        value
+    }
 }
 
 /// Resolves every point of a sweep, in the order of their indices.
@@ -29,7 +47,8 @@ pub(crate) fn expand(
     draft: &Draft,
     matrix: &Node,
     set_paths: &[Vec<Step>],
-) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
+    visit: &mut dyn FnMut(Resolved),
+) -> Result<(), Vec<ScenarioError>> {
     let axes = axes(draft, matrix, set_paths)?;
     let count = axes
         .iter()
@@ -44,19 +63,37 @@ pub(crate) fn expand(
         ]);
     };
     let base = base_values(draft, &axes);
-    let mut points = Vec::with_capacity(count);
     let mut errors = Vec::new();
+    let mut template: Option<Template> = None;
+    let mut has_template = true;
     for index in 0..count {
-        match point(draft, &axes, index, count) {
+        let swept = point_values(&axes, index);
+        let run = match &template {
+            Some(template) => template.point(&swept),
+            None => point(draft, &axes, &swept),
+        };
+        match run {
             Ok(mut resolved) => {
+                if template.is_none() && has_template {
+                    let swept = axes.iter().map(|axis| (&axis.path[..], axis.key));
+                    template = Template::of(&resolved, swept);
+                    has_template = template.is_some();
+                    if let Err(error) = check_size(&resolved, matrix, count) {
+                        return Err(vec![error]);
+                    }
+                }
+                resolved.sweep = Some(sweep_point(&resolved, &axes, index, count));
                 resolved.is_base_point = base.is_some() && base == values(&resolved, &axes);
-                points.push(resolved);
+                visit(resolved);
             }
             Err(more) => errors.extend(more),
         }
+        if template.is_none() && index + 1 >= TRIALS_MAX && !errors.is_empty() {
+            break;
+        }
     }
     if errors.is_empty() {
-        Ok(points)
+        Ok(())
     } else {
         Err(errors)
     }
@@ -77,37 +114,55 @@ fn values(resolved: &Resolved, axes: &[Axis]) -> Option<Vec<String>> {
     })
 }
 
-/// Resolves one point.
-fn point(
-    draft: &Draft,
-    axes: &[Axis],
-    index: usize,
-    count: usize,
-) -> Result<Resolved, Vec<ScenarioError>> {
-    let mut draft = draft.clone();
+/// The values of one point, in the order of the axes.
+fn point_values(axes: &[Axis], index: usize) -> Vec<Node> {
     let mut rest = index;
     // The last axis varies fastest, hence the digits are taken off from the end.
-    for axis in axes.iter().rev() {
-        let value = axis.values[rest % axis.values.len()].clone();
+    let digits = axes.iter().rev().map(|axis| {
+        let value = axis.value(rest % axis.values.len());
         rest /= axis.values.len();
+        value
+    });
+    let mut values: Vec<Node> = digits.collect();
+    values.reverse();
+    values
+}
+
+/// Resolves one point from the beginning.
+fn point(draft: &Draft, axes: &[Axis], values: &[Node]) -> Result<Resolved, Vec<ScenarioError>> {
+    let mut draft = draft.clone();
+    for (axis, value) in axes.iter().zip(values).rev() {
         let mark = value.mark.unwrap_or(axis.mark);
-        address::assign(&mut draft.root, &axis.path, value, mark)
+        address::assign(&mut draft.root, &axis.path, value.clone(), mark)
             .map_err(|message| vec![draft.sources.error(mark, message)])?;
     }
-    let mut resolved = draft.resolve()?;
-    let assignments = axes
-        .iter()
-        .map(|axis| {
-            let value = resolved.value_toml(&axis.path).unwrap_or_default();
-            (axis.written.clone(), value)
-        })
-        .collect();
-    resolved.sweep = Some(SweepPoint {
+    draft.resolve()
+}
+
+/// Which point of the sweep a run is.
+fn sweep_point(resolved: &Resolved, axes: &[Axis], index: usize, count: usize) -> SweepPoint {
+    let assignments = axes.iter().map(|axis| {
+        let value = resolved.value_toml(&axis.path).unwrap_or_default();
+        (axis.written.clone(), value)
+    });
+    SweepPoint {
         index,
         count,
-        assignments,
-    });
-    Ok(resolved)
+        assignments: assignments.collect(),
+    }
+}
+
+/// Refuses a sweep whose points hold more numbers together than a computer remembers.
+fn check_size(resolved: &Resolved, matrix: &Node, count: usize) -> Result<(), ScenarioError> {
+    let numbers = resolved.numbers_in_arrays();
+    if numbers.saturating_mul(count) <= NUMBERS_MAX {
+        return Ok(());
+    }
+    let message = format!(
+        "matrix: {count} points with {numbers} numbers in arrays each: allowed up to {NUMBERS_MAX} \
+         in all; sweep fewer values or shorten the script"
+    );
+    Err(resolved.error(matrix.mark, message))
 }
 
 /// The swept keys in the order of the file, those of bases first.
@@ -132,9 +187,10 @@ fn axes(
     let mut errors = Vec::new();
     for (written, mark, node) in entries {
         match axis(draft, &axes, set_paths, &written, node) {
-            Ok((path, values)) => axes.push(Axis {
+            Ok((path, key, values)) => axes.push(Axis {
                 written,
                 path,
+                key,
                 mark,
                 values,
             }),
@@ -161,7 +217,7 @@ fn axis(
     set_paths: &[Vec<Step>],
     written: &str,
     node: &Node,
-) -> Result<(Vec<Step>, Vec<Node>), String> {
+) -> Result<(Vec<Step>, &'static Key, Vec<Node>), String> {
     let (path, key) = address::resolve(&draft.root, written)?;
     let Some(key) = key else {
         return Err(format!("{written} is a table: sweep the keys inside it"));
@@ -184,7 +240,7 @@ fn axis(
         Value::Array(values) if values.is_empty() => Err(format!(
             "{written} has no values: expected a non-empty array"
         )),
-        Value::Array(values) => Ok((path, values.clone())),
+        Value::Array(values) => Ok((path, key, values.to_vec())),
         other => Err(format!(
             "{written} has the wrong type: expected an array of values, got {}",
             other.type_name()

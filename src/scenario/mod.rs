@@ -26,17 +26,21 @@ mod cross_servo;
 mod cross_turntable;
 mod cross_vibration;
 mod defaults;
+mod deserialize;
 mod discover;
 mod emit;
 mod error;
+mod excerpt;
 mod filter_config;
 mod gyro_config;
 mod injection_config;
+mod input;
 mod json_schema;
 mod keys;
 mod leaf;
 mod manifest;
 mod matrix;
+mod numbers;
 mod resolved;
 mod schema;
 mod script;
@@ -44,10 +48,12 @@ mod servo_config;
 mod source;
 mod stairs;
 mod suite;
+mod template;
 mod thermal_config;
 mod tree;
 mod turntable_config;
 mod vibration_config;
+mod weight;
 
 pub use assembly_config::AssemblyConfig;
 pub use calibration_config::{
@@ -67,6 +73,7 @@ pub(crate) use cross_comparison::slug;
 pub use defaults::{reference_calibration, reference_toml};
 pub(crate) use error::portable_place;
 pub use error::{Location, ScenarioError};
+pub use excerpt::{bounded, excerpt};
 pub use filter_config::{
     ButterworthFilterConfig, ConstantUnit, ConstrainedRlsFilterConfig, DesiredSignal, Division,
     FilterConfig, FilterKind, InitialWeights, KalmanFilterConfig, LmsFilterConfig,
@@ -85,7 +92,7 @@ pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
 pub use stairs::{Stairs, TEST_RATES_MIN};
-pub use suite::{load_base_or_scenario, load_suite};
+pub use suite::{load_base_or_scenario, load_suite, visit_suite};
 pub use thermal_config::{
     ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig, SoakConfig,
     TemperatureConfig, TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig,

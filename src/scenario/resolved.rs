@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use serde::Deserialize;
-
 use super::address::{self, nearest_mark};
 use super::check::{check_presence, check_values};
 use super::compensation_source;
 use super::config::Scenario;
 use super::cross;
 use super::defaults::{default_of, fill};
+use super::deserialize::from_table;
 use super::emit::to_toml;
 use super::error::{Location, ScenarioError};
+use super::numbers;
 use super::script;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
@@ -53,11 +53,14 @@ pub struct Resolved {
     pub sweep: Option<SweepPoint>,
     /// What is allowed but worth saying about how it was read.
     pub warnings: Vec<String>,
+    /// What is worth saying to whoever runs it, but no part of the results: these depend on the
+    /// scenario alone.
+    pub remarks: Vec<String>,
     /// Whether it is the point of its sweep at which no swept key departs from what the scenario
     /// says without the sweep.
     pub is_base_point: bool,
     /// The calibration scenario whose result its compensation applies.
-    pub campaign: Option<Box<Resolved>>,
+    pub campaign: Option<Arc<Resolved>>,
     /// Where its gates were written, if a manifest records that.
     gate_places: Vec<String>,
     /// Every value, defaults included.
@@ -96,6 +99,8 @@ pub(crate) struct Draft {
     pub(crate) recorded: Option<Recorded>,
     /// What is worth saying about how it was read.
     pub(crate) warnings: Vec<String>,
+    /// What is worth saying but must not stand in results.
+    pub(crate) remarks: Vec<String>,
 }
 
 /// The origin of a resolved scenario, as a manifest records it.
@@ -113,6 +118,13 @@ pub(crate) struct Recorded {
     pub(crate) gate_places: Vec<String>,
 }
 
+impl Recorded {
+    /// The first swept key that has another value than the record says, and what that is.
+    pub(crate) fn broken_point(&self, root: &Table) -> Option<(&str, &str)> {
+        broken(root, self.sweep.as_ref()?)
+    }
+}
+
 impl Draft {
     /// Checks every value, fills in the defaults and checks across values.
     ///
@@ -123,7 +135,8 @@ impl Draft {
         script::read_into(&mut self.root, sources, &mut self.inputs)
             .map_err(|error| vec![error])?;
         let campaign = compensation_source::read_into(&mut self.root, sources, &mut self.inputs)?;
-        let mut errors = check_values(&mut self.root, self.root_mark, &self.sources);
+        let mut errors = check_values(&self.root, self.root_mark, &self.sources);
+        numbers::settle(&mut self.root);
         if errors.is_empty() || !self.is_other_version() {
             fill(&mut self.root);
             errors.extend(check_presence(&self.root, self.root_mark, &self.sources));
@@ -131,17 +144,14 @@ impl Draft {
         if !errors.is_empty() {
             return Err(errors);
         }
-        let scenario = Scenario::deserialize(plain_table(&self.root)).map_err(|error| {
-            let message = format!(
-                "the scenario does not fit its configuration: {}",
-                error.message()
-            );
-            vec![self.sources.error(self.root_mark, message)]
-        })?;
-        let text = to_toml(&self.root, "");
-        let digest = blake3::hash(text.as_bytes()).to_hex().to_string();
+        let scenario = configuration(&self.root, self.root_mark, &self.sources)?;
+        let digest = digest(&to_toml(&self.root, ""));
         let origin = match self.recorded {
-            Some(recorded) if recorded.digest == digest => recorded,
+            Some(recorded)
+                if recorded.digest == digest && recorded.broken_point(&self.root).is_none() =>
+            {
+                recorded
+            }
             // The record is of another scenario: what was read now is the origin. A sweep point
             // stays one as long as the swept keys have their values.
             recorded => Recorded {
@@ -150,7 +160,7 @@ impl Draft {
                 inputs: self.inputs,
                 sweep: recorded
                     .and_then(|recorded| recorded.sweep)
-                    .filter(|point| holds(&self.root, point)),
+                    .filter(|point| broken(&self.root, point).is_none()),
                 gate_places: Vec::new(),
             },
         };
@@ -161,6 +171,7 @@ impl Draft {
             inputs: origin.inputs,
             sweep: origin.sweep,
             warnings: self.warnings,
+            remarks: self.remarks,
             is_base_point: false,
             campaign,
             gate_places: origin.gate_places,
@@ -184,11 +195,64 @@ impl Draft {
 }
 
 impl Resolved {
+    /// The run with other values, all of them checked one by one, and their canonical text.
+    ///
+    /// # Errors
+    /// Every contradiction between the values.
+    pub(super) fn with_tree(&self, tree: Table, text: &str) -> Result<Self, Vec<ScenarioError>> {
+        let other = Self {
+            scenario: configuration(&tree, self.root_mark, &self.sources)?,
+            digest: digest(text),
+            tree,
+            file: self.file.clone(),
+            inputs: self.inputs.clone(),
+            sweep: None,
+            warnings: self.warnings.clone(),
+            remarks: self.remarks.clone(),
+            is_base_point: false,
+            campaign: self.campaign.clone(),
+            gate_places: self.gate_places.clone(),
+            sources: Arc::clone(&self.sources),
+            root_mark: self.root_mark,
+        };
+        let errors = cross::check(&other);
+        if errors.is_empty() {
+            Ok(other)
+        } else {
+            Err(errors)
+        }
+    }
+
+    /// Count of the numbers that its scripts and profiles hold.
+    pub(super) fn numbers_in_arrays(&self) -> usize {
+        fn of(value: &Value) -> usize {
+            match value {
+                Value::Array(nodes) => {
+                    let numbers = nodes.iter();
+                    let inside: usize = nodes.iter().map(|node| of(&node.value)).sum();
+                    let is_number = |node: &&Node| matches!(node.value, Value::Float(_));
+                    inside + numbers.filter(is_number).count()
+                }
+                Value::Table(table) => table.values().map(|node| of(&node.value)).sum(),
+                _ => 0,
+            }
+        }
+        self.tree.values().map(|node| of(&node.value)).sum()
+    }
+
+    /// A complaint about a marked place.
+    pub(super) fn error(&self, mark: Option<Mark>, message: String) -> ScenarioError {
+        self.sources.error(mark.unwrap_or(self.root_mark), message)
+    }
+
     /// The value at a path if it is not the default of its key, as TOML.
     ///
     /// * `schema_path`: the path without indices, as the key table has it.
     pub(crate) fn departure(&self, path: &str, schema_path: &str) -> Option<String> {
-        let value = self.value_toml(&address::parse(path).ok()?)?;
+        let node = address::get(&self.tree, &address::parse(path).ok()?)?;
+        // What nobody has written is the default.
+        node.mark?;
+        let value = node.value.to_toml();
         let default = default_of(schema_path)?.to_toml();
         (value != default).then_some(value)
     }
@@ -289,32 +353,32 @@ impl Resolved {
     }
 }
 
-/// Whether the swept keys of a point have the values of the point.
-fn holds(root: &Table, point: &SweepPoint) -> bool {
-    point.assignments.iter().all(|(key, value)| {
+/// The configuration in a checked and filled tree.
+fn configuration(
+    root: &Table,
+    root_mark: Mark,
+    sources: &Sources,
+) -> Result<Scenario, Vec<ScenarioError>> {
+    from_table(root).map_err(|error| {
+        let message = format!("the scenario does not fit its configuration: {error}");
+        vec![sources.error(root_mark, message)]
+    })
+}
+
+/// BLAKE3 of a canonical text, hexadecimal.
+fn digest(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+/// The first swept key of a point that has another value than the point says, and what that is.
+fn broken<'a>(root: &Table, point: &'a SweepPoint) -> Option<(&'a str, &'a str)> {
+    let is_true = |(key, value): &&(String, String)| {
         address::resolve(root, key)
             .ok()
             .and_then(|(path, _)| address::get(root, &path))
             .is_some_and(|node| node.value.to_toml() == *value)
-    })
-}
-
-/// A checked tree as plain TOML.
-pub(super) fn plain_table(table: &Table) -> toml::Table {
-    let convert = |(key, node): (&String, &Node)| (key.clone(), plain(node));
-    table.iter().map(convert).collect()
-}
-
-/// A checked value as plain TOML.
-fn plain(node: &Node) -> toml::Value {
-    match &node.value {
-        Value::Text(text) | Value::Beyond(text, _) | Value::Date(text) => {
-            toml::Value::String(text.clone())
-        }
-        Value::Integer(number) => toml::Value::Integer(*number),
-        Value::Float(number) => toml::Value::Float(*number),
-        Value::Boolean(is_set) => toml::Value::Boolean(*is_set),
-        Value::Array(nodes) => toml::Value::Array(nodes.iter().map(plain).collect()),
-        Value::Table(table) => toml::Value::Table(plain_table(table)),
-    }
+    };
+    let mut assignments = point.assignments.iter();
+    let (key, value) = assignments.find(|assignment| !is_true(assignment))?;
+    Some((key, value))
 }

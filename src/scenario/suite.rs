@@ -1,19 +1,24 @@
 //! From paths to resolved runs: discovery, the `extends` chain, `--set` and sweeps.
 
-use std::collections::BTreeMap;
-use std::fs;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::address::{self, Step};
 use super::check::check_contradictions;
-use super::discover::{discover, identity};
+use super::discover::{Found, discover, identity};
 use super::error::{Location, ScenarioError};
+use super::excerpt::excerpt;
+use super::input::{self, Input, InputError};
 use super::manifest;
 use super::matrix;
 use super::resolved::{Draft, InputFile, Resolved};
 use super::source::{Label, Mark, Sources, shown_path};
-use super::tree::{Node, Table, Value, merge, parse_document, parse_value};
+use super::tree::{Node, Table, Value, merge, parse_value, parse_within};
+use super::weight;
+
+/// Most bases below one another.
+const BASES_MAX: usize = 64;
 
 /// Reads, resolves and checks every run of a suite; empty if the folders hold nothing to run.
 ///
@@ -25,24 +30,38 @@ use super::tree::{Node, Table, Value, merge, parse_document, parse_value};
 /// Every complaint about every file, in order, each once.
 pub fn load_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
     let mut runs = Vec::new();
+    visit_suite(paths, sets, &mut |run| runs.push(run))?;
+    Ok(runs)
+}
+
+/// As [`load_suite`], but hands each run over as soon as it is resolved: a suite of many runs need
+/// not be held in memory. If there are complaints in the end, the runs are not to be trusted.
+///
+/// # Errors
+/// As [`load_suite`].
+pub fn visit_suite(
+    paths: &[PathBuf],
+    sets: &[String],
+    visit: &mut dyn FnMut(Resolved),
+) -> Result<(), Vec<ScenarioError>> {
     let mut errors = Vec::new();
-    for file in discover(paths, &mut errors) {
-        match load_file(&file, sets) {
-            Ok(more) => runs.extend(more),
-            Err(more) => errors.extend(more),
+    let mut names = Names::default();
+    for found in discover(paths, &mut errors) {
+        let mut named = |run: Resolved| {
+            names.take(&run);
+            visit(run);
+        };
+        if let Err(more) = load_file(&found, sets, &mut named) {
+            errors.extend(more);
         }
     }
-    errors.extend(name_clashes(&runs));
+    errors.extend(names.clashes);
     if errors.is_empty() {
-        return Ok(runs);
+        return Ok(());
     }
-    let mut unique: Vec<ScenarioError> = Vec::new();
-    for error in errors {
-        if !unique.contains(&error) {
-            unique.push(error);
-        }
-    }
-    Err(unique)
+    let mut known: BTreeSet<ScenarioError> = BTreeSet::new();
+    errors.retain(|error| known.insert(error.clone()));
+    Err(errors)
 }
 
 /// Reads and checks the runs of one file of which only the gyro or the filters matter.
@@ -63,7 +82,10 @@ pub fn load_base_or_scenario(
             "it is a folder: name one scenario or base file",
         )]);
     }
-    load_drafted(load_draft(file).map(completed)?, sets)
+    let mut runs = Vec::new();
+    let draft = load_draft(file).map(completed)?;
+    load_drafted(draft, sets, &mut |run| runs.push(run))?;
+    Ok(runs)
 }
 
 /// A draft with a name and a duration.
@@ -79,39 +101,61 @@ fn completed((mut draft, errors): (Draft, Vec<ScenarioError>)) -> (Draft, Vec<Sc
     (draft, errors)
 }
 
-/// Loads one file with all points of its sweep.
-fn load_file(file: &Path, sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
-    load_drafted(load_draft(file)?, sets)
+/// Loads one file with all points of its sweep; a base that was found in a folder is passed over.
+fn load_file(
+    found: &Found,
+    sets: &[String],
+    visit: &mut dyn FnMut(Resolved),
+) -> Result<(), Vec<ScenarioError>> {
+    let file = &found.path;
+    match load_labelled(file, &Label::of_scenario(file), !found.is_named)? {
+        Some(draft) => load_drafted(draft, sets, visit),
+        None => Ok(()),
+    }
 }
 
 /// Applies `--set` to what was read and resolves it, all points of a sweep.
 fn load_drafted(
     (mut draft, mut errors): (Draft, Vec<ScenarioError>),
     sets: &[String],
-) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
+    visit: &mut dyn FnMut(Resolved),
+) -> Result<(), Vec<ScenarioError>> {
     let matrix = draft.root.remove("matrix");
     if matrix.is_some() {
         // A sweep over a manifest is an experiment of its own.
         draft.recorded = None;
     }
     let set_paths = apply_sets(&mut draft, sets, &mut errors);
-    let runs = match matrix {
-        None => draft.resolve().map(|run| vec![run]),
-        Some(matrix) => matrix::expand(&draft, &matrix, &set_paths),
-    };
-    match runs {
-        Ok(runs) if errors.is_empty() => Ok(runs),
-        Ok(_) => Err(errors),
-        Err(more) => {
-            errors.extend(more);
-            Err(errors)
+    let is_sound = errors.is_empty();
+    let mut visit_sound = |run| {
+        if is_sound {
+            visit(run);
         }
+    };
+    let result = match matrix {
+        None => draft.resolve().map(visit_sound),
+        Some(matrix) => matrix::expand(&draft, &matrix, &set_paths, &mut visit_sound),
+    };
+    errors.extend(result.err().unwrap_or_default());
+    if errors.is_empty() {
+        Ok(())
+    } else {
+        Err(errors)
     }
 }
 
 /// Reads a file and its bases, or a manifest, with the complaints that do not hinder more checks.
 fn load_draft(file: &Path) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
-    load_labelled(file, &Label::of_scenario(file))
+    read_whole(file, &Label::of_scenario(file))
+}
+
+/// As [`load_labelled`], whether the file has a name or not.
+fn read_whole(
+    file: &Path,
+    label: &Label,
+) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
+    let draft = load_labelled(file, label, false)?;
+    Ok(draft.expect("only bases are passed over, where that is asked for"))
 }
 
 /// Reads the scenario of a campaign that another file names, and its bases.
@@ -119,22 +163,27 @@ fn load_draft(file: &Path) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioEr
 /// # Errors
 /// Every complaint about the file.
 pub(super) fn load_campaign(file: &Path, label: &Label) -> Result<Draft, Vec<ScenarioError>> {
-    match load_labelled(file, label)? {
+    match read_whole(file, label)? {
         (draft, errors) if errors.is_empty() => Ok(draft),
         (_, errors) => Err(errors),
     }
 }
 
-/// As [`load_draft`], inputs labelled as seen from another file.
+/// Reads a file and its bases, inputs labelled as seen from another file; none if it is a base and
+/// those are passed over.
 fn load_labelled(
     file: &Path,
     label: &Label,
-) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
-    let mut chain = Chain::default();
+    passes_bases: bool,
+) -> Result<Option<(Draft, Vec<ScenarioError>)>, Vec<ScenarioError>> {
+    let mut chain = Chain::new();
     let (root, source) = chain.read(file, label, None)?;
+    if passes_bases && !root.contains_key("name") {
+        return Ok(None);
+    }
     if manifest::is_manifest(&root) {
         let draft = manifest::read(root, source, chain.sources, chain.inputs)?;
-        return Ok((draft, Vec::new()));
+        return Ok(Some((draft, Vec::new())));
     }
     let root = chain.merge_bases(file, label, root, source)?;
     chain.inputs.reverse();
@@ -146,22 +195,45 @@ fn load_labelled(
         inputs: chain.inputs,
         recorded: None,
         warnings: Vec::new(),
+        remarks: Vec::new(),
     };
-    Ok((draft, chain.errors))
+    Ok(Some((draft, chain.errors)))
 }
 
 /// A file and its bases, as far as they have been read.
-#[derive(Default)]
 struct Chain {
     sources: Sources,
     /// The scenario's own file first.
     inputs: Vec<InputFile>,
     /// Files read so far, to find cycles.
     open: Vec<PathBuf>,
+    /// Bytes that may still be read.
+    bytes_left: u64,
+    /// Memory that may still be taken, bytes.
+    memory_left: u64,
     errors: Vec<ScenarioError>,
 }
 
 impl Chain {
+    fn new() -> Self {
+        Self {
+            sources: Sources::default(),
+            inputs: Vec::new(),
+            open: Vec::new(),
+            bytes_left: input::BYTES_MAX,
+            memory_left: weight::MEMORY_BYTES_MAX,
+            errors: Vec::new(),
+        }
+    }
+
+    /// Reads a file and takes it off what may still be read.
+    fn input(&mut self, file: &Path) -> Result<Input, InputError> {
+        let input = input::read(file)?;
+        let left = self.bytes_left.checked_sub(input.text.len() as u64);
+        self.bytes_left = left.ok_or(InputError::TooLongTogether)?;
+        Ok(input)
+    }
+
     /// Reads and parses one file; `extends` is the mark of the key that names it.
     fn read(
         &mut self,
@@ -170,30 +242,23 @@ impl Chain {
         extends: Option<Mark>,
     ) -> Result<(Table, usize), Vec<ScenarioError>> {
         let shown = shown_path(file);
-        let bytes = fs::read(file).map_err(|error| {
-            let message = match error.kind() {
-                std::io::ErrorKind::NotFound => "no such file".to_owned(),
-                _ if file.is_dir() => "it is a folder, not a file".to_owned(),
-                _ => format!("cannot read the file: {error}"),
-            };
+        let Input { text, digest } = self.input(file).map_err(|error| {
+            let location = Location::of_file(shown.clone());
             vec![match extends {
-                None => ScenarioError::at(Location::of_file(shown.clone()), message),
-                Some(mark) => self
+                // The text itself is at fault, not the key that names it.
+                Some(mark) if !matches!(error, InputError::NotText) => self
                     .sources
-                    .error(mark, format!("extends {shown}: {message}")),
+                    .error(mark, format!("extends {shown}: {error}")),
+                _ => ScenarioError::at(location, error.to_string()),
             }]
         })?;
         self.inputs.push(InputFile {
             file: label.text(),
-            digest: blake3::hash(&bytes).to_hex().to_string(),
+            digest,
         });
         self.open.push(identity(file));
-        let text = String::from_utf8(bytes).map_err(|_| {
-            let location = Location::of_file(shown.clone());
-            vec![ScenarioError::at(location, "the file is not UTF-8 text")]
-        })?;
         let source = self.sources.add_file(shown, text.clone(), label.clone());
-        let root = parse_document(source, &text).map_err(|error| {
+        let root = parse_within(source, &text, &mut self.memory_left).map_err(|error| {
             let mark = Mark {
                 source,
                 start: error.start,
@@ -228,9 +293,19 @@ impl Chain {
         };
         let path = file.parent().unwrap_or(Path::new("")).join(base);
         if self.open.contains(&identity(&path)) {
+            let base = excerpt(base);
             let message = format!(
                 "extends = \"{base}\" closes a cycle: {} is being extended already",
                 shown_path(&path)
+            );
+            self.errors.push(self.sources.error(mark, message));
+            return Err(std::mem::take(&mut self.errors));
+        }
+        if self.open.len() > BASES_MAX {
+            let base = excerpt(base);
+            let message = format!(
+                "extends = \"{base}\" is base {} below one another: allowed up to {BASES_MAX}",
+                self.open.len()
             );
             self.errors.push(self.sources.error(mark, message));
             return Err(std::mem::take(&mut self.errors));
@@ -280,6 +355,7 @@ fn apply_set(root: &mut Table, argument: &str, mark: Mark) -> Result<Vec<Step>, 
     match key.split('.').next() {
         Some("extends") => return Err("extends cannot be set: write it into a file".to_owned()),
         Some("matrix") => {
+            let key = excerpt(key);
             return Err(format!(
                 "{key} cannot be set: write the sweep into a file, or give one value, as in seed=2"
             ));
@@ -305,30 +381,51 @@ fn set_value(text: &str, mark: Mark) -> Result<Node, String> {
     }
 }
 
-/// Complaints about runs that would write the same folder, or a scenario beside a sweep in it.
-fn name_clashes(runs: &[Resolved]) -> Vec<ScenarioError> {
-    let mut first: BTreeMap<&str, &Resolved> = BTreeMap::new();
-    let mut folders: BTreeMap<String, &Resolved> = BTreeMap::new();
-    let mut errors = Vec::new();
-    for run in runs {
-        let earlier = *first.entry(&run.scenario.name).or_insert(run);
-        let twin = folders.get(&run.folder()).copied();
-        folders.entry(run.folder()).or_insert(run);
-        let is_same_sweep = earlier.shown_file() == run.shown_file()
-            && earlier.sweep.is_some() == run.sweep.is_some();
-        let clash = match twin {
-            Some(twin) => Some(twin),
-            None if std::ptr::eq(earlier, run) || is_same_sweep => None,
-            None => Some(earlier),
+/// The names and folders of the runs so far.
+#[derive(Default)]
+struct Names {
+    first: BTreeMap<String, NamedRun>,
+    folders: BTreeMap<String, Location>,
+    /// Complaints about runs that would write the same folder, or a scenario beside a sweep in it.
+    clashes: Vec<ScenarioError>,
+}
+
+/// The first run of a name.
+struct NamedRun {
+    file: String,
+    is_sweep: bool,
+    place: Location,
+}
+
+impl Names {
+    /// Takes the name of one more run.
+    fn take(&mut self, run: &Resolved) {
+        let name = &run.scenario.name;
+        let (file, is_sweep) = (run.shown_file(), run.sweep.is_some());
+        let (folder, place) = (run.folder(), run.locate("name"));
+        let other = match (self.folders.get(&folder), self.first.get(name)) {
+            (Some(twin), _) => Some(twin),
+            (None, Some(first)) if first.file != file || first.is_sweep != is_sweep => {
+                Some(&first.place)
+            }
+            _ => None,
         };
-        if let Some(other) = clash {
+        if let Some(other) = other {
             let message = format!(
-                "name = \"{}\" is the name of the scenario at {} already: give each scenario its own",
-                run.scenario.name,
-                other.locate("name")
+                "name = \"{name}\" is the name of the scenario at {other} already: give each \
+                 scenario its own"
             );
-            errors.push(ScenarioError::at(run.locate("name"), message));
+            self.clashes.push(ScenarioError::at(place.clone(), message));
         }
+        if !self.first.contains_key(name) {
+            let place = place.clone();
+            let first = NamedRun {
+                file,
+                is_sweep,
+                place,
+            };
+            self.first.insert(name.clone(), first);
+        }
+        self.folders.entry(folder).or_insert(place);
     }
-    errors
 }
