@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod linear_algebra;
 pub mod random;
 pub mod signal;
 pub mod units;

@@ -55,26 +55,40 @@ fn bad_hardware_parameters_exit_2_and_say_the_range() {
     let good = ["--stimulus", "good.csv"];
     for (arguments, part) in [
         (vec!["timing", "--taps", "0"], "expected 1 to 64"),
-        (vec!["timing", "--forgetting-factor", "1.5"], "> 0 and <= 1"),
-        (vec!["timing", "--clock-mhz", "0"], "clock = 0"),
+        (
+            vec!["timing", "--forgetting-factor", "1.5"],
+            "number from 0.001 to 1",
+        ),
+        (
+            vec!["timing", "--clock-mhz", "0"],
+            "from 0.001 to 10000 MHz",
+        ),
         (vec!["timing", "--adder-latency", "0"], "adder latency = 0"),
         (export(&[&good[..], &["--taps", "0"]].concat()), "1 to 64"),
         (
             export(&[&good[..], &["--forgetting-factor", "0"]].concat()),
-            "forgetting factor = 0",
+            "--forgetting-factor <A>",
         ),
         (
             export(&[&good[..], &["--initial-inverse-correlation=-1"]].concat()),
-            "initial inverse correlation = -1",
+            "--initial-inverse-correlation <D>",
         ),
-        (export(&["--stimulus", "bad.csv"]), "bad.csv:3: NaN"),
-        (export(&["--stimulus", "words.csv"]), "words.csv:3: `two`"),
-        (export(&["--stimulus", "none.csv"]), "none.csv"),
+        (
+            export(&["--stimulus", "bad.csv"]),
+            "bad.csv:3: column rate: NaN",
+        ),
+        (
+            export(&["--stimulus", "words.csv"]),
+            "words.csv:3: column rate: `two`",
+        ),
     ] {
         let output = fogbench(folder.path(), &arguments);
         assert_eq!(code(&output), 2, "{arguments:?}");
         assert!(stderr(&output).contains(part), "{}", stderr(&output));
     }
+    let missing = fogbench(folder.path(), &export(&["--stimulus", "none.csv"]));
+    assert_eq!(code(&missing), 74, "{}", stderr(&missing));
+    assert!(stderr(&missing).contains("cannot read none.csv"));
     assert!(
         !folder.path().join("out").exists(),
         "nothing is written in error"

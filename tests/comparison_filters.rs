@@ -250,12 +250,12 @@ fn constants_that_make_no_filter_are_refused() {
         (
             "one_pole = { cutoff_hz = 2000.0 }",
             "filter[0].one_pole.cutoff_hz",
-            "(0, 1994.7",
+            "[3.989e-6, 1994.7",
         ),
         (
             "butterworth = { cutoff_hz = 3000.0 }",
             "filter[0].butterworth.cutoff_hz",
-            "(0, 1994.7",
+            "[3.989e-3, 1994.7",
         ),
         (
             "constrained_rls = { taps = 1 }",

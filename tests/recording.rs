@@ -116,7 +116,7 @@ fn npy_files_that_hold_something_else_are_refused() {
         &[0; 16],
         "shape [1, 2]: expected one dimension",
     );
-    refused("<i2", "(2,)", &[0; 4], "type '<i2': expected binary64");
+    refused("<f2", "(2,)", &[0; 4], "type '<f2': expected binary64");
     refused("<c16", "(1,)", &[0; 16], "expected binary64");
     refused("<f8", "(3,)", &[0; 16], "not a whole NPY file");
     refused(
@@ -135,12 +135,7 @@ fn npy_files_that_hold_something_else_are_refused() {
         "index 1: 9007199254740993 lies beyond 2^53",
     );
     let data = [1.0_f64.to_le_bytes(), f64::NAN.to_le_bytes()].concat();
-    refused(
-        "<f8",
-        "(2,)",
-        &data,
-        "index 1: NaN deg/h is not a finite rate",
-    );
+    refused("<f8", "(2,)", &data, "index 1: NaN is not a finite number");
     let path = npy(folder.path(), "<f8", "(1,)", &1.0_f64.to_le_bytes());
     let named = LogFormat {
         column: Some("rate".to_owned()),

@@ -222,12 +222,34 @@ fn a_summary_has_the_documented_shape() {
 }
 
 #[test]
-#[should_panic(expected = "raw.noise_gain reached the report as inf")]
-fn a_number_that_is_not_finite_cannot_be_written() {
+fn a_number_that_is_not_finite_is_unavailable_and_takes_nothing_with_it() {
     let mut fixture = Fixture::usual();
-    let metric = fixture.channels[0].1.metrics.get_mut("noise_gain").unwrap();
+    let table = &mut fixture.channels[0].1;
+    let metric = table.metrics.get_mut("noise_gain").unwrap();
     metric.estimate.high = f64::INFINITY;
-    let _ = run_summary_json(&fixture.report());
+    metric.fields.insert("count", f64::NAN);
+    let curve = table.curves.get_mut("allan").unwrap();
+    curve.insert("fitted".to_owned(), vec![1.0, f64::NAN]);
+    let text = run_summary_json(&fixture.report());
+    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON, whatever reaches it");
+    assert!(json["channels"]["raw"]["noise_gain"]["high"].is_null());
+    assert!(!text.contains("null"), "no null passes for a number");
+
+    fixture.channels[0].1.keep_finite();
+    let text = run_summary_json(&fixture.report());
+    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let raw = &json["channels"]["raw"];
+    assert!(raw["noise_gain"].is_null() && raw["curves"]["allan"].is_null());
+    let reasons = &raw["unavailable"];
+    assert_eq!(reasons["noise_gain"], "the record gives no finite number");
+    assert_eq!(
+        reasons["curves.allan"],
+        "the record gives no finite number for a point of fitted"
+    );
+    assert!(
+        raw["angle_random_walk_deg_per_sqrt_h"].is_object(),
+        "the rest stays"
+    );
 }
 
 #[test]
@@ -360,7 +382,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
         channels: vec![("raw", &raw), ("lms", &lms), ("rls", &raw), ("bad", &raw)],
         temperature: None,
     };
-    let pictures = plots(&fixture.report(), &signals);
+    let pictures = plots(&fixture.report(), &signals).drawn;
     let names: Vec<&str> = pictures.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["rate.svg", "allan.svg", "swing.svg"]);
     for (name, svg) in &pictures {
@@ -374,7 +396,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
         );
     }
     assert!(pictures[2].1.contains("behind raw"));
-    assert_eq!(pictures, plots(&fixture.report(), &signals));
+    assert_eq!(pictures, plots(&fixture.report(), &signals).drawn);
 }
 
 /// Samples for pictures that are drawn from curves.
@@ -431,7 +453,7 @@ fn several_sines_are_drawn_with_the_line_of_theory() {
             theory,
             ..fixture.report()
         };
-        let pictures = plots(&report, &quiet_signals(&zeros));
+        let pictures = plots(&report, &quiet_signals(&zeros)).drawn;
         let bode = pictures.into_iter().find(|(name, _)| name == "bode.svg");
         bode.expect("a response is drawn").1
     };
@@ -468,7 +490,7 @@ fn a_staircase_of_three_rates_is_drawn_as_a_response() {
             theory: &lines,
             ..fixture.report()
         };
-        let pictures = plots(&report, &quiet_signals(&zeros));
+        let pictures = plots(&report, &quiet_signals(&zeros)).drawn;
         pictures
             .into_iter()
             .find(|(name, _)| name == "response.svg")

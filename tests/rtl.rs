@@ -12,12 +12,14 @@ use fogbench::fpga::export::{
 };
 use fogbench::fpga::float_unit::{FlushToZero, Fp};
 use fogbench::fpga::front_end::{FrontEnd, Pair, UpdateSign};
-use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsEngine, LmsSettings};
-use fogbench::fpga::rls::{Division, RlsConfig, RlsEngine, RlsSettings};
-use fogbench::fpga::sign_lms::{SignLmsConfig, SignLmsEngine, SignLmsSettings};
-use fogbench::fpga::timing::{
-    RlsLoad, UnitTiming, Units, lms_stalled_clocks, sign_lms_stalled_clocks, stalled_clocks,
+use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsEngine, LmsSettings, lms_stalled_clocks};
+use fogbench::fpga::rls::{
+    Division, RlsConfig, RlsEngine, RlsLoad, RlsSettings, rls_stalled_clocks,
 };
+use fogbench::fpga::sign_lms::{
+    SignLmsConfig, SignLmsEngine, SignLmsSettings, sign_lms_stalled_clocks,
+};
+use fogbench::fpga::timing::{UnitTiming, Units};
 use fogbench::fpga::trace::hex;
 
 use crate::support::stimulus::{SETUPS, Setup, predictor_pairs, samples};
@@ -141,7 +143,7 @@ fn export_and_run<F: Fp>(pipeline: PipelineConfig<F>, pairs: &[Pair<F>], trace_s
     let by_clock = fs::read_to_string(dir.path().join("y.hex")).expect("the words are written");
     assert!(by_clock == words_at_once(pipeline, pairs), "{pipeline:?}");
     let report = assert_passes(dir.path());
-    let rows = trace_samples.min(pairs.len()) * pipeline.clocks_per_sample();
+    let rows = trace_samples.min(pairs.len()) * pipeline.as_pipeline().clocks_per_sample();
     let samples = pairs.len();
     for part in [
         format!(" {samples} samples,"),
@@ -282,7 +284,7 @@ fn a_slow_divider_keeps_every_word_and_takes_the_clocks_of_the_timing_model() {
                 division,
                 forgets: alpha < 1.0,
             };
-            let want = stalled_clocks(load, units(latency)).unwrap();
+            let want = rls_stalled_clocks(load, units(latency)).unwrap();
             assert_eq!(reported_period(&report), want, "{division:?}, {latency}");
         }
     }

@@ -120,7 +120,7 @@ fn wrong_type_says_what_is_expected() {
     assert_eq!(
         complaints("[gyro.coil]\nlength_m = \"long\"\n"),
         ["x.toml:5:1: gyro.coil.length_m has the wrong type: \
-          expected a number, (0, 50000] m, got a string \"long\""]
+          expected a number, [1, 50000] m, got a string \"long\""]
     );
     assert_eq!(
         complaints("repeats = 1.5\n"),
@@ -160,7 +160,7 @@ fn unknown_choice_lists_the_choices() {
 fn value_out_of_range_gives_unit_and_range() {
     assert_eq!(
         complaints("[gyro.coil]\nlength_m = -5\n"),
-        ["x.toml:5:1: gyro.coil.length_m = -5 m is out of range: allowed (0, 50000] m"]
+        ["x.toml:5:1: gyro.coil.length_m = -5 m is out of range: allowed [1, 50000] m"]
     );
     assert_eq!(
         complaints("[gyro.output]\nhalf_periods_per_sample = 63\n"),
@@ -180,8 +180,8 @@ fn numbers_that_are_not_finite_are_refused() {
     assert_eq!(
         complaints("[gyro.source]\npower_uw = nan\nlinewidth_nm = inf\n"),
         [
-            "x.toml:5:1: gyro.source.power_uw = nan is not a finite number: allowed (0, 100000] uW",
-            "x.toml:6:1: gyro.source.linewidth_nm = inf is not a finite number: allowed (0, 500] nm",
+            "x.toml:5:1: gyro.source.power_uw = nan is not a finite number: allowed [0.001, 100000] uW",
+            "x.toml:6:1: gyro.source.linewidth_nm = inf is not a finite number: allowed [1e-6, 500] nm",
         ]
     );
 }
@@ -192,7 +192,7 @@ fn numbers_that_do_not_fit_are_told_from_infinity() {
         complaints("[gyro.source]\npower_uw = 1e400\n"),
         [
             "x.toml:5:1: gyro.source.power_uw = 1e400 is beyond the range of binary64: \
-          allowed (0, 100000] uW"
+          allowed [0.001, 100000] uW"
         ]
     );
     assert_eq!(
@@ -233,7 +233,7 @@ fn zero_duration_is_out_of_range() {
     let got = Suite::new(&[("x.toml", text)]).complaints(&["x.toml"], &[]);
     assert_eq!(
         got,
-        ["x.toml:2:1: duration_s = 0.0 s is out of range: allowed (0, 10000000] s"]
+        ["x.toml:2:1: duration_s = 0.0 s is out of range: allowed [1e-6, 10000000] s"]
     );
 }
 
@@ -249,7 +249,7 @@ fn inherited_values_are_blamed_on_the_base() {
     ]);
     assert_eq!(
         suite.complaints(&["x.toml"], &[]),
-        ["base/b.toml:3:1: gyro.coil.length_m = 90000.0 m is out of range: allowed (0, 50000] m"]
+        ["base/b.toml:3:1: gyro.coil.length_m = 90000.0 m is out of range: allowed [1, 50000] m"]
     );
     // A value that the scenario replaces does no harm.
     assert!(suite.load(&["x.toml"], &["gyro.coil.length_m=800"]).is_ok());
@@ -260,7 +260,7 @@ fn set_values_are_blamed_on_the_argument() {
     assert_eq!(
         complaints_of_set("", &["gyro.coil.length_m=-5"]),
         ["--set gyro.coil.length_m=-5: \
-          gyro.coil.length_m = -5 m is out of range: allowed (0, 50000] m"]
+          gyro.coil.length_m = -5 m is out of range: allowed [1, 50000] m"]
     );
     assert_eq!(
         complaints_of_set(
@@ -361,7 +361,7 @@ fn missing_required_keys_are_named() {
         "{got:?}"
     );
     assert!(
-        got[1].starts_with("x.toml:1:1: duration_s is required: expected a number, (0, "),
+        got[1].starts_with("x.toml:1:1: duration_s is required: expected a number, [1e-6, "),
         "{got:?}"
     );
     assert_eq!(
@@ -635,7 +635,7 @@ fn wrong_matrices_are_refused_where_they_are_wrong() {
     );
     assert_eq!(
         complaints("[matrix]\n\"gyro.source.power_uw\" = [0.5, -2.0]\nseed = [1, 2]\n"),
-        ["x.toml:5:32: gyro.source.power_uw = -2.0 uW is out of range: allowed (0, 100000] uW"]
+        ["x.toml:5:32: gyro.source.power_uw = -2.0 uW is out of range: allowed [0.001, 100000] uW"]
     );
     assert!(complaints("[matrix]\n")[0].starts_with("x.toml:4:2: matrix is empty"));
     assert_eq!(

@@ -6,9 +6,9 @@ use fogbench::fpga::float_unit::{FlushToZero, Fp};
 use fogbench::fpga::front_end::{Desired, FrontEnd, Pair};
 use fogbench::fpga::sign_lms::{
     SignLmsConfig, SignLmsEngine, SignLmsPipeline, SignLmsSettings, sign_lms_clocks_per_sample,
-    sign_lms_latency_clocks,
+    sign_lms_latency_clocks, sign_lms_stalled_clocks,
 };
-use fogbench::fpga::timing::{Units, measure_sign_lms, sign_lms_stalled_clocks};
+use fogbench::fpga::timing::{Units, measure};
 use fogbench::scenario::FilterConfig;
 use proptest::prelude::*;
 
@@ -42,7 +42,7 @@ fn compare<F: Fp>(settings: SignLmsSettings, stimulus: &[f64]) -> Result<(), Str
     let same = words(&by_clock) == words(&at_once)
         && words(pipeline.rama()) == words(&engine.rama())
         && words(pipeline.ramb()) == words(&engine.ramb())
-        && pipeline.registers().norm.to_bits() == engine.norm().to_bits();
+        && pipeline.machine().norm().to_bits() == engine.norm().to_bits();
     if same && by_clock.len() == pairs.len() {
         Ok(())
     } else {
@@ -190,7 +190,7 @@ fn the_line_enhancer_takes_67_clocks_at_twenty_taps_and_answers_after_25() {
                     ..PATENT
                 })
                 .unwrap();
-                let used = measure_sign_lms(config);
+                let used = measure(SignLmsPipeline::new(config));
                 let want = (3 * tap_count + 7, tap_count + 5);
                 assert_eq!(used.clocks_per_sample, want.0 as u64);
                 assert_eq!(used.latency_clocks, want.1 as u64);

@@ -1,13 +1,12 @@
 //! Table 1, the latency model and the use counted on the model.
 
 use fogbench::fpga::front_end::UpdateSign;
-use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsSettings};
-use fogbench::fpga::rls::{Division, RlsConfig, RlsSettings};
-use fogbench::fpga::timing::{
-    Basis, Bound, Design, PRESETS, RlsLoad, ScheduleSettings, UnitTiming, Units,
-    lms_stalled_clocks, measure_lms, measure_rls, sample_rate_max_khz, schedule_clocks,
-    stalled_clocks, table,
+use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsPipeline, LmsSettings, lms_stalled_clocks};
+use fogbench::fpga::rls::{
+    Basis, Bound, Design, Division, RlsConfig, RlsLoad, RlsPipeline, RlsSettings, ScheduleSettings,
+    rls_stalled_clocks, schedule_clocks, table,
 };
+use fogbench::fpga::timing::{PRESETS, UnitTiming, Units, Usage, measure, sample_rate_max_khz};
 
 use crate::support::assert_close;
 
@@ -27,8 +26,8 @@ fn units(name: &str) -> Units {
         .units
 }
 
-fn usage(tap_count: usize, division: Division) -> fogbench::fpga::timing::Usage {
-    measure_rls(
+fn usage(tap_count: usize, division: Division) -> Usage {
+    measure(RlsPipeline::new(
         RlsConfig::<f64>::new(RlsSettings {
             tap_count,
             forgetting_factor: 0.99,
@@ -37,7 +36,7 @@ fn usage(tap_count: usize, division: Division) -> fogbench::fpga::timing::Usage 
             update_sign: UpdateSign::Corrected,
         })
         .expect("settings are in range"),
-    )
+    ))
 }
 
 #[test]
@@ -114,7 +113,7 @@ fn golden_clocks_per_state_and_port_use_at_four_taps() {
     );
     // RAMB's port: 5p^2 + 5p of 108 clocks.
     assert_eq!(used.ramb_accesses, 100);
-    let nlms = measure_lms(
+    let nlms = measure(LmsPipeline::new(
         LmsConfig::<f64>::new(LmsSettings {
             tap_count: 10,
             step_size: 0.8,
@@ -123,7 +122,7 @@ fn golden_clocks_per_state_and_port_use_at_four_taps() {
             update_sign: UpdateSign::Corrected,
         })
         .unwrap(),
-    );
+    ));
     assert_eq!((nlms.clocks_per_sample, nlms.latency_clocks), (45, 23));
     assert_eq!(
         nlms.states.iter().map(|state| state.clocks).sum::<u64>(),
@@ -140,11 +139,11 @@ fn stalled_clocks_match_the_rtl_and_the_worked_table() {
         ("altfp-deep", 1411, 2161),
     ];
     for (name, reciprocal, element) in worked {
-        let clocks = |division| stalled_clocks(load(division, false), units(name)).unwrap();
+        let clocks = |division| rls_stalled_clocks(load(division, false), units(name)).unwrap();
         assert_eq!(clocks(Division::Reciprocal), reciprocal, "{name}");
         assert_eq!(clocks(Division::Element), element, "{name}");
     }
-    let slow = stalled_clocks(
+    let slow = rls_stalled_clocks(
         load(Division::Reciprocal, false),
         units("opencores-double-fpu"),
     )
@@ -155,14 +154,14 @@ fn stalled_clocks_match_the_rtl_and_the_worked_table() {
         divider: UnitTiming::iterative(58),
         ..Units::ONE_CLOCK
     };
-    let clocks = |division| stalled_clocks(load(division, false), divider_58).unwrap();
+    let clocks = |division| rls_stalled_clocks(load(division, false), divider_58).unwrap();
     assert_eq!(
         (clocks(Division::Reciprocal), clocks(Division::Element)),
         (165, 1020)
     );
     // Forgetting costs a slow divider's owner nothing: the product with 1/alpha stays chained.
     for division in [Division::Reciprocal, Division::Element] {
-        let clocks = |forgets| stalled_clocks(load(division, forgets), units("divider-10"));
+        let clocks = |forgets| rls_stalled_clocks(load(division, forgets), units("divider-10"));
         assert_eq!(clocks(true).unwrap(), clocks(false).unwrap());
     }
     assert_close(sample_rate_max_khz(2247, 40.0), 17.801_513, 1e-7, 0.0);
@@ -171,7 +170,7 @@ fn stalled_clocks_match_the_rtl_and_the_worked_table() {
 #[test]
 fn one_clock_units_stall_nobody() {
     for tap_count in 1..=16 {
-        let clocks = stalled_clocks(
+        let clocks = rls_stalled_clocks(
             RlsLoad {
                 tap_count,
                 division: Division::Reciprocal,
@@ -226,7 +225,7 @@ fn no_schedule_is_shorter_than_its_busiest_resource_or_longer_than_stalling() {
                 let report = schedule_clocks(load, preset.units, one_port).unwrap();
                 assert!(report.clocks >= report.ramb_accesses);
                 assert!(report.clocks >= report.multiplies);
-                let stalled = stalled_clocks(load, preset.units).unwrap();
+                let stalled = rls_stalled_clocks(load, preset.units).unwrap();
                 assert!(
                     report.clocks <= stalled,
                     "{}: {report:?} {stalled}",

@@ -25,6 +25,26 @@ pub enum CalibrationError {
         /// What is allowed.
         expected: &'static str,
     },
+    /// The decomposition of the rows of a gyro has no result.
+    #[error(
+        "the rows of gyro {axis} have no singular values: rates and temperatures of the groups are \
+         too far apart in size"
+    )]
+    Unresolved {
+        /// Axis: `x`, `y` or `z`.
+        axis: &'static str,
+    },
+    /// An estimate that came out as no finite number.
+    #[error(
+        "the {what} came out as {value}: standard errors, outputs or temperatures of the groups are \
+         too far apart in size"
+    )]
+    NotFinite {
+        /// What came out.
+        what: &'static str,
+        /// As which number.
+        value: f64,
+    },
     /// A setting of an estimator out of range.
     #[error("{name} = {value} is out of range: expected {expected}")]
     BadSetting {

@@ -65,6 +65,7 @@ pub fn estimate(
     }
     let calibration = assemble(groups, estimator, reference, &weights, &fits);
     reject_implausible(groups, &calibration)?;
+    reject_not_finite(&calibration)?;
     Ok(calibration)
 }
 
@@ -132,7 +133,8 @@ fn fit_axis(
     for (mut row, weight) in weighted.row_iter_mut().zip(&weights.rows) {
         row *= weight.sqrt();
     }
-    let values = descending(&weighted);
+    let unresolved = CalibrationError::Unresolved { axis: AXES[axis] };
+    let values = descending(&weighted).ok_or(unresolved)?;
     let condition_number = values[0] / values[values.len() - 1];
     let forgotten = || CalibrationError::Forgotten {
         axis: AXES[axis],
@@ -307,6 +309,51 @@ fn reject_implausible(
             limit: SCALE_ERROR_MAX,
             hint,
         });
+    }
+    Ok(())
+}
+
+/// Refuses an estimate of which a part is no finite number: groups whose numbers differ by more than
+/// binary64 can square.
+fn reject_not_finite(calibration: &Calibration) -> Result<(), CalibrationError> {
+    let coefficients = [
+        &calibration.temperature.bias,
+        &calibration.temperature.bias_rate,
+        &calibration.temperature.scale,
+    ];
+    let coefficients = coefficients.into_iter().flatten();
+    let coefficients: Vec<f64> = coefficients
+        .flat_map(|it| it.value.into_iter().chain(it.standard_error))
+        .collect();
+    let parameters = calibration.parameters.to_vector();
+    let misfits: Vec<f64> = calibration
+        .reduced_chi_square
+        .iter()
+        .flatten()
+        .copied()
+        .collect();
+    let parts: [(&'static str, &mut dyn Iterator<Item = &f64>); 7] = [
+        ("estimate", &mut parameters.iter()),
+        ("covariance", &mut calibration.covariance.iter().flatten()),
+        ("coefficient of temperature", &mut coefficients.iter()),
+        (
+            "weight of a group",
+            &mut calibration.weights.iter().flatten(),
+        ),
+        (
+            "residual",
+            &mut calibration.residual_deg_per_s.iter().flatten(),
+        ),
+        ("reduced chi-square", &mut misfits.iter()),
+        ("condition number", &mut calibration.condition_number.iter()),
+    ];
+    for (what, mut values) in parts {
+        if let Some(value) = Iterator::find(&mut values, |value| !value.is_finite()) {
+            return Err(CalibrationError::NotFinite {
+                what,
+                value: *value,
+            });
+        }
     }
     Ok(())
 }

@@ -18,6 +18,7 @@ use nalgebra::DMatrix;
 
 use super::design::Column;
 use super::error::AXES;
+use crate::linear_algebra::singular_value_decomposition;
 
 /// One direction in which the parameters may move without any output changing.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,12 +36,12 @@ pub struct Inseparable {
 /// Null vectors of a design with columns of a common size, each in words; empty at full rank.
 ///
 /// Columns of nothing are named first, then the null space of the others, reduced so that each
-/// vector has as few columns as the others allow.
+/// vector has as few columns as the others allow. Nothing if the null space cannot be found.
 pub(super) fn inseparable(
     scaled: &DMatrix<f64>,
     model: &[Column],
     tolerance: f64,
-) -> Vec<Inseparable> {
+) -> Option<Vec<Inseparable>> {
     let size = |index: usize| {
         let column = scaled.column(index);
         if column.is_empty() {
@@ -56,7 +57,7 @@ pub(super) fn inseparable(
         .map(|index| describe(&[model[*index]]))
         .collect();
     let kept = scaled.select_columns(moved.iter());
-    for vector in null_vectors(&kept, tolerance) {
+    for vector in null_vectors(&kept, tolerance)? {
         let parts: Vec<Column> = moved
             .iter()
             .zip(&vector)
@@ -65,21 +66,21 @@ pub(super) fn inseparable(
             .collect();
         open.push(describe(&parts));
     }
-    open
+    Some(open)
 }
 
 /// A reduced basis of the null space: singular values below `tolerance` of the largest.
-fn null_vectors(matrix: &DMatrix<f64>, tolerance: f64) -> Vec<Vec<f64>> {
+fn null_vectors(matrix: &DMatrix<f64>, tolerance: f64) -> Option<Vec<Vec<f64>>> {
     let width = matrix.ncols();
     if width == 0 {
-        return Vec::new();
+        return Some(Vec::new());
     }
     // Rows of zeros give every column its right singular vector.
     let square = matrix
         .clone()
         .resize_vertically(matrix.nrows().max(width), 0.0);
-    let decomposition = square.svd(false, true);
-    let vectors = decomposition.v_t.expect("the right vectors were asked for");
+    let decomposition = singular_value_decomposition(square, false, true)?;
+    let vectors = decomposition.v_t?;
     let largest = decomposition.singular_values.amax();
     let mut basis: Vec<Vec<f64>> = decomposition
         .singular_values
@@ -89,7 +90,7 @@ fn null_vectors(matrix: &DMatrix<f64>, tolerance: f64) -> Vec<Vec<f64>> {
         .map(|(_, row)| row.iter().copied().collect())
         .collect();
     reduce(&mut basis);
-    basis
+    Some(basis)
 }
 
 /// Makes the vectors sparse: each is the only one with an entry at its pivot.

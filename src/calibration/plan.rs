@@ -7,8 +7,9 @@ use nalgebra::DMatrix;
 use super::design::{
     Column, GroupDesign, TemperatureColumns, column_scales, columns, design_matrix,
 };
-use super::error::CalibrationError;
+use super::error::{AXES, CalibrationError};
 use super::inseparable::{Inseparable, inseparable};
+use crate::linear_algebra::singular_value_decomposition;
 
 /// Singular values below this part of the largest, columns brought to a common size, count as none.
 ///
@@ -96,7 +97,7 @@ pub fn check_plan(
     let model = columns(temperature);
     let [x, y, z] = [0, 1, 2].map(|axis: usize| {
         let design = design_matrix(groups, &model, axis, reference_temperature_c[axis]);
-        check_axis(&design, &model, axis).map_err(CalibrationError::Unobservable)
+        check_axis(&design, &model, axis)
     });
     Ok(PlanReport {
         groups: groups.len(),
@@ -113,23 +114,24 @@ fn check_axis(
     design: &DMatrix<f64>,
     model: &[Column],
     axis: usize,
-) -> Result<AxisPlan, PlanDefect> {
-    let singular_values = descending(design);
+) -> Result<AxisPlan, CalibrationError> {
+    let unresolved = CalibrationError::Unresolved { axis: AXES[axis] };
+    let singular_values = descending(design).ok_or(unresolved.clone())?;
     let mut scaled = design.clone();
     for (mut column, scale) in scaled.column_iter_mut().zip(column_scales(design, model)) {
         column /= scale;
     }
-    let open = inseparable(&scaled, model, RANK_TOLERANCE);
+    let open = inseparable(&scaled, model, RANK_TOLERANCE).ok_or(unresolved.clone())?;
     if !open.is_empty() {
-        return Err(PlanDefect {
+        return Err(CalibrationError::Unobservable(PlanDefect {
             groups: design.nrows(),
             unknowns: model.len(),
             rank: model.len() - open.len(),
             singular_values,
             inseparable: open,
-        });
+        }));
     }
-    let inverse = inverse_normal(design);
+    let inverse = inverse_normal(design).ok_or(unresolved)?;
     let (scale, bias) = (inverse[(axis, axis)].sqrt(), inverse[(3, 3)].sqrt());
     Ok(AxisPlan {
         condition_number: singular_values[0] / singular_values[singular_values.len() - 1],
@@ -140,24 +142,22 @@ fn check_axis(
     })
 }
 
-/// `(A^T A)^-1` through the triangular factor; for designs of full rank.
-fn inverse_normal(design: &DMatrix<f64>) -> DMatrix<f64> {
+/// `(A^T A)^-1` through the triangular factor; nothing for designs short of rank.
+fn inverse_normal(design: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let size = design.ncols();
     let inverse = design
         .clone()
         .qr()
         .r()
-        .solve_upper_triangular(&DMatrix::identity(size, size))
-        .expect("the rank was checked");
-    &inverse * inverse.transpose()
+        .solve_upper_triangular(&DMatrix::identity(size, size))?;
+    Some(&inverse * inverse.transpose())
 }
 
-/// Singular values, descending; as many as the shorter side.
-pub(super) fn descending(matrix: &DMatrix<f64>) -> Vec<f64> {
+/// Singular values, descending; as many as the shorter side. Nothing if they cannot be found.
+pub(super) fn descending(matrix: &DMatrix<f64>) -> Option<Vec<f64>> {
     if matrix.is_empty() {
-        return Vec::new();
+        return Some(Vec::new());
     }
-    let mut values: Vec<f64> = matrix.singular_values().iter().copied().collect();
-    values.sort_by(|a, b| b.total_cmp(a));
-    values
+    let decomposition = singular_value_decomposition(matrix.clone(), false, false)?;
+    Some(decomposition.singular_values.iter().copied().collect())
 }

@@ -12,7 +12,8 @@ use super::log_arguments::{AnalyzeOptions, FilterLogOptions};
 ///
 /// Runs TOML scenarios through turntable, gyro, denoising filters and metrics, and judges them.
 /// Exit codes: 0 all well, 1 a gate failed, 2 usage or scenario error, 3 a channel failed,
-/// 4 nothing selected, 70 internal error, 74 input/output error.
+/// 4 nothing selected, 70 internal error, 74 input/output error, 129, 130 and 143 ended by SIGHUP,
+/// SIGINT and SIGTERM.
 #[derive(Debug, Parser)]
 #[command(
     name = "fogbench",
@@ -108,7 +109,7 @@ pub(super) struct RunOptions {
     /// Folder for the results
     #[arg(short, long, value_name = "DIR", default_value = "output")]
     pub(super) output: PathBuf,
-    /// Threads, 0 = one per core, at most 256; the results do not depend on it
+    /// Threads, at most 256; 0 = RAYON_NUM_THREADS, else one per core; no result depends on it
     #[arg(short, long, value_name = "N", default_value_t = 0,
           value_parser = clap::value_parser!(u16).range(0..=256))]
     pub(super) jobs: u16,

@@ -21,10 +21,8 @@ pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
     let GyroBudget { file, sheet } = &budget;
     if let Some(folder) = &options.output {
         std::fs::create_dir_all(folder).map_err(|error| at(folder, &error))?;
-        for (name, text) in [
-            ("budget.svg", budget_svg(file, sheet)),
-            ("budget.csv", budget_csv(sheet)),
-        ] {
+        let svg = budget_svg(file, sheet).map(|svg| ("budget.svg", svg));
+        for (name, text) in svg.into_iter().chain([("budget.csv", budget_csv(sheet))]) {
             let path = folder.join(name);
             write_atomic(&path, text.as_bytes()).map_err(|error| at(&path, &error))?;
         }

@@ -91,27 +91,50 @@ impl CalibrateOptions {
 
     /// Overrides of a scenario; the options for estimators stand behind `--set`.
     pub(super) fn scenario_sets(&self) -> Vec<String> {
+        let given = self.keys().into_iter();
+        let named = given.filter_map(|(_, key, value)| Some(format!("{key}={}", value?)));
+        self.set.iter().cloned().chain(named).collect()
+    }
+
+    /// The options given that stand for a key of a scenario, with that key.
+    pub(super) fn keys_given(&self) -> Vec<(&'static str, String)> {
+        let given = self
+            .keys()
+            .into_iter()
+            .filter(|(_, _, value)| value.is_some());
+        given.map(|(option, key, _)| (option, key)).collect()
+    }
+
+    /// Options, the keys that they stand for and their values.
+    fn keys(&self) -> [(&'static str, String, Option<String>); 4] {
         let law = |wanted: ForgettingLaw| {
             let named = LAWS.iter().find(|(_, law)| *law == wanted);
             named.map(|(name, _)| (*name).to_owned())
         };
-        let given = [
-            ("apply", self.estimator.map(|it| it.as_str().to_owned())),
-            ("forgetting_form", self.forgetting_form.and_then(law)),
+        let number = |value: Option<f64>| value.map(|it| format!("{it:?}"));
+        [
             (
+                "--estimator",
+                "apply",
+                self.estimator.map(|it| it.as_str().to_owned()),
+            ),
+            (
+                "--forgetting-form",
+                "forgetting_form",
+                self.forgetting_form.and_then(law),
+            ),
+            (
+                "--forgetting-constant-per-k",
                 "forgetting_constant_per_k",
-                self.forgetting_constant_per_k.map(|it| format!("{it:?}")),
+                number(self.forgetting_constant_per_k),
             ),
             (
+                "--forgetting-constant-with-temperature-per-k",
                 "forgetting_constant_with_temperature_per_k",
-                self.forgetting_constant_with_temperature_per_k
-                    .map(|it| format!("{it:?}")),
+                number(self.forgetting_constant_with_temperature_per_k),
             ),
-        ];
-        let named = given
-            .into_iter()
-            .filter_map(|(key, value)| Some(format!("calibration.{key}={}", value?)));
-        self.set.iter().cloned().chain(named).collect()
+        ]
+        .map(|(option, key, value)| (option, format!("calibration.{key}"), value))
     }
 }
 

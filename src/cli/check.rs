@@ -1,36 +1,36 @@
 //! `fogbench check`: reads and checks scenario files, physics included, without running them.
 
+use std::collections::BTreeSet;
 use std::io;
 
 use super::arguments::SelectOptions;
 use super::exit::Exit;
 use super::{output, select};
+use crate::experiment::Sound;
 use crate::wording::counted;
 
 /// Says for every run that it is sound, or lists what is wrong.
 pub(super) fn check(options: &SelectOptions) -> io::Result<Exit> {
-    let plans = match select::plans(options) {
-        Ok(plans) => plans,
+    let runs = match select::sound(options) {
+        Ok(runs) => runs,
         Err(exit) => return Ok(exit),
     };
-    for plan in &plans {
-        if let Some(summary) = plan.calibration() {
-            let name = &plan.resolved().scenario.name;
-            output::talk(&format!("{name}: calibration plan: {summary}"));
-        }
-        for warning in plan.warnings() {
-            output::talk(&format!("warning: {warning}"));
-        }
-    }
-    let files: std::collections::BTreeSet<_> = plans
-        .iter()
-        .map(|plan| plan.resolved().shown_file())
-        .collect();
-    let verb = if plans.len() == 1 { "is" } else { "are" };
+    output::talk_first("", runs.iter().flat_map(lines));
+    let files: BTreeSet<&str> = runs.iter().map(|run| run.file.as_str()).collect();
+    let verb = if runs.len() == 1 { "is" } else { "are" };
     output::data(&format!(
         "{} of {} {verb} sound\n",
-        counted(plans.len(), "run"),
+        counted(runs.len(), "run"),
         counted(files.len(), "file")
     ))?;
     Ok(Exit::Success)
+}
+
+/// What is worth saying about a sound run.
+fn lines(run: &Sound) -> Vec<String> {
+    let plan = run.calibration.as_ref();
+    let plan = plan.map(|summary| format!("{}: calibration plan: {summary}", run.name));
+    let warnings = run.remarks.iter().chain(&run.warnings);
+    let warnings = warnings.map(|warning| format!("warning: {warning}"));
+    plan.into_iter().chain(warnings).collect()
 }

@@ -6,7 +6,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use super::output;
 use crate::experiment::CalibrateError;
-use crate::scenario::ScenarioError;
+use crate::scenario::{ScenarioError, bounded};
 
 /// Something to complain of.
 pub(super) trait Complaint {
@@ -16,14 +16,15 @@ pub(super) trait Complaint {
 
 impl Complaint for String {
     fn shown(&self, _is_coloured: bool) -> String {
-        format!("error: {self}")
+        format!("error: {}", bounded(self))
     }
 }
 
 impl Complaint for ScenarioError {
     /// `error: file:line:column: message`, the line and a mark under what is wrong.
     fn shown(&self, is_coloured: bool) -> String {
-        let title = Level::ERROR.primary_title(self.to_string());
+        let text = self.to_string();
+        let title = Level::ERROR.primary_title(bounded(&text));
         let renderer = if is_coloured {
             Renderer::styled()
         } else {
@@ -44,15 +45,14 @@ impl Complaint for CalibrateError {
     fn shown(&self, is_coloured: bool) -> String {
         match self {
             Self::Scenario(error) => error.shown(is_coloured),
-            other => format!("error: {other}"),
+            other => format!("error: {}", bounded(&other.to_string())),
         }
     }
 }
 
-/// Prints complaints to stderr, in colours where that is a terminal.
+/// Prints complaints to stderr, in colours where that is a terminal: the first of them, and how many
+/// more there are.
 pub(super) fn print<C: Complaint>(errors: &[C]) {
     let is_coloured = io::stderr().is_terminal() && !output::refuses_colour();
-    for error in errors {
-        output::talk(&error.shown(is_coloured));
-    }
+    output::talk_first_as(errors.iter(), |error| error.shown(is_coloured));
 }

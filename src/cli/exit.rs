@@ -1,9 +1,11 @@
 //! Exit codes: the contract with shells and CI jobs.
 
+use std::borrow::Cow;
 use std::io;
 use std::process::ExitCode;
 
 use super::output;
+use crate::scenario::bounded;
 
 /// How the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,12 +24,19 @@ pub(super) enum Exit {
     Internal,
     /// A file could not be read or written.
     Io,
+    /// A signal has ended it; with the code that shells give it.
+    Interrupted(u8),
 }
 
 impl Exit {
     /// The process's exit code.
     pub(super) fn code(self) -> ExitCode {
-        ExitCode::from(match self {
+        ExitCode::from(self.number())
+    }
+
+    /// The exit code as a number.
+    pub(super) fn number(self) -> u8 {
+        match self {
             Self::Success => 0,
             Self::GateFailed => 1,
             Self::Usage => 2,
@@ -35,14 +44,44 @@ impl Exit {
             Self::NothingSelected => 4,
             Self::Internal => 70,
             Self::Io => 74,
-        })
+            Self::Interrupted(code) => code,
+        }
+    }
+
+    /// The one that counts where both apply.
+    pub(super) fn worst(self, other: Self) -> Self {
+        if other.rank() > self.rank() {
+            other
+        } else {
+            self
+        }
+    }
+
+    /// Place in the precedence of exit codes, the strongest last.
+    fn rank(self) -> u8 {
+        match self {
+            Self::Success => 0,
+            Self::GateFailed => 1,
+            Self::RunFailed => 2,
+            // These two end the program before anything runs.
+            Self::NothingSelected => 3,
+            Self::Usage => 4,
+            Self::Io => 5,
+            Self::Internal => 6,
+            Self::Interrupted(_) => 7,
+        }
     }
 }
 
 /// Prints what clap has to say (help and version are no errors) and gives its exit code.
 pub(super) fn usage(error: &clap::Error) -> ExitCode {
-    // Whoever closed the stream does not want to read it; the code stays what it is.
-    drop(error.print());
+    let text = error.render().to_string();
+    match bounded(&text) {
+        // An argument of many kilobytes is not echoed whole.
+        Cow::Owned(short) if error.use_stderr() => output::talk(&short),
+        // Whoever closed the stream does not want to read it; the code stays what it is.
+        _ => drop(error.print()),
+    }
     if error.use_stderr() {
         Exit::Usage.code()
     } else {
@@ -50,11 +89,31 @@ pub(super) fn usage(error: &clap::Error) -> ExitCode {
     }
 }
 
-/// A reader that closed its end has seen enough: that is no failure. Anything else is.
+/// What could not be printed or written, said and as an exit code.
 pub(super) fn io_failure(error: io::Error) -> Exit {
-    if error.kind() == io::ErrorKind::BrokenPipe {
-        return Exit::Success;
-    }
     output::talk(&format!("error: {error}"));
     Exit::Io
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_strongest_exit_code_counts() {
+        let order = [
+            Exit::Interrupted(130),
+            Exit::Internal,
+            Exit::Io,
+            Exit::RunFailed,
+            Exit::GateFailed,
+            Exit::Success,
+        ];
+        for (index, strong) in order.iter().enumerate() {
+            for weak in &order[index..] {
+                assert_eq!(strong.worst(*weak), *strong);
+                assert_eq!(weak.worst(*strong), *strong);
+            }
+        }
+    }
 }

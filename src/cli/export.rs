@@ -3,16 +3,16 @@
 use std::io;
 use std::path::Path;
 
-use super::complaint::{self, Complaint};
+use super::complaint;
 use super::exit::Exit;
 use super::hardware_arguments::{ExportKind, ExportOptions};
-use super::{output, stimulus};
+use super::log::unreadable;
+use super::output;
 use crate::experiment::{
-    CoreSettings, ExportForm, PipelineSettings, Stimulus, export_pipeline, plan_suite,
-    scenario_stimulus,
+    ExportForm, PipelineSettings, Stimulus, export_pipeline, plan_suite, scenario_stimulus,
 };
 use crate::fpga::FpgaError;
-use crate::fpga::rls::UpdateOrder;
+use crate::recording::read_stimulus;
 use crate::scenario::{FilterConfig, FilterKind};
 use crate::wording::{counted, is_misspelling};
 
@@ -20,17 +20,17 @@ use crate::wording::{counted, is_misspelling};
 pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
     let (settings, stimulus) = match prepare(options) {
         Ok(prepared) => prepared,
-        Err(complaints) => {
-            complaint::print(&complaints);
-            return Ok(Exit::Usage);
-        }
+        Err(exit) => return Ok(exit),
     };
     let form = match options.what {
         ExportKind::Vectors => ExportForm::Vectors,
         ExportKind::Waveform => ExportForm::Waveform,
         ExportKind::Rtl => ExportForm::Rtl,
     };
-    let samples = stimulus.words.len();
+    let samples = match form {
+        ExportForm::Waveform => stimulus.words.len().min(options.trace_samples),
+        _ => stimulus.words.len(),
+    };
     let written = export_pipeline(
         &options.folder,
         form,
@@ -63,15 +63,12 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
 }
 
 /// Pipeline and stimulus, both checked before anything is written.
-fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Vec<String>> {
-    let one = |complaint: String| vec![complaint];
-    if options.samples == 0 {
-        return Err(one("--samples 0: expected at least 1".to_owned()));
-    }
+fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Exit> {
     let mut settings = options.filter.settings();
     let stimulus = match (&options.stimulus, &options.scenario) {
         (Some(path), _) => Stimulus {
-            words: stimulus::read(path, options.samples).map_err(one)?,
+            words: read_stimulus(path, options.column.as_deref(), options.samples)
+                .map_err(|error| unreadable(&error))?,
             codes: None,
         },
         (None, Some(path)) => {
@@ -79,32 +76,37 @@ fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Vec<
             settings = found.unwrap_or(settings);
             stimulus
         }
-        (None, None) => return Err(one("give --scenario or --stimulus".to_owned())),
+        (None, None) => return Err(refused("give --scenario or --stimulus".to_owned())),
     };
-    if let CoreSettings::Rls(_, UpdateOrder::GainFirst) = settings.core {
+    if !settings.core.has_hardware() {
         let complaint = "update_order = \"gain-first\" has no hardware to export: use \"schedule\"";
-        return Err(one(complaint.to_owned()));
+        return Err(refused(complaint.to_owned()));
     }
-    settings.timing().map_err(|error| one(error.to_string()))?;
+    settings
+        .timing()
+        .map_err(|error| refused(error.to_string()))?;
     Ok((settings, stimulus))
+}
+
+fn refused(complaint: String) -> Exit {
+    complaint::print(&[complaint]);
+    Exit::Usage
 }
 
 fn from_scenario(
     path: &Path,
     options: &ExportOptions,
-) -> Result<(Option<PipelineSettings>, Stimulus), Vec<String>> {
+) -> Result<(Option<PipelineSettings>, Stimulus), Exit> {
     let plans = plan_suite(&[path.to_path_buf()], &[]).map_err(|errors| {
-        let texts = errors.iter().map(|error| error.shown(false));
-        texts
-            .map(|text| text.trim_start_matches("error: ").to_owned())
-            .collect::<Vec<_>>()
+        complaint::print(&errors);
+        Exit::Usage
     })?;
     let [plan] = plans.as_slice() else {
-        return Err(vec![format!(
+        return Err(refused(format!(
             "{}: holds {}: expected one",
             path.display(),
             counted(plans.len(), "run")
-        )]);
+        )));
     };
     let settings = match &options.name {
         None => None,
@@ -112,18 +114,18 @@ fn from_scenario(
             let filters = &plan.resolved().scenario.filters;
             let filter = filters.iter().find(|filter| filter.name == *name);
             let settings = filter.and_then(|filter| PipelineSettings::of(&filter.kind));
-            Some(settings.ok_or_else(|| vec![no_hardware(path, name, filters)])?)
+            Some(settings.ok_or_else(|| refused(no_hardware(path, name, filters)))?)
         }
     };
     if plan.resolved().scenario.compensation.is_some() {
-        return Err(vec![format!(
+        return Err(refused(format!(
             "{}: its filters are given compensated words, and an export the words of the gyro: put \
              the words of a run's samples/<axis>_compensated.npy in by --stimulus",
             path.display()
-        )]);
+        )));
     }
     let stimulus =
-        scenario_stimulus(plan, options.samples).map_err(|error| vec![error.to_string()])?;
+        scenario_stimulus(plan, options.samples).map_err(|error| refused(error.to_string()))?;
     Ok((settings, stimulus))
 }
 

@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::arguments::Format;
-use crate::experiment::{CoreSettings, PipelineSettings};
+use super::numbers::{count_within, within};
+use crate::experiment::PipelineSettings;
 use crate::fpga::front_end::{Desired, UpdateSign};
+use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
-use crate::fpga::rls::{Division, RlsSettings, UpdateOrder};
+use crate::fpga::rls::{Division, RlsCore, RlsSettings, UpdateOrder};
 use crate::fpga::sign_lms::SignLmsSettings;
 use crate::fpga::timing::{UnitTiming, Units};
 use crate::scenario::{NumberFormat, OutputRegister};
@@ -17,6 +19,14 @@ use crate::scenario::{NumberFormat, OutputRegister};
 const LINE_ENHANCER_DELAY: usize = 15;
 /// Samples between two fresh sums of its norm; the default of scenarios.
 const LINE_ENHANCER_RECOMPUTE: u32 = 1000;
+
+/// Clocks that hardware runs at, MHz: as of the keys of a scenario.
+const CLOCK_MHZ: (f64, f64) = (1e-3, 1e4);
+/// Sizes of a constant of a filter in whatever unit the words have; all of them are numbers of binary32
+/// too.
+const CONSTANT: (f64, f64) = (1e-30, 1e30);
+/// Most samples of an export: an hour at 2.8 kHz.
+const EXPORT_SAMPLES_MAX: usize = 10_000_000;
 
 /// Kind of filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -67,26 +77,29 @@ pub(super) struct FilterOptions {
         long,
         value_name = "F",
         allow_negative_numbers = true,
-        default_value_t = 40.0
+        default_value_t = 40.0,
+        value_parser = within(CLOCK_MHZ.0, CLOCK_MHZ.1, "MHz")
     )]
     pub(super) clock_mhz: f64,
     /// Where recursive least squares divides
     #[arg(long, value_enum, default_value_t = DivisionOption::Reciprocal)]
-    pub(super) division: DivisionOption,
-    /// Forgetting factor alpha, (0, 1]
+    division: DivisionOption,
+    /// Forgetting factor alpha, 0.001 to 1
     #[arg(
         long,
         value_name = "A",
         allow_negative_numbers = true,
-        default_value_t = 1.0
+        default_value_t = 1.0,
+        value_parser = within(1e-3, 1.0, "")
     )]
-    pub(super) forgetting_factor: f64,
+    forgetting_factor: f64,
     /// Initial inverse correlation, in the inverse square of the words' unit
     #[arg(
         long,
         value_name = "D",
         allow_negative_numbers = true,
-        default_value_t = 7.716e-4
+        default_value_t = 7.716e-4,
+        value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
     pub(super) initial_inverse_correlation: f64,
     /// Step size of least mean squares; of sign-lms in the words' unit
@@ -94,7 +107,8 @@ pub(super) struct FilterOptions {
         long,
         value_name = "MU",
         allow_negative_numbers = true,
-        default_value_t = 0.8
+        default_value_t = 0.8,
+        value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
     pub(super) step_size: f64,
     /// Added to the energy of the input (nlms, sign-lms), in the square of the words' unit
@@ -102,7 +116,8 @@ pub(super) struct FilterOptions {
         long,
         value_name = "E",
         allow_negative_numbers = true,
-        default_value_t = 1.0
+        default_value_t = 1.0,
+        value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
     pub(super) regularisation: f64,
     /// Words of the hardware
@@ -123,7 +138,8 @@ impl FilterOptions {
                     division: self.division(),
                     update_sign,
                 };
-                let core = CoreSettings::Rls(settings, UpdateOrder::Schedule);
+                let order = UpdateOrder::Schedule;
+                let core = CoreSettings::Rls(RlsCore { settings, order });
                 (core, Desired::Current, 1)
             }
             Kind::Lms | Kind::Nlms => {
@@ -165,6 +181,12 @@ impl FilterOptions {
         }
     }
 
+    /// Kind of filter, as given.
+    pub(super) fn kind_name(&self) -> String {
+        let value = self.kind.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
     /// One over the number of taps.
     #[expect(clippy::cast_precision_loss, reason = "a handful of taps")]
     fn mean_weight(&self) -> f64 {
@@ -172,7 +194,7 @@ impl FilterOptions {
     }
 
     /// Division mode in the terms of the hardware.
-    pub(super) fn division(&self) -> Division {
+    fn division(&self) -> Division {
         match self.division {
             DivisionOption::Reciprocal => Division::Reciprocal,
             DivisionOption::Elementwise => Division::Element,
@@ -244,16 +266,31 @@ pub(super) struct ExportOptions {
     #[arg(long, value_name = "FILE", required_unless_present = "stimulus")]
     pub(super) scenario: Option<PathBuf>,
     /// Filter of the scenario to export; without it the options below describe one
-    #[arg(long = "filter", value_name = "NAME", requires = "scenario")]
+    #[arg(
+        long = "filter",
+        value_name = "NAME",
+        requires = "scenario",
+        conflicts_with = "stimulus"
+    )]
     pub(super) name: Option<String>,
     /// Recorded stimulus: one column of numbers, NPY or text
     #[arg(long, value_name = "FILE", conflicts_with = "scenario")]
     pub(super) stimulus: Option<PathBuf>,
+    /// Column of a text by its heading or number from 1 [default: the only one]
+    #[arg(
+        long,
+        value_name = "COLUMN",
+        requires = "stimulus",
+        conflicts_with = "scenario"
+    )]
+    pub(super) column: Option<String>,
     /// Samples to export [default: 1000, or all of a shorter file]
-    #[arg(long, value_name = "N", default_value_t = 1000)]
+    #[arg(long, value_name = "N", default_value_t = 1000,
+          value_parser = count_within(1, EXPORT_SAMPLES_MAX))]
     pub(super) samples: usize,
     /// Samples of which every clock is traced or drawn
-    #[arg(long, value_name = "N", default_value_t = 10)]
+    #[arg(long, value_name = "N", default_value_t = 10,
+          value_parser = count_within(0, EXPORT_SAMPLES_MAX))]
     pub(super) trace_samples: usize,
     #[command(flatten)]
     pub(super) filter: FilterOptions,

@@ -12,7 +12,7 @@ use crate::experiment::{
     LogFilters, LogInput, LogSettings, LogTrial, compensate_log, load_log_compensation,
     load_log_filters, try_log,
 };
-use crate::recording::{Log, LogError, LogFormat, read_column, read_log};
+use crate::recording::{AssemblyColumns, LogError, LogFormat, read_assembly_log, read_log};
 use crate::report::{log_json, log_text};
 use crate::scenario::AllanConfig;
 
@@ -43,7 +43,7 @@ pub(super) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
 /// The words to measure and their rate, Hz: of one column, or of three and a calibration.
 fn read(options: &LogOptions) -> Result<(LogInput, f64), Exit> {
     let (Some(calibration), Some(axis)) = (&options.calibration, options.axis) else {
-        let log = read_one(options, options.column.clone())?;
+        let log = read_log(&options.file, &format(options)).map_err(|error| unreadable(&error))?;
         let sample_rate_hz = log.sample_rate_hz;
         return Ok((log.into(), sample_rate_hz));
     };
@@ -61,32 +61,30 @@ fn read(options: &LogOptions) -> Result<(LogInput, f64), Exit> {
             Exit::Io
         }
     })?;
-    let read = |column: &String| read_one(options, Some(column.clone()));
-    let logs = [read(x)?, read(y)?, read(z)?];
-    let sample_rate_hz = logs[axis].sample_rate_hz;
-    let temperature = options.temperature_column.as_ref();
-    let temperature = temperature
-        .map(|column| read_column(&options.file, column).map_err(unreadable))
-        .transpose()?;
-    let compensated = compensate_log(logs, temperature.as_deref(), &compensation, axis)
-        .map_err(|message| refused(&[message]))?;
+    let columns = AssemblyColumns {
+        gyros: [x, y, z],
+        temperature: options.temperature_column.as_deref(),
+    };
+    let found = read_assembly_log(&options.file, &format(options), &columns);
+    let logs = found.map_err(|error| unreadable(&error))?;
+    let sample_rate_hz = logs.gyros[axis].sample_rate_hz;
+    let compensated = compensate_log(logs, &compensation, axis);
     Ok((LogInput::Compensated(compensated), sample_rate_hz))
 }
 
-fn read_one(options: &LogOptions, column: Option<String>) -> Result<Log, Exit> {
-    let format = LogFormat {
+fn format(options: &LogOptions) -> LogFormat {
+    LogFormat {
         sample_rate_hz: options.rate_hz,
         unit: options.unit,
         scale: options.scale,
-        column,
+        column: options.column.clone(),
         time_column: options.time.clone(),
         time_unit: options.time_unit,
-    };
-    read_log(&options.file, &format).map_err(unreadable)
+    }
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "it takes what map_err gives")]
-fn unreadable(error: LogError) -> Exit {
+/// Says why a file was not read.
+pub(super) fn unreadable(error: &LogError) -> Exit {
     output::talk(&format!("error: {error}"));
     match error {
         LogError::Read { .. } => Exit::Io,

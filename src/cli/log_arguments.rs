@@ -5,10 +5,18 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::arguments::Format;
+use super::numbers::within;
 use crate::experiment::LogMotion;
-use crate::recording::{RateUnit, TimeUnit};
+use crate::recording::{RateUnit, SAMPLE_RATE_HZ, TimeUnit};
 use crate::scenario::CompensationRule;
 use crate::scenario::{AllanEstimatorConfig, AveragingTimes};
+
+/// Shortest time that an option names, s: a sample at the fastest rate that is analysed in blocks.
+const TIME_MIN_S: f64 = 1e-9;
+/// Longest such time, s: 115 days.
+const TIME_MAX_S: f64 = 1e7;
+/// Sizes of the units that one count stands for.
+const FACTOR: (f64, f64) = (1e-30, 1e30);
 
 /// A log and how to measure it.
 #[derive(Args, Debug)]
@@ -16,7 +24,9 @@ pub(super) struct LogOptions {
     /// Recorded log: NPY with one dimension, or text with columns between `,`, `;`, tabs or blanks
     pub(super) file: PathBuf,
     /// Samples per second [default: what the time column says]
-    #[arg(long, value_name = "HZ", value_parser = above_zero, required_unless_present = "time")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true,
+          value_parser = within(SAMPLE_RATE_HZ.0, SAMPLE_RATE_HZ.1, "Hz"),
+          required_unless_present = "time")]
     pub(super) rate_hz: Option<f64>,
     /// Unit of the numbers: deg/h, deg/s, mdeg/s or mdps, arcsec/s, rad/s, rad/h; as angles turned
     /// in a sample deg/sample, arcsec/sample, rad/sample, urad/sample
@@ -40,10 +50,16 @@ pub(super) struct LogOptions {
     )]
     pub(super) columns: Vec<String>,
     /// Parameters to take out of these columns: calibration.toml as `calibrate` and `run` write it
-    #[arg(long, value_name = "FILE", requires = "columns")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "columns",
+        conflicts_with = "column"
+    )]
     pub(super) calibration: Option<PathBuf>,
     /// Axis to measure and to filter after compensation: x, y or z
-    #[arg(long, value_name = "AXIS", requires = "columns", value_parser = axis)]
+    #[arg(long, value_name = "AXIS", requires = "columns", conflicts_with = "column",
+          value_parser = axis)]
     pub(super) axis: Option<usize>,
     /// Column of the assembly's temperature, deg C, which its biases follow
     #[arg(long, value_name = "COLUMN", requires = "calibration")]
@@ -56,20 +72,23 @@ pub(super) struct LogOptions {
     #[arg(long, value_name = "COLUMN")]
     pub(super) time: Option<String>,
     /// Unit of the time column: s, ms, us, ns
-    #[arg(long, value_name = "UNIT", default_value = "s")]
+    #[arg(long, value_name = "UNIT", default_value = "s", requires = "time")]
     pub(super) time_unit: TimeUnit,
     /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz
     #[arg(long, value_name = "MOTION", default_value = "static")]
     pub(super) motion: LogMotion,
     /// Time at the start that metrics leave out, s
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
+          value_parser = within(0.0, TIME_MAX_S, "s"))]
     pub(super) warm_up_s: f64,
-    /// Averaging time of the plain bias stability, s
-    #[arg(long, value_name = "S", default_value_t = 100.0, value_parser = above_zero)]
+    /// Averaging time of the plain bias stability, s: a sample of the log or longer
+    #[arg(long, value_name = "S", default_value_t = 100.0, allow_negative_numbers = true,
+          value_parser = within(TIME_MIN_S, TIME_MAX_S, "s"))]
     pub(super) bias_averaging_time_s: f64,
     /// Shortest averaging time of the noise fit, s: longer than the noise is correlated
     /// [default: what the correlation of the log asks for, ten samples at least]
-    #[arg(long, value_name = "S", value_parser = above_zero)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true,
+          value_parser = within(TIME_MIN_S, TIME_MAX_S, "s"))]
     pub(super) fit_tau_min_s: Option<f64>,
     /// Deviation of the Allan curve: `overlapping`, `plain`, `modified`, `hadamard`; the noise terms are
     /// fitted to the overlapping one
@@ -125,28 +144,12 @@ fn axis(text: &str) -> Result<usize, String> {
     found.ok_or_else(|| "expected x, y or z".to_owned())
 }
 
-fn finite(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err("expected a finite number".to_owned()),
-    }
-}
-
-fn above_zero(text: &str) -> Result<f64, String> {
-    let number = finite(text)?;
-    let message = || "expected a number above 0".to_owned();
-    (number > 0.0).then_some(number).ok_or_else(message)
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    let number = finite(text)?;
-    let message = || "expected 0 or more".to_owned();
-    (number >= 0.0).then_some(number).ok_or_else(message)
-}
-
 /// A negative one turns the sense of the axis.
 fn factor(text: &str) -> Result<f64, String> {
-    let number = finite(text)?;
-    let message = || "expected another number than 0".to_owned();
-    (number.abs() > 0.0).then_some(number).ok_or_else(message)
+    let (least, most) = FACTOR;
+    let number = text.parse::<f64>().ok();
+    let number = number.filter(|number| (least..=most).contains(&number.abs()));
+    number.ok_or_else(|| {
+        format!("expected a number from {least:e} to {most:e}, or the negative of such a number")
+    })
 }

@@ -12,38 +12,53 @@ mod exit;
 mod expand;
 mod export;
 mod hardware_arguments;
+mod idle;
 mod list;
 mod log;
 mod log_arguments;
+mod numbers;
 mod output;
+mod panics;
 mod run;
 mod schema;
 mod select;
-mod stimulus;
+mod signals;
 mod timing;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-use clap::Parser;
-
+use crate::experiment::start_threads;
 use arguments::{Arguments, Command};
 use exit::Exit;
+use signals::Interrupt;
 
 /// Runs the program: parses the arguments, dispatches the command and returns the exit code.
 #[must_use]
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    panics::install();
+    let interrupt = match Interrupt::install() {
+        Ok(interrupt) => interrupt,
+        Err(error) => return exit::io_failure(error).code(),
+    };
+    let arguments = match idle::parse() {
         Ok(arguments) => arguments,
         Err(error) => return exit::usage(&error),
     };
-    let outcome = std::panic::catch_unwind(|| dispatch(&arguments));
-    // The panic hook has already printed what broke.
-    outcome.unwrap_or(Exit::Internal).code()
+    // The panic hook has already printed what broke, and may have done so on another thread.
+    let outcome = catch_unwind(AssertUnwindSafe(|| dispatch(&arguments, &interrupt)));
+    let broken = panics::happened().then_some(Exit::Internal);
+    let exit = outcome.unwrap_or(Exit::Internal);
+    exit.worst(broken.unwrap_or(exit)).code()
 }
 
-fn dispatch(arguments: &Arguments) -> Exit {
+fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
+    // A suite has threads of its own.
+    if !matches!(arguments.command, Command::Run(_)) {
+        start_threads();
+    }
     let result = match &arguments.command {
-        Command::Run(options) => run::run(options),
+        Command::Run(options) => run::run(options, interrupt),
         Command::Check(options) => check::check(options),
         Command::Expand(options) => expand::expand(options),
         Command::List(options) => list::list(options),

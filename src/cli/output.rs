@@ -1,21 +1,65 @@
 //! Printing: data on stdout, talk on stderr.
 
+use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Writes data to stdout.
+use crate::scenario::bounded;
+
+/// Whether whoever read stdout has closed their end.
+static READER_IS_GONE: AtomicBool = AtomicBool::new(false);
+
+/// Writes data to stdout. A reader that closes its end (`| head`) has seen enough: that ends the
+/// printing, not the command, whose verdict stays what it is.
 ///
 /// # Errors
-/// What the stream says, a closed pipe included.
+/// What the stream says, but for a closed pipe.
 pub(super) fn data(text: &str) -> io::Result<()> {
+    if READER_IS_GONE.load(Ordering::Relaxed) {
+        return Ok(());
+    }
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes())?;
-    stdout.flush()
+    let written = stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush());
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+            READER_IS_GONE.store(true, Ordering::Relaxed);
+            Ok(())
+        }
+        written => written,
+    }
 }
 
 /// Writes a line of talk to stderr. Nobody is left to tell when stderr itself is gone.
 pub(super) fn talk(line: &str) {
     let mut stderr = io::stderr().lock();
     drop(writeln!(stderr, "{line}"));
+}
+
+/// Most complaints, and most warnings, that are printed.
+const LINES_MAX: usize = 50;
+
+/// Writes the first of many lines to stderr, each behind a prefix, and how many more there are.
+pub(super) fn talk_first<L: Display>(prefix: &str, lines: impl Iterator<Item = L>) {
+    talk_first_as(lines, |line| {
+        format!("{prefix}{}", bounded(&line.to_string()))
+    });
+}
+
+/// Writes the first of many things to stderr in words, and how many more there are.
+pub(super) fn talk_first_as<T>(things: impl Iterator<Item = T>, shown: impl Fn(&T) -> String) {
+    let mut more = 0_usize;
+    for (index, thing) in things.enumerate() {
+        if index < LINES_MAX {
+            talk(&shown(&thing));
+        } else {
+            more += 1;
+        }
+    }
+    if more > 0 {
+        talk(&format!("and {more} more"));
+    }
 }
 
 /// Whether stdout may carry colours: a terminal, and `NO_COLOR` is not set.

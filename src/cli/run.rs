@@ -2,43 +2,33 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, IsTerminal};
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::arguments::{Format, RunOptions};
-use super::exit::Exit;
+use super::exit::{Exit, io_failure};
+use super::signals::Interrupt;
 use super::{output, select};
-use crate::experiment::{Observer, Plan, SuiteError, SuiteOptions, SuiteOutcome, run_suite};
+use crate::experiment::{
+    Observer, Plan, SuiteError, SuiteOptions, SuiteOutcome, run_suite, thread_count,
+};
 use crate::report::{self, RunOutcome, RunReport, RunStatus};
 
 /// Plans, runs, prints and judges.
-pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
+pub(super) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exit> {
     let plans = match select::plans(&options.select) {
         Ok(plans) => plans,
         Err(exit) => return Ok(exit),
     };
-    let progress = Progress::new(&plans, options.format);
     let suite = SuiteOptions {
         output: options.output.clone(),
         threads: usize::from(options.jobs),
     };
+    let progress = Progress::new(&plans, options, interrupt);
+    interrupt.defer();
     let result = run_suite(&plans, &suite, &progress);
-    progress.bar.finish_and_clear();
-    let outcome = match result {
-        Ok(outcome) => outcome,
-        Err(error) => {
-            output::talk(&format!("error: {error}"));
-            return Ok(match error {
-                SuiteError::Write { .. } => Exit::Io,
-                SuiteError::Threads { .. } => Exit::Internal,
-            });
-        }
-    };
-    progress.printed()?;
-    output::data(&closing(&outcome, options.format))?;
-    output::talk(&format!("results in {}", options.output.display()));
-    Ok(exit_of(&outcome))
+    Ok(progress.conclude(&result))
 }
 
 /// The verdict of the whole suite: the worst of its runs.
@@ -49,8 +39,20 @@ fn exit_of(suite: &SuiteOutcome) -> Exit {
     match suite.runs.iter().map(RunOutcome::status).max() {
         None | Some(RunStatus::Pass) => Exit::Success,
         Some(RunStatus::GateFailed) => Exit::GateFailed,
-        Some(RunStatus::ChannelFailed | RunStatus::RunFailed) => Exit::RunFailed,
+        Some(RunStatus::ChannelFailed | RunStatus::NotRun | RunStatus::RunFailed) => {
+            Exit::RunFailed
+        }
     }
+}
+
+/// What to do after a signal.
+fn interrupted(suite: &SuiteOutcome) -> String {
+    let runs = suite.runs.iter();
+    let finished = runs.filter(|run| !run.is_not_run).count();
+    format!(
+        "interrupted: {finished} of {} runs finished; the same command with --resume goes on",
+        suite.runs.len()
+    )
 }
 
 fn closing(suite: &SuiteOutcome, format: Format) -> String {
@@ -68,9 +70,10 @@ fn closing(suite: &SuiteOutcome, format: Format) -> String {
 }
 
 /// Progress on stderr, results on stdout in the order of the plan.
-struct Progress {
+struct Progress<'a> {
     bar: ProgressBar,
-    format: Format,
+    options: &'a RunOptions,
+    interrupt: &'a Interrupt,
     pending: Mutex<Pending>,
 }
 
@@ -81,8 +84,8 @@ struct Pending {
     failure: Option<io::Error>,
 }
 
-impl Progress {
-    fn new(plans: &[Plan], format: Format) -> Self {
+impl<'a> Progress<'a> {
+    fn new(plans: &[Plan], options: &'a RunOptions, interrupt: &'a Interrupt) -> Self {
         let total_s: f64 = plans.iter().map(Plan::simulated_s).sum();
         let bar = if io::stderr().is_terminal() {
             ProgressBar::new(whole(total_s))
@@ -100,13 +103,49 @@ impl Progress {
         };
         Self {
             bar,
-            format,
+            options,
+            interrupt,
             pending: Mutex::new(pending),
         }
     }
 
+    /// Says how the suite ended and gives its exit code.
+    fn conclude(&self, result: &Result<SuiteOutcome, SuiteError>) -> Exit {
+        let was_interrupted = self.interrupt.exit().is_some();
+        let exit = match result {
+            Ok(suite) => {
+                // First of all, as the reader of the data may have stalled.
+                if was_interrupted {
+                    self.talk(&interrupted(suite));
+                }
+                let printed = self.print_rest(&closing(suite, self.options.format));
+                self.talk_of(suite);
+                let unprinted = printed.err().map(io_failure);
+                exit_of(suite).worst(unprinted.unwrap_or(Exit::Success))
+            }
+            Err(error) => {
+                self.talk(&format!("error: {error}"));
+                Exit::Io
+            }
+        };
+        self.bar.finish_and_clear();
+        let signal = self.interrupt.exit();
+        exit.worst(signal.unwrap_or(Exit::Success))
+    }
+
+    fn talk_of(&self, suite: &SuiteOutcome) {
+        let asked = thread_count(usize::from(self.options.jobs));
+        if suite.threads < asked {
+            self.talk(&format!(
+                "warning: the system gave {} of {asked} threads",
+                suite.threads
+            ));
+        }
+        self.talk(&format!("results in {}", self.options.output.display()));
+    }
+
     fn text(&self, run: &RunReport) -> String {
-        match self.format {
+        match self.options.format {
             Format::Text => {
                 let table = report::table_text(run, output::width(), output::colour());
                 format!("{table}\n")
@@ -124,10 +163,7 @@ impl Progress {
 
     /// Prints every text whose predecessors have all been printed.
     fn print_in_turn(&self, index: usize, text: String) {
-        let mut pending = self
-            .pending
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut pending = self.pending();
         pending.texts.insert(index, text);
         let mut ready = String::new();
         let mut next = pending.next;
@@ -136,23 +172,45 @@ impl Progress {
             next += 1;
         }
         pending.next = next;
-        if pending.failure.is_none() && !ready.is_empty() {
-            let result = self.bar.suspend(|| output::data(&ready));
-            pending.failure = result.err();
+        self.print(&mut pending, &ready);
+    }
+
+    /// Prints the texts that still wait for a run that has not ended, then `closing`.
+    fn print_rest(&self, closing: &str) -> io::Result<()> {
+        let mut pending = self.pending();
+        let mut rest: String = std::mem::take(&mut pending.texts).into_values().collect();
+        rest.push_str(closing);
+        self.print(&mut pending, &rest);
+        pending.failure.take().map_or(Ok(()), Err)
+    }
+
+    /// Prints, unless that has failed before.
+    fn print(&self, pending: &mut Pending, text: &str) {
+        if pending.failure.is_none() && !text.is_empty() {
+            pending.failure = self.beside_bar(|| output::data(text)).err();
         }
     }
 
-    /// The first failure to print, if any.
-    fn printed(&self) -> io::Result<()> {
-        let mut pending = self
-            .pending
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        pending.failure.take().map_or(Ok(()), Err)
+    fn talk(&self, line: &str) {
+        self.beside_bar(|| output::talk(line));
+    }
+
+    /// Takes the bar off the terminal while `print` prints. One that is not drawn is left alone: it
+    /// is locked meanwhile, and a reader that has stalled would hold up whoever moves it on.
+    fn beside_bar<T>(&self, print: impl FnOnce() -> T) -> T {
+        if self.bar.is_hidden() {
+            print()
+        } else {
+            self.bar.suspend(print)
+        }
+    }
+
+    fn pending(&self) -> MutexGuard<'_, Pending> {
+        self.pending.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Observer for Progress {
+impl Observer for Progress<'_> {
     fn advanced(&self, simulated_s: f64) {
         self.bar.inc(whole(simulated_s));
     }
@@ -163,9 +221,18 @@ impl Observer for Progress {
 
     fn failed(&self, index: usize, outcome: &RunOutcome) {
         let reason = outcome.error.as_deref().unwrap_or_default();
-        self.bar
-            .suspend(|| output::talk(&format!("error: {}: {reason}", outcome.folder)));
+        self.talk(&format!("error: {}: {reason}", outcome.folder));
         self.print_in_turn(index, String::new());
+    }
+
+    fn should_stop(&self) -> bool {
+        self.interrupt.exit().is_some()
+    }
+
+    /// Ends the program: what is still being computed is not waited for.
+    fn abandoned(&self, result: &Result<SuiteOutcome, SuiteError>) {
+        let exit = self.conclude(result);
+        std::process::exit(i32::from(exit.number()));
     }
 }
 

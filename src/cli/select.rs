@@ -5,15 +5,37 @@ use std::path::{Path, PathBuf};
 use super::arguments::SelectOptions;
 use super::exit::Exit;
 use super::{complaint, output};
-use crate::experiment::{Plan, plan_suite};
+use crate::experiment::{Plan, Sound, check_suite, plan_suite};
+use crate::scenario::ScenarioError;
 
 /// Folder whose sub-folders run when no path is given.
 const DEFAULT_FOLDER: &str = "scenarios";
 
 /// Reads, checks and plans everything that `options` selects.
 ///
-/// All complaints are printed before the exit code is returned.
+/// Complaints and remarks are printed before it returns.
 pub(super) fn plans(options: &SelectOptions) -> Result<Vec<Plan>, Exit> {
+    let plans = selected(options, plan_suite)?;
+    let remarks = plans.iter().flat_map(|plan| &plan.resolved().remarks);
+    output::talk_first("warning: ", remarks);
+    Ok(plans)
+}
+
+/// Reads and checks everything that `options` selects.
+///
+/// Complaints are printed before the exit code is returned.
+pub(super) fn sound(options: &SelectOptions) -> Result<Vec<Sound>, Exit> {
+    selected(options, check_suite)
+}
+
+/// What a reader finds, or every complaint.
+type Found<T> = Result<Vec<T>, Vec<ScenarioError>>;
+
+/// What one of the readers makes of a selection.
+fn selected<T>(
+    options: &SelectOptions,
+    read: impl Fn(&[PathBuf], &[String]) -> Found<T>,
+) -> Result<Vec<T>, Exit> {
     let paths = if options.paths.is_empty() {
         vec![PathBuf::from(DEFAULT_FOLDER)]
     } else {
@@ -25,13 +47,13 @@ pub(super) fn plans(options: &SelectOptions) -> Result<Vec<Plan>, Exit> {
         ));
         return Err(Exit::NothingSelected);
     }
-    let plans = plan_suite(&paths, &options.set).map_err(|errors| {
+    let found = read(&paths, &options.set).map_err(|errors| {
         complaint::print(&errors);
         Exit::Usage
     })?;
-    if plans.is_empty() {
+    if found.is_empty() {
         output::talk("error: nothing selected: no scenario with a `name` was found");
         return Err(Exit::NothingSelected);
     }
-    Ok(plans)
+    Ok(found)
 }

@@ -7,14 +7,13 @@ use serde_json::{Value, json};
 
 use super::arguments::Format;
 use super::exit::Exit;
-use super::hardware_arguments::{FilterOptions, Kind, TimingOptions};
+use super::hardware_arguments::{FilterOptions, TimingOptions};
 use super::output;
 use crate::experiment::PipelineTiming;
 use crate::fpga::FpgaError;
-use crate::fpga::timing::{
-    RlsLoad, ScheduleReport, ScheduleSettings, TimingRow, lms_stalled_clocks, sample_period_us,
-    sample_rate_max_khz, schedule_clocks, sign_lms_stalled_clocks, stalled_clocks, table,
-};
+use crate::fpga::kinds::CoreSettings;
+use crate::fpga::rls::{ScheduleReport, ScheduleSettings, TimingRow, schedule_clocks, table};
+use crate::fpga::timing::{check_clock, sample_period_us, sample_rate_max_khz};
 
 /// Prints Table 1, the counted pipeline, and what units with latency do to it.
 pub(super) fn timing(options: &TimingOptions) -> io::Result<Exit> {
@@ -47,52 +46,33 @@ struct Report<'a> {
 impl<'a> Report<'a> {
     fn new(options: &'a TimingOptions) -> Result<Self, FpgaError> {
         let filter = &options.filter;
-        let measured = filter.settings().timing()?;
-        let forgets = filter.forgetting_factor < 1.0;
-        let (taps, units) = (filter.taps, options.units());
-        // The table checks the clock, which every kind needs.
-        let table = table(taps, filter.division(), forgets, filter.clock_mhz)?;
-        let load = RlsLoad {
-            tap_count: taps,
-            division: filter.division(),
-            forgets,
+        let settings = filter.settings();
+        let measured = settings.timing()?;
+        check_clock(filter.clock_mhz)?;
+        let stalled = settings.core.stalled_clocks(options.units())?;
+        let mut report = Self {
+            filter,
+            table: Vec::new(),
+            measured,
+            stalled,
+            interleaved: None,
         };
-        let settings = ScheduleSettings {
-            ram_ports: options.ram_ports,
-            symmetric_half: false,
-        };
-        Ok(match filter.kind {
-            Kind::Rls => Self {
-                filter,
-                table: table.to_vec(),
-                measured,
-                stalled: stalled_clocks(load, units)?,
-                interleaved: Some(schedule_clocks(load, units, settings)?),
-            },
-            Kind::Lms | Kind::Nlms => Self {
-                filter,
-                table: Vec::new(),
-                measured,
-                stalled: lms_stalled_clocks(taps, filter.kind == Kind::Nlms, units)?,
-                interleaved: None,
-            },
-            Kind::SignLms => Self {
-                filter,
-                table: Vec::new(),
-                measured,
-                stalled: sign_lms_stalled_clocks(taps, false, units)?,
-                interleaved: None,
-            },
-        })
-    }
-
-    fn name(&self) -> &'static str {
-        match self.filter.kind {
-            Kind::Rls => "rls",
-            Kind::Lms => "lms",
-            Kind::Nlms => "nlms",
-            Kind::SignLms => "sign-lms",
+        if let CoreSettings::Rls(core) = &settings.core {
+            let load = core.load();
+            let rows = table(
+                load.tap_count,
+                load.division,
+                load.forgets,
+                filter.clock_mhz,
+            )?;
+            report.table = rows.to_vec();
+            let schedule = ScheduleSettings {
+                ram_ports: options.ram_ports,
+                symmetric_half: false,
+            };
+            report.interleaved = Some(schedule_clocks(load, options.units(), schedule)?);
         }
+        Ok(report)
     }
 
     fn json(&self) -> Value {
@@ -123,7 +103,7 @@ impl<'a> Report<'a> {
             .map(|state| (state.state.to_owned(), state.clocks.into()))
             .collect();
         let mut document = json!({
-            "kind": self.name(), "taps": self.filter.taps, "clock_mhz": clock_mhz,
+            "kind": self.filter.kind_name(), "taps": self.filter.taps, "clock_mhz": clock_mhz,
             "clocks_per_sample": usage.clocks_per_sample,
             "sample_period_us": self.measured.sample_period_us,
             "latency_clocks": usage.latency_clocks,
@@ -154,7 +134,7 @@ impl<'a> Report<'a> {
             "{}, {} taps, {clock_mhz} MHz, every operation in one clock (counted on the model)\n  \
              {} clocks a sample, {:.2} us, {:.1} kHz; result after {} clocks, {:.3} us; \
              {} more clock after idling",
-            self.name(),
+            self.filter.kind_name(),
             self.filter.taps,
             usage.clocks_per_sample,
             self.measured.sample_period_us,

@@ -1,7 +1,7 @@
 //! The motion of a three-axis assembly as the checks and the metrics need it.
 
 use crate::gyro::{InputAxis, MotionExtremes};
-use crate::metrics::ChannelMetrics;
+use crate::metrics::{Against, ChannelMetrics, MetricKey, known_metrics};
 use crate::scenario::{AssemblyConfig, CaseAxis, MotionConfig, Scenario, TurntableConfig};
 use crate::units::{EARTH_RATE_RAD_PER_S, arcsec_to_rad};
 
@@ -80,46 +80,23 @@ pub(super) fn hardest(
     hardest
 }
 
-/// Metrics of a motion that only the axis has about which the table turns.
-const TURNED_ONLY: [&str; 15] = [
-    "delay_vs_truth_ms",
-    "delay_vs_encoder_ms",
-    "delay_by_correlation_ms",
-    "bandwidth_hz",
-    "settling_time_s",
-    "scale_factor_error_ppm",
-    "scale_factor_nonlinearity_ppm",
-    "scale_factor_nonlinearity_of_reading_ppm",
-    "scale_factor_asymmetry_ppm",
-    "scale_factor_repeatability_ppm",
-    "overshoot_percent",
-    "rise_time_s",
-    "threshold_deg_per_h",
-    "dead_band_deg_per_h",
-    "resolution_deg_per_h",
-];
-/// The same, of unfiltered channels: those of filters compare with the raw channel.
-const TURNED_RAW_ONLY: &str = "amplitude_ratio";
-
 /// Why a channel can never have a metric because its gyro stands across the table axis.
-pub(super) fn lacks(scenario: &Scenario, channel: &str, metric: &str) -> Option<&'static str> {
+///
+/// What raw compares with the true rate is of the turned axis too; filters compare it with raw.
+pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<&'static str> {
     scenario.gyro.assembly.as_ref()?;
     let along = scenario.axis_prefixes()[index_along(&scenario.turntable)];
-    let is_concerned = TURNED_ONLY.contains(&metric)
-        || (scenario.is_unfiltered(channel) && metric == TURNED_RAW_ONLY);
+    let is_concerned = key.is_of_turned_axis
+        || (scenario.is_unfiltered(channel) && key.against == Against::TruthForRaw);
     (is_concerned && !channel.starts_with(along))
         .then_some("the table does not turn about this axis")
 }
 
 /// Takes from a channel across the table axis what it can never have.
 pub(super) fn drop_lacking(scenario: &Scenario, channel: &str, metrics: &mut ChannelMetrics) {
-    for name in TURNED_ONLY.into_iter().chain([TURNED_RAW_ONLY]) {
-        if let Some(reason) = lacks(scenario, channel, name)
-            && metrics.metrics.remove(name).is_some()
-        {
-            metrics
-                .unavailable
-                .insert(name.to_owned(), reason.to_owned());
+    for key in known_metrics() {
+        if let Some(reason) = lacks(scenario, channel, key) {
+            metrics.withdraw(key, reason);
         }
     }
 }

@@ -7,6 +7,7 @@ pub(super) use super::campaign_metrics::{
     drop_lacking, estimate_channels, estimator_of, lacks, ranked, supports,
 };
 use super::simulate::{RecordLength, Simulation, simulate};
+use super::stop::Unfinished;
 use super::suite::Observer;
 use crate::calibration::{
     Averaging, Calibration, CalibrationError, GroupDesign, GroupSamples, TemperatureColumns,
@@ -362,19 +363,28 @@ pub(super) fn calibrate_simulation(
 /// it, without files or metrics.
 ///
 /// # Errors
-/// In words: the table does not turn as a campaign, the gyro cannot be simulated, or the groups do
-/// not calibrate.
+/// In words: the table does not turn as a campaign, the gyro cannot be simulated, the groups do not
+/// calibrate, or the observer has stopped it.
 pub fn calibrate_scenario(
     scenario: &Scenario,
     repeat: u32,
     observer: &dyn Observer,
 ) -> Result<(CalibrationSheet, Calibration), String> {
+    run_campaign(scenario, repeat, observer).map_err(|error| error.to_string())
+}
+
+/// As [`calibrate_scenario`], told apart from a stop.
+pub(super) fn run_campaign(
+    scenario: &Scenario,
+    repeat: u32,
+    observer: &dyn Observer,
+) -> Result<(CalibrationSheet, Calibration), Unfinished> {
     let length = RecordLength::new(scenario, gyro::sample_period_s(&scenario.gyro));
-    let simulation =
-        simulate(scenario, length, repeat, None, observer).map_err(|error| error.to_string())?;
-    calibrate_simulation(scenario, &simulation)
-        .map_err(|error| error.to_string())?
-        .ok_or_else(|| "the scenario has no [turntable.calibration]".to_owned())
+    let simulation = simulate(scenario, length, repeat, None, observer)?;
+    let found = calibrate_simulation(scenario, &simulation)
+        .map_err(|error| Unfinished::Failed(error.to_string()))?;
+    let lacking = "the scenario has no [turntable.calibration]";
+    found.ok_or_else(|| Unfinished::Failed(lacking.to_owned()))
 }
 
 #[expect(

@@ -1,39 +1,29 @@
 //! The estimates of a campaign as metrics that gates can name, and their ranking over campaigns.
 
 use super::calibration_units::rms;
-use crate::metrics::{Applies, ChannelMetrics, Estimate, Metric, known_metrics};
+use crate::metrics::catalogue::{
+    BIAS_ERROR_RMS, COMPENSATED_RATE_ERROR, MISALIGNMENT_ERROR_RMS, NORMALISED_ERROR_SQUARED,
+    PLAN_CONDITION_NUMBER, ROUNDING_LOSS, SCALE_FACTOR_ERROR_RMS,
+};
+use crate::metrics::{Applies, ChannelMetrics, Estimate, MetricKey, known_metrics};
 use crate::scenario::{MotionConfig, Scenario};
 use crate::signal::{CalibrationEstimate, CalibrationRank, CalibrationSheet, EstimateError};
-
-/// Metrics of a whole record that say nothing where it holds many rates.
-const OF_ONE_MOTION: [&str; 4] = [
-    "mean_deg_per_h",
-    "mean_error_deg_per_h",
-    "mean_ratio",
-    "tracking_error_rms_deg_per_h",
-];
-
-/// The metric that one estimator alone has.
-const ROUNDING_LOSS: &str = "rounding_loss_deg_per_h";
 
 fn is_campaign(scenario: &Scenario) -> bool {
     matches!(scenario.turntable.motion, MotionConfig::Calibration(_))
 }
 
 /// Why the channels of a campaign never have a metric.
-pub(super) fn lacks(scenario: &Scenario, metric: &str) -> Option<&'static str> {
-    (is_campaign(scenario) && OF_ONE_MOTION.contains(&metric))
+pub(super) fn lacks(scenario: &Scenario, key: &MetricKey) -> Option<&'static str> {
+    (is_campaign(scenario) && key.is_of_one_motion)
         .then_some("the record of a campaign holds many rates: see its calibration")
 }
 
 /// Takes from a channel of a campaign what says nothing there.
 pub(super) fn drop_lacking(scenario: &Scenario, metrics: &mut ChannelMetrics) {
-    for name in OF_ONE_MOTION {
-        if let Some(reason) = lacks(scenario, name)
-            && metrics.metrics.remove(name).is_some()
-        {
-            let name = name.to_owned();
-            metrics.unavailable.insert(name, reason.to_owned());
+    for key in known_metrics() {
+        if let Some(reason) = lacks(scenario, key) {
+            metrics.withdraw(key, reason);
         }
     }
 }
@@ -56,7 +46,7 @@ pub(super) fn supports(estimator: &str, metric: &str) -> Result<(), String> {
     if !own.contains(&metric) {
         return Err(format!("an estimate has {} only", own.join(", ")));
     }
-    if metric == ROUNDING_LOSS && estimator != "arls-covariance" {
+    if metric == ROUNDING_LOSS.name && estimator != "arls-covariance" {
         return Err("only the covariance recursion loses digits".to_owned());
     }
     Ok(())
@@ -72,30 +62,24 @@ pub(super) fn estimate_channels(
 
 fn metrics(found: &CalibrationEstimate) -> ChannelMetrics {
     let mut channel = ChannelMetrics::default();
-    let mut put = |name: &'static str, value: f64| {
-        let known = known_metrics().iter().find(|known| known.name == name);
-        let unit = known.map_or("1", |known| known.unit);
-        let metric = Metric::new(Estimate::exact(value), unit);
-        channel.metrics.insert(name.to_owned(), metric);
+    let mut put = |key: &MetricKey, value: f64| {
+        channel.put(key, Estimate::exact(value));
     };
     let condition = found.condition_number.into_iter().fold(0.0, f64::max);
-    put("plan_condition_number", condition);
+    put(&PLAN_CONDITION_NUMBER, condition);
     if let Some(rounding) = &found.rounding {
-        put(ROUNDING_LOSS, rounding.bias_deg_per_h);
+        put(&ROUNDING_LOSS, rounding.bias_deg_per_h);
     }
     if let Some(error) = &found.error {
-        put("bias_error_rms_deg_per_h", error.bias_rms_deg_per_h);
-        put("scale_factor_error_rms_ppm", error.scale_factor_rms_ppm);
+        put(&BIAS_ERROR_RMS, error.bias_rms_deg_per_h);
+        put(&SCALE_FACTOR_ERROR_RMS, error.scale_factor_rms_ppm);
+        put(&MISALIGNMENT_ERROR_RMS, error.misalignment_rms_arcsec);
         put(
-            "misalignment_error_rms_arcsec",
-            error.misalignment_rms_arcsec,
-        );
-        put(
-            "compensated_rate_error_deg_per_h",
+            &COMPENSATED_RATE_ERROR,
             error.compensated_rate_max_deg_per_h,
         );
         if let Some(normalised) = error.normalised_error_squared {
-            put("normalised_error_squared", normalised);
+            put(&NORMALISED_ERROR_SQUARED, normalised);
         }
     }
     channel

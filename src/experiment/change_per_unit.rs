@@ -1,7 +1,7 @@
 //! The closing lines of a table: how far its columns move per unit of a key that its rows differ in.
 
 use super::plan::Plan;
-use crate::metrics::{ConditionPoint, change_divisor, largest_change_per_unit};
+use crate::metrics::{ConditionPoint, change_divisor, find, largest_change_per_unit};
 use crate::report::{ChangePerUnit, ColumnChange, ComparedTable};
 use crate::scenario::{ComparisonConfig, ComparisonRowConfig, ScenarioError};
 
@@ -41,7 +41,10 @@ pub(super) fn change_per_unit(
         let reference = points.iter().find(|point| is_same(point.condition, from))?;
         let (change, at) = largest_change_per_unit(*reference, &points)?;
         let divisor = match column.relative_to {
-            None => change_divisor(&column.metric, reference.estimate.value),
+            None => {
+                let key = find(&column.metric)?;
+                change_divisor(key, reference.estimate.value)
+            }
             Some(_) => 1.0,
         };
         let (label, cell) = &rows[at];

@@ -5,7 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::change_per_unit::{self, change_per_unit};
 use super::plan::Plan;
 use crate::gate::quotient;
-use crate::metrics::{Estimate, Finding, Metric, paired_ratio};
+use crate::metrics::catalogue::{
+    AMPLITUDE_RATIO, ANGLE_RANDOM_WALK_OVER_DC_GAIN, DC_GAIN, MEAN_RATIO, NOISE_GAIN,
+    WEIGHT_NOISE_RATIO,
+};
+use crate::metrics::{Estimate, Finding, Metric, MetricKey, find, paired_ratio};
 use crate::report::{
     Assumed, Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
     DrawnFigure, RunOutcome,
@@ -15,19 +19,14 @@ use crate::scenario::{
     FigureConfig, ScenarioError, slug,
 };
 
-const DC_GAIN: &str = "dc_gain";
-
 /// Metrics that bear on the cause of a lower noise, beside those of the columns.
-const COMPANIONS: [&str; 5] = [
-    "mean_ratio",
-    "angle_random_walk_over_dc_gain_deg_per_sqrt_h",
-    "weight_noise_ratio",
-    "amplitude_ratio",
-    "noise_gain",
+static COMPANIONS: [&MetricKey; 5] = [
+    &MEAN_RATIO,
+    &ANGLE_RANDOM_WALK_OVER_DC_GAIN,
+    &WEIGHT_NOISE_RATIO,
+    &AMPLITUDE_RATIO,
+    &NOISE_GAIN,
 ];
-
-/// Metrics of slow noise, which the DC gain scales and no short filter of unit gain can lower.
-const SLOW_NOISE: [&str; 2] = ["angle_random_walk_", "bias_stability_"];
 
 /// The tables, assumptions and figures that the scenarios of a suite carry, each once.
 #[derive(Debug, Default)]
@@ -55,8 +54,8 @@ impl<'a> Layout<'a> {
         let columns = columns.filter_map(|column| ComparisonColumn::parse(column));
         layout.metrics = columns.map(|column| column.metric).collect();
         if !layout.metrics.is_empty() {
-            layout.metrics.extend(COMPANIONS);
-            layout.metrics.insert(DC_GAIN);
+            layout.metrics.extend(COMPANIONS.map(|key| key.name));
+            layout.metrics.insert(DC_GAIN.name);
         }
         let named = layout.rows.iter().flat_map(|row| &row.scenarios);
         layout.scenarios = named.map(String::as_str).collect();
@@ -78,6 +77,7 @@ impl<'a> Layout<'a> {
         let suite: Vec<Run> = plans
             .iter()
             .zip(runs)
+            .filter(|(_, outcome)| !outcome.is_not_run)
             .map(|(plan, outcome)| Run { plan, outcome })
             .collect();
         let tables: Vec<ComparedTable> = self
@@ -311,18 +311,19 @@ fn causes(row: &ComparedRow, columns: &[ComparedColumn], suite: &[Run]) -> Vec<C
         let (cell, other) = (cell.as_ref()?, column.relative_to.as_ref()?);
         let mut runs = suite.iter();
         let run = runs.find(|run| run.outcome.folder == cell.folder)?;
-        let gain = |channel: &str| run.metric(channel, DC_GAIN).map(|metric| metric.estimate);
+        let gain = |channel: &str| {
+            run.metric(channel, DC_GAIN.name)
+                .map(|metric| metric.estimate)
+        };
         let dc_gain = gain(&column.channel)
             .zip(gain(other))
             .and_then(|(own, other)| quotient(&own, &other));
-        let is_slow = SLOW_NOISE
-            .iter()
-            .any(|start| column.metric.starts_with(start));
+        let is_slow = find(&column.metric).is_some_and(|key| key.is_slow_noise);
         let left = |gain: Estimate| quotient(&cell.simulated.estimate, &gain);
         let remainder = dc_gain.filter(|_| is_slow).and_then(left);
         let companions = COMPANIONS.iter().filter_map(|key| {
-            let metric = run.metric(&column.channel, key)?;
-            Some(((*key).to_owned(), metric.clone()))
+            let metric = run.metric(&column.channel, key.name)?;
+            Some((key.name.to_owned(), metric.clone()))
         });
         Some(Cause {
             label: row.label.clone(),

@@ -1,6 +1,7 @@
 //! The compensation stage: from three words of an assembly to three compensated ones.
 
-use super::campaign::calibrate_scenario;
+use super::campaign::run_campaign;
+use super::stop::Unfinished;
 use super::suite::Observer;
 use crate::calibration::{
     Calibration, CalibrationError, Compensation, CompensationForm, ErrorParameters, Misalignment,
@@ -153,26 +154,34 @@ impl CompensationPlan {
     /// The parameters; a campaign is run for them, its first repeat.
     ///
     /// # Errors
-    /// In words: why the campaign gives none.
-    pub(super) fn parameters(&self) -> Result<Parameters, String> {
+    /// Why the campaign gives none, or that the observer has stopped it.
+    pub(super) fn parameters(&self, observer: &dyn Observer) -> Result<Parameters, Unfinished> {
         let (scenario, form) = match self {
             Self::Given(known) => return Ok(Parameters::clone(known)),
             Self::Campaign { scenario, form } => (scenario, *form),
         };
-        let failed = |error: String| format!("campaign {}: {error}", scenario.name);
-        let (sheet, calibration) = calibrate_scenario(scenario, 0, &Unseen).map_err(failed)?;
+        let failed =
+            |error: String| Unfinished::Failed(format!("campaign {}: {error}", scenario.name));
+        let (sheet, calibration) =
+            run_campaign(scenario, 0, &Unseen(observer)).map_err(|error| match error {
+                Unfinished::Failed(error) => failed(error),
+                Unfinished::Stopped => Unfinished::Stopped,
+            })?;
         let source = format!("campaign {}, {}", scenario.name, sheet.applied);
         Parameters::found(form, &calibration, source).map_err(|error| failed(error.to_string()))
     }
 }
 
-/// Hears nothing of a campaign, whose time is no part of the run's.
-struct Unseen;
+/// Hears nothing of a campaign, whose time is no part of the run's, but stops with the run.
+struct Unseen<'a>(&'a dyn Observer);
 
-impl Observer for Unseen {
+impl Observer for Unseen<'_> {
     fn advanced(&self, _simulated_s: f64) {}
     fn finished(&self, _index: usize, _report: &RunReport) {}
     fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
+    fn should_stop(&self) -> bool {
+        self.0.should_stop()
+    }
 }
 
 /// The form that a scenario asks for.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::compensation::Parameters;
 use crate::calibration::CompensationForm;
-use crate::recording::Log;
+use crate::recording::{AssemblyLog, Log};
 use crate::scenario::{CompensationRule, Location, ScenarioError, load_calibration};
 
 /// The parameters of a calibration file, to be taken out of a log.
@@ -53,26 +53,16 @@ pub struct CompensatedLog {
 
 /// Takes the constant errors of an assembly out of the words of its gyros x, y, z.
 ///
-/// * `axis`: the one that is kept, 0 to 2.
-/// * `temperature_c`: of the assembly at each word; none: biases stay at their reference.
-///
-/// # Errors
-/// In words: columns of different length.
+/// * `axis`: the one that is kept, 0 to 2. Without temperatures the biases stay at their reference.
+#[must_use]
 pub fn compensate_log(
-    logs: [Log; 3],
-    temperature_c: Option<&[f64]>,
+    assembly: AssemblyLog,
     compensation: &LogCompensation,
     axis: usize,
-) -> Result<CompensatedLog, String> {
-    let [x, y, z] = &logs;
-    let lengths = [x, y, z].map(|log| log.rate_deg_per_h.len());
-    let temperatures = temperature_c.map_or(lengths[0], <[f64]>::len);
-    if lengths != [temperatures; 3] {
-        return Err(format!(
-            "columns of different length: {lengths:?}, {temperatures}"
-        ));
-    }
-    let words = (0..lengths[0]).map(|sample| {
+) -> CompensatedLog {
+    let [x, y, z] = &assembly.gyros;
+    let temperature_c = assembly.temperature_c.as_deref();
+    let words = (0..x.rate_deg_per_h.len()).map(|sample| {
         let output = [x, y, z].map(|log| log.rate_deg_per_h[sample]);
         let warmth = temperature_c.map(|all| [all[sample]; 3]);
         compensation.parameters.rates_deg_per_h(output, warmth)[axis]
@@ -92,11 +82,11 @@ pub fn compensate_log(
         ),
         _ => {}
     }
-    let [x, y, z] = logs;
+    let [x, y, z] = assembly.gyros;
     let log = match axis {
         0 => x,
         1 => y,
         _ => z,
     };
-    Ok(CompensatedLog { log, words, notes })
+    CompensatedLog { log, words, notes }
 }

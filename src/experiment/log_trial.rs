@@ -14,7 +14,7 @@ use super::measurement::Cut;
 use super::pipeline_metrics;
 use super::simulate::{GyroRecord, RecordLength};
 use super::suite::VERSION;
-use crate::metrics::{ChannelMetrics, Motion, Settings, record_fit_tau_min_s};
+use crate::metrics::{ChannelMetrics, Motion, Settings, is_sample_or_longer, record_fit_tau_min_s};
 use crate::recording::{Log, csv_text};
 use crate::report::{LogReport, log_files, write_atomic, write_npy};
 use crate::scenario::{AllanConfig, MotionConfig, StaticConfig, SwingConfig};
@@ -42,6 +42,9 @@ impl From<Log> for LogInput {
     }
 }
 
+/// Swing frequencies that a log can hold, Hz: one cycle in eleven days to a quarter of the fastest rate.
+const SWING_HZ: (f64, f64) = (1e-6, 2.5e8);
+
 /// What the gyro did while the log was taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LogMotion {
@@ -58,16 +61,18 @@ impl FromStr for LogMotion {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let expected = "expected `static`, or `swing:F` with the frequency F in Hz above 0";
+        let (least, most) = SWING_HZ;
         if text == "static" {
             return Ok(Self::Static);
         }
         let frequency = text.strip_prefix("swing:").map(str::parse::<f64>);
         match frequency {
-            Some(Ok(frequency_hz)) if frequency_hz > 0.0 && frequency_hz.is_finite() => {
+            Some(Ok(frequency_hz)) if (least..=most).contains(&frequency_hz) => {
                 Ok(Self::Swing { frequency_hz })
             }
-            _ => Err(expected.to_owned()),
+            _ => Err(format!(
+                "expected `static`, or `swing:F` with a frequency F from {least:e} to {most:e} Hz"
+            )),
         }
     }
 }
@@ -117,7 +122,8 @@ pub struct LogTrial {
 /// unavailable. Compensated words are a channel of their own and what the filters are given.
 ///
 /// # Errors
-/// A warm-up that leaves no sample; a swing too fast for the sample rate; a filter that has the name
+/// A warm-up that leaves no sample; an averaging time shorter than one; a swing too fast for the sample
+/// rate; a filter that has the name
 /// of the compensated channel.
 pub fn try_log(
     input: impl Into<LogInput>,
@@ -226,6 +232,15 @@ fn record_length(log: &Log, settings: &LogSettings) -> Result<RecordLength, LogT
             settings.warm_up_s,
             counted(samples, "sample"),
             plain(log.sample_rate_hz)
+        )));
+    }
+    let averaging_time_s = settings.bias_averaging_time_s;
+    if !is_sample_or_longer(averaging_time_s, log.sample_period_s()) {
+        return Err(refuse(format!(
+            "--bias-averaging-time-s {averaging_time_s} is shorter than a sample: allowed from {} s \
+             on at {} Hz",
+            log.sample_period_s(),
+            log.sample_rate_hz
         )));
     }
     if let LogMotion::Swing { frequency_hz } = settings.motion

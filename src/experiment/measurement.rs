@@ -1,5 +1,6 @@
 //! Measuring the records of one repeat: which words are compared with which.
 
+use crate::metrics::catalogue::DIVERGED_AT;
 use rayon::prelude::*;
 
 use super::allan_settings::allan_options;
@@ -8,22 +9,26 @@ use super::campaign;
 use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use super::motion::motion;
 use super::pipeline_metrics;
-use super::plan::{DIVERGED_AT, Plan};
+use super::plan::Plan;
 use super::simulate::{GyroRecord, RecordLength, Simulation};
+use super::stop::{Unfinished, unless_stopped};
+use super::suite::Observer;
 use crate::filters::Divergence;
 use crate::metrics::{
-    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Metric, Record, Settings, measure,
+    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Record, Settings, measure,
 };
 
 /// Channels of one repeat with their metrics.
 pub(super) type Channels = Vec<(String, ChannelMetrics)>;
 
-/// Measures every channel of a repeat, in the order of the report.
+/// Measures every channel of a repeat, in the order of the report; the observer can stop it between
+/// two channels.
 pub(super) fn measure_repeat(
     plan: &Plan,
     simulation: &Simulation,
     length: RecordLength,
-) -> Channels {
+    observer: &dyn Observer,
+) -> Result<Channels, Unfinished> {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
     let settings = &Settings {
@@ -42,27 +47,32 @@ pub(super) fn measure_repeat(
             settings,
         })
         .collect();
-    let (raw, filters): (Channels, Channels) = rayon::join(
+    let measured = |name: String, measure: &dyn Fn() -> ChannelMetrics| {
+        unless_stopped(observer)?;
+        Ok((name, measure()))
+    };
+    let (raw, filters): (Result<Channels, Unfinished>, Result<Channels, Unfinished>) = rayon::join(
         || {
             let named = cuts.par_iter().zip(scenario.raw_channels());
-            let raw = named.map(|(cut, name)| (name, cut.measure_raw()));
+            let raw = named.map(|(cut, name)| measured(name, &|| cut.measure_raw()));
             let named = cuts.par_iter().zip(scenario.compensated_channels());
-            raw.chain(named.map(|(cut, name)| (name, cut.measure_compensated())))
+            raw.chain(named.map(|(cut, name)| measured(name, &|| cut.measure_compensated())))
                 .collect()
         },
         || {
             let filters = simulation.filters.par_iter();
-            filters
-                .map(|(gyro, filter)| (filter.name.clone(), cuts[*gyro].measure_filter(filter)))
-                .collect()
+            let measure = |(gyro, filter): &(usize, FinishedFilter)| {
+                measured(filter.name.clone(), &|| cuts[*gyro].measure_filter(filter))
+            };
+            filters.map(measure).collect()
         },
     );
-    let mut channels: Channels = raw.into_iter().chain(filters).collect();
+    let mut channels: Channels = raw?.into_iter().chain(filters?).collect();
     for (name, metrics) in &mut channels {
         drop_lacking(scenario, name, metrics);
         campaign::drop_lacking(scenario, metrics);
     }
-    channels
+    Ok(channels)
 }
 
 /// The measured part of one gyro's record and how to measure it.
@@ -125,6 +135,7 @@ impl Cut<'_> {
         };
         if let Some(pipeline) = &filter.pipeline {
             pipeline_metrics::enter(pipeline, self.sample_period_s, &mut metrics);
+            metrics.keep_finite();
         }
         metrics
     }
@@ -152,10 +163,7 @@ fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
 fn failed(kind: &str, sample: u64, message: String, sample_period_s: f64) -> ChannelMetrics {
     let mut channel = ChannelMetrics::default();
     let at_s = stamp_s(sample, sample_period_s);
-    channel.metrics.insert(
-        DIVERGED_AT.to_owned(),
-        Metric::new(Estimate::exact(at_s), "s"),
-    );
+    channel.put(&DIVERGED_AT, Estimate::exact(at_s));
     channel.error = Some(ChannelFailure {
         kind: kind.to_owned(),
         sample,

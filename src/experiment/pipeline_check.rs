@@ -1,18 +1,15 @@
 //! What can be wrong with a hardware pipeline before it runs.
 
-use super::pipeline_metrics::{MATRIX_METRICS, PREDICTED_FAILURE};
-use super::pipeline_settings::{CoreSettings, PipelineSettings};
-use crate::metrics::{Applies, known_metrics};
+use super::pipeline_metrics::MATRIX_METRICS;
+use super::pipeline_settings::PipelineSettings;
+use crate::metrics::catalogue::PREDICTED_FAILURE;
+use crate::metrics::{Applies, MetricKey};
 use crate::scenario::Scenario;
 use crate::units::s_to_us;
 
 /// The table of the filter in its scenario.
 pub(super) fn kind(settings: &PipelineSettings) -> &'static str {
-    match settings.core {
-        CoreSettings::Rls(..) => "rls",
-        CoreSettings::Lms(_) => "lms",
-        CoreSettings::SignLms(_) => "sign_lms",
-    }
+    settings.core.kind().name
 }
 
 /// Checks the constants in their word format, and that a sample is done before the next arrives.
@@ -45,19 +42,18 @@ pub(super) fn check(
 }
 
 /// Why a channel can never have a metric of hardware pipelines; nothing for other metrics.
-pub(super) fn lacks(scenario: &Scenario, channel: &str, metric: &str) -> Option<&'static str> {
-    let known = known_metrics().iter().find(|known| known.name == metric)?;
-    if known.applies != Applies::Pipeline {
+pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<&'static str> {
+    if key.applies != Applies::Pipeline {
         return None;
     }
     let filter = scenario.filter_of(channel)?;
     let Some(settings) = PipelineSettings::of(&filter.kind) else {
         return Some("only a filter with pipeline = \"fpga\" has it");
     };
-    if MATRIX_METRICS.contains(&metric) && kind(&settings) != "rls" {
+    if MATRIX_METRICS.contains(&key) && !settings.core.kind().has_matrix {
         return Some("a least-mean-squares filter has no matrix");
     }
-    if metric == PREDICTED_FAILURE && settings.failure_samples().is_none() {
+    if *key == PREDICTED_FAILURE && settings.failure_samples().is_none() {
         return Some("only update_order = \"gain-first\" below a forgetting factor of 1 has it");
     }
     None

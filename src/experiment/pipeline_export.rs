@@ -108,7 +108,7 @@ fn export<F: Fp>(
             let samples = export.trace_samples as u64;
             let window = Window {
                 first_clock: 0,
-                clock_count: 1 + samples * export.pipeline.clocks_per_sample() as u64,
+                clock_count: 1 + samples * export.pipeline.as_pipeline().clocks_per_sample() as u64,
             };
             write_waveform(folder, &export, &pairs, window)
         }

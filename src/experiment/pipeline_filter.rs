@@ -6,16 +6,13 @@
 //! (every p squared for more taps): a look costs p cubed.
 
 use crate::filters::{Divergence, DivergenceKind, Fault, Filter, Output, Register, Watch};
-use crate::fpga::export::PipelineConfig;
+use crate::fpga::engine::{Engine, InverseCorrelation};
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::{FrontEnd, Pair};
+use crate::fpga::front_end::FrontEnd;
 use crate::fpga::health::{ASYMMETRY_LIMIT, HealthMonitor, MatrixHealth, Warning, wind_up_warning};
-use crate::fpga::lms::LmsEngine;
-use crate::fpga::rls::{RlsEngine, UpdateOrder};
-use crate::fpga::sign_lms::SignLmsEngine;
 use crate::signal::FilterShape;
 
-use super::pipeline_settings::{CoreSettings, PipelineSettings};
+use super::pipeline_settings::PipelineSettings;
 
 /// Samples between two looks at the matrix.
 const LOOK_SAMPLES: u64 = 64;
@@ -44,9 +41,9 @@ pub trait HardwareFilter: Filter {
 }
 
 /// Pipeline behind its front end, with the output register and the watch for divergence.
-pub(super) struct PipelineFilter<F> {
+pub(super) struct PipelineFilter<F, E> {
     front_end: FrontEnd<F>,
-    engine: Engine<F>,
+    engine: E,
     weights: Vec<f64>,
     register: Register,
     watch: Watch,
@@ -56,46 +53,9 @@ pub(super) struct PipelineFilter<F> {
     diverged: Option<Divergence>,
 }
 
-enum Engine<F> {
-    Rls(RlsEngine<F>),
-    Lms(LmsEngine<F>),
-    SignLms(SignLmsEngine<F>),
-}
-
-impl<F: Fp> Engine<F> {
-    fn process(&mut self, pair: Pair<F>) -> F {
-        match self {
-            Self::Rls(engine) => engine.process(pair),
-            Self::Lms(engine) => engine.process(pair),
-            Self::SignLms(engine) => engine.process(pair),
-        }
-    }
-
-    fn weights(&self) -> &[F] {
-        match self {
-            Self::Rls(engine) => engine.weights(),
-            Self::Lms(engine) => engine.weights(),
-            Self::SignLms(engine) => engine.weights(),
-        }
-    }
-}
-
-impl<F: Fp> PipelineFilter<F> {
-    /// A pipeline in its reset state.
-    pub(super) fn new(
-        settings: &PipelineSettings,
-        constants: PipelineConfig<F>,
-        warm_up_samples: u64,
-    ) -> Self {
-        let order = match settings.core {
-            CoreSettings::Rls(_, order) => order,
-            CoreSettings::Lms(_) | CoreSettings::SignLms(_) => UpdateOrder::Schedule,
-        };
-        let engine = match constants {
-            PipelineConfig::Rls(config) => Engine::Rls(RlsEngine::with_order(config, order)),
-            PipelineConfig::Lms(config) => Engine::Lms(LmsEngine::new(config)),
-            PipelineConfig::SignLms(config) => Engine::SignLms(SignLmsEngine::new(config)),
-        };
+impl<F: Fp, E: Engine<F>> PipelineFilter<F, E> {
+    /// The engine of a pipeline in its reset state.
+    pub(super) fn new(settings: &PipelineSettings, engine: E, warm_up_samples: u64) -> Self {
         Self {
             front_end: settings.front_end(),
             weights: engine.weights().iter().map(|word| word.to_f64()).collect(),
@@ -124,16 +84,16 @@ impl<F: Fp> PipelineFilter<F> {
         let output = self.register.clock(result);
         self.watch.check_input(input)?;
         self.watch.check_output(result)?;
-        if let Engine::Rls(engine) = &self.engine
+        if let Some(inverse) = self.engine.inverse_correlation()
             && self.monitor.is_due(sample)
         {
-            self.monitor.look(engine, sample)?;
+            self.monitor.look(inverse, sample)?;
         }
         Ok(output)
     }
 }
 
-impl<F: Fp> Filter for PipelineFilter<F> {
+impl<F: Fp, E: Engine<F> + Send> Filter for PipelineFilter<F, E> {
     fn step(&mut self, input_deg_per_h: f64) -> Result<Output, Divergence> {
         let sample = self.samples;
         self.samples += 1;
@@ -157,21 +117,19 @@ impl<F: Fp> Filter for PipelineFilter<F> {
     }
 }
 
-impl<F: Fp> HardwareFilter for PipelineFilter<F> {
+impl<F: Fp, E: Engine<F> + Send> HardwareFilter for PipelineFilter<F, E> {
     fn health(&mut self) -> Option<HealthSummary> {
-        if let Engine::Rls(engine) = &self.engine {
+        if let Some(inverse) = self.engine.inverse_correlation() {
             // What it finds is part of the summary; the run is over, so nothing can fail any more.
-            drop(self.monitor.look(engine, self.samples.saturating_sub(1)));
+            drop(self.monitor.look(inverse, self.samples.saturating_sub(1)));
         }
         self.monitor.worst
     }
 
     fn wind_up(&self) -> Option<Warning> {
-        let Engine::Rls(engine) = &self.engine else {
-            return None;
-        };
+        let inverse = self.engine.inverse_correlation()?;
         let health = self.monitor.monitor.latest()?;
-        wind_up_warning(health, engine.config().alpha().to_f64())
+        wind_up_warning(health, inverse.alpha.to_f64())
     }
 }
 
@@ -198,11 +156,14 @@ impl Monitor {
         (sample + 1).is_multiple_of(self.interval)
     }
 
-    fn look<F: Fp>(&mut self, engine: &RlsEngine<F>, sample: u64) -> Result<(), Fault> {
-        let config = engine.config();
-        let matrix = engine.inverse_correlation();
-        self.monitor
-            .matrix(matrix, config.tap_count(), config.delta());
+    fn look<F: Fp>(&mut self, inverse: InverseCorrelation<F>, sample: u64) -> Result<(), Fault> {
+        let InverseCorrelation {
+            matrix,
+            tap_count,
+            delta,
+            ..
+        } = inverse;
+        self.monitor.matrix(matrix, tap_count, delta);
         let Some(health) = self.monitor.latest().copied() else {
             return Ok(());
         };

@@ -1,16 +1,18 @@
 //! What a hardware pipeline adds to its channel's table, and what must be said of it.
 
 use super::channel_filter::{FinishedFilter, FinishedPipeline};
-use crate::metrics::{ChannelMetrics, Estimate};
+use crate::metrics::catalogue::{
+    ASYMMETRY_MAX, CLOCKS_PER_SAMPLE, CONDITION_NUMBER, LATENCY, PREDICTED_FAILURE, SAMPLE_PERIOD,
+    SAMPLE_RATE_MAX, SMALLEST_PIVOT,
+};
+use crate::metrics::{ChannelMetrics, Estimate, MetricKey};
 use crate::scenario::OutputRegister;
 use crate::units::us_to_s;
 use crate::wording::counted;
 
 /// Metrics of the matrix of recursive least squares.
-pub(super) const MATRIX_METRICS: [&str; 3] =
-    ["asymmetry_max", "smallest_pivot", "condition_number"];
-/// Theory's time to failure of the gain-first order.
-pub(super) const PREDICTED_FAILURE: &str = "predicted_failure_s";
+pub(super) static MATRIX_METRICS: [&MetricKey; 3] =
+    [&ASYMMETRY_MAX, &SMALLEST_PIVOT, &CONDITION_NUMBER];
 
 /// How long after their sample's stamp the outputs of a filter appear, s.
 ///
@@ -32,48 +34,48 @@ pub(super) fn enter(
     metrics: &mut ChannelMetrics,
 ) {
     let timing = &pipeline.timing;
-    for (name, value) in [
-        ("clocks_per_sample", whole(timing.usage.clocks_per_sample)),
-        ("sample_period_us", timing.sample_period_us),
-        ("latency_us", timing.latency_us),
-        ("sample_rate_max_khz", timing.sample_rate_max_khz),
+    for (key, value) in [
+        (&CLOCKS_PER_SAMPLE, whole(timing.usage.clocks_per_sample)),
+        (&SAMPLE_PERIOD, timing.sample_period_us),
+        (&LATENCY, timing.latency_us),
+        (&SAMPLE_RATE_MAX, timing.sample_rate_max_khz),
     ] {
-        let metric = metrics.put(name, Estimate::exact(value));
+        let metric = metrics.put(key, Estimate::exact(value));
         metric
             .fields
             .insert("clock_mhz", pipeline.settings.clock_mhz);
     }
     match &pipeline.health {
         Some(health) => {
-            for (name, value) in MATRIX_METRICS.into_iter().zip([
+            for (key, value) in MATRIX_METRICS.into_iter().zip([
                 health.asymmetry_max,
                 health.smallest_pivot,
                 health.condition_number,
             ]) {
                 if value.is_finite() {
-                    let metric = metrics.put(name, Estimate::exact(value));
+                    let metric = metrics.put(key, Estimate::exact(value));
                     metric.fields.insert("count", whole(health.looks));
                 } else {
-                    metrics.miss(name, "the matrix is not positive definite");
+                    metrics.miss(key, "the matrix is not positive definite");
                 }
             }
         }
         None => {
-            for name in MATRIX_METRICS {
-                metrics.miss(name, "the filter has no finite inverse correlation matrix");
+            for key in MATRIX_METRICS {
+                metrics.miss(key, "the filter has no finite inverse correlation matrix");
             }
         }
     }
     match pipeline.settings.failure_samples() {
         Some(samples) => {
             let metric = metrics.put(
-                PREDICTED_FAILURE,
+                &PREDICTED_FAILURE,
                 Estimate::exact(samples * sample_period_s),
             );
             metric.fields.insert("samples", samples);
         }
         None => metrics.miss(
-            PREDICTED_FAILURE,
+            &PREDICTED_FAILURE,
             "only the gain-first order is expected to fail",
         ),
     }

@@ -7,33 +7,21 @@ use super::line_enhancer;
 use super::pipeline_filter::{HardwareFilter, PipelineFilter};
 use crate::filters::{Desired as BenchDesired, FrontEndConfig, OutputRegister as BenchRegister};
 use crate::fpga::FpgaError;
-use crate::fpga::export::PipelineConfig;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::{Desired, FrontEnd, UpdateSign};
-use crate::fpga::health::{Warning, gain_first_failure_samples, initial_digits_warning};
-use crate::fpga::lms::{DesiredSource, LmsConfig, LmsSettings};
-use crate::fpga::rls::{Division, RlsConfig, RlsSettings, UpdateOrder};
-use crate::fpga::sign_lms::{SignLmsConfig, SignLmsSettings};
-use crate::fpga::timing::{
-    Usage, measure_lms, measure_rls, measure_sign_lms, sample_period_us, sample_rate_max_khz,
-};
+use crate::fpga::health::Warning;
+use crate::fpga::kinds::{CoreSettings, CoreVisitor, PipelineConfig};
+use crate::fpga::lms::{DesiredSource, LmsSettings};
+use crate::fpga::pipeline::Core;
+use crate::fpga::rls::{Division, RlsCore, RlsSettings, UpdateOrder};
+use crate::fpga::sign_lms::SignLmsSettings;
+use crate::fpga::timing::{Usage, sample_period_us, sample_rate_max_khz};
 use crate::scenario::{
     DesiredSignal, Division as DivisionKey, FilterKind, LmsFilterConfig, NumberFormat,
     OutputRegister, Pipeline, RlsFilterConfig, SignLmsFilterConfig, UpdateOrder as OrderKey,
     UpdateSign as SignKey,
 };
 use crate::signal::FilterShape;
-
-/// What is done with the words, in plain numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum CoreSettings {
-    /// Recursive least squares and the order of its update.
-    Rls(RlsSettings, UpdateOrder),
-    /// Least mean squares, normalised or not.
-    Lms(LmsSettings),
-    /// Line enhancer.
-    SignLms(SignLmsSettings),
-}
 
 /// A hardware pipeline with its front end, before any check.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,11 +95,7 @@ impl PipelineSettings {
     /// Number of weights.
     #[must_use]
     pub fn tap_count(&self) -> usize {
-        match &self.core {
-            CoreSettings::Rls(settings, _) => settings.tap_count,
-            CoreSettings::Lms(settings) => settings.tap_count,
-            CoreSettings::SignLms(settings) => settings.tap_count,
-        }
+        self.core.tap_count()
     }
 
     /// Rounds the constants to the word format, checks them and counts one sample's clocks.
@@ -120,10 +104,8 @@ impl PipelineSettings {
     /// What the pipeline refuses: tap count, forgetting factor, initial inverse correlation, step
     /// or regularisation out of range in the word format.
     pub fn timing(&self) -> Result<PipelineTiming, FpgaError> {
-        let usage = with_word!(self.format, F => match self.constants::<F>()? {
-            PipelineConfig::Rls(config) => measure_rls(config),
-            PipelineConfig::Lms(config) => measure_lms(config),
-            PipelineConfig::SignLms(config) => measure_sign_lms(config),
+        let usage = with_word!(self.format, F => {
+            self.constants::<F>()?.as_pipeline().clocked().usage()
         });
         let clock_mhz = self.clock_mhz;
         Ok(PipelineTiming {
@@ -137,23 +119,13 @@ impl PipelineSettings {
     /// Warns if the first updates cost the words their digits, for inputs up to `input_max`.
     #[must_use]
     pub fn digits_warning(&self, input_max: f64) -> Option<Warning> {
-        let CoreSettings::Rls(settings, _) = &self.core else {
-            return None;
-        };
-        let (delta, taps) = (settings.initial_inverse_correlation, settings.tap_count);
-        with_word!(self.format, F => initial_digits_warning::<F>(delta, taps, input_max))
+        with_word!(self.format, F => self.core.digits_warning::<F>(input_max))
     }
 
     /// Samples after which theory expects the gain-first order to fail; none for the others.
     #[must_use]
     pub fn failure_samples(&self) -> Option<f64> {
-        match &self.core {
-            CoreSettings::Rls(settings, UpdateOrder::GainFirst) => {
-                let alpha = settings.forgetting_factor;
-                with_word!(self.format, F => gain_first_failure_samples::<F>(alpha))
-            }
-            _ => None,
-        }
+        with_word!(self.format, F => self.core.failure_samples::<F>())
     }
 
     /// The filter in front of the bench, bit for bit the hardware's.
@@ -163,21 +135,15 @@ impl PipelineSettings {
     /// # Errors
     /// As [`Self::timing`].
     pub fn filter(&self, warm_up_samples: u64) -> Result<Box<dyn HardwareFilter>, FpgaError> {
-        with_word!(self.format, F => {
-            let constants = self.constants::<F>()?;
-            Ok(Box::new(PipelineFilter::new(self, constants, warm_up_samples)))
+        self.core.visit(FilterBuilder {
+            settings: self,
+            warm_up_samples,
         })
     }
 
     /// The constants in the word format.
     pub(super) fn constants<F: Fp>(&self) -> Result<PipelineConfig<F>, FpgaError> {
-        match self.core {
-            CoreSettings::Rls(settings, _) => RlsConfig::new(settings).map(PipelineConfig::Rls),
-            CoreSettings::Lms(settings) => LmsConfig::new(settings).map(PipelineConfig::Lms),
-            CoreSettings::SignLms(settings) => {
-                SignLmsConfig::new(settings).map(PipelineConfig::SignLms)
-            }
-        }
+        self.core.config()
     }
 
     /// The hold registers in front of the core.
@@ -207,6 +173,23 @@ impl PipelineSettings {
     }
 }
 
+/// Puts the engine of any kind behind its front end.
+struct FilterBuilder<'a> {
+    settings: &'a PipelineSettings,
+    warm_up_samples: u64,
+}
+
+impl CoreVisitor for FilterBuilder<'_> {
+    type Outcome = Result<Box<dyn HardwareFilter>, FpgaError>;
+
+    fn visit<C: Core>(self, core: &C) -> Self::Outcome {
+        with_word!(self.settings.format, F => {
+            let engine = core.engine::<F>()?;
+            Ok(Box::new(PipelineFilter::new(self.settings, engine, self.warm_up_samples)))
+        })
+    }
+}
+
 fn rls(config: &RlsFilterConfig) -> PipelineSettings {
     let settings = RlsSettings {
         tap_count: config.taps as usize,
@@ -223,7 +206,7 @@ fn rls(config: &RlsFilterConfig) -> PipelineSettings {
         OrderKey::GainFirst => UpdateOrder::GainFirst,
     };
     PipelineSettings {
-        core: CoreSettings::Rls(settings, order),
+        core: CoreSettings::Rls(RlsCore { settings, order }),
         desired: desired(config.desired),
         input_lag_samples: config.input_lag_samples as usize,
         output_register: config.output_register,

@@ -1,18 +1,23 @@
 //! From scenario files to checked plans: the checks that need physics or metrics.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::campaign;
 use super::comparison::contradictions;
 use super::compensation::CompensationPlan;
 use super::motion::motion_extremes;
 use crate::gyro;
-use crate::scenario::{Fidelity, Resolved, ScenarioError, UnsoundReading, in_order, read_suite};
+use crate::scenario::{
+    Fidelity, Resolved, ScenarioError, UnsoundReading, in_both, in_order, read_suite,
+};
 use crate::signal::GyroFacts;
 
-/// Metric that turns the divergence of a channel into an expected result.
-pub(super) const DIVERGED_AT: &str = "diverged_at_s";
+/// Most scenarios of a suite that are not sound and are checked further: nobody reads on.
+const UNSOUND_MAX: usize = 100;
+
 /// One run that has passed every check.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -97,17 +102,17 @@ impl Plan {
 /// # Errors
 /// Every complaint about every file; then nothing may run.
 pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<ScenarioError>> {
-    let suite = read_suite(paths, sets);
-    let mut plans = Vec::with_capacity(suite.runs.len());
-    let mut errors = suite.errors;
-    let reading = suite.readings.into_iter().flat_map(unsound);
-    errors.extend(reading);
-    for resolved in suite.runs {
-        match plan(resolved) {
-            Ok(plan) => plans.push(plan),
-            Err(found) => errors.extend(found),
-        }
-    }
+    let mut plans = Vec::new();
+    let errors = visit_plans(paths, sets, &mut |plan| plans.push(plan));
+    compared(plans, errors)
+}
+
+/// The plans of a suite in their order, if they do not contradict one another and nothing was wrong
+/// before.
+pub(super) fn compared(
+    mut plans: Vec<Plan>,
+    mut errors: Vec<ScenarioError>,
+) -> Result<Vec<Plan>, Vec<ScenarioError>> {
     // By folder, so that the order of the arguments leaves no trace in the results.
     plans.sort_by_cached_key(|plan: &Plan| plan.resolved.folder());
     errors.extend(contradictions(&plans));
@@ -118,31 +123,73 @@ pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<S
     }
 }
 
+/// Reads everything under `paths` and hands over each run that passes its own checks; returns the
+/// complaints about the others.
+pub(super) fn visit_plans(
+    paths: &[PathBuf],
+    sets: &[String],
+    visit: &mut dyn FnMut(Plan),
+) -> Vec<ScenarioError> {
+    let (mut found, mut known) = (Vec::new(), BTreeSet::new());
+    let mut campaigns = SoundCampaigns::default();
+    let mut unsound_count = 0;
+    let mut errors = read_suite(paths, sets, &mut |reading| {
+        let more = match reading {
+            Ok(resolved) => match plan(resolved, &mut campaigns) {
+                Ok(plan) => return visit(plan),
+                Err(more) => more,
+            },
+            Err(reading) => {
+                unsound_count += 1;
+                if unsound_count > UNSOUND_MAX {
+                    return;
+                }
+                unsound(reading, &mut campaigns)
+            }
+        };
+        // The points of a sweep share most of what is wrong with them.
+        found.extend(more.into_iter().filter(|error| known.insert(error.clone())));
+    });
+    errors.extend(found);
+    errors
+}
+
 /// What else is wrong with a scenario that is not sound: the complaints that all its variants give.
-fn unsound(reading: UnsoundReading) -> Vec<ScenarioError> {
+fn unsound(reading: UnsoundReading, campaigns: &mut SoundCampaigns) -> Vec<ScenarioError> {
     let mut variants = reading.variants.into_iter().map(|resolved| {
         if reading.is_contradictory {
             let mut checker = Checker::new(&resolved);
             checker.names();
             checker.errors
         } else {
-            plan(resolved).err().unwrap_or_default()
+            plan(resolved, campaigns).err().unwrap_or_default()
         }
     });
     let first = variants.next().unwrap_or_default();
-    variants.fold(first, |common, found| {
-        common
-            .into_iter()
-            .filter(|one| found.contains(one))
-            .collect()
-    })
+    variants.fold(first, |common, found| in_both(common, &found))
 }
 
-fn plan(resolved: Resolved) -> Result<Plan, Vec<ScenarioError>> {
+/// The campaign that passed its checks last: the points of a sweep share one.
+#[derive(Default)]
+struct SoundCampaigns(Option<Arc<Resolved>>);
+
+impl SoundCampaigns {
+    /// Checks a campaign unless it has just been checked.
+    fn check(&mut self, campaign: &Arc<Resolved>) -> Result<(), Vec<ScenarioError>> {
+        let is_last = |last: &Arc<Resolved>| Arc::ptr_eq(last, campaign);
+        if !self.0.as_ref().is_some_and(is_last) {
+            plan(Resolved::clone(campaign), &mut Self::default())?;
+            self.0 = Some(Arc::clone(campaign));
+        }
+        Ok(())
+    }
+}
+
+fn plan(resolved: Resolved, campaigns: &mut SoundCampaigns) -> Result<Plan, Vec<ScenarioError>> {
     let mut checker = Checker::new(&resolved);
     checker.names();
     let facts = checker.gyro();
-    let compensation = checker.compensation();
+    let compensation = checker.compensation(campaigns);
     if let Some(facts) = &facts {
         checker.gyro_limits();
         checker.record_length(facts);
@@ -200,7 +247,7 @@ impl Checker<'_> {
     }
 
     /// Refuses parameters that no rates follow from, and campaigns that cannot be run.
-    fn compensation(&mut self) -> Option<CompensationPlan> {
+    fn compensation(&mut self, campaigns: &mut SoundCampaigns) -> Option<CompensationPlan> {
         const CAMPAIGN: &str = "compensation.campaign_scenario";
         const PARAMETERS: &str = "compensation.parameters";
         if let Some(campaign) = &self.resolved.campaign {
@@ -213,7 +260,7 @@ impl Checker<'_> {
                 self.complain(CAMPAIGN, message);
                 return None;
             }
-            if let Err(errors) = plan(Resolved::clone(campaign)) {
+            if let Err(errors) = campaigns.check(campaign) {
                 self.errors.extend(errors);
                 return None;
             }

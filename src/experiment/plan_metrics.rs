@@ -5,10 +5,11 @@ use super::assembly_motion;
 use super::campaign;
 use super::motion::motion;
 use super::pipeline_check;
-use super::plan::{Checker, DIVERGED_AT};
+use super::plan::Checker;
 use super::published_check::wrong_unit;
-use crate::metrics;
-use crate::scenario::ComparisonColumn;
+use crate::metrics::catalogue::DIVERGED_AT;
+use crate::metrics::{self, MetricKey};
+use crate::scenario::{ComparisonColumn, Scenario};
 use crate::signal::GyroFacts;
 
 /// A metric that a scenario asks for.
@@ -101,8 +102,6 @@ impl Checker<'_> {
     pub(super) fn metrics(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
         let motion = motion(scenario, 1.0 / facts.output_rate_hz);
-        let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
-        let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
         let mut requested: Vec<Requested> = Vec::new();
         for (index, gate) in scenario.gates.iter().enumerate() {
             let Some((channel, metric)) = gate.metric.rsplit_once('.') else {
@@ -142,8 +141,8 @@ impl Checker<'_> {
             metric: name,
         } in requested
         {
-            let is_estimate = campaign::estimator_of(scenario, channel).is_some();
-            if name == DIVERGED_AT || (!is_estimate && metrics::find(name).is_none()) {
+            // The divergence of a channel may be what the gate expects.
+            if name == DIVERGED_AT.name {
                 continue;
             }
             if let Some(estimator) = campaign::estimator_of(scenario, channel) {
@@ -152,6 +151,10 @@ impl Checker<'_> {
                 }
                 continue;
             }
+            // A name that is no metric is refused above.
+            let Some(known) = metrics::find(name) else {
+                continue;
+            };
             let supported = metrics::support(
                 name,
                 scenario.duration_s,
@@ -160,16 +163,22 @@ impl Checker<'_> {
                 !scenario.is_unfiltered(channel),
                 scenario.bias_averaging_time_s,
             );
-            let lack = pipeline_check::lacks(scenario, channel, name).map(str::to_owned);
-            let across = assembly_motion::lacks(scenario, channel, name)
-                .or_else(|| campaign::lacks(scenario, name))
-                .map(str::to_owned);
-            let unread = metrics::encoder_lack(name, has_encoder).map(str::to_owned);
-            let single = metrics::repeats_lack(name, repeats);
-            let reasons = [supported.err(), lack, across, unread, single];
-            if let Some(reason) = reasons.into_iter().flatten().next() {
+            let lack = || lacks(scenario, channel, known);
+            if let Some(reason) = supported.err().or_else(lack) {
                 self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
             }
         }
     }
+}
+
+/// Why a channel of this scenario can never have a metric, whatever the length of its record.
+fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<String> {
+    let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
+    let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
+    pipeline_check::lacks(scenario, channel, key)
+        .or_else(|| assembly_motion::lacks(scenario, channel, key))
+        .or_else(|| campaign::lacks(scenario, key))
+        .or_else(|| metrics::encoder_lack(key, has_encoder))
+        .map(str::to_owned)
+        .or_else(|| metrics::repeats_lack(key, repeats))
 }

@@ -1,13 +1,13 @@
 //! Published figures stand beside simulated ones of the same unit.
 
-use crate::metrics::known_metrics;
+use crate::metrics::find;
 
 /// Key and complaint if published figure `index` is given in another unit than the simulated one
 /// beside which it is shown.
 ///
 /// A metric that nobody knows is refused with its nearest known one elsewhere.
 pub(super) fn wrong_unit(index: usize, metric: &str, given: &str) -> Option<(String, String)> {
-    let known = known_metrics().iter().find(|known| known.name == metric)?;
+    let known = find(metric)?;
     let is_bare = known.unit == "1" && given.is_empty();
     if given == known.unit || is_bare {
         return None;

@@ -7,11 +7,13 @@ use rayon::prelude::*;
 use super::campaign;
 use super::comparison::Layout;
 use super::compensation::Parameters;
+use super::ledger::Ledger;
 use super::measurement::{Channels, measure_repeat};
 use super::pipeline_metrics;
 use super::plan::Plan;
 use super::run_files;
 use super::simulate::{Faults, RecordLength, Simulation, count, simulate};
+use super::stop::Unfinished;
 use super::suite::{Observer, SuiteError, VERSION};
 use super::theory::theory;
 use crate::gate::judge;
@@ -19,25 +21,28 @@ use crate::metrics::{ChannelMetrics, aggregate};
 use crate::report::{RunOutcome, RunReport};
 use crate::signal::CalibrationSheet;
 
-/// Runs `plan`, judges it and writes its folder under `output`.
+/// Runs `plan`, judges it, writes its folder under `output` and enters it in the ledger; none if it
+/// was stopped before that. A run that fails is left to the caller to enter.
 pub(super) fn run_scenario(
     plan: &Plan,
     index: usize,
     layout: &Layout,
     output: &Path,
+    ledger: &Ledger,
     observer: &dyn Observer,
-) -> Result<RunOutcome, SuiteError> {
+) -> Result<Option<RunOutcome>, SuiteError> {
     let resolved = plan.resolved();
     let scenario = &resolved.scenario;
     let folder = resolved.folder();
     let done = theory(scenario)
-        .map_err(|error| error.to_string())
+        .map_err(Unfinished::from)
         .and_then(|curves| Ok((curves, run_repeats(plan, observer)?)));
     let (theory, repeats) = match done {
         Ok(done) => done,
-        Err(error) => {
+        Err(Unfinished::Stopped) => return Ok(None),
+        Err(Unfinished::Failed(error)) => {
             let (name, file) = (&scenario.name, &resolved.file);
-            return Ok(RunOutcome::failed(name, &folder, file, error));
+            return Ok(Some(RunOutcome::failed(name, &folder, file, error)));
         }
     };
     let Repeats {
@@ -75,19 +80,34 @@ pub(super) fn run_scenario(
         verdicts: &verdicts,
         notes: &notes,
     };
+    let pictures = run_files::draw(plan, &report, &simulation);
+    let notes = [&notes[..], &pictures.notes].concat();
+    let report = RunReport {
+        notes: &notes,
+        ..report
+    };
     let target = output.join(&folder);
-    let written = run_files::write_folder(plan, &report, &simulation, &target);
-    let pictures = written.map_err(|source| SuiteError::Write {
-        path: target,
+    let unwritten = |source| SuiteError::Write {
+        path: target.clone(),
         source,
-    })?;
-    observer.finished(index, &report);
+    };
+    let written = run_files::write_folder(plan, &report, &simulation, &pictures, &target)
+        .map_err(unwritten)?;
     let outcome = RunOutcome::from_report(&report, &folder);
-    let outcome = outcome.keeping(&report, layout.metrics_of(&scenario.name));
-    Ok(RunOutcome {
-        pictures,
-        ..outcome
-    })
+    let outcome = RunOutcome {
+        pictures: pictures
+            .drawn
+            .iter()
+            .map(|(name, _)| name.clone())
+            .collect(),
+        ..outcome.keeping(&report, layout.metrics_of(&scenario.name))
+    };
+    let entered = ledger.commit(index, &outcome, || written.commit());
+    if !entered.map_err(unwritten)? {
+        return Ok(None);
+    }
+    observer.finished(index, &report);
+    Ok(Some(outcome))
 }
 
 /// Means of the true rates about the case axes over the first record, deg/h.
@@ -116,10 +136,10 @@ struct Repeats {
 
 /// Runs every repeat; the records of the first are kept for the plots and the sample files, those
 /// of the others are dropped as soon as they are measured.
-fn run_repeats(plan: &Plan, observer: &dyn Observer) -> Result<Repeats, String> {
+fn run_repeats(plan: &Plan, observer: &dyn Observer) -> Result<Repeats, Unfinished> {
     let parameters = plan
         .compensation()
-        .map(|plan| plan.parameters())
+        .map(|plan| plan.parameters(observer))
         .transpose()?;
     let known = parameters.as_ref();
     let (simulation, first, sheet) = run_repeat(plan, 0, known, observer)?;
@@ -153,16 +173,16 @@ fn run_repeat(
     repeat: u32,
     parameters: Option<&Parameters>,
     observer: &dyn Observer,
-) -> Result<(Simulation, Channels, Option<CalibrationSheet>), String> {
+) -> Result<(Simulation, Channels, Option<CalibrationSheet>), Unfinished> {
     let scenario = &plan.resolved().scenario;
     let length = RecordLength::new(scenario, plan.sample_period_s());
-    let simulation = simulate(scenario, length, repeat, parameters, observer)
-        .map_err(|error| error.to_string())?;
-    let mut channels = measure_repeat(plan, &simulation, length);
+    let simulation = simulate(scenario, length, repeat, parameters, observer)?;
+    let mut channels = measure_repeat(plan, &simulation, length, observer)?;
     let sheet = campaign::calibrate_simulation(scenario, &simulation)
-        .map_err(|error| format!("calibration: {error}"))?
+        .map_err(|error| Unfinished::Failed(format!("calibration: {error}")))?
         .map(|(sheet, _)| sheet);
     channels.extend(sheet.iter().flat_map(campaign::estimate_channels));
+    keep_finite(&mut channels);
     Ok((simulation, channels, sheet))
 }
 
@@ -183,5 +203,14 @@ fn combine(first: Channels, others: Vec<Channels>) -> Channels {
         let table = failed.cloned().unwrap_or_else(|| aggregate(&tables));
         (name, table)
     });
-    combined.collect()
+    let mut combined = combined.collect();
+    keep_finite(&mut combined);
+    combined
+}
+
+/// Leaves only finite numbers in the tables; see [`ChannelMetrics::keep_finite`].
+fn keep_finite(channels: &mut Channels) {
+    for (_, metrics) in channels {
+        metrics.keep_finite();
+    }
 }

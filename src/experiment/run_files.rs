@@ -8,18 +8,36 @@ use super::plan::Plan;
 use super::simulate::{RecordLength, Simulation};
 use super::suite::VERSION;
 use crate::gyro::temperature_record;
-use crate::report::{self, CalibrationProvenance, FolderWriter, RunReport};
+use crate::report::{self, CalibrationProvenance, FolderWriter, Pictures, RunReport};
 use crate::scenario::{SamplesFormat, manifest_toml};
 use crate::signal::{CalibrationSheet, RunSignals};
 use crate::units::rad_to_arcsec;
 
-/// Writes everything of one run beside its place and swaps it in whole; names its pictures.
+/// Picture of a calibration.
+const CALIBRATION_SVG: &str = "calibration.svg";
+
+/// The pictures of one run, and what to say of those that are left out.
+pub(super) fn draw(plan: &Plan, report: &RunReport, simulation: &Simulation) -> Pictures {
+    let mut pictures = Pictures::default();
+    let names = Names::of(report);
+    for signals in &signals(plan, simulation, &names) {
+        pictures.extend(report::plots(report, signals));
+    }
+    if let Some(sheet) = report.calibration {
+        let svg = report::calibration_svg(&report.scenario.name, sheet);
+        pictures.add_svg(CALIBRATION_SVG.to_owned(), svg);
+    }
+    pictures
+}
+
+/// Writes everything of one run beside its place, to be swapped in whole.
 pub(super) fn write_folder(
     plan: &Plan,
     report: &RunReport,
     simulation: &Simulation,
+    pictures: &Pictures,
     target: &Path,
-) -> io::Result<Vec<String>> {
+) -> io::Result<FolderWriter> {
     let folder = FolderWriter::create(target)?;
     folder.write("summary.json", report::run_summary_json(report).as_bytes())?;
     folder.write(
@@ -44,21 +62,14 @@ pub(super) fn write_folder(
     if let Some(sheet) = report.calibration {
         write_calibration(&folder, report, sheet)?;
     }
-    let raw_names = report.scenario.raw_channels();
-    let compensated_names = report.scenario.compensated_channels();
-    let gyros = signals(plan, simulation, (&raw_names, &compensated_names));
-    let mut pictures = Vec::new();
-    for signals in &gyros {
-        for (name, svg) in report::plots(report, signals) {
-            folder.write(&name, svg.as_bytes())?;
-            pictures.push(name);
-        }
+    for (name, svg) in &pictures.drawn {
+        folder.write(name, svg.as_bytes())?;
     }
     if report.scenario.output.samples == SamplesFormat::Npy {
-        write_samples(&folder, &gyros)?;
+        let names = Names::of(report);
+        write_samples(&folder, &signals(plan, simulation, &names))?;
     }
-    folder.commit()?;
-    Ok(pictures)
+    Ok(folder)
 }
 
 /// The groups of a campaign and the parameters to apply.
@@ -74,27 +85,36 @@ fn write_calibration(
     };
     let toml = report::calibration_toml(sheet, &provenance);
     folder.write("calibration.toml", toml.as_bytes())?;
-    let svg = report::calibration_svg(&report.scenario.name, sheet);
-    folder.write("calibration.svg", svg.as_bytes())?;
     folder.write("groups.csv", report::groups_csv(&sheet.groups).as_bytes())
 }
 
+/// Names of the channels of the gyros.
+struct Names {
+    raw: Vec<String>,
+    compensated: Vec<String>,
+}
+
+impl Names {
+    fn of(report: &RunReport) -> Self {
+        Self {
+            raw: report.scenario.raw_channels(),
+            compensated: report.scenario.compensated_channels(),
+        }
+    }
+}
+
 /// The samples of each gyro.
-fn signals<'a>(
-    plan: &Plan,
-    simulation: &'a Simulation,
-    (raw_names, compensated_names): (&'a [String], &'a [String]),
-) -> Vec<RunSignals<'a>> {
+fn signals<'a>(plan: &Plan, simulation: &'a Simulation, names: &'a Names) -> Vec<RunSignals<'a>> {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
     let first_measured = RecordLength::new(scenario, sample_period_s).warm_up;
     let end_s = scenario.warm_up_s + scenario.duration_s;
     let gyros = simulation.gyros.iter().enumerate();
-    let named = gyros.zip(scenario.axis_prefixes().iter().zip(raw_names));
+    let named = gyros.zip(scenario.axis_prefixes().iter().zip(&names.raw));
     let signals = named.map(|((gyro, record), (prefix, raw_name))| {
         let raw = (raw_name.as_str(), record.raw_deg_per_h.as_slice());
         let compensated = record.compensated_deg_per_h.as_deref();
-        let name = compensated_names.get(gyro).map(String::as_str);
+        let name = names.compensated.get(gyro).map(String::as_str);
         let compensated = name.zip(compensated);
         let filters = simulation.filters.iter().filter_map(|(of, filter)| {
             let words = filter.words.as_ref().ok().filter(|_| *of == gyro)?;

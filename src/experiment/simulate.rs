@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::channel_filter::{ChannelFilter, FinishedFilter, Restarts};
 use super::compensation::{Compensator, Parameters};
 use super::output_average::{mean, table_warm_up_s};
+use super::stop::{Unfinished, unless_stopped};
 use super::suite::Observer;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
@@ -120,14 +121,15 @@ impl Faults {
 /// Runs repeat `repeat` of `scenario`.
 ///
 /// The gyros make the next block while the filters work on the one before, so that two threads
-/// share even a single run; every word depends on the words before it alone.
+/// share even a single run; every word depends on the words before it alone. The observer can stop it
+/// between two blocks.
 pub(super) fn simulate(
     scenario: &Scenario,
     length: RecordLength,
     repeat: u32,
     parameters: Option<&Parameters>,
     observer: &dyn Observer,
-) -> Result<Simulation, GyroError> {
+) -> Result<Simulation, Unfinished> {
     let mut source = Source::new(scenario, length, repeat)?;
     let sample_period_s = source.sample_period_s;
     let mut compensator =
@@ -143,8 +145,10 @@ pub(super) fn simulate(
         let compensated = compensator.as_mut().map(|stage| stage.take(&raw));
         (raw, compensated)
     };
+    unless_stopped(observer)?;
     let (mut raw, mut compensated) = next_block();
     while !raw[0].is_empty() {
+        unless_stopped(observer)?;
         let given = compensated.as_ref().unwrap_or(&raw);
         let (next, ()) = rayon::join(&mut next_block, || {
             filters

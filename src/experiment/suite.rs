@@ -4,13 +4,15 @@ use std::any::Any;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::channel;
 
 use rayon::prelude::*;
 
 use super::comparison::Layout;
+use super::ledger::{Ledger, wait};
 use super::plan::Plan;
 use super::run::run_scenario;
+use super::threads;
 use crate::report::{self, Comparison, RunOutcome, RunReport};
 
 /// Version of the program, as every result names it.
@@ -24,11 +26,11 @@ const SUITE_FILES: [&str; 2] = ["summary.json", "junit.xml"];
 pub struct SuiteOptions {
     /// Folder that receives the results; made if absent.
     pub output: PathBuf,
-    /// Threads; 0 = one per core.
+    /// Threads, as [`thread_count`](super::thread_count) takes them.
     pub threads: usize,
 }
 
-/// What the caller wants to hear while a suite runs; called from many threads.
+/// What the caller wants to hear and to say while a suite runs; called from many threads.
 pub trait Observer: Sync {
     /// `simulated_s` more seconds of gyro time are done.
     fn advanced(&self, simulated_s: f64);
@@ -36,6 +38,15 @@ pub trait Observer: Sync {
     fn finished(&self, index: usize, report: &RunReport);
     /// Run `index` of the plan could not finish and has written nothing.
     fn failed(&self, index: usize, outcome: &RunOutcome);
+    /// Whether the suite is to stop. Asked between the blocks and stages of every run; what has
+    /// ended by then stays, the rest is not run.
+    fn should_stop(&self) -> bool {
+        false
+    }
+    /// Hears how a suite ended that was to stop while runs are still in the middle of a long stage.
+    /// Its files stand; these runs will write nothing more. The caller may end the program here:
+    /// [`run_suite`] returns the same only once they have come to the end of their stage.
+    fn abandoned(&self, _result: &Result<SuiteOutcome, SuiteError>) {}
 }
 
 /// What came of a suite.
@@ -47,6 +58,8 @@ pub struct SuiteOutcome {
     pub comparison: Comparison,
     /// Whether a run was stopped by a broken invariant, which is a defect of the program.
     pub broken: bool,
+    /// Threads that it ran on: fewer than asked for where the system had no more.
+    pub threads: usize,
 }
 
 /// Why a suite stopped before its end.
@@ -60,13 +73,11 @@ pub enum SuiteError {
         /// What the system said.
         source: io::Error,
     },
-    /// The thread pool could not be made.
-    #[error("cannot start {threads} threads: {message}")]
+    /// The system gave not one thread.
+    #[error("cannot start a thread: {source}")]
     Threads {
-        /// Number asked for.
-        threads: usize,
-        /// What the pool said.
-        message: String,
+        /// What the system said.
+        source: io::Error,
     },
 }
 
@@ -74,12 +85,13 @@ pub enum SuiteError {
 ///
 /// Results come back in the order of `plans`, whatever the order of completion; every file depends
 /// on its scenario, seed and the version of the program alone. The suite's own files are removed
-/// first and written last, so that an interrupted suite leaves no verdict of an earlier one. A run
-/// that breaks an invariant fails by itself; the others go on.
+/// first and written last, so that a killed suite leaves no verdict of an earlier one; one that the
+/// observer stops has files that say which runs have ended. A run that breaks an invariant fails by
+/// itself; the others go on.
 ///
 /// # Errors
-/// [`SuiteError`] if a file cannot be written or the threads cannot be started. Folders of runs
-/// that were complete by then stay.
+/// [`SuiteError`] if a file cannot be written or no thread can be started. Folders of runs that
+/// were complete by then stay.
 pub fn run_suite(
     plans: &[Plan],
     options: &SuiteOptions,
@@ -90,30 +102,28 @@ pub fn run_suite(
         remove(&options.output.join(name))?;
     }
     remove_tables(&options.output)?;
-    let layout = Layout::of(plans);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(options.threads)
-        .build()
-        .map_err(|error| SuiteError::Threads {
-            threads: options.threads,
-            message: error.to_string(),
-        })?;
-    let (runs, broken) = pool.install(|| run_all(plans, &layout, options, observer))?;
-    let comparison = layout.fill(plans, &runs);
-    for (name, text) in report::comparison_files(&comparison) {
-        write(&options.output.join(name), &text)?;
-    }
-    let [summary, junit] = SUITE_FILES;
-    write(
-        &options.output.join(summary),
-        &report::suite_summary_json(VERSION, &runs, &comparison),
-    )?;
-    write(&options.output.join(junit), &report::junit_xml(&runs))?;
-    Ok(SuiteOutcome {
-        runs,
-        comparison,
-        broken,
-    })
+    let layout = &Layout::of(plans);
+    let pool = threads::pool(threads::thread_count(options.threads))
+        .map_err(|source| SuiteError::Threads { source })?;
+    let ledger = &Ledger::new(plans.len());
+    let conclude = || {
+        let outcome = conclude(plans, layout, options, ledger)?;
+        let threads = pool.current_num_threads();
+        Ok(SuiteOutcome { threads, ..outcome })
+    };
+    let (end_of_work, work) = channel();
+    let stopped = pool.in_place_scope(|scope| {
+        scope.spawn(move |_| {
+            run_all(plans, layout, options, ledger, observer);
+            drop(end_of_work);
+        });
+        (!wait(&work, observer)).then(|| {
+            let result = conclude();
+            observer.abandoned(&result);
+            result
+        })
+    });
+    stopped.unwrap_or_else(conclude)
 }
 
 /// Runs the plans longest first, so that the last core is not left alone with the longest run.
@@ -121,34 +131,76 @@ fn run_all(
     plans: &[Plan],
     layout: &Layout,
     options: &SuiteOptions,
+    ledger: &Ledger,
     observer: &dyn Observer,
-) -> Result<(Vec<RunOutcome>, bool), SuiteError> {
+) {
     let mut order: Vec<usize> = (0..plans.len()).collect();
     order.sort_by(|&a, &b| plans[b].cost().total_cmp(&plans[a].cost()));
-    let stopped = AtomicBool::new(false);
-    let broken = AtomicBool::new(false);
     // One item at a time, so that a thread takes the next longest run when it is free.
-    let mut results: Vec<_> = order
-        .par_iter()
-        .with_max_len(1)
-        .filter(|_| !stopped.load(Ordering::Relaxed))
-        .map(|&index| {
-            let run = || run_scenario(&plans[index], index, layout, &options.output, observer);
-            let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
-                broken.store(true, Ordering::Relaxed);
-                Ok(broken_run(&plans[index], &*panic))
-            });
-            match &result {
-                Ok(outcome) if outcome.error.is_some() => observer.failed(index, outcome),
-                Ok(_) => {}
-                Err(_) => stopped.store(true, Ordering::Relaxed),
+    let order = order.par_iter().with_max_len(1);
+    order.for_each(|&index| {
+        if ledger.is_stopped() || observer.should_stop() {
+            return;
+        }
+        let plan = &plans[index];
+        let run = || run_scenario(plan, index, layout, &options.output, ledger, observer);
+        let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
+            ledger.note_broken();
+            Ok(Some(broken_run(plan, &*panic)))
+        });
+        match result {
+            Ok(Some(outcome)) if outcome.error.is_some() => {
+                ledger.enter(index, &outcome);
+                let tell = || observer.failed(index, &outcome);
+                if catch_unwind(AssertUnwindSafe(tell)).is_err() {
+                    ledger.note_broken();
+                }
             }
-            (index, result)
-        })
-        .collect();
-    results.sort_by_key(|(index, _)| *index);
-    let runs: Result<Vec<_>, _> = results.into_iter().map(|(_, result)| result).collect();
-    Ok((runs?, broken.load(Ordering::Relaxed)))
+            Ok(_) => {}
+            Err(error) => ledger.fail(index, error),
+        }
+    });
+}
+
+/// Closes the ledger and writes the files of the suite. What breaks an invariant is left out, and
+/// the rest is written all the same.
+fn conclude(
+    plans: &[Plan],
+    layout: &Layout,
+    options: &SuiteOptions,
+    ledger: &Ledger,
+) -> Result<SuiteOutcome, SuiteError> {
+    let runs = ledger.close(plans)?;
+    let comparison = unbroken(ledger, || layout.fill(plans, &runs)).unwrap_or_default();
+    let tables = unbroken(ledger, || report::comparison_files(&comparison));
+    for (name, text) in tables.into_iter().flatten() {
+        write(&options.output.join(name), &text)?;
+    }
+    let summary = || report::suite_summary_json(VERSION, &runs, &comparison);
+    let texts = [
+        unbroken(ledger, summary),
+        unbroken(ledger, || report::junit_xml(&runs)),
+    ];
+    for (name, text) in SUITE_FILES.into_iter().zip(texts) {
+        if let Some(text) = text {
+            write(&options.output.join(name), &text)?;
+        }
+    }
+    Ok(SuiteOutcome {
+        runs,
+        comparison,
+        broken: ledger.is_broken(),
+        threads: 0,
+    })
+}
+
+/// What `make` makes; none, and a note in the ledger, if it breaks an invariant.
+fn unbroken<T>(ledger: &Ledger, make: impl FnOnce() -> T) -> Option<T> {
+    let made = catch_unwind(AssertUnwindSafe(make)).ok();
+    if made.is_none() {
+        ledger.note_broken();
+    }
+    made
 }
 
 /// The outcome of a run that broke an invariant, with what the panic said.

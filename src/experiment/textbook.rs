@@ -48,6 +48,12 @@ pub(super) fn textbook_filter(kind: &FilterKind, sample_period_s: f64) -> Box<dy
     }
 }
 
+/// Least cut-off frequencies over the output rate. The gain at DC is the quotient of sums in which the
+/// poles leave `2 pi f T` of a single one and its square of a pair: rounding moves it by 1e-8 of a
+/// one-pole filter and by 1e-5 of a pair there.
+const ONE_POLE_SHARE_MIN: f64 = 1e-9;
+const PAIR_SHARE_MIN: f64 = 1e-6;
+
 /// The key to blame and the complaint about a low pass whose cut-off frequency lies beyond the reach
 /// of the words.
 pub(super) fn cutoff_complaint(
@@ -55,19 +61,25 @@ pub(super) fn cutoff_complaint(
     kind: &FilterKind,
     sample_rate_hz: f64,
 ) -> Option<(String, String)> {
-    let (table, cutoff_hz) = match kind {
-        FilterKind::OnePole(config) => ("one_pole", config.cutoff_hz),
-        FilterKind::Butterworth(config) => ("butterworth", config.cutoff_hz),
+    let (table, cutoff_hz, least_share) = match kind {
+        FilterKind::OnePole(config) => ("one_pole", config.cutoff_hz, ONE_POLE_SHARE_MIN),
+        FilterKind::Butterworth(config) => ("butterworth", config.cutoff_hz, PAIR_SHARE_MIN),
         _ => return None,
     };
-    let limit_hz = 0.5 * sample_rate_hz;
-    (cutoff_hz >= limit_hz).then(|| {
-        let key = format!("filter[{index}].{table}.cutoff_hz");
-        let message = format!(
-            "{key} = {cutoff_hz} Hz is not below half the output rate: allowed (0, {limit_hz:.3}) Hz"
-        );
-        (key, message)
-    })
+    let key = format!("filter[{index}].{table}.cutoff_hz");
+    let (least_hz, limit_hz) = (least_share * sample_rate_hz, 0.5 * sample_rate_hz);
+    let range = format!("allowed [{least_hz:.3e}, {limit_hz:.3}) Hz");
+    let message = if cutoff_hz >= limit_hz {
+        format!("{key} = {cutoff_hz} Hz is not below half the output rate: {range}")
+    } else if cutoff_hz < least_hz {
+        format!(
+            "{key} = {cutoff_hz} Hz is below {least_share:e} of the output rate, where the poles lie too \
+             near 1 for binary64: {range}, or a larger gyro.output.average_samples"
+        )
+    } else {
+        return None;
+    };
+    Some((key, message))
 }
 
 fn constrained_rls(config: &ConstrainedRlsFilterConfig) -> RlsConfig {

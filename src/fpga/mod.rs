@@ -7,18 +7,27 @@
 //!
 //! * [`float_unit`]: number formats and their rounding; [`memory`]: single-port RAM.
 //! * [`front_end`]: from a sample stream to the pairs a core takes.
-//! * [`rls`], [`lms`], [`sign_lms`]: the pipelines and their clock-less engines.
+//! * [`machine`]: the sequencer under every pipeline; [`registers`], [`datapath`]: what it clocks.
+//! * [`rls`], [`lms`], [`sign_lms`]: states and steps of the pipelines, their clock-less engines.
+//! * [`pipeline`]: what a pipeline declares of itself; [`kinds`]: the list of them; [`engine`].
 //! * [`health`]: what goes wrong inside and when. [`timing`]: clocks, units, rates.
 //! * [`probe`], [`trace`]: test points and per-clock records. [`export`]: vectors, waveforms, RTL.
 
+mod check;
+pub mod datapath;
+pub mod engine;
 pub mod error;
 pub mod export;
 pub mod float_unit;
 pub mod front_end;
 pub mod health;
+pub mod kinds;
 pub mod lms;
+pub mod machine;
 pub mod memory;
+pub mod pipeline;
 pub mod probe;
+pub mod registers;
 pub mod rls;
 pub mod sign_lms;
 pub mod timing;

@@ -87,35 +87,3 @@ pub struct NoProbe;
 impl<F: Fp> Probe<F> for NoProbe {
     const WATCHES: bool = false;
 }
-
-/// `a * b` in the multiplier, seen by the probe.
-#[inline]
-pub(super) fn multiply<F: Fp>(probe: &mut impl Probe<F>, a: F, b: F) -> F {
-    let q = a.mul(b);
-    probe.multiply(a, b, q);
-    q
-}
-
-/// `a + b` in the adder, seen by the probe.
-#[inline]
-pub(super) fn add<F: Fp>(probe: &mut impl Probe<F>, a: F, b: F) -> F {
-    let q = a.add(b);
-    probe.add(a, b, false, q);
-    q
-}
-
-/// `a - b` in the adder, seen by the probe.
-#[inline]
-pub(super) fn subtract<F: Fp>(probe: &mut impl Probe<F>, a: F, b: F) -> F {
-    let q = a.sub(b);
-    probe.add(a, b, true, q);
-    q
-}
-
-/// `a / b` in the divider, seen by the probe.
-#[inline]
-pub(super) fn divide<F: Fp>(probe: &mut impl Probe<F>, a: F, b: F) -> F {
-    let q = a.div(b);
-    probe.divide(a, b, q);
-    q
-}

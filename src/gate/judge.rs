@@ -2,11 +2,9 @@
 
 use crate::gate::number::{estimate_text, is_exact, limits_text, plain};
 use crate::gate::{Verdict, VerdictKind};
+use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{ChannelMetrics, Estimate, Metric};
 use crate::scenario::{GateConfig, GateDecision, InconclusivePolicy};
-
-/// Metric that exists only where a channel diverged.
-const DIVERGED_AT: &str = "diverged_at_s";
 
 /// Digits of the half width shown in reasons: one more than in tables, so that a near miss shows.
 const REASON_DIGITS: i32 = 3;
@@ -127,7 +125,7 @@ fn lookup<'a>(
             failure.sample, failure.kind, failure.message
         ));
     }
-    if key == DIVERGED_AT {
+    if key == DIVERGED_AT.name {
         return Err(format!("channel `{channel}` did not diverge"));
     }
     Err(match metrics.unavailable.get(key) {

@@ -174,8 +174,9 @@ pub enum GyroError {
     #[error(
         "{noise_lsb:.3} LSB of noise per sample at the converter, but fidelity = \"rate\" counts rounding \
          as white noise, which takes {limit_lsb:.3} LSB: the slope of this converter lies between \
-         {slope_min:.3} and {slope_max:.3} of nominal; use fidelity = \"loop\" with \
-         gyro.noise.draw = \"exact\", more bits, or bits = 0"
+         {}; use fidelity = \"loop\" with \
+         gyro.noise.draw = \"exact\", more bits, or bits = 0",
+        slopes_text(*slope_min, *slope_max)
     )]
     ConverterTooCoarse {
         /// Noise of one sample, converter steps.
@@ -227,5 +228,15 @@ impl GyroError {
             Self::ConverterTooCoarse { .. } => "gyro.adc.bits",
             Self::RampTooCoarse { .. } => "gyro.modulator.dac_bits",
         }
+    }
+}
+
+/// Least and greatest slope of a converter over nominal. Without noise it has none within a code, and
+/// at the edge of one it jumps.
+pub(super) fn slopes_text(least: f64, greatest: f64) -> String {
+    if greatest.is_finite() {
+        format!("{least:.3} and {greatest:.3} of nominal")
+    } else {
+        "nothing within a code and a jump at its edge".to_owned()
     }
 }

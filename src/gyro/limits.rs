@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use crate::gyro::coil::Coil;
 use crate::gyro::controller::Controller;
 use crate::gyro::detector::Detector;
-use crate::gyro::error::GyroError;
+use crate::gyro::error::{GyroError, slopes_text};
 use crate::gyro::limits_optics::optics;
 use crate::gyro::modulator::Modulator;
 use crate::gyro::noise_budget::NoiseBudget;
@@ -219,10 +219,11 @@ fn converter(
     } else {
         String::new()
     };
+    let slopes = slopes_text(slope_min, slope_max);
     Ok(Some(format!(
         "gyro.adc: {noise_lsb:.3} LSB of noise per sample, below the {limit_lsb:.3} LSB from which \
          rounding counts as white noise: with the level, the slope of the converter lies between \
-         {slope_min:.3} and {slope_max:.3} of nominal, and bandwidth and noise with it; phase \
+         {slopes}, and bandwidth and noise with it; phase \
          errors up to {hidden_rad:.2e} rad ({:.3} deg/h) lie within one code; the noise budget \
          does not hold{drawn}",
         rad_per_s_to_deg_per_h(hidden_rad / coil.scale_factor_s)

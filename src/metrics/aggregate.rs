@@ -1,45 +1,47 @@
 //! Pooling of independent repeats of one channel.
 
+use super::catalogue::{MEAN, SCALE_FACTOR_ERROR};
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::allan_curves::pool_allan;
+use super::catalogue::{find, known_metrics, repeated_metrics};
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
-use super::repeat_statistics::{REPEATED_METRICS, RepeatStatistics};
+use super::key::{Applies, MetricKey, Pool, Table};
+use super::repeat_statistics::RepeatStatistics;
 use super::scale_factor::scale_factor_repeatability;
 use super::support::repeats_lack;
 use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION, TWO_SIDED_PSD};
 use crate::units::ratio_to_ppm;
 
+/// Bias repeatability.
+pub static BIAS_REPEATABILITY: MetricKey = MetricKey::new(
+    "bias_repeatability_deg_per_h",
+    "deg/h",
+    Applies::Steady,
+    "standard deviation of the means of six repeats or more, each a start of its own",
+)
+.heading("bias repeatability")
+.pooled(Pool::ScatterOf(&MEAN))
+.by_choice()
+.tables(&[Table::Rest]);
+
+/// Scale factor repeatability.
+pub static SCALE_FACTOR_REPEATABILITY: MetricKey = MetricKey::new(
+    "scale_factor_repeatability_ppm",
+    "ppm",
+    Applies::Steps,
+    "standard deviation of the scale factors of six repeats or more over their mean",
+)
+.heading("scale factor repeatability")
+.pooled(Pool::RelativeScatterOf(&SCALE_FACTOR_ERROR))
+.of_turned_axis()
+.by_choice()
+.tables(&[Table::Steps]);
+
 /// From this many repeats on, Student's t on their scatter gives the interval; below, the intervals
 /// of the repeats themselves say more.
 const SCATTER_REPEATS_MIN: usize = 6;
-
-/// The metrics that the scatter of the repeats gives, with those that scatter.
-const SCATTER: [(&str, &str); 2] = [
-    ("scale_factor_repeatability_ppm", "scale_factor_error_ppm"),
-    ("bias_repeatability_deg_per_h", "mean_deg_per_h"),
-];
-
-/// Their names.
-pub(crate) const REPEATABILITIES: [&str; 2] = [SCATTER[0].0, SCATTER[1].0];
-
-/// The metrics that a fit to the pooled Allan variance replaces.
-pub(crate) const FITTED: [&str; 5] = [
-    "angle_random_walk_deg_per_sqrt_h",
-    "bias_instability_deg_per_h",
-    "rate_random_walk_deg_per_h_per_sqrt_h",
-    "rate_ramp_deg_per_h_per_h",
-    "quantisation_arcsec",
-];
-
-/// Root mean squares, which are pooled as squares.
-const ROOT_MEAN_SQUARES: [&str; 4] = [
-    "tracking_error_rms_deg_per_h",
-    "bias_error_rms_deg_per_h",
-    "scale_factor_error_rms_ppm",
-    "misalignment_error_rms_arcsec",
-];
 
 /// Curves of points that have intervals of their own.
 const POINT_CURVES: [&str; 8] = [
@@ -65,7 +67,7 @@ const POINT_CURVES: [&str; 8] = [
 /// Repeatabilities: standard deviation of the repeats' values, from six repeats on.
 ///
 /// Each metric gets the field `repeats`, the number of repeats that have it; the values of the main
-/// ones ([`REPEATED_METRICS`]) are kept repeat by repeat. Allan
+/// ones ([`repeated_metrics`]) are kept repeat by repeat. Allan
 /// deviations and spectra are averaged as powers, other curves as they are. If a repeat failed, the first failed one stands for the channel.
 #[must_use]
 pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
@@ -96,9 +98,9 @@ pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
     pool_spectra(repeats, &mut pooled);
     pool_points(repeats, &mut pooled);
     pool_allan(repeats, &mut pooled);
-    let named = REPEATED_METRICS.into_iter();
-    pooled.repeats = named
-        .filter_map(|name| Some((name.to_owned(), RepeatStatistics::of(repeats, name)?)))
+    pooled.repeats = repeated_metrics()
+        .into_iter()
+        .filter_map(|key| Some((key.name.to_owned(), RepeatStatistics::of(repeats, key)?)))
         .collect();
     pooled
 }
@@ -108,38 +110,47 @@ pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
 ///
 /// Source: IEEE Std 952, repeatability; the interval is the chi-square one of a standard deviation.
 fn put_repeatability(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
-    for (name, source) in SCATTER {
-        let single = repeats_lack(name, 1);
-        if single.is_none() || pooled.unavailable.get(name) != single.as_ref() {
+    for key in known_metrics() {
+        let (Pool::ScatterOf(source) | Pool::RelativeScatterOf(source)) = key.pool else {
+            continue;
+        };
+        let single = repeats_lack(key, 1);
+        if pooled.why_unavailable(key) != single.as_deref() {
             continue;
         }
-        if let Some(reason) = repeats_lack(name, repeats.len()) {
-            pooled.miss(name, reason);
+        if let Some(reason) = repeats_lack(key, repeats.len()) {
+            pooled.miss(key, reason);
             continue;
         }
         let values: Option<Vec<f64>> = repeats
             .iter()
-            .map(|repeat| Some(repeat.metrics.get(source)?.estimate.value))
+            .map(|repeat| Some(repeat.get(source)?.estimate.value))
             .collect();
         let Some(values) = values else {
-            pooled.miss(name, format!("not every repeat has a {source}"));
+            pooled.miss(key, format!("not every repeat has a {}", source.name));
             continue;
         };
         let factors: Vec<f64> = values
             .iter()
             .map(|ppm| 1.0 + ppm / ratio_to_ppm(1.0))
             .collect();
+        let is_relative = matches!(key.pool, Pool::RelativeScatterOf(_));
         let scatter = match scale_factor_repeatability(&factors) {
-            Some(ratio) if source == SCATTER[0].1 => ratio_to_ppm(ratio),
+            Some(ratio) if is_relative => ratio_to_ppm(ratio),
             _ => interval::sample_variance(&values).sqrt(),
         };
         let freedom = values.len() as f64 - 1.0;
         let fields = &mut pooled
-            .put(name, interval::deviation(scatter, freedom))
+            .put(key, interval::deviation(scatter, freedom))
             .fields;
         fields.insert(DEGREES_OF_FREEDOM, freedom);
         fields.insert("repeats", values.len() as f64);
     }
+}
+
+/// Whether a metric is pooled by its squares.
+fn is_root_mean_square(name: &str) -> bool {
+    find(name).is_some_and(|key| matches!(key.pool, Pool::RootMeanSquare))
 }
 
 /// Pools one metric over the repeats that have it.
@@ -158,7 +169,7 @@ fn pool(name: &str, metrics: &[&Metric]) -> Metric {
                 pooled.fields.insert(DEGREES_OF_FREEDOM, freedom);
                 interval::deviation(interval::mean(&squares).sqrt(), freedom)
             }
-            None if ROOT_MEAN_SQUARES.contains(&name) => {
+            None if is_root_mean_square(name) => {
                 let square = interval::from_parts(interval::mean(&squares), &squares);
                 Estimate::with_interval(
                     square.value.sqrt(),

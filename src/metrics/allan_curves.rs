@@ -3,17 +3,19 @@
 //! `allan` is the curve of the settings' estimator and averaging times, `allan_fit` the overlapping
 //! Allan deviation that the noise terms are fitted to.
 
+use super::catalogue::{ANGLE_RANDOM_WALK, BIAS_STABILITY_OVER_DC_GAIN, DC_GAIN, MEAN};
 use std::collections::BTreeMap;
 
-use super::aggregate::{FITTED, columns, mean_of};
+use super::aggregate::{columns, mean_of};
 use super::allan::AllanPoint;
 use super::allan_variants::{AllanEstimator, AllanVariantPoint};
 use super::bias::expected_bias_stability;
+use super::catalogue::fitted_metrics;
 use super::estimate::ChannelMetrics;
 use super::interval;
 use super::noise_fit::{FitRange, NoiseFit, fit_pooled_noise};
 use super::noise_identification::PowerLaw;
-use super::steady::{WALK_OVER_DC_GAIN, put_over_dc_gain};
+use super::steady::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, put_over_dc_gain};
 use super::support::slow_noise_lack;
 use super::table::EXPECTED;
 
@@ -23,7 +25,6 @@ const CURVE: &str = "allan";
 const FIT_CURVE: &str = "allan_fit";
 
 /// Bias stability at restored scale.
-const BIAS_OVER_DC_GAIN: &str = "bias_stability_over_dc_gain_deg_per_h";
 
 /// Columns of the curve that pooling takes the mean of.
 const MEANS: [&str; 2] = ["count", "noise_identified"];
@@ -115,13 +116,13 @@ pub(crate) fn enter_fit(
     metrics: &mut ChannelMetrics,
 ) {
     metrics.put_noise_fit(fit);
-    for name in FITTED {
-        let Some(reason) = slow_noise_lack(name, duration_s) else {
+    for key in fitted_metrics() {
+        let Some(reason) = slow_noise_lack(key, duration_s) else {
             continue;
         };
-        if let Some(metric) = metrics.metrics.remove(name) {
+        if let Some(metric) = metrics.get(key) {
             let (high, unit) = (metric.estimate.high, metric.unit);
-            metrics.miss(name, format!("{reason}; it is {high:.2e} {unit} at most"));
+            metrics.withdraw(key, format!("{reason}; it is {high:.2e} {unit} at most"));
         }
     }
     put_fit_curve(points, Some(fit), metrics);
@@ -162,8 +163,8 @@ pub(crate) fn pool_allan(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics
 fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<NoiseFit> {
     let points = pooled_points(repeats, FIT_CURVE)?;
     let count = repeats.len() as f64;
-    let range = FITTED.iter().find_map(|&name| {
-        let fields = &pooled.metrics.get(name)?.fields;
+    let range = fitted_metrics().find_map(|key| {
+        let fields = &pooled.get(key)?.fields;
         Some(FitRange {
             tau_min_s: *fields.get("tau_min_s")?,
             tau_max_s: *fields.get("tau_max_s")?,
@@ -173,20 +174,24 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
         put_fit_curve(&points, None, pooled);
         return None;
     };
-    let mean = pooled.metrics.get("mean_deg_per_h");
+    let mean = pooled.get(&MEAN);
     let duration_s = mean.and_then(|mean| mean.fields.get("averaging_time_s").copied());
     enter_fit(&points, &fit, duration_s.unwrap_or(f64::INFINITY), pooled);
-    for name in FITTED {
-        if let Some(metric) = pooled.metrics.get_mut(name) {
+    for key in fitted_metrics() {
+        if let Some(metric) = pooled.get_mut(key) {
             metric.fields.insert("repeats", count);
         }
     }
     expect_of_fit(&fit, pooled);
-    let gain = pooled.metrics.get("dc_gain");
+    let gain = pooled.get(&DC_GAIN);
     let gain = gain.map(|gain| gain.estimate.value);
-    if gain.is_some() && pooled.metrics.contains_key(WALK_OVER_DC_GAIN) {
-        pooled.metrics.remove(WALK_OVER_DC_GAIN);
-        put_over_dc_gain(FITTED[0], WALK_OVER_DC_GAIN, gain, pooled);
+    if gain.is_some() && pooled.get(&ANGLE_RANDOM_WALK_OVER_DC_GAIN).is_some() {
+        put_over_dc_gain(
+            &ANGLE_RANDOM_WALK,
+            &ANGLE_RANDOM_WALK_OVER_DC_GAIN,
+            gain,
+            pooled,
+        );
     }
     Some(fit)
 }
@@ -195,7 +200,7 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
 /// them does: terms that cannot be negative are too large on average in single records.
 fn expect_of_fit(fit: &NoiseFit, pooled: &mut ChannelMetrics) {
     let coefficients = fit.coefficients();
-    let gain = pooled.metrics.get("dc_gain");
+    let gain = pooled.get(&DC_GAIN);
     let gain = gain.map_or(1.0, |gain| gain.estimate.value.abs());
     for (name, metric) in &mut pooled.metrics {
         let fields = &mut metric.fields;
@@ -209,7 +214,7 @@ fn expect_of_fit(fit: &NoiseFit, pooled: &mut ChannelMetrics) {
         if let Some(expected) = fields.get_mut(EXPECTED) {
             let blocks = interval::round_to_count(count);
             let of_channel = expected_bias_stability(&coefficients, time_s, blocks);
-            let is_restored = name == BIAS_OVER_DC_GAIN;
+            let is_restored = *name == BIAS_STABILITY_OVER_DC_GAIN.name;
             *expected = if is_restored {
                 of_channel / gain
             } else {

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::linear_algebra::singular_value_decomposition;
 use crate::signal::{FilterShape, Section, WeightRule};
 
 /// Singular values below this part of the largest count as zero: input directions the record does
@@ -216,7 +217,7 @@ fn wiener_weights(
             })
             .sum::<f64>()
     });
-    let decomposition = correlation.svd(true, true);
+    let decomposition = singular_value_decomposition(correlation, true, true)?;
     let cutoff = RANK_TOLERANCE * decomposition.singular_values.max();
     let mut weights = decomposition.solve(&cross, cutoff).ok()?;
     if is_dc_gain_one {

@@ -2,6 +2,16 @@
 
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval::{self, NORMAL_QUANTILE};
+use super::key::{Applies, MetricKey, Needs};
+
+/// Correlation at lag one.
+pub static LAG1_CORRELATION: MetricKey = MetricKey::new(
+    "lag1_correlation",
+    "1",
+    Applies::Separable,
+    "correlation of neighbouring samples about the signal, autocovariance at lag 1 over lag 0",
+)
+.needs(Needs::SettledStep);
 
 /// Fewest blocks whose scatter says how sure a variance is.
 const FREEDOM_BLOCKS_MIN: usize = 10;
@@ -47,9 +57,9 @@ pub(crate) fn put_autocovariance(
 ) {
     match lag_one_correlation(products) {
         Some(correlation) => {
-            metrics.put("lag1_correlation", correlation);
+            metrics.put(&LAG1_CORRELATION, correlation);
         }
-        None => metrics.miss("lag1_correlation", "the channel has no noise"),
+        None => metrics.miss(&LAG1_CORRELATION, "the channel has no noise"),
     }
     let mut autocovariance = products.autocovariance();
     autocovariance.truncate(CURVE_LAGS + 1);

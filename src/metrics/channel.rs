@@ -1,5 +1,6 @@
 //! From a record to the table of everything it supports.
 
+use super::catalogue::{OVERSHOOT, RISE_TIME};
 use std::collections::BTreeMap;
 
 use super::autocovariance::LaggedProducts;
@@ -7,11 +8,12 @@ use super::catalogue::known_metrics;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::frozen_response::put_frozen_response;
 use super::interval;
-use super::known_metric::{Applies, PIPELINE_ONLY};
+use super::key::{Against, Applies, Headline, MetricKey, Needs, Pool, Table};
 use super::multi_sine::measure_multi_sine;
 use super::noise_level::{measure_mean_ratio, put_noise_gain, put_noise_std, put_ratio_of_means};
+use super::pipeline::PIPELINE_ONLY;
 use super::psd::{log_binned, segment_samples, welch};
-use super::readaptation::{READAPTATION, measure_after_step, onset};
+use super::readaptation::{READAPTATION_TIME, measure_after_step, onset};
 use super::record::{FilterFacts, Motion, Record, Settings};
 use super::settling::{settling, tail_start};
 use super::staircase::measure_scale_factor;
@@ -20,6 +22,106 @@ use super::step_shape::{Step, put_step_shape};
 use super::support::{NO_TRUTH, SAMPLES_MIN, encoder_lack, repeats_lack, support, truth_lack};
 use super::swing::measure_swing;
 use crate::wording::counted;
+
+/// Settling time.
+pub static SETTLING_TIME: MetricKey = MetricKey::new(
+    "settling_time_s",
+    "s",
+    Applies::Steps,
+    "time after the last step until the rate stays within max(1 % of the step, 5 sigma)",
+)
+.heading("settling time")
+.needs(Needs::Step)
+.of_turned_axis()
+.tables(&[Table::Steps])
+.headlines(&[Headline::Steps]);
+
+/// Minimum.
+pub static MINIMUM: MetricKey = MetricKey::new(
+    "minimum_deg_per_h",
+    "deg/h",
+    Applies::Always,
+    "smallest sample of the record",
+)
+.needs(Needs::Samples)
+.run_column(4);
+
+/// Maximum.
+pub static MAXIMUM: MetricKey = MetricKey::new(
+    "maximum_deg_per_h",
+    "deg/h",
+    Applies::Always,
+    "largest sample of the record",
+)
+.needs(Needs::Samples)
+.run_column(5);
+
+/// Tracking error rms.
+pub static TRACKING_ERROR_RMS: MetricKey = MetricKey::new(
+    "tracking_error_rms_deg_per_h",
+    "deg/h",
+    Applies::Moving,
+    "root mean square difference from the true rate at the same stamps",
+)
+.heading("tracking error rms")
+.against(Against::Truth)
+.pooled(Pool::RootMeanSquare)
+.run_column(11)
+.of_one_motion()
+.tables(&[Table::Swing, Table::MultiSine, Table::Steps])
+.headlines(&[Headline::General]);
+
+/// DC gain.
+pub static DC_GAIN: MetricKey = MetricKey::of_filters(
+    "dc_gain",
+    "1",
+    Applies::Always,
+    "response to a small added rate with the weight sequence of the unperturbed run replayed",
+)
+.heading("DC gain")
+.needs(Needs::Nothing)
+.run_column(8)
+.tables(&[
+    Table::Rest,
+    Table::Swing,
+    Table::MultiSine,
+    Table::Steps,
+    Table::Campaign,
+])
+.headlines(&[Headline::Rest]);
+
+/// DC gain adapted.
+pub static DC_GAIN_ADAPTED: MetricKey = MetricKey::of_filters(
+    "dc_gain_adapted",
+    "1",
+    Applies::Always,
+    "response to a small added rate present from the first sample, the filter free to adapt",
+)
+.heading("DC gain adapted")
+.needs(Needs::Nothing)
+.tables(&[Table::Rest]);
+
+/// Settled gain.
+pub static SETTLED_GAIN: MetricKey = MetricKey::of_filters(
+    "settled_gain",
+    "1",
+    Applies::Steps,
+    "mean of the channel over that of raw in the last quarter after the last step",
+)
+.heading("settled gain")
+.needs(Needs::SettledStep)
+.tables(&[Table::Steps]);
+
+/// Time of divergence.
+pub static DIVERGED_AT: MetricKey = MetricKey::new(
+    "diverged_at_s",
+    "s",
+    Applies::Always,
+    "time at which the channel failed, from the start of the warm-up; absent if it did not",
+)
+.heading("diverged at")
+.needs(Needs::Nothing)
+.closing_tables();
 
 /// Points of the spectrum in the report.
 const SPECTRUM_POINTS_MAX: usize = 400;
@@ -60,7 +162,7 @@ pub fn measure(
         put_rate_gains(facts, &mut metrics);
         put_frozen_response(facts, record.sample_period_s, &mut metrics);
     }
-    drop_not_finite(&mut metrics);
+    metrics.keep_finite();
     explain_missing(record, settings, filter.is_some(), &mut metrics);
     metrics
 }
@@ -113,7 +215,9 @@ fn measure_motion(
                 measure_mean_ratio(record, metrics);
                 match onset(record.truth_deg_per_h) {
                     Some(start) => measure_after_step(record, start, facts, metrics),
-                    None => metrics.miss(READAPTATION, "the motion does not end at a new rate"),
+                    None => {
+                        metrics.miss(&READAPTATION_TIME, "the motion does not end at a new rate")
+                    }
                 }
             }
             Ok(())
@@ -134,8 +238,8 @@ fn measure_motion(
 fn put_extremes(values: &[f64], metrics: &mut ChannelMetrics) {
     let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    metrics.put("minimum_deg_per_h", Estimate::exact(smallest));
-    metrics.put("maximum_deg_per_h", Estimate::exact(largest));
+    metrics.put(&MINIMUM, Estimate::exact(smallest));
+    metrics.put(&MAXIMUM, Estimate::exact(largest));
 }
 
 /// Rate after a step over the step below which it counts as rest.
@@ -157,7 +261,7 @@ fn measure_steps(
         record.sample_period_s,
     ) {
         Ok(settled) => {
-            let metric = metrics.put("settling_time_s", Estimate::exact(settled.settling_time_s));
+            let metric = metrics.put(&SETTLING_TIME, Estimate::exact(settled.settling_time_s));
             metric
                 .fields
                 .insert("band_deg_per_h", settled.band_deg_per_h);
@@ -172,8 +276,8 @@ fn measure_steps(
             put_step_shape(&step, metrics);
         }
         Err(reason) => {
-            for name in ["settling_time_s", "overshoot_percent", "rise_time_s"] {
-                metrics.miss(name, reason.clone());
+            for key in [&SETTLING_TIME, &OVERSHOOT, &RISE_TIME] {
+                metrics.miss(key, reason.clone());
             }
         }
     }
@@ -199,11 +303,11 @@ fn measure_steps(
         measure_mean_ratio(record, metrics);
         let own = equal_block_means(&values[start..], RATIO_BLOCKS);
         let raw = equal_block_means(&record.raw_deg_per_h[start..], RATIO_BLOCKS);
-        put_ratio_of_means("settled_gain", &own, &raw, metrics);
+        put_ratio_of_means(&SETTLED_GAIN, &own, &raw, metrics);
         let rate = interval::mean(&record.raw_deg_per_h[start..]).abs();
         if rate < REST_PER_STEP * step_deg_per_h.abs() {
             metrics.miss(
-                READAPTATION,
+                &READAPTATION_TIME,
                 "the last step ends at rest, where lag outweighs gain",
             );
         } else {
@@ -236,26 +340,23 @@ fn measure_tracking(record: &Record, metrics: &mut ChannelMetrics) {
         metrics,
     );
     let square = errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
-    metrics.put(
-        "tracking_error_rms_deg_per_h",
-        Estimate::exact(square.sqrt()),
-    );
+    metrics.put(&TRACKING_ERROR_RMS, Estimate::exact(square.sqrt()));
 }
 
 /// Enters the DC gains found by replay, which are exact up to rounding.
 fn put_dc_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
-    for (name, gain) in [
-        ("dc_gain", facts.dc_gain),
-        ("dc_gain_adapted", facts.dc_gain_adapted),
+    for (key, gain) in [
+        (&DC_GAIN, facts.dc_gain),
+        (&DC_GAIN_ADAPTED, facts.dc_gain_adapted),
     ] {
         match gain {
             Some(gain) => {
                 metrics
-                    .put(name, Estimate::exact(gain))
+                    .put(key, Estimate::exact(gain))
                     .fields
                     .insert("added_rate_deg_per_h", facts.added_rate_deg_per_h);
             }
-            None => metrics.miss(name, "it was not determined for this filter"),
+            None => metrics.miss(key, "it was not determined for this filter"),
         }
     }
 }
@@ -279,38 +380,17 @@ fn put_rate_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
             curve.entry(column.to_owned()).or_default().push(value);
         }
     }
-    let mut values = curve.values().flatten();
-    if !curve.is_empty() && values.all(|value| value.is_finite()) {
+    if !curve.is_empty() {
         metrics.curves.insert("rate_gain".to_owned(), curve);
-    }
-}
-
-/// Moves what came out as not a number (a ratio to nothing) to the unavailable metrics.
-fn drop_not_finite(metrics: &mut ChannelMetrics) {
-    let finite = |estimate: &Estimate| {
-        [estimate.value, estimate.low, estimate.high]
-            .iter()
-            .all(|value| value.is_finite())
-    };
-    let dropped: Vec<String> = metrics
-        .metrics
-        .iter()
-        .filter(|(_, metric)| !finite(&metric.estimate))
-        .map(|(name, _)| name.clone())
-        .collect();
-    for name in dropped {
-        metrics.metrics.remove(&name);
-        metrics.miss(&name, "the record gives no finite number");
     }
 }
 
 /// Gives one reason to everything that is still missing.
 fn refuse_rest(reason: &str, metrics: &mut ChannelMetrics) {
     for known in known_metrics() {
-        let name = known.name;
-        let is_own = name == "diverged_at_s" || known.applies == Applies::Pipeline;
-        if !is_own && !metrics.metrics.contains_key(name) {
-            metrics.miss(name, reason);
+        let is_own = **known == DIVERGED_AT || known.applies == Applies::Pipeline;
+        if !is_own && metrics.get(known).is_none() {
+            metrics.miss(known, reason);
         }
     }
 }
@@ -324,16 +404,15 @@ fn explain_missing(
 ) {
     let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
     for known in known_metrics() {
-        let name = known.name;
-        if name == "diverged_at_s"
+        if **known == DIVERGED_AT
             || known.applies == Applies::Calibration
-            || metrics.metrics.contains_key(name)
-            || metrics.unavailable.contains_key(name)
+            || metrics.get(known).is_some()
+            || metrics.why_unavailable(known).is_some()
         {
             continue;
         }
         let reason = support(
-            name,
+            known.name,
             duration_s,
             record.sample_period_s,
             &settings.motion,
@@ -341,13 +420,13 @@ fn explain_missing(
             settings.bias_averaging_time_s,
         )
         .err()
-        .or_else(|| truth_lack(name, record.truth().is_some(), is_filter).map(str::to_owned))
-        .or_else(|| repeats_lack(name, 1))
-        .or_else(|| encoder_lack(name, record.encoder_rad.is_some()).map(str::to_owned))
+        .or_else(|| truth_lack(known, record.truth().is_some(), is_filter).map(str::to_owned))
+        .or_else(|| repeats_lack(known, 1))
+        .or_else(|| encoder_lack(known, record.encoder_rad.is_some()).map(str::to_owned))
         .unwrap_or_else(|| match known.applies {
             Applies::Pipeline => PIPELINE_ONLY.to_owned(),
             _ => "the record is too short for it".to_owned(),
         });
-        metrics.miss(name, reason);
+        metrics.miss(known, reason);
     }
 }

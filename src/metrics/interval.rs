@@ -19,15 +19,17 @@ const EXACT_DEGREES_OF_FREEDOM_MAX: f64 = 5000.0;
 
 /// Quantiles `tail` and `1 - tail` of the chi-square distribution.
 ///
-/// `normal_quantile` is the quantile `1 - tail` of the standard normal distribution.
+/// `normal_quantile` is the quantile `1 - tail` of the standard normal distribution. Degrees of freedom
+/// that are no number give quantiles that are none, and so a metric that is unavailable.
 fn chi_square_quantiles(degrees_of_freedom: f64, tail: f64, normal_quantile: f64) -> (f64, f64) {
     let freedom = degrees_of_freedom.max(0.1);
     if freedom < EXACT_DEGREES_OF_FREEDOM_MAX {
-        let distribution = ChiSquared::new(freedom).expect("freedom is positive and finite");
-        return (
-            distribution.inverse_cdf(tail),
-            distribution.inverse_cdf(1.0 - tail),
-        );
+        return ChiSquared::new(freedom).map_or((f64::NAN, f64::NAN), |distribution| {
+            (
+                distribution.inverse_cdf(tail),
+                distribution.inverse_cdf(1.0 - tail),
+            )
+        });
     }
     let spread = normal_quantile * (2.0 / (9.0 * freedom)).sqrt();
     let centre = 1.0 - 2.0 / (9.0 * freedom);
@@ -75,9 +77,7 @@ pub(crate) fn student_quantile(degrees_of_freedom: f64) -> f64 {
     if degrees_of_freedom > 1e5 {
         return NORMAL_QUANTILE;
     }
-    StudentsT::new(0.0, 1.0, degrees_of_freedom.max(1.0))
-        .expect("freedom is positive and finite")
-        .inverse_cdf(1.0 - TAIL)
+    student(degrees_of_freedom.max(1.0), 1.0 - TAIL)
 }
 
 /// Quantile of Student's t distribution for `count` intervals that shall all hold at once.
@@ -86,9 +86,14 @@ pub(crate) fn student_quantile(degrees_of_freedom: f64) -> f64 {
 pub(crate) fn student_quantile_of_many(degrees_of_freedom: f64, count: usize) -> f64 {
     let tail = TAIL / count.max(1) as f64;
     // Beyond a million degrees of freedom the distribution is normal to 1e-6.
-    StudentsT::new(0.0, 1.0, degrees_of_freedom.clamp(1.0, 1e6))
-        .expect("freedom is positive and finite")
-        .inverse_cdf(1.0 - tail)
+    student(degrees_of_freedom.clamp(1.0, 1e6), 1.0 - tail)
+}
+
+/// A quantile of Student's t distribution; no number for degrees of freedom that are none.
+fn student(degrees_of_freedom: f64, probability: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, degrees_of_freedom).map_or(f64::NAN, |distribution| {
+        distribution.inverse_cdf(probability)
+    })
 }
 
 /// Arithmetic mean; 0 for no values.

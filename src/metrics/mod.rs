@@ -21,15 +21,16 @@ mod angle;
 mod audit;
 mod autocovariance;
 mod bias;
-mod catalogue;
+pub mod catalogue;
 mod channel;
 mod combined_freedom;
 mod correlation;
 mod delay;
 mod estimate;
+mod estimates;
 mod frozen_response;
 mod interval;
-mod known_metric;
+mod key;
 mod memory;
 mod multi_sine;
 mod names;
@@ -38,6 +39,7 @@ mod noise_fit;
 mod noise_identification;
 mod noise_level;
 mod nonlinearity;
+mod pipeline;
 mod psd;
 mod readaptation;
 mod record;
@@ -72,15 +74,16 @@ pub use audit::{
 };
 pub use autocovariance::autocovariance;
 pub use bias::{
-    block_means, effective_degrees_of_freedom, expected_bias_stability, paired_ratio, samples_in,
+    block_label_s, block_means, effective_degrees_of_freedom, expected_bias_stability,
+    is_sample_or_longer, paired_ratio, samples_in,
 };
-pub(crate) use catalogue::find;
-pub use catalogue::known_metrics;
+pub use catalogue::{find, known_metrics, repeated_metrics};
 pub use channel::measure;
 pub use correlation::correlation_delay_s;
 pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
-pub use known_metric::{Applies, KnownMetric};
+pub(crate) use key::{Against, Headline, Table};
+pub use key::{Applies, MetricKey};
 pub use memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
 pub(crate) use names::{meant, unknown};
 pub use noise_fit::{
@@ -92,7 +95,7 @@ pub use nonlinearity::{Nonlinearity, Residual, expected_largest};
 pub use psd::{Spectrum, log_binned, segment_samples, welch};
 pub use readaptation::{GainUnits, Readaptation};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
-pub use repeat_statistics::{REPEATED_METRICS, RepeatStatistics};
+pub use repeat_statistics::RepeatStatistics;
 pub use response::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
 pub use scale_factor::{
     Asymmetry, RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero,

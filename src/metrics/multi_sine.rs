@@ -1,16 +1,33 @@
 //! Metrics of a record of several sines at once.
 
+use super::catalogue::{
+    AMPLITUDE_RATIO, DELAY_VS_RAW, DELAY_VS_TRUTH, MEAN_RATIO, TRACKING_ERROR_RMS,
+};
 use std::collections::BTreeMap;
 
 use super::autocovariance::LaggedProducts;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::key::{Applies, Headline, MetricKey, Needs, Table};
 use super::noise_level::{put_noise_gain, put_noise_std};
 use super::record::{FilterFacts, Record};
 use super::response::{ToneClock, ToneFits, ToneResponse, fit_tones};
 use super::steady::{LAGS_MIN, RATIO_BLOCKS, equal_block_means, put_mean};
 use super::truth_response::{reach, remove_response};
 use crate::units;
+
+/// Bandwidth.
+pub static BANDWIDTH: MetricKey = MetricKey::new(
+    "bandwidth_hz",
+    "Hz",
+    Applies::MultiSine,
+    "where the gain against the true rate first falls through 1/sqrt(2) of that of the lowest sine",
+)
+.heading("bandwidth")
+.needs(Needs::TwoSines)
+.of_turned_axis()
+.tables(&[Table::MultiSine])
+.headlines(&[Headline::MultiSine]);
 
 /// Order of the series in the joint fit.
 const CHANNEL: usize = 0;
@@ -47,10 +64,10 @@ pub(crate) fn measure_multi_sine(
     );
     let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
     let behind_truth = later(fits.response(CHANNEL, TRUTH), latency_s);
-    put_lowest("delay_vs_truth_ms", &behind_truth, metrics);
+    put_lowest(&DELAY_VS_TRUTH, &behind_truth, metrics);
     let reference = if filter.is_some() {
         let behind_raw = later(fits.response(CHANNEL, RAW), latency_s);
-        put_lowest("delay_vs_raw_ms", &behind_raw, metrics);
+        put_lowest(&DELAY_VS_RAW, &behind_raw, metrics);
         put_curve("frequency_response_vs_raw", &behind_raw, metrics);
         behind_raw
     } else {
@@ -58,14 +75,14 @@ pub(crate) fn measure_multi_sine(
     };
     put_curve("frequency_response", &behind_truth, metrics);
     if let Some(lowest) = reference.first() {
-        let metric = metrics.put("amplitude_ratio", lowest.gain);
+        let metric = metrics.put(&AMPLITUDE_RATIO, lowest.gain);
         metric.fields.insert("frequency_hz", lowest.frequency_hz);
     }
     match fits.bandwidth_hz(CHANNEL, TRUTH) {
         Ok(bandwidth) => {
-            metrics.put("bandwidth_hz", bandwidth);
+            metrics.put(&BANDWIDTH, bandwidth);
         }
-        Err(reason) => metrics.miss("bandwidth_hz", reason),
+        Err(reason) => metrics.miss(&BANDWIDTH, reason),
     }
     measure_tracking(record, metrics);
     measure_noise(record, &fits, filter, metrics);
@@ -94,10 +111,10 @@ fn later(responses: Vec<ToneResponse>, latency_s: f64) -> Vec<ToneResponse> {
 }
 
 /// Enters the delay at the lowest tone.
-fn put_lowest(name: &'static str, responses: &[ToneResponse], metrics: &mut ChannelMetrics) {
+fn put_lowest(key: &MetricKey, responses: &[ToneResponse], metrics: &mut ChannelMetrics) {
     if let Some(lowest) = responses.first() {
         let delay_ms = lowest.delay_s.scaled(units::s_to_ms(1.0));
-        let metric = metrics.put(name, delay_ms);
+        let metric = metrics.put(key, delay_ms);
         metric.fields.insert("frequency_hz", lowest.frequency_hz);
     }
 }
@@ -160,7 +177,7 @@ fn measure_tracking(record: &Record, metrics: &mut ChannelMetrics) {
         square.low.max(0.0).sqrt(),
         square.high.sqrt(),
     );
-    metrics.put("tracking_error_rms_deg_per_h", estimate);
+    metrics.put(&TRACKING_ERROR_RMS, estimate);
 }
 
 /// Noise about the tones; against raw's for a filter.
@@ -193,9 +210,9 @@ fn measure_noise(
                 "the raw mean, {:.4} deg/h, cannot be told from zero",
                 offset.value
             );
-            metrics.miss("mean_ratio", reason);
+            metrics.miss(&MEAN_RATIO, reason);
         } else {
-            metrics.put("mean_ratio", fits.offset_ratio(CHANNEL, RAW));
+            metrics.put(&MEAN_RATIO, fits.offset_ratio(CHANNEL, RAW));
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::catalogue::{find, known_metrics};
-use super::known_metric::KnownMetric;
+use super::key::MetricKey;
 use crate::wording::{Likeness, Vocabulary, likeness, words_of};
 
 /// Most metrics that are named at once.
@@ -53,7 +53,7 @@ const SYNONYMS: &[(&[&str], &str)] = &[
 ];
 
 /// The metric that a name must have been meant for, if there is one such.
-pub(crate) fn meant(name: &str) -> Option<&'static KnownMetric> {
+pub(crate) fn meant(name: &str) -> Option<&'static MetricKey> {
     match suggestions(name)[..] {
         [only] => find(only),
         _ => None,
@@ -95,9 +95,9 @@ fn suggestions(name: &str) -> Vec<&'static str> {
     if let Some((_, metric)) = SYNONYMS.iter().find(|(names, _)| means(names)) {
         return vec![metric];
     }
-    let alike = known_metrics().iter();
+    let alike = known_metrics().iter().copied();
     let alike = alike.filter_map(|known| Some((likeness(name, known.name, vocabulary())?, known)));
-    let mut alike: Vec<(Likeness, &KnownMetric)> = alike.collect();
+    let mut alike: Vec<(Likeness, &MetricKey)> = alike.collect();
     alike.sort_by_key(|(likeness, _)| *likeness);
     let best = alike.first().map(|(likeness, _)| *likeness);
     let best = alike.iter().filter(|(likeness, _)| Some(*likeness) == best);
@@ -107,12 +107,13 @@ fn suggestions(name: &str) -> Vec<&'static str> {
 /// The metrics whose names hold every word of a name, if they are few.
 fn related(name: &str) -> Vec<&'static str> {
     let words = words_of(name);
-    let holds = |known: &&KnownMetric| {
+    let holds = |known: &&MetricKey| {
         let own = words_of(known.name);
         words.iter().all(|word| own.contains(word))
     };
     let names: Vec<&str> = known_metrics()
         .iter()
+        .copied()
         .filter(holds)
         .map(|known| known.name)
         .collect();

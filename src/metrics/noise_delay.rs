@@ -6,8 +6,27 @@ use super::audit::{filter_bound, noise_delay_bound};
 use super::autocovariance::LaggedProducts;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::key::{Applies, MetricKey, Table};
 use super::record::FilterFacts;
 use crate::units;
+
+/// Least noise power gain at the delay of the filter.
+pub static NOISE_DELAY_BOUND_NOISE_GAIN: MetricKey = MetricKey::of_filters(
+    "noise_delay_bound_noise_gain",
+    "1",
+    Applies::SteadyOrSwing,
+    "least noise gain any fixed filter of as many taps has at this delay with unit DC gain",
+)
+.heading("least at this delay")
+.tables(&[Table::Rest, Table::Swing]);
+
+/// Noise gain over bound.
+pub static NOISE_GAIN_OVER_BOUND: MetricKey = MetricKey::of_filters(
+    "noise_gain_over_bound",
+    "1",
+    Applies::SteadyOrSwing,
+    "noise gain over that least one; below 1 the weights adapt or the signal is attenuated",
+);
 
 /// Points of the curve.
 const CURVE_POINTS: usize = 41;
@@ -21,8 +40,8 @@ pub(crate) fn put_bound(
     metrics: &mut ChannelMetrics,
 ) {
     let metric = match bound {
-        Ok(bound) => metrics.put("noise_delay_bound_noise_gain", bound),
-        Err(reason) => return metrics.miss("noise_delay_bound_noise_gain", reason),
+        Ok(bound) => metrics.put(&NOISE_DELAY_BOUND_NOISE_GAIN, bound),
+        Err(reason) => return metrics.miss(&NOISE_DELAY_BOUND_NOISE_GAIN, reason),
     };
     metric
         .fields
@@ -92,10 +111,9 @@ pub(crate) fn put_over_bound(
     bounds_without: &[Result<f64, String>],
     metrics: &mut ChannelMetrics,
 ) {
-    const NAME: &str = "noise_gain_over_bound";
     let bound = match bound {
         Ok(bound) => *bound,
-        Err(reason) => return metrics.miss(NAME, reason.as_str()),
+        Err(reason) => return metrics.miss(&NOISE_GAIN_OVER_BOUND, reason.as_str()),
     };
     let ratio = |channel: &[f64], raw: &[f64], bound: f64| channel[0] / raw[0] / bound;
     let value = ratio(&channel.autocovariance(), &raw.autocovariance(), bound);
@@ -111,5 +129,8 @@ pub(crate) fn put_over_bound(
             Some(ratio(&own, &other, bound))
         })
         .collect();
-    metrics.put(NAME, interval::jackknife(value, &left_out));
+    metrics.put(
+        &NOISE_GAIN_OVER_BOUND,
+        interval::jackknife(value, &left_out),
+    );
 }

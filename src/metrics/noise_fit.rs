@@ -5,6 +5,70 @@ use super::allan_least_squares::{
     FLICKER, INVERSE_SQUARE, Problem, RAMP, TERMS, WALK, WHITE, basis, fitted_variance,
 };
 use super::estimate::Estimate;
+use super::key::{Applies, Headline, MetricKey, Needs, Pool, Table};
+
+/// Angle random walk.
+pub static ANGLE_RANDOM_WALK: MetricKey = MetricKey::new(
+    "angle_random_walk_deg_per_sqrt_h",
+    "deg/sqrt(h)",
+    Applies::Steady,
+    "N of the fit to the overlapping Allan variance, N^2/tau",
+)
+.heading("ARW")
+.slow_noise()
+.needs(Needs::AllanFit)
+.pooled(Pool::AllanFit)
+.run_column(7)
+.tables(&[Table::Rest])
+.headlines(&[Headline::Rest]);
+
+/// Bias instability.
+pub static BIAS_INSTABILITY: MetricKey = MetricKey::new(
+    "bias_instability_deg_per_h",
+    "deg/h",
+    Applies::Steady,
+    "B of the fit to the overlapping Allan variance, (0.664 B)^2: the flicker floor over 0.664",
+)
+.heading("bias instability")
+.needs(Needs::SlowNoiseFit)
+.pooled(Pool::AllanFit)
+.tables(&[Table::Rest]);
+
+/// Rate random walk.
+pub static RATE_RANDOM_WALK: MetricKey = MetricKey::new(
+    "rate_random_walk_deg_per_h_per_sqrt_h",
+    "deg/h/sqrt(h)",
+    Applies::Steady,
+    "K of the fit to the overlapping Allan variance, K^2 tau/3",
+)
+.heading("rate random walk")
+.needs(Needs::SlowNoiseFit)
+.pooled(Pool::AllanFit)
+.closing_tables();
+
+/// Rate ramp.
+pub static RATE_RAMP: MetricKey = MetricKey::new(
+    "rate_ramp_deg_per_h_per_h",
+    "deg/h/h",
+    Applies::Steady,
+    "R of the fit to the overlapping Allan variance, R^2 tau^2/2",
+)
+.heading("rate ramp")
+.needs(Needs::SlowNoiseFit)
+.pooled(Pool::AllanFit)
+.closing_tables();
+
+/// Quantisation.
+pub static QUANTISATION: MetricKey = MetricKey::new(
+    "quantisation_arcsec",
+    "arcsec",
+    Applies::Steady,
+    "Q of the fit to the overlapping Allan variance, 3 Q^2/tau^2",
+)
+.heading("quantisation")
+.needs(Needs::AllanFit)
+.pooled(Pool::AllanFit)
+.closing_tables();
 
 /// `AVAR / B^2` of flicker noise, `2 ln 2 / pi`; its square root is the familiar 0.664.
 pub const FLICKER_ALLAN_VARIANCE: f64 = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;

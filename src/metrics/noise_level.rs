@@ -3,9 +3,45 @@
 use super::autocovariance::{LaggedProducts, independent_samples, put_autocovariance};
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::key::{Applies, Headline, MetricKey, Needs, Table};
 use super::record::Record;
 use super::steady::{RATIO_BLOCKS, equal_block_means};
 use super::table::DEGREES_OF_FREEDOM;
+
+/// Mean over that of raw.
+pub static MEAN_RATIO: MetricKey = MetricKey::of_filters(
+    "mean_ratio",
+    "1",
+    Applies::Always,
+    "mean of the channel over the mean of raw",
+)
+.heading("mean / raw mean")
+.of_one_motion()
+.tables(&[Table::Rest, Table::Steps]);
+
+/// Standard deviation of the noise.
+pub static NOISE_STD: MetricKey = MetricKey::new(
+    "noise_std_deg_per_h",
+    "deg/h",
+    Applies::Separable,
+    "standard deviation of the samples about the signal: mean, fitted sine, or settled rate",
+)
+.heading("noise std")
+.needs(Needs::SettledStep)
+.run_column(3)
+.tables(&[Table::Rest, Table::Swing, Table::MultiSine, Table::Steps])
+.headlines(&[Headline::Swing, Headline::MultiSine, Headline::Steps]);
+
+/// Noise power gain.
+pub static NOISE_GAIN: MetricKey = MetricKey::of_filters(
+    "noise_gain",
+    "1",
+    Applies::Separable,
+    "variance about the signal over that of raw",
+)
+.heading("noise power gain")
+.needs(Needs::SettledStep)
+.tables(&[Table::Rest, Table::Swing, Table::MultiSine, Table::Steps]);
 
 /// Standard deviation about the signal.
 ///
@@ -24,7 +60,7 @@ pub(crate) fn put_noise_std(
     let of_lags = (independent_samples(&autocovariance, count) - 1.0).max(1.0);
     let freedom = products.variance_freedom().unwrap_or(of_lags);
     let metric = metrics.put(
-        "noise_std_deg_per_h",
+        &NOISE_STD,
         interval::deviation(autocovariance[0].sqrt(), freedom),
     );
     metric.fields.insert("count", count as f64);
@@ -42,7 +78,7 @@ pub(crate) fn put_noise_gain(
 ) {
     let raw_variance = raw.autocovariance()[0];
     if raw_variance.sqrt() <= 1e-12 * raw_level_deg_per_h || raw_variance <= 0.0 {
-        metrics.miss("noise_gain", "the raw channel has no noise");
+        metrics.miss(&NOISE_GAIN, "the raw channel has no noise");
         return;
     }
     let left_out: Vec<f64> = (0..raw.blocks())
@@ -54,19 +90,19 @@ pub(crate) fn put_noise_gain(
     let gain = interval::jackknife(value, &left_out);
     // A power is never negative.
     let gain = Estimate::with_interval(gain.value, gain.low.max(0.0), gain.high);
-    metrics.put("noise_gain", gain);
+    metrics.put(&NOISE_GAIN, gain);
 }
 
 /// Ratio of the means, if raw's mean can be told from zero.
 pub(crate) fn measure_mean_ratio(record: &Record, metrics: &mut ChannelMetrics) {
     let channel = equal_block_means(record.channel_deg_per_h, RATIO_BLOCKS);
     let raw = equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS);
-    put_ratio_of_means("mean_ratio", &channel, &raw, metrics);
+    put_ratio_of_means(&MEAN_RATIO, &channel, &raw, metrics);
 }
 
 /// Enters the ratio of the means of equally long blocks.
 pub(crate) fn put_ratio_of_means(
-    name: &'static str,
+    key: &MetricKey,
     channel: &[f64],
     raw: &[f64],
     metrics: &mut ChannelMetrics,
@@ -74,7 +110,7 @@ pub(crate) fn put_ratio_of_means(
     let raw_mean = interval::from_parts(interval::mean(raw), raw);
     if raw_mean.low <= 0.0 && raw_mean.high >= 0.0 {
         metrics.miss(
-            name,
+            key,
             format!(
                 "the raw mean, {:.4} deg/h, cannot be told from zero",
                 raw_mean.value
@@ -88,5 +124,5 @@ pub(crate) fn put_ratio_of_means(
         .zip(raw)
         .map(|(own, other)| (channel_sum - own) / (raw_sum - other))
         .collect();
-    metrics.put(name, interval::jackknife(channel_sum / raw_sum, &left_out));
+    metrics.put(key, interval::jackknife(channel_sum / raw_sum, &left_out));
 }

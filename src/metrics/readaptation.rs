@@ -9,12 +9,23 @@ use super::autocovariance::LaggedProducts;
 use super::delay::{SwingClock, fit_sine};
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval::{self, NORMAL_QUANTILE};
+use super::key::{Applies, MetricKey, Needs, Table};
 use super::record::{FilterFacts, Record};
 use super::settling::tail_start;
 use super::steady::RATIO_BLOCKS;
 
+/// Readaptation.
+pub static READAPTATION_TIME: MetricKey = MetricKey::of_filters(
+    "readaptation_time_s",
+    "s",
+    Applies::Onset,
+    "time from the start of a motion until the gain stays within 1 % of what it teaches",
+)
+.heading("readaptation")
+.needs(Needs::SettledStep)
+.tables(&[Table::Swing, Table::Steps]);
+
 /// Key of the metric.
-pub(crate) const READAPTATION: &str = "readaptation_time_s";
 
 /// How the reason begins where the gain does not come back.
 pub(crate) const NOT_WITHIN: &str = "not within the record";
@@ -190,12 +201,12 @@ fn scatter(gains: &[f64]) -> f64 {
 pub(crate) fn put(units: &GainUnits, final_gain: f64, metrics: &mut ChannelMetrics) {
     match units.readaptation(final_gain) {
         Ok(found) => {
-            let fields = &mut metrics.put(READAPTATION, found.time_s).fields;
+            let fields = &mut metrics.put(&READAPTATION_TIME, found.time_s).fields;
             fields.insert("window_s", found.window_s);
             fields.insert("first_gain", found.first_gain);
             fields.insert("final_gain", final_gain);
         }
-        Err(reason) => metrics.miss(READAPTATION, reason),
+        Err(reason) => metrics.miss(&READAPTATION_TIME, reason),
     }
 }
 
@@ -215,11 +226,11 @@ pub(crate) fn measure_after_step(
     let noise = LaggedProducts::new(tail, mean, lags, RATIO_BLOCKS).autocovariance();
     if mean.abs() <= MEAN_PER_ERROR_MIN * (noise[0] / tail.len().max(1) as f64).sqrt() {
         let reason = "the final rate is too small against the noise to predict what it teaches";
-        return metrics.miss(READAPTATION, reason);
+        return metrics.miss(&READAPTATION_TIME, reason);
     }
     let second_moment: Vec<f64> = noise.iter().map(|value| value + mean * mean).collect();
     let Some(prediction) = predict(&facts.shape, &second_moment) else {
-        return metrics.miss(READAPTATION, "the raw channel has no power");
+        return metrics.miss(&READAPTATION_TIME, "the raw channel has no power");
     };
     let units = GainUnits::of_step(
         &record.channel_deg_per_h[start..],

@@ -2,21 +2,7 @@
 
 use super::estimate::ChannelMetrics;
 use super::interval;
-
-/// Metrics whose values of every repeat are kept, in the order tables print them.
-pub const REPEATED_METRICS: [&str; 11] = [
-    "mean_deg_per_h",
-    "mean_error_deg_per_h",
-    "noise_std_deg_per_h",
-    "minimum_deg_per_h",
-    "maximum_deg_per_h",
-    "bias_stability_deg_per_h",
-    "angle_random_walk_deg_per_sqrt_h",
-    "dc_gain",
-    "delay_vs_raw_ms",
-    "amplitude_ratio",
-    "tracking_error_rms_deg_per_h",
-];
+use super::key::MetricKey;
 
 /// One metric over the repeats.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,11 +26,8 @@ pub struct RepeatStatistics {
 impl RepeatStatistics {
     /// Statistics of one metric; `None` with fewer than two repeats or where one lacks it.
     #[must_use]
-    pub fn of(repeats: &[ChannelMetrics], name: &str) -> Option<Self> {
-        let metrics: Option<Vec<_>> = repeats
-            .iter()
-            .map(|repeat| repeat.metrics.get(name))
-            .collect();
+    pub fn of(repeats: &[ChannelMetrics], key: &MetricKey) -> Option<Self> {
+        let metrics: Option<Vec<_>> = repeats.iter().map(|repeat| repeat.get(key)).collect();
         let metrics = metrics.filter(|metrics| metrics.len() > 1)?;
         let values: Vec<f64> = metrics.iter().map(|metric| metric.estimate.value).collect();
         let mean = interval::mean(&values);
@@ -64,6 +47,7 @@ impl RepeatStatistics {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metrics::catalogue::MEAN;
     use crate::metrics::{Estimate, Metric};
 
     fn repeat(value: f64) -> ChannelMetrics {
@@ -76,7 +60,7 @@ mod tests {
     #[test]
     fn known_answer_of_four_repeats() {
         let repeats = [2.0, 4.0, 4.0, 6.0].map(repeat);
-        let statistics = RepeatStatistics::of(&repeats, "mean_deg_per_h").expect("four values");
+        let statistics = RepeatStatistics::of(&repeats, &MEAN).expect("four values");
         assert!((statistics.mean - 4.0).abs() < 1e-15);
         // Squares 4 + 0 + 0 + 4 over three.
         assert!((statistics.standard_deviation - (8.0_f64 / 3.0).sqrt()).abs() < 1e-15);
@@ -87,8 +71,8 @@ mod tests {
 
     #[test]
     fn one_repeat_and_a_metric_that_one_repeat_lacks_have_no_statistics() {
-        assert!(RepeatStatistics::of(&[repeat(1.0)], "mean_deg_per_h").is_none());
+        assert!(RepeatStatistics::of(&[repeat(1.0)], &MEAN).is_none());
         let lacking = [repeat(1.0), ChannelMetrics::default()];
-        assert!(RepeatStatistics::of(&lacking, "mean_deg_per_h").is_none());
+        assert!(RepeatStatistics::of(&lacking, &MEAN).is_none());
     }
 }

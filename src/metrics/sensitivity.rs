@@ -4,11 +4,10 @@
 //! |T_i - T_m|` and `Kt = max |K_i - K_m| / (K_m |T_i - T_m|)` about the test m at the reference
 //! temperature. Source: GJB 2426A and IEEE Std 952; the interval is derived.
 
+use super::catalogue::SCALE_FACTOR_ERROR;
 use super::estimate::Estimate;
 use super::interval::student_quantile_of_many;
-
-/// Metric that is a scale factor K as `1e6 (K - 1)`.
-const SCALE_FACTOR_ERROR: &str = "scale_factor_error_ppm";
+use super::key::MetricKey;
 
 /// Degrees of freedom at which Student's t is normal.
 const MANY: f64 = 1e6;
@@ -85,8 +84,8 @@ fn magnitude_of_difference(x: Estimate, y: Estimate, widening: f64) -> Estimate 
 ///
 /// * `reference`: the metric at the reference, in its own unit.
 #[must_use]
-pub fn change_divisor(metric: &str, reference: f64) -> f64 {
-    if metric == SCALE_FACTOR_ERROR {
+pub fn change_divisor(key: &MetricKey, reference: f64) -> f64 {
+    if *key == SCALE_FACTOR_ERROR {
         (1.0 + 1e-6 * reference).abs()
     } else {
         1.0
@@ -113,7 +112,7 @@ mod tests {
         let expected = scale_factor_temperature_sensitivity(factors[1], &factors);
         let points = errors.map(|(temperature, ppm)| point(temperature, ppm, 0.0));
         let (change, at) = largest_change_per_unit(points[1], &points).expect("two changes");
-        let found = change.value / change_divisor(SCALE_FACTOR_ERROR, 2000.0);
+        let found = change.value / change_divisor(&SCALE_FACTOR_ERROR, 2000.0);
         let expected = 1e6 * expected.expect("two changes");
         assert!((found - expected).abs() < 1e-6, "{found} {expected}");
         assert_eq!(at, 0, "487 ppm of 65 K are more than 262 ppm of 35 K");

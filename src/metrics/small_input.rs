@@ -6,18 +6,51 @@
 
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::key::{Applies, MetricKey, Table};
 use super::record::Staircase;
 use super::scale_factor::RatePoint;
+
+/// Threshold.
+pub static THRESHOLD: MetricKey = MetricKey::new(
+    "threshold_deg_per_h",
+    "deg/h",
+    Applies::Steps,
+    "smallest input of the record from which on all give half of themselves, from zero input",
+)
+.heading("threshold")
+.of_turned_axis()
+.by_choice()
+.tables(&[Table::Steps]);
+
+/// Dead band.
+pub static DEAD_BAND: MetricKey = MetricKey::new(
+    "dead_band_deg_per_h",
+    "deg/h",
+    Applies::Steps,
+    "sum of the smallest such inputs of both senses: where the output stays below half",
+)
+.heading("dead band")
+.of_turned_axis()
+.by_choice()
+.tables(&[Table::Steps]);
+
+/// Resolution.
+pub static RESOLUTION: MetricKey = MetricKey::new(
+    "resolution_deg_per_h",
+    "deg/h",
+    Applies::Steps,
+    "the same from the rate held most often: smallest answered increment",
+)
+.heading("resolution")
+.of_turned_axis()
+.by_choice()
+.tables(&[Table::Steps]);
 
 /// Part of the output to expect at which an input counts as answered.
 const ANSWERED: f64 = 0.5;
 
 /// Inputs closer than this part of the largest count as the same.
 const SAME_PER_LARGEST: f64 = 1e-6;
-
-const THRESHOLD: &str = "threshold_deg_per_h";
-const RESOLUTION: &str = "resolution_deg_per_h";
-const DEAD_BAND: &str = "dead_band_deg_per_h";
 
 /// What one change of the input became.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,18 +173,18 @@ pub(crate) fn measure_small_inputs(
     match smallest_answered(points, 0.0) {
         Ok(senses) => put_threshold(senses, metrics),
         Err(reason) => {
-            for name in [THRESHOLD, DEAD_BAND] {
-                metrics.miss(name, reason.clone());
+            for key in [&THRESHOLD, &DEAD_BAND] {
+                metrics.miss(key, reason.clone());
             }
         }
     }
     let resolution = bias_rate(points, staircase).and_then(|base| smallest_answered(points, base));
     match resolution.map(larger) {
         Ok(Some(estimate)) => {
-            metrics.put(RESOLUTION, estimate);
+            metrics.put(&RESOLUTION, estimate);
         }
-        Ok(None) => metrics.miss(RESOLUTION, "no rate departs from the one held twice"),
-        Err(reason) => metrics.miss(RESOLUTION, reason),
+        Ok(None) => metrics.miss(&RESOLUTION, "no rate departs from the one held twice"),
+        Err(reason) => metrics.miss(&RESOLUTION, reason),
     }
 }
 
@@ -163,15 +196,15 @@ fn put_threshold(senses: [Option<Estimate>; 2], metrics: &mut ChannelMetrics) {
                 up.low + down.low,
                 up.high + down.high,
             ];
-            metrics.put(DEAD_BAND, Estimate::with_interval(value, low, high));
+            metrics.put(&DEAD_BAND, Estimate::with_interval(value, low, high));
         }
-        _ => metrics.miss(DEAD_BAND, "it needs inputs of both senses"),
+        _ => metrics.miss(&DEAD_BAND, "it needs inputs of both senses"),
     }
     match larger(senses) {
         Some(estimate) => {
-            metrics.put(THRESHOLD, estimate);
+            metrics.put(&THRESHOLD, estimate);
         }
-        None => metrics.miss(THRESHOLD, "no dwell has an input beside zero"),
+        None => metrics.miss(&THRESHOLD, "no dwell has an input beside zero"),
     }
 }
 

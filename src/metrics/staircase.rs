@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::key::{Applies, Headline, MetricKey, Needs, Table};
 use super::record::{Dwell, Record, Staircase};
 use super::scale_factor::{
     RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero, distinct_rates,
@@ -15,6 +16,58 @@ use super::steady::equal_block_means;
 use crate::units::{deg_per_h_to_deg_per_s, ratio_to_ppm};
 use crate::wording::plain;
 
+/// Scale factor error.
+pub static SCALE_FACTOR_ERROR: MetricKey = MetricKey::new(
+    "scale_factor_error_ppm",
+    "ppm",
+    Applies::Steps,
+    "slope of the line through mean output against mean true rate of the settled dwells, minus 1",
+)
+.heading("scale factor error")
+.needs(Needs::Dwells)
+.of_turned_axis()
+.tables(&[Table::Steps])
+.headlines(&[Headline::Steps, Headline::ScaleFactor]);
+
+/// Nonlinearity of full scale.
+pub static SCALE_FACTOR_NONLINEARITY: MetricKey = MetricKey::new(
+    "scale_factor_nonlinearity_ppm",
+    "ppm",
+    Applies::Steps,
+    "largest distance of a dwell from that line over the largest output (of full scale)",
+)
+.heading("nonlinearity")
+.needs(Needs::Dwells)
+.of_turned_axis()
+.tables(&[Table::Steps])
+.headlines(&[Headline::ScaleFactor]);
+
+/// Nonlinearity of reading.
+pub static SCALE_FACTOR_NONLINEARITY_OF_READING: MetricKey = MetricKey::new(
+    "scale_factor_nonlinearity_of_reading_ppm",
+    "ppm",
+    Applies::Steps,
+    "largest distance of a dwell from that line over the line there (of reading)",
+)
+.heading("nonlinearity of reading")
+.needs(Needs::Dwells)
+.of_turned_axis()
+.tables(&[Table::Steps])
+.headlines(&[Headline::ScaleFactor]);
+
+/// Asymmetry of the scale factor.
+pub static SCALE_FACTOR_ASYMMETRY: MetricKey = MetricKey::new(
+    "scale_factor_asymmetry_ppm",
+    "ppm",
+    Applies::Steps,
+    "difference of the slopes of separate lines for the two senses over their mean",
+)
+.heading("asymmetry")
+.needs(Needs::DwellsOfBothSenses)
+.of_turned_axis()
+.tables(&[Table::Steps])
+.headlines(&[Headline::ScaleFactor]);
+
 /// Blocks of a dwell whose scatter gives the error of its mean.
 const DWELL_BLOCKS: usize = 10;
 
@@ -24,11 +77,13 @@ const DWELL_SAMPLES_MIN: usize = 2 * DWELL_BLOCKS;
 /// Samples by which a dwell may miss its whole turns: both ends and the settling are rounded.
 const DWELL_SLACK_SAMPLES: f64 = 1.5;
 
-const FACTOR: &str = "scale_factor_error_ppm";
-const NONLINEARITY: &str = "scale_factor_nonlinearity_ppm";
-const OF_READING: &str = "scale_factor_nonlinearity_of_reading_ppm";
-const ASYMMETRY: &str = "scale_factor_asymmetry_ppm";
-const OF_FIT: [&str; 4] = [FACTOR, NONLINEARITY, OF_READING, ASYMMETRY];
+/// Metrics of the line through the dwells.
+static OF_FIT: [&MetricKey; 4] = [
+    &SCALE_FACTOR_ERROR,
+    &SCALE_FACTOR_NONLINEARITY,
+    &SCALE_FACTOR_NONLINEARITY_OF_READING,
+    &SCALE_FACTOR_ASYMMETRY,
+];
 
 /// The samples of a dwell inside a record of `samples`; `None` where too few of them have settled.
 fn counted(dwell: &Dwell, samples: usize) -> Option<Range<usize>> {
@@ -38,8 +93,8 @@ fn counted(dwell: &Dwell, samples: usize) -> Option<Range<usize>> {
 }
 
 /// Why a staircase cannot support one of the scale factor metrics, if it cannot.
-pub(crate) fn lack(metric: &str, staircase: &Staircase, samples: usize) -> Option<String> {
-    if !OF_FIT.contains(&metric) {
+pub(crate) fn lack(key: &MetricKey, staircase: &Staircase, samples: usize) -> Option<String> {
+    if !matches!(key.needs, Needs::Dwells | Needs::DwellsOfBothSenses) {
         return None;
     }
     let rates: Vec<f64> = staircase
@@ -60,7 +115,7 @@ pub(crate) fn lack(metric: &str, staircase: &Staircase, samples: usize) -> Optio
     }
     let senses = distinct_rates_by_sense(&rates, staircase.rest_deg_per_h);
     let is_one_sided = senses.iter().any(|&rates| rates < RATES_PER_SENSE_MIN);
-    (metric == ASYMMETRY && is_one_sided).then(|| {
+    (key.needs == Needs::DwellsOfBothSenses && is_one_sided).then(|| {
         let [positive, negative] = senses;
         format!(
             "asymmetry needs {RATES_PER_SENSE_MIN} distinct rates of each sense; there are \
@@ -91,8 +146,8 @@ pub(crate) fn measure_scale_factor(
     let rest = match static_zero(staircase, &mut dwells) {
         Ok(rest) => rest,
         Err(reason) => {
-            for name in OF_FIT {
-                metrics.miss(name, reason.clone());
+            for key in OF_FIT {
+                metrics.miss(key, reason.clone());
             }
             return;
         }
@@ -111,9 +166,9 @@ pub(crate) fn measure_scale_factor(
         }
         // The truth may hold fewer rates than were told, under a servo that has not settled.
         Err(reason) => {
-            for name in OF_FIT {
-                let told = lack(name, staircase, samples);
-                metrics.miss(name, told.unwrap_or_else(|| reason.clone()));
+            for key in OF_FIT {
+                let told = lack(key, staircase, samples);
+                metrics.miss(key, told.unwrap_or_else(|| reason.clone()));
             }
         }
     }
@@ -168,20 +223,27 @@ fn put_fit(
         value, low, high, ..
     } = fit.factor;
     let error = in_ppm(Estimate::with_interval(value - 1.0, low - 1.0, high - 1.0));
-    let mut put = |name, estimate, extra: &[(&'static str, f64)]| {
-        let fields = &mut metrics.put(name, estimate).fields;
+    let mut put = |key: &MetricKey, estimate, extra: &[(&'static str, f64)]| {
+        let fields = &mut metrics.put(key, estimate).fields;
         fields.insert("settle_s", staircase.settle_s);
         fields.insert("count", dwells as f64);
         let finite = extra.iter().filter(|(_, value)| value.is_finite());
         fields.extend(finite.copied());
     };
-    put(FACTOR, error, &[("offset_deg_per_h", fit.offset_deg_per_h)]);
-    for (name, found) in [
-        (NONLINEARITY, &fit.nonlinearity),
-        (OF_READING, &fit.nonlinearity_of_reading),
+    put(
+        &SCALE_FACTOR_ERROR,
+        error,
+        &[("offset_deg_per_h", fit.offset_deg_per_h)],
+    );
+    for (key, found) in [
+        (&SCALE_FACTOR_NONLINEARITY, &fit.nonlinearity),
+        (
+            &SCALE_FACTOR_NONLINEARITY_OF_READING,
+            &fit.nonlinearity_of_reading,
+        ),
     ] {
         let floor = ratio_to_ppm(found.noise_floor);
-        put(name, in_ppm(found.value), &[("noise_floor_ppm", floor)]);
+        put(key, in_ppm(found.value), &[("noise_floor_ppm", floor)]);
     }
     if let Some(asymmetry) = &fit.asymmetry {
         let error_ppm = |factor: f64| ratio_to_ppm(factor - 1.0);
@@ -189,7 +251,7 @@ fn put_fit(
             ("positive_error_ppm", error_ppm(asymmetry.positive)),
             ("negative_error_ppm", error_ppm(asymmetry.negative)),
         ];
-        put(ASYMMETRY, in_ppm(asymmetry.value), &senses);
+        put(&SCALE_FACTOR_ASYMMETRY, in_ppm(asymmetry.value), &senses);
     }
 }
 

@@ -6,8 +6,13 @@ use super::allan_variants::allan_variant;
 use super::audit::{filter_bound, lags_needed, predict};
 use super::autocovariance::{CURVE_LAGS, LaggedProducts};
 use super::bias;
+use super::catalogue::{
+    ANGLE_RANDOM_WALK, BIAS_STABILITY, BIAS_STABILITY_1S, BIAS_STABILITY_10S, BIAS_STABILITY_100S,
+    NOISE_DELAY_BOUND_NOISE_GAIN, NOISE_GAIN_OVER_BOUND, fitted_metrics,
+};
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::key::{Against, Applies, Headline, MetricKey, Needs, Table};
 use super::memory::fit_tau_min_s;
 use super::noise_delay::{put_bound, put_bound_curve, put_over_bound};
 use super::noise_fit::{
@@ -15,18 +20,88 @@ use super::noise_fit::{
 };
 use super::noise_level::{measure_mean_ratio, put_noise_gain, put_noise_std};
 use super::record::{FilterFacts, Record, Settings};
-use super::support::BLOCKS_MIN;
+use super::support::{BLOCKS_MIN, averaging_lack};
 use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION};
 use super::truth_response::without_motion;
 use super::weight_noise::measure_weight_noise;
 use crate::units;
 use crate::wording::{counted, plain};
 
+/// Angle random walk over DC gain.
+pub static ANGLE_RANDOM_WALK_OVER_DC_GAIN: MetricKey = MetricKey::of_filters(
+    "angle_random_walk_over_dc_gain_deg_per_sqrt_h",
+    "deg/sqrt(h)",
+    Applies::Steady,
+    "angle random walk once the scale factor is restored",
+)
+.heading("ARW / DC gain")
+.slow_noise()
+.needs(Needs::AllanFit)
+.tables(&[Table::Rest]);
+
+/// Bias stability over DC gain.
+pub static BIAS_STABILITY_OVER_DC_GAIN: MetricKey = MetricKey::of_filters(
+    "bias_stability_over_dc_gain_deg_per_h",
+    "deg/h",
+    Applies::Steady,
+    "bias stability once the scale factor is restored",
+)
+.heading("bias stability / DC gain")
+.slow_noise()
+.needs(Needs::ScenarioBlocks)
+.tables(&[Table::Rest]);
+
+/// Mean.
+pub static MEAN: MetricKey = MetricKey::new(
+    "mean_deg_per_h",
+    "deg/h",
+    Applies::Always,
+    "mean over the record; in a swing the offset of the sine fit over whole cycles",
+)
+.heading("mean")
+.run_column(1)
+.of_one_motion()
+.tables(&[Table::Rest, Table::Steps])
+.headlines(&[Headline::Rest]);
+
+/// Mean error.
+pub static MEAN_ERROR: MetricKey = MetricKey::new(
+    "mean_error_deg_per_h",
+    "deg/h",
+    Applies::Always,
+    "the mean minus that of the true rate",
+)
+.heading("mean error")
+.against(Against::Truth)
+.run_column(2)
+.of_one_motion()
+.tables(&[Table::Rest, Table::Steps])
+.headlines(&[Headline::Steps, Headline::General]);
+
+/// DC gain predicted.
+pub static DC_GAIN_PREDICTED: MetricKey = MetricKey::of_filters(
+    "dc_gain_predicted",
+    "1",
+    Applies::SteadyOrSwing,
+    "sum of the Wiener weights for the second moments of the raw record, mean included",
+)
+.heading("DC gain predicted")
+.tables(&[Table::Rest, Table::Swing, Table::Campaign]);
+
+/// Delay at DC.
+pub static DELAY_AT_DC: MetricKey = MetricKey::of_filters(
+    "delay_at_dc_ms",
+    "ms",
+    Applies::Steady,
+    "delay at DC of the mean weights, register and latency included",
+)
+.heading("delay at DC")
+.tables(&[Table::Rest]);
+
 /// Blocks of time whose scatter gives the intervals of ratios.
 pub(crate) const RATIO_BLOCKS: usize = 20;
 
 /// Angle random walk over the DC gain.
-pub(crate) const WALK_OVER_DC_GAIN: &str = "angle_random_walk_over_dc_gain_deg_per_sqrt_h";
 
 /// Lags of the autocovariance, at least; correlation beyond counts as slow noise.
 pub(crate) const LAGS_MIN: usize = CURVE_LAGS;
@@ -61,14 +136,11 @@ pub(crate) fn measure_steady(
         measure_mean_ratio(record, metrics);
         measure_weight_noise(record, facts, metrics);
         measure_predictions(record, facts, (&products, &raw), metrics);
-        for (name, over) in [
-            ("angle_random_walk_deg_per_sqrt_h", WALK_OVER_DC_GAIN),
-            (
-                "bias_stability_deg_per_h",
-                "bias_stability_over_dc_gain_deg_per_h",
-            ),
+        for (key, over) in [
+            (&ANGLE_RANDOM_WALK, &ANGLE_RANDOM_WALK_OVER_DC_GAIN),
+            (&BIAS_STABILITY, &BIAS_STABILITY_OVER_DC_GAIN),
         ] {
-            put_over_dc_gain(name, over, facts.dc_gain, metrics);
+            put_over_dc_gain(key, over, facts.dc_gain, metrics);
         }
     }
 }
@@ -117,14 +189,8 @@ fn measure_allan(
         }
         Err(reason) => {
             put_fit_curve(&points, None, metrics);
-            for name in [
-                "angle_random_walk_deg_per_sqrt_h",
-                "bias_instability_deg_per_h",
-                "rate_random_walk_deg_per_h_per_sqrt_h",
-                "rate_ramp_deg_per_h_per_h",
-                "quantisation_arcsec",
-            ] {
-                metrics.miss(name, reason.as_str());
+            for key in fitted_metrics() {
+                metrics.miss(key, reason.as_str());
             }
             None
         }
@@ -139,12 +205,17 @@ fn measure_bias(
     metrics: &mut ChannelMetrics,
 ) {
     for (name, averaging_time_s) in [
-        ("bias_stability_1s_deg_per_h", 1.0),
-        ("bias_stability_10s_deg_per_h", 10.0),
-        ("bias_stability_100s_deg_per_h", 100.0),
-        ("bias_stability_deg_per_h", settings.bias_averaging_time_s),
+        (&BIAS_STABILITY_1S, 1.0),
+        (&BIAS_STABILITY_10S, 10.0),
+        (&BIAS_STABILITY_100S, 100.0),
+        (&BIAS_STABILITY, settings.bias_averaging_time_s),
     ] {
+        if let Some(reason) = averaging_lack(averaging_time_s, record.sample_period_s) {
+            metrics.miss(name, reason);
+            continue;
+        }
         let block = bias::samples_in(averaging_time_s, record.sample_period_s);
+        let averaging_time_s = bias::block_label_s(averaging_time_s, record.sample_period_s);
         let means = bias::block_means(record.channel_deg_per_h, block);
         if means.len() < BLOCKS_MIN {
             let reason = format!(
@@ -161,7 +232,6 @@ fn measure_bias(
         });
         let deviation = interval::sample_variance(&means).sqrt();
         let metric = metrics.put(name, interval::deviation(deviation, freedom));
-        // The time asked for; the nearest whole number of samples is what was averaged.
         metric.fields.insert("averaging_time_s", averaging_time_s);
         metric.fields.insert("block_samples", block as f64);
         metric.fields.insert("count", means.len() as f64);
@@ -201,7 +271,7 @@ fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMe
         duration_s,
         metrics,
     );
-    metrics.mark_exact(&["mean_deg_per_h", "mean_error_deg_per_h"]);
+    metrics.mark_exact(&[&MEAN, &MEAN_ERROR]);
 }
 
 /// Enters the mean and, where the truth is known, its error against the mean truth.
@@ -212,7 +282,7 @@ pub(crate) fn put_mean(
     metrics: &mut ChannelMetrics,
 ) {
     metrics
-        .put("mean_deg_per_h", mean)
+        .put(&MEAN, mean)
         .fields
         .insert("averaging_time_s", averaging_time_s);
     let Some(truth_deg_per_h) = truth_deg_per_h else {
@@ -224,7 +294,7 @@ pub(crate) fn put_mean(
         mean.high - truth_deg_per_h,
     );
     metrics
-        .put("mean_error_deg_per_h", error)
+        .put(&MEAN_ERROR, error)
         .fields
         .insert("averaging_time_s", averaging_time_s);
 }
@@ -271,25 +341,25 @@ fn measure_predictions(
         .filter_map(|block| at(&raw.autocovariance_without(block)))
         .collect();
     let Some((dc_gain, delay_samples, bound)) = at(&raw.autocovariance()) else {
-        metrics.miss("dc_gain_predicted", "the raw channel has no power");
+        metrics.miss(&DC_GAIN_PREDICTED, "the raw channel has no power");
         for name in [
-            "noise_delay_bound_noise_gain",
-            "noise_gain_over_bound",
-            "delay_at_dc_ms",
+            &NOISE_DELAY_BOUND_NOISE_GAIN,
+            &NOISE_GAIN_OVER_BOUND,
+            &DELAY_AT_DC,
         ] {
             metrics.miss(name, "the raw channel has no power");
         }
         return;
     };
     let gains: Vec<f64> = parts.iter().map(|part| part.0).collect();
-    metrics.put("dc_gain_predicted", interval::jackknife(dc_gain, &gains));
+    metrics.put(&DC_GAIN_PREDICTED, interval::jackknife(dc_gain, &gains));
     let delay_ms = |samples: f64| {
         let delay_s = samples * record.sample_period_s + facts.latency_s;
         units::s_to_ms(delay_s)
     };
     let delays_ms: Vec<f64> = parts.iter().map(|part| delay_ms(part.1)).collect();
     let at_dc = interval::jackknife(delay_ms(delay_samples), &delays_ms);
-    metrics.put("delay_at_dc_ms", at_dc);
+    metrics.put(&DELAY_AT_DC, at_dc);
     let without: Vec<_> = parts.into_iter().map(|part| part.2).collect();
     put_over_bound(channel, raw, &bound, &without, metrics);
     put_bound_curve(
@@ -314,12 +384,12 @@ fn measure_predictions(
 /// Enters one metric divided by the DC gain: what is left of the improvement once the scale factor
 /// is restored.
 pub(crate) fn put_over_dc_gain(
-    name: &'static str,
-    over: &'static str,
+    key: &MetricKey,
+    over: &MetricKey,
     dc_gain: Option<f64>,
     metrics: &mut ChannelMetrics,
 ) {
-    match (metrics.metrics.get(name).cloned(), dc_gain) {
+    match (metrics.get(key).cloned(), dc_gain) {
         (Some(metric), Some(gain)) if gain > 1e-6 => {
             let mut fields = metric.fields;
             fields.insert("dc_gain", gain);
@@ -332,6 +402,6 @@ pub(crate) fn put_over_dc_gain(
             metrics.miss(over, format!("the DC gain, {gain}, is not positive"));
         }
         (Some(_), None) => metrics.miss(over, "the DC gain of this filter is not known"),
-        (None, _) => metrics.miss(over, format!("the record does not give `{name}`")),
+        (None, _) => metrics.miss(over, format!("the record does not give `{}`", key.name)),
     }
 }

@@ -2,16 +2,38 @@
 
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval::NORMAL_QUANTILE;
+use super::key::{Applies, MetricKey, Needs, Table};
 use super::settling::Settling;
+
+/// Rise time.
+pub static RISE_TIME: MetricKey = MetricKey::new(
+    "rise_time_s",
+    "s",
+    Applies::Steps,
+    "time from 10 % to 90 % of the last step, linear between samples",
+)
+.heading("rise time")
+.needs(Needs::Step)
+.of_turned_axis()
+.tables(&[Table::Steps]);
+
+/// Overshoot.
+pub static OVERSHOOT: MetricKey = MetricKey::new(
+    "overshoot_percent",
+    "%",
+    Applies::Steps,
+    "largest excess over the settled rate after the last step, of the step; 0 within the noise",
+)
+.heading("overshoot")
+.needs(Needs::Step)
+.of_turned_axis()
+.tables(&[Table::Steps]);
 
 /// Parts of the step between which the rise is timed.
 const RISE: (f64, f64) = (0.1, 0.9);
 
 /// Noise beyond which a crossing of these parts says nothing, as a part of the step.
 const NOISE_MAX: f64 = 0.025;
-
-const OVERSHOOT: &str = "overshoot_percent";
-const RISE_TIME: &str = "rise_time_s";
 
 /// A step with what the rate settles at.
 #[derive(Clone, Copy, Debug)]
@@ -107,17 +129,17 @@ impl Step<'_> {
 /// Enters overshoot and rise time.
 pub(crate) fn put_step_shape(step: &Step, metrics: &mut ChannelMetrics) {
     if step.height_deg_per_h.abs() <= 0.0 {
-        for name in [OVERSHOOT, RISE_TIME] {
-            metrics.miss(name, "the last step has no height");
+        for key in [&OVERSHOOT, &RISE_TIME] {
+            metrics.miss(key, "the last step has no height");
         }
         return;
     }
     let percent = step.overshoot().scaled(100.0);
-    metrics.put(OVERSHOOT, percent);
+    metrics.put(&OVERSHOOT, percent);
     match step.rise_time_s() {
         Ok(rise) => {
-            metrics.put(RISE_TIME, rise);
+            metrics.put(&RISE_TIME, rise);
         }
-        Err(reason) => metrics.miss(RISE_TIME, reason),
+        Err(reason) => metrics.miss(&RISE_TIME, reason),
     }
 }

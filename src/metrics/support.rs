@@ -1,10 +1,10 @@
 //! Whether a record of given length and motion can support a metric at all.
 
-use super::aggregate::REPEATABILITIES;
+use super::bias::is_sample_or_longer;
 use super::catalogue::find;
 use super::delay::{CYCLES_MIN, SwingClock};
 use super::interval::round_to_count;
-use super::known_metric::{Applies, KnownMetric};
+use super::key::{Against, Applies, MetricKey, Needs};
 use super::names::unknown;
 use super::record::Motion;
 use super::settling::{STEP_SAMPLES_MIN, tail_start};
@@ -13,9 +13,6 @@ use crate::wording::plain;
 
 /// Fewest samples worth measuring.
 pub(crate) const SAMPLES_MIN: usize = 64;
-
-/// Metrics that do not rest on the words of the record.
-const INDEPENDENT: [&str; 3] = ["dc_gain", "dc_gain_adapted", "diverged_at_s"];
 
 /// Fewest blocks of which a bias stability is given.
 pub(crate) const BLOCKS_MIN: usize = 5;
@@ -26,18 +23,11 @@ const FIT_SAMPLES_MIN: f64 = 900.0;
 /// Shortest record, s, of which B, K or R can be fitted: the fit must reach 10 s.
 const SLOW_NOISE_DURATION_MIN_S: f64 = 90.0;
 
-/// B, K and R.
-const SLOW_NOISE: [&str; 3] = [
-    "bias_instability_deg_per_h",
-    "rate_random_walk_deg_per_h_per_sqrt_h",
-    "rate_ramp_deg_per_h_per_h",
-];
-
 /// Why a record cannot show B, K or R; nothing if it can, or for another metric.
-pub(crate) fn slow_noise_lack(metric: &str, duration_s: f64) -> Option<String> {
+pub(crate) fn slow_noise_lack(key: &MetricKey, duration_s: f64) -> Option<String> {
     let is_short = duration_s < SLOW_NOISE_DURATION_MIN_S * (1.0 - 1e-9);
-    (SLOW_NOISE.contains(&metric) && is_short)
-        .then(|| too_short(metric, SLOW_NOISE_DURATION_MIN_S, duration_s))
+    (key.needs == Needs::SlowNoiseFit && is_short)
+        .then(|| too_short(key.name, SLOW_NOISE_DURATION_MIN_S, duration_s))
 }
 
 fn too_short(metric: &str, needed_s: f64, duration_s: f64) -> String {
@@ -46,6 +36,17 @@ fn too_short(metric: &str, needed_s: f64, duration_s: f64) -> String {
         plain(needed_s),
         plain(duration_s)
     )
+}
+
+/// Why samples of a period cannot be averaged over a time; nothing if they can.
+pub(crate) fn averaging_lack(averaging_time_s: f64, sample_period_s: f64) -> Option<String> {
+    (!is_sample_or_longer(averaging_time_s, sample_period_s)).then(|| {
+        format!(
+            "an averaging time of {} s is shorter than a sample, which takes {} s",
+            plain(averaging_time_s),
+            plain(sample_period_s)
+        )
+    })
 }
 
 /// Whether a record of this length and motion can ever support a metric.
@@ -72,23 +73,23 @@ pub fn support(
         ));
     }
     check_motion(known, motion)?;
-    let needed_s = match metric {
-        "angle_random_walk_deg_per_sqrt_h"
-        | "angle_random_walk_over_dc_gain_deg_per_sqrt_h"
-        | "quantisation_arcsec" => FIT_SAMPLES_MIN * sample_period_s,
-        slow if SLOW_NOISE.contains(&slow) => SLOW_NOISE_DURATION_MIN_S,
-        "bias_stability_1s_deg_per_h" => BLOCKS_MIN as f64,
-        "bias_stability_10s_deg_per_h" => BLOCKS_MIN as f64 * 10.0,
-        "bias_stability_100s_deg_per_h" => BLOCKS_MIN as f64 * 100.0,
-        "bias_stability_deg_per_h" | "bias_stability_over_dc_gain_deg_per_h" => {
-            BLOCKS_MIN as f64 * bias_averaging_time_s
-        }
-        _ => 0.0,
+    let averaging_time_s = match known.needs {
+        Needs::Blocks(averaging_time_s) => Some(averaging_time_s),
+        Needs::ScenarioBlocks => Some(bias_averaging_time_s),
+        _ => None,
+    };
+    if let Some(lack) = averaging_time_s.and_then(|it| averaging_lack(it, sample_period_s)) {
+        return Err(format!("`{metric}`: {lack}"));
+    }
+    let needed_s = match known.needs {
+        Needs::AllanFit => FIT_SAMPLES_MIN * sample_period_s,
+        Needs::SlowNoiseFit => SLOW_NOISE_DURATION_MIN_S,
+        _ => averaging_time_s.map_or(0.0, |it| BLOCKS_MIN as f64 * it),
     };
     if duration_s < needed_s * (1.0 - 1e-9) {
         return Err(too_short(metric, needed_s, duration_s));
     }
-    if is_independent(known) {
+    if known.needs == Needs::Nothing {
         return Ok(());
     }
     let samples = samples_in_record(duration_s, sample_period_s);
@@ -99,7 +100,7 @@ pub fn support(
             plain(duration_s)
         ));
     }
-    if matches!(metric, "minimum_deg_per_h" | "maximum_deg_per_h") {
+    if known.needs == Needs::Samples {
         return Ok(());
     }
     match motion {
@@ -107,7 +108,7 @@ pub fn support(
             check_cycles(metric, samples, sample_period_s, *frequency_hz)
         }
         Motion::MultiSine { frequencies_hz } => {
-            if metric == "bandwidth_hz" && frequencies_hz.len() < 2 {
+            if known.needs == Needs::TwoSines && frequencies_hz.len() < 2 {
                 return Err(format!("`{metric}` needs two sines or more"));
             }
             let lowest_hz = frequencies_hz.first().copied().unwrap_or(0.0);
@@ -117,21 +118,18 @@ pub fn support(
             last_step_index,
             staircase,
             ..
-        } => match lack(metric, staircase, samples) {
+        } => match lack(known, staircase, samples) {
             Some(reason) => Err(format!("`{metric}`: {reason}")),
-            None => check_tail(metric, samples, *last_step_index),
+            None => check_tail(known, samples, *last_step_index),
         },
         Motion::Steady | Motion::General => Ok(()),
     }
 }
 
-/// The metric that needs the angle of an encoder.
-pub(crate) const DELAY_VS_ENCODER: &str = "delay_vs_encoder_ms";
-
 /// Why a record without an encoder can never have a metric; nothing for other metrics.
 #[must_use]
-pub fn encoder_lack(metric: &str, has_encoder: bool) -> Option<&'static str> {
-    (metric == DELAY_VS_ENCODER && !has_encoder)
+pub fn encoder_lack(key: &MetricKey, has_encoder: bool) -> Option<&'static str> {
+    (key.against == Against::Encoder && !has_encoder)
         .then_some("the table has no encoder: give turntable.encoder.resolution_arcsec")
 }
 
@@ -142,38 +140,26 @@ const REPEATS_MIN: usize = 6;
 
 /// Why too few repeats can never have a metric; nothing for other metrics.
 #[must_use]
-pub fn repeats_lack(metric: &str, repeats: usize) -> Option<String> {
-    let is_lacking = REPEATABILITIES.contains(&metric) && repeats < REPEATS_MIN;
+pub fn repeats_lack(key: &MetricKey, repeats: usize) -> Option<String> {
+    let is_lacking = key.is_repeatability() && repeats < REPEATS_MIN;
     is_lacking.then(|| format!("it needs {REPEATS_MIN} repeats or more; there are {repeats}"))
 }
 
 /// Why a record without its true rate lacks what is compared with it.
 pub(crate) const NO_TRUTH: &str = "the true rate is not known: a recorded log brings none";
 
-/// Metrics of steady and swing records that compare a channel with the true rate.
-const OF_TRUTH: [&str; 4] = [
-    "mean_error_deg_per_h",
-    "delay_vs_truth_ms",
-    "delay_by_correlation_ms",
-    "tracking_error_rms_deg_per_h",
-];
-
 /// Why a record without its true rate can never have a metric; nothing for other metrics.
 ///
 /// The amplitude of raw has nothing but the true rate to be compared with; a filter's has raw.
 #[must_use]
-pub fn truth_lack(metric: &str, has_truth: bool, is_filter: bool) -> Option<&'static str> {
-    let compares = OF_TRUTH.contains(&metric) || (metric == "amplitude_ratio" && !is_filter);
-    match metric {
+pub fn truth_lack(key: &MetricKey, has_truth: bool, is_filter: bool) -> Option<&'static str> {
+    match key.against {
         _ if has_truth => None,
-        DELAY_VS_ENCODER => Some("a recorded log brings no angle of an encoder"),
-        _ => compares.then_some(NO_TRUTH),
+        Against::Encoder => Some("a recorded log brings no angle of an encoder"),
+        Against::Truth => Some(NO_TRUTH),
+        Against::TruthForRaw => (!is_filter).then_some(NO_TRUTH),
+        Against::Nothing => None,
     }
-}
-
-/// Whether a metric does not use the words of the record: a pipeline's figures and a few more.
-fn is_independent(known: &KnownMetric) -> bool {
-    known.applies == Applies::Pipeline || INDEPENDENT.contains(&known.name)
 }
 
 /// Whole samples in a duration; a duration made from a count gives that count back.
@@ -182,15 +168,11 @@ fn samples_in_record(duration_s: f64, sample_period_s: f64) -> usize {
 }
 
 /// Whether enough samples follow the last step.
-fn check_tail(metric: &str, samples: usize, last_step_index: usize) -> Result<(), String> {
+fn check_tail(key: &MetricKey, samples: usize, last_step_index: usize) -> Result<(), String> {
     let after = samples.saturating_sub(last_step_index);
-    let (found, needed) = match metric {
-        "settling_time_s" | "overshoot_percent" | "rise_time_s" => (after, STEP_SAMPLES_MIN),
-        "noise_std_deg_per_h"
-        | "lag1_correlation"
-        | "noise_gain"
-        | "settled_gain"
-        | "readaptation_time_s" => (
+    let (found, needed) = match key.needs {
+        Needs::Step => (after, STEP_SAMPLES_MIN),
+        Needs::SettledStep => (
             samples.saturating_sub(tail_start(samples, last_step_index)),
             SAMPLES_MIN,
         ),
@@ -205,11 +187,12 @@ fn check_tail(metric: &str, samples: usize, last_step_index: usize) -> Result<()
         "in the last quarter after the last step"
     };
     Err(format!(
-        "`{metric}` needs {needed} samples {part}; there are {found}"
+        "`{}` needs {needed} samples {part}; there are {found}",
+        key.name
     ))
 }
 
-fn check_motion(known: &KnownMetric, motion: &Motion) -> Result<(), String> {
+fn check_motion(known: &MetricKey, motion: &Motion) -> Result<(), String> {
     let fits = matches!(
         (known.applies, motion),
         (Applies::Always | Applies::Pipeline, _)
@@ -322,7 +305,7 @@ mod tests {
                 },
             ] {
                 let short = ask(known.name, 63.0 * PERIOD_S, &motion, true);
-                let refused = short.is_err() || is_independent(known);
+                let refused = short.is_err() || known.needs == Needs::Nothing;
                 assert!(refused, "{} {motion:?}", known.name);
             }
         }

@@ -1,5 +1,6 @@
 //! Metrics of a swing record.
 
+use super::catalogue::{DC_GAIN_PREDICTED, MEAN_RATIO, NOISE_GAIN_OVER_BOUND, TRACKING_ERROR_RMS};
 use std::f64::consts::TAU;
 
 use super::audit::{filter_bound, lags_needed, predict};
@@ -8,14 +9,95 @@ use super::correlation::correlation_delay_s;
 use super::delay::{SwingClock, SwingFit, fit_swing};
 use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
+use super::key::{Against, Applies, Headline, MetricKey, Table};
 use super::noise_delay::{put_bound, put_bound_curve, put_over_bound};
 use super::noise_level::{put_noise_gain, put_noise_std};
 use super::readaptation::{self, GainUnits};
 use super::record::{FilterFacts, Record};
 use super::steady::{LAGS_MIN, put_mean};
-use super::support::DELAY_VS_ENCODER;
 use super::truth_response::{reach, remove_response};
 use crate::units;
+
+/// Delay vs raw.
+pub static DELAY_VS_RAW: MetricKey = MetricKey::of_filters(
+    "delay_vs_raw_ms",
+    "ms",
+    Applies::Tones,
+    "phase delay behind the raw channel at the swing frequency; of several sines the lowest",
+)
+.heading("delay vs raw")
+.run_column(9)
+.tables(&[Table::Swing, Table::MultiSine])
+.headlines(&[Headline::Swing]);
+
+/// Predicted delay.
+pub static DELAY_PREDICTED: MetricKey = MetricKey::of_filters(
+    "delay_predicted_ms",
+    "ms",
+    Applies::Swing,
+    "phase delay of the Wiener weights behind raw at the swing frequency, register included",
+)
+.heading("predicted")
+.tables(&[Table::Swing]);
+
+/// Delay vs truth.
+pub static DELAY_VS_TRUTH: MetricKey = MetricKey::new(
+    "delay_vs_truth_ms",
+    "ms",
+    Applies::Tones,
+    "phase delay behind the true rate at the swing frequency; of several sines the lowest",
+)
+.heading("delay vs truth")
+.against(Against::Truth)
+.of_turned_axis()
+.tables(&[Table::Swing, Table::MultiSine])
+.headlines(&[Headline::MultiSine]);
+
+/// Delay vs encoder.
+pub static DELAY_VS_ENCODER: MetricKey = MetricKey::new(
+    "delay_vs_encoder_ms",
+    "ms",
+    Applies::Swing,
+    "phase delay behind the rate implied by a sine fit of the encoder's angle",
+)
+.heading("delay vs encoder")
+.against(Against::Encoder)
+.of_turned_axis()
+.by_choice()
+.tables(&[Table::Swing]);
+
+/// Delay by correlation.
+pub static DELAY_BY_CORRELATION: MetricKey = MetricKey::new(
+    "delay_by_correlation_ms",
+    "ms",
+    Applies::Swing,
+    "delay behind the true rate again, by the peak of their correlation: a check of the sine fit",
+)
+.against(Against::Truth)
+.of_turned_axis();
+
+/// Amplitude ratio.
+pub static AMPLITUDE_RATIO: MetricKey = MetricKey::new(
+    "amplitude_ratio",
+    "1",
+    Applies::Tones,
+    "fitted amplitude over raw's, for raw itself over the true rate's; of several sines the lowest",
+)
+.heading("amplitude ratio")
+.against(Against::TruthForRaw)
+.run_column(10)
+.tables(&[Table::Swing, Table::MultiSine])
+.headlines(&[Headline::Swing]);
+
+/// Harmonic distortion.
+pub static HARMONIC_DISTORTION: MetricKey = MetricKey::new(
+    "harmonic_distortion_percent",
+    "%",
+    Applies::Swing,
+    "root sum of squares of harmonics 2 to 5 over the fundamental, noise power subtracted",
+)
+.heading("harmonic distortion")
+.tables(&[Table::Swing]);
 
 /// The sine fits of one swing record.
 struct Fits {
@@ -72,7 +154,7 @@ pub(crate) fn measure_swing(
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let residuals = fits.channel.residuals(record.channel_deg_per_h);
     metrics.put(
-        "harmonic_distortion_percent",
+        &HARMONIC_DISTORTION,
         fits.channel.harmonic_distortion_percent(&residuals),
     );
     let blocks = fits.channel.block_count();
@@ -97,7 +179,7 @@ pub(crate) fn measure_swing(
         measure_mean_ratio(&fits, metrics);
         measure_predictions(&fits, &clock, facts, &raw, metrics);
         measure_bound(&fits, &clock, facts, (&channel, &raw), metrics);
-        let predicted = metrics.metrics.get("delay_predicted_ms");
+        let predicted = metrics.get(&DELAY_PREDICTED);
         let final_gain = predicted.and_then(|metric| metric.fields.get("amplitude_ratio"));
         if let Some(&final_gain) = final_gain.filter(|_| is_from_rest) {
             let (own, other) = (record.channel_deg_per_h, record.raw_deg_per_h);
@@ -123,9 +205,9 @@ fn measure_sines(
         let start_s = (clock.first_stamp_s - clock.sample_period_s).max(0.0);
         metric.fields.insert("excluded_s", start_s);
     };
-    let mut put_delay = |name, reference| {
+    let mut put_delay = |key: &MetricKey, reference| {
         let delay_s = later(fits.channel.delay_behind_s(reference), latency_s);
-        let metric = metrics.put(name, delay_s.scaled(units::s_to_ms(1.0)));
+        let metric = metrics.put(key, delay_s.scaled(units::s_to_ms(1.0)));
         describe(metric);
         if latency_s > 0.0 {
             let latency_us = units::s_to_us(latency_s);
@@ -133,17 +215,17 @@ fn measure_sines(
         }
     };
     if let Some(truth) = &fits.truth {
-        put_delay("delay_vs_truth_ms", truth);
+        put_delay(&DELAY_VS_TRUTH, truth);
     }
     if let Some(encoder) = &fits.encoder {
-        put_delay(DELAY_VS_ENCODER, encoder);
+        put_delay(&DELAY_VS_ENCODER, encoder);
     }
     if filter.is_some() {
-        put_delay("delay_vs_raw_ms", &fits.raw);
+        put_delay(&DELAY_VS_RAW, &fits.raw);
     }
     let reference = filter.map_or(fits.truth.as_ref(), |_| Some(&fits.raw));
     if let Some(reference) = reference {
-        describe(metrics.put("amplitude_ratio", fits.channel.amplitude_over(reference)));
+        describe(metrics.put(&AMPLITUDE_RATIO, fits.channel.amplitude_over(reference)));
     }
 }
 
@@ -162,10 +244,10 @@ fn measure_correlation(
     match correlation_delay_s(truth_deg_per_h, record.channel_deg_per_h, clock) {
         Ok(delay_s) => {
             let delay_ms = later(delay_s, latency_s).scaled(units::s_to_ms(1.0));
-            let metric = metrics.put("delay_by_correlation_ms", delay_ms);
+            let metric = metrics.put(&DELAY_BY_CORRELATION, delay_ms);
             metric.fields.insert("frequency_hz", clock.frequency_hz);
         }
-        Err(reason) => metrics.miss("delay_by_correlation_ms", reason),
+        Err(reason) => metrics.miss(&DELAY_BY_CORRELATION, reason),
     }
 }
 
@@ -198,7 +280,7 @@ fn measure_tracking(
         square.low.max(0.0).sqrt(),
         square.high.sqrt(),
     );
-    metrics.put("tracking_error_rms_deg_per_h", estimate);
+    metrics.put(&TRACKING_ERROR_RMS, estimate);
 }
 
 /// Ratio of the offsets, if raw's offset can be told from zero.
@@ -209,9 +291,9 @@ fn measure_mean_ratio(fits: &Fits, metrics: &mut ChannelMetrics) {
             "the raw mean, {:.4} deg/h, cannot be told from zero",
             raw.value
         );
-        metrics.miss("mean_ratio", reason);
+        metrics.miss(&MEAN_RATIO, reason);
     } else {
-        metrics.put("mean_ratio", fits.channel.offset_ratio(&fits.raw));
+        metrics.put(&MEAN_RATIO, fits.channel.offset_ratio(&fits.raw));
     }
 }
 
@@ -245,8 +327,8 @@ fn measure_predictions(
         Some((units::s_to_ms(delay_s), prediction.dc_gain(), amplitude))
     };
     let Some((delay_ms, dc_gain, amplitude)) = under(&raw.autocovariance()) else {
-        metrics.miss("delay_predicted_ms", "the raw channel has no power");
-        metrics.miss("dc_gain_predicted", "the raw channel has no power");
+        metrics.miss(&DELAY_PREDICTED, "the raw channel has no power");
+        metrics.miss(&DC_GAIN_PREDICTED, "the raw channel has no power");
         return;
     };
     let parts: Vec<_> = (0..raw.blocks())
@@ -254,10 +336,10 @@ fn measure_predictions(
         .collect();
     let delays: Vec<f64> = parts.iter().map(|part| part.0).collect();
     let gains: Vec<f64> = parts.iter().map(|part| part.1).collect();
-    let metric = metrics.put("delay_predicted_ms", interval::jackknife(delay_ms, &delays));
+    let metric = metrics.put(&DELAY_PREDICTED, interval::jackknife(delay_ms, &delays));
     metric.fields.insert("frequency_hz", clock.frequency_hz);
     metric.fields.insert("amplitude_ratio", amplitude);
-    metrics.put("dc_gain_predicted", interval::jackknife(dc_gain, &gains));
+    metrics.put(&DC_GAIN_PREDICTED, interval::jackknife(dc_gain, &gains));
 }
 
 /// Noise-delay bound at the measured delay behind raw, for the measured colour of raw's noise.
@@ -307,7 +389,7 @@ fn measure_bound(
 /// The scatter of the noise is in that interval already, where numerator and bound share it; of the
 /// bound's own interval only what exceeds it comes on top, in quadrature.
 fn widen_over_bound(bound: &Estimate, left_out: &[f64], metrics: &mut ChannelMetrics) {
-    let Some(metric) = metrics.metrics.get_mut("noise_gain_over_bound") else {
+    let Some(metric) = metrics.get_mut(&NOISE_GAIN_OVER_BOUND) else {
         return;
     };
     let colour = interval::jackknife(bound.value, left_out).high - bound.value;

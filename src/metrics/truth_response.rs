@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::interval;
 use super::record::{FilterFacts, Record};
+use crate::linear_algebra::singular_value_decomposition;
 
 /// Lagged copies of the truth that the regression weighs.
 const COLUMNS: usize = 16;
@@ -38,7 +39,8 @@ pub(crate) fn reach(filter: Option<&FilterFacts>) -> usize {
 /// swing, its unsteadiness and the Earth's rate on an axis that turns are no noise of the gyro: the
 /// truth is known, and 16 lagged copies of it, equally spaced, span any smooth response to it. The
 /// least-squares weights of least norm are taken. Values are left alone where the truth hardly
-/// scatters. Source: derived (linear regression on lagged inputs).
+/// scatters. Where no weights can be found (squares beyond binary64) nothing is left of the values, so
+/// that no metric rests on them. Source: derived (linear regression on lagged inputs).
 pub(crate) fn remove_response(values: &mut [f64], truth: &[f64], reach: usize) {
     let power = |series: &[f64]| series.iter().map(|value| value * value).sum::<f64>();
     let (own, of_truth) = (power(values), power(truth));
@@ -66,9 +68,13 @@ pub(crate) fn remove_response(values: &mut [f64], truth: &[f64], reach: usize) {
         }
     }
     let matrix = DMatrix::from_fn(COLUMNS, COLUMNS, |row, column| normal[row][column]);
-    let decomposition = matrix.svd(true, true);
-    let cutoff = RANK_TOLERANCE * decomposition.singular_values.max();
-    let Ok(weights) = decomposition.solve(&DVector::from_row_slice(&right), cutoff) else {
+    let solved = singular_value_decomposition(matrix, true, true).and_then(|decomposition| {
+        let cutoff = RANK_TOLERANCE * decomposition.singular_values.max();
+        let solved = decomposition.solve(&DVector::from_row_slice(&right), cutoff);
+        solved.ok()
+    });
+    let Some(weights) = solved else {
+        values.fill(f64::NAN);
         return;
     };
     for (index, value) in values.iter_mut().enumerate() {

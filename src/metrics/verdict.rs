@@ -1,6 +1,12 @@
 //! The verdict on a filter: what the intervals of its metrics say it does to signal and noise.
 
+use super::catalogue::{
+    AMPLITUDE_RATIO, ANGLE_RANDOM_WALK_OVER_DC_GAIN, DC_GAIN, DELAY_AT_DC, DELAY_VS_RAW,
+    NOISE_GAIN, NOISE_GAIN_OVER_BOUND, READAPTATION_TIME, SCALE_FACTOR_ERROR, SETTLED_GAIN,
+    WEIGHT_NOISE_RATIO,
+};
 use super::estimate::{ChannelMetrics, Estimate};
+use super::key::MetricKey;
 use crate::units::MICRO;
 
 /// Distance of a gain from 1 that counts as none.
@@ -117,21 +123,21 @@ impl FilterVerdict {
 /// Judges a channel; `None` for one that is no filter, or that failed.
 #[must_use]
 pub fn filter_verdict(channel: &ChannelMetrics) -> Option<FilterVerdict> {
-    let metric = |name: &str| channel.metrics.get(name);
-    let estimate = |name: &str| metric(name).map(|metric| metric.estimate);
-    let gain = |name: &str| estimate(name).map(|gain| Finding::new(gain, GAIN_TOLERANCE));
+    let metric = |key: &MetricKey| channel.get(key);
+    let estimate = |key: &MetricKey| metric(key).map(|metric| metric.estimate);
+    let gain = |key: &MetricKey| estimate(key).map(|gain| Finding::new(gain, GAIN_TOLERANCE));
     let noise = |ratio: Estimate| Finding::new(ratio, NOISE_TOLERANCE);
     // Of raw the amplitude ratio is that to the truth; only filters have a gain at DC.
-    let dc_gain = gain("dc_gain");
-    let noise_gain = estimate("noise_gain");
+    let dc_gain = gain(&DC_GAIN);
+    let noise_gain = estimate(&NOISE_GAIN);
     if channel.error.is_some() || (dc_gain.is_none() && noise_gain.is_none()) {
         return None;
     }
     // A slope over many rates says more than the gain at the last of them, which may be rest.
-    let slope = estimate("scale_factor_error_ppm");
+    let slope = estimate(&SCALE_FACTOR_ERROR);
     let slope = slope.map(|error| Finding::new(one_plus_ppm(error), GAIN_TOLERANCE));
-    let motion_gain = gain("amplitude_ratio").or(slope);
-    let motion_gain = motion_gain.or_else(|| gain("settled_gain"));
+    let motion_gain = gain(&AMPLITUDE_RATIO).or(slope);
+    let motion_gain = motion_gain.or_else(|| gain(&SETTLED_GAIN));
     let level = motion_gain.or(dc_gain);
     let restored = level
         .zip(noise_gain)
@@ -144,13 +150,13 @@ pub fn filter_verdict(channel: &ChannelMetrics) -> Option<FilterVerdict> {
         motion_gain,
         fast_noise,
         fast_noise_restored: restored,
-        slow_noise: estimate("weight_noise_ratio").map(noise),
-        slow_noise_averaging_time_s: metric("weight_noise_ratio")
+        slow_noise: estimate(&WEIGHT_NOISE_RATIO).map(noise),
+        slow_noise_averaging_time_s: metric(&WEIGHT_NOISE_RATIO)
             .and_then(|metric| metric.fields.get("averaging_time_s").copied()),
-        walk_restored_deg_per_sqrt_h: estimate("angle_random_walk_over_dc_gain_deg_per_sqrt_h"),
-        delay_ms: estimate("delay_vs_raw_ms").or_else(|| estimate("delay_at_dc_ms")),
-        over_bound: estimate("noise_gain_over_bound").map(noise),
-        readaptation_s: estimate("readaptation_time_s"),
+        walk_restored_deg_per_sqrt_h: estimate(&ANGLE_RANDOM_WALK_OVER_DC_GAIN),
+        delay_ms: estimate(&DELAY_VS_RAW).or_else(|| estimate(&DELAY_AT_DC)),
+        over_bound: estimate(&NOISE_GAIN_OVER_BOUND).map(noise),
+        readaptation_s: estimate(&READAPTATION_TIME),
     })
 }
 

@@ -4,8 +4,19 @@ use super::allan::{NoiseType, degrees_of_freedom};
 use super::bias::samples_in;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
+use super::key::{Applies, MetricKey, Table};
 use super::memory::memory_samples;
 use super::record::{FilterFacts, Record};
+
+/// Weight noise.
+pub static WEIGHT_NOISE_RATIO: MetricKey = MetricKey::of_filters(
+    "weight_noise_ratio",
+    "1",
+    Applies::Steady,
+    "Allan deviation at averaging_time_s over DC gain times raw's: 1 when the weights stand still",
+)
+.heading("weight noise")
+.tables(&[Table::Rest]);
 
 /// Averaging time at which the ratio is taken, s, if the record supports it.
 const AVERAGING_TIME_S: f64 = 1.0;
@@ -38,13 +49,18 @@ pub(crate) fn measure_weight_noise(
     facts: &FilterFacts,
     metrics: &mut ChannelMetrics,
 ) {
-    const NAME: &str = "weight_noise_ratio";
     let Some(dc_gain) = facts.dc_gain else {
-        metrics.miss(NAME, "the DC gain of this filter is not known");
+        metrics.miss(
+            &WEIGHT_NOISE_RATIO,
+            "the DC gain of this filter is not known",
+        );
         return;
     };
     if dc_gain <= 1e-6 {
-        metrics.miss(NAME, format!("the DC gain, {dc_gain}, is not positive"));
+        metrics.miss(
+            &WEIGHT_NOISE_RATIO,
+            format!("the DC gain, {dc_gain}, is not positive"),
+        );
         return;
     }
     let count = record.raw_deg_per_h.len();
@@ -54,14 +70,14 @@ pub(crate) fn measure_weight_noise(
     let supported = |m: &usize| degrees_of_freedom(NoiseType::White, count + 1, *m) >= FREEDOM_MIN;
     let Some(m) = (1..=longest).rev().find(supported) else {
         metrics.miss(
-            NAME,
+            &WEIGHT_NOISE_RATIO,
             format!("no averaging time has {FREEDOM_MIN} degrees of freedom"),
         );
         return;
     };
     if m < REACHES_MIN * reach {
         metrics.miss(
-            NAME,
+            &WEIGHT_NOISE_RATIO,
             format!(
                 "no averaging time long against the {reach} samples that the filter reaches back"
             ),
@@ -74,7 +90,7 @@ pub(crate) fn measure_weight_noise(
     let (own_sum, raw_sum): (f64, f64) = (own.iter().sum(), raw.iter().sum());
     let scatter = (raw_sum / count as f64).sqrt() / m as f64;
     if scatter <= 1e-12 * interval::mean(record.raw_deg_per_h).abs() || raw_sum <= 0.0 {
-        metrics.miss(NAME, "the raw channel has no noise");
+        metrics.miss(&WEIGHT_NOISE_RATIO, "the raw channel has no noise");
         return;
     }
     let ratio = |own: f64, raw: f64| (own / raw).max(0.0).sqrt() / dc_gain;
@@ -85,7 +101,7 @@ pub(crate) fn measure_weight_noise(
         .collect();
     let estimate = interval::jackknife(ratio(own_sum, raw_sum), &left_out);
     let metric = metrics.put(
-        NAME,
+        &WEIGHT_NOISE_RATIO,
         Estimate::with_interval(estimate.value, estimate.low.max(0.0), estimate.high),
     );
     // The time asked for where it is the nearest whole number of samples.

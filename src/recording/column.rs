@@ -1,8 +1,11 @@
-//! A column of numbers as a file holds it, before its unit is applied.
+//! Columns of numbers as a file holds them, before their unit is applied.
+
+use std::io;
 
 use super::error::Place;
+use super::input::push;
 
-/// Numbers with the places they came from.
+/// Numbers with the name of their column.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Column {
     /// Name in the heading, or what it was asked for by.
@@ -14,20 +17,49 @@ pub(crate) struct Column {
 /// The columns read from one file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Columns {
-    /// The rate or angle.
-    pub(crate) data: Column,
+    /// Rates, angles and what else was asked for, in that order; all of one length.
+    pub(crate) data: Vec<Column>,
     /// The time, where it was asked for.
     pub(crate) time: Option<Column>,
     /// Where each row stands; rows of an array stand at their index.
-    pub(crate) lines: Option<Vec<usize>>,
+    pub(crate) lines: Option<RowLines>,
+}
+
+/// The lines that rows stand in. Most rows stand in the line after that of the row before.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RowLines {
+    /// Rows that do not, with their lines.
+    jumps: Vec<(usize, usize)>,
+}
+
+impl RowLines {
+    /// Takes the line of the next row; an error says that memory is used up.
+    pub(crate) fn take(&mut self, row: usize, line: usize) -> io::Result<()> {
+        if self.line(row) == Some(line) {
+            return Ok(());
+        }
+        push(&mut self.jumps, (row, line))
+    }
+
+    /// Line of a row, as if all rows behind the last one taken stood in lines that follow.
+    fn line(&self, row: usize) -> Option<usize> {
+        let behind = self.jumps.partition_point(|(first, _)| *first <= row);
+        let (first, line) = self.jumps.get(behind.checked_sub(1)?)?;
+        Some(line + (row - first))
+    }
 }
 
 impl Columns {
     /// Where row `row` stands in the file.
     pub(crate) fn place(&self, row: usize) -> Place {
-        match self.lines.as_ref().and_then(|lines| lines.get(row)) {
-            Some(line) => Place::Line(*line),
+        match self.lines.as_ref().and_then(|lines| lines.line(row)) {
+            Some(line) => Place::Line(line),
             None => Place::Index(row),
         }
+    }
+
+    /// Number of rows.
+    pub(crate) fn rows(&self) -> usize {
+        self.data.first().map_or(0, |column| column.values.len())
     }
 }

@@ -1,40 +1,23 @@
-//! Columns of numbers in text: `,`, `;`, tab or blanks between them.
+//! Columns of numbers in text.
 
 use std::fmt::Write as _;
+use std::io::BufRead;
 use std::path::Path;
 
-use super::column::{Column, Columns};
+use super::column::{Column, Columns, RowLines};
 use super::error::{LogError, Place};
+use super::input::{failure, push};
+use super::text::{Delimiter, Lines, TextError, finite, is_heading, listed, shown};
 
-/// What stands between the cells of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Delimiter {
-    Character(char),
-    Blanks,
-}
-
-impl Delimiter {
-    /// The delimiter of the first line that is no comment.
-    pub(super) fn of(line: &str) -> Self {
-        let found = ['\t', ';', ','].into_iter().find(|c| line.contains(*c));
-        found.map_or(Self::Blanks, Self::Character)
-    }
-
-    /// The cells of a line, without the blanks and quotation marks around them.
-    pub(super) fn cells(self, line: &str) -> Vec<&str> {
-        match self {
-            Self::Character(character) => line.split(character).map(unquoted).collect(),
-            Self::Blanks => line.split_whitespace().map(unquoted).collect(),
-        }
-    }
-}
-
-/// A cell without the blanks and quotation marks around it.
-fn unquoted(cell: &str) -> &str {
-    let cell = cell.trim();
-    cell.strip_prefix('"')
-        .and_then(|cell| cell.strip_suffix('"'))
-        .unwrap_or(cell)
+/// What is read from a file.
+#[derive(Clone, Debug)]
+pub(super) struct Wanted<'a> {
+    /// Columns by name or number from 1; none: the only one beside the time.
+    pub(super) columns: Vec<Option<&'a str>>,
+    /// Column of the time, likewise.
+    pub(super) time: Option<&'a str>,
+    /// Samples after which reading ends.
+    pub(super) samples_max: usize,
 }
 
 /// How the lines of a file are cut.
@@ -46,11 +29,19 @@ struct Layout {
 }
 
 impl Layout {
-    fn of(line: &str) -> Self {
+    /// The layout that a first line, heading or not, has above the first row.
+    fn of(line: &str, first_row: &str) -> Result<Self, String> {
         let delimiter = Delimiter::of(line);
-        let cells = delimiter.cells(line);
-        let is_heading = cells.iter().all(|cell| cell.parse::<f64>().is_err());
-        Self {
+        let mut cells = delimiter.first_cells(line);
+        let is_heading = is_heading(&cells)?;
+        // Blanks in the heading of a single column are part of its name.
+        if is_heading
+            && delimiter == Delimiter::Blanks
+            && delimiter.first_cells(first_row).len() == 1
+        {
+            cells = vec![line.trim()];
+        }
+        Ok(Self {
             delimiter,
             cells: cells.len(),
             names: if is_heading {
@@ -58,7 +49,7 @@ impl Layout {
             } else {
                 Vec::new()
             },
-        }
+        })
     }
 
     /// Index of the column that was asked for by name or by number from 1.
@@ -101,7 +92,7 @@ impl Layout {
         }
         format!(
             "expected one of {}, or a number from 1 to {}",
-            self.names.join(", "),
+            listed(&self.names),
             self.cells
         )
     }
@@ -112,124 +103,156 @@ impl Layout {
     }
 }
 
-/// Reads one column, and that of the time where it is asked for.
+/// Reads columns, and that of the time where it is asked for.
 ///
-/// Empty lines and lines that begin with `#` are passed over. The first other line is a heading if
-/// none of its cells is a number. Numbers have a decimal point.
+/// The first line is a heading if none of its cells is a number. Numbers have a decimal point.
 ///
 /// # Errors
-/// Unknown columns, lines of another width, cells that are no finite number.
+/// Bytes that are no text, unknown columns and one asked for twice, lines of another width, cells
+/// that are no finite number; a first line that is neither a heading nor a row of numbers.
 pub(super) fn read(
     path: &Path,
-    bytes: &[u8],
-    column: Option<&str>,
-    time_column: Option<&str>,
+    reader: impl BufRead,
+    wanted: &Wanted<'_>,
 ) -> Result<Columns, LogError> {
-    let text = text_of(path, bytes, "neither NPY nor text in UTF-8")?;
-    let mut reader: Option<Reader> = None;
-    for (number, line) in lines(text) {
-        let complain = |message: String| LogError::at(path, Place::Line(number), message);
-        match &mut reader {
-            Some(reader) => reader.take(line, number).map_err(complain)?,
+    let mut lines = Lines::new(reader, "neither NPY nor text in UTF-8");
+    let mut heading: Option<(String, usize)> = None;
+    let mut table: Option<Table> = None;
+    while let Some(line) = lines.next_line().map_err(|error| fault(path, error))? {
+        let at = |number: usize| move |text| LogError::at(path, Place::Line(number), text);
+        let table = match &mut table {
+            Some(table) => table,
             None => {
-                let mut first = Reader::new(line, column, time_column).map_err(complain)?;
-                if first.layout.names.is_empty() {
-                    first.take(line, number).map_err(complain)?;
+                let first = heading.take();
+                let (first, number) = match &first {
+                    Some((text, number)) => (text.as_str(), *number),
+                    None => (line.text, line.number),
+                };
+                let layout = Layout::of(first, line.text).map_err(at(number))?;
+                if !layout.names.is_empty() && number == line.number {
+                    heading = Some((line.text.to_owned(), line.number));
+                    continue;
                 }
-                reader = Some(first);
+                table.insert(Table::new(layout, wanted).map_err(at(number))?)
             }
+        };
+        let cells = table.row(line.text).map_err(at(line.number))?;
+        table.take(path, &cells, line.number)?;
+        if table.columns.rows() >= wanted.samples_max {
+            break;
         }
     }
-    Ok(reader.map(|reader| reader.columns).unwrap_or_default())
+    Ok(table.map(|table| table.columns).unwrap_or_default())
 }
 
-/// The text that bytes are, or `message` at the first line that is none.
-pub(super) fn text_of<'a>(
-    path: &Path,
-    bytes: &'a [u8],
-    message: &str,
-) -> Result<&'a str, LogError> {
-    std::str::from_utf8(bytes).map_err(|error| {
-        let before = &bytes[..error.valid_up_to()];
-        let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
-        LogError::at(path, Place::Line(line), message)
-    })
-}
-
-/// The lines that are neither empty nor comments, with their numbers from 1.
-pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
-    lines
-        .filter(|(_, line)| !(line.trim().is_empty() || line.trim_start().starts_with('#')))
-        .map(|(index, line)| (index + 1, line))
+/// An error of a text at its line.
+pub(super) fn fault(path: &Path, error: TextError) -> LogError {
+    match error {
+        TextError::Io(error) => failure(path, error),
+        TextError::Content { line, message, .. } => LogError::at(path, Place::Line(line), message),
+    }
 }
 
 /// A file while it is read.
-struct Reader {
+struct Table {
     layout: Layout,
-    data: usize,
+    data: Vec<usize>,
     time: Option<usize>,
     columns: Columns,
+    /// Cells of a first row that are no numbers; none once the second row was held against it.
+    words: Vec<(usize, String)>,
 }
 
-impl Reader {
-    fn new(first: &str, column: Option<&str>, time_column: Option<&str>) -> Result<Self, String> {
-        let layout = Layout::of(first);
-        let time = time_column.map(|wanted| layout.find(wanted)).transpose()?;
-        let data = match column {
-            Some(wanted) => layout.find(wanted)?,
-            None => layout.only(time)?,
-        };
-        if time == Some(data) {
-            return Err("the column of the data is that of the time".to_owned());
+impl Table {
+    fn new(layout: Layout, wanted: &Wanted<'_>) -> Result<Self, String> {
+        let time = wanted.time.map(|name| layout.find(name)).transpose()?;
+        let columns = wanted.columns.iter();
+        let data = columns.map(|column| match column {
+            Some(name) => layout.find(name),
+            None => layout.only(time),
+        });
+        let data = data.collect::<Result<Vec<usize>, String>>()?;
+        for (position, index) in data.iter().enumerate() {
+            if time == Some(*index) {
+                return Err("the column of the data is that of the time".to_owned());
+            }
+            if data[..position].contains(index) {
+                let name = layout.name(*index).unwrap_or_default();
+                return Err(format!(
+                    "column {} is named for two quantities: expected another for each",
+                    shown(&name)
+                ));
+            }
         }
-        let named = |index| Column {
+        let named = |index: usize| Column {
             name: layout.name(index),
             values: Vec::new(),
         };
         Ok(Self {
             columns: Columns {
-                data: named(data),
+                data: data.iter().copied().map(named).collect(),
                 time: time.map(named),
-                lines: Some(Vec::new()),
+                lines: Some(RowLines::default()),
             },
             layout,
             data,
             time,
+            words: Vec::new(),
         })
     }
 
-    fn take(&mut self, line: &str, number: usize) -> Result<(), String> {
-        let cells = self.layout.delimiter.cells(line);
-        if cells.len() != self.layout.cells {
-            return Err(format!(
-                "{} cells where the first line has {}",
-                cells.len(),
-                self.layout.cells
-            ));
+    /// The cells of a row, as many as the first line has.
+    fn row<'a>(&mut self, line: &'a str) -> Result<Vec<&'a str>, String> {
+        let width = self.layout.cells;
+        let cells = self.layout.delimiter.cells_up_to(line, width);
+        if cells.len() != width {
+            let got = cells.len();
+            return Err(format!("{got} cells where the first line has {width}"));
         }
-        let value = |index: usize| finite(cells[index], self.layout.name(index));
-        self.columns.data.values.push(value(self.data)?);
-        if let (Some(index), Some(time)) = (self.time, &mut self.columns.time) {
-            time.values.push(value(index)?);
+        if self.layout.names.is_empty() && self.columns.rows() < 2 {
+            self.hold_against_first(&cells)?;
         }
-        if let Some(lines) = &mut self.columns.lines {
-            lines.push(number);
-        }
-        Ok(())
+        Ok(cells)
     }
-}
 
-/// The number of a cell.
-pub(super) fn finite(cell: &str, name: Option<String>) -> Result<f64, String> {
-    let column = name.map_or_else(String::new, |name| format!("column {name}: "));
-    match cell.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        Ok(number) => Err(format!("{column}{number} is not a finite number")),
-        Err(_) if cell.contains(',') => Err(format!(
-            "{column}`{cell}` is not a number: expected a decimal point"
-        )),
-        Err(_) => Err(format!("{column}`{cell}` is not a number")),
+    /// Refuses a first row that may be a heading some of whose names are numbers: one that has words
+    /// where the second has numbers. It would be taken for a sample.
+    fn hold_against_first(&mut self, cells: &[&str]) -> Result<(), String> {
+        let is_number = |cell: &str| cell.parse::<f64>().is_ok();
+        if self.columns.rows() == 0 {
+            let words = cells.iter().enumerate();
+            let words = words.filter(|(_, cell)| !is_number(cell));
+            self.words = words.map(|(index, cell)| (index, shown(cell))).collect();
+            return Ok(());
+        }
+        let words = std::mem::take(&mut self.words);
+        let found = words
+            .into_iter()
+            .find(|(index, _)| is_number(cells[*index]));
+        found.map_or(Ok(()), |(index, word)| {
+            Err(format!(
+                "column {} has a number where the first row has `{word}`: expected a heading without \
+                 numbers, or a first row like this one",
+                index + 1,
+            ))
+        })
+    }
+
+    /// Takes the numbers of a row.
+    fn take(&mut self, path: &Path, cells: &[&str], line: usize) -> Result<(), LogError> {
+        let row = self.columns.rows();
+        let indices = self.data.iter().chain(&self.time);
+        let columns = self.columns.data.iter_mut().chain(&mut self.columns.time);
+        for (index, column) in indices.zip(columns) {
+            let value = finite(cells[*index], None)
+                .or_else(|_| finite(cells[*index], column.name.as_deref()))
+                .map_err(|message| LogError::at(path, Place::Line(line), message))?;
+            push(&mut column.values, value).map_err(|error| failure(path, error))?;
+        }
+        match &mut self.columns.lines {
+            Some(lines) => lines.take(row, line).map_err(|error| failure(path, error)),
+            None => Ok(()),
+        }
     }
 }
 

@@ -1,11 +1,13 @@
 //! Group means of a calibration that a user took: one line for each mounting and rate.
 
-use std::fs;
 use std::path::Path;
 
-use super::csv::{finite, lines, text_of};
+use super::bounds::{STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C};
+use super::csv::fault;
 use super::error::{LogError, Place};
 use super::groups_heading::{Heading, Quantity};
+use super::input::read_whole;
+use super::text::{Lines, finite, shown};
 use super::unit::RateUnit;
 use crate::units::deg_per_h_to_deg_per_s;
 
@@ -14,10 +16,14 @@ const TABLE_RATE_MAX_DEG_PER_S: f64 = 2000.0;
 /// Largest rate that an output may stand for, deg/s: wide enough that outputs in a wrong unit come
 /// as far as the comparison with the rates, which names the unit.
 const RATE_MAX_DEG_PER_S: f64 = 1e9;
-/// Believable temperatures, deg C: those that a compensation takes as its reference.
-const TEMPERATURE_C: (f64, f64) = (-100.0, 150.0);
-/// Fastest change of these, K/min.
+/// Most groups of a file.
+pub const GROUPS_MAX: usize = 10_000;
+/// Fastest change of temperatures, K/min.
 const WARMING_MAX_K_PER_MIN: f64 = 1000.0;
+/// Longest time and most turns that are believed: thirty years, in s, and as many turns.
+const TIME_MAX_S: f64 = 1e9;
+/// Latest start, s: stamps of a clock that counts from 1970, in s or ms.
+const START_MAX_S: f64 = 1e13;
 
 /// How the case sits on the table, whose axis is vertical.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,17 +138,23 @@ fn bits(group: &RecordedGroup) -> impl Iterator<Item = u64> {
 /// [`LogError`]: whatever the file system says; columns unknown, repeated or missing; cells that are
 /// no number or out of range; a group named twice.
 pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
-    let bytes = fs::read(path).map_err(|source| LogError::read(path, source))?;
-    let text = text_of(path, &bytes, "no text in UTF-8")?;
-    let mut lines = lines(text);
-    let Some((number, first)) = lines.next() else {
+    let bytes = read_whole(path)?;
+    let mut lines = Lines::new(&bytes[..], "no text in UTF-8");
+    let complain = |number, message| LogError::at(path, Place::Line(number), message);
+    let first = lines.next_line().map_err(|error| fault(path, error))?;
+    let Some(first) = first else {
         return Err(LogError::of_file(path, "holds no group"));
     };
-    let complain = |number, message| LogError::at(path, Place::Line(number), message);
-    let heading = Heading::of(first).map_err(|message| complain(number, message))?;
+    let heading = Heading::of(first.text).map_err(|message| complain(first.number, message))?;
     let mut groups: Vec<RecordedGroup> = Vec::new();
-    for (number, line) in lines {
-        let cells = heading.delimiter.cells(line);
+    while let Some(line) = lines.next_line().map_err(|error| fault(path, error))? {
+        let number = line.number;
+        if groups.len() == GROUPS_MAX {
+            let message = format!("more than {GROUPS_MAX} groups, the most that a file may have");
+            return Err(complain(number, message));
+        }
+        let width = heading.columns.len();
+        let cells = heading.delimiter.cells_up_to(line.text, width);
         let group = Line::new(&heading, &cells)
             .and_then(|line| line.group(number))
             .map_err(|message| complain(number, message))?;
@@ -150,7 +162,7 @@ pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
             .iter()
             .find(|other| other.name.is_some() && other.name == group.name);
         if let Some(other) = same {
-            let name = other.name.as_deref().unwrap_or_default();
+            let name = shown(other.name.as_deref().unwrap_or_default());
             let message = format!(
                 "column group: `{name}` is the group of line {} too",
                 other.line
@@ -162,6 +174,7 @@ pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
     if groups.is_empty() {
         return Err(LogError::of_file(path, "holds no group"));
     }
+    check_standard_errors(&groups).map_err(|(number, message)| complain(number, message))?;
     let unit = |quantity| heading.unit(quantity).unwrap_or(RateUnit::DegPerH);
     Ok(RecordedGroups {
         file: path
@@ -174,6 +187,33 @@ pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
         output_unit: [0, 1, 2].map(|axis| unit(Quantity::Output(axis))),
         groups,
     })
+}
+
+/// Refuses standard errors that no mean has: the covariance and the weighted residuals rest on their
+/// ratios. Noise-free data have 0 in every line of a gyro.
+///
+/// # Errors
+/// Line and complaint.
+fn check_standard_errors(groups: &[RecordedGroup]) -> Result<(), (usize, String)> {
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let errors = || {
+            let lines = groups.iter();
+            lines.filter_map(|group| Some((group.line, group.standard_error_deg_per_h?[axis])))
+        };
+        if errors().all(|(_, error)| error <= 0.0) {
+            continue;
+        }
+        let small = errors().find(|(_, error)| *error < STANDARD_ERROR_MIN_DEG_PER_H);
+        if let Some((line, error)) = small {
+            let message = format!(
+                "the standard error of {name}, {error:?} deg/h, is out of range: allowed from \
+                 {STANDARD_ERROR_MIN_DEG_PER_H:e} deg/h on, or 0 in every line of {name} for data \
+                 without noise"
+            );
+            return Err((line, message));
+        }
+    }
+    Ok(())
 }
 
 /// One line under its heading.
@@ -201,7 +241,7 @@ impl<'a> Line<'a> {
         let reference = three(|axis| table_rate(Quantity::Reference(axis)))?;
         let temperature = self.common_or_each(Quantity::Temperature, TEMPERATURE_C, "deg C")?;
         let warming = (-WARMING_MAX_K_PER_MIN, WARMING_MAX_K_PER_MIN);
-        let time = (0.0, f64::MAX);
+        let time = (0.0, TIME_MAX_S);
         Ok(RecordedGroup {
             line,
             name: self.cell(Quantity::Group).map(|(_, cell)| cell.to_owned()),
@@ -217,8 +257,8 @@ impl<'a> Line<'a> {
                 "K/min",
             )?,
             averaging_time_s: self.number(Quantity::AveragingTime, time, "s")?,
-            start_s: self.number(Quantity::Start, (f64::MIN, f64::MAX), "s")?,
-            turns: self.number(Quantity::Turns, (0.0, f64::MAX), "turns")?,
+            start_s: self.number(Quantity::Start, (-START_MAX_S, START_MAX_S), "s")?,
+            turns: self.number(Quantity::Turns, time, "turns")?,
             samples: self.count(Quantity::Samples)?,
             rejected: three(|axis| self.count(Quantity::Rejected(axis)))?,
         })
@@ -244,18 +284,13 @@ impl<'a> Line<'a> {
         if cell.is_empty() {
             return Err(format!("column {name}: the cell is empty: expected {unit}"));
         }
-        let value = finite(cell, Some(name.to_owned()))
-            .map_err(|message| format!("{message}: expected {unit}"))?;
+        let value =
+            finite(cell, Some(name)).map_err(|message| format!("{message}: expected {unit}"))?;
         if (min..=max).contains(&value) {
             return Ok(Some(value));
         }
-        let expected = if max < f64::MAX {
-            format!("{min} to {max} {unit}")
-        } else {
-            format!("{min} {unit} or more")
-        };
         Err(format!(
-            "column {name}: {value} {unit} is out of range: expected {expected}"
+            "column {name}: {value} {unit} is out of range: expected {min} to {max} {unit}"
         ))
     }
 
@@ -297,7 +332,10 @@ impl<'a> Line<'a> {
         };
         let count = cell.parse();
         count.map(Some).map_err(|_| {
-            format!("column {name}: `{cell}` is no count: expected a whole number, 0 or more")
+            format!(
+                "column {name}: `{}` is no count: expected a whole number, 0 or more",
+                shown(cell)
+            )
         })
     }
 
@@ -323,8 +361,9 @@ impl<'a> Line<'a> {
         match (axis, sense, words.next()) {
             (Some(axis), Some(is_up), None) => Ok(Mounting { axis, is_up }),
             _ => Err(format!(
-                "column {name}: `{cell}` is no mounting: expected the case axis along the table \
-                 axis, x, y or z, as `-x` or `x down` where it points down"
+                "column {name}: `{}` is no mounting: expected the case axis along the table axis, \
+                 x, y or z, as `-x` or `x down` where it points down",
+                shown(cell)
             )),
         }
     }

@@ -1,9 +1,11 @@
 //! The heading of a groups file: which column holds what, in which unit.
 
-use super::csv::Delimiter;
+use super::text::{Delimiter, shown};
 use super::unit::{RateUnit, SUFFIXES};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
+/// Most columns of a heading: twice as many as there are quantities.
+const COLUMNS_MAX: usize = 64;
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +65,12 @@ impl Heading {
         let known = known();
         let mut columns: Vec<HeadedColumn> = Vec::new();
         let mut complaints = Vec::new();
-        for cell in delimiter.cells(line) {
+        let cells = delimiter.first_cells(line);
+        if cells.len() > COLUMNS_MAX {
+            let got = cells.len();
+            return Err(format!("{got} columns: expected at most {COLUMNS_MAX}"));
+        }
+        for cell in cells {
             match known.iter().find(|column| column.name == cell) {
                 Some(column) => {
                     let mut before = columns.iter();
@@ -73,7 +80,7 @@ impl Heading {
                     }
                     columns.push(column.clone());
                 }
-                None => complaints.push(unknown(cell, &known)),
+                None => complaints.push(unknown(&shown(cell), &known)),
             }
         }
         complaints.extend(missing(&columns));

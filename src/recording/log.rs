@@ -1,13 +1,15 @@
 //! From a file to rate words at equal spacing.
 
-use std::fs;
 use std::path::Path;
 
+use super::bounds::{TEMPERATURE_C, check_rate, check_sample_rate};
 use super::column::Columns;
+use super::csv::{self, Wanted};
 use super::error::LogError;
+use super::input::Input;
 use super::timing::{TimeUnit, Timing, timing};
 use super::unit::RateUnit;
-use super::{csv, npy};
+use super::{npy, npy_heading};
 use crate::units::s_to_us;
 
 /// What the user says of a file.
@@ -65,80 +67,171 @@ impl Log {
     }
 }
 
+/// Columns of an assembly in one file, by name or number from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AssemblyColumns<'a> {
+    /// Rates of the gyros x, y, z.
+    pub gyros: [&'a str; 3],
+    /// Temperature of the assembly, deg C; none where it was not recorded.
+    pub temperature: Option<&'a str>,
+}
+
+/// Logs of an assembly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblyLog {
+    /// Logs of the gyros x, y, z, of one length.
+    pub gyros: [Log; 3],
+    /// Temperature at each of their words, deg C.
+    pub temperature_c: Option<Vec<f64>>,
+}
+
 /// Reads a log, NPY by its first bytes and text otherwise.
 ///
 /// # Errors
 /// [`LogError`]: whatever the file system says; a file that does not hold what `format` says of it.
 pub fn read_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
-    let bytes = fs::read(path).map_err(|source| LogError::read(path, source))?;
-    let columns = if bytes.starts_with(npy::MAGIC) {
-        let named = format.column.as_deref().or(format.time_column.as_deref());
+    let columns = vec![format.column.as_deref()];
+    let columns = read_columns(path, columns, format.time_column.as_deref(), usize::MAX)?;
+    let (timing, sample_rate_hz) = spacing(path, &columns, format)?;
+    log(path, &columns, 0, format, (timing, sample_rate_hz))
+}
+
+/// Reads the logs of three gyros from one text, in one pass; `format.column` is not used.
+///
+/// # Errors
+/// As [`read_log`]; two quantities in one column, a temperature that no assembly has.
+pub fn read_assembly_log(
+    path: &Path,
+    format: &LogFormat,
+    columns: &AssemblyColumns<'_>,
+) -> Result<AssemblyLog, LogError> {
+    let gyros = columns.gyros.map(Some);
+    let wanted = gyros.into_iter().chain(columns.temperature.map(Some));
+    let time = format.time_column.as_deref();
+    let columns = read_columns(path, wanted.collect(), time, usize::MAX)?;
+    let spacing = spacing(path, &columns, format)?;
+    let gyro = |index: usize| log(path, &columns, index, format, spacing);
+    let gyros = [gyro(0)?, gyro(1)?, gyro(2)?];
+    let temperature_c = columns.data.get(3).map(|column| column.values.clone());
+    let (low, high) = TEMPERATURE_C;
+    let is_far = |warmth: &f64| !(low..=high).contains(warmth);
+    let far = temperature_c.as_deref().unwrap_or_default();
+    if let Some(row) = far.iter().position(is_far) {
+        let message = format!(
+            "a temperature of {:?} deg C is out of range: expected {low} to {high} deg C",
+            far[row]
+        );
+        return Err(LogError::at(path, columns.place(row), message));
+    }
+    Ok(AssemblyLog {
+        gyros,
+        temperature_c,
+    })
+}
+
+/// Reads the first numbers of a file as they stand, at most `samples_max`: a stimulus.
+///
+/// * `column`: of a text, by its name or its number from 1; none where there is only one.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_stimulus(
+    path: &Path,
+    column: Option<&str>,
+    samples_max: usize,
+) -> Result<Vec<f64>, LogError> {
+    let columns = read_columns(path, vec![column], None, samples_max)?;
+    let column = columns.data.into_iter().next();
+    Ok(column.map(|column| column.values).unwrap_or_default())
+}
+
+/// Reads columns of a text, or the array of an NPY file; there is a sample.
+fn read_columns(
+    path: &Path,
+    columns: Vec<Option<&str>>,
+    time: Option<&str>,
+    samples_max: usize,
+) -> Result<Columns, LogError> {
+    let input = Input::open(path)?;
+    let columns = if input.starts_with(npy_heading::MAGIC) {
+        let named = columns.iter().flatten().next().copied().or(time);
         if let Some(name) = named {
             let message = format!("an NPY file has no columns: leave `{name}` out");
             return Err(LogError::of_file(path, message));
         }
-        npy::read(path, &bytes)?
+        npy::read(path, input, samples_max)?
     } else {
-        let (column, time) = (format.column.as_deref(), format.time_column.as_deref());
-        csv::read(path, &bytes, column, time)?
+        let wanted = Wanted {
+            columns,
+            time,
+            samples_max,
+        };
+        csv::read(path, input, &wanted)?
     };
-    drop(bytes);
-    if columns.data.values.is_empty() {
+    if columns.rows() == 0 {
         return Err(LogError::of_file(path, "holds no sample"));
     }
+    Ok(columns)
+}
+
+/// What the time column says, and the sample rate, Hz.
+fn spacing(
+    path: &Path,
+    columns: &Columns,
+    format: &LogFormat,
+) -> Result<(Option<Timing>, f64), LogError> {
+    let given = format.sample_rate_hz;
     let timing = match &columns.time {
-        Some(time) => {
-            let given = format.sample_rate_hz;
-            Some(timing(path, &columns, time, format.time_unit, given)?)
-        }
+        Some(time) => Some(timing(path, columns, time, format.time_unit, given)?),
         None => None,
     };
     let from_column = timing.map(|timing| timing.sample_rate_hz);
-    let Some(sample_rate_hz) = format.sample_rate_hz.or(from_column) else {
+    let Some(sample_rate_hz) = given.or(from_column) else {
         let message = "the sample rate is not known: give --rate-hz, or a time column with --time";
         return Err(LogError::of_file(path, message));
     };
-    let rate_deg_per_h = rates(path, &columns, format, sample_rate_hz)?;
+    check_sample_rate(sample_rate_hz).map_err(|message| LogError::of_file(path, message))?;
+    Ok((timing, sample_rate_hz))
+}
+
+/// One of the columns as a log.
+fn log(
+    path: &Path,
+    columns: &Columns,
+    index: usize,
+    format: &LogFormat,
+    (timing, sample_rate_hz): (Option<Timing>, f64),
+) -> Result<Log, LogError> {
     let name = path.file_name().unwrap_or(path.as_os_str());
     Ok(Log {
         file: name.to_string_lossy().into_owned(),
-        column: columns.data.name,
+        column: columns.data[index].name.clone(),
         unit: format.unit,
-        rate_deg_per_h,
+        rate_deg_per_h: rates(path, columns, index, format, sample_rate_hz)?,
         sample_rate_hz,
         timing,
     })
-}
-
-/// Reads one more column of a text as it stands, such as a temperature beside the rates.
-///
-/// # Errors
-/// As [`read_log`].
-pub fn read_column(path: &Path, column: &str) -> Result<Vec<f64>, LogError> {
-    let bytes = fs::read(path).map_err(|source| LogError::read(path, source))?;
-    if bytes.starts_with(npy::MAGIC) {
-        let message = format!("an NPY file has no columns: leave `{column}` out");
-        return Err(LogError::of_file(path, message));
-    }
-    Ok(csv::read(path, &bytes, Some(column), None)?.data.values)
 }
 
 /// The numbers in deg/h.
 fn rates(
     path: &Path,
     columns: &Columns,
+    index: usize,
     format: &LogFormat,
     sample_rate_hz: f64,
 ) -> Result<Vec<f64>, LogError> {
-    let values = columns.data.values.iter().enumerate();
+    let values = columns.data[index].values.iter().enumerate();
     let rates = values.map(|(row, &value)| {
         let rate = format
             .unit
             .to_deg_per_h(value * format.scale, sample_rate_hz);
-        if rate.is_finite() {
-            return Ok(rate);
-        }
-        let message = format!("{value:?} {} is not a finite rate in deg/h", format.unit);
+        let unit = format.unit;
+        let message = match check_rate(rate) {
+            Ok(()) => return Ok(rate),
+            Err(message) if rate.is_finite() => format!("{value:?} {unit}: {message}"),
+            Err(_) => format!("{value:?} {unit} is not a finite rate in deg/h"),
+        };
         Err(LogError::at(path, columns.place(row), message))
     });
     rates.collect()

@@ -2,21 +2,33 @@
 //! words as CSV.
 //!
 //! Invariant: a log comes out of here whole, finite, equally spaced and in deg/h, or not at all;
-//! every complaint names the file and the place in it.
+//! every complaint names the file and the place in it. Every command that takes numbers from a file
+//! takes them through this module, and what it says of text and NPY holds for all of them.
 
+mod bounds;
 mod column;
 mod csv;
 mod error;
 mod groups;
 mod groups_heading;
+mod input;
 mod log;
 mod npy;
+mod npy_heading;
+mod text;
 mod timing;
 mod unit;
 
+pub use bounds::{
+    RATE_MAX_DEG_PER_H, SAMPLE_RATE_HZ, STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C, check_rate,
+    check_sample_rate, check_temperature,
+};
 pub use csv::csv_text;
 pub use error::LogError;
-pub use groups::{Mounting, RecordedGroup, RecordedGroups, read_groups};
-pub use log::{Log, LogFormat, read_column, read_log};
+pub use groups::{GROUPS_MAX, Mounting, RecordedGroup, RecordedGroups, read_groups};
+pub use log::{
+    AssemblyColumns, AssemblyLog, Log, LogFormat, read_assembly_log, read_log, read_stimulus,
+};
+pub use text::{Delimiter, Line, Lines, TextError};
 pub use timing::{TimeUnit, Timing};
 pub use unit::RateUnit;

@@ -1,90 +1,144 @@
-//! One-dimensional NPY files of binary64, binary32 or signed integers of 32 or 64 bits.
+//! One-dimensional NPY files of binary64, binary32 or integers of 8 to 64 bits.
 
+use std::io::Read;
 use std::path::Path;
-
-use npyz::{DType, Deserialize, NpyFile, TypeChar};
 
 use super::column::{Column, Columns};
 use super::error::{LogError, Place};
-
-/// First bytes of every NPY file.
-pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+use super::input::{Input, failure, push};
+use super::npy_heading::{self, HeadingError, NpyHeading, Word};
 
 /// Largest integer that binary64 holds with all below it.
-const INTEGER_MAX: i64 = 1 << 53;
+const INTEGER_MAX: u64 = 1 << 53;
+/// Bytes that are read at a time: whole numbers of every size.
+const CHUNK_BYTES: usize = 1 << 16;
 
-/// Reads the array of a file.
+/// Reads the array of a file, at most `samples_max` numbers of it.
 ///
 /// # Errors
-/// Another shape or number type, a file cut short, an integer beyond binary64.
-pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Columns, LogError> {
-    let broken = |error: &dyn std::fmt::Display| {
-        LogError::of_file(path, format!("not a whole NPY file: {error}"))
-    };
-    let file = NpyFile::new(bytes).map_err(|error| broken(&error))?;
-    let shape = file.shape().to_vec();
-    let [count] = shape[..] else {
-        let message = format!(
-            "holds an array of shape {shape:?}: expected one dimension, one number a sample"
-        );
-        return Err(LogError::of_file(path, message));
-    };
-    let dtype = file.dtype();
-    let found = dtype.descr();
-    let unknown = || {
-        let message = format!(
-            "holds numbers of type {found}: expected binary64 (f8), binary32 (f4), or integers i4 \
-             or i8, little- or big-endian"
-        );
-        LogError::of_file(path, message)
-    };
-    let DType::Plain(word) = &dtype else {
-        return Err(unknown());
-    };
-    let size = word.size_field();
-    // Before anything is set aside for a count that the file only claims.
-    if count.saturating_mul(size) > bytes.len() as u64 {
-        return Err(broken(&format!(
-            "its heading names {count} numbers of {size} bytes, the file has {} bytes",
-            bytes.len()
-        )));
+/// Another shape or number type, a file with less or more bytes than its heading says, a number that
+/// is not finite, an integer beyond binary64.
+pub(super) fn read(path: &Path, mut input: Input, samples_max: usize) -> Result<Columns, LogError> {
+    let heading = npy_heading::read(&mut input).map_err(|error| match error {
+        HeadingError::Io(error) => failure(path, error),
+        HeadingError::Content(message) => LogError::of_file(path, message),
+    })?;
+    if let Some(length) = input.length() {
+        check_length(&heading, length).map_err(|message| LogError::of_file(path, message))?;
     }
-    let values = match (word.type_char(), size) {
-        (TypeChar::Float, 8) => numbers::<f64>(file).map_err(|error| broken(&error))?,
-        (TypeChar::Float, 4) => {
-            let words = numbers::<f32>(file).map_err(|error| broken(&error))?;
-            words.into_iter().map(f64::from).collect()
+    let mut values = Vec::new();
+    let mut chunk = vec![0; CHUNK_BYTES];
+    let wanted = heading
+        .count
+        .min(u64::try_from(samples_max).unwrap_or(u64::MAX));
+    let per_chunk = CHUNK_BYTES / heading.word_bytes;
+    while (values.len() as u64) < wanted {
+        let left = usize::try_from(wanted - values.len() as u64).unwrap_or(usize::MAX);
+        let bytes = &mut chunk[..left.min(per_chunk) * heading.word_bytes];
+        input
+            .read_exact(bytes)
+            .map_err(|error| match error.kind() {
+                std::io::ErrorKind::UnexpectedEof => LogError::of_file(path, cut_short(&heading)),
+                _ => failure(path, error),
+            })?;
+        for word in bytes.chunks_exact(heading.word_bytes) {
+            let value = number(&heading, word)
+                .map_err(|message| LogError::at(path, Place::Index(values.len()), message))?;
+            push(&mut values, value).map_err(|error| failure(path, error))?;
         }
-        (TypeChar::Int, 4) => {
-            let words = numbers::<i32>(file).map_err(|error| broken(&error))?;
-            words.into_iter().map(f64::from).collect()
+    }
+    if wanted == heading.count {
+        let more = input.read(&mut [0]).map_err(|error| failure(path, error))?;
+        if more > 0 {
+            return Err(LogError::of_file(path, too_long(&heading, "more bytes")));
         }
-        (TypeChar::Int, 8) => {
-            let words = numbers::<i64>(file).map_err(|error| broken(&error))?;
-            integers(path, &words)?
-        }
-        _ => return Err(unknown()),
-    };
+    }
     Ok(Columns {
-        data: Column { name: None, values },
+        data: vec![Column { name: None, values }],
         ..Columns::default()
     })
 }
 
-fn numbers<T: Deserialize>(file: NpyFile<&[u8]>) -> std::io::Result<Vec<T>> {
-    file.into_vec()
+/// Holds the bytes of a file against those its heading asks for.
+fn check_length(heading: &NpyHeading, length: u64) -> Result<(), String> {
+    let NpyHeading {
+        count, word_bytes, ..
+    } = heading;
+    let there = length.saturating_sub(heading.bytes);
+    match count.checked_mul(*word_bytes as u64) {
+        Some(expected) if expected == there => Ok(()),
+        Some(expected) if expected < there => {
+            let left = there - expected;
+            Err(too_long(heading, &format!("{left} more bytes")))
+        }
+        _ => Err(format!(
+            "not a whole NPY file: its heading names {count} numbers of {word_bytes} bytes, the file \
+             has {there} bytes for them"
+        )),
+    }
 }
 
-fn integers(path: &Path, words: &[i64]) -> Result<Vec<f64>, LogError> {
-    let in_range = |word: &i64| (-INTEGER_MAX..=INTEGER_MAX).contains(word);
-    if let Some(index) = words.iter().position(|word| !in_range(word)) {
-        let message = format!(
-            "{} lies beyond 2^53, the largest count that is kept exactly",
-            words[index]
-        );
-        return Err(LogError::at(path, Place::Index(index), message));
+fn cut_short(heading: &NpyHeading) -> String {
+    let NpyHeading {
+        count, word_bytes, ..
+    } = heading;
+    format!(
+        "not a whole NPY file: its heading names {count} numbers of {word_bytes} bytes, and it ends \
+         before them"
+    )
+}
+
+fn too_long(heading: &NpyHeading, more: &str) -> String {
+    let NpyHeading {
+        count, word_bytes, ..
+    } = heading;
+    format!(
+        "its NPY heading names {count} numbers of {word_bytes} bytes, and {more} follow them: expected \
+         one array and nothing behind it"
+    )
+}
+
+/// The number that the bytes of a word are.
+fn number(heading: &NpyHeading, bytes: &[u8]) -> Result<f64, String> {
+    let mut word = [0; 8];
+    for (position, byte) in bytes.iter().enumerate() {
+        // From the least significant byte on.
+        let place = if heading.is_big_endian {
+            bytes.len() - 1 - position
+        } else {
+            position
+        };
+        word[place] = *byte;
+    }
+    let [b0, b1, b2, b3, ..] = word;
+    let value = match heading.word {
+        Word::F4 => f64::from(f32::from_le_bytes([b0, b1, b2, b3])),
+        Word::F8 => f64::from_le_bytes(word),
+        Word::I1 => f64::from(i8::from_le_bytes([b0])),
+        Word::I2 => f64::from(i16::from_le_bytes([b0, b1])),
+        Word::I4 => f64::from(i32::from_le_bytes([b0, b1, b2, b3])),
+        Word::I8 => integer(i64::from_le_bytes(word))?,
+        Word::U1 => f64::from(b0),
+        Word::U2 => f64::from(u16::from_le_bytes([b0, b1])),
+        Word::U4 => f64::from(u32::from_le_bytes([b0, b1, b2, b3])),
+        Word::U8 => integer(u64::from_le_bytes(word))?,
+    };
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(format!("{value} is not a finite number"))
+    }
+}
+
+/// An integer that binary64 holds exactly.
+fn integer(word: impl Into<i128>) -> Result<f64, String> {
+    let word = word.into();
+    if word.unsigned_abs() > u128::from(INTEGER_MAX) {
+        return Err(format!(
+            "{word} lies beyond 2^53, the largest count that is kept exactly"
+        ));
     }
     #[expect(clippy::cast_precision_loss, reason = "checked to lie within 2^53")]
-    let values = words.iter().map(|&word| word as f64).collect();
-    Ok(values)
+    let value = word as f64;
+    Ok(value)
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde_json::{Map, Value};
 
 use crate::gate::plain;
-use crate::report::json::{number, object, pretty};
+use crate::report::json::{number, numbers, object, pretty, put};
 use crate::report::text::Grid;
 use crate::signal::{BudgetPoint, BudgetSheet};
 
@@ -175,22 +175,13 @@ fn walk_text(walk: Option<f64>) -> String {
 }
 
 /// The budget as JSON, all curves as arrays; a point out of the converter's range is `null`.
-///
-/// # Panics
-/// If a number is not finite, which a checked gyro rules out.
 #[must_use]
 pub fn budget_json(file: &str, sheet: &BudgetSheet) -> String {
-    let document = Value::Object(object([
-        ("schema", 1.into()),
-        ("file", file.into()),
-        (
-            "power_uw",
-            number(sheet.configured.power_uw, "the power of the budget"),
-        ),
-        (
-            "modulation_depth_deg",
-            number(sheet.configured.modulation_depth_deg, "a depth"),
-        ),
+    let mut document = object([("schema", 1.into()), ("file", file.into())]);
+    put(&mut document, "power_uw", sheet.configured.power_uw);
+    let depth_deg = sheet.configured.modulation_depth_deg;
+    put(&mut document, "modulation_depth_deg", depth_deg);
+    document.extend(object([
         ("sources", entries_json(sheet)),
         ("optimum", optimum_json(sheet)),
         ("by_depth", curve_json(&sheet.by_depth)),
@@ -201,22 +192,23 @@ pub fn budget_json(file: &str, sheet: &BudgetSheet) -> String {
         ),
         ("cautions", sheet.cautions.clone().into()),
     ]));
-    pretty(&document)
+    pretty(&document.into())
 }
 
 fn entries_json(sheet: &BudgetSheet) -> Value {
     let row = |entry: &crate::signal::BudgetEntry| {
-        let what = entry.source;
-        let walk = number(entry.angle_random_walk_deg_per_sqrt_h, what);
-        let row = object([
-            ("angle_random_walk_deg_per_sqrt_h", walk),
-            ("power_share", number(entry.power_share, what)),
+        let row = numbers([
+            (
+                "angle_random_walk_deg_per_sqrt_h",
+                entry.angle_random_walk_deg_per_sqrt_h,
+            ),
+            ("power_share", entry.power_share),
             (
                 "phase_noise_urad_per_sqrt_hz",
-                number(entry.phase_noise_urad_per_sqrt_hz, what),
+                entry.phase_noise_urad_per_sqrt_hz,
             ),
         ]);
-        (what.to_owned(), Value::Object(row))
+        (entry.source.to_owned(), Value::Object(row))
     };
     Value::Object(sheet.entries.iter().map(row).collect())
 }
@@ -226,46 +218,33 @@ fn optimum_json(sheet: &BudgetSheet) -> Value {
     let (Some(point), Some(closed_form)) = (&sheet.optimum, closed_form) else {
         return Value::Null;
     };
-    Value::Object(object([
-        (
-            "modulation_depth_deg",
-            number(point.modulation_depth_deg, "the best depth"),
-        ),
-        (
-            "closed_form_modulation_depth_deg",
-            number(closed_form, "the best depth"),
-        ),
-        (
-            "angle_random_walk_deg_per_sqrt_h",
-            walk_json(point.walk(TOTAL)),
-        ),
-    ]))
+    let mut record = numbers([
+        ("modulation_depth_deg", point.modulation_depth_deg),
+        ("closed_form_modulation_depth_deg", closed_form),
+    ]);
+    let walk = point_json(point.walk(TOTAL));
+    record.insert("angle_random_walk_deg_per_sqrt_h".to_owned(), walk);
+    record.into()
 }
 
-fn walk_json(walk: Option<f64>) -> Value {
-    walk.map_or(Value::Null, |walk| number(walk, "a noise source"))
+/// A number of a curve whose points keep their places; `null` where there is none.
+fn point_json(value: Option<f64>) -> Value {
+    value.and_then(number).unwrap_or(Value::Null)
 }
 
 fn curve_json(points: &[BudgetPoint]) -> Value {
-    let column =
-        |read: &dyn Fn(&BudgetPoint) -> Value| Value::Array(points.iter().map(read).collect());
+    let column = |read: &dyn Fn(&BudgetPoint) -> Option<f64>| {
+        Value::Array(points.iter().map(|point| point_json(read(point))).collect())
+    };
     let walks: Map<String, Value> = sources(points)
         .into_iter()
-        .map(|name| {
-            (
-                name.to_owned(),
-                column(&|point| walk_json(point.walk(name))),
-            )
-        })
+        .map(|name| (name.to_owned(), column(&|point| point.walk(name))))
         .collect();
     Value::Object(object([
-        (
-            "power_uw",
-            column(&|point| number(point.power_uw, "a power")),
-        ),
+        ("power_uw", column(&|point| Some(point.power_uw))),
         (
             "modulation_depth_deg",
-            column(&|point| number(point.modulation_depth_deg, "a depth")),
+            column(&|point| Some(point.modulation_depth_deg)),
         ),
         ("angle_random_walk_deg_per_sqrt_h", Value::Object(walks)),
     ]))

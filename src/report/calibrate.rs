@@ -3,7 +3,7 @@
 use crate::gate::plain;
 use crate::report::calibration::{AXES, THETAS, calibration_json};
 use crate::report::calibration_text::calibration_text;
-use crate::report::json::{number, object, pretty};
+use crate::report::json::{object, pretty, put};
 use crate::report::summary::{SCHEMA, tool};
 use crate::report::text::{Grid, Tone, toned, wrapped};
 use crate::signal::{AssemblyParameters, CalibrationEstimate, CalibrationSheet};
@@ -53,19 +53,13 @@ pub fn calibrate_text(report: &CalibrateReport, width: usize, colour: bool) -> S
 }
 
 /// The calibration as JSON; `calibration` is that of a run's `summary.json`.
-///
-/// # Panics
-/// If a number is not finite.
 #[must_use]
 pub fn calibrate_json(report: &CalibrateReport) -> String {
     let mut source = object([
         ("file", report.file.into()),
         ("digest", report.digest.into()),
     ]);
-    if let Some(latitude_deg) = report.latitude_deg {
-        let latitude = number(latitude_deg, "latitude_deg");
-        source.insert("latitude_deg".to_owned(), latitude);
-    }
+    put(&mut source, "latitude_deg", report.latitude_deg);
     let mut root = object([
         ("schema", SCHEMA.into()),
         ("tool", tool(report.tool_version)),

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value};
 
-use crate::report::json::{number, object};
+use crate::report::json::{array as numbers_of, numbers, object, put, put_array};
 use crate::report::summary::SCHEMA;
 use crate::signal::{
     AssemblyParameters, CalibrationEstimate, CalibrationGroup, CalibrationPlan, CalibrationSheet,
@@ -28,9 +28,6 @@ pub struct CalibrationProvenance<'a> {
 
 /// The text of `calibration.toml`: `[compensation]` with the applied parameters under the keys that
 /// a scenario applies them by, their covariance, and where they come from.
-///
-/// # Panics
-/// If a number is not finite.
 #[must_use]
 pub fn calibration_toml(sheet: &CalibrationSheet, provenance: &CalibrationProvenance) -> String {
     let mut text = format!("schema = {SCHEMA}\n");
@@ -143,9 +140,6 @@ pub fn groups_csv(groups: &[CalibrationGroup]) -> String {
 }
 
 /// The record `calibration` of `summary.json`, and what `fogbench calibrate --format json` prints.
-///
-/// # Panics
-/// If a number is not finite.
 #[must_use]
 pub fn calibration_json(sheet: &CalibrationSheet) -> Value {
     let mut root = object([
@@ -162,35 +156,35 @@ pub fn calibration_json(sheet: &CalibrationSheet) -> Value {
         .collect();
     root.insert("estimates".to_owned(), estimates.into());
     let forms = sheet.compensation.iter().map(|check| {
-        let mut record = object([("residual_max_deg_per_h", real(check.residual_max_deg_per_h))]);
-        if let Some(error) = check.error_max_deg_per_h {
-            record.insert("error_max_deg_per_h".to_owned(), real(error));
-        }
-        let residuals = check.residual_deg_per_h.iter().map(|row| reals(row));
-        record.insert("residual_deg_per_h".to_owned(), residuals.collect());
+        let mut record = numbers([("residual_max_deg_per_h", check.residual_max_deg_per_h)]);
+        put(
+            &mut record,
+            "error_max_deg_per_h",
+            check.error_max_deg_per_h,
+        );
+        put_rows(&mut record, "residual_deg_per_h", &check.residual_deg_per_h);
         (check.form.to_owned(), record.into())
     });
     let forms: Map<String, Value> = forms.collect();
     root.insert("compensation".to_owned(), forms.into());
     if let Some(truth) = &sheet.truth {
         let mut record = parameters(&truth.parameters);
-        let slopes = reals(&truth.bias_deg_per_h_per_k);
-        record.insert("bias_deg_per_h_per_k".to_owned(), slopes);
-        let reference = real(truth.reference_temperature_c);
-        record.insert("reference_temperature_c".to_owned(), reference);
+        let slopes = &truth.bias_deg_per_h_per_k;
+        put_array(&mut record, "bias_deg_per_h_per_k", slopes);
+        let reference_c = truth.reference_temperature_c;
+        put(&mut record, "reference_temperature_c", reference_c);
         root.insert("truth".to_owned(), record.into());
     }
     let ranking = sheet.ranking.iter().map(|rank| {
         let mut record = object([
             ("estimator", rank.name.as_str().into()),
             ("campaigns", rank.campaigns.into()),
-            ("bias_rms_deg_per_h", real(rank.bias_rms_deg_per_h)),
-            ("scale_factor_rms_ppm", real(rank.scale_factor_rms_ppm)),
-            (
-                "misalignment_rms_arcsec",
-                real(rank.misalignment_rms_arcsec),
-            ),
         ]);
+        record.extend(numbers([
+            ("bias_rms_deg_per_h", rank.bias_rms_deg_per_h),
+            ("scale_factor_rms_ppm", rank.scale_factor_rms_ppm),
+            ("misalignment_rms_arcsec", rank.misalignment_rms_arcsec),
+        ]));
         put(
             &mut record,
             "normalised_error_squared",
@@ -207,64 +201,57 @@ pub fn calibration_json(sheet: &CalibrationSheet) -> Value {
 }
 
 fn plan(plan: &CalibrationPlan) -> Value {
-    object([
-        ("groups", plan.groups.into()),
-        ("rank", plan.rank.into()),
-        ("condition_number", reals(&plan.condition_number)),
-        ("singular_values", reals(&plan.singular_values)),
+    let mut record = object([("groups", plan.groups.into()), ("rank", plan.rank.into())]);
+    for (key, values) in [
+        ("condition_number", &plan.condition_number[..]),
+        ("singular_values", &plan.singular_values),
         (
             "scale_factor_ppm_per_deg_per_h",
-            reals(&plan.scale_factor_ppm_per_deg_per_h),
+            &plan.scale_factor_ppm_per_deg_per_h,
         ),
-        (
-            "bias_per_standard_error",
-            reals(&plan.bias_per_standard_error),
-        ),
+        ("bias_per_standard_error", &plan.bias_per_standard_error),
         (
             "scale_factor_bias_correlation",
-            reals(&plan.scale_factor_bias_correlation),
+            &plan.scale_factor_bias_correlation,
         ),
-    ])
-    .into()
+    ] {
+        put_array(&mut record, key, values);
+    }
+    record.into()
 }
 
 fn group(group: &CalibrationGroup) -> Value {
-    let mut record = object([
-        ("mounting", AXES[group.mounting % 3].into()),
-        ("rate_deg_per_s", real(group.rate_deg_per_s)),
-        (
-            "reference_rate_deg_per_s",
-            reals(&group.reference_rate_deg_per_s),
-        ),
-        ("temperature_c", reals(&group.temperature_c)),
+    let mut record = object([("mounting", AXES[group.mounting % 3].into())]);
+    put(&mut record, "rate_deg_per_s", group.rate_deg_per_s);
+    for (key, values) in [
+        ("reference_rate_deg_per_s", &group.reference_rate_deg_per_s),
+        ("temperature_c", &group.temperature_c),
         (
             "temperature_rate_k_per_min",
-            reals(&group.temperature_rate_k_per_min),
+            &group.temperature_rate_k_per_min,
         ),
-        ("output_deg_per_h", reals(&group.output_deg_per_h)),
-        (
-            "standard_error_deg_per_h",
-            reals(&group.standard_error_deg_per_h),
-        ),
-        ("averaging_time_s", real(group.averaging_time_s)),
+        ("output_deg_per_h", &group.output_deg_per_h),
+        ("standard_error_deg_per_h", &group.standard_error_deg_per_h),
+    ] {
+        put_array(&mut record, key, values);
+    }
+    put(&mut record, "averaging_time_s", group.averaging_time_s);
+    record.extend(object([
         ("samples", group.samples.into()),
         ("rejected", group.rejected.to_vec().into()),
-    ]);
+    ]));
     put(&mut record, "start_s", group.start_s);
     put(&mut record, "turns", group.turns);
     record.into()
 }
 
 fn parameters(parameters: &AssemblyParameters) -> Map<String, Value> {
-    let mut record = object([
-        ("bias_deg_per_h", reals(&parameters.bias_deg_per_h)),
-        (
-            "scale_factor_error_ppm",
-            reals(&parameters.scale_factor_error_ppm),
-        ),
-    ]);
+    let mut record = Map::new();
+    put_array(&mut record, "bias_deg_per_h", &parameters.bias_deg_per_h);
+    let scale_errors = &parameters.scale_factor_error_ppm;
+    put_array(&mut record, "scale_factor_error_ppm", scale_errors);
     for (name, theta) in THETAS.iter().zip(parameters.theta_arcsec) {
-        record.insert(format!("theta_{name}_arcsec"), real(theta));
+        put(&mut record, &format!("theta_{name}_arcsec"), theta);
     }
     record
 }
@@ -273,33 +260,30 @@ fn estimate(found: &CalibrationEstimate) -> Value {
     let mut record = object([
         ("parameters", parameters(&found.parameters).into()),
         ("standard_error", parameters(&found.standard_error).into()),
-        (
-            "reference_temperature_c",
-            reals(&found.reference_temperature_c),
-        ),
-        ("condition_number", reals(&found.condition_number)),
-        (
-            "residual_rms_deg_per_h",
-            reals(&found.residual_rms_deg_per_h),
-        ),
-        ("weights", rows(&found.weights)),
-        ("residual_deg_per_h", rows(&found.residual_deg_per_h)),
     ]);
+    for (key, values) in [
+        ("reference_temperature_c", &found.reference_temperature_c),
+        ("condition_number", &found.condition_number),
+        ("residual_rms_deg_per_h", &found.residual_rms_deg_per_h),
+    ] {
+        put_array(&mut record, key, values);
+    }
+    put_rows(&mut record, "weights", &found.weights);
+    put_rows(&mut record, "residual_deg_per_h", &found.residual_deg_per_h);
     if let Some(slope) = &found.bias_deg_per_h_per_k {
-        let slope = object([
-            ("value", reals(&slope.value)),
-            ("standard_error", reals(&slope.standard_error)),
-        ]);
-        record.insert("bias_deg_per_h_per_k".to_owned(), slope.into());
+        let mut both = Map::new();
+        put_array(&mut both, "value", &slope.value);
+        put_array(&mut both, "standard_error", &slope.standard_error);
+        record.insert("bias_deg_per_h_per_k".to_owned(), both.into());
     }
     let misfit: Option<Vec<f64>> = found.reduced_chi_square.iter().copied().collect();
     if let Some(misfit) = misfit {
-        record.insert("reduced_chi_square".to_owned(), reals(&misfit));
+        put_array(&mut record, "reduced_chi_square", &misfit);
     }
     if let Some(rounding) = &found.rounding {
-        let rounding = object([
-            ("bias_deg_per_h", real(rounding.bias_deg_per_h)),
-            ("sensitivity_ppm", real(rounding.sensitivity_ppm)),
+        let rounding = numbers([
+            ("bias_deg_per_h", rounding.bias_deg_per_h),
+            ("sensitivity_ppm", rounding.sensitivity_ppm),
         ]);
         record.insert("rounding".to_owned(), rounding.into());
     }
@@ -314,7 +298,7 @@ fn estimate(found: &CalibrationEstimate) -> Value {
                 error.compensated_rate_max_deg_per_h,
             ),
         ] {
-            errors.insert(key.to_owned(), real(value));
+            put(&mut errors, key, value);
         }
         let normalised = error.normalised_error_squared;
         put(&mut errors, "normalised_error_squared", normalised);
@@ -323,20 +307,10 @@ fn estimate(found: &CalibrationEstimate) -> Value {
     record.into()
 }
 
-fn put(record: &mut Map<String, Value>, key: &str, value: Option<f64>) {
-    if let Some(value) = value {
-        record.insert(key.to_owned(), real(value));
+/// Enters one row of three numbers for each group, if all of them are numbers.
+fn put_rows(record: &mut Map<String, Value>, key: &str, rows: &[[f64; 3]]) {
+    let rows: Option<Vec<Value>> = rows.iter().map(numbers_of).collect();
+    if let Some(rows) = rows {
+        record.insert(key.to_owned(), rows.into());
     }
-}
-
-fn real(value: f64) -> Value {
-    number(value, "calibration")
-}
-
-fn reals(values: &[f64]) -> Value {
-    values.iter().copied().map(real).collect()
-}
-
-fn rows(rows: &[[f64; 3]]) -> Value {
-    rows.iter().map(|row| reals(row)).collect()
 }

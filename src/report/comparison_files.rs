@@ -8,15 +8,14 @@ const PREFIXES: [&str; 2] = ["published-", "sensitivity-"];
 /// How they end.
 const EXTENSIONS: [&str; 2] = [".csv", ".svg"];
 
-/// Name and text of every file: `published-<table>.csv` and `.svg`, `sensitivity-<table>.…`.
+/// Name and text of every file: `published-<table>.csv` and `.svg`, `sensitivity-<table>.…`;
+/// a picture that would be too large is left out, as the CSV holds all of it.
 #[must_use]
 pub fn comparison_files(across: &Comparison) -> Vec<(String, String)> {
     let files = across.tables.iter().flat_map(|table| {
         let stem = table.file_stem();
-        [
-            (format!("{stem}.csv"), csv(table)),
-            (format!("{stem}.svg"), comparison_svg(table)),
-        ]
+        let svg = comparison_svg(table).map(|svg| (format!("{stem}.svg"), svg));
+        std::iter::once((format!("{stem}.csv"), csv(table))).chain(svg)
     });
     files.collect()
 }

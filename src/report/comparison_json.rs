@@ -2,12 +2,12 @@
 
 use serde_json::{Map, Value};
 
-use crate::metrics::AgainstOne;
+use crate::metrics::{AgainstOne, Estimate};
 use crate::report::comparison::{
     Assumed, Cause, ColumnChange, ComparedColumn, ComparedTable, Comparison,
 };
-use crate::report::json::{number, object};
-use crate::report::summary::estimate;
+use crate::report::json::{object, put, put_array};
+use crate::report::summary::{estimate, interval};
 use crate::scenario::ComparisonKind;
 
 /// `published_tables`, `sensitivities`, `assumptions` and `figures`, those that there are.
@@ -49,11 +49,9 @@ fn table(table: &ComparedTable) -> Value {
                 let cell = cell.as_ref()?;
                 let what = column.text();
                 let mut record = object([("metric", what.as_str().into())]);
-                if let Value::Object(fields) = estimate(&what, &cell.simulated) {
-                    record.extend(fields);
-                }
+                record.extend(estimate(&cell.simulated));
                 if let Some((value, source)) = &cell.published {
-                    record.insert("published".to_owned(), number(*value, &what));
+                    put(&mut record, "published", *value);
                     record.insert("source".to_owned(), source.as_str().into());
                 }
                 record.insert("folder".to_owned(), cell.folder.as_str().into());
@@ -64,9 +62,7 @@ fn table(table: &ComparedTable) -> Value {
             ("base", row.is_base.into()),
             ("cells", Value::Array(cells.collect())),
         ]);
-        if let Some(at) = row.at {
-            record.insert("at".to_owned(), number(at, &row.label));
-        }
+        put(&mut record, "at", row.at);
         Value::from(record)
     });
     let mut record = object([
@@ -99,34 +95,28 @@ fn table(table: &ComparedTable) -> Value {
 
 fn column_change((column, change): (&ComparedColumn, &ColumnChange)) -> Value {
     let what = column.text();
-    object([
-        ("metric", what.as_str().into()),
-        ("value", number(change.estimate.value, &what)),
-        ("low", number(change.estimate.low, &what)),
-        ("high", number(change.estimate.high, &what)),
-        ("confidence", number(change.estimate.confidence, &what)),
+    let mut record = object([("metric", what.as_str().into())]);
+    record.extend(interval(&change.estimate));
+    record.extend(object([
         ("unit", change.unit.as_str().into()),
         ("at", change.at.as_str().into()),
         ("folder", change.folder.as_str().into()),
-    ])
-    .into()
+    ]));
+    record.into()
 }
 
 fn cause(cause: &Cause) -> Value {
-    let interval = |estimate: &crate::metrics::Estimate| {
-        let values = [estimate.value, estimate.low, estimate.high];
-        Value::Array(values.map(|value| number(value, &cause.metric)).to_vec())
-    };
+    let ends = |estimate: &Estimate| [estimate.value, estimate.low, estimate.high];
     let mut record = object([
         ("label", cause.label.as_str().into()),
         ("folder", cause.folder.as_str().into()),
         ("channel", cause.channel.as_str().into()),
         ("relative_to", cause.relative_to.as_str().into()),
         ("metric", cause.metric.as_str().into()),
-        ("ratio", interval(&cause.ratio)),
     ]);
+    put_array(&mut record, "ratio", &ends(&cause.ratio));
     if let Some(gain) = &cause.dc_gain {
-        record.insert("dc_gain_ratio".to_owned(), interval(gain));
+        put_array(&mut record, "dc_gain_ratio", &ends(gain));
     }
     if let Some(left) = &cause.remainder {
         let word = match left.against_one {
@@ -135,11 +125,11 @@ fn cause(cause: &Cause) -> Value {
             AgainstOne::Above => "above",
             AgainstOne::Undecided => "undecided",
         };
-        record.insert("over_dc_gain_ratio".to_owned(), interval(&left.estimate));
+        put_array(&mut record, "over_dc_gain_ratio", &ends(&left.estimate));
         record.insert("over_dc_gain_ratio_against_one".to_owned(), word.into());
     }
     for (key, metric) in &cause.companions {
-        record.insert(key.clone(), interval(&metric.estimate));
+        put_array(&mut record, key, &ends(&metric.estimate));
     }
     record.into()
 }

@@ -1,6 +1,8 @@
 //! The end of a suite in text: tables over several scenarios, causes, assumptions and figures.
 
 use crate::gate::{estimate_text, plain};
+use crate::metrics::MetricKey;
+use crate::metrics::catalogue::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, MEAN_RATIO, NOISE_GAIN};
 use crate::metrics::{AgainstOne, Estimate, Finding, Metric};
 use crate::report::columns::{heading_of, unit_text};
 use crate::report::comparison::{Assumed, Cause, ComparedTable, Comparison};
@@ -171,8 +173,8 @@ fn short(estimate: &Estimate) -> String {
     estimate_text(estimate, DIGITS)
 }
 
-fn companion<'a>(cause: &'a Cause, key: &str) -> Option<&'a Metric> {
-    let (_, metric) = cause.companions.iter().find(|(name, _)| name == key)?;
+fn companion<'a>(cause: &'a Cause, key: &MetricKey) -> Option<&'a Metric> {
+    let (_, metric) = cause.companions.iter().find(|(name, _)| name == key.name)?;
     Some(metric)
 }
 
@@ -229,8 +231,8 @@ fn explained(cause: &Cause) -> Option<String> {
 
 /// What became of the rate itself, and of the noise once the scale factor is restored.
 fn level(cause: &Cause) -> Option<String> {
-    let ratio = companion(cause, "mean_ratio")?;
-    let restored = companion(cause, "angle_random_walk_over_dc_gain_deg_per_sqrt_h");
+    let ratio = companion(cause, &MEAN_RATIO)?;
+    let restored = companion(cause, &ANGLE_RANDOM_WALK_OVER_DC_GAIN);
     let restored = restored.map_or_else(String::new, |metric| {
         format!(
             ", and at restored scale its ARW is {} {}",
@@ -244,7 +246,7 @@ fn level(cause: &Cause) -> Option<String> {
 
 /// What a channel does to noise while the table moves.
 fn under_motion(cause: &Cause) -> Option<String> {
-    let noise = companion(cause, "noise_gain")?;
+    let noise = companion(cause, &NOISE_GAIN)?;
     let verdict = match Finding::of_noise(noise.estimate).against_one {
         AgainstOne::Below => "lowers noise",
         AgainstOne::Equal => "leaves noise as it is",

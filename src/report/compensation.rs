@@ -1,8 +1,8 @@
 //! The compensation of a run: in the table and in the summary.
 
-use serde_json::{Map, Value};
+use serde_json::Value;
 
-use crate::report::json::{number, object};
+use crate::report::json::{object, put, put_array};
 use crate::report::text::wrapped;
 use crate::signal::CompensationSheet;
 
@@ -47,14 +47,6 @@ fn triple(values: [f64; 3], decimals: usize) -> String {
 
 /// `compensation` of the summary.
 pub(crate) fn compensation_json(sheet: &CompensationSheet) -> Value {
-    let numbers = |what: &str, values: [f64; 3]| -> Value {
-        values.iter().map(|value| number(*value, what)).collect()
-    };
-    let angles: Map<String, Value> = sheet
-        .theta_arcsec
-        .iter()
-        .map(|(name, angle)| (format!("theta_{name}_arcsec"), number(*angle, name)))
-        .collect();
     let mut record = object([
         ("form", sheet.form.into()),
         ("source", sheet.source.as_str().into()),
@@ -70,8 +62,10 @@ pub(crate) fn compensation_json(sheet: &CompensationSheet) -> Value {
             sheet.first_order_residual_deg_per_h,
         ),
     ] {
-        record.insert(key.to_owned(), numbers(key, values));
+        put_array(&mut record, key, &values);
     }
-    record.extend(angles);
+    for (name, angle) in &sheet.theta_arcsec {
+        put(&mut record, &format!("theta_{name}_arcsec"), *angle);
+    }
     record.into()
 }

@@ -3,15 +3,46 @@
 use serde_json::{Map, Number, Value};
 use std::fmt::Write as _;
 
-/// A JSON number.
+/// A JSON number; nothing for a value that is not finite, which JSON does not have.
 ///
-/// # Panics
-/// If `value` is not finite: such a number must have been turned into an error or a missing
-/// metric long before.
-pub(crate) fn number(value: f64, what: &str) -> Value {
-    let finite = Number::from_f64(value);
-    assert!(finite.is_some(), "{what} reached the report as {value}");
-    finite.map_or(Value::Null, Value::Number)
+/// Such a value has been refused where it arose, or its metric is unavailable with the reason (see
+/// `ChannelMetrics::keep_finite`). Should one come here all the same, its key is left out: one
+/// number never takes the rest of a result with it, and no `null` passes for a measurement.
+pub(crate) fn number(value: f64) -> Option<Value> {
+    Number::from_f64(value).map(Value::Number)
+}
+
+/// Enters a number under its key, if there is one.
+pub(crate) fn put(record: &mut Map<String, Value>, key: &str, value: impl Into<Option<f64>>) {
+    if let Some(value) = value.into().and_then(number) {
+        record.insert(key.to_owned(), value);
+    }
+}
+
+/// An object of numbers, in their order.
+pub(crate) fn numbers<const N: usize>(pairs: [(&str, f64); N]) -> Map<String, Value> {
+    let mut record = Map::new();
+    for (key, value) in pairs {
+        put(&mut record, key, value);
+    }
+    record
+}
+
+/// An array of numbers; nothing if one of them is not finite, so that places keep their meaning.
+pub(crate) fn array<'a>(values: impl IntoIterator<Item = &'a f64>) -> Option<Value> {
+    let values: Option<Vec<Value>> = values.into_iter().map(|value| number(*value)).collect();
+    values.map(Value::Array)
+}
+
+/// Enters an array of numbers under its key, if all of them are numbers.
+pub(crate) fn put_array<'a>(
+    record: &mut Map<String, Value>,
+    key: &str,
+    values: impl IntoIterator<Item = &'a f64>,
+) {
+    if let Some(values) = array(values) {
+        record.insert(key.to_owned(), values);
+    }
 }
 
 /// An object from pairs, in their order.
@@ -108,8 +139,20 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "delay reached the report as NaN")]
-    fn a_number_that_is_not_finite_is_refused() {
-        let _ = number(f64::NAN, "delay");
+    fn a_number_that_is_not_finite_leaves_its_key_out() {
+        let mut record = numbers([
+            ("a", 1.0),
+            ("b", f64::NAN),
+            ("c", f64::INFINITY),
+            ("d", 2.0),
+        ]);
+        put(&mut record, "e", f64::NEG_INFINITY);
+        put_array(&mut record, "f", &[1.0, f64::NAN]);
+        put_array(&mut record, "g", &[1.0, 2.0]);
+        let text = pretty(&record.into());
+        assert_eq!(
+            text,
+            "{\n  \"a\": 1.0,\n  \"d\": 2.0,\n  \"g\": [1.0, 2.0]\n}\n"
+        );
     }
 }

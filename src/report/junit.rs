@@ -6,7 +6,7 @@ use crate::scenario::portable_place;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// The text of `output/junit.xml`: one suite per run; one case that it ran, one per failed channel
-/// and one per gate.
+/// and one per gate. A run that a stopped suite has not run is *skipped*.
 ///
 /// Carries no time, host or identifier, so that the same results give the same bytes. An
 /// inconclusive gate that its scenario allows is *skipped*: neither a pass nor a failure.
@@ -51,6 +51,12 @@ fn non_success(kind: NonSuccessKind, word: &str, message: &str, text: &str) -> T
 
 fn ran(run: &RunOutcome) -> TestCase {
     let status = match &run.error {
+        None if run.is_not_run => {
+            let message = "not run: the suite was stopped before the end of this run";
+            let mut status = TestCaseStatus::skipped();
+            status.set_type("not_run").set_message(message);
+            status
+        }
         Some(error) => non_success(NonSuccessKind::Error, "run_failed", error, error),
         None => TestCaseStatus::success(),
     };

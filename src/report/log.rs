@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use crate::gate::plain;
 use crate::metrics::ChannelMetrics;
 use crate::report::csv::{allan_curve, autocovariance_curve, curve_csv, psd_curve};
-use crate::report::json::{number, object, pretty};
+use crate::report::json::{object, pretty, put};
 use crate::report::measured::Measured;
 use crate::report::plot::log_plots;
 use crate::report::summary::{SCHEMA, channel, tool};
@@ -90,15 +90,12 @@ pub fn log_text(report: &LogReport, width: usize, colour: bool) -> String {
 }
 
 /// The results as JSON; `channels.<name>` is that of a run's `summary.json`.
-///
-/// # Panics
-/// If a number is not finite; see the metric named in the message.
 #[must_use]
 pub fn log_json(report: &LogReport) -> String {
     let channels: Map<String, Value> = report
         .channels
         .iter()
-        .map(|(name, metrics)| (name.clone(), channel(name, metrics)))
+        .map(|(name, metrics)| (name.clone(), channel(metrics)))
         .collect();
     let mut root = object([
         ("schema", SCHEMA.into()),
@@ -115,21 +112,18 @@ pub fn log_json(report: &LogReport) -> String {
 fn log(report: &LogReport) -> Value {
     let duration_s = report.seconds(report.samples);
     let warm_up_s = report.seconds(report.warm_up_samples);
-    let mut record = object([
-        ("file", report.file.into()),
-        ("unit", report.unit.into()),
-        ("rate_hz", number(report.sample_rate_hz, "rate_hz")),
-        ("samples", report.samples.into()),
-        ("duration_s", number(duration_s, "duration_s")),
-        ("warm_up_samples", report.warm_up_samples.into()),
-        ("warm_up_s", number(warm_up_s, "warm_up_s")),
-    ]);
+    let mut record = object([("file", report.file.into()), ("unit", report.unit.into())]);
+    put(&mut record, "rate_hz", report.sample_rate_hz);
+    record.insert("samples".to_owned(), report.samples.into());
+    put(&mut record, "duration_s", duration_s);
+    let warm_up_samples = report.warm_up_samples.into();
+    record.insert("warm_up_samples".to_owned(), warm_up_samples);
+    put(&mut record, "warm_up_s", warm_up_s);
     if let Some(column) = report.column {
         record.insert("column".to_owned(), column.into());
     }
     if let MotionConfig::Swing(swing) = report.motion {
-        let frequency_hz = number(swing.frequency_hz, "swing_frequency_hz");
-        record.insert("swing_frequency_hz".to_owned(), frequency_hz);
+        put(&mut record, "swing_frequency_hz", swing.frequency_hz);
     }
     if let Some((file, digest)) = report.filters {
         let filters = object([("file", file.into()), ("digest", digest.into())]);
@@ -138,12 +132,16 @@ fn log(report: &LogReport) -> Value {
     record.into()
 }
 
-/// The files of a log's folder but for its samples: name and text.
-///
-/// # Panics
-/// As [`log_json`], or if a picture is too large, which its fixed number of points rules out.
+/// The files of a log's folder but for its samples: name and text. A picture that would be too large is
+/// left out with a note in `summary.json`.
 #[must_use]
 pub fn log_files(report: &LogReport, signals: &RunSignals) -> Vec<(String, String)> {
+    let pictures = log_plots(&report.measured(), signals);
+    let notes = [report.notes, &pictures.notes].concat();
+    let report = &LogReport {
+        notes: &notes,
+        ..report.clone()
+    };
     let curves = [
         (
             "allan.csv",
@@ -160,6 +158,6 @@ pub fn log_files(report: &LogReport, signals: &RunSignals) -> Vec<(String, Strin
         .filter_map(|(name, text)| Some((name.to_owned(), text?)));
     std::iter::once(("summary.json".to_owned(), log_json(report)))
         .chain(curves)
-        .chain(log_plots(&report.measured(), signals))
+        .chain(pictures.drawn)
         .collect()
 }

@@ -44,7 +44,7 @@ pub use csv::{allan_csv, autocovariance_csv, psd_csv};
 pub use files::{FolderWriter, write_atomic, write_npy};
 pub use junit::junit_xml;
 pub use log::{LogReport, log_files, log_json, log_text};
-pub use plot::{SVG_BYTES_MAX, budget_svg, calibration_svg, plots};
+pub use plot::{Pictures, SVG_BYTES_MAX, budget_svg, calibration_svg, plots};
 pub use record::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
 pub use repeats::runs_csv;
 pub use scale_factor::scale_factor_csv;

@@ -46,18 +46,21 @@ pub enum RunStatus {
     GateFailed,
     /// A channel failed, and no gate expected it to.
     ChannelFailed,
+    /// It has not run: the suite was stopped before its end.
+    NotRun,
     /// The run itself could not finish.
     RunFailed,
 }
 
 impl RunStatus {
-    /// The word in files: `pass`, `gate_failed`, `channel_failed` or `run_failed`.
+    /// The word in files: `pass`, `gate_failed`, `channel_failed`, `not_run` or `run_failed`.
     #[must_use]
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Pass => "pass",
             Self::GateFailed => "gate_failed",
             Self::ChannelFailed => "channel_failed",
+            Self::NotRun => "not_run",
             Self::RunFailed => "run_failed",
         }
     }
@@ -95,6 +98,8 @@ pub struct RunOutcome {
     pub pictures: Vec<String>,
     /// Why the run could not finish, if it could not.
     pub error: Option<String>,
+    /// Whether the suite was stopped before the end of the run.
+    pub is_not_run: bool,
 }
 
 impl RunOutcome {
@@ -127,6 +132,7 @@ impl RunOutcome {
             kept: Vec::new(),
             pictures: Vec::new(),
             error: None,
+            is_not_run: false,
         }
     }
 
@@ -142,6 +148,17 @@ impl RunOutcome {
             kept: Vec::new(),
             pictures: Vec::new(),
             error: Some(error),
+            is_not_run: false,
+        }
+    }
+
+    /// The outcome of a run that a suite was stopped before or in the middle of.
+    #[must_use]
+    pub fn not_run(name: &str, folder: &str, file: &str) -> Self {
+        Self {
+            error: None,
+            is_not_run: true,
+            ..Self::failed(name, folder, file, String::new())
         }
     }
 
@@ -165,6 +182,8 @@ impl RunOutcome {
             |channel: &ChannelOutcome| channel.failure.is_some() && !channel.expected_failure;
         if self.error.is_some() {
             RunStatus::RunFailed
+        } else if self.is_not_run {
+            RunStatus::NotRun
         } else if self.channels.iter().any(unexpected) {
             RunStatus::ChannelFailed
         } else if self.verdicts.iter().any(|verdict| !verdict.accepted) {

@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use serde_json::{Map, Value};
 
 use crate::gate::plain;
-use crate::metrics::{ChannelMetrics, REPEATED_METRICS, RepeatStatistics};
+use crate::metrics::catalogue::{BIAS_STABILITY, MAXIMUM, MEAN, MINIMUM, NOISE_STD};
+use crate::metrics::{ChannelMetrics, MetricKey, RepeatStatistics, repeated_metrics};
 use crate::report::RunReport;
-use crate::report::json::{number, object};
+use crate::report::json::{numbers, object, put_array};
 use crate::report::text::{Grid, Tone, toned, wrapped};
 
 const INDENT: &str = "  ";
@@ -15,18 +16,15 @@ const INDENT: &str = "  ";
 const ROWS_MAX: usize = 20;
 
 /// Statistics of the samples of a record, in the order of the first table.
-const SAMPLE_STATISTICS: [(&str, &str); 5] = [
-    ("mean_deg_per_h", "mean"),
-    ("noise_std_deg_per_h", "std"),
-    ("minimum_deg_per_h", "min"),
-    ("maximum_deg_per_h", "max"),
-    ("bias_stability_deg_per_h", "bias stability"),
+static SAMPLE_STATISTICS: [(&MetricKey, &str); 5] = [
+    (&MEAN, "mean"),
+    (&NOISE_STD, "std"),
+    (&MINIMUM, "min"),
+    (&MAXIMUM, "max"),
+    (&BIAS_STABILITY, "bias stability"),
 ];
 /// What is shown of each repeat, the first that there is of each pair.
-const BY_REPEAT: [(&str, &str); 2] = [
-    ("mean_deg_per_h", "mean"),
-    ("bias_stability_deg_per_h", "bias stability"),
-];
+static BY_REPEAT: [(&MetricKey, &str); 2] = [(&MEAN, "mean"), (&BIAS_STABILITY, "bias stability")];
 /// A way to take one number from a metric over the repeats.
 type Pick = fn(&RepeatStatistics) -> f64;
 
@@ -56,15 +54,15 @@ pub(crate) fn repeats_text(report: &RunReport, width: usize, colour: bool) -> St
 
 /// Statistics of the samples of a record, each the mean over the repeats.
 fn samples_text(channels: &[(&str, &ChannelMetrics)], width: usize, colour: bool) -> String {
-    let has = |key: &str| {
+    let has = |key: &MetricKey| {
         let mut channels = channels.iter();
-        channels.any(|(_, metrics)| metrics.repeats.contains_key(key))
+        channels.any(|(_, metrics)| metrics.repeats.contains_key(key.name))
     };
     let columns: Vec<_> = SAMPLE_STATISTICS
         .iter()
         .filter(|(key, _)| has(key))
         .collect();
-    let Some((_, first)) = channels.first().filter(|_| has("mean_deg_per_h")) else {
+    let Some((_, first)) = channels.first().filter(|_| has(&MEAN)) else {
         // A record of many rates, as of a campaign, has no mean worth printing.
         return String::new();
     };
@@ -79,7 +77,7 @@ fn samples_text(channels: &[(&str, &ChannelMetrics)], width: usize, colour: bool
     grid.row(std::iter::once("channel".to_owned()).chain(heads));
     for (name, metrics) in channels {
         let cells = columns.iter().map(|(key, _)| {
-            let statistics = metrics.repeats.get(*key);
+            let statistics = metrics.repeats.get(key.name);
             statistics.map_or_else(
                 || "-".to_owned(),
                 |of| digits(of.mean, of.standard_deviation),
@@ -97,7 +95,7 @@ fn values_text(channels: &[(&str, &ChannelMetrics)], width: usize, colour: bool)
     for (key, title) in BY_REPEAT {
         let columns: Vec<(&str, &RepeatStatistics)> = channels
             .iter()
-            .filter_map(|(name, metrics)| Some((*name, metrics.repeats.get(key)?)))
+            .filter_map(|(name, metrics)| Some((*name, metrics.repeats.get(key.name)?)))
             .collect();
         let Some((_, first)) = columns.first() else {
             continue;
@@ -182,24 +180,16 @@ fn repeats_of(metrics: &ChannelMetrics) -> usize {
 }
 
 /// `channels.<name>.repeats` of the summary.
-pub(crate) fn repeats_json(name: &str, metrics: &ChannelMetrics) -> Value {
+pub(crate) fn repeats_json(metrics: &ChannelMetrics) -> Value {
     let of = |(key, statistics): (&String, &RepeatStatistics)| {
-        let what = format!("{name}.repeats.{key}");
-        let values = statistics.values.iter();
-        let record = object([
-            ("unit", statistics.unit.into()),
-            (
-                "values",
-                values.map(|value| number(*value, &what)).collect(),
-            ),
-            ("mean", number(statistics.mean, &what)),
-            (
-                "standard_deviation",
-                number(statistics.standard_deviation, &what),
-            ),
-            ("minimum", number(statistics.minimum, &what)),
-            ("maximum", number(statistics.maximum, &what)),
-        ]);
+        let mut record = object([("unit", statistics.unit.into())]);
+        put_array(&mut record, "values", &statistics.values);
+        record.extend(numbers([
+            ("mean", statistics.mean),
+            ("standard_deviation", statistics.standard_deviation),
+            ("minimum", statistics.minimum),
+            ("maximum", statistics.maximum),
+        ]));
         (key.clone(), Value::Object(record))
     };
     let records: Map<String, Value> = metrics.repeats.iter().map(of).collect();
@@ -209,25 +199,32 @@ pub(crate) fn repeats_json(name: &str, metrics: &ChannelMetrics) -> Value {
 /// Every repeat of every channel, one row each; nothing for a single record.
 #[must_use]
 pub fn runs_csv(report: &RunReport) -> Option<String> {
-    let has = |key: &str| {
+    let has = |key: &MetricKey| {
         let mut channels = report.channels.iter();
-        channels.any(|(_, metrics)| metrics.repeats.contains_key(key))
+        channels.any(|(_, metrics)| metrics.repeats.contains_key(key.name))
     };
-    let columns: Vec<&str> = REPEATED_METRICS
+    let columns: Vec<_> = repeated_metrics()
         .into_iter()
         .filter(|key| has(key))
         .collect();
     if columns.is_empty() {
         return None;
     }
-    let mut text = format!("channel,run,{}\n", columns.join(","));
+    let mut text = format!(
+        "channel,run,{}\n",
+        columns
+            .iter()
+            .map(|key| key.name)
+            .collect::<Vec<_>>()
+            .join(",")
+    );
     for (name, metrics) in report.channels {
         for run in 0..repeats_of(metrics) {
             // Writing to a String cannot fail.
             let _ = write!(text, "{name},{}", run + 1);
             for key in &columns {
                 text.push(',');
-                let of = metrics.repeats.get(*key);
+                let of = metrics.repeats.get(key.name);
                 if let Some(value) = of.and_then(|of| of.values.get(run)) {
                     let _ = write!(text, "{value:?}");
                 }

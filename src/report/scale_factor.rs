@@ -3,6 +3,8 @@
 use super::csv::{Curve, curve_csv};
 use super::text::{Grid, Tone, toned, wrapped};
 use crate::gate::plain;
+use crate::metrics::MetricKey;
+use crate::metrics::catalogue::{SCALE_FACTOR_NONLINEARITY, SCALE_FACTOR_NONLINEARITY_OF_READING};
 use crate::report::RunReport;
 use crate::scenario::{FilterState, MotionConfig, Stairs};
 use crate::units::deg_per_h_to_deg_per_s;
@@ -62,12 +64,12 @@ pub(crate) fn scale_factor_text(report: &RunReport, width: usize, colour: bool) 
 /// What noise alone would make of the nonlinearity.
 fn noise_floors(report: &RunReport, width: usize) -> String {
     let floors = report.channels.iter().filter_map(|(name, metrics)| {
-        let of = |key: &str| {
-            let metric = metrics.metrics.get(key)?;
+        let of = |key: &MetricKey| {
+            let metric = metrics.get(key)?;
             metric.fields.get("noise_floor_ppm").copied()
         };
-        let full_scale = of("scale_factor_nonlinearity_ppm")?;
-        let reading = of("scale_factor_nonlinearity_of_reading_ppm")?;
+        let full_scale = of(&SCALE_FACTOR_NONLINEARITY)?;
+        let reading = of(&SCALE_FACTOR_NONLINEARITY_OF_READING)?;
         Some(format!(
             "{name} {} ppm of FS, {} ppm of reading",
             rounded(full_scale),

@@ -7,11 +7,12 @@ use crate::wording::counted;
 
 const INDENT: &str = "  ";
 
-/// Every run with its channels and gates, and a line of totals.
+/// Every run with its channels and gates, and a line of totals. Runs that a stopped suite has not run
+/// are only counted.
 #[must_use]
 pub fn suite_text(runs: &[RunOutcome], width: usize, colour: bool) -> String {
     let mut text = String::new();
-    for run in runs {
+    for run in runs.iter().filter(|run| !run.is_not_run) {
         text.push_str(&run_text(run, width, colour));
     }
     text.push_str(&totals(runs, colour));
@@ -23,6 +24,7 @@ fn status_word(status: RunStatus, colour: bool) -> String {
         RunStatus::Pass => toned("PASS", Tone::Good, colour),
         RunStatus::GateFailed => toned("GATE FAILED", Tone::Bad, colour),
         RunStatus::ChannelFailed => toned("CHANNEL FAILED", Tone::Bad, colour),
+        RunStatus::NotRun => toned("NOT RUN", Tone::Bad, colour),
         RunStatus::RunFailed => toned("RUN FAILED", Tone::Bad, colour),
     }
 }
@@ -105,14 +107,20 @@ fn totals(runs: &[RunOutcome], colour: bool) -> String {
     let with = |status| runs.iter().filter(|run| run.status() == status).count();
     let gates = |kind| runs.iter().map(|run| run.count(kind)).sum::<usize>();
     let passed = with(RunStatus::Pass);
-    let all_well = passed == runs.len() && !runs.is_empty();
-    let (word, tone) = if all_well {
+    let not_run = with(RunStatus::NotRun);
+    let (word, tone) = if runs.is_empty() || passed + not_run < runs.len() {
+        ("FAIL", Tone::Bad)
+    } else if not_run == 0 {
         ("PASS", Tone::Good)
     } else {
-        ("FAIL", Tone::Bad)
+        ("INCOMPLETE", Tone::Bad)
+    };
+    let not_run = match not_run {
+        0 => String::new(),
+        count => format!(", {count} not run"),
     };
     format!(
-        "{}  {}: {} passed, {} with a failed gate, {} with a failed channel, {} failed; \
+        "{}  {}: {} passed, {} with a failed gate, {} with a failed channel, {} failed{not_run}; \
          {}: {} passed, {} failed, {} inconclusive\n",
         toned(word, tone, colour),
         counted(runs.len(), "run"),

@@ -1,11 +1,11 @@
 //! `summary.json` of a run and of a suite.
 
 use crate::gate::{Verdict, VerdictKind};
-use crate::metrics::{ChannelMetrics, Metric};
+use crate::metrics::{ChannelMetrics, Estimate, Metric};
 use crate::report::calibration::calibration_json;
 use crate::report::comparison_json::comparison;
 use crate::report::compensation::compensation_json;
-use crate::report::json::{number, object, pretty};
+use crate::report::json::{array, numbers, object, pretty, put};
 use crate::report::repeats::repeats_json;
 use crate::report::scale_factor::filter_state_word;
 use crate::report::verdict_text::verdict_text;
@@ -21,15 +21,12 @@ pub(crate) const SCHEMA: u32 = 1;
 ///
 /// Keys stand in a fixed order: those of the record as documented, metrics, curves and reasons by
 /// name, channels and gates as given.
-///
-/// # Panics
-/// If a number is not finite; see the metric named in the message.
 #[must_use]
 pub fn run_summary_json(report: &RunReport) -> String {
     let channels: Map<String, Value> = report
         .channels
         .iter()
-        .map(|(name, metrics)| (name.clone(), channel(name, metrics)))
+        .map(|(name, metrics)| (name.clone(), channel(metrics)))
         .collect();
     let published = report.scenario.published.iter().map(published).collect();
     let gates = report.verdicts.iter().map(gate).collect();
@@ -56,14 +53,11 @@ pub fn run_summary_json(report: &RunReport) -> String {
 
 /// The text of the suite's `summary.json`: every run with its folder, verdict counts and status;
 /// then what the suite says across its scenarios.
-///
-/// # Panics
-/// If a gate's number is not finite.
 #[must_use]
 pub fn suite_summary_json(tool_version: &str, runs: &[RunOutcome], across: &Comparison) -> String {
     let with = |status: RunStatus| runs.iter().filter(|run| run.status() == status).count();
     let verdicts = |kind: VerdictKind| runs.iter().map(|run| run.count(kind)).sum::<usize>();
-    let totals = object([
+    let mut totals = object([
         ("runs", runs.len().into()),
         ("passed", with(RunStatus::Pass).into()),
         ("gate_failed", with(RunStatus::GateFailed).into()),
@@ -76,6 +70,11 @@ pub fn suite_summary_json(tool_version: &str, runs: &[RunOutcome], across: &Comp
             verdicts(VerdictKind::Inconclusive).into(),
         ),
     ]);
+    // Only a suite that was stopped has such runs.
+    let not_run = with(RunStatus::NotRun);
+    if not_run > 0 {
+        totals.insert("not_run".to_owned(), not_run.into());
+    }
     let mut root = object([
         ("schema", SCHEMA.into()),
         ("tool", tool(tool_version)),
@@ -139,14 +138,13 @@ fn scenario(report: &RunReport) -> Value {
         ("seed", scenario.seed.into()),
         ("repeats", scenario.repeats.into()),
         ("fidelity", fidelity.into()),
-        ("duration_s", number(scenario.duration_s, "duration_s")),
-        ("warm_up_s", number(scenario.warm_up_s, "warm_up_s")),
     ]);
+    put(&mut record, "duration_s", scenario.duration_s);
+    put(&mut record, "warm_up_s", scenario.warm_up_s);
     if let Some(stairs) = Stairs::of(&scenario.turntable.motion) {
         let state = filter_state_word(scenario.trial.filter_state);
         record.insert("filter_state".to_owned(), state.into());
-        let settle_s = number(stairs.settle_s, "settle_s");
-        record.insert("settle_s".to_owned(), settle_s);
+        put(&mut record, "settle_s", stairs.settle_s);
     }
     if let Some(description) = &scenario.description {
         record.insert("description".to_owned(), description.as_str().into());
@@ -163,12 +161,11 @@ fn scenario(report: &RunReport) -> Value {
 }
 
 fn gyro(facts: &GyroFacts) -> Value {
-    let budget: Map<String, Value> = facts
-        .angle_random_walk_budget_deg_per_sqrt_h
-        .iter()
-        .map(|(source, value)| ((*source).to_owned(), number(*value, source)))
-        .collect();
-    let fields = [
+    let mut budget = Map::new();
+    for (source, value) in &facts.angle_random_walk_budget_deg_per_sqrt_h {
+        put(&mut budget, source, *value);
+    }
+    let mut record = numbers([
         ("scale_factor_s", facts.scale_factor_s),
         ("transit_time_us", facts.transit_time_us),
         ("proper_frequency_khz", facts.proper_frequency_khz),
@@ -176,8 +173,7 @@ fn gyro(facts: &GyroFacts) -> Value {
         ("loop_gain", facts.loop_gain),
         ("loop_bandwidth_hz", facts.loop_bandwidth_hz),
         ("delay_ms", facts.delay_ms),
-    ];
-    let mut record = object(fields.map(|(key, value)| (key, number(value, key))));
+    ]);
     record.insert(
         "angle_random_walk_budget_deg_per_sqrt_h".to_owned(),
         budget.into(),
@@ -186,17 +182,17 @@ fn gyro(facts: &GyroFacts) -> Value {
 }
 
 /// One channel of `channels`.
-pub(crate) fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
+pub(crate) fn channel(metrics: &ChannelMetrics) -> Value {
     let mut record: Map<String, Value> = metrics
         .metrics
         .iter()
-        .map(|(key, metric)| (key.clone(), estimate(&format!("{name}.{key}"), metric)))
+        .map(|(key, metric)| (key.clone(), estimate(metric).into()))
         .collect();
     if let Some(verdict) = verdict_text(metrics) {
         record.insert("verdict".to_owned(), verdict.into());
     }
     if !metrics.repeats.is_empty() {
-        record.insert("repeats".to_owned(), repeats_json(name, metrics));
+        record.insert("repeats".to_owned(), repeats_json(metrics));
     }
     if !metrics.curves.is_empty() {
         let curves: Map<String, Value> = metrics
@@ -207,11 +203,7 @@ pub(crate) fn channel(name: &str, metrics: &ChannelMetrics) -> Value {
                 let words = labels.map(|(column, words)| (column.clone(), words_of(words)));
                 let columns: Map<String, Value> = columns
                     .iter()
-                    .map(|(column, values)| {
-                        let what = format!("{name}.curves.{curve}.{column}");
-                        let values = values.iter().map(|value| number(*value, &what));
-                        (column.clone(), values.collect())
-                    })
+                    .filter_map(|(column, values)| Some((column.clone(), array(values)?)))
                     .chain(words)
                     .collect();
                 (curve.clone(), columns.into())
@@ -246,29 +238,34 @@ fn words_of(words: &[&str]) -> Value {
     }
 }
 
-pub(crate) fn estimate(what: &str, metric: &Metric) -> Value {
-    let estimate = &metric.estimate;
-    let mut record = object([
-        ("value", number(estimate.value, what)),
-        ("low", number(estimate.low, what)),
-        ("high", number(estimate.high, what)),
-        ("confidence", number(estimate.confidence, what)),
-        ("unit", metric.unit.into()),
-    ]);
+/// A metric with its interval, unit and fields.
+pub(crate) fn estimate(metric: &Metric) -> Map<String, Value> {
+    let mut record = interval(&metric.estimate);
+    record.insert("unit".to_owned(), metric.unit.into());
     for (field, value) in &metric.fields {
-        record.insert((*field).to_owned(), number(*value, what));
+        put(&mut record, field, *value);
     }
-    record.into()
+    record
+}
+
+/// A value with its interval.
+pub(crate) fn interval(estimate: &Estimate) -> Map<String, Value> {
+    numbers([
+        ("value", estimate.value),
+        ("low", estimate.low),
+        ("high", estimate.high),
+        ("confidence", estimate.confidence),
+    ])
 }
 
 fn published(figure: &PublishedConfig) -> Value {
-    object([
-        ("metric", figure.metric.as_str().into()),
-        ("value", number(figure.value, &figure.metric)),
+    let mut record = object([("metric", figure.metric.as_str().into())]);
+    put(&mut record, "value", figure.value);
+    record.extend(object([
         ("unit", figure.unit.as_str().into()),
         ("source", figure.source.as_str().into()),
-    ])
-    .into()
+    ]));
+    record.into()
 }
 
 fn gate(verdict: &Verdict) -> Value {
@@ -285,9 +282,7 @@ fn gate(verdict: &Verdict) -> Value {
         ("max", verdict.max),
     ];
     for (key, value) in numbers {
-        if let Some(value) = value {
-            record.insert(key.to_owned(), number(value, &verdict.metric));
-        }
+        put(&mut record, key, value);
     }
     let words = [
         ("unit", Some(verdict.unit.as_str())),

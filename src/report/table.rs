@@ -1,9 +1,10 @@
 //! What `run` prints for one scenario.
 
+use crate::metrics::catalogue::{ANGLE_RANDOM_WALK, DELAY_VS_TRUTH};
 use std::collections::BTreeMap;
 
 use crate::gate::{Verdict, VerdictKind, estimate_text, plain};
-use crate::metrics::{ChannelMetrics, Metric, known_metrics};
+use crate::metrics::{ChannelMetrics, Metric, find};
 use crate::report::RunReport;
 use crate::report::calibration_text::calibration_text;
 use crate::report::columns::{Column, DIGITS, columns, matters, unit_text, value_text};
@@ -18,16 +19,6 @@ use crate::scenario::{Fidelity, MotionConfig, PublishedConfig};
 /// What stands where there is no number.
 const NOTHING: &str = "-";
 const INDENT: &str = "  ";
-/// What an encoder, repeats or small inputs give: nobody misses what was not asked for.
-const BY_CHOICE: [&str; 6] = [
-    "delay_vs_encoder_ms",
-    "bias_repeatability_deg_per_h",
-    "scale_factor_repeatability_ppm",
-    "threshold_deg_per_h",
-    "dead_band_deg_per_h",
-    "resolution_deg_per_h",
-];
-
 /// The table of one run: budget, channels by metrics, published figures beside the simulated
 /// ones, gates, failures and notes. Lines are kept within `width` where words allow it.
 #[must_use]
@@ -92,12 +83,11 @@ fn budget(report: &RunReport, width: usize) -> String {
         .map(|(source, value)| format!("{source} {value:.5}"))
         .collect();
     let mut line = format!("ARW budget (theory), deg/sqrt(h): {}", terms.join(", "));
-    let key = "angle_random_walk_deg_per_sqrt_h";
     for (name, metrics) in report.channels {
         if !report.scenario.is_raw(name) {
             continue;
         }
-        if let Some(metric) = metrics.metrics.get(key) {
+        if let Some(metric) = metrics.get(&ANGLE_RANDOM_WALK) {
             let value = estimate_text(&metric.estimate, DIGITS);
             line.push_str(&format!("; simulated {name} {value}"));
         }
@@ -146,7 +136,7 @@ fn column_of_names(channels: &[(String, ChannelMetrics)], colour: bool) -> Vec<S
 
 /// Title, unit, then one cell per channel.
 fn column_cells(column: &Column, channels: &[(String, ChannelMetrics)]) -> Vec<String> {
-    let of = |metrics: &'_ ChannelMetrics| metrics.metrics.get(&column.key).cloned();
+    let of = |metrics: &'_ ChannelMetrics| metrics.get(column.key).cloned();
     let unit = channels
         .iter()
         .find_map(|(_, metrics)| of(metrics))
@@ -213,7 +203,7 @@ pub(crate) fn failures_text(
 /// What the sine fits use of the run, and what they leave out.
 fn sine_fits(channels: &[(String, ChannelMetrics)], width: usize) -> String {
     let mut fits = channels.iter().filter_map(|(_, metrics)| {
-        let fields = &metrics.metrics.get("delay_vs_truth_ms")?.fields;
+        let fields = &metrics.get(&DELAY_VS_TRUTH)?.fields;
         let field = |name: &str| fields.get(name).copied();
         Some((
             field("cycles")?,
@@ -269,18 +259,15 @@ fn missing<'a>(report: &Measured<'a>) -> BTreeMap<(&'a str, &'a str), Vec<&'a st
     let mut missing: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
     for (name, metrics) in report.channels {
         for (key, reason) in &metrics.unavailable {
-            let compares = key.contains("_over_") || is_for_filters_only(key);
-            if matters(report.motion, key) && !compares && !BY_CHOICE.contains(&key.as_str()) {
+            let is_missed = find(key).is_some_and(|known| {
+                matters(report.motion, known) && !known.filters_only && !known.is_by_choice
+            });
+            if is_missed {
                 missing.entry((key, reason)).or_default().push(name);
             }
         }
     }
     missing
-}
-
-fn is_for_filters_only(key: &str) -> bool {
-    let known = known_metrics().iter().find(|known| known.name == key);
-    known.is_some_and(|known| known.filters_only)
 }
 
 fn published(report: &RunReport, colour: bool) -> String {

@@ -1,6 +1,7 @@
 //! The verdict on a filter in words.
 
 use crate::gate::{estimate_text, plain};
+use crate::metrics::catalogue::READAPTATION_TIME;
 use crate::metrics::{
     AgainstOne, ChannelMetrics, Deed, Estimate, FilterVerdict, Finding, filter_verdict,
 };
@@ -151,7 +152,7 @@ fn readaptation(channel: &ChannelMetrics, verdict: &FilterVerdict) -> Option<Str
             text(&time_s)
         ));
     }
-    let reason = channel.unavailable.get("readaptation_time_s")?;
+    let reason = channel.why_unavailable(&READAPTATION_TIME)?;
     let bound = reason.starts_with("not within the record");
     bound.then(|| format!("does not learn the new motion: {reason}"))
 }

@@ -4,6 +4,9 @@
 //! from 0; a filter is also `filter.<name>.<key>`, where the kind of the filter need not be said:
 //! `filter.rls.taps` is the key `taps` of whatever kind the filter named `rls` is.
 
+use std::sync::Arc;
+
+use super::excerpt::excerpt;
 use super::schema::{self, Child, Group, Key, join};
 use super::source::Mark;
 use super::suggest::{self, unknown_key};
@@ -28,6 +31,7 @@ pub(crate) fn parse(path: &str) -> Result<Vec<Step>, String> {
         let (name, indices) = part.split_at(part.find('[').unwrap_or(part.len()));
         let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || !name.chars().all(is_bare) {
+            let path = excerpt(path);
             return Err(format!(
                 "`{path}` is not a key path: expected names separated by dots, as in gyro.coil.length_m"
             ));
@@ -50,6 +54,7 @@ pub(crate) fn parse(path: &str) -> Result<Vec<Step>, String> {
                 ));
             }
             None => {
+                let path = excerpt(path);
                 return Err(format!(
                     "`{path}` is not a key path: expected an index from 0 in brackets, as in gate[2].max"
                 ));
@@ -164,9 +169,13 @@ fn element_index(array: &str, elements: &[Node], selector: &Step) -> Result<usiz
                     == Some(name)
             });
             position.ok_or_else(|| match names[..] {
-                [] => format!("there is no {array} named {name}: give an index, as in {array}[0]"),
+                [] => format!(
+                    "there is no {array} named {}: give an index, as in {array}[0]",
+                    excerpt(name)
+                ),
                 _ => format!(
-                    "there is no {array} named {name}: expected one of {}",
+                    "there is no {array} named {}: expected one of {}",
+                    excerpt(name),
                     names.join(", ")
                 ),
             })
@@ -202,7 +211,7 @@ pub(crate) fn assign(
             let table = Table::from([(name.clone(), over)]);
             let is_new = get(root, &path[..outer.len() + depth]).is_none();
             over = Node {
-                value: Value::Table(table),
+                value: table.into(),
                 mark: is_new.then_some(mark),
             };
         }
@@ -212,7 +221,7 @@ pub(crate) fn assign(
     };
     match outer {
         [] => {
-            super::tree::merge("", root, over_table);
+            super::tree::merge("", root, Arc::unwrap_or_clone(over_table));
             Ok(())
         }
         [Step::Key(array), Step::Index(index)] => {
@@ -252,6 +261,19 @@ pub(crate) fn nearest_mark(root: &Table, path: &[Step]) -> Option<Mark> {
             None => return mark,
         }
     }
+}
+
+/// The value at a path to change.
+pub(crate) fn get_mut<'a>(root: &'a mut Table, path: &[Step]) -> Option<&'a mut Node> {
+    let (first, rest) = path.split_first()?;
+    let Step::Key(first) = first else {
+        return None;
+    };
+    rest.iter()
+        .try_fold(root.get_mut(first)?, |node, step| match step {
+            Step::Key(name) => node.as_table_mut()?.get_mut(name),
+            Step::Index(index) => node.as_array_mut()?.get_mut(*index),
+        })
 }
 
 /// The value at a path.

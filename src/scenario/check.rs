@@ -1,9 +1,10 @@
-//! Checks of single keys: known, of the right type, inside the range, present.
+//! Checks of single keys: known, of the right type, inside the range.
 
 use super::error::ScenarioError;
+use super::excerpt::excerpt;
 use super::faults::{Faults, Taken};
 use super::leaf::check_leaf;
-use super::schema::{self, Child, Group, Key, Presence, join};
+use super::schema::{self, Child, Key, join};
 use super::source::{Mark, Sources};
 use super::suggest::{self, sole_sibling, unknown_key};
 use super::tree::{Node, Table, Value};
@@ -11,27 +12,39 @@ use super::tree::{Node, Table, Value};
 /// The version of the file format this build reads.
 const SCHEMA_VERSION: i64 = 1;
 
-/// Most unknown keys for which a suggestion is looked up: more complaints than that nobody reads.
+/// Most complaints of a scenario that say what may have been meant.
 const SUGGESTED_MAX: usize = 64;
 
+/// Most tables of an array.
+const TABLES_MAX: usize = 10_000;
+
 /// Walks a tree and gathers complaints.
-pub(crate) struct Checker<'a> {
-    sources: &'a Sources,
-    errors: Vec<ScenarioError>,
-    taken: Vec<Taken>,
-    unknown: usize,
+pub(super) struct Checker<'a> {
+    pub(super) sources: &'a Sources,
+    pub(super) errors: Vec<ScenarioError>,
+    pub(super) taken: Vec<Taken>,
+}
+
+/// What a check leaves of a value.
+enum Left {
+    /// All of it.
+    Whole,
+    /// Something was taken out of it.
+    Rest(Value),
+    /// None of it.
+    Nothing,
 }
 
 /// A table under check.
 #[derive(Clone, Copy)]
-struct Place<'a> {
-    schema_path: &'a str,
-    shown_path: &'a str,
-    mark: Mark,
+pub(super) struct Place<'a> {
+    pub(super) schema_path: &'a str,
+    pub(super) shown_path: &'a str,
+    pub(super) mark: Mark,
 }
 
 /// The place of the root: the first byte of the scenario's own file.
-fn root_place(root: Mark) -> Place<'static> {
+pub(super) fn root_place(root: Mark) -> Place<'static> {
     Place {
         schema_path: "",
         shown_path: "",
@@ -39,8 +52,8 @@ fn root_place(root: Mark) -> Place<'static> {
     }
 }
 
-/// Refuses unknown keys, wrong types and values out of range, and takes them out; turns whole numbers
-/// given for binary64 keys into binary64.
+/// Refuses unknown keys, wrong types and values out of range, and takes them out; what is in order
+/// stays shared.
 pub(crate) fn check_values(root: &mut Table, mark: Mark, sources: &Sources) -> Faults {
     if let Some(error) = wrong_version(root, sources, mark) {
         return Faults {
@@ -50,37 +63,14 @@ pub(crate) fn check_values(root: &mut Table, mark: Mark, sources: &Sources) -> F
         };
     }
     let mut checker = Checker::new(sources);
-    checker.table(root_place(mark), root);
+    if let Some(rest) = checker.table(root_place(mark), root) {
+        *root = rest;
+    }
     Faults {
         errors: checker.errors,
         taken: checker.taken,
         is_other_version: false,
     }
-}
-
-/// Refuses missing required keys and missing choices, after defaults have been filled in, but for
-/// those that were taken out.
-pub(crate) fn check_presence(
-    root: &Table,
-    mark: Mark,
-    sources: &Sources,
-    taken: &[Taken],
-) -> Vec<ScenarioError> {
-    let mut checker = Checker::new(sources);
-    checker.taken = taken.to_vec();
-    checker.presence(root_place(mark), root);
-    checker.errors
-}
-
-/// Refuses a file that gives two alternatives of one group.
-pub(crate) fn check_contradictions(
-    root: &Table,
-    mark: Mark,
-    sources: &Sources,
-) -> Vec<ScenarioError> {
-    let mut checker = Checker::new(sources);
-    checker.contradictions(root_place(mark), root);
-    checker.errors
 }
 
 /// A complaint if the file is written for another version of the format.
@@ -98,12 +88,11 @@ fn wrong_version(root: &Table, sources: &Sources, mark: Mark) -> Option<Scenario
 }
 
 impl<'a> Checker<'a> {
-    fn new(sources: &'a Sources) -> Self {
+    pub(super) fn new(sources: &'a Sources) -> Self {
         Self {
             sources,
             errors: Vec::new(),
             taken: Vec::new(),
-            unknown: 0,
         }
     }
 }
@@ -113,104 +102,113 @@ impl Checker<'_> {
         self.errors.push(self.sources.error(mark, message));
     }
 
-    /// Complains of something that is missing in a table; nothing is to be seen of it in a file.
-    fn miss(&mut self, mark: Mark, message: String) {
-        let location = self.sources.locate(mark);
-        let location = if mark.start == 0 {
-            location.unseen()
-        } else {
-            location
-        };
-        self.errors
-            .push(ScenarioError::at(location, message).at_key());
-    }
-
-    /// Checks a table and takes out what is wrong.
-    fn table(&mut self, place: Place<'_>, table: &mut Table) {
-        let mut faulty: Vec<String> = Vec::new();
-        for (name, node) in table.iter_mut() {
-            let shown = join(place.shown_path, name);
-            let below = join(place.schema_path, name);
-            let mark = node.mark.unwrap_or(place.mark);
-            let inner = Place {
-                schema_path: &below,
-                shown_path: &shown,
-                mark,
-            };
-            let is_sound = match schema::child(place.schema_path, name) {
-                None => self.unknown(place, name, mark),
-                Some(Child::Leaf(key)) => self.leaf(key, inner, node),
-                Some(Child::Table) => match &mut node.value {
-                    Value::Table(table) => {
-                        self.table(inner, table);
-                        true
-                    }
-                    other => self.not_a_table(inner, other, &format!("[{shown}]")),
-                },
-                Some(Child::Tables) => self.tables(inner, node),
-            };
-            if !is_sound {
-                faulty.push(name.clone());
+    /// Checks a table; returns what is left of it if something had to be taken out.
+    fn table(&mut self, place: Place<'_>, table: &Table) -> Option<Table> {
+        let mut rest: Option<Table> = None;
+        let mut faulty: Vec<&String> = Vec::new();
+        for (name, node) in table {
+            let left = self.value(place, name, node);
+            if let Left::Whole = left {
+                continue;
+            }
+            let changed = rest.get_or_insert_with(|| table.clone());
+            if let Left::Rest(value) = left {
+                let mark = node.mark;
+                changed.insert(name.clone(), Node { value, mark });
+            } else {
+                changed.remove(name);
+                faulty.push(name);
             }
         }
-        for name in faulty {
-            if let Some(node) = table.remove(&name) {
-                self.take(place, table, &name, node);
+        if let Some(rest) = &mut rest {
+            for name in faulty {
+                self.take(place, rest, name, &table[name]);
             }
+        }
+        rest
+    }
+
+    /// Checks one entry of a table.
+    fn value(&mut self, place: Place<'_>, name: &str, node: &Node) -> Left {
+        let Some(child) = schema::child(place.schema_path, name) else {
+            self.unknown(place, name, node.mark.unwrap_or(place.mark));
+            return Left::Nothing;
+        };
+        let shown = join(place.shown_path, name);
+        let inner = Place {
+            schema_path: &join(place.schema_path, name),
+            shown_path: &shown,
+            mark: node.mark.unwrap_or(place.mark),
+        };
+        match (child, &node.value) {
+            (Child::Leaf(key), _) => self.leaf(key, inner, node),
+            (Child::Table, Value::Table(table)) => match self.table(inner, table) {
+                None => Left::Whole,
+                Some(rest) => Left::Rest(rest.into()),
+            },
+            (Child::Table, other) => {
+                self.not_a_table(inner, other, &format!("[{shown}]"));
+                Left::Nothing
+            }
+            (Child::Tables, _) => self.tables(inner, node),
         }
     }
 
     /// Sets a faulty value aside, or puts it where it must have been meant to stand; what is wrong
     /// with it there follows from the fault and is not said.
-    fn take(&mut self, place: Place<'_>, table: &mut Table, name: &str, node: Node) {
+    fn take(&mut self, place: Place<'_>, rest: &mut Table, name: &str, node: &Node) {
         let mark = node.mark.unwrap_or(place.mark);
         let meant = match schema::child(place.schema_path, name) {
-            None if self.unknown <= SUGGESTED_MAX => sole_sibling(place.schema_path, name)
-                .filter(|sibling| !table.contains_key(*sibling))
-                .map(|sibling| (sibling.to_owned(), node)),
+            // Nothing depends on a key that does not exist.
+            None if self.errors.len() > SUGGESTED_MAX => return,
+            None => {
+                let sibling = sole_sibling(place.schema_path, name);
+                match sibling.filter(|sibling| !rest.contains_key(*sibling)) {
+                    Some(sibling) => (sibling.to_owned(), node.clone()),
+                    None => return,
+                }
+            }
             Some(Child::Tables) if node.as_table().is_some() => {
-                let array = Node {
-                    value: Value::Array(vec![node]),
-                    mark: Some(mark),
-                };
-                Some((name.to_owned(), array))
+                let value = vec![node.clone()].into();
+                let mark = Some(mark);
+                (name.to_owned(), Node { value, mark })
             }
             child => {
                 let key = match child {
                     Some(Child::Leaf(key)) => Some(key),
                     _ => None,
                 };
-                self.taken.push(Taken {
-                    shown: join(place.shown_path, name),
-                    key,
-                    mark,
-                });
-                None
+                let shown = join(place.shown_path, name);
+                self.taken.push(Taken { shown, key, mark });
+                return;
             }
         };
-        let Some((name, node)) = meant else {
-            return;
-        };
         let said = self.errors.len();
-        let shown = join(place.shown_path, &name);
-        let mut meant = Table::from([(name, node)]);
-        self.table(place, &mut meant);
+        let shown = join(place.shown_path, &meant.0);
+        let meant = Table::from([meant]);
+        let mut meant = self.table(place, &meant).unwrap_or(meant);
         self.errors.truncate(said);
-        table.append(&mut meant);
-        self.taken.push(Taken {
-            shown,
-            key: None,
-            mark,
-        });
+        rest.append(&mut meant);
+        let key = None;
+        self.taken.push(Taken { shown, key, mark });
     }
 
     /// Checks an array of tables; what is no table in it becomes an empty one.
-    fn tables(&mut self, place: Place<'_>, node: &mut Node) -> bool {
-        let Value::Array(elements) = &mut node.value else {
-            let header = format!("[[{}]]", place.shown_path);
-            return self.not_a_table(place, &node.value, &header);
+    fn tables(&mut self, place: Place<'_>, node: &Node) -> Left {
+        let header = format!("[[{}]]", place.shown_path);
+        let Value::Array(elements) = &node.value else {
+            self.not_a_table(place, &node.value, &header);
+            return Left::Nothing;
         };
-        for (index, element) in elements.iter_mut().enumerate() {
+        if elements.len() > TABLES_MAX {
+            let count = elements.len();
+            let shown = place.shown_path;
+            let message = format!("{shown} holds {count} tables: allowed up to {TABLES_MAX}");
+            self.complain(place.mark, message);
+            return Left::Nothing;
+        }
+        let mut rest: Option<Vec<Node>> = None;
+        for (index, element) in elements.iter().enumerate() {
             let shown = format!("{}[{index}]", place.shown_path);
             let mark = element.mark.unwrap_or(place.mark);
             let inner = Place {
@@ -218,33 +216,36 @@ impl Checker<'_> {
                 shown_path: &shown,
                 mark,
             };
-            if let Value::Table(table) = &mut element.value {
-                self.table(inner, table);
-                continue;
+            let left = if let Value::Table(table) = &element.value {
+                self.table(inner, table)
+            } else {
+                self.not_a_table(inner, &element.value, &header);
+                let key = None;
+                self.taken.push(Taken { shown, key, mark });
+                Some(Table::new())
+            };
+            if let Some(table) = left {
+                let changed = rest.get_or_insert_with(|| elements.to_vec());
+                changed[index].value = table.into();
             }
-            self.not_a_table(inner, &element.value, &format!("[[{}]]", place.shown_path));
-            element.value = Value::Table(Table::new());
-            let key = None;
-            self.taken.push(Taken { shown, key, mark });
         }
-        true
+        rest.map_or(Left::Whole, |rest| Left::Rest(rest.into()))
     }
 
-    /// Complains of a value that is no table; always false.
-    fn not_a_table(&mut self, place: Place<'_>, value: &Value, header: &str) -> bool {
+    /// Complains of a value that is no table.
+    fn not_a_table(&mut self, place: Place<'_>, value: &Value, header: &str) {
         let message = format!(
             "{} has the wrong type: expected a table, written {header}, got {}",
             place.shown_path,
             value.type_name()
         );
         self.complain(place.mark, message);
-        false
     }
 
-    /// Complains of an unknown key; always false.
-    fn unknown(&mut self, place: Place<'_>, name: &str, mark: Mark) -> bool {
-        self.unknown += 1;
-        let message = if self.unknown <= SUGGESTED_MAX {
+    /// Complains of an unknown key.
+    fn unknown(&mut self, place: Place<'_>, name: &str, mark: Mark) {
+        // The search for what was meant takes longest, and nobody reads the thousandth complaint.
+        let message = if self.errors.len() < SUGGESTED_MAX {
             let table = suggest::Place {
                 schema_path: place.schema_path,
                 shown: place.shown_path,
@@ -252,140 +253,17 @@ impl Checker<'_> {
             };
             unknown_key(table, name)
         } else {
-            format!("unknown key {}", join(place.shown_path, name))
+            format!("unknown key {}", excerpt(&join(place.shown_path, name)))
         };
         let error = self.sources.error(mark, message).at_key();
         self.errors.push(error);
-        false
     }
 
-    fn leaf(&mut self, key: &Key, place: Place<'_>, node: &mut Node) -> bool {
+    fn leaf(&mut self, key: &Key, place: Place<'_>, node: &Node) -> Left {
         let Err(fault) = check_leaf(key, place.shown_path, node) else {
-            return true;
+            return Left::Whole;
         };
         self.complain(fault.mark.unwrap_or(place.mark), fault.message);
-        false
+        Left::Nothing
     }
-
-    fn is_taken(&self, shown: &str) -> bool {
-        self.taken.iter().any(|taken| taken.covers(shown))
-    }
-
-    fn presence(&mut self, place: Place<'_>, table: &Table) {
-        let group = Group::of_table(place.schema_path);
-        if let Some(group) = group
-            && !group
-                .alternatives
-                .iter()
-                .any(|name| table.contains_key(*name))
-            && !self.is_taken(place.shown_path)
-            && !(group.alternatives.iter()).any(|name| self.is_taken(&join(place.shown_path, name)))
-        {
-            let message = format!(
-                "{} needs exactly one {}: {}",
-                place.shown_path,
-                group.noun,
-                choices(group, place.shown_path)
-            );
-            self.miss(place.mark, message);
-        }
-        for (name, child) in schema::children(place.schema_path) {
-            let shown = join(place.shown_path, name);
-            let below = join(place.schema_path, name);
-            let node = table.get(name);
-            let mark = node.and_then(|node| node.mark).unwrap_or(place.mark);
-            match (child, node) {
-                (Child::Leaf(key), None)
-                    if key.presence == Presence::Required && !self.is_taken(&shown) =>
-                {
-                    let message = format!(
-                        "{shown} is required: expected {} ({})",
-                        key.expected(),
-                        key.doc.trim_end_matches('.')
-                    );
-                    self.miss(mark, message);
-                }
-                (Child::Table, Some(node)) => {
-                    let inner = Place {
-                        schema_path: &below,
-                        shown_path: &shown,
-                        mark,
-                    };
-                    if let Some(table) = node.as_table() {
-                        self.presence(inner, table);
-                    }
-                }
-                (Child::Tables, Some(node)) => self.presence_in_tables(&below, &shown, mark, node),
-                _ => {}
-            }
-        }
-    }
-
-    fn presence_in_tables(&mut self, below: &str, shown: &str, mark: Mark, node: &Node) {
-        for (index, element) in node.as_array().unwrap_or_default().iter().enumerate() {
-            let inner = Place {
-                schema_path: &format!("{below}[]"),
-                shown_path: &format!("{shown}[{index}]"),
-                mark: element.mark.unwrap_or(mark),
-            };
-            if let Some(table) = element.as_table() {
-                self.presence(inner, table);
-            }
-        }
-    }
-
-    fn contradictions(&mut self, place: Place<'_>, table: &Table) {
-        if let Some(group) = Group::of_table(place.schema_path) {
-            let mut given: Vec<(Mark, &str)> = group
-                .alternatives
-                .iter()
-                .filter_map(|name| Some((table.get(*name)?.mark?, *name)))
-                .collect();
-            given.sort_unstable();
-            if let [(_, first), .., (mark, last)] = given[..] {
-                let message = format!(
-                    "{} contradicts {}: give exactly one {}: {}",
-                    join(place.shown_path, last),
-                    join(place.shown_path, first),
-                    group.noun,
-                    choices(group, place.shown_path)
-                );
-                let error = self.sources.error(mark, message).at_key();
-                self.errors.push(error);
-            }
-        }
-        for (name, node) in table {
-            let mark = node.mark.unwrap_or(place.mark);
-            let shown = join(place.shown_path, name);
-            let below = join(place.schema_path, name);
-            if let Some(table) = node.as_table() {
-                let inner = Place {
-                    schema_path: &below,
-                    shown_path: &shown,
-                    mark,
-                };
-                self.contradictions(inner, table);
-            }
-            for (index, element) in node.as_array().unwrap_or_default().iter().enumerate() {
-                if let Some(table) = element.as_table() {
-                    let inner = Place {
-                        schema_path: &format!("{below}[]"),
-                        shown_path: &format!("{shown}[{index}]"),
-                        mark: element.mark.unwrap_or(mark),
-                    };
-                    self.contradictions(inner, table);
-                }
-            }
-        }
-    }
-}
-
-/// The alternatives of a group as they are written in a file.
-fn choices(group: &Group, shown_path: &str) -> String {
-    let paths: Vec<String> = group
-        .alternatives
-        .iter()
-        .map(|name| join(shown_path, name))
-        .collect();
-    paths.join(", ")
 }

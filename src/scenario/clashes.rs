@@ -2,33 +2,54 @@
 
 use std::collections::BTreeMap;
 
-use super::error::ScenarioError;
+use super::error::{Location, ScenarioError};
 use super::resolved::Resolved;
 
-/// Complaints about runs that would write the same folder, or a scenario beside a sweep in it.
-pub(super) fn name_clashes(runs: &[Resolved]) -> Vec<ScenarioError> {
-    let mut first: BTreeMap<&str, &Resolved> = BTreeMap::new();
-    let mut folders: BTreeMap<String, &Resolved> = BTreeMap::new();
-    let mut errors = Vec::new();
-    for run in runs {
-        let earlier = *first.entry(&run.scenario.name).or_insert(run);
-        let twin = folders.get(&run.folder()).copied();
-        folders.entry(run.folder()).or_insert(run);
-        let is_same_sweep = earlier.shown_file() == run.shown_file()
-            && earlier.sweep.is_some() == run.sweep.is_some();
-        let clash = match twin {
-            Some(twin) => Some(twin),
-            None if std::ptr::eq(earlier, run) || is_same_sweep => None,
-            None => Some(earlier),
+/// The names and folders of the runs so far.
+#[derive(Default)]
+pub(super) struct Names {
+    first: BTreeMap<String, NamedRun>,
+    folders: BTreeMap<String, Location>,
+    /// Complaints about runs that would write the same folder, or a scenario beside a sweep in it.
+    pub(super) clashes: Vec<ScenarioError>,
+}
+
+/// The first run of a name.
+struct NamedRun {
+    file: String,
+    is_sweep: bool,
+    place: Location,
+}
+
+impl Names {
+    /// Takes the name of one more run.
+    pub(super) fn take(&mut self, run: &Resolved) {
+        let name = &run.scenario.name;
+        let (file, is_sweep) = (run.shown_file(), run.sweep.is_some());
+        let (folder, place) = (run.folder(), run.locate("name"));
+        let other = match (self.folders.get(&folder), self.first.get(name)) {
+            (Some(twin), _) => Some(twin),
+            (None, Some(first)) if first.file != file || first.is_sweep != is_sweep => {
+                Some(&first.place)
+            }
+            _ => None,
         };
-        if let Some(other) = clash {
+        if let Some(other) = other {
             let message = format!(
-                "name = \"{}\" is the name of the scenario at {} already: give each scenario its own",
-                run.scenario.name,
-                other.locate("name")
+                "name = \"{name}\" is the name of the scenario at {other} already: give each \
+                 scenario its own"
             );
-            errors.push(ScenarioError::at(run.locate("name"), message));
+            self.clashes.push(ScenarioError::at(place.clone(), message));
         }
+        if !self.first.contains_key(name) {
+            let place = place.clone();
+            let first = NamedRun {
+                file,
+                is_sweep,
+                place,
+            };
+            self.first.insert(name.clone(), first);
+        }
+        self.folders.entry(folder).or_insert(place);
     }
-    errors
 }

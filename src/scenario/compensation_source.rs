@@ -6,12 +6,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::chain;
 use super::compensation_config::CompensationParameters;
 use super::draft::Draft;
 use super::error::{Location, ScenarioError};
+use super::input::{self, Input};
 use super::resolved::{InputFile, Resolved};
 use super::source::{Label, Mark, Sources, shown_path};
-use super::suite;
 use super::tree::{Node, Table, Value, parse_document};
 
 /// The table of a scenario and of a calibration file.
@@ -33,7 +34,7 @@ pub(crate) fn read_into(
     root: &mut Table,
     sources: &mut Sources,
     inputs: &mut Vec<InputFile>,
-) -> Result<Option<Box<Resolved>>, Vec<ScenarioError>> {
+) -> Result<Option<Arc<Resolved>>, Vec<ScenarioError>> {
     let Some(table) = root.get_mut(TABLE).and_then(Node::as_table_mut) else {
         return Ok(None);
     };
@@ -51,7 +52,7 @@ pub(crate) fn read_into(
             mark: Some(named.mark),
         };
         table.insert(CAMPAIGN_SCENARIO.to_owned(), node);
-        return Ok(Some(Box::new(campaign)));
+        return Ok(Some(Arc::new(campaign)));
     }
     let written = table.get(CAMPAIGN_SCENARIO);
     // A value that is no text is refused with the other types.
@@ -59,7 +60,7 @@ pub(crate) fn read_into(
         return Ok(None);
     };
     let text = text.to_owned();
-    written_campaign(&text, mark, sources).map(|campaign| Some(Box::new(campaign)))
+    written_campaign(&text, mark, sources).map(|campaign| Some(Arc::new(campaign)))
 }
 
 /// The scenario that a calibration file is checked in where there is none: nothing of it is used.
@@ -98,6 +99,7 @@ pub fn load_calibration(
         inputs: inputs.clone(),
         recorded: None,
         warnings: Vec::new(),
+        remarks: Vec::new(),
         is_record: true,
         is_partial: false,
     }
@@ -146,13 +148,9 @@ impl Named {
         sources.error(self.mark, format!("{TABLE}.{key} = {shown}: {message}"))
     }
 
-    /// The bytes of the file.
-    fn read(&self, sources: &Sources) -> Result<Vec<u8>, ScenarioError> {
-        std::fs::read(&self.path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound => self.error(sources, "no such file"),
-            _ if self.path.is_dir() => self.error(sources, "it is a folder, not a file"),
-            _ => self.error(sources, &format!("cannot read the file: {error}")),
-        })
+    /// The text of the file and its digest.
+    fn read(&self, sources: &Sources) -> Result<Input, ScenarioError> {
+        input::read(&self.path).map_err(|error| self.error(sources, &error.to_string()))
     }
 }
 
@@ -162,10 +160,7 @@ fn parameters(
     sources: &mut Sources,
     inputs: &mut Vec<InputFile>,
 ) -> Result<Node, ScenarioError> {
-    let bytes = named.read(sources)?;
-    let digest = blake3::hash(&bytes).to_hex().to_string();
-    let text =
-        String::from_utf8(bytes).map_err(|_| named.error(sources, "the file is not UTF-8 text"))?;
+    let Input { text, digest } = named.read(sources)?;
     let shown = shown_path(&named.path);
     let source = sources.add_file(shown, text.clone(), named.label.clone());
     inputs.push(InputFile {
@@ -205,7 +200,7 @@ fn campaign(named: &Named, sources: &Sources) -> Result<Resolved, Vec<ScenarioEr
     if !named.path.is_file() {
         named.read(sources).map_err(|error| vec![error])?;
     }
-    let draft = suite::load_campaign(&named.path, &named.label)?;
+    let draft = chain::load_campaign(&named.path, &named.label)?;
     resolve(draft)
 }
 
@@ -234,6 +229,7 @@ fn written_campaign(
         inputs: Vec::new(),
         recorded: None,
         warnings: Vec::new(),
+        remarks: Vec::new(),
         is_record: true,
         is_partial: false,
     })

@@ -40,6 +40,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.motion();
     checks.injection();
     checks.filter_state();
+    checks.averaging_time();
     for (key, message) in cross_gyro::check(&resolved.scenario) {
         checks.complain(&key, message);
     }
@@ -148,7 +149,7 @@ impl Checks<'_> {
                 }
                 let settle = "turntable.steps.settle_s";
                 // The default is no wish: short dwells merely have no scale factor.
-                if steps.settle_s >= steps.dwell_s && self.resolved.is_written(settle) {
+                if steps.settle_s >= steps.dwell_s && self.resolved.is_asked_for(settle) {
                     let message = format!(
                         "{settle} = {:?} s leaves nothing of turntable.steps.dwell_s = {:?} s",
                         steps.settle_s, steps.dwell_s
@@ -221,6 +222,23 @@ impl Checks<'_> {
                  {frequency_hz_max:.6} Hz, 8 samples a cycle at the output rate of {output_rate_hz:.6} Hz"
             );
             self.complain(path, message);
+        }
+    }
+
+    /// Refuses an averaging time below a sample. The default is no wish: coarse words merely have no
+    /// bias stability over it.
+    fn averaging_time(&mut self) {
+        const KEY: &str = "bias_averaging_time_s";
+        let (asked_s, sample_s) = (
+            self.resolved.scenario.bias_averaging_time_s,
+            self.sample_period_s(),
+        );
+        if asked_s < sample_s * (1.0 - TIME_SLACK) && self.resolved.is_asked_for(KEY) {
+            let message = format!(
+                "{KEY} = {asked_s:?} s is shorter than a sample of this gyro: allowed from \
+                 {sample_s:.9} s on, or make the samples of gyro.output shorter"
+            );
+            self.complain(KEY, message);
         }
     }
 

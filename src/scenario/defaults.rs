@@ -1,14 +1,12 @@
 //! Defaults, all of which stand in `scenarios/reference.toml`.
 
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
-
-use serde::Deserialize;
+use std::sync::{Arc, OnceLock};
 
 use super::calibration_config::CalibrationConfig;
+use super::deserialize::from_table;
 use super::keys::OPTIONAL_TABLES;
-use super::resolved::plain_table;
-use super::schema::{self, Child, Group, Presence, join};
+use super::schema::{self, Child, Entry, Group, Presence, join};
 use super::tree::{Node, Table, Value, parse_document};
 
 /// The reference, embedded.
@@ -34,8 +32,7 @@ pub fn reference_calibration() -> CalibrationConfig {
     fill(&mut root);
     let settings = root.get("calibration").and_then(Node::as_table);
     let settings = settings.expect("the reference has every default, which a test asserts");
-    CalibrationConfig::deserialize(plain_table(settings))
-        .expect("the defaults are valid, which a test asserts")
+    from_table(settings).expect("the defaults are valid, which a test asserts")
 }
 
 /// The commented alternatives of the reference, each a document of its own.
@@ -62,6 +59,34 @@ pub(crate) fn alternatives() -> Vec<String> {
 struct Defaults {
     values: BTreeMap<String, Value>,
     live: Table,
+}
+
+/// Tables outside arrays as they are where nothing of them is written, by schema path.
+fn absent_table(schema_path: &str) -> Arc<Table> {
+    static ABSENT: OnceLock<BTreeMap<&str, Arc<Table>>> = OnceLock::new();
+    let absent = ABSENT.get_or_init(|| {
+        let mut absent = BTreeMap::new();
+        gather_absent("", Some(&defaults().live), &mut absent);
+        absent
+    });
+    absent.get(schema_path).cloned().unwrap_or_default()
+}
+
+/// Works out the absent tables below a path, the innermost first; `live` is that of the reference.
+fn gather_absent(
+    schema_path: &str,
+    live: Option<&Table>,
+    absent: &mut BTreeMap<&'static str, Arc<Table>>,
+) {
+    for Entry { name, child, path } in schema::entries(schema_path).iter().copied() {
+        if let Child::Table = child {
+            let live = live.and_then(|live| live.get(name)?.as_table());
+            gather_absent(path, live, absent);
+            let inner = |path: &str| absent.get(path).cloned().unwrap_or_default();
+            let table = filled(path, &Table::new(), live, &inner).unwrap_or_default();
+            absent.insert(path, Arc::new(table));
+        }
+    }
 }
 
 /// The defaults, read once.
@@ -139,48 +164,95 @@ pub(crate) fn has_default_alternative(group: &Group) -> bool {
 /// Fills every absent defaulted key and table of a tree; chosen alternatives stay, a group without a
 /// choice takes the alternative that stands live in the reference, and an optional table that is
 /// absent stays so.
+///
+/// What needs nothing stays shared, and so are tables of which nothing was written.
 pub(crate) fn fill(root: &mut Table) {
-    fill_table("", root, Some(&defaults().live));
+    if let Some(filled) = filled("", root, Some(&defaults().live), &absent_table) {
+        *root = filled;
+    }
 }
 
-/// Fills one table; `live` is the same table of the reference.
-fn fill_table(schema_path: &str, table: &mut Table, live: Option<&Table>) {
+/// The table with what it lacks; `None` if it lacks nothing.
+///
+/// * `live`: the same table of the reference; `None` inside arrays and where it has none.
+/// * `absent`: the filled table at a path of which nothing was written.
+fn filled(
+    schema_path: &str,
+    table: &Table,
+    live: Option<&Table>,
+    absent: &dyn Fn(&str) -> Arc<Table>,
+) -> Option<Table> {
     let group = Group::of_table(schema_path);
     let is_chosen = group.is_some_and(|group| {
-        group
-            .alternatives
-            .iter()
-            .any(|name| table.contains_key(*name))
+        let mut alternatives = group.alternatives.iter();
+        alternatives.any(|name| table.contains_key(*name))
     });
-    for (name, child) in schema::children(schema_path) {
-        let path = join(schema_path, name);
-        let live_node = live.and_then(|live| live.get(name));
+    let mut result = None;
+    for Entry { name, child, path } in schema::entries(schema_path).iter().copied() {
+        let live = live.and_then(|live| live.get(name));
         let is_alternative = group.is_some_and(|group| group.alternatives.contains(&name));
         let may_add = if is_alternative {
-            !is_chosen && live_node.is_some()
+            !is_chosen && live.is_some()
         } else {
-            !OPTIONAL_TABLES.contains(&path.as_str())
+            !OPTIONAL_TABLES.contains(&path)
         };
-        if !table.contains_key(name) && may_add {
-            let value = match child {
-                Child::Leaf(_) => default_of(&path).cloned(),
-                Child::Table => Some(Value::Table(Table::new())),
-                Child::Tables => None,
-            };
-            if let Some(value) = value {
-                table.insert(name.to_owned(), Node { value, mark: None });
+        let inside_live = live.and_then(Node::as_table);
+        let node = match (table.get(name), child) {
+            (Some(node), Child::Table | Child::Tables) => {
+                filled_node(path, node, child, inside_live, absent)
             }
-        }
-        match table.get_mut(name).map(|node| &mut node.value) {
-            Some(Value::Table(inner)) => {
-                fill_table(&path, inner, live_node.and_then(Node::as_table));
-            }
-            Some(Value::Array(elements)) if matches!(child, Child::Tables) => {
-                for inner in elements.iter_mut().filter_map(Node::as_table_mut) {
-                    fill_table(&format!("{path}[]"), inner, None);
-                }
-            }
-            _ => {}
+            (None, Child::Leaf(_)) if may_add => default_of(path).map(|value| Node {
+                value: value.clone(),
+                mark: None,
+            }),
+            (None, Child::Table) if may_add => Some(Node {
+                value: Value::Table(absent_in(path, inside_live, absent)),
+                mark: None,
+            }),
+            _ => None,
+        };
+        if let Some(node) = node {
+            let changed = result.get_or_insert_with(|| table.clone());
+            changed.insert(name.to_owned(), node);
         }
     }
+    result
+}
+
+/// A table of which nothing was written, filled. Those inside arrays have no counterpart in the
+/// reference and are not kept.
+fn absent_in(path: &str, live: Option<&Table>, absent: &dyn Fn(&str) -> Arc<Table>) -> Arc<Table> {
+    if path.contains("[]") {
+        Arc::new(filled(path, &Table::new(), live, absent).unwrap_or_default())
+    } else {
+        absent(path)
+    }
+}
+
+/// A table or an array of tables with what is lacking inside; `None` if nothing is. The path is
+/// that of the table, or of an element of the array.
+fn filled_node(
+    path: &str,
+    node: &Node,
+    child: Child,
+    live: Option<&Table>,
+    absent: &dyn Fn(&str) -> Arc<Table>,
+) -> Option<Node> {
+    let value = match (&node.value, child) {
+        (Value::Table(table), _) => filled(path, table, live, absent).map(Value::from),
+        (Value::Array(elements), Child::Tables) => {
+            let mut result = None;
+            for (index, element) in elements.iter().enumerate() {
+                let table = element.as_table();
+                if let Some(table) = table.and_then(|table| filled(path, table, None, absent)) {
+                    let changed = result.get_or_insert_with(|| elements.to_vec());
+                    changed[index].value = table.into();
+                }
+            }
+            result.map(Value::from)
+        }
+        _ => None,
+    };
+    let mark = node.mark;
+    value.map(|value| Node { value, mark })
 }

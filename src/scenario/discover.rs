@@ -1,23 +1,36 @@
 //! From paths to the files of a suite.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::{Location, ScenarioError};
 use super::source::shown_path;
-use super::tree::parse_document;
+
+/// A file to load.
+pub(super) struct Found {
+    pub(super) path: PathBuf,
+    /// Whether it was named itself, not the folder it lies in.
+    pub(super) is_named: bool,
+}
 
 /// The files to load, each once.
-pub(super) fn discover(paths: &[PathBuf], errors: &mut Vec<ScenarioError>) -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> = Vec::new();
+pub(super) fn discover(paths: &[PathBuf], errors: &mut Vec<ScenarioError>) -> Vec<Found> {
+    let mut files: Vec<Found> = Vec::new();
     for path in paths {
         if path.is_dir() {
             let mut found = Vec::new();
             walk(path, &mut found, errors);
             found.sort();
-            files.extend(found.into_iter().filter(|file| is_scenario(file)));
+            files.extend(found.into_iter().map(|path| Found {
+                path,
+                is_named: false,
+            }));
         } else if path.exists() {
-            files.push(path.clone());
+            files.push(Found {
+                path: path.clone(),
+                is_named: true,
+            });
         } else {
             errors.push(ScenarioError::at(
                 Location::of_file(shown_path(path)),
@@ -25,12 +38,14 @@ pub(super) fn discover(paths: &[PathBuf], errors: &mut Vec<ScenarioError>) -> Ve
             ));
         }
     }
-    let mut seen: Vec<PathBuf> = Vec::new();
-    files.retain(|file| {
-        let identity = identity(file);
-        let is_new = !seen.contains(&identity);
-        seen.push(identity);
-        is_new
+    // A file that was named is loaded whether it has a name or not, whatever folder it lies in.
+    let named = files.iter().filter(|file| file.is_named);
+    let named: BTreeSet<PathBuf> = named.map(|file| identity(&file.path)).collect();
+    let mut seen: BTreeSet<PathBuf> = BTreeSet::new();
+    files.retain_mut(|file| {
+        let identity = identity(&file.path);
+        file.is_named |= named.contains(&identity);
+        seen.insert(identity)
     });
     files
 }
@@ -69,14 +84,6 @@ fn walk(folder: &Path, found: &mut Vec<PathBuf>, errors: &mut Vec<ScenarioError>
             found.push(path);
         }
     }
-}
-
-/// Whether a file of a folder is to be run; one that cannot be parsed is kept for its error.
-fn is_scenario(file: &Path) -> bool {
-    let Ok(text) = fs::read_to_string(file) else {
-        return true;
-    };
-    parse_document(0, &text).map_or(true, |root| root.contains_key("name"))
 }
 
 /// What makes two paths the same file.

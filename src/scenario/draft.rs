@@ -2,18 +2,16 @@
 
 use std::sync::Arc;
 
-use serde::Deserialize;
-
-use super::address;
-use super::check::{check_presence, check_values};
+use super::check::check_values;
 use super::compensation_source;
-use super::config::Scenario;
 use super::cross;
 use super::defaults::fill;
 use super::emit::to_toml;
-use super::error::ScenarioError;
+use super::error::{ScenarioError, in_both};
 use super::faults::Taken;
-use super::resolved::{InputFile, Resolved, SweepPoint, plain_table};
+use super::numbers;
+use super::presence::check_presence;
+use super::resolved::{InputFile, Resolved, SweepPoint, broken, configuration, digest};
 use super::script;
 use super::source::{Mark, Sources};
 use super::stand_in::{Variant, make_whole};
@@ -36,6 +34,8 @@ pub(crate) struct Draft {
     pub(crate) recorded: Option<Recorded>,
     /// What is worth saying about how it was read.
     pub(crate) warnings: Vec<String>,
+    /// What is worth saying but must not stand in results.
+    pub(crate) remarks: Vec<String>,
     /// Whether the file is a record, or a base of which a scenario was made up: what it sets is then
     /// nobody's wish for this run.
     pub(crate) is_record: bool,
@@ -56,6 +56,13 @@ pub(crate) struct Recorded {
     pub(crate) sweep: Option<SweepPoint>,
     /// Where its gates were written.
     pub(crate) gate_places: Vec<String>,
+}
+
+impl Recorded {
+    /// The first swept key that has another value than the record says, and what that is.
+    pub(crate) fn broken_point(&self, root: &Table) -> Option<(&str, &str)> {
+        broken(root, self.sweep.as_ref()?)
+    }
 }
 
 /// What is wrong with a scenario, and as what it can be checked further.
@@ -99,12 +106,13 @@ impl Draft {
         if faults.is_other_version || self.is_partial {
             return Err(errors.into());
         }
+        numbers::settle(&mut self.root);
         let mut whole = self.root.clone();
         fill(&mut whole);
         let missing = check_presence(&whole, self.root_mark, &self.sources, &faults.taken);
         errors.extend(missing);
         if !errors.is_empty() {
-            return Err(self.made_up(&faults.taken, campaign.as_deref(), errors));
+            return Err(self.made_up(&faults.taken, campaign.as_ref(), errors));
         }
         self.root = whole;
         let (resolved, errors) = self.settle(campaign)?;
@@ -123,7 +131,7 @@ impl Draft {
 
     /// Reads the files that keys name. Without one of them most of the later complaints would follow
     /// from its lack.
-    fn read_named_files(&mut self, errors: &mut Vec<ScenarioError>) -> Option<Box<Resolved>> {
+    fn read_named_files(&mut self, errors: &mut Vec<ScenarioError>) -> Option<Arc<Resolved>> {
         let sources = Arc::make_mut(&mut self.sources);
         if let Err(error) = script::read_into(&mut self.root, sources, &mut self.inputs) {
             errors.push(error);
@@ -143,7 +151,7 @@ impl Draft {
     fn made_up(
         &self,
         taken: &[Taken],
-        campaign: Option<&Resolved>,
+        campaign: Option<&Arc<Resolved>>,
         mut errors: Vec<ScenarioError>,
     ) -> Unsound {
         let mut variants = Vec::new();
@@ -152,17 +160,14 @@ impl Draft {
         for variant in Variant::ALL {
             let mut draft = self.clone();
             make_whole(&mut draft.root, taken, variant);
-            let Ok((resolved, found)) = draft.settle(campaign.cloned().map(Box::new)) else {
+            let Ok((resolved, found)) = draft.settle(campaign.cloned()) else {
                 return errors.into();
             };
             is_contradictory |= !found.is_empty();
             variants.push(resolved);
             common = Some(match common {
                 None => found,
-                Some(common) => common
-                    .into_iter()
-                    .filter(|one| found.contains(one))
-                    .collect(),
+                Some(common) => in_both(common, &found),
             });
         }
         errors.extend(common.unwrap_or_default());
@@ -178,19 +183,16 @@ impl Draft {
     /// The configuration of a whole tree, and what is wrong across its values.
     fn settle(
         self,
-        campaign: Option<Box<Resolved>>,
+        campaign: Option<Arc<Resolved>>,
     ) -> Result<(Resolved, Vec<ScenarioError>), Vec<ScenarioError>> {
-        let scenario = Scenario::deserialize(plain_table(&self.root)).map_err(|error| {
-            let message = format!(
-                "the scenario does not fit its configuration: {}",
-                error.message()
-            );
-            vec![self.sources.error(self.root_mark, message)]
-        })?;
-        let text = to_toml(&self.root, "");
-        let digest = blake3::hash(text.as_bytes()).to_hex().to_string();
+        let scenario = configuration(&self.root, self.root_mark, &self.sources)?;
+        let digest = digest(&to_toml(&self.root, ""));
         let origin = match self.recorded {
-            Some(recorded) if recorded.digest == digest => recorded,
+            Some(recorded)
+                if recorded.digest == digest && recorded.broken_point(&self.root).is_none() =>
+            {
+                recorded
+            }
             // The record is of another scenario: what was read now is the origin. A sweep point
             // stays one as long as the swept keys have their values.
             recorded => Recorded {
@@ -199,7 +201,7 @@ impl Draft {
                 inputs: self.inputs,
                 sweep: recorded
                     .and_then(|recorded| recorded.sweep)
-                    .filter(|point| holds(&self.root, point)),
+                    .filter(|point| broken(&self.root, point).is_none()),
                 gate_places: Vec::new(),
             },
         };
@@ -210,6 +212,7 @@ impl Draft {
             inputs: origin.inputs,
             sweep: origin.sweep,
             warnings: self.warnings,
+            remarks: self.remarks,
             is_base_point: false,
             campaign,
             gate_places: origin.gate_places,
@@ -221,14 +224,4 @@ impl Draft {
         let errors = cross::check(&resolved);
         Ok((resolved, errors))
     }
-}
-
-/// Whether the swept keys of a point have the values of the point.
-fn holds(root: &Table, point: &SweepPoint) -> bool {
-    point.assignments.iter().all(|(key, value)| {
-        address::resolve(root, key)
-            .ok()
-            .and_then(|(path, _)| address::get(root, &path))
-            .is_some_and(|node| node.value.to_toml() == *value)
-    })
 }

@@ -1,7 +1,9 @@
 //! What is wrong with a scenario, and where.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+
+use super::excerpt::bounded;
 
 /// A place in an input: prints as `file:line:column`, or as the `--set` argument itself.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -13,12 +15,12 @@ pub struct Location {
     /// Column in characters, from 1; 0 for a `--set` argument or a file as a whole.
     pub column: usize,
     /// The text there; none for a file as a whole.
-    excerpt: Option<Box<Excerpt>>,
+    snippet: Option<Box<Snippet>>,
 }
 
 /// The line of a place, or a `--set` argument, cut to what surrounds the place.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Excerpt {
+pub(crate) struct Snippet {
     /// The text.
     pub(crate) text: String,
     /// Byte at which the place begins.
@@ -31,26 +33,40 @@ const BEHIND_MAX: usize = 80;
 /// What stands for the rest of a long line.
 const CUT: &str = "...";
 
-impl Excerpt {
-    /// What surrounds a byte of a line.
-    pub(crate) fn of(line: &str, start: usize) -> Self {
-        let (before, behind) = line.split_at(start.min(line.len()));
-        let skipped = before.chars().count().saturating_sub(BEFORE_MAX);
-        let kept: String = before.chars().skip(skipped).collect();
-        let head = if skipped > 0 {
-            format!("{CUT}{kept}")
+impl Snippet {
+    /// What surrounds a byte of a text in its line. However long the line is, no more of it is read
+    /// than is shown: a line may hold thousands of faults.
+    pub(crate) fn around(text: &str, start: usize) -> Self {
+        let mut start = start.min(text.len());
+        while !text.is_char_boundary(start) {
+            start -= 1;
+        }
+        let (before, behind) = text.split_at(start);
+        let is_inside = |c: &char| *c != '\n';
+        let before = before.chars().rev().take_while(is_inside);
+        let mut head: Vec<char> = before.take(BEFORE_MAX + 1).collect();
+        let is_cut = head.len() > BEFORE_MAX;
+        head.truncate(BEFORE_MAX);
+        let mut text: String = if is_cut {
+            CUT.to_owned()
         } else {
-            kept
+            String::new()
         };
-        let mut text = head.clone();
-        text.extend(behind.chars().take(BEHIND_MAX));
-        if behind.chars().nth(BEHIND_MAX).is_some() {
-            text.push_str(CUT);
+        text.extend(head.iter().rev());
+        let start = text.len();
+        let behind = behind.chars().take_while(is_inside);
+        for (index, c) in behind.enumerate() {
+            if index == BEHIND_MAX {
+                text.push_str(CUT);
+                break;
+            }
+            text.push(c);
         }
-        Self {
-            start: head.len(),
-            text,
+        if text.ends_with('\r') {
+            text.pop();
         }
+        let start = start.min(text.len());
+        Self { text, start }
     }
 
     /// The bytes that a complaint is about: a key, or a key with its value, or a value alone.
@@ -108,7 +124,7 @@ impl Location {
             file: file.into(),
             line: 0,
             column: 0,
-            excerpt: None,
+            snippet: None,
         }
     }
 
@@ -121,32 +137,32 @@ impl Location {
             0
         };
         Self {
-            excerpt: Some(Box::new(Excerpt::of(shown, start))),
+            snippet: Some(Box::new(Snippet::around(shown, start))),
             ..Self::of_file(shown)
         }
     }
 
-    /// A byte of a line of a file.
-    pub(crate) fn in_line(file: String, line: usize, text: &str, start: usize) -> Self {
+    /// A place in a file.
+    pub(crate) fn in_file(file: String, line: usize, column: usize, snippet: Snippet) -> Self {
         Self {
             file,
             line,
-            column: text[..start].chars().count() + 1,
-            excerpt: Some(Box::new(Excerpt::of(text, start))),
+            column,
+            snippet: Some(Box::new(snippet)),
         }
     }
 
     /// The same place, of which there is nothing to be seen: something is missing there.
     pub(crate) fn unseen(self) -> Self {
         Self {
-            excerpt: None,
+            snippet: None,
             ..self
         }
     }
 
     /// The text there.
-    pub(crate) fn excerpt(&self) -> Option<&Excerpt> {
-        self.excerpt.as_deref()
+    pub(crate) fn snippet(&self) -> Option<&Snippet> {
+        self.snippet.as_deref()
     }
 }
 
@@ -187,7 +203,7 @@ impl ScenarioError {
     pub fn at(location: Location, message: impl Into<String>) -> Self {
         Self {
             location,
-            message: message.into(),
+            message: bounded(&message.into()).into_owned(),
             is_of_key: false,
         }
     }
@@ -203,36 +219,48 @@ impl ScenarioError {
     /// The text that it is about: a line, its number, and the bytes to point at.
     #[must_use]
     pub fn source(&self) -> Option<(&str, usize, std::ops::Range<usize>)> {
-        let excerpt = self.location.excerpt()?;
+        let snippet = self.location.snippet()?;
         let line = self.location.line.max(1);
-        Some((&excerpt.text, line, excerpt.span(self.is_of_key)))
+        Some((&snippet.text, line, snippet.span(self.is_of_key)))
     }
 }
 
 /// Complaints in the order of their files and lines, each once.
-pub(crate) fn in_order(errors: Vec<ScenarioError>) -> Vec<ScenarioError> {
-    let mut files: Vec<String> = Vec::new();
-    let mut keyed: Vec<_> = errors
-        .into_iter()
-        .map(|error| {
-            let file = &error.location.file;
-            let known = files.iter().position(|known| known == file);
-            let index = known.unwrap_or_else(|| {
-                files.push(file.clone());
-                files.len() - 1
-            });
-            ((index, error.location.line, error.location.column), error)
-        })
-        .collect();
-    keyed.sort_by_key(|(place, _)| *place);
-    let mut unique: Vec<ScenarioError> = Vec::new();
-    let mut seen: BTreeSet<String> = BTreeSet::new();
-    for (_, error) in keyed {
-        if seen.insert(error.to_string()) {
-            unique.push(error);
+pub(crate) fn in_order(mut errors: Vec<ScenarioError>) -> Vec<ScenarioError> {
+    let mut files: BTreeMap<String, usize> = BTreeMap::new();
+    for error in &errors {
+        let file = &error.location.file;
+        if !files.contains_key(file) {
+            files.insert(file.clone(), files.len());
         }
     }
-    unique
+    errors.sort_by_cached_key(|error| {
+        let Location {
+            file, line, column, ..
+        } = &error.location;
+        (files.get(file).copied(), *line, *column)
+    });
+    // Equal complaints are about the same place.
+    let places = errors.chunk_by(|one, other| {
+        let place = |error: &ScenarioError| (error.location.line, error.location.column);
+        place(one) == place(other) && one.location.file == other.location.file
+    });
+    let mut is_first: Vec<bool> = Vec::with_capacity(errors.len());
+    for place in places {
+        let mut said: BTreeSet<&str> = BTreeSet::new();
+        is_first.extend(place.iter().map(|error| said.insert(&error.message)));
+    }
+    let mut is_first = is_first.into_iter();
+    errors.retain(|_| is_first.next().unwrap_or(true));
+    errors
+}
+
+/// The complaints of one list that stand in another as well.
+pub(crate) fn in_both(one: Vec<ScenarioError>, other: &[ScenarioError]) -> Vec<ScenarioError> {
+    let other: BTreeSet<&ScenarioError> = other.iter().collect();
+    one.into_iter()
+        .filter(|error| other.contains(error))
+        .collect()
 }
 
 #[cfg(test)]
@@ -240,8 +268,8 @@ mod tests {
     use super::*;
 
     fn pointed_at(line: &str, start: usize, is_of_key: bool) -> String {
-        let excerpt = Excerpt::of(line, start);
-        excerpt.text[excerpt.span(is_of_key)].to_owned()
+        let snippet = Snippet::around(&format!("a = 0\n{line}\r\nb = 0"), start + 6);
+        snippet.text[snippet.span(is_of_key)].to_owned()
     }
 
     #[test]
@@ -265,8 +293,8 @@ mod tests {
         let line = format!("{}here = 1{}", "é".repeat(1000), "x".repeat(1000));
         let start = 2000;
         assert!(pointed_at(&line, start, true) == "here");
-        let excerpt = Excerpt::of(&line, start);
-        assert!(excerpt.text.chars().count() <= 126, "{}", excerpt.text);
-        assert!(excerpt.text.starts_with(CUT) && excerpt.text.ends_with(CUT));
+        let snippet = Snippet::around(&line, start);
+        assert!(snippet.text.chars().count() <= 126, "{}", snippet.text);
+        assert!(snippet.text.starts_with(CUT) && snippet.text.ends_with(CUT));
     }
 }

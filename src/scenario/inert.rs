@@ -8,18 +8,19 @@
 use super::address::{Step, display};
 use super::defaults::default_of;
 use super::error::{Location, ScenarioError};
+use super::excerpt::excerpt;
 use super::inert_rules::{Acts, RULES, Rule};
 use super::resolved::Resolved;
 use super::source::Mark;
-use super::tree::{Node, Value};
+use super::tree::{Node, Table};
 
 /// A wish that has acted nowhere yet.
-#[derive(Clone)]
 struct Wish {
     rule: &'static Rule,
     path: Vec<Step>,
-    mark: Mark,
-    is_swept: bool,
+    is_set: bool,
+    /// The complaint, should it act nowhere.
+    error: ScenarioError,
 }
 
 /// The wishes of a scenario that have acted nowhere yet.
@@ -37,55 +38,55 @@ impl Idle {
     /// The wishes that do not act in a first point; `swept` are the paths of a matrix and its marks.
     pub(crate) fn of(first: &Resolved, swept: &[(Vec<Step>, Mark)]) -> Self {
         let mut wishes = Vec::new();
+        let mut is_written_out = None;
         for rule in RULES {
-            for (path, node) in places(first, rule) {
-                let Some(mark) = node.mark else {
-                    continue;
-                };
+            for Written { path, node, mark } in places(first, rule) {
                 let axis = swept.iter().find(|(swept, _)| *swept == path);
                 let mark = axis.map_or(mark, |(_, mark)| *mark);
-                let is_set = first.is_set_argument(mark);
+                let (is_swept, is_set) = (axis.is_some(), first.is_set_argument(mark));
                 let says_default = || {
                     default_of(rule.path)
                         .is_some_and(|default| default.to_toml() == node.value.to_toml())
                 };
-                let is_own = first.is_own(mark);
-                if is_set || (is_own && (axis.is_some() || !says_default())) {
-                    let is_swept = axis.is_some();
+                let is_wish = is_set || (first.is_own(mark) && (is_swept || !says_default()));
+                if !is_wish || acts(first, rule, &path) {
+                    continue;
+                }
+                let mut is_record =
+                    || *is_written_out.get_or_insert_with(|| first.is_written_out());
+                if is_set || is_swept || !is_record() {
+                    let message = message(rule, &path, node, is_swept);
                     wishes.push(Wish {
                         rule,
                         path,
-                        mark,
-                        is_swept,
+                        is_set,
+                        error: ScenarioError::at(first.place(mark), message),
                     });
                 }
             }
         }
-        let mut idle = Self(wishes);
-        idle.keep_idle(first);
-        idle
+        Self(wishes)
     }
 
     /// Lets go of the wishes that act in another point.
     pub(crate) fn keep_idle(&mut self, point: &Resolved) {
-        self.0.retain(|wish| !acts(point, wish));
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.0.retain(|wish| !acts(point, wish.rule, &wish.path));
     }
 
     /// The complaints: those about the scenario itself, and those about `--set`.
-    pub(crate) fn complaints(self, of: &Resolved) -> (Vec<ScenarioError>, Vec<IdleSet>) {
+    pub(crate) fn complaints(self) -> (Vec<ScenarioError>, Vec<IdleSet>) {
         let (mut own, mut sets) = (Vec::new(), Vec::new());
-        let is_written_out = !self.0.is_empty() && of.is_written_out();
-        for wish in self.0 {
-            let location = of.place(wish.mark);
-            let error = ScenarioError::at(location.clone(), message(of, &wish));
-            if of.is_set_argument(wish.mark) {
-                let identity = (location, wish.path);
+        for Wish {
+            path,
+            is_set,
+            error,
+            ..
+        } in self.0
+        {
+            if is_set {
+                let identity = (error.location.clone(), path);
                 sets.push(IdleSet { identity, error });
-            } else if wish.is_swept || !is_written_out {
+            } else {
                 own.push(error);
             }
         }
@@ -113,13 +114,14 @@ impl IdleSets {
     }
 }
 
-fn acts(run: &Resolved, wish: &Wish) -> bool {
+/// Whether the key of a rule acts in a run, at a path.
+fn acts(run: &Resolved, rule: &Rule, path: &[Step]) -> bool {
     let scenario = &run.scenario;
-    let index = wish.path.iter().find_map(|step| match step {
+    let index = path.iter().find_map(|step| match step {
         Step::Index(index) => Some(*index),
         Step::Key(_) => None,
     });
-    match wish.rule.acts {
+    match rule.acts {
         Acts::Run(acts) => acts(scenario),
         Acts::Filter(acts) => index
             .and_then(|index| scenario.filters.get(index))
@@ -130,55 +132,76 @@ fn acts(run: &Resolved, wish: &Wish) -> bool {
     }
 }
 
-/// Every place at which a run has the key of a rule.
-fn places<'a>(run: &'a Resolved, rule: &Rule) -> Vec<(Vec<Step>, &'a Node)> {
-    let mut found: Vec<(Vec<Step>, &Node)> = Vec::new();
-    for (depth, name) in rule.path.split('.').enumerate() {
-        let (name, is_array) = match name.strip_suffix("[]") {
-            Some(name) => (name, true),
-            None => (name, false),
-        };
-        let tables = if depth == 0 {
-            vec![(Vec::new(), run.tree())]
-        } else {
-            let inner = found.into_iter();
-            inner
-                .filter_map(|(path, node)| Some((path, node.as_table()?)))
-                .collect()
-        };
-        found = Vec::new();
-        for (mut path, table) in tables {
-            let Some(node) = table.get(name) else {
-                continue;
-            };
-            path.push(Step::Key(name.to_owned()));
-            match &node.value {
-                Value::Array(elements) if is_array => {
-                    for (index, element) in elements.iter().enumerate() {
-                        let mut path = path.clone();
-                        path.push(Step::Index(index));
-                        found.push((path, element));
-                    }
-                }
-                _ => found.push((path, node)),
-            }
-        }
-    }
+/// A key that somebody wrote.
+struct Written<'a> {
+    path: Vec<Step>,
+    node: &'a Node,
+    mark: Mark,
+}
+
+/// Every place at which somebody wrote the key of a rule in what became a run.
+fn places<'a>(run: &'a Resolved, rule: &Rule) -> Vec<Written<'a>> {
+    let mut found = Vec::new();
+    gather(run.tree(), rule.path, &mut Vec::new(), &mut found);
     found
 }
 
-fn message(of: &Resolved, wish: &Wish) -> String {
-    let path = display(&wish.path);
-    let subject = match of.value_toml(&wish.path) {
-        Some(value) if !wish.is_swept => format!("{path} = {value} has no effect"),
-        _ => format!("{path} is swept without effect in any point"),
+/// Gathers the written places below a table. What has no mark was filled in as a whole.
+fn gather<'a>(
+    table: &'a Table,
+    names: &'static str,
+    way: &mut Vec<(&'static str, Option<usize>)>,
+    found: &mut Vec<Written<'a>>,
+) {
+    let (name, rest) = names.split_once('.').unwrap_or((names, ""));
+    let (name, is_array) = match name.strip_suffix("[]") {
+        Some(name) => (name, true),
+        None => (name, false),
     };
-    match wish.rule.needs.rsplit_once("; ") {
+    let Some((node, mark)) = table.get(name).and_then(|node| Some((node, node.mark?))) else {
+        return;
+    };
+    if is_array {
+        for (index, element) in node.as_array().unwrap_or_default().iter().enumerate() {
+            if let Some(inner) = element.as_table() {
+                way.push((name, Some(index)));
+                gather(inner, rest, way, found);
+                way.pop();
+            }
+        }
+        return;
+    }
+    way.push((name, None));
+    match node.as_table() {
+        Some(inner) if !rest.is_empty() => gather(inner, rest, way, found),
+        _ if rest.is_empty() => {
+            let steps = way.iter().flat_map(|(name, index)| {
+                let key = Step::Key((*name).to_owned());
+                std::iter::once(key).chain(index.map(Step::Index))
+            });
+            let path = steps.collect();
+            found.push(Written { path, node, mark });
+        }
+        _ => {}
+    }
+    way.pop();
+}
+
+/// The complaint about a key that acts nowhere.
+fn message(rule: &Rule, path: &[Step], node: &Node, is_swept: bool) -> String {
+    let path = display(path);
+    let subject = if is_swept {
+        format!("{path} is swept without effect in any point")
+    } else {
+        let value = node.value.to_toml();
+        format!("{path} = {} has no effect", excerpt(&value))
+    };
+    match rule.needs.rsplit_once("; ") {
         Some((reason, needs)) => {
             format!("{subject}: {reason}; set {needs} or leave the key out")
         }
         None => {
-            let needs = wish.rule.needs;
+            let needs = rule.needs;
             format!("{subject}: it acts only with {needs}; set that or leave the key out")
         }
     }

@@ -261,7 +261,11 @@ impl Case {
 }
 
 /// Loads `x.toml` beside other files.
-fn load(text: &str, base: &str, sets: &[&str]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
+pub(super) fn load(
+    text: &str,
+    base: &str,
+    sets: &[&str],
+) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("base.toml"), base).unwrap();
     let file = folder.path().join("x.toml");
@@ -271,7 +275,7 @@ fn load(text: &str, base: &str, sets: &[&str]) -> Result<Vec<Resolved>, Vec<Scen
 }
 
 /// The complaints that a key has no effect.
-fn idle(text: &str, base: &str, sets: &[&str]) -> Vec<String> {
+pub(super) fn idle(text: &str, base: &str, sets: &[&str]) -> Vec<String> {
     let errors = load(text, base, sets).err().unwrap_or_default();
     let texts = errors.iter().map(|error| error.message.clone());
     texts
@@ -338,52 +342,4 @@ fn inherited_keys_defaults_and_records_are_never_refused() {
         idle(&text.replace("arls", default), "", &[]),
         Vec::<String>::new()
     );
-}
-
-#[test]
-fn a_set_key_is_refused_if_it_acts_nowhere() {
-    let least = "name = \"x\"\nduration_s = 20.0\n";
-    let set = ["gyro.slow_noise.gauss_markov_correlation_time_s=50"];
-    let found = idle(least, "", &set);
-    assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].contains("it acts only with gyro.slow_noise.gauss_markov_deg_per_h above 0"));
-    let acting = format!("{least}gyro.slow_noise.gauss_markov_deg_per_h = 1.0\n");
-    assert!(load(&acting, "", &set).is_ok());
-    // It acts in one scenario of the suite.
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a.toml"), least).unwrap();
-    fs::write(
-        folder.path().join("b.toml"),
-        acting.replace("\"x\"", "\"y\""),
-    )
-    .unwrap();
-    let sets = set.map(str::to_owned);
-    assert!(load_suite(&[folder.path().to_owned()], &sets).is_ok());
-    // On a manifest it is a wish as well.
-    let run = load(least, "", &[]).unwrap().remove(0);
-    let manifest = super::manifest_toml(&run, env!("CARGO_PKG_VERSION"));
-    assert_eq!(idle(&manifest, "", &set).len(), 1);
-}
-
-#[test]
-fn a_swept_key_acts_if_it_acts_in_one_point() {
-    let sweep = |amplitudes: &str| {
-        format!(
-            "name = \"x\"\nduration_s = 20.0\n[matrix]\n\
-             \"gyro.slow_noise.gauss_markov_correlation_time_s\" = [10.0, 20.0]\n\
-             \"gyro.slow_noise.gauss_markov_deg_per_h\" = {amplitudes}\n"
-        )
-    };
-    assert!(load(&sweep("[0.0, 1.0]"), "", &[]).is_ok());
-    let found = idle(&sweep("[0.0]"), "", &[]);
-    assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].contains("gauss_markov_correlation_time_s is swept without effect"));
-    // A key of the file that acts in one point only.
-    let text = "name = \"x\"\nduration_s = 20.0\ngyro.thermal.ripple_period_s = 33.0\n[matrix]\n\
-                \"gyro.thermal.ripple_amplitude_c\" = [0.0, 1.0]\n";
-    assert!(load(text, "", &[]).is_ok());
-    // A sweep that is inherited is nobody's wish.
-    let own = "name = \"x\"\nextends = \"base.toml\"\n";
-    let base = sweep("[0.0]").replace("name = \"x\"\n", "");
-    assert!(load(own, &base, &[]).is_ok());
 }

@@ -168,16 +168,7 @@ fn leaf(key: &Key) -> Value {
 
 /// Schema of a number.
 fn number(range: schema::Range) -> Value {
-    let mut schema = json!({"type": "number"});
-    match range.low() {
-        Some((low, true)) => schema["exclusiveMinimum"] = json!(low),
-        Some((low, false)) => schema["minimum"] = json!(low),
-        None => {}
-    }
-    if let Some(high) = range.high() {
-        schema["maximum"] = json!(high);
-    }
-    schema
+    json!({"type": "number", "minimum": range.low, "maximum": range.high})
 }
 
 /// A scalar default in JSON, or an array of such.

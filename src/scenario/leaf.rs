@@ -1,9 +1,13 @@
 //! Checks of single values: type and range.
 
+use super::excerpt::excerpt;
 use super::schema::{self, Key, Kind, join};
 use super::source::Mark;
 use super::tree::{Node, Value};
 use crate::wording::is_misspelling;
+
+/// Most values of an array: as many as the rows of a script.
+const ELEMENTS_MAX: usize = 100_000;
 
 /// Elements of a [`Kind::Triple`].
 const AXES: usize = 3;
@@ -23,9 +27,16 @@ impl From<String> for Fault {
     }
 }
 
-/// Checks one value and converts whole numbers where binary64 is asked for.
-pub(crate) fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), Fault> {
-    let is_allowed = match (key.kind, &mut node.value) {
+/// Checks one value.
+pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Fault> {
+    if let Value::Array(values) = &node.value
+        && values.len() > ELEMENTS_MAX
+    {
+        let count = values.len();
+        let message = format!("{shown} holds {count} values: allowed up to {ELEMENTS_MAX}");
+        return Err(message.into());
+    }
+    let is_allowed = match (key.kind, &node.value) {
         (Kind::Float(range), value) => check_float(key, shown, range, value)?,
         (Kind::Integer(range), Value::Integer(value)) => range.contains(*value),
         (Kind::Floats(range), Value::Array(values)) => {
@@ -39,6 +50,7 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), 
             let is_text = |node: &Node| node.as_text().is_some_and(|text| !text.trim().is_empty());
             if values.is_empty() || !values.iter().all(is_text) {
                 let value = node.value.to_toml();
+                let value = excerpt(&value);
                 return Err(format!("{shown} = {value}: expected {}", key.expected()).into());
             }
             true
@@ -61,6 +73,7 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &mut Node) -> Result<(), 
         (Kind::EmptyTable, Value::Table(table)) => {
             if let Some(name) = table.keys().next() {
                 let unknown = join(shown, name);
+                let unknown = excerpt(&unknown);
                 return Err(
                     format!("unknown key {unknown}: {shown} is a table without keys").into(),
                 );
@@ -88,7 +101,8 @@ fn check_words(key: &Key, shown: &str, words: &[&str], values: &[Node]) -> Resul
         let message = match &node.value {
             Value::Text(word) if words.contains(&word.as_str()) => continue,
             Value::Text(word) => format!(
-                "{shown} = \"{word}\" is unknown: expected one of {}{}",
+                "{shown} = \"{}\" is unknown: expected one of {}{}",
+                excerpt(word),
                 key.allowed(),
                 hint(words, word)
             ),
@@ -104,6 +118,9 @@ fn check_words(key: &Key, shown: &str, words: &[&str], values: &[Node]) -> Resul
     }
     Ok(())
 }
+
+/// Most bytes of a word that may stand for a known one: all are shorter.
+const WORD_LENGTH_MAX: usize = 128;
 
 /// Words of the field for some choices.
 const SYNONYMS: &[(&str, &str)] = &[
@@ -121,6 +138,9 @@ const SYNONYMS: &[(&str, &str)] = &[
 
 /// The known word that may be what was meant: the only one that is a slip away.
 fn hint(words: &[&str], word: &str) -> String {
+    if word.len() > WORD_LENGTH_MAX {
+        return String::new();
+    }
     let means = |known: &&&str| SYNONYMS.contains(&(word, known));
     let synonym = words.iter().find(means);
     let mut alike = words.iter().filter(|known| is_misspelling(word, known));
@@ -138,36 +158,44 @@ fn check_elements(
     key: &Key,
     shown: &str,
     range: schema::Range,
-    values: &mut [Node],
+    values: &[Node],
 ) -> Result<(), Fault> {
-    for (index, node) in values.iter_mut().enumerate() {
+    for (index, node) in values.iter().enumerate() {
+        // Most numbers are in order: the name is made for those that are not.
+        if binary64(&node.value).is_some_and(|number| range.contains(number)) {
+            continue;
+        }
         let shown = format!("{shown}[{index}]");
         let mark = node.mark;
-        let is_allowed = check_float(key, &shown, range, &mut node.value)
-            .map_err(|message| Fault { mark, message })?;
-        if !is_allowed {
-            let message = out_of_range(key, &shown, &node.value);
-            return Err(Fault { mark, message });
-        }
+        check_float(key, &shown, range, &node.value).map_err(|message| Fault { mark, message })?;
+        let message = out_of_range(key, &shown, &node.value);
+        return Err(Fault { mark, message });
     }
     Ok(())
 }
 
-/// Whether a number is inside a range; converts it to binary64.
-fn check_float(
-    key: &Key,
-    shown: &str,
-    range: schema::Range,
-    value: &mut Value,
-) -> Result<bool, String> {
-    let number = match *value {
-        Value::Float(number) => number,
+/// A number as binary64.
+pub(crate) fn binary64(value: &Value) -> Option<f64> {
+    match *value {
+        Value::Float(number) => Some(number),
         #[expect(
             clippy::cast_precision_loss,
             reason = "a whole number beyond 2^53 rounds as it would if written with a fraction"
         )]
-        Value::Integer(number) => number as f64,
-        ref other => return Err(wrong_element(key, shown, other)),
+        Value::Integer(number) => Some(number as f64),
+        _ => None,
+    }
+}
+
+/// Whether a number is inside a range.
+fn check_float(
+    key: &Key,
+    shown: &str,
+    range: schema::Range,
+    value: &Value,
+) -> Result<bool, String> {
+    let Some(number) = binary64(value) else {
+        return Err(wrong_element(key, shown, value));
     };
     if !number.is_finite() {
         return Err(format!(
@@ -176,11 +204,7 @@ fn check_float(
             key.allowed()
         ));
     }
-    if range.contains(number) {
-        *value = Value::Float(number);
-        return Ok(true);
-    }
-    Ok(false)
+    Ok(range.contains(number))
 }
 
 /// Whether a text is a valid name of a scenario or channel.
@@ -198,6 +222,7 @@ fn is_name(name: &str) -> bool {
 /// The complaint about a value outside the allowed ones.
 fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
     let text = value.to_toml();
+    let text = excerpt(&text);
     match (key.kind, value) {
         (Kind::Choice(words), Value::Text(word)) => {
             format!(
@@ -242,7 +267,8 @@ fn wrong_type(key: &Key, shown: &str, value: &Value) -> String {
         && is_number
     {
         return format!(
-            "{shown} = {text} is {}: allowed {}",
+            "{shown} = {} is {}: allowed {}",
+            excerpt(text),
             number_type.overflow(),
             key.allowed()
         );
@@ -259,6 +285,6 @@ fn wrong_type(key: &Key, shown: &str, value: &Value) -> String {
 fn scalar_text(value: &Value) -> String {
     match value {
         Value::Array(_) | Value::Table(_) => String::new(),
-        scalar => format!(" {}", scalar.to_toml()),
+        scalar => format!(" {}", excerpt(&scalar.to_toml())),
     }
 }

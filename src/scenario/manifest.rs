@@ -2,10 +2,14 @@
 
 use std::sync::Arc;
 
+use super::discover::identity;
 use super::draft::{Draft, Recorded};
 use super::error::{ScenarioError, portable_place};
+use super::excerpt::excerpt;
+use super::input;
+use super::matrix::POINTS_MAX;
 use super::resolved::{InputFile, Resolved, SweepPoint};
-use super::source::{Mark, Sources};
+use super::source::{Mark, Sources, shown_path};
 use super::tree::{Node, Table, Value};
 
 /// The version of the manifest this build reads and writes.
@@ -91,6 +95,9 @@ pub(crate) fn read(
         }
         None => return fail(None, "manifest is required".to_owned()),
     }
+    if let Some((mark, message)) = absurd_sweep(&root) {
+        return fail(mark, message);
+    }
     let Some((version, recorded)) = record(&root) else {
         let message = "the manifest is damaged: expected [tool] version, [origin] file and digest, \
                        [[input]] file and digest, as this tool writes them";
@@ -109,17 +116,104 @@ pub(crate) fn read(
     let file = inputs.first().map(|input| input.file.clone());
     let file = file.unwrap_or_default();
     let warnings = other_version(&file, &version).into_iter().collect();
-    Ok(Draft {
-        root: scenario,
+    let mut draft = Draft {
+        root: Arc::unwrap_or_clone(scenario),
         root_mark: mark.unwrap_or(start),
         sources: Arc::new(sources),
         file,
         inputs,
         recorded: Some(recorded),
         warnings,
+        remarks: Vec::new(),
         is_record: true,
         is_partial: false,
-    })
+    };
+    draft.remarks = changes(&draft, start, version == TOOL_VERSION);
+    Ok(draft)
+}
+
+/// What a manifest says about itself and its inputs that is not, or no longer, true.
+fn changes(draft: &Draft, start: Mark, is_own_version: bool) -> Vec<String> {
+    let (Some(recorded), Ok(resolved)) = (&draft.recorded, draft.clone().resolve()) else {
+        // What is wrong with it is said when it is resolved.
+        return Vec::new();
+    };
+    let shown = draft.sources.locate(start).file;
+    let mut found = Vec::new();
+    // Another version may resolve the same text to other values.
+    if resolved.digest != recorded.digest && is_own_version {
+        found.push(format!(
+            "[scenario] has the digest {}, but origin.digest is {}",
+            excerpt(&resolved.digest),
+            excerpt(&recorded.digest)
+        ));
+    }
+    if let Some((key, value)) = recorded.broken_point(resolved.tree()) {
+        let here = resolved.value_of(key);
+        let here = here.map_or_else(
+            || "has no such key".to_owned(),
+            |here| format!("has {here}"),
+        );
+        found.push(format!(
+            "origin.sweep says {} = {}, but [scenario] {}",
+            excerpt(key),
+            excerpt(value),
+            excerpt(&here)
+        ));
+    }
+    let is_own = |input: &InputFile| input.file == recorded.file;
+    if !recorded.inputs.is_empty() && !recorded.inputs.iter().any(is_own) {
+        let file = excerpt(&recorded.file);
+        found.push(format!(
+            "origin.file = \"{file}\" is none of its [[input]] files"
+        ));
+    }
+    let mut remarks = Vec::new();
+    if !found.is_empty() {
+        remarks.push(format!(
+            "{shown}: this manifest was changed: {}; the run is that of the file as it is now",
+            found.join("; ")
+        ));
+    }
+    let own = identity(&draft.sources.beside(start, &draft.file).0);
+    for input in &recorded.inputs {
+        let (path, _) = draft.sources.beside(start, &input.file);
+        let digest = input::digest(&path);
+        if identity(&path) != own && digest.is_ok_and(|digest| digest != input.digest) {
+            remarks.push(format!(
+                "{shown}: {} is not the file that this manifest was made from: the run takes the \
+                 values in the manifest",
+                shown_path(&path)
+            ));
+        }
+    }
+    remarks
+}
+
+/// The complaint about a point that no sweep can have, and where it stands.
+fn absurd_sweep(root: &Table) -> Option<(Option<Mark>, String)> {
+    let sweep = root.get("origin")?.as_table()?.get("sweep")?.as_table()?;
+    let whole = |key: &str| match sweep.get(key) {
+        Some(Node {
+            value: Value::Integer(number),
+            mark,
+        }) => Some((*number, *mark)),
+        _ => None,
+    };
+    let ((index, index_mark), (count, count_mark)) = (whole("index")?, whole("count")?);
+    if !usize::try_from(count).is_ok_and(|count| (1..=POINTS_MAX).contains(&count)) {
+        let message =
+            format!("origin.sweep.count = {count} is out of range: allowed 1..={POINTS_MAX}");
+        return Some((count_mark, message));
+    }
+    if !(0..count).contains(&index) {
+        let message = format!(
+            "origin.sweep.index = {index} is out of range: allowed 0..={}, the points of the sweep",
+            count - 1
+        );
+        return Some((index_mark, message));
+    }
+    None
 }
 
 /// A warning if another version of the tool wrote the manifest.

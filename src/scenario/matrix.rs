@@ -7,37 +7,58 @@ use super::address::{self, Step};
 use super::draft::{Draft, Unsound};
 use super::error::ScenarioError;
 use super::resolved::{Resolved, SweepPoint};
+use super::schema::Key;
 use super::script;
 use super::source::{Mark, Sources};
+use super::template::Template;
 use super::tree::{Node, Table, Value};
 
 /// Most points of one sweep: folders are numbered with four digits.
-const POINTS_MAX: usize = 10_000;
+pub(super) const POINTS_MAX: usize = 10_000;
+
+/// Points tried, if none of them is sound: what they share is said by then.
+const TRIALS_MAX: usize = 100;
+
+/// Most numbers in the arrays of all points of one sweep: a script has two in a row.
+const NUMBERS_MAX: usize = 10_000_000;
 
 /// The path of a swept key, and where the matrix names it.
-pub(crate) type Swept = (Vec<Step>, Mark);
+pub(super) type Swept = (Vec<Step>, Mark);
 
 /// A swept key.
 struct Axis {
     written: String,
     path: Vec<Step>,
+    key: &'static Key,
     mark: Mark,
     values: Vec<Node>,
 }
 
-/// Resolves every point of a sweep, in the order of their indices.
+impl Axis {
+    /// The value of one point, pointing at itself.
+    fn value(&self, index: usize) -> Node {
+        let mut value = self.values[index].clone();
+        value.mark = value.mark.or(Some(self.mark));
+        value
+    }
+}
+
+/// Resolves every point of a sweep, in the order of their indices, and hands it over with what is
+/// swept.
 ///
 /// # Errors
 /// Every complaint about the matrix; if it is in order, every complaint about its points.
-pub(crate) fn expand(
+pub(super) fn expand(
     draft: &Draft,
     matrix: &Node,
     set_paths: &[Vec<Step>],
-) -> Result<(Vec<Resolved>, Vec<Swept>), Unsound> {
+    visit: &mut dyn FnMut(Resolved, &[Swept]),
+) -> Result<(), Unsound> {
     let (axes, errors) = axes(draft, matrix, set_paths)?;
     if !errors.is_empty() {
         // What else is wrong is seen at the first point of the axes that are in order.
-        let mut unsound = point(draft, &axes, 0, 1).err().unwrap_or_default();
+        let first = point(draft, &axes, &point_values(&axes, 0));
+        let mut unsound = first.err().unwrap_or_default();
         unsound.errors.splice(0..0, errors);
         return Err(unsound);
     }
@@ -51,25 +72,76 @@ pub(crate) fn expand(
         return Err(vec![draft.sources.error(mark, message)].into());
     };
     let base = base_values(draft, &axes);
-    let mut points = Vec::with_capacity(count);
+    let swept = axes.iter().map(|axis| (axis.path.clone(), axis.mark));
+    let swept: Vec<Swept> = swept.collect();
     let mut unsound = Unsound::default();
+    let mut points = Points::new(draft, &axes);
     for index in 0..count {
-        match point(draft, &axes, index, count) {
+        let is_first = points.template.is_none() && points.has_template;
+        match points.resolve(index, unsound.reading.is_none()) {
             Ok(mut resolved) => {
+                if is_first {
+                    check_size(&resolved, matrix, count).map_err(|error| vec![error])?;
+                }
+                resolved.sweep = Some(sweep_point(&resolved, &axes, index, count));
                 resolved.is_base_point = base.is_some() && base == values(&resolved, &axes);
-                points.push(resolved);
+                visit(resolved, &swept);
             }
             Err(more) => {
                 unsound.errors.extend(more.errors);
                 unsound.reading = unsound.reading.or(more.reading);
             }
         }
+        let has_tried = points.template.is_none() && index + 1 >= TRIALS_MAX;
+        if has_tried && !unsound.errors.is_empty() {
+            break;
+        }
     }
     if unsound.errors.is_empty() {
-        let swept = axes.into_iter().map(|axis| (axis.path, axis.mark));
-        Ok((points, swept.collect()))
+        Ok(())
     } else {
         Err(unsound)
+    }
+}
+
+/// The points of a sweep, resolved by the pattern of the first sound one.
+struct Points<'a> {
+    draft: &'a Draft,
+    axes: &'a [Axis],
+    template: Option<Template>,
+    /// Whether there is a pattern, or may still be one.
+    has_template: bool,
+}
+
+impl<'a> Points<'a> {
+    fn new(draft: &'a Draft, axes: &'a [Axis]) -> Self {
+        Self {
+            draft,
+            axes,
+            template: None,
+            has_template: true,
+        }
+    }
+
+    /// Resolves one point.
+    ///
+    /// * `is_thorough`: whether a point that is not sound is resolved from the beginning, which says
+    ///   how it can be checked further.
+    fn resolve(&mut self, index: usize, is_thorough: bool) -> Result<Resolved, Unsound> {
+        let values = point_values(self.axes, index);
+        let found = self.template.as_ref().map(|it| it.point(&values));
+        match found {
+            Some(Err(errors)) if !is_thorough => return Err(errors.into()),
+            Some(Ok(resolved)) => return Ok(resolved),
+            Some(Err(_)) | None => {}
+        }
+        let resolved = point(self.draft, self.axes, &values)?;
+        if self.template.is_none() && self.has_template {
+            let swept = self.axes.iter().map(|axis| (&axis.path[..], axis.key));
+            self.template = Template::of(&resolved, swept);
+            self.has_template = self.template.is_some();
+        }
+        Ok(resolved)
     }
 }
 
@@ -88,32 +160,55 @@ fn values(resolved: &Resolved, axes: &[Axis]) -> Option<Vec<String>> {
     })
 }
 
-/// Resolves one point.
-fn point(draft: &Draft, axes: &[Axis], index: usize, count: usize) -> Result<Resolved, Unsound> {
-    let mut draft = draft.clone();
+/// The values of one point, in the order of the axes.
+fn point_values(axes: &[Axis], index: usize) -> Vec<Node> {
     let mut rest = index;
     // The last axis varies fastest, hence the digits are taken off from the end.
-    for axis in axes.iter().rev() {
-        let value = axis.values[rest % axis.values.len()].clone();
+    let digits = axes.iter().rev().map(|axis| {
+        let value = axis.value(rest % axis.values.len());
         rest /= axis.values.len();
+        value
+    });
+    let mut values: Vec<Node> = digits.collect();
+    values.reverse();
+    values
+}
+
+/// Resolves one point from the beginning.
+fn point(draft: &Draft, axes: &[Axis], values: &[Node]) -> Result<Resolved, Unsound> {
+    let mut draft = draft.clone();
+    for (axis, value) in axes.iter().zip(values).rev() {
         let mark = value.mark.unwrap_or(axis.mark);
-        address::assign(&mut draft.root, &axis.path, value, mark)
+        address::assign(&mut draft.root, &axis.path, value.clone(), mark)
             .map_err(|message| vec![draft.sources.error(mark, message)])?;
     }
-    let mut resolved = draft.resolve()?;
-    let assignments = axes
-        .iter()
-        .map(|axis| {
-            let value = resolved.value_toml(&axis.path).unwrap_or_default();
-            (axis.written.clone(), value)
-        })
-        .collect();
-    resolved.sweep = Some(SweepPoint {
+    draft.resolve()
+}
+
+/// Which point of the sweep a run is.
+fn sweep_point(resolved: &Resolved, axes: &[Axis], index: usize, count: usize) -> SweepPoint {
+    let assignments = axes.iter().map(|axis| {
+        let value = resolved.value_toml(&axis.path).unwrap_or_default();
+        (axis.written.clone(), value)
+    });
+    SweepPoint {
         index,
         count,
-        assignments,
-    });
-    Ok(resolved)
+        assignments: assignments.collect(),
+    }
+}
+
+/// Refuses a sweep whose points hold more numbers together than a computer remembers.
+fn check_size(resolved: &Resolved, matrix: &Node, count: usize) -> Result<(), ScenarioError> {
+    let numbers = resolved.numbers_in_arrays();
+    if numbers.saturating_mul(count) <= NUMBERS_MAX {
+        return Ok(());
+    }
+    let message = format!(
+        "matrix: {count} points with {numbers} numbers in arrays each: allowed up to {NUMBERS_MAX} \
+         in all; sweep fewer values or shorten the script"
+    );
+    Err(resolved.error(matrix.mark, message))
 }
 
 /// The swept keys in the order of the file, those of bases first, and what is wrong with others.
@@ -138,9 +233,10 @@ fn axes(
     let mut errors = Vec::new();
     for (written, mark, node) in entries {
         match axis(draft, &axes, set_paths, &written, node) {
-            Ok((path, values)) => axes.push(Axis {
+            Ok((path, key, values)) => axes.push(Axis {
                 written,
                 path,
+                key,
                 mark,
                 values,
             }),
@@ -163,7 +259,7 @@ fn axis(
     set_paths: &[Vec<Step>],
     written: &str,
     node: &Node,
-) -> Result<(Vec<Step>, Vec<Node>), String> {
+) -> Result<(Vec<Step>, &'static Key, Vec<Node>), String> {
     let (path, key) = address::resolve(&draft.root, written)?;
     let Some(key) = key else {
         return Err(format!("{written} is a table: sweep the keys inside it"));
@@ -186,7 +282,7 @@ fn axis(
         Value::Array(values) if values.is_empty() => Err(format!(
             "{written} has no values: expected a non-empty array"
         )),
-        Value::Array(values) => Ok((path, values.clone())),
+        Value::Array(values) => Ok((path, key, values.to_vec())),
         other => Err(format!(
             "{written} has the wrong type: expected an array of values, got {}",
             other.type_name()

@@ -7,6 +7,7 @@
 mod address;
 mod assembly_config;
 mod calibration_config;
+mod chain;
 mod channels;
 mod check;
 mod clashes;
@@ -26,21 +27,26 @@ mod cross_servo;
 mod cross_turntable;
 mod cross_vibration;
 mod defaults;
+mod deserialize;
 mod discover;
 mod draft;
 mod emit;
 mod error;
+mod excerpt;
 mod faults;
 mod filter_config;
 mod gyro_config;
 mod inert;
 mod inert_rules;
 mod injection_config;
+mod input;
 mod json_schema;
 mod keys;
 mod leaf;
 mod manifest;
 mod matrix;
+mod numbers;
+mod presence;
 mod resolved;
 mod schema;
 mod script;
@@ -51,10 +57,12 @@ mod stand_in;
 mod suggest;
 mod suite;
 mod synonyms;
+mod template;
 mod thermal_config;
 mod tree;
 mod turntable_config;
 mod vibration_config;
+mod weight;
 
 pub use assembly_config::AssemblyConfig;
 pub use calibration_config::{
@@ -74,7 +82,8 @@ pub(crate) use cross_comparison::slug;
 pub use defaults::{reference_calibration, reference_toml};
 pub(crate) use draft::UnsoundReading;
 pub use error::{Location, ScenarioError};
-pub(crate) use error::{in_order, portable_place};
+pub(crate) use error::{in_both, in_order, portable_place};
+pub use excerpt::{bounded, excerpt};
 pub use filter_config::{
     ButterworthFilterConfig, ConstantUnit, ConstrainedRlsFilterConfig, DesiredSignal, Division,
     FilterConfig, FilterKind, InitialWeights, KalmanFilterConfig, LmsFilterConfig,
@@ -94,7 +103,7 @@ pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
 pub use stairs::{Stairs, TEST_RATES_MIN};
 pub(crate) use suite::read_suite;
-pub use suite::{load_base_or_scenario, load_suite};
+pub use suite::{load_base_or_scenario, load_suite, visit_suite};
 pub use thermal_config::{
     ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig, SoakConfig,
     TemperatureConfig, TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig,
@@ -114,3 +123,5 @@ pub use vibration_config::{
 mod inert_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wish_tests;

@@ -4,8 +4,11 @@ use std::sync::Arc;
 
 use super::address::{self, nearest_mark};
 use super::config::Scenario;
+use super::cross;
+use super::defaults::default_of;
+use super::deserialize::from_table;
 use super::emit::to_toml;
-use super::error::Location;
+use super::error::{Location, ScenarioError};
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
 
@@ -46,11 +49,14 @@ pub struct Resolved {
     pub sweep: Option<SweepPoint>,
     /// What is allowed but worth saying about how it was read.
     pub warnings: Vec<String>,
+    /// What is worth saying to whoever runs it, but no part of the results: these depend on the
+    /// scenario alone.
+    pub remarks: Vec<String>,
     /// Whether it is the point of its sweep at which no swept key departs from what the scenario
     /// says without the sweep.
     pub is_base_point: bool,
     /// The calibration scenario whose result its compensation applies.
-    pub campaign: Option<Box<Resolved>>,
+    pub campaign: Option<Arc<Resolved>>,
     /// Where its gates were written, if a manifest records that.
     pub(super) gate_places: Vec<String>,
     /// Every value, defaults included.
@@ -75,6 +81,57 @@ impl PartialEq for Resolved {
 }
 
 impl Resolved {
+    /// The run with other values, all of them checked one by one, and their canonical text.
+    ///
+    /// # Errors
+    /// Every contradiction between the values.
+    pub(super) fn with_tree(&self, tree: Table, text: &str) -> Result<Self, Vec<ScenarioError>> {
+        let other = Self {
+            scenario: configuration(&tree, self.root_mark, &self.sources)?,
+            digest: digest(text),
+            tree,
+            file: self.file.clone(),
+            inputs: self.inputs.clone(),
+            sweep: None,
+            warnings: self.warnings.clone(),
+            remarks: self.remarks.clone(),
+            is_base_point: false,
+            campaign: self.campaign.clone(),
+            gate_places: self.gate_places.clone(),
+            sources: Arc::clone(&self.sources),
+            root_mark: self.root_mark,
+            is_record: self.is_record,
+        };
+        let errors = cross::check(&other);
+        if errors.is_empty() {
+            Ok(other)
+        } else {
+            Err(errors)
+        }
+    }
+
+    /// Count of the numbers that its scripts and profiles hold.
+    pub(super) fn numbers_in_arrays(&self) -> usize {
+        fn of(value: &Value) -> usize {
+            match value {
+                Value::Array(nodes) => {
+                    let numbers = nodes.iter();
+                    let inside: usize = nodes.iter().map(|node| of(&node.value)).sum();
+                    let is_number = |node: &&Node| matches!(node.value, Value::Float(_));
+                    inside + numbers.filter(is_number).count()
+                }
+                Value::Table(table) => table.values().map(|node| of(&node.value)).sum(),
+                _ => 0,
+            }
+        }
+        self.tree.values().map(|node| of(&node.value)).sum()
+    }
+
+    /// A complaint about a marked place.
+    pub(super) fn error(&self, mark: Option<Mark>, message: String) -> ScenarioError {
+        self.sources.error(mark.unwrap_or(self.root_mark), message)
+    }
+
     /// Folder of the run below the output folder: `<name>`, or `<name>/<nnnn>` in a sweep.
     #[must_use]
     pub fn folder(&self) -> String {
@@ -126,6 +183,23 @@ impl Resolved {
             .ok()
             .and_then(|path| address::get(&self.tree, &path)?.mark)
             .is_some()
+    }
+
+    /// Whether somebody asked for the value of a key: it was written, and not by a record, in which
+    /// every value is written, if it says what the default says.
+    ///
+    /// * `key_path`: a path without indices.
+    pub(super) fn is_asked_for(&self, key_path: &str) -> bool {
+        let path = address::parse(key_path).unwrap_or_default();
+        let Some(node) = address::get(&self.tree, &path) else {
+            return false;
+        };
+        let Some(mark) = node.mark else {
+            return false;
+        };
+        let departs =
+            || default_of(key_path).is_none_or(|default| default.to_toml() != node.value.to_toml());
+        self.is_set_argument(mark) || departs() || !(self.is_record || self.is_written_out())
     }
 
     /// Where a mark points.
@@ -202,22 +276,32 @@ impl Resolved {
     }
 }
 
-/// A checked tree as plain TOML.
-pub(super) fn plain_table(table: &Table) -> toml::Table {
-    let convert = |(key, node): (&String, &Node)| (key.clone(), plain(node));
-    table.iter().map(convert).collect()
+/// The configuration in a checked and filled tree.
+pub(super) fn configuration(
+    root: &Table,
+    root_mark: Mark,
+    sources: &Sources,
+) -> Result<Scenario, Vec<ScenarioError>> {
+    from_table(root).map_err(|error| {
+        let message = format!("the scenario does not fit its configuration: {error}");
+        vec![sources.error(root_mark, message)]
+    })
 }
 
-/// A checked value as plain TOML.
-fn plain(node: &Node) -> toml::Value {
-    match &node.value {
-        Value::Text(text) | Value::Beyond(text, _) | Value::Date(text) => {
-            toml::Value::String(text.clone())
-        }
-        Value::Integer(number) => toml::Value::Integer(*number),
-        Value::Float(number) => toml::Value::Float(*number),
-        Value::Boolean(is_set) => toml::Value::Boolean(*is_set),
-        Value::Array(nodes) => toml::Value::Array(nodes.iter().map(plain).collect()),
-        Value::Table(table) => toml::Value::Table(plain_table(table)),
-    }
+/// BLAKE3 of a canonical text, hexadecimal.
+pub(super) fn digest(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+/// The first swept key of a point that has another value than the point says, and what that is.
+pub(super) fn broken<'a>(root: &Table, point: &'a SweepPoint) -> Option<(&'a str, &'a str)> {
+    let is_true = |(key, value): &&(String, String)| {
+        address::resolve(root, key)
+            .ok()
+            .and_then(|(path, _)| address::get(root, &path))
+            .is_some_and(|node| node.value.to_toml() == *value)
+    };
+    let mut assignments = point.assignments.iter();
+    let (key, value) = assignments.find(|assignment| !is_true(assignment))?;
+    Some((key, value))
 }

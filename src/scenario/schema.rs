@@ -2,7 +2,9 @@
 //!
 //! Paths are dotted; an element of an array of tables is written `[]`, as in `filter[].rls.taps`.
 
+use std::collections::BTreeMap;
 use std::fmt::{self, Write as _};
+use std::sync::OnceLock;
 
 use super::keys::{GROUPS, keys};
 
@@ -63,64 +65,36 @@ pub(crate) enum Presence {
     Optional,
 }
 
-/// Interval of binary64 values; each end may be open.
+/// Closed interval of finite binary64 values.
+///
+/// No end is open: just above an open 0 lie numbers, as 5e-324, whose reciprocals and squares are no
+/// numbers any more. Each least value is one of the physics or of the arithmetic behind the key.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Range {
-    low: f64,
-    is_low_open: bool,
-    high: f64,
+    /// Least value.
+    pub(crate) low: f64,
+    /// Greatest value.
+    pub(crate) high: f64,
 }
 
 impl Range {
-    /// Every finite number.
-    pub(crate) const ANY: Self = Self::closed(f64::NEG_INFINITY, f64::INFINITY);
+    /// Limits and published figures in the unit of any metric, whose squares are finite too.
+    pub(crate) const ANY_METRIC: Self = Self::closed(-1e30, 1e30);
 
     /// `[low, high]`.
     pub(crate) const fn closed(low: f64, high: f64) -> Self {
-        Self {
-            low,
-            is_low_open: false,
-            high,
-        }
-    }
-
-    /// `(low, high]`.
-    pub(crate) const fn above(low: f64, high: f64) -> Self {
-        Self {
-            low,
-            is_low_open: true,
-            high,
-        }
+        Self { low, high }
     }
 
     /// Whether a value is finite and inside.
     pub(crate) fn contains(&self, value: f64) -> bool {
-        let is_above = if self.is_low_open {
-            value > self.low
-        } else {
-            value >= self.low
-        };
-        value.is_finite() && is_above && value <= self.high
-    }
-
-    /// Lower end and whether it is open; `None` if unbounded.
-    pub(crate) fn low(&self) -> Option<(f64, bool)> {
-        self.low.is_finite().then_some((self.low, self.is_low_open))
-    }
-
-    /// Upper end (always closed); `None` if unbounded.
-    pub(crate) fn high(&self) -> Option<f64> {
-        self.high.is_finite().then_some(self.high)
+        value.is_finite() && (self.low..=self.high).contains(&value)
     }
 }
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.low.is_infinite() {
-            return f.write_str("any finite number");
-        }
-        let bracket = if self.is_low_open { '(' } else { '[' };
-        write!(f, "{bracket}{}, {}]", number(self.low), number(self.high))
+        write!(f, "[{}, {}]", number(self.low), number(self.high))
     }
 }
 
@@ -187,41 +161,64 @@ pub(crate) enum Child {
     Tables,
 }
 
-/// Names a table may hold, in the order of the key table.
-pub(crate) fn children(schema_path: &str) -> Vec<(&'static str, Child)> {
-    let mut found: Vec<(&'static str, Child)> = Vec::new();
-    for key in keys() {
-        let Some(rest) = inside(schema_path, key.path) else {
-            continue;
-        };
-        let (name, child) = match rest.split_once('.') {
-            None => (rest, Child::Leaf(key)),
-            Some((name, _)) => match name.strip_suffix("[]") {
-                None => (name, Child::Table),
-                Some(name) => (name, Child::Tables),
-            },
-        };
-        if found.iter().all(|(known, _)| *known != name) {
-            found.push((name, child));
+/// A name inside a table.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entry {
+    /// The name.
+    pub(crate) name: &'static str,
+    /// What it stands for.
+    pub(crate) child: Child,
+    /// Schema path of it, of an element if it is an array of tables.
+    pub(crate) path: &'static str,
+}
+
+/// What each table may hold, in the order of the key table, by schema path.
+type Tables = BTreeMap<&'static str, Vec<Entry>>;
+
+/// The key table by tables, worked out once.
+fn tables() -> &'static Tables {
+    static TABLES: OnceLock<Tables> = OnceLock::new();
+    TABLES.get_or_init(|| {
+        let mut tables = Tables::new();
+        for key in keys() {
+            let mut start = 0;
+            for part in key.path.split('.') {
+                let end = start + part.len();
+                let table = &key.path[..start.saturating_sub(1)];
+                let (name, child) = match part.strip_suffix("[]") {
+                    Some(name) => (name, Child::Tables),
+                    None if end == key.path.len() => (part, Child::Leaf(key)),
+                    None => (part, Child::Table),
+                };
+                let found = tables.entry(table).or_default();
+                if found.iter().all(|known| known.name != name) {
+                    let path = &key.path[..end];
+                    found.push(Entry { name, child, path });
+                }
+                start = end + 1;
+            }
         }
-    }
-    found
+        tables
+    })
+}
+
+/// What a table may hold, in the order of the key table.
+pub(crate) fn entries(schema_path: &str) -> &'static [Entry] {
+    tables().get(schema_path).map_or(&[], Vec::as_slice)
+}
+
+/// Names a table may hold, in the order of the key table.
+pub(crate) fn children(schema_path: &str) -> impl Iterator<Item = (&'static str, Child)> {
+    entries(schema_path)
+        .iter()
+        .map(|entry| (entry.name, entry.child))
 }
 
 /// What a name inside a table stands for; `None` if unknown.
 pub(crate) fn child(schema_path: &str, name: &str) -> Option<Child> {
     children(schema_path)
-        .into_iter()
         .find(|(known, _)| *known == name)
         .map(|(_, child)| child)
-}
-
-/// The rest of `path` below the table at `schema_path`.
-fn inside(schema_path: &str, path: &'static str) -> Option<&'static str> {
-    if schema_path.is_empty() {
-        return Some(path);
-    }
-    path.strip_prefix(schema_path)?.strip_prefix('.')
 }
 
 /// `parent.name`, or `name` at the root.

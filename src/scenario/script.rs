@@ -3,13 +3,13 @@
 //! The file is read where the key that names it was written, and its columns take the place of
 //! that key. What is checked, hashed, recorded and repeated afterwards are the values themselves.
 
-use std::fs;
-use std::path::Path;
-
 use super::error::ScenarioError;
+use super::excerpt::excerpt;
+use super::input::{self, Input};
 use super::resolved::InputFile;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
+use crate::recording::{Delimiter, Lines, TextError};
 
 /// The key that names the file.
 pub(crate) const FILE_KEY: &str = "turntable.script.file";
@@ -50,10 +50,8 @@ pub(crate) fn read_into(
         let shown = super::source::shown_path(&path);
         sources.error(mark, format!("{FILE_KEY} = {shown}: {message}"))
     };
-    let bytes = read_bytes(&path).map_err(|message| complain(sources, &message))?;
-    let digest = blake3::hash(&bytes).to_hex().to_string();
-    let text =
-        String::from_utf8(bytes).map_err(|_| complain(sources, "the file is not UTF-8 text"))?;
+    let Input { text, digest } =
+        input::read(&path).map_err(|error| complain(sources, &error.to_string()))?;
     let source = sources.add_file(
         super::source::shown_path(&path),
         text.clone(),
@@ -69,63 +67,55 @@ pub(crate) fn read_into(
     })?;
     script.remove("file");
     let node = Node {
-        value: Value::Table(points),
+        value: points.into(),
         mark: Some(mark),
     };
     script.insert("points".to_owned(), node);
     Ok(())
 }
 
-fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
-    fs::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => "no such file".to_owned(),
-        _ if path.is_dir() => "it is a folder, not a file".to_owned(),
-        _ => format!("cannot read the file: {error}"),
-    })
-}
-
 /// A cell and the byte at which it starts.
 type Cell<'a> = (usize, &'a str);
 
-/// The cells of a line, spaces taken off.
-fn cells(start: usize, line: &str) -> Vec<Cell<'_>> {
-    let mut at = start;
-    let cell = |cell| {
-        let begin = at;
-        at += str::len(cell) + 1;
-        let bare = str::trim_start(cell);
-        (begin + cell.len() - bare.len(), bare.trim_end())
-    };
-    line.split(',').map(cell).collect()
+/// The cells of a line that starts at a byte; empty ones beyond a width are none.
+fn cells(delimiter: Delimiter, start: usize, line: &str, width: usize) -> Vec<Cell<'_>> {
+    let begin = line.as_ptr() as usize;
+    let cells = delimiter.cells_up_to(line, width).into_iter();
+    // Cells are parts of the line.
+    cells
+        .map(|cell| (start + (cell.as_ptr() as usize - begin), cell))
+        .collect()
 }
 
-/// The lines that say something, with the byte at which each starts; the byte order mark that
-/// spreadsheets put before them is left out.
-fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let bare = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut start = text.len() - bare.len();
-    let placed = bare.split_inclusive('\n').map(move |line| {
-        let at = start;
-        start += line.len();
-        (at, line.trim_end())
-    });
-    placed.filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'))
+/// The lines that say something, with the byte at which each starts.
+fn lines(text: &str) -> Result<Vec<(usize, &str)>, (usize, String)> {
+    let mut lines = Lines::new(text.as_bytes(), "the file is not UTF-8 text");
+    let mut found = Vec::new();
+    loop {
+        match lines.next_line() {
+            Ok(Some(line)) => found.push((line.start, &text[line.start..][..line.text.len()])),
+            Ok(None) => return Ok(found),
+            Err(TextError::Content { start, message, .. }) => return Err((start, message)),
+            Err(TextError::Io(error)) => return Err((0, error.to_string())),
+        }
+    }
 }
 
 /// The columns of a table, every value marked where it stands.
 fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
-    let mut lines = lines(text);
+    let mut lines = lines(text)?.into_iter();
     let (start, header) = lines
         .next()
         .ok_or_else(|| (0, format!("the file is empty: expected {}", expected())))?;
-    let header = cells(start, header);
+    let delimiter = Delimiter::of(header);
+    let header = cells(delimiter, start, header, 0);
     check_header(start, &header)?;
     let mut values: [Vec<Node>; 2] = [Vec::new(), Vec::new()];
     for (start, line) in lines {
         if values[0].len() == ROWS_MAX {
             return Err((start, format!("too many rows: allowed up to {ROWS_MAX}")));
         }
-        let row = cells(start, line);
+        let row = cells(delimiter, start, line, header.len());
         if row.len() != header.len() {
             let count = row.len();
             return Err((
@@ -135,6 +125,7 @@ fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
         }
         for ((at, cell), (column, (_, name))) in row.iter().zip(values.iter_mut().zip(&header)) {
             let number: f64 = cell.parse().map_err(|_| {
+                let cell = excerpt(cell);
                 let message =
                     format!("{name} = `{cell}` is not a number: expected one such as 0.5");
                 (*at, message)
@@ -147,7 +138,7 @@ fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
     }
     let table = header.iter().zip(values).map(|((at, name), values)| {
         let node = Node {
-            value: Value::Array(values),
+            value: values.into(),
             mark: Some(Mark { source, start: *at }),
         };
         ((*name).to_owned(), node)
@@ -169,7 +160,11 @@ fn check_header(start: usize, header: &[Cell<'_>]) -> Result<(), (usize, String)
     if let Some((at, name)) = header.iter().find(|(_, name)| !is_known(name)) {
         return Err((
             *at,
-            format!("unknown column `{name}`: expected {}", expected()),
+            format!(
+                "unknown column `{}`: expected {}",
+                excerpt(name),
+                expected()
+            ),
         ));
     }
     let times = header.iter().filter(|(_, name)| *name == TIME).count();

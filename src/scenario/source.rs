@@ -1,21 +1,82 @@
 //! The texts a scenario is made of, and places in them.
 
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
-use super::error::{Location, ScenarioError};
+use super::error::{Location, ScenarioError, Snippet};
+use super::excerpt::excerpt;
+
+/// Bytes from one [`Waypoint`] to the next.
+const STRIDE: usize = 1024;
 
 /// One parsed text.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 struct Source {
     shown: String,
     text: String,
     /// The path as seen from the scenario's own folder; `None` for a `--set` argument.
     label: Option<Label>,
+    /// Places of every [`STRIDE`]th byte, worked out when a place is asked for: many complaints
+    /// about a long text do not count its lines again and again.
+    waypoints: OnceLock<Vec<Waypoint>>,
+}
+
+/// Line and column of a byte, both from 1.
+#[derive(Clone, Copy, Debug)]
+struct Waypoint {
+    line: usize,
+    column: usize,
+}
+
+impl Waypoint {
+    /// The place behind the bytes that begin here.
+    fn after(mut self, bytes: &[u8]) -> Self {
+        const CONTINUATION: u8 = 0b1000_0000;
+        for byte in bytes {
+            if *byte == b'\n' {
+                self.line += 1;
+                self.column = 1;
+            } else if byte & 0b1100_0000 != CONTINUATION {
+                self.column += 1;
+            }
+        }
+        self
+    }
+}
+
+impl Source {
+    fn new(shown: String, text: String, label: Option<Label>) -> Arc<Self> {
+        Arc::new(Self {
+            shown,
+            text,
+            label,
+            waypoints: OnceLock::new(),
+        })
+    }
+
+    /// Line and column of a byte; of the last one for a byte behind the end.
+    fn place(&self, start: usize) -> Waypoint {
+        let waypoints = self.waypoints.get_or_init(|| {
+            let mut place = Waypoint { line: 1, column: 1 };
+            let mut waypoints = vec![place];
+            for bytes in self.text.as_bytes().chunks_exact(STRIDE) {
+                place = place.after(bytes);
+                waypoints.push(place);
+            }
+            waypoints
+        });
+        let mut end = start.min(self.text.len());
+        while !self.text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let index = end / STRIDE;
+        waypoints[index].after(&self.text.as_bytes()[index * STRIDE..end])
+    }
 }
 
 /// Every text of one scenario: its files and the `--set` arguments.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sources(Vec<Source>);
+pub(crate) struct Sources(Vec<Arc<Source>>);
 
 /// A byte in a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -29,21 +90,14 @@ pub(crate) struct Mark {
 impl Sources {
     /// Adds the text of a file; returns its index.
     pub(crate) fn add_file(&mut self, shown: String, text: String, label: Label) -> usize {
-        self.0.push(Source {
-            shown,
-            text,
-            label: Some(label),
-        });
+        self.0.push(Source::new(shown, text, Some(label)));
         self.0.len() - 1
     }
 
     /// Adds a `--set` argument; returns its index.
     pub(crate) fn add_set(&mut self, argument: &str) -> usize {
-        self.0.push(Source {
-            shown: format!("--set {argument}"),
-            text: String::new(),
-            label: None,
-        });
+        let shown = format!("--set {}", excerpt(argument));
+        self.0.push(Source::new(shown, String::new(), None));
         self.0.len() - 1
     }
 
@@ -71,16 +125,9 @@ impl Sources {
         if source.label.is_none() {
             return Location::of_set(&source.shown);
         }
-        let mut end = mark.start.min(source.text.len());
-        while !source.text.is_char_boundary(end) {
-            end -= 1;
-        }
-        let before = &source.text[..end];
-        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-        let line = before.matches('\n').count() + 1;
-        let text = source.text[line_start..].lines().next().unwrap_or_default();
-        let start = (end - line_start).min(text.len());
-        Location::in_line(source.shown.clone(), line, text, start)
+        let Waypoint { line, column } = source.place(mark.start);
+        let snippet = Snippet::around(&source.text, mark.start);
+        Location::in_file(source.shown.clone(), line, column, snippet)
     }
 
     /// A complaint about a marked place.

@@ -3,10 +3,10 @@
 //! What is found with them counts only if it is found with every variant: a complaint that follows
 //! from one made-up value does not follow from another.
 
-use super::address::{Step, get, parse};
+use super::address::{Step, get, get_mut, parse};
 use super::defaults::{default_of, fill};
 use super::faults::Taken;
-use super::schema::{Child, Group, Key, Kind, Range, children, join};
+use super::schema::{Child, Group, Key, Kind, Presence, Range, child, children, join};
 use super::tree::{Node, Table, Value};
 
 /// Which made-up values are taken.
@@ -55,29 +55,14 @@ fn insert(root: &mut Table, path: &[Step], node: Node) {
     if parent.is_empty() {
         root.entry(name.clone()).or_insert(node);
     } else if get(root, path).is_none()
-        && let Some(table) = table_at(root, parent)
+        && let Some(table) = get_mut(root, parent).and_then(Node::as_table_mut)
     {
         table.insert(name.clone(), node);
     }
 }
 
-fn table_at<'a>(root: &'a mut Table, path: &[Step]) -> Option<&'a mut Table> {
-    let (Step::Key(first), rest) = path.split_first()? else {
-        return None;
-    };
-    let mut node = root.get_mut(first)?;
-    for step in rest {
-        node = match step {
-            Step::Key(name) => node.as_table_mut()?.get_mut(name)?,
-            Step::Index(index) => node.as_array_mut()?.get_mut(*index)?,
-        };
-    }
-    node.as_table_mut()
-}
-
 /// Makes up required keys and choices that are missing.
 fn complete(schema_path: &str, table: &mut Table, variant: Variant) {
-    let known = children(schema_path);
     if let Some(group) = Group::of_table(schema_path)
         && !group
             .alternatives
@@ -85,17 +70,16 @@ fn complete(schema_path: &str, table: &mut Table, variant: Variant) {
             .any(|name| table.contains_key(*name))
         && let Some(first) = group.alternatives.first()
     {
-        let child = known.iter().find(|(name, _)| name == first);
-        let value = match child {
-            Some((_, Child::Leaf(key))) => made_up(key, variant),
-            _ => Value::Table(Table::new()),
+        let value = match child(schema_path, first) {
+            Some(Child::Leaf(key)) => made_up(key, variant),
+            _ => Table::new().into(),
         };
         table.insert((*first).to_owned(), Node { value, mark: None });
     }
-    for (name, child) in known {
+    for (name, child) in children(schema_path) {
         let below = join(schema_path, name);
         match (child, table.get_mut(name)) {
-            (Child::Leaf(key), None) if key.presence == super::schema::Presence::Required => {
+            (Child::Leaf(key), None) if key.presence == Presence::Required => {
                 let value = made_up(key, variant);
                 table.insert(name.to_owned(), Node { value, mark: None });
             }
@@ -127,14 +111,14 @@ fn made_up(key: &Key, variant: Variant) -> Value {
             value: Value::Float(value),
             mark: None,
         };
-        Value::Array(values.into_iter().map(node).collect())
+        values.into_iter().map(node).collect::<Vec<Node>>().into()
     };
     let texts = |words: Vec<String>| {
         let node = |word| Node {
             value: Value::Text(word),
             mark: None,
         };
-        Value::Array(words.into_iter().map(node).collect())
+        words.into_iter().map(node).collect::<Vec<Node>>().into()
     };
     // Another number of elements in each variant, so that no count is blamed on them.
     let count = variant.index() + 1;
@@ -165,7 +149,7 @@ fn made_up(key: &Key, variant: Variant) -> Value {
         Kind::Texts => texts(vec!["raw.mean_deg_per_h".to_owned(); count]),
         Kind::Name => Value::Text(format!("stand-in-{count}")),
         Kind::Text | Kind::FreeText => Value::Text(format!("stand-in {count}")),
-        Kind::EmptyTable | Kind::Matrix => Value::Table(Table::new()),
+        Kind::EmptyTable | Kind::Matrix => Table::new().into(),
     }
 }
 
@@ -185,8 +169,7 @@ fn float(range: Range, default: Option<&Value>, variant: Variant) -> f64 {
     if range.contains(wanted) {
         return wanted;
     }
-    let low = range.low().map_or(0.0, |(low, _)| low);
-    let high = range.high().unwrap_or(LARGE);
+    let (low, high) = (range.low, range.high);
     let inside = [high.min(LARGE), 0.5 * (low + high), high];
     inside
         .into_iter()

@@ -6,6 +6,7 @@
 use std::sync::OnceLock;
 
 use super::address::{Step, display};
+use super::excerpt::excerpt;
 use super::keys::{GROUPS, keys};
 use super::schema::{children, join};
 use super::synonyms::{Meaning, meaning};
@@ -14,6 +15,8 @@ use crate::wording::{Likeness, Vocabulary, likeness};
 
 /// Most keys that are suggested at once, equally like.
 const SUGGESTIONS_MAX: usize = 3;
+/// Most bytes of a name that may stand for a known one: all are shorter.
+const KNOWN_LENGTH_MAX: usize = 128;
 /// Most keys of a table that are listed.
 const LISTED_MAX: usize = 12;
 
@@ -30,8 +33,10 @@ pub(crate) struct Place<'a> {
 
 /// The complaint about a key that nobody knows.
 pub(crate) fn unknown_key(place: Place<'_>, name: &str) -> String {
-    let unknown = format!("unknown key {}", join(place.shown, name));
-    let meant = match meaning(place.schema_path, name) {
+    let shown = join(place.shown, name);
+    let unknown = format!("unknown key {}", excerpt(&shown));
+    let known = (name.len() <= KNOWN_LENGTH_MAX).then(|| meaning(place.schema_path, name));
+    let meant = match known.flatten() {
         Some(Meaning::Advice(advice)) => return format!("{unknown}: {advice}"),
         Some(Meaning::Key(path)) if path_is_open(place.schema_path, path) => vec![path],
         _ => suggestions(place.schema_path, name),
@@ -93,6 +98,9 @@ fn parent(path: &str) -> &str {
 /// Paths that may have been meant, the likest; of equally like ones those of the same table, then
 /// the nearest.
 pub(crate) fn suggestions(schema_path: &str, name: &str) -> Vec<&'static str> {
+    if name.len() > KNOWN_LENGTH_MAX {
+        return Vec::new();
+    }
     let scored = paths().iter().filter_map(|path| {
         let likeness = likeness(name, last_name(path), vocabulary())?;
         path_is_open(schema_path, path).then(|| (rank(likeness, schema_path, path), *path))
@@ -243,14 +251,11 @@ fn in_array(root: Option<&Table>, array: &str, rest: &str) -> String {
 
 /// What a table knows, or how to find out.
 fn listed(place: Place<'_>) -> String {
-    let names: Vec<&str> = children(place.schema_path)
-        .into_iter()
-        .map(|(name, _)| name)
-        .collect();
+    let names: Vec<&str> = children(place.schema_path).map(|(name, _)| name).collect();
     let table = if place.shown.is_empty() {
         "a scenario".to_owned()
     } else {
-        format!("[{}]", place.shown)
+        format!("[{}]", excerpt(place.shown))
     };
     if names.len() > LISTED_MAX {
         let (count, first) = (names.len() - LISTED_MAX, names[..LISTED_MAX].join(", "));

@@ -1,32 +1,24 @@
-//! From paths to resolved runs: discovery, the `extends` chain, `--set` and sweeps.
+//! From paths to resolved runs: discovery, `--set` and sweeps.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::address::{self, Step};
-use super::check::check_contradictions;
-use super::clashes::name_clashes;
-use super::discover::{discover, identity};
-use super::draft::{Draft, UnsoundReading};
+use super::chain::{load_labelled, read_whole};
+use super::clashes::Names;
+use super::discover::discover;
+use super::draft::{Draft, Unsound, UnsoundReading};
 use super::error::{Location, ScenarioError, in_order};
+use super::excerpt::excerpt;
 use super::inert::{Idle, IdleSet, IdleSets};
-use super::manifest;
-use super::matrix;
-use super::resolved::{InputFile, Resolved};
+use super::matrix::{self, Swept};
+use super::presence::check_contradictions;
+use super::resolved::Resolved;
 use super::source::{Label, Mark, Sources, shown_path};
-use super::tree::{Node, Table, Value, merge, parse_document, parse_value};
+use super::tree::{Node, Table, Value, parse_value};
 
-/// A suite as far as it could be read.
-#[derive(Debug, Default)]
-pub(crate) struct Suite {
-    /// The runs that are sound.
-    pub(crate) runs: Vec<Resolved>,
-    /// Every complaint so far, each once.
-    pub(crate) errors: Vec<ScenarioError>,
-    /// The scenarios that are not sound, for the checks that are still to come.
-    pub(crate) readings: Vec<UnsoundReading>,
-}
+/// What a scenario is read as: a run, or what can be checked further though it is not sound.
+pub(crate) type Reading = Result<Resolved, UnsoundReading>;
 
 /// Reads, resolves and checks every run of a suite; empty if the folders hold nothing to run.
 ///
@@ -37,63 +29,80 @@ pub(crate) struct Suite {
 /// # Errors
 /// Every complaint about every file, each once, in the order of the files and their lines.
 pub fn load_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
-    let suite = read_suite(paths, sets);
-    if suite.errors.is_empty() {
-        Ok(suite.runs)
+    let mut runs = Vec::new();
+    visit_suite(paths, sets, &mut |run| runs.push(run))?;
+    Ok(runs)
+}
+
+/// As [`load_suite`], but hands each run over as soon as it is resolved: a suite of many runs need
+/// not be held in memory. If there are complaints in the end, the runs are not to be trusted.
+///
+/// # Errors
+/// As [`load_suite`].
+pub fn visit_suite(
+    paths: &[PathBuf],
+    sets: &[String],
+    visit: &mut dyn FnMut(Resolved),
+) -> Result<(), Vec<ScenarioError>> {
+    let errors = read_suite(paths, sets, &mut |reading| {
+        if let Ok(run) = reading {
+            visit(run);
+        }
+    });
+    if errors.is_empty() {
+        Ok(())
     } else {
-        Err(suite.errors)
+        Err(errors)
     }
 }
 
-/// As [`load_suite`], with what can be checked further though it is not sound.
-pub(crate) fn read_suite(paths: &[PathBuf], sets: &[String]) -> Suite {
-    let mut suite = Suite::default();
+/// As [`visit_suite`], but hands over what is not sound as well, for the checks that are still to
+/// come; returns the complaints so far.
+pub(crate) fn read_suite(
+    paths: &[PathBuf],
+    sets: &[String],
+    visit: &mut dyn FnMut(Reading),
+) -> Vec<ScenarioError> {
+    let mut errors = Vec::new();
+    let mut names = Names::default();
     let mut idle_sets = IdleSets::default();
-    for file in discover(paths, &mut suite.errors) {
-        let mut read = match load_draft(&file) {
-            Ok(drafted) => load_drafted(drafted, sets),
-            Err(errors) => errors.into(),
+    for found in discover(paths, &mut errors) {
+        let file = &found.path;
+        let draft = load_labelled(file, &Label::of_scenario(file), !found.is_named);
+        let drafted = match draft {
+            Ok(Some(drafted)) => Ok(drafted),
+            // A base that was found in a folder is passed over.
+            Ok(None) => continue,
+            Err(errors) => Err(errors),
         };
-        suite.runs.append(&mut read.runs);
-        suite.readings.extend(read.reading);
-        suite.errors.append(&mut in_order(read.errors));
-        idle_sets.add(read.idle_sets);
+        let findings = drafted.map_or_else(Findings::from, |drafted| {
+            load_drafted(drafted, sets, &mut |reading| {
+                if let Ok(run) = &reading {
+                    names.take(run);
+                }
+                visit(reading);
+            })
+        });
+        errors.extend(in_order(findings.errors));
+        idle_sets.add(findings.idle_sets);
     }
-    suite.errors.extend(name_clashes(&suite.runs));
-    suite.errors.extend(idle_sets.complaints());
-    suite
+    errors.extend(names.clashes);
+    errors.extend(idle_sets.complaints());
+    in_order(errors)
 }
 
-/// One file, read.
+/// What is wrong with one file.
 #[derive(Default)]
-struct FileReading {
-    runs: Vec<Resolved>,
+struct Findings {
     errors: Vec<ScenarioError>,
-    reading: Option<UnsoundReading>,
     /// Wishes by `--set` that act in no point of it.
     idle_sets: Vec<IdleSet>,
 }
 
-impl From<Vec<ScenarioError>> for FileReading {
+impl From<Vec<ScenarioError>> for Findings {
     fn from(errors: Vec<ScenarioError>) -> Self {
-        Self {
-            errors,
-            ..Self::default()
-        }
-    }
-}
-
-impl From<FileReading> for Result<Vec<Resolved>, Vec<ScenarioError>> {
-    fn from(read: FileReading) -> Self {
-        let mut idle_sets = IdleSets::default();
-        idle_sets.add(read.idle_sets);
-        let mut errors = in_order(read.errors);
-        errors.extend(idle_sets.complaints());
-        if errors.is_empty() {
-            Ok(read.runs)
-        } else {
-            Err(errors)
-        }
+        let idle_sets = Vec::new();
+        Self { errors, idle_sets }
     }
 }
 
@@ -115,7 +124,18 @@ pub fn load_base_or_scenario(
             "it is a folder: name one scenario or base file",
         )]);
     }
-    load_drafted(load_draft(file).map(completed)?, sets).into()
+    let mut runs = Vec::new();
+    let draft = read_whole(file, &Label::of_scenario(file)).map(completed)?;
+    let findings = load_drafted(draft, sets, &mut |reading| runs.extend(reading));
+    let mut idle_sets = IdleSets::default();
+    idle_sets.add(findings.idle_sets);
+    let mut errors = findings.errors;
+    errors.extend(idle_sets.complaints());
+    if errors.is_empty() {
+        Ok(runs)
+    } else {
+        Err(in_order(errors))
+    }
 }
 
 /// A draft with a name and a duration.
@@ -133,206 +153,61 @@ fn completed((mut draft, errors): (Draft, Vec<ScenarioError>)) -> (Draft, Vec<Sc
 }
 
 /// Applies `--set` to what was read and resolves it, all points of a sweep.
-fn load_drafted((mut draft, errors): (Draft, Vec<ScenarioError>), sets: &[String]) -> FileReading {
-    let mut read = FileReading::from(errors);
+fn load_drafted(
+    (mut draft, errors): (Draft, Vec<ScenarioError>),
+    sets: &[String],
+    visit: &mut dyn FnMut(Reading),
+) -> Findings {
+    let mut findings = Findings::from(errors);
     let matrix = draft.root.remove("matrix");
-    let is_sweep = matrix.is_some();
-    if is_sweep {
+    if matrix.is_some() {
         // A sweep over a manifest is an experiment of its own.
         draft.recorded = None;
     }
-    let set_paths = apply_sets(&mut draft, sets, &mut read.errors);
-    let mut swept = Vec::new();
-    let runs = match matrix {
-        None => draft.resolve().map(|run| vec![run]),
-        Some(matrix) => matrix::expand(&draft, &matrix, &set_paths).map(|(runs, axes)| {
-            swept = axes;
-            runs
-        }),
+    let set_paths = apply_sets(&mut draft, sets, &mut findings.errors);
+    let mut idle: Option<Idle> = None;
+    let mut take = |run: Resolved, swept: &[Swept]| {
+        match &mut idle {
+            None => idle = Some(Idle::of(&run, swept)),
+            Some(idle) => idle.keep_idle(&run),
+        }
+        visit(Ok(run));
     };
-    match runs {
-        Ok(runs) => {
-            let mut points = runs.iter();
-            if let Some(first) = points.next() {
-                let mut idle = Idle::of(first, &swept);
-                for point in points {
-                    if idle.is_empty() {
-                        break;
-                    }
-                    idle.keep_idle(point);
+    let result = match &matrix {
+        None => draft.resolve().map(|run| take(run, &[])),
+        Some(matrix) => matrix::expand(&draft, matrix, &set_paths, &mut take),
+    };
+    match result {
+        Ok(()) => {
+            let (own, idle_sets) = idle.map(Idle::complaints).unwrap_or_default();
+            findings.errors.extend(own);
+            findings.idle_sets = idle_sets;
+        }
+        Err(Unsound { errors, reading }) => {
+            findings.errors.extend(errors);
+            if let Some(reading) = reading {
+                if matrix.is_none() {
+                    let own = idle_in_all(&reading, &findings.errors);
+                    findings.errors.extend(own);
                 }
-                let (own, idle_sets) = idle.complaints(first);
-                read.errors.extend(own);
-                read.idle_sets = idle_sets;
+                visit(Err(reading));
             }
-            read.runs = runs;
-        }
-        Err(unsound) => {
-            read.errors.extend(unsound.errors);
-            let idle = unsound
-                .reading
-                .as_ref()
-                .map(|reading| &reading.variants[..]);
-            if let (Some([first, more @ ..]), false) = (idle, is_sweep) {
-                let mut idle = Idle::of(first, &swept);
-                more.iter().for_each(|variant| idle.keep_idle(variant));
-                let (mut own, _) = idle.complaints(first);
-                // What is refused for its value need not act as well.
-                own.retain(|one| {
-                    read.errors
-                        .iter()
-                        .all(|other| other.location != one.location)
-                });
-                read.errors.extend(own);
-            }
-            read.reading = unsound.reading;
         }
     }
-    read
+    findings
 }
 
-/// Reads a file and its bases, or a manifest, with the complaints that do not hinder more checks.
-fn load_draft(file: &Path) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
-    load_labelled(file, &Label::of_scenario(file))
-}
-
-/// Reads the scenario of a campaign that another file names, and its bases.
-///
-/// # Errors
-/// Every complaint about the file.
-pub(super) fn load_campaign(file: &Path, label: &Label) -> Result<Draft, Vec<ScenarioError>> {
-    match load_labelled(file, label)? {
-        (draft, errors) if errors.is_empty() => Ok(draft),
-        (_, errors) => Err(errors),
-    }
-}
-
-/// As [`load_draft`], inputs labelled as seen from another file.
-fn load_labelled(
-    file: &Path,
-    label: &Label,
-) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
-    let mut chain = Chain::default();
-    let (root, source) = chain.read(file, label, None)?;
-    if manifest::is_manifest(&root) {
-        let draft = manifest::read(root, source, chain.sources, chain.inputs)?;
-        return Ok((draft, Vec::new()));
-    }
-    let root = chain.merge_bases(file, label, root, source);
-    chain.inputs.reverse();
-    let draft = Draft {
-        root,
-        root_mark: Mark { source, start: 0 },
-        sources: Arc::new(chain.sources),
-        file: label.text(),
-        inputs: chain.inputs,
-        recorded: None,
-        warnings: Vec::new(),
-        is_record: false,
-        is_partial: chain.is_partial,
+/// Complaints about keys that act in no variant of a scenario. What is refused for its value need not
+/// act as well.
+fn idle_in_all(reading: &UnsoundReading, said: &[ScenarioError]) -> Vec<ScenarioError> {
+    let Some((first, more)) = reading.variants.split_first() else {
+        return Vec::new();
     };
-    Ok((draft, chain.errors))
-}
-
-/// A file and its bases, as far as they have been read.
-#[derive(Default)]
-struct Chain {
-    sources: Sources,
-    /// The scenario's own file first.
-    inputs: Vec<InputFile>,
-    /// Files read so far, to find cycles.
-    open: Vec<PathBuf>,
-    errors: Vec<ScenarioError>,
-    /// Whether a base could not be read.
-    is_partial: bool,
-}
-
-impl Chain {
-    /// Reads and parses one file; `extends` is the mark of the key that names it.
-    fn read(
-        &mut self,
-        file: &Path,
-        label: &Label,
-        extends: Option<Mark>,
-    ) -> Result<(Table, usize), Vec<ScenarioError>> {
-        let shown = shown_path(file);
-        let bytes = fs::read(file).map_err(|error| {
-            let message = match error.kind() {
-                std::io::ErrorKind::NotFound => "no such file".to_owned(),
-                _ if file.is_dir() => "it is a folder, not a file".to_owned(),
-                _ => format!("cannot read the file: {error}"),
-            };
-            vec![match extends {
-                None => ScenarioError::at(Location::of_file(shown.clone()), message),
-                Some(mark) => self
-                    .sources
-                    .error(mark, format!("extends {shown}: {message}")),
-            }]
-        })?;
-        self.inputs.push(InputFile {
-            file: label.text(),
-            digest: blake3::hash(&bytes).to_hex().to_string(),
-        });
-        self.open.push(identity(file));
-        let text = String::from_utf8(bytes).map_err(|_| {
-            let location = Location::of_file(shown.clone());
-            vec![ScenarioError::at(location, "the file is not UTF-8 text")]
-        })?;
-        let source = self.sources.add_file(shown, text.clone(), label.clone());
-        let root = parse_document(source, &text).map_err(|error| {
-            let mark = Mark {
-                source,
-                start: error.start,
-            };
-            vec![self.sources.error(mark, error.message)]
-        })?;
-        Ok((root, source))
-    }
-
-    /// Merges a file onto the bases it extends, as far as they can be read.
-    fn merge_bases(&mut self, file: &Path, label: &Label, mut root: Table, source: usize) -> Table {
-        let start = Mark { source, start: 0 };
-        let contradictions = check_contradictions(&root, start, &self.sources);
-        self.errors.extend(contradictions);
-        let Some(extends) = root.remove("extends") else {
-            return root;
-        };
-        let mark = extends.mark.unwrap_or(start);
-        let Some(base) = extends.as_text() else {
-            let message = format!(
-                "extends has the wrong type: expected the path of a file, got {}",
-                extends.value.type_name()
-            );
-            self.is_partial = true;
-            self.errors.push(self.sources.error(mark, message));
-            return root;
-        };
-        let path = file.parent().unwrap_or(Path::new("")).join(base);
-        if self.open.contains(&identity(&path)) {
-            let message = format!(
-                "extends = \"{base}\" closes a cycle: {} is being extended already",
-                shown_path(&path)
-            );
-            self.is_partial = true;
-            self.errors.push(self.sources.error(mark, message));
-            return root;
-        }
-        let base_label = label.of_base(base);
-        match self.read(&path, &base_label, Some(mark)) {
-            Ok((base_root, base_source)) => {
-                let mut merged = self.merge_bases(&path, &base_label, base_root, base_source);
-                // The name is the scenario's own: two files may build on one that can be run itself.
-                merged.remove("name");
-                merge("", &mut merged, root);
-                merged
-            }
-            Err(errors) => {
-                self.is_partial = true;
-                self.errors.extend(errors);
-                root
-            }
-        }
-    }
+    let mut idle = Idle::of(first, &[]);
+    more.iter().for_each(|variant| idle.keep_idle(variant));
+    let (mut own, _) = idle.complaints();
+    own.retain(|one| said.iter().all(|other| other.location != one.location));
+    own
 }
 
 /// Applies the `--set` arguments in order; returns the paths they set.
@@ -365,6 +240,7 @@ fn apply_set(root: &mut Table, argument: &str, mark: Mark) -> Result<Vec<Step>, 
     match key.split('.').next() {
         Some("extends") => return Err("extends cannot be set: write it into a file".to_owned()),
         Some("matrix") => {
+            let key = excerpt(key);
             return Err(format!(
                 "{key} cannot be set: write the sweep into a file, or give one value, as in seed=2"
             ));

@@ -1,13 +1,17 @@
 //! A TOML document as a tree of values that know where they were written.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::ops::Range;
+use std::sync::Arc;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::excerpt::excerpt;
 use super::schema::{Group, join};
 use super::source::Mark;
+use super::weight;
 
 /// Keys and values of a table.
 pub(crate) type Table = BTreeMap<String, Node>;
@@ -22,6 +26,9 @@ pub(crate) struct Node {
 }
 
 /// A TOML value.
+///
+/// Arrays and tables are shared until one of their owners changes them: the points of a sweep and
+/// the scenarios on the same defaults keep only what is their own.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Text(String),
@@ -32,8 +39,8 @@ pub(crate) enum Value {
     Date(String),
     Float(f64),
     Boolean(bool),
-    Array(Vec<Node>),
-    Table(Table),
+    Array(Arc<Vec<Node>>),
+    Table(Arc<Table>),
 }
 
 /// How a number is stored.
@@ -67,7 +74,7 @@ impl Node {
     /// The value as a table to change.
     pub(crate) fn as_table_mut(&mut self) -> Option<&mut Table> {
         match &mut self.value {
-            Value::Table(table) => Some(table),
+            Value::Table(table) => Some(Arc::make_mut(table)),
             _ => None,
         }
     }
@@ -83,7 +90,7 @@ impl Node {
     /// The value as an array to change.
     pub(crate) fn as_array_mut(&mut self) -> Option<&mut Vec<Node>> {
         match &mut self.value {
-            Value::Array(array) => Some(array),
+            Value::Array(array) => Some(Arc::make_mut(array)),
             _ => None,
         }
     }
@@ -100,8 +107,14 @@ impl Node {
     pub(crate) fn remark(&mut self, mark: Option<Mark>) {
         self.mark = mark;
         match &mut self.value {
-            Value::Array(array) => array.iter_mut().for_each(|node| node.remark(mark)),
-            Value::Table(table) => table.values_mut().for_each(|node| node.remark(mark)),
+            Value::Array(array) => {
+                let nodes = Arc::make_mut(array).iter_mut();
+                nodes.for_each(|node| node.remark(mark));
+            }
+            Value::Table(table) => {
+                let nodes = Arc::make_mut(table).values_mut();
+                nodes.for_each(|node| node.remark(mark));
+            }
             _ => {}
         }
     }
@@ -125,25 +138,52 @@ impl Value {
 
     /// The value in TOML, on one line.
     pub(crate) fn to_toml(&self) -> String {
-        match self {
-            Self::Text(text) => toml::Value::String(text.clone()).to_string(),
-            Self::Integer(value) => value.to_string(),
-            Self::Beyond(text, _) | Self::Date(text) => text.clone(),
-            Self::Float(value) if value.is_nan() => "nan".to_owned(),
-            Self::Float(value) => format!("{value:?}"),
-            Self::Boolean(value) => value.to_string(),
+        let mut text = String::new();
+        self.write_toml(&mut text);
+        text
+    }
+
+    /// Appends the value in TOML, on one line.
+    pub(crate) fn write_toml(&self, to: &mut String) {
+        // Writing to a string cannot fail.
+        let _ = match self {
+            Self::Text(text) => write!(to, "{}", toml::Value::String(text.clone())),
+            Self::Integer(value) => write!(to, "{value}"),
+            Self::Beyond(text, _) | Self::Date(text) => to.write_str(text),
+            Self::Float(value) if value.is_nan() => to.write_str("nan"),
+            Self::Float(value) => write!(to, "{value:?}"),
+            Self::Boolean(value) => write!(to, "{value}"),
             Self::Array(array) => {
-                let items: Vec<String> = array.iter().map(|node| node.value.to_toml()).collect();
-                format!("[{}]", items.join(", "))
+                to.push('[');
+                for (index, node) in array.iter().enumerate() {
+                    to.push_str(if index == 0 { "" } else { ", " });
+                    node.value.write_toml(to);
+                }
+                to.write_str("]")
             }
             Self::Table(table) => {
-                let items: Vec<String> = table
-                    .iter()
-                    .map(|(key, node)| format!("{key} = {}", node.value.to_toml()))
-                    .collect();
-                format!("{{ {} }}", items.join(", "))
+                to.push_str("{ ");
+                for (index, (key, node)) in table.iter().enumerate() {
+                    to.push_str(if index == 0 { "" } else { ", " });
+                    to.push_str(key);
+                    to.push_str(" = ");
+                    node.value.write_toml(to);
+                }
+                to.write_str(" }")
             }
-        }
+        };
+    }
+}
+
+impl From<Table> for Value {
+    fn from(table: Table) -> Self {
+        Self::Table(Arc::new(table))
+    }
+}
+
+impl From<Vec<Node>> for Value {
+    fn from(nodes: Vec<Node>) -> Self {
+        Self::Array(Arc::new(nodes))
     }
 }
 
@@ -164,7 +204,7 @@ impl SyntaxError {
         if error.message() == DUPLICATE
             && let Some(key) = text.get(span.clone())
         {
-            message.push_str(&format!(" {}", key.trim()));
+            message.push_str(&format!(" {}", excerpt(key.trim())));
         }
         Self {
             message,
@@ -176,8 +216,28 @@ impl SyntaxError {
 /// Parses a document.
 ///
 /// # Errors
-/// The parser's first complaint.
+/// The parser's first complaint, or that the document would take too much memory.
 pub(crate) fn parse_document(source: usize, text: &str) -> Result<Table, SyntaxError> {
+    parse_within(source, text, &mut weight::MEMORY_BYTES_MAX.clone())
+}
+
+/// Parses one of several documents that share an amount of memory, `left`, bytes.
+///
+/// # Errors
+/// As [`parse_document`].
+pub(crate) fn parse_within(
+    source: usize,
+    text: &str,
+    left: &mut u64,
+) -> Result<Table, SyntaxError> {
+    weight::charge(text, left).map_err(|start| SyntaxError {
+        message: format!(
+            "too many values: up to here the scenario takes {} MB of memory, which is the most \
+             that is allowed",
+            weight::MEMORY_BYTES_MAX / 1_000_000
+        ),
+        start,
+    })?;
     let parsed = DeTable::parse(text).map_err(|error| SyntaxError::new(&error, text))?;
     Ok(table(source, parsed.into_inner()))
 }
@@ -218,13 +278,11 @@ fn node(source: usize, key: Option<Range<usize>>, parsed: Spanned<DeValue<'_>>) 
         DeValue::Float(number) => float(number.as_str()),
         DeValue::Boolean(value) => Value::Boolean(value),
         DeValue::Datetime(date) => Value::Date(date.to_string()),
-        DeValue::Array(array) => Value::Array(
-            array
-                .into_iter()
-                .map(|item| node(source, None, item))
-                .collect(),
-        ),
-        DeValue::Table(inner) => Value::Table(table(source, inner)),
+        DeValue::Array(array) => {
+            let items = array.into_iter().map(|item| node(source, None, item));
+            items.collect::<Vec<Node>>().into()
+        }
+        DeValue::Table(inner) => table(source, inner).into(),
     };
     Node {
         value,
@@ -269,7 +327,8 @@ pub(crate) fn merge(schema_path: &str, base: &mut Table, over: Table) {
 pub(crate) fn merge_node(schema_path: &str, base: &mut Node, over: Node) {
     match (&mut base.value, over.value) {
         (Value::Table(earlier), Value::Table(later)) => {
-            merge(schema_path, earlier, later);
+            let later = Arc::unwrap_or_clone(later);
+            merge(schema_path, Arc::make_mut(earlier), later);
             base.mark = over.mark.or(base.mark);
         }
         (earlier, later) => {

@@ -9,6 +9,7 @@ pub(crate) mod gyro_cases;
 pub(crate) mod patent_cases;
 pub(crate) mod reference_gyro;
 pub(crate) mod run;
+pub(crate) mod seeded;
 pub(crate) mod stimulus;
 pub(crate) mod tables;
 pub(crate) mod turntable_cases;

@@ -25,6 +25,7 @@ mod signals;
 mod vectors;
 mod waveform;
 
+pub use super::kinds::PipelineConfig;
 pub use rtl::write_rtl;
-pub use vectors::{ExportSettings, IntegerCodes, PipelineConfig, stimulus_pairs, write_vectors};
+pub use vectors::{ExportSettings, IntegerCodes, stimulus_pairs, write_vectors};
 pub use waveform::write_waveform;

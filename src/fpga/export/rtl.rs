@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::vectors::{ExportSettings, PipelineConfig, write_text, write_vectors};
+use super::vectors::{ExportSettings, write_text, write_vectors};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
@@ -18,24 +18,6 @@ const SHARED: [(&str, &str); 7] = [
     ("test_cocotb.py", include_str!("rtl/test_cocotb.py")),
 ];
 
-const RLS: [(&str, &str); 3] = [
-    ("rls_ctrl.v", include_str!("rtl/rls_ctrl.v")),
-    ("rls_core.v", include_str!("rtl/rls_core.v")),
-    ("tb_rls.v", include_str!("rtl/tb_rls.v")),
-];
-
-const LMS: [(&str, &str); 3] = [
-    ("lms_ctrl.v", include_str!("rtl/lms_ctrl.v")),
-    ("lms_core.v", include_str!("rtl/lms_core.v")),
-    ("tb_lms.v", include_str!("rtl/tb_lms.v")),
-];
-
-const SIGN_LMS: [(&str, &str); 3] = [
-    ("sign_lms_ctrl.v", include_str!("rtl/sign_lms_ctrl.v")),
-    ("sign_lms_core.v", include_str!("rtl/sign_lms_core.v")),
-    ("tb_sign_lms.v", include_str!("rtl/tb_sign_lms.v")),
-];
-
 /// Writes vectors, RTL, testbench, run script and cocotb test; returns the files.
 ///
 /// `sh DIR/run.sh` runs the testbench under Icarus Verilog, with `SIM=verilator` under Verilator;
@@ -49,13 +31,53 @@ pub fn write_rtl<F: Fp>(
     pairs: &[Pair<F>],
 ) -> Result<Vec<PathBuf>, FpgaError> {
     let mut files = write_vectors(dir, settings, pairs)?;
-    let own = match settings.pipeline {
-        PipelineConfig::Rls(_) => RLS,
-        PipelineConfig::Lms(_) => LMS,
-        PipelineConfig::SignLms(_) => SIGN_LMS,
-    };
+    let own = settings.pipeline.as_pipeline().kind().sources;
     for (name, text) in SHARED.into_iter().chain(own) {
         files.push(write_text(dir, name, text)?);
     }
     Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SHARED;
+    use crate::fpga::kinds::KINDS;
+
+    #[test]
+    fn the_readme_states_files_macro_and_state_codes_of_every_kind() {
+        let (_, readme) = SHARED[0];
+        let words = readme.split_whitespace().collect::<Vec<_>>().join(" ");
+        for kind in KINDS {
+            for (name, _) in kind.sources {
+                assert!(words.contains(name), "{name}");
+            }
+            let macro_name = format!("VEC_{}", kind.name.to_uppercase());
+            assert!(words.contains(&macro_name), "{macro_name}");
+            for (code, state) in kind.states.iter().enumerate() {
+                assert!(words.contains(&format!("{code} {state}")), "{code} {state}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_kind_has_the_verilog_that_its_name_tells() {
+        for kind in KINDS {
+            let name = kind.name;
+            let wanted = [
+                format!("{name}_ctrl.v"),
+                format!("{name}_core.v"),
+                format!("tb_{name}.v"),
+            ];
+            assert_eq!(kind.sources.map(|(file, _)| file.to_owned()), wanted);
+            for (file, text) in kind.sources {
+                let module = format!("module {}", file.trim_end_matches(".v"));
+                assert!(text.contains(&module), "{file}: {module}");
+            }
+            // The scripts of the export take the first parameter for the tap count.
+            let (_, core) = kind.sources[1];
+            let first = core.find("parameter").expect("parameters");
+            let line = core[first..].lines().next().expect("a line");
+            assert!(line.contains("// taps"), "{name}: {line}");
+        }
+    }
 }

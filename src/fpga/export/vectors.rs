@@ -9,46 +9,8 @@ use super::params::{params_json, params_vh};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::{FrontEnd, Pair};
-use crate::fpga::lms::{LmsConfig, LmsPipeline, lms_clocks_per_sample, lms_latency_clocks};
-use crate::fpga::probe::Probe;
-use crate::fpga::rls::{RlsConfig, RlsPipeline, rls_clocks_per_sample, rls_latency_clocks};
-use crate::fpga::sign_lms::{
-    SignLmsConfig, SignLmsPipeline, sign_lms_clocks_per_sample, sign_lms_latency_clocks,
-};
-use crate::fpga::trace::{CSV_HEADER, ClockRecord, Recorder, Window, hex, write_csv_line};
-
-/// The pipeline to export.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PipelineConfig<F> {
-    /// Recursive least squares.
-    Rls(RlsConfig<F>),
-    /// Least mean squares, normalised or not.
-    Lms(LmsConfig<F>),
-    /// Line enhancer, by the sign of the error or normalised.
-    SignLms(SignLmsConfig<F>),
-}
-
-impl<F: Fp> PipelineConfig<F> {
-    /// Clocks per back-to-back sample.
-    #[must_use]
-    pub fn clocks_per_sample(&self) -> usize {
-        match self {
-            Self::Rls(config) => rls_clocks_per_sample(config.tap_count()),
-            Self::Lms(config) => lms_clocks_per_sample(config.tap_count(), config.is_normalised()),
-            Self::SignLms(config) => sign_lms_clocks_per_sample(config.tap_count()),
-        }
-    }
-
-    /// Clocks from accepting a sample until its result can be read.
-    #[must_use]
-    pub fn latency_clocks(&self) -> usize {
-        match self {
-            Self::Rls(config) => rls_latency_clocks(config.tap_count()),
-            Self::Lms(config) => lms_latency_clocks(config.tap_count(), config.is_normalised()),
-            Self::SignLms(config) => sign_lms_latency_clocks(config.tap_count()),
-        }
-    }
-}
+use crate::fpga::kinds::PipelineConfig;
+use crate::fpga::trace::{CSV_HEADER, ClockRecord, Window, hex, write_csv_line};
 
 /// The gyro's raw output words, from which the stimulus was made.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,7 +43,7 @@ impl<F: Fp> ExportSettings<F> {
     pub(super) fn window(&self, samples: usize) -> Window {
         let clocks = match samples {
             0 => 0,
-            _ => 1 + samples * self.pipeline.clocks_per_sample(),
+            _ => 1 + samples * self.pipeline.as_pipeline().clocks_per_sample(),
         };
         Window {
             first_clock: 0,
@@ -122,44 +84,20 @@ pub(super) struct Simulation<F> {
     pub(super) memories_after: Vec<F>,
 }
 
-/// Runs the pipeline over all pairs, from reset, back to back.
-pub(super) fn simulate<F: Fp, Q: Probe<F>>(
+/// Runs the pipeline over all pairs, from reset, back to back; the clocks of a window go to `sink`.
+pub(super) fn simulate<F: Fp>(
     pipeline: &PipelineConfig<F>,
     pairs: &[Pair<F>],
-    probe: &mut Q,
+    window: Window,
+    sink: &mut dyn FnMut(&ClockRecord<F>),
 ) -> Simulation<F> {
-    let mut outputs = Vec::with_capacity(pairs.len());
-    match pipeline {
-        PipelineConfig::Rls(config) => {
-            let mut pipeline = RlsPipeline::new(*config);
-            let memories_before = [pipeline.rama(), pipeline.ramb()].concat();
-            pipeline.run_probed(pairs, &mut outputs, probe);
-            Simulation {
-                outputs,
-                memories_before,
-                memories_after: [pipeline.rama(), pipeline.ramb()].concat(),
-            }
-        }
-        PipelineConfig::Lms(config) => {
-            let mut pipeline = LmsPipeline::new(*config);
-            let memories_before = [pipeline.rama(), pipeline.ramb()].concat();
-            pipeline.run_probed(pairs, &mut outputs, probe);
-            Simulation {
-                outputs,
-                memories_before,
-                memories_after: [pipeline.rama(), pipeline.ramb()].concat(),
-            }
-        }
-        PipelineConfig::SignLms(config) => {
-            let mut pipeline = SignLmsPipeline::new(*config);
-            let memories_before = [pipeline.rama(), pipeline.ramb()].concat();
-            pipeline.run_probed(pairs, &mut outputs, probe);
-            Simulation {
-                outputs,
-                memories_before,
-                memories_after: [pipeline.rama(), pipeline.ramb()].concat(),
-            }
-        }
+    let mut clocked = pipeline.as_pipeline().clocked();
+    let memories_before = clocked.memories();
+    let outputs = clocked.record(pairs, window, sink);
+    Simulation {
+        outputs,
+        memories_before,
+        memories_after: clocked.memories(),
     }
 }
 
@@ -175,7 +113,7 @@ pub fn write_vectors<F: Fp>(
     pairs: &[Pair<F>],
 ) -> Result<Vec<PathBuf>, FpgaError> {
     check_counts(settings, pairs.len())?;
-    crate::fpga::timing::check_clock(settings.clock_mhz)?;
+    crate::fpga::check::check_clock(settings.clock_mhz)?;
     fs::create_dir_all(dir).map_err(|cause| FpgaError::write(dir, cause))?;
     let trace_path = dir.join("trace.csv");
     let (simulation, trace_rows) = write_trace(&trace_path, settings, pairs)?;
@@ -246,14 +184,12 @@ fn write_trace<F: Fp>(
     let mut rows = 0;
     let mut outcome = Ok(());
     let window = settings.window(settings.trace_samples);
-    let mut recorder = Recorder::new(window, |record: &ClockRecord<F>| {
+    let simulation = simulate(&settings.pipeline, pairs, window, &mut |record| {
         rows += u64::from(record.registers.state != 0);
         if outcome.is_ok() {
             outcome = write_csv_line(&mut out, record);
         }
     });
-    let simulation = simulate(&settings.pipeline, pairs, &mut recorder);
-    recorder.finish();
     outcome.and_then(|()| out.flush()).map_err(failed)?;
     Ok((simulation, rows))
 }

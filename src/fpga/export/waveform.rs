@@ -12,14 +12,11 @@ use vcd::{IdCode, TimescaleUnit, VarType};
 
 use super::params::half_period_ps;
 use super::signals::{Kind, Sheet, Value};
-use super::vectors::{ExportSettings, PipelineConfig, simulate, write_text};
+use super::vectors::{ExportSettings, simulate, write_text};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
-use crate::fpga::lms::LmsState;
-use crate::fpga::rls::RlsState;
-use crate::fpga::sign_lms::SignLmsState;
-use crate::fpga::trace::{ClockRecord, Recorder, Window};
+use crate::fpga::trace::{ClockRecord, Window};
 
 /// Characters of a state name in the FST, which has no strings: an ASCII vector of this length.
 const NAME_CHARACTERS: usize = 11;
@@ -194,12 +191,12 @@ pub fn write_waveform<F: Fp>(
     pairs: &[Pair<F>],
     window: Window,
 ) -> Result<Vec<PathBuf>, FpgaError> {
-    crate::fpga::timing::check_clock(settings.clock_mhz)?;
+    crate::fpga::check::check_clock(settings.clock_mhz)?;
     fs::create_dir_all(dir).map_err(|cause| FpgaError::write(dir, cause))?;
     let mut records = Vec::new();
-    let mut recorder = Recorder::new(window, |record: &ClockRecord<F>| records.push(*record));
-    simulate(&settings.pipeline, pairs, &mut recorder);
-    recorder.finish();
+    simulate(&settings.pipeline, pairs, window, &mut |record| {
+        records.push(*record);
+    });
     let Some(first) = records.first() else {
         return Err(FpgaError::CountOutOfRange {
             name: "first clock of the waveform window",
@@ -208,14 +205,8 @@ pub fn write_waveform<F: Fp>(
         });
     };
     let layout = Sheet::of(first);
-    let (top, filter) = match settings.pipeline {
-        PipelineConfig::Rls(_) => ("rls", translate_file(&RlsState::ALL.map(RlsState::name))),
-        PipelineConfig::Lms(_) => ("lms", translate_file(&LmsState::ALL.map(LmsState::name))),
-        PipelineConfig::SignLms(_) => (
-            "sign_lms",
-            translate_file(&SignLmsState::ALL.map(SignLmsState::name)),
-        ),
-    };
+    let kind = settings.pipeline.as_pipeline().kind();
+    let (top, filter) = (kind.name, translate_file(kind.states));
     let half_period_ps = half_period_ps(settings.clock_mhz);
 
     let vcd_path = dir.join("wave.vcd");

@@ -1,9 +1,9 @@
 //! What never changes while the LMS pipeline runs.
 
+use crate::fpga::check::{check_positive, check_tap_count};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::{Desired, UpdateSign};
-use crate::fpga::rls::{check_positive, check_tap_count};
 
 /// Where the core takes its desired word from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,7 +8,7 @@
 //!              +-----------------------------+
 //! ```
 //!
-//! Ports as in [`crate::fpga::rls`]; the output strobe is up in the clock ERR.
+//! Ports as in [`crate::fpga::machine`]; the output strobe is up in the clock ERR.
 //!
 //! Latency: [`lms_latency_clocks`]. Interval: [`lms_clocks_per_sample`]; one more after idling.
 //!
@@ -30,32 +30,15 @@
 //!
 //! Checked by `cycle_exact`, `bit_exact`.
 
+mod clocks;
 mod config;
+mod declaration;
 mod engine;
-mod pipeline;
+mod machine;
 mod state;
 
+pub use clocks::{lms_clocks_per_sample, lms_latency_clocks, lms_stalled_clocks};
 pub use config::{DesiredSource, LmsConfig, LmsSettings};
 pub use engine::LmsEngine;
-pub use pipeline::LmsPipeline;
-pub use state::{LmsRegisters, LmsState};
-
-/// Clocks from one accepted sample to the next, back to back: `3N + 4`, NLMS `4N + 5`.
-#[must_use]
-pub const fn lms_clocks_per_sample(tap_count: usize, normalised: bool) -> usize {
-    if normalised {
-        4 * tap_count + 5
-    } else {
-        3 * tap_count + 4
-    }
-}
-
-/// Clocks from accepting a sample until its result can be read: `N + 2`, NLMS `2N + 3`.
-#[must_use]
-pub const fn lms_latency_clocks(tap_count: usize, normalised: bool) -> usize {
-    if normalised {
-        2 * tap_count + 3
-    } else {
-        tap_count + 2
-    }
-}
+pub use machine::{LmsMachine, LmsPipeline};
+pub use state::LmsState;

@@ -1,5 +1,6 @@
 //! What never changes while the RLS pipeline runs: the synthesis-time constants.
 
+use crate::fpga::check::{check_positive, check_tap_count};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::UpdateSign;
@@ -107,29 +108,5 @@ impl<F: Fp> RlsConfig<F> {
     #[must_use]
     pub fn update_sign(&self) -> UpdateSign {
         self.update_sign
-    }
-}
-
-/// Refuses tap counts the address ranges cannot hold.
-pub(crate) fn check_tap_count(value: usize) -> Result<(), FpgaError> {
-    if (1..=64).contains(&value) {
-        Ok(())
-    } else {
-        Err(FpgaError::TapCount { value })
-    }
-}
-
-/// Refuses values that are not finite and positive in the word format.
-pub(crate) fn check_positive<F: Fp>(name: &'static str, value: f64) -> Result<(), FpgaError> {
-    let word = F::from_f64(value);
-    if word > F::ZERO && word.is_finite() {
-        Ok(())
-    } else {
-        Err(FpgaError::OutOfRange {
-            name,
-            value,
-            range: "> 0 and finite",
-            format: F::NAME,
-        })
     }
 }

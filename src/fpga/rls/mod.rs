@@ -8,11 +8,7 @@
 //!              +-----------------------------+
 //! ```
 //!
-//! | port | direction | word | meaning |
-//! |---|---|---|---|
-//! | `input` | in | `Option<Pair>`: strobe, `x`, `d` | held until `accepted` |
-//! | `accepted` | out | bit | the pair is taken in this clock (state `RiL_loading`) |
-//! | `output` | out | `Option`: strobe, `y` | registered (Y); strobe in the first RFW clock |
+//! Ports as in [`crate::fpga::machine`]; the output strobe is up in the first RFW clock.
 //!
 //! Latency: [`rls_latency_clocks`] from the accepting clock to the strobe of the result.
 //! Interval: [`rls_clocks_per_sample`] back to back; one more when the machine was idle.
@@ -41,26 +37,20 @@
 //!
 //! Checked by `cycle_exact`, `bit_exact`.
 
+mod clocks;
 mod config;
+mod declaration;
 mod engine;
-mod pipeline;
+mod machine;
+mod schedule;
 mod state;
-mod steps;
+mod table;
 
+pub use clocks::{RlsLoad, rls_clocks_per_sample, rls_latency_clocks, rls_stalled_clocks};
 pub use config::{Division, RlsConfig, RlsSettings};
-pub(crate) use config::{check_positive, check_tap_count};
+pub use declaration::RlsCore;
 pub use engine::{RlsEngine, UpdateOrder};
-pub use pipeline::RlsPipeline;
-pub use state::{RlsRegisters, RlsState};
-
-/// Clocks from one accepted sample to the next, back to back: `4 + 6p + 5p^2`.
-#[must_use]
-pub const fn rls_clocks_per_sample(tap_count: usize) -> usize {
-    4 + 6 * tap_count + 5 * tap_count * tap_count
-}
-
-/// Clocks from accepting a sample until its result can be read: `3 + 4p + 5p^2`.
-#[must_use]
-pub const fn rls_latency_clocks(tap_count: usize) -> usize {
-    3 + 4 * tap_count + 5 * tap_count * tap_count
-}
+pub use machine::{RlsMachine, RlsPipeline};
+pub use schedule::{Bound, ScheduleReport, ScheduleSettings, schedule_clocks};
+pub use state::RlsState;
+pub use table::{Basis, Design, TimingRow, table};

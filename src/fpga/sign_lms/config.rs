@@ -1,8 +1,8 @@
 //! What never changes while the line enhancer runs.
 
+use crate::fpga::check::{check_positive, check_tap_count};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::rls::{check_positive, check_tap_count};
 
 /// Largest interval between two fresh sums of the norm, samples; the counter has 20 bits.
 const RECOMPUTE_MAX: u32 = 1_000_000;

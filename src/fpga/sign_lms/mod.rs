@@ -8,8 +8,8 @@
 //!              +-----------------------------+
 //! ```
 //!
-//! Ports as in [`crate::fpga::rls`]: d is the newest sample, x the one D samples ago, which the front
-//! end's hold chain keeps. The output strobe is up in the clock ERR.
+//! Ports as in [`crate::fpga::machine`]: d is the newest sample, x the one D samples ago, which the
+//! front end's hold chain keeps. The output strobe is up in the clock ERR.
 //!
 //! Latency: `M + 5` clocks. Interval: `3M + 7`; one more after idling. At M = 20: 25 and 67.
 //!
@@ -43,24 +43,15 @@
 //!
 //! Checked by `sign_lms_hardware`.
 
+mod clocks;
 mod config;
+mod declaration;
 mod engine;
-mod pipeline;
+mod machine;
 mod state;
 
+pub use clocks::{sign_lms_clocks_per_sample, sign_lms_latency_clocks, sign_lms_stalled_clocks};
 pub use config::{SignLmsConfig, SignLmsSettings};
 pub use engine::SignLmsEngine;
-pub use pipeline::SignLmsPipeline;
-pub use state::{SignLmsRegisters, SignLmsState};
-
-/// Clocks from one accepted sample to the next, back to back: `3M + 7`.
-#[must_use]
-pub const fn sign_lms_clocks_per_sample(tap_count: usize) -> usize {
-    3 * tap_count + 7
-}
-
-/// Clocks from accepting a sample until its result can be read: `M + 5`.
-#[must_use]
-pub const fn sign_lms_latency_clocks(tap_count: usize) -> usize {
-    tap_count + 5
-}
+pub use machine::{SignLmsMachine, SignLmsPipeline};
+pub use state::SignLmsState;

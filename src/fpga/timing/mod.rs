@@ -1,28 +1,19 @@
-//! Clocks, units and rates: the paper's Table 1 beside an honest count, and what real
-//! floating-point units do to it.
+//! Clocks, units and rates, whatever the pipeline.
 //!
-//! * [`table`]: parallel, serial and pipeline for any tap count and clock.
-//! * [`stalled_clocks`]: the paper's control machine waiting for units with latency.
-//! * [`schedule_clocks`]: the same operations, same bits, interleaved by a list scheduler.
-//! * [`measure_rls`], [`measure_lms`], [`measure_sign_lms`]: clocks per state and port use counted on the model.
+//! * [`Units`]: what real floating-point units take; [`PRESETS`]: typical ones.
+//! * [`measure`]: clocks per state and port use counted on the model.
 //!
-//! Source: Ma et al., Chinese J. Lasers 49(21) 2106004 (2022), Table 1; the rest derived.
+//! Each pipeline has its own count for units with latency beside its control machine; Table 1 of
+//! the paper and the interleaved schedule belong to [`crate::fpga::rls`].
 //!
 //! Checked by `timing`.
 
-mod latency;
-mod schedule;
-mod table;
+mod units;
 mod usage;
 
-pub use latency::{
-    Bound, PRESETS, Preset, RlsLoad, UnitTiming, Units, lms_stalled_clocks,
-    sign_lms_stalled_clocks, stalled_clocks,
-};
-pub use schedule::{ScheduleReport, ScheduleSettings, schedule_clocks};
-pub(super) use table::check_clock;
-pub use table::{Basis, Design, TimingRow, table};
-pub use usage::{StateClocks, Usage, measure_lms, measure_rls, measure_sign_lms};
+pub use super::check::check_clock;
+pub use units::{PRESETS, Preset, UnitTiming, Units};
+pub use usage::{StateClocks, Usage, measure};
 
 /// Sample rate in kHz at which back-to-back samples take `clocks` each.
 #[must_use]

@@ -2,10 +2,9 @@
 
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
-use crate::fpga::lms::{LmsConfig, LmsPipeline, LmsState};
-use crate::fpga::probe::{PortView, Probe, RegisterView, Tick};
-use crate::fpga::rls::{RlsConfig, RlsPipeline, RlsState};
-use crate::fpga::sign_lms::{SignLmsConfig, SignLmsPipeline, SignLmsState};
+use crate::fpga::machine::{Machine, Sequencer};
+use crate::fpga::probe::{PortView, Probe, RegisterView};
+use crate::fpga::registers::ControlState;
 
 /// Clocks spent in one state per sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,62 +88,32 @@ impl<F: Fp> Probe<F> for Counter {
     }
 }
 
-impl Counter {
-    /// Feeds three back-to-back samples and counts the second.
-    fn run<F: Fp>(
-        mut self,
-        names: &[&'static str],
-        mut tick: impl FnMut(Pair<F>, &mut Self) -> Tick<F>,
-    ) -> Usage {
-        let pair = Pair {
-            input: F::ONE,
-            desired: F::ONE,
-        };
-        while self.accepted.len() < 3 {
-            tick(pair, &mut self);
-        }
-        Usage {
-            clocks_per_sample: self.accepted[2] - self.accepted[1],
-            latency_clocks: self.finished[1] - self.accepted[1],
-            wake_up_clocks: self.accepted[0],
-            states: names
-                .iter()
-                .zip(self.states)
-                .map(|(state, clocks)| StateClocks { state, clocks })
-                .collect(),
-            rama_accesses: self.rama,
-            ramb_accesses: self.ramb,
-            multiplies: self.multiplies,
-            additions: self.additions,
-            divisions: self.divisions,
-        }
+/// Counts one back-to-back sample of a pipeline just out of reset: the second of three.
+///
+/// A line enhancer is counted in a sample in which its norm is not replaced.
+#[must_use]
+pub fn measure<M: Machine>(mut pipeline: Sequencer<M>) -> Usage {
+    let mut counter = Counter::default();
+    let pair = Pair {
+        input: M::Word::ONE,
+        desired: M::Word::ONE,
+    };
+    while counter.accepted.len() < 3 {
+        pipeline.tick_probed(Some(pair), &mut counter);
     }
-}
-
-/// Counts one back-to-back sample of the RLS pipeline.
-#[must_use]
-pub fn measure_rls<F: Fp>(config: RlsConfig<F>) -> Usage {
-    let mut pipeline = RlsPipeline::new(config);
-    Counter::default().run(&RlsState::ALL.map(RlsState::name), |pair, counter| {
-        pipeline.tick_probed(Some(pair), counter)
-    })
-}
-
-/// Counts one back-to-back sample of the LMS pipeline.
-#[must_use]
-pub fn measure_lms<F: Fp>(config: LmsConfig<F>) -> Usage {
-    let mut pipeline = LmsPipeline::new(config);
-    Counter::default().run(&LmsState::ALL.map(LmsState::name), |pair, counter| {
-        pipeline.tick_probed(Some(pair), counter)
-    })
-}
-
-/// Counts one back-to-back sample of the line enhancer, one in which the norm is not replaced.
-#[must_use]
-pub fn measure_sign_lms<F: Fp>(config: SignLmsConfig<F>) -> Usage {
-    let mut pipeline = SignLmsPipeline::new(config);
-    Counter::default().run(
-        &SignLmsState::ALL.map(SignLmsState::name),
-        |pair, counter| pipeline.tick_probed(Some(pair), counter),
-    )
+    Usage {
+        clocks_per_sample: counter.accepted[2] - counter.accepted[1],
+        latency_clocks: counter.finished[1] - counter.accepted[1],
+        wake_up_clocks: counter.accepted[0],
+        states: M::State::NAMES
+            .iter()
+            .zip(counter.states)
+            .map(|(state, clocks)| StateClocks { state, clocks })
+            .collect(),
+        rama_accesses: counter.rama,
+        ramb_accesses: counter.ramb,
+        multiplies: counter.multiplies,
+        additions: counter.additions,
+        divisions: counter.divisions,
+    }
 }

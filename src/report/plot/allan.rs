@@ -6,6 +6,9 @@ use super::picture::{Dash, Picture, Shape, Stroke};
 use super::series::{extent, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::ChannelMetrics;
+use crate::metrics::MetricKey;
+use crate::metrics::catalogue::ANGLE_RANDOM_WALK;
+use crate::metrics::catalogue::{BIAS_INSTABILITY, QUANTISATION, RATE_RAMP, RATE_RANDOM_WALK};
 use crate::report::csv::{abscissa, allan_curve, allan_estimator, fitted, interval_end, ordinate};
 use crate::report::measured::Measured;
 use crate::units::{
@@ -111,7 +114,7 @@ fn deviation_name(estimator: &str) -> &'static str {
 /// The fitted deviation over the range of the fit; below it lies the bandwidth of the channel, which
 /// the fit does not know.
 fn fit_line(metrics: &ChannelMetrics, tau: &[f64]) -> Vec<(f64, f64)> {
-    let walk = metrics.metrics.get("angle_random_walk_deg_per_sqrt_h");
+    let walk = metrics.get(&ANGLE_RANDOM_WALK);
     let first_s = walk.and_then(|walk| walk.fields.get("tau_min_s").copied());
     let first_s = first_s.unwrap_or(0.0);
     let fit = allan_curve(metrics).and_then(fitted).unwrap_or_default();
@@ -141,19 +144,15 @@ fn notes(legend: &mut Legend, picture: &mut Picture, is_read: bool) {
 
 /// The fitted terms of a channel.
 fn readings(metrics: &ChannelMetrics) -> Vec<Reading> {
-    let read = |key: &str, symbol: &str, unit: &str| {
-        let metric = metrics.metrics.get(key)?;
+    let read = |key: &MetricKey, symbol: &str, unit: &str| {
+        let metric = metrics.get(key)?;
         let text = estimate_text(&metric.estimate, 2);
         let value = metric.estimate.value;
         (value > 0.0).then(|| (value, format!("{symbol} {text} {unit}")))
     };
-    let walk = read("angle_random_walk_deg_per_sqrt_h", "N", "deg/sqrt(h)");
-    let floor = read("bias_instability_deg_per_h", "B", "deg/h");
-    let rate_walk = read(
-        "rate_random_walk_deg_per_h_per_sqrt_h",
-        "K",
-        "deg/h/sqrt(h)",
-    );
+    let walk = read(&ANGLE_RANDOM_WALK, "N", "deg/sqrt(h)");
+    let floor = read(&BIAS_INSTABILITY, "B", "deg/h");
+    let rate_walk = read(&RATE_RANDOM_WALK, "K", "deg/h/sqrt(h)");
     let walk = walk.map(|(value, text)| Reading {
         shape: Shape::Circle,
         slope: -0.5,
@@ -176,8 +175,8 @@ fn readings(metrics: &ChannelMetrics) -> Vec<Reading> {
         deviation_deg_per_h: deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(value),
         text,
     });
-    let ramp = read("rate_ramp_deg_per_h_per_h", "R", "deg/h/h");
-    let angle = read("quantisation_arcsec", "Q", "arcsec");
+    let ramp = read(&RATE_RAMP, "R", "deg/h/h");
+    let angle = read(&QUANTISATION, "Q", "arcsec");
     // R tau / sqrt(2) at tau = sqrt(2) s is R in (deg/h)/s; sqrt(3) Q / tau at sqrt(3) s is Q.
     let ramp = ramp.map(|(value, text)| Reading {
         shape: Shape::Triangle,

@@ -1,5 +1,9 @@
 //! Axes: where the ticks stand and what they say.
 
+/// Largest ratio of the ends of a logarithmic axis: values of rounding alone, hundreds of decades down,
+/// lie below the picture.
+const LOG_SPAN_MAX: f64 = 1e60;
+
 /// One axis: range, scale, ticks and title.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
@@ -30,11 +34,13 @@ impl Axis {
         }
     }
 
-    /// A logarithmic axis over at least `[low, high]`, both positive.
+    /// A logarithmic axis over `[low, high]`, both positive, or the upper sixty decades of it.
     ///
     /// Every range has at least two labels: decades where there are two, else 1-2-5 steps, else
     /// linear steps.
     pub(super) fn log((low, high): (f64, f64), margin: f64, title: &str) -> Self {
+        let high = high.clamp(1e-200, 1e200);
+        let low = low.clamp(high / LOG_SPAN_MAX, high);
         let factor = (high / low).powf(margin).max(1.02);
         let (low, high) = (low / factor, high * factor);
         let decades = exponents(low, high);

@@ -7,6 +7,7 @@ use super::series::{extent, shape_of, stroke_of};
 use super::theory::{curves, draw, legend_of};
 use crate::gate::{estimate_text, plain};
 use crate::metrics::ChannelMetrics;
+use crate::metrics::catalogue::{BANDWIDTH, DELAY_VS_TRUTH};
 use crate::report::RunReport;
 use crate::report::csv::Curve;
 use crate::signal::TheoryQuantity;
@@ -126,12 +127,12 @@ fn draw_points(picture: &mut Picture, panel: &Panel, points: &Points, index: usi
 
 /// Delay at the lowest tone, and the bandwidth if there is one.
 fn remarks(metrics: &ChannelMetrics) -> Vec<String> {
-    let delay = metrics.metrics.get("delay_vs_truth_ms").map(|metric| {
+    let delay = metrics.get(&DELAY_VS_TRUTH).map(|metric| {
         let text = estimate_text(&metric.estimate, 2);
         let frequency_hz = metric.fields.get("frequency_hz").copied().unwrap_or(0.0);
         format!("{text} ms late at {} Hz", plain(frequency_hz))
     });
-    let bandwidth = metrics.metrics.get("bandwidth_hz").map(|metric| {
+    let bandwidth = metrics.get(&BANDWIDTH).map(|metric| {
         let text = estimate_text(&metric.estimate, 2);
         format!("bandwidth {text} Hz")
     });

@@ -6,6 +6,8 @@ use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{Picture, Stroke};
 use super::series::{extent, shape_of, stroke_of};
 use crate::gate::estimate_text;
+use crate::metrics::MetricKey;
+use crate::metrics::catalogue::{DC_GAIN, DELAY_AT_DC};
 use crate::metrics::{ChannelMetrics, Estimate};
 use crate::report::RunReport;
 use crate::report::csv::Curve;
@@ -35,7 +37,7 @@ struct Quantity {
     title: &'static str,
     frame: (f64, f64),
     /// Metric at zero frequency, marked at the left edge.
-    at_dc: &'static str,
+    at_dc: &'static MetricKey,
 }
 
 const QUANTITIES: [Quantity; 2] = [
@@ -44,14 +46,14 @@ const QUANTITIES: [Quantity; 2] = [
         convert: decibel,
         title: "gain over raw [dB]",
         frame: (56.0, 400.0),
-        at_dc: "dc_gain",
+        at_dc: &DC_GAIN,
     },
     Quantity {
         columns: ["delay_ms", "delay_low_ms", "delay_high_ms"],
         convert: std::convert::identity,
         title: "phase delay behind raw [ms]",
         frame: (466.0, 810.0),
-        at_dc: "delay_at_dc_ms",
+        at_dc: &DELAY_AT_DC,
     },
 ];
 
@@ -87,7 +89,7 @@ pub(super) fn picture(report: &RunReport) -> Option<Picture> {
     let mut legend = Legend::new(56.0);
     for filter in &filters {
         legend.line(&mut picture, stroke_of(filter.index), filter.name);
-        if let Some(gain) = at_dc(filter, "dc_gain") {
+        if let Some(gain) = at_dc(filter, &DC_GAIN) {
             let text = format!("DC gain {}", estimate_text(&gain, 2));
             legend.detail(&mut picture, &text);
         }
@@ -105,8 +107,8 @@ pub(super) fn picture(report: &RunReport) -> Option<Picture> {
     Some(picture)
 }
 
-fn at_dc(filter: &Filter, key: &str) -> Option<Estimate> {
-    Some(filter.metrics.metrics.get(key)?.estimate)
+fn at_dc(filter: &Filter, key: &MetricKey) -> Option<Estimate> {
+    Some(filter.metrics.get(key)?.estimate)
 }
 
 /// The points of a curve that the panel shows.
@@ -117,7 +119,7 @@ fn points(curve: &Curve, quantity: &Quantity) -> Vec<Point> {
     let ends = value.iter().zip(low).zip(high);
     frequencies
         .zip(ends)
-        .filter(|((_, gain), _)| quantity.at_dc == "dc_gain" || decibel(**gain) > DELAY_FROM_DB)
+        .filter(|((_, gain), _)| *quantity.at_dc == DC_GAIN || decibel(**gain) > DELAY_FROM_DB)
         .map(|((frequency, _), ((value, low), high))| {
             (*frequency, [*value, *low, *high].map(quantity.convert))
         })

@@ -1,8 +1,13 @@
 //! A list of things to draw, and the only code that knows plotters.
 
+use super::SVG_BYTES_MAX;
+use super::thin::thinned;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+/// Distances from where they were that lines may be drawn at, pixels; the first at which the picture is
+/// small enough is taken.
+const TOLERANCES: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 /// User units per pixel: plotters writes whole numbers, so a finer grid keeps lines smooth.
 const SCALE: f64 = 4.0;
 /// Font sizes are given as the em; plotters divides what it is told by this.
@@ -163,18 +168,33 @@ impl Picture {
         });
     }
 
-    /// The picture as SVG text.
+    /// The picture as SVG text of at most [`SVG_BYTES_MAX`] bytes; nothing if it cannot be had.
+    ///
+    /// A picture that would be larger is drawn with fewer points: lines and edges stay within a part
+    /// of a pixel, at last within one, of where they were.
+    pub(super) fn svg(&self) -> Option<String> {
+        let mut svgs = TOLERANCES
+            .into_iter()
+            .map(|tolerance| self.drawn(tolerance));
+        svgs.find(|svg| svg.len() <= SVG_BYTES_MAX)
+    }
+
+    /// The picture with lines within a distance of where they were, pixels.
     ///
     /// plotters has no dashes: the pattern travels in the last two bits of the stroke width, which
     /// is otherwise a multiple of four, and is written out here.
-    pub(super) fn svg(&self) -> String {
+    fn drawn(&self, tolerance: f64) -> String {
         let mut svg = String::new();
         let (width, height) = (units_u32(self.size.0), units_u32(self.size.1));
         {
             let root = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
             let drawn = root
                 .fill(&WHITE)
-                .and_then(|()| self.items.iter().try_for_each(|item| draw(&root, item)))
+                .and_then(|()| {
+                    self.items
+                        .iter()
+                        .try_for_each(|item| draw(&root, item, tolerance))
+                })
                 .and_then(|()| root.present());
             drawn.expect("drawing into memory cannot fail");
         }
@@ -230,23 +250,35 @@ fn units_of(points: &[Point]) -> Vec<(i32, i32)> {
     points.iter().map(|(x, y)| (units(*x), units(*y))).collect()
 }
 
+/// [`units_of`] the points that keep a line within a distance of where it was; all of them at 0.
+fn units_within(points: &[Point], tolerance: f64) -> Vec<(i32, i32)> {
+    if tolerance > 0.0 {
+        units_of(&thinned(points, tolerance))
+    } else {
+        units_of(points)
+    }
+}
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 type DrawError<'a> = DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>;
 
-fn draw<'a>(root: &Area<'a>, item: &Item) -> Result<(), DrawError<'a>> {
+fn draw<'a>(root: &Area<'a>, item: &Item, tolerance: f64) -> Result<(), DrawError<'a>> {
     let rgb = |colour: &Colour| RGBColor(colour.0, colour.1, colour.2);
     match item {
         Item::Line(points, stroke) => {
             let width = coded_width(units_u32(stroke.width).max(1), stroke.dash);
             let colour = rgb(&stroke.colour).mix(stroke.opacity);
             root.draw(&PathElement::new(
-                units_of(points),
+                units_within(points, tolerance),
                 colour.stroke_width(width),
             ))
         }
         Item::Area(points, colour, opacity) => {
             let colour = rgb(colour).mix(*opacity);
-            root.draw(&Polygon::new(units_of(points), colour.filled()))
+            root.draw(&Polygon::new(
+                units_within(points, tolerance),
+                colour.filled(),
+            ))
         }
         Item::Marker(at, shape, colour) => draw_marker(root, *at, *shape, rgb(colour)),
         Item::Text {

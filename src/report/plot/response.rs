@@ -7,6 +7,9 @@ use super::series::{extent, shape_of, stroke_of, truth_stroke};
 use super::theory::{curves, draw, legend_of};
 use crate::gate::estimate_text;
 use crate::metrics::ChannelMetrics;
+use crate::metrics::catalogue::{
+    SCALE_FACTOR_ASYMMETRY, SCALE_FACTOR_ERROR, SCALE_FACTOR_NONLINEARITY,
+};
 use crate::report::RunReport;
 use crate::report::csv::Curve;
 use crate::signal::TheoryQuantity;
@@ -190,14 +193,14 @@ fn points(curve: &Curve) -> Option<Vec<Point>> {
 /// The scale factor metrics of a channel.
 fn remarks(metrics: &ChannelMetrics) -> Vec<String> {
     let titles = [
-        ("scale_factor_error_ppm", "K - 1"),
-        ("scale_factor_nonlinearity_ppm", "nonlinearity"),
-        ("scale_factor_asymmetry_ppm", "asymmetry"),
+        (&SCALE_FACTOR_ERROR, "K - 1"),
+        (&SCALE_FACTOR_NONLINEARITY, "nonlinearity"),
+        (&SCALE_FACTOR_ASYMMETRY, "asymmetry"),
     ];
     titles
         .into_iter()
-        .filter_map(|(name, title)| {
-            let estimate = metrics.metrics.get(name)?.estimate;
+        .filter_map(|(key, title)| {
+            let estimate = metrics.get(key)?.estimate;
             Some(format!("{title}: {} ppm", estimate_text(&estimate, 2)))
         })
         .collect()

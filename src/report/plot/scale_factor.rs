@@ -6,6 +6,7 @@ use super::picture::{Picture, Stroke};
 use super::series::{extent, shape_of, stroke_of, truth_stroke};
 use crate::gate::estimate_text;
 use crate::metrics::ChannelMetrics;
+use crate::metrics::catalogue::{SCALE_FACTOR_NONLINEARITY, SCALE_FACTOR_NONLINEARITY_OF_READING};
 use crate::report::RunReport;
 use crate::report::scale_factor::filter_state_word;
 use crate::units::deg_per_h_to_deg_per_s;
@@ -70,10 +71,10 @@ fn legends(picture: &mut Picture, report: &RunReport, channels: &[Channel]) {
     for channel in channels {
         legend.line(picture, stroke_of(channel.index), channel.name);
         for (key, title) in [
-            ("scale_factor_nonlinearity_ppm", "of full scale"),
-            ("scale_factor_nonlinearity_of_reading_ppm", "of reading"),
+            (&SCALE_FACTOR_NONLINEARITY, "of full scale"),
+            (&SCALE_FACTOR_NONLINEARITY_OF_READING, "of reading"),
         ] {
-            let Some(metric) = channel.metrics.metrics.get(key) else {
+            let Some(metric) = channel.metrics.get(key) else {
                 continue;
             };
             let value = estimate_text(&metric.estimate, 2);

@@ -6,6 +6,8 @@ use super::picture::{Dash, GREY, Picture, Stroke};
 use super::series::{Series, extent, index, real, series, truth_stroke};
 use crate::gate::estimate_text;
 use crate::metrics::Estimate;
+use crate::metrics::MetricKey;
+use crate::metrics::catalogue::{DELAY_VS_RAW, DELAY_VS_TRUTH};
 use crate::report::RunReport;
 use crate::signal::RunSignals;
 use crate::units::s_to_ms;
@@ -43,8 +45,8 @@ pub(super) fn picture(
             legend.detail(&mut picture, &failure);
         }
         for (key, words) in [
-            ("delay_vs_truth_ms", "ms behind truth"),
-            ("delay_vs_raw_ms", "ms behind raw"),
+            (&DELAY_VS_TRUTH, "ms behind truth"),
+            (&DELAY_VS_RAW, "ms behind raw"),
         ] {
             if let Some(estimate) = delay(channel, key) {
                 let text = format!("{} {words}", estimate_text(&estimate, 2));
@@ -63,8 +65,8 @@ pub(super) fn picture(
     Some(picture)
 }
 
-fn delay(channel: &Series, key: &str) -> Option<Estimate> {
-    Some(channel.metrics?.metrics.get(key)?.estimate)
+fn delay(channel: &Series, key: &MetricKey) -> Option<Estimate> {
+    Some(channel.metrics?.get(key)?.estimate)
 }
 
 /// Where the cycles of a record begin.
@@ -174,7 +176,7 @@ fn zoom(picture: &mut Picture, fold: &Fold, truth: &[f64], channels: &[Series]) 
             .filter(|channel| channel.samples.len() >= truth.len())
     };
     let longest = drawn()
-        .filter_map(|channel| delay(channel, "delay_vs_truth_ms"))
+        .filter_map(|channel| delay(channel, &DELAY_VS_TRUTH))
         .map(|estimate| estimate.value.abs())
         .fold(0.0, f64::max);
     // Not beyond the margin that every cycle has on both sides.
@@ -224,15 +226,15 @@ fn arrows(picture: &mut Picture, panel: &Panel, channels: &[&Series], (low, high
     let raw_ms = channels
         .iter()
         .find(|channel| channel.is_raw)
-        .and_then(|channel| delay(channel, "delay_vs_truth_ms"))
+        .and_then(|channel| delay(channel, &DELAY_VS_TRUTH))
         .map_or(0.0, |estimate| estimate.value);
     let mut row = 0.0_f64;
     for channel in channels {
-        let Some(to_truth) = delay(channel, "delay_vs_truth_ms") else {
+        let Some(to_truth) = delay(channel, &DELAY_VS_TRUTH) else {
             continue;
         };
         let end_ms = to_truth.value;
-        let (start_ms, delay_ms, from) = match delay(channel, "delay_vs_raw_ms") {
+        let (start_ms, delay_ms, from) = match delay(channel, &DELAY_VS_RAW) {
             Some(to_raw) if !channel.is_raw => (raw_ms, to_raw.value, "raw"),
             _ => (0.0, end_ms, "truth"),
         };

@@ -30,11 +30,18 @@ if [ ! -f "$vectors/params.vh" ]; then
     echo "run.sh: $vectors holds no params.vh" >&2
     exit 2
 fi
-if grep -q '^`define VEC_RLS' "$vectors/params.vh"; then filter=rls
-elif grep -q '^`define VEC_LMS' "$vectors/params.vh"; then filter=lms
-elif grep -q '^`define VEC_SIGN_LMS' "$vectors/params.vh"; then filter=sign_lms
-else
-    echo "run.sh: $vectors/params.vh defines none of VEC_RLS, VEC_LMS, VEC_SIGN_LMS" >&2
+# The testbench whose macro the vectors define: VEC_RLS for tb_rls.v.
+filter=
+macros=
+for bench in "$here"/tb_*.v; do
+    name=${bench##*/tb_}
+    name=${name%.v}
+    macro=VEC_$(printf '%s' "$name" | tr '[:lower:]' '[:upper:]')
+    macros="$macros $macro"
+    if grep -q "^\`define $macro\([[:space:]]\|\$\)" "$vectors/params.vh"; then filter=$name; fi
+done
+if [ -z "$filter" ]; then
+    echo "run.sh: $vectors/params.vh defines none of$macros" >&2
     exit 2
 fi
 

@@ -41,18 +41,16 @@ def runner():
 
     folder = vector_folder()
     given = parameters(folder)
-    top, taps = next(
-        (f"{filter_name.lower()}_core", taps)
-        for filter_name, taps in (("RLS", "P"), ("SIGN_LMS", "M"), ("LMS", "N"))
-        if filter_name in given
-    )
-    names = {"TAPS": taps, "WIDTH": "W"}
-    names |= {key: key for key in ("ALPHA", "IALPHA", "DELTA", "DIV_ELEM", "MU", "EPS", "NLMS",
-                                   "D_PORT", "UPDATE_SUB", "FTZ", "DIV_LATENCY", "W0", "GUARD",
-                                   "GUARDED", "HOLD", "RECOMPUTE")}
-    if top == "sign_lms_core":
-        del names["UPDATE_SUB"]
-    sources = [HERE / name for name in (f"{top}.v", f"{top[:-5]}_ctrl.v", "sp_ram.v", "fp_sim.v")]
+    benches = (path.stem.removeprefix("tb_") for path in sorted(HERE.glob("tb_*.v")))
+    kind = next((name for name in benches if name.upper() in given), None)
+    if kind is None:
+        raise SystemExit(f"{folder}/params.vh names no filter whose testbench is here")
+    top = f"{kind}_core"
+    core = (HERE / f"{top}.v").read_text()
+    declared = re.findall(r"^\s*parameter\s+(?:\[.*?\]\s*)?(\w+)", core, re.MULTILINE)
+    # The first parameter of a core is its tap count, under the filter's usual letter.
+    names = {key: key for key in declared} | {"TAPS": declared[0], "WIDTH": "W"}
+    sources = [HERE / name for name in (f"{top}.v", f"{kind}_ctrl.v", "sp_ram.v", "fp_sim.v")]
     simulator = get_runner(os.environ.get("SIM", "icarus"))
     with tempfile.TemporaryDirectory() as build:
         simulator.build(

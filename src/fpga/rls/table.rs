@@ -1,8 +1,9 @@
-//! Table 1: three ways to build the filter.
+//! Table 1 of the paper: three ways to build the filter.
 
-use super::{sample_period_us, sample_rate_max_khz};
+use super::config::Division;
+use crate::fpga::check::{check_clock, check_tap_count};
 use crate::fpga::error::FpgaError;
-use crate::fpga::rls::{Division, check_tap_count};
+use crate::fpga::timing::{sample_period_us, sample_rate_max_khz};
 
 /// Way of building the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +80,7 @@ pub struct TimingRow {
 /// `3p^2+p` additions, 1 division. Element division: `p^2` divisions instead of `p^2` of the
 /// multiplications. Serial: three clocks for each of them, the division included.
 ///
-/// * `forgets`: whether alpha differs from 1; `clock_mhz`: > 0, finite.
+/// * `forgets`: whether alpha differs from 1; `clock_mhz`: 0.001 to 10000.
 ///
 /// # Errors
 /// [`FpgaError::TapCount`], [`FpgaError::OutOfRange`] for the clock.
@@ -135,18 +136,4 @@ pub fn table(
         row(Design::Serial, Basis::Counted, counted_serial, one_each),
         row(Design::Pipeline, Basis::Counted, pipeline, one_each),
     ])
-}
-
-/// Refuses clocks that are not finite and positive.
-pub(in crate::fpga) fn check_clock(clock_mhz: f64) -> Result<(), FpgaError> {
-    if clock_mhz > 0.0 && clock_mhz.is_finite() {
-        Ok(())
-    } else {
-        Err(FpgaError::OutOfRange {
-            name: "clock",
-            value: clock_mhz,
-            range: "> 0 MHz and finite",
-            format: "binary64",
-        })
-    }
 }

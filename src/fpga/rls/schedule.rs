@@ -9,9 +9,11 @@
 //! accumulators and latches are not counted: a controller reaches this length only with enough
 //! of them.
 
-use super::latency::{Bound, RlsLoad, Units};
+use super::clocks::RlsLoad;
+use super::config::Division;
+use crate::fpga::check::check_tap_count;
 use crate::fpga::error::FpgaError;
-use crate::fpga::rls::{Division, check_tap_count};
+use crate::fpga::timing::Units;
 
 /// How the operations may be interleaved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +23,38 @@ pub struct ScheduleSettings {
     /// Store and update only the elements on and above the diagonal of R (same bits: R is
     /// symmetric to the last one).
     pub symmetric_half: bool,
+}
+
+/// What limits the sample rate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bound {
+    /// The port of RAMA is the busiest resource.
+    RamaPort,
+    /// The port of RAMB is the busiest resource.
+    RambPort,
+    /// The multiplier is the busiest resource.
+    Multiplier,
+    /// The adder is the busiest resource.
+    Adder,
+    /// The divider is the busiest resource.
+    Divider,
+    /// No resource is busy: the chain of dependent operations decides.
+    DependencyChain,
+}
+
+impl Bound {
+    /// Name in tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::RamaPort => "RAMA port",
+            Self::RambPort => "RAMB port",
+            Self::Multiplier => "multiplier",
+            Self::Adder => "adder",
+            Self::Divider => "divider",
+            Self::DependencyChain => "dependency chain",
+        }
+    }
 }
 
 /// Length of the interleaved schedule and what limits it.
@@ -86,48 +120,22 @@ struct Ports {
     writes_b: u64,
 }
 
-const READ_BOTH: Ports = Ports {
-    reads_a: 1,
-    reads_b: 1,
-    writes_a: 0,
-    writes_b: 0,
-};
-const READ_A: Ports = Ports {
-    reads_a: 1,
-    reads_b: 0,
-    writes_a: 0,
-    writes_b: 0,
-};
-const READ_B: Ports = Ports {
-    reads_a: 0,
-    reads_b: 1,
-    writes_a: 0,
-    writes_b: 0,
-};
-const WRITE_BOTH: Ports = Ports {
-    reads_a: 0,
-    reads_b: 0,
-    writes_a: 1,
-    writes_b: 1,
-};
-const WRITE_A: Ports = Ports {
-    reads_a: 0,
-    reads_b: 0,
-    writes_a: 1,
-    writes_b: 0,
-};
-const WRITE_B: Ports = Ports {
-    reads_a: 0,
-    reads_b: 0,
-    writes_a: 0,
-    writes_b: 1,
-};
-const REGISTER: Ports = Ports {
-    reads_a: 0,
-    reads_b: 0,
-    writes_a: 0,
-    writes_b: 0,
-};
+const fn ports([reads_a, reads_b]: [u64; 2], [writes_a, writes_b]: [u64; 2]) -> Ports {
+    Ports {
+        reads_a,
+        reads_b,
+        writes_a,
+        writes_b,
+    }
+}
+
+const READ_BOTH: Ports = ports([1, 1], [0, 0]);
+const READ_A: Ports = ports([1, 0], [0, 0]);
+const READ_B: Ports = ports([0, 1], [0, 0]);
+const WRITE_BOTH: Ports = ports([0, 0], [1, 1]);
+const WRITE_A: Ports = ports([0, 0], [1, 0]);
+const WRITE_B: Ports = ports([0, 0], [0, 1]);
+const REGISTER: Ports = ports([0, 0], [0, 0]);
 
 #[derive(Clone, Debug)]
 struct Operation {

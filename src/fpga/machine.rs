@@ -1,0 +1,207 @@
+//! One sequencer under every pipeline: memories, clock edge, strobes, run and test points.
+//!
+//! ```text
+//!              +---------------------------------------+
+//!  in_valid -->|  Sequencer   handshake, clock edge    |--> out_valid
+//!  x, d ------>|  Machine     states, registers, steps |--> y
+//!  in_ready <--|  Datapath    RAMA  RAMB   x  +  /     |
+//!              +---------------------------------------+
+//! ```
+//!
+//! | port | direction | word | meaning |
+//! |---|---|---|---|
+//! | `input` | in | `Option<Pair>`: strobe, `x`, `d` | held until `accepted` |
+//! | `accepted` | out | bit | the pair is taken in this clock (state [`Machine::LOADING`]) |
+//! | `output` | out | `Option`: strobe, `y` | register Y, while [`Machine::strobes_output`] |
+//!
+//! A strobe wakes an idle machine into its loading state. A strobe withdrawn before that state puts
+//! it back to idle. The last clock of a sample goes straight to loading if the next strobe is up.
+
+use super::datapath::Datapath;
+use super::float_unit::Fp;
+use super::front_end::Pair;
+use super::memory::SinglePortRam;
+use super::probe::{NoProbe, PortView, Probe, Tick};
+use super::registers::{ControlState, Registers};
+
+/// Control machine of a pipeline with its registers: what each state does in its clock.
+///
+/// A step reads registers and memories first and assigns after: all values read are those before
+/// the edge. Operand order is that of the RTL.
+pub trait Machine {
+    /// Word format.
+    type Word: Fp;
+    /// Synthesis-time constants.
+    type Config: Copy;
+    /// States.
+    type State: ControlState;
+
+    /// State in which the offered pair is taken.
+    const LOADING: Self::State;
+
+    /// Registers just out of reset.
+    fn new(config: Self::Config) -> Self;
+
+    /// RAMA and RAMB just out of reset.
+    fn memories(config: &Self::Config) -> [SinglePortRam<Self::Word>; 2];
+
+    /// Synthesis-time constants.
+    fn config(&self) -> &Self::Config;
+
+    /// Registers that every pipeline has.
+    fn registers(&self) -> &Registers<Self::State, Self::Word>;
+
+    /// The same, for the sequencer's handshake.
+    fn registers_mut(&mut self) -> &mut Registers<Self::State, Self::Word>;
+
+    /// Whether the output strobe is up in this clock.
+    fn strobes_output(&self) -> bool;
+
+    /// Clock of the loading state, in which `pair` is taken.
+    fn load<Q: Probe<Self::Word>>(
+        &mut self,
+        pair: Pair<Self::Word>,
+        datapath: &mut Datapath<'_, Self::Word, Q>,
+    );
+
+    /// Clock of any state but idle and loading.
+    ///
+    /// * `next_waits`: whether the input strobe is up.
+    fn step<Q: Probe<Self::Word>>(
+        &mut self,
+        next_waits: bool,
+        datapath: &mut Datapath<'_, Self::Word, Q>,
+    );
+
+    /// State after the last clock of a sample. Passing through idle would cost a clock, and with
+    /// it the paper's 370 kHz.
+    #[inline]
+    fn after_sample(next_waits: bool) -> Self::State {
+        if next_waits {
+            Self::LOADING
+        } else {
+            Self::State::IDLE
+        }
+    }
+}
+
+/// Clocked pipeline: a machine, its two memories, and one clock at a time.
+#[derive(Clone, Debug)]
+pub struct Sequencer<M: Machine> {
+    machine: M,
+    /// RAMA, RAMB.
+    memories: [SinglePortRam<M::Word>; 2],
+}
+
+impl<M: Machine> Sequencer<M> {
+    /// A pipeline just out of reset.
+    #[must_use]
+    pub fn new(config: M::Config) -> Self {
+        Self {
+            memories: M::memories(&config),
+            machine: M::new(config),
+        }
+    }
+
+    /// Back to the state after reset.
+    pub fn reset(&mut self) {
+        *self = Self::new(*self.machine.config());
+    }
+
+    /// The constants.
+    #[must_use]
+    pub fn config(&self) -> &M::Config {
+        self.machine.config()
+    }
+
+    /// The control machine with all its registers, between two clocks.
+    #[must_use]
+    pub fn machine(&self) -> &M {
+        &self.machine
+    }
+
+    /// The registers that every pipeline has, between two clocks.
+    #[must_use]
+    pub fn registers(&self) -> &Registers<M::State, M::Word> {
+        self.machine.registers()
+    }
+
+    /// The words of RAMA; the pipeline's own page states their order.
+    #[must_use]
+    pub fn rama(&self) -> &[M::Word] {
+        self.memories[0].words()
+    }
+
+    /// The words of RAMB; the pipeline's own page states their order.
+    #[must_use]
+    pub fn ramb(&self) -> &[M::Word] {
+        self.memories[1].words()
+    }
+
+    /// Advances one clock. A strobe must be held until it is accepted; withdrawn before, the
+    /// sample is not taken.
+    #[inline]
+    pub fn tick(&mut self, input: Option<Pair<M::Word>>) -> Tick<M::Word> {
+        self.tick_probed(input, &mut NoProbe)
+    }
+
+    /// Advances one clock under the eyes of a probe.
+    #[inline]
+    pub fn tick_probed<Q: Probe<M::Word>>(
+        &mut self,
+        input: Option<Pair<M::Word>>,
+        probe: &mut Q,
+    ) -> Tick<M::Word> {
+        let state = self.machine.registers().state;
+        let accepted = state == M::LOADING && input.is_some();
+        let output = self
+            .machine
+            .strobes_output()
+            .then_some(self.machine.registers().output);
+        if Q::WATCHES {
+            let ports = PortView {
+                input_valid: input.is_some(),
+                input_ready: accepted,
+                input: input.map_or(M::Word::ZERO, |pair| pair.input),
+                desired: input.map_or(M::Word::ZERO, |pair| pair.desired),
+                output_valid: output.is_some(),
+            };
+            probe.clock(&self.machine.registers().view(), &ports);
+        }
+        let datapath = &mut Datapath::new(&mut self.memories, probe);
+        if state != M::LOADING && state != M::State::IDLE {
+            self.machine.step(input.is_some(), datapath);
+        } else if state == M::LOADING {
+            match input {
+                Some(pair) => self.machine.load(pair, datapath),
+                None => self.machine.registers_mut().state = M::State::IDLE,
+            }
+        } else if input.is_some() {
+            self.machine.registers_mut().state = M::LOADING;
+        }
+        let [rama, ramb] = &mut self.memories;
+        rama.edge();
+        ramb.edge();
+        Tick { accepted, output }
+    }
+
+    /// Runs back-to-back samples to completion, appending one output word per pair.
+    pub fn run(&mut self, pairs: &[Pair<M::Word>], outputs: &mut Vec<M::Word>) {
+        self.run_probed(pairs, outputs, &mut NoProbe);
+    }
+
+    /// [`Self::run`] under the eyes of a probe. Ends in the first idle clock, not ticked.
+    pub fn run_probed<Q: Probe<M::Word>>(
+        &mut self,
+        pairs: &[Pair<M::Word>],
+        outputs: &mut Vec<M::Word>,
+        probe: &mut Q,
+    ) {
+        let mut next = 0;
+        while next < pairs.len() || self.machine.registers().state != M::State::IDLE {
+            let tick = self.tick_probed(pairs.get(next).copied(), probe);
+            next += usize::from(tick.accepted);
+            outputs.extend(tick.output);
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! The heading of an NPY file, versions 1 to 3: a Python dictionary of three known keys.
+//!
+//! Nothing is nested in the heading of an array of plain numbers, so nothing deeper is read.
+//!
+//! # Source
+//! NumPy Enhancement Proposal 1 and `numpy.lib.format`.
+
+use std::io::{self, Read};
+
+/// First bytes of every NPY file.
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+/// Longest heading, bytes; that of a plain array has 118.
+const HEADING_BYTES_MAX: u32 = 1 << 16;
+
+/// Kind and size of the numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Word {
+    F4,
+    F8,
+    I1,
+    I2,
+    I4,
+    I8,
+    U1,
+    U2,
+    U4,
+    U8,
+}
+
+/// Words by the letters that name them.
+const WORDS: [(&str, Word, usize); 10] = [
+    ("f4", Word::F4, 4),
+    ("f8", Word::F8, 8),
+    ("i1", Word::I1, 1),
+    ("i2", Word::I2, 2),
+    ("i4", Word::I4, 4),
+    ("i8", Word::I8, 8),
+    ("u1", Word::U1, 1),
+    ("u2", Word::U2, 2),
+    ("u4", Word::U4, 4),
+    ("u8", Word::U8, 8),
+];
+
+/// What stands before the numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct NpyHeading {
+    pub(super) word: Word,
+    /// Bytes of a number.
+    pub(super) word_bytes: usize,
+    pub(super) is_big_endian: bool,
+    pub(super) count: u64,
+    /// Bytes of the file before the first number.
+    pub(super) bytes: u64,
+}
+
+/// Why there is no heading.
+pub(super) enum HeadingError {
+    Io(io::Error),
+    Content(String),
+}
+
+impl From<io::Error> for HeadingError {
+    fn from(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::UnexpectedEof {
+            return Self::Content("not a whole NPY file: its heading is cut short".to_owned());
+        }
+        Self::Io(error)
+    }
+}
+
+impl From<String> for HeadingError {
+    fn from(message: String) -> Self {
+        Self::Content(message)
+    }
+}
+
+/// Reads the heading of an array of one dimension.
+///
+/// # Errors
+/// A file cut short, another version, a heading too long or of another form, another shape or type.
+pub(super) fn read(reader: &mut impl Read) -> Result<NpyHeading, HeadingError> {
+    let mut start = [0; 8];
+    reader.read_exact(&mut start)?;
+    let (length, before) = match start[6] {
+        1 => {
+            let mut length = [0; 2];
+            reader.read_exact(&mut length)?;
+            (u32::from(u16::from_le_bytes(length)), 10)
+        }
+        2 | 3 => {
+            let mut length = [0; 4];
+            reader.read_exact(&mut length)?;
+            (u32::from_le_bytes(length), 12)
+        }
+        version => {
+            let message = format!("an NPY file of version {version}: expected 1, 2 or 3");
+            return Err(message.into());
+        }
+    };
+    if length > HEADING_BYTES_MAX {
+        return Err(format!(
+            "its NPY heading has {length} bytes: allowed up to {HEADING_BYTES_MAX}"
+        )
+        .into());
+    }
+    let mut text = vec![0; length as usize];
+    reader.read_exact(&mut text)?;
+    let text =
+        std::str::from_utf8(&text).map_err(|_| "its NPY heading is no text in UTF-8".to_owned())?;
+    let found = Dictionary::of(text).ok_or_else(|| {
+        "its NPY heading is not the dictionary of an array of plain numbers: expected descr, \
+         fortran_order and shape"
+            .to_owned()
+    })?;
+    let (word, word_bytes, is_big_endian) = word_of(&found.descr)?;
+    let [count] = found.shape[..] else {
+        return Err(format!(
+            "holds an array of shape {}: expected one dimension, one number a sample",
+            shape_text(&found.shape)
+        )
+        .into());
+    };
+    Ok(NpyHeading {
+        word,
+        word_bytes,
+        is_big_endian,
+        count,
+        bytes: before + u64::from(length),
+    })
+}
+
+/// Kind, bytes and byte order of a type such as `<f8`.
+fn word_of(descr: &str) -> Result<(Word, usize, bool), String> {
+    let found = descr.get(1..).and_then(|name| {
+        let (_, word, bytes) = WORDS.iter().find(|(known, _, _)| *known == name)?;
+        let is_big_endian = match &descr[..1] {
+            "<" => false,
+            ">" => true,
+            "|" if *bytes == 1 => false,
+            _ => return None,
+        };
+        Some((*word, *bytes, is_big_endian))
+    });
+    found.ok_or_else(|| {
+        format!(
+            "holds numbers of type '{}': expected binary64 (f8), binary32 (f4), or integers i1 to \
+             i8 or u1 to u8, little- or big-endian",
+            super::text::shown(descr)
+        )
+    })
+}
+
+/// A shape as Python writes it; of a long one the beginning.
+fn shape_text(shape: &[u64]) -> String {
+    const SHOWN: usize = 8;
+    let first: Vec<String> = shape.iter().take(SHOWN).map(u64::to_string).collect();
+    let rest = if shape.len() > SHOWN { ", ..." } else { "" };
+    format!("[{}{rest}]", first.join(", "))
+}
+
+/// The three entries.
+struct Dictionary {
+    descr: String,
+    shape: Vec<u64>,
+}
+
+impl Dictionary {
+    fn of(text: &str) -> Option<Self> {
+        let mut reader = Reader(text);
+        let (mut descr, mut shape, mut order) = (None, None, None);
+        reader.take('{')?;
+        while reader.take('}').is_none() {
+            let key = reader.string()?;
+            reader.take(':')?;
+            let is_new = match key {
+                "descr" => descr.replace(reader.string()?.to_owned()).is_none(),
+                "shape" => shape.replace(reader.tuple()?).is_none(),
+                "fortran_order" => order.replace(reader.truth()?).is_none(),
+                _ => false,
+            };
+            if !is_new {
+                return None;
+            }
+            if reader.take(',').is_none() {
+                reader.take('}')?;
+                break;
+            }
+        }
+        order?;
+        reader.is_at_end().then_some(Self {
+            descr: descr?,
+            shape: shape?,
+        })
+    }
+}
+
+/// What is left of a heading.
+struct Reader<'a>(&'a str);
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, wanted: char) -> Option<()> {
+        self.0 = self.0.trim_start().strip_prefix(wanted)?;
+        Some(())
+    }
+
+    fn is_at_end(&self) -> bool {
+        self.0.trim().is_empty()
+    }
+
+    fn string(&mut self) -> Option<&'a str> {
+        let text = self.0.trim_start();
+        let quote = text.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
+        let (inside, rest) = text[1..].split_once(quote)?;
+        self.0 = rest;
+        (!inside.contains('\\')).then_some(inside)
+    }
+
+    fn truth(&mut self) -> Option<bool> {
+        let text = self.0.trim_start();
+        let (truth, rest) = text
+            .strip_prefix("True")
+            .map(|rest| (true, rest))
+            .or_else(|| Some((false, text.strip_prefix("False")?)))?;
+        self.0 = rest;
+        Some(truth)
+    }
+
+    /// Whole numbers in parentheses; Python 2 put an `L` behind long ones.
+    fn tuple(&mut self) -> Option<Vec<u64>> {
+        let mut numbers = Vec::new();
+        self.take('(')?;
+        while self.take(')').is_none() {
+            let text = self.0.trim_start();
+            let digits = text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+            numbers.push(text[..digits].parse().ok()?);
+            self.0 = text[digits..].trim_start_matches('L');
+            if self.take(',').is_none() {
+                self.take(')')?;
+                break;
+            }
+        }
+        Some(numbers)
+    }
+}

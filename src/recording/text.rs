@@ -1,0 +1,358 @@
+//! Text as every reader of numbers takes it: its lines, their cells, and what a number looks like.
+//!
+//! Encoding: UTF-8, with a byte order mark or without. Lines end with LF, CR LF or CR; empty ones and
+//! those that begin with `#` are passed over. Cells stand between tabs, `;`, `,` or blanks, whichever
+//! of these the first line has, in this order; what stands in quotation marks is not cut. Empty cells
+//! behind the last one of the first line are none, so that a separator may end every line.
+
+use std::io::{self, BufRead};
+
+/// Longest line, bytes.
+const LINE_BYTES_MAX: usize = 1 << 20;
+/// Longest part of a cell that a message repeats, characters.
+const SHOWN_CHARACTERS: usize = 40;
+/// Most names that a message lists.
+const LISTED_MAX: usize = 20;
+
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+/// First bytes of what is no text in UTF-8, and what to do.
+const FOREIGN: [(&[u8], &str); 5] = [
+    (b"\xff\xfe", "text in UTF-16: save it as UTF-8"),
+    (b"\xfe\xff", "text in UTF-16: save it as UTF-8"),
+    (
+        b"PK\x03\x04",
+        "a ZIP or NPZ archive: unpack it and name the file in it",
+    ),
+    (b"\x1f\x8b", "compressed by gzip: unpack it"),
+    (b"\x89HDF", "an HDF5 file: write its numbers as NPY or text"),
+];
+
+/// A line of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line<'a> {
+    /// Number from 1.
+    pub number: usize,
+    /// Byte of the text at which it starts.
+    pub start: usize,
+    /// What it says, without its end.
+    pub text: &'a str,
+}
+
+/// Why a text was not read on.
+#[derive(Debug, thiserror::Error)]
+pub enum TextError {
+    /// The system refused.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// What a line holds is no text.
+    #[error("line {line}: {message}")]
+    Content {
+        /// The line, from 1.
+        line: usize,
+        /// Byte of the text at which it starts.
+        start: usize,
+        /// What is wrong.
+        message: String,
+    },
+}
+
+/// The lines of a text that say something, one after another.
+#[derive(Debug)]
+pub struct Lines<R> {
+    reader: R,
+    /// What is expected of the bytes, for messages.
+    encoding: &'static str,
+    line: String,
+    number: usize,
+    start: usize,
+    /// Byte behind the line and its end.
+    end: usize,
+    /// Whether a CR ended the line, whose LF is still to come.
+    is_after_cr: bool,
+}
+
+impl<R: BufRead> Lines<R> {
+    /// Begins a text.
+    ///
+    /// * `encoding`: what is said of bytes that are no UTF-8.
+    pub fn new(reader: R, encoding: &'static str) -> Self {
+        Self {
+            reader,
+            encoding,
+            line: String::new(),
+            number: 0,
+            start: 0,
+            end: 0,
+            is_after_cr: false,
+        }
+    }
+
+    /// The next line that is neither empty nor a comment; none at the end.
+    ///
+    /// # Errors
+    /// [`TextError`]: bytes that are no UTF-8, NUL, a line beyond [`LINE_BYTES_MAX`].
+    pub fn next_line(&mut self) -> Result<Option<Line<'_>>, TextError> {
+        loop {
+            if !self.advance()? {
+                return Ok(None);
+            }
+            let text = self.line.trim();
+            if !(text.is_empty() || text.starts_with('#')) {
+                break;
+            }
+        }
+        Ok(Some(Line {
+            number: self.number,
+            start: self.start,
+            text: &self.line,
+        }))
+    }
+
+    /// Reads a line; whether there was one.
+    fn advance(&mut self) -> Result<bool, TextError> {
+        let mut bytes = std::mem::take(&mut self.line).into_bytes();
+        bytes.clear();
+        self.number += 1;
+        self.start = self.end;
+        let is_line = self.take_line(&mut bytes)?;
+        if self.number == 1 {
+            if let Some((_, what)) = FOREIGN.iter().find(|(first, _)| bytes.starts_with(first)) {
+                return Err(self.complaint((*what).to_owned()));
+            }
+            if bytes.starts_with(BYTE_ORDER_MARK) {
+                bytes.drain(..BYTE_ORDER_MARK.len());
+                self.start += BYTE_ORDER_MARK.len();
+            }
+        }
+        if bytes.contains(&0) {
+            let message = "a NUL byte: expected text in UTF-8, this is UTF-16 or no text";
+            return Err(self.complaint(message.to_owned()));
+        }
+        self.line =
+            String::from_utf8(bytes).map_err(|_| self.complaint(self.encoding.to_owned()))?;
+        Ok(is_line)
+    }
+
+    /// Takes the bytes of a line; whether there was one, be it empty.
+    fn take_line(&mut self, bytes: &mut Vec<u8>) -> Result<bool, TextError> {
+        loop {
+            let available = match self.reader.fill_buf() {
+                Ok(available) => available,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(error) => return Err(error.into()),
+            };
+            let Some(first) = available.first() else {
+                return Ok(!bytes.is_empty());
+            };
+            if std::mem::take(&mut self.is_after_cr) && *first == b'\n' {
+                self.reader.consume(1);
+                self.start += 1;
+                self.end += 1;
+                continue;
+            }
+            let found = available
+                .iter()
+                .position(|byte| matches!(byte, b'\n' | b'\r'));
+            let count = found.unwrap_or(available.len());
+            if bytes.len() + count > LINE_BYTES_MAX {
+                return Err(self.complaint(format!(
+                    "the line has more than {LINE_BYTES_MAX} bytes: expected one sample a line"
+                )));
+            }
+            bytes.extend_from_slice(&available[..count]);
+            let Some(at) = found else {
+                self.reader.consume(count);
+                self.end += count;
+                continue;
+            };
+            self.is_after_cr = available[at] == b'\r';
+            self.reader.consume(count + 1);
+            self.end += count + 1;
+            return Ok(true);
+        }
+    }
+
+    fn complaint(&self, message: String) -> TextError {
+        TextError::Content {
+            line: self.number,
+            start: self.start,
+            message,
+        }
+    }
+}
+
+/// What stands between the cells of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Delimiter {
+    /// A character, each of which ends a cell.
+    Character(char),
+    /// Any number of blanks.
+    Blanks,
+}
+
+impl Delimiter {
+    /// The delimiter of the first line that says something.
+    #[must_use]
+    pub fn of(line: &str) -> Self {
+        let is_there = |wanted: &char| {
+            let mut outside = outside_quotes(line);
+            outside.any(|(_, character)| character == *wanted)
+        };
+        let found = ['\t', ';', ','].into_iter().find(is_there);
+        found.map_or(Self::Blanks, Self::Character)
+    }
+
+    /// The cells of a line, without the blanks and quotation marks around them.
+    #[must_use]
+    pub fn cells(self, line: &str) -> Vec<&str> {
+        let is_quoted = line.contains('"');
+        match self {
+            Self::Character(character) if !is_quoted => {
+                line.split(character).map(str::trim).collect()
+            }
+            Self::Blanks if !is_quoted => line.split_whitespace().collect(),
+            Self::Character(character) => {
+                let cells = cut(line, |other| other == character).into_iter();
+                cells.map(unquoted).collect()
+            }
+            Self::Blanks => {
+                let cells = cut(line, char::is_whitespace).into_iter();
+                let cells = cells.filter(|cell| !cell.is_empty());
+                cells.map(unquoted).collect()
+            }
+        }
+    }
+
+    /// The cells of the first line: empty ones at its end are none.
+    #[must_use]
+    pub fn first_cells(self, line: &str) -> Vec<&str> {
+        self.cells_up_to(line, 0)
+    }
+
+    /// The cells of another line: empty ones beyond the `width` of the first are none.
+    #[must_use]
+    pub fn cells_up_to(self, line: &str, width: usize) -> Vec<&str> {
+        let mut cells = self.cells(line);
+        while cells.len() > width && cells.last().is_some_and(|cell| cell.is_empty()) {
+            cells.pop();
+        }
+        cells
+    }
+}
+
+/// The characters outside quotation marks, with their bytes; all of them where the marks do not pair.
+fn outside_quotes(line: &str) -> impl Iterator<Item = (usize, char)> {
+    let is_paired = line.matches('"').count().is_multiple_of(2);
+    let mut is_inside = false;
+    line.char_indices().filter(move |(_, character)| {
+        if *character == '"' && is_paired {
+            is_inside = !is_inside;
+        }
+        !is_inside
+    })
+}
+
+fn cut(line: &str, is_end: impl Fn(char) -> bool) -> Vec<&str> {
+    let mut cells = Vec::new();
+    let mut begin = 0;
+    for (at, character) in outside_quotes(line) {
+        if is_end(character) {
+            cells.push(&line[begin..at]);
+            begin = at + character.len_utf8();
+        }
+    }
+    cells.push(&line[begin..]);
+    cells
+}
+
+/// A cell without the blanks and quotation marks around it.
+fn unquoted(cell: &str) -> &str {
+    let cell = cell.trim();
+    cell.strip_prefix('"')
+        .and_then(|cell| cell.strip_suffix('"'))
+        .map_or(cell, str::trim)
+}
+
+/// Whether the first line is a heading rather than numbers.
+///
+/// # Errors
+/// In words: a line without a number in which a cell begins like one, or that holds no word either.
+pub(super) fn is_heading(cells: &[&str]) -> Result<bool, String> {
+    if cells.is_empty() {
+        return Err("holds separators alone: expected a heading or numbers".to_owned());
+    }
+    if cells.iter().any(|cell| cell.parse::<f64>().is_ok()) {
+        return Ok(false);
+    }
+    if let Some(cell) = cells.iter().find(|cell| begins_like_number(cell)) {
+        return Err(format!(
+            "`{}` begins like a number and is none: expected a number with a decimal point, or a \
+             heading that begins with a letter",
+            shown(cell)
+        ));
+    }
+    if cells
+        .iter()
+        .any(|cell| cell.contains(|c: char| c.is_alphabetic() || c == '_'))
+    {
+        return Ok(true);
+    }
+    Err(format!(
+        "`{}` is neither a number nor a heading",
+        shown(cells[0])
+    ))
+}
+
+/// Whether a digit comes before any letter.
+fn begins_like_number(cell: &str) -> bool {
+    let first = cell.chars().find(|c| c.is_alphanumeric() || *c == '_');
+    first.is_some_and(char::is_numeric)
+}
+
+/// A cell as messages repeat it: the beginning of a long one, nothing that a terminal obeys.
+pub(super) fn shown(cell: &str) -> String {
+    let mut text: String = cell
+        .chars()
+        .take(SHOWN_CHARACTERS)
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .collect();
+    if cell.chars().nth(SHOWN_CHARACTERS).is_some() {
+        text.push_str("...");
+    }
+    text
+}
+
+/// Names as messages list them.
+pub(super) fn listed(names: &[String]) -> String {
+    let first: Vec<String> = names.iter().take(LISTED_MAX).map(|it| shown(it)).collect();
+    let more = names.len().saturating_sub(LISTED_MAX);
+    let rest = if more > 0 {
+        format!(" and {more} more")
+    } else {
+        String::new()
+    };
+    first.join(", ") + &rest
+}
+
+/// The number of a cell.
+///
+/// # Errors
+/// In words: no number, or none that is finite.
+pub(super) fn finite(cell: &str, name: Option<&str>) -> Result<f64, String> {
+    let column = || name.map_or_else(String::new, |name| format!("column {}: ", shown(name)));
+    match cell.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) if cell.contains(|c: char| c.is_ascii_digit()) => Err(format!(
+            "{}{} is beyond the largest number, 1.8e308",
+            column(),
+            shown(cell)
+        )),
+        Ok(number) => Err(format!("{}{number} is not a finite number", column())),
+        Err(_) if cell.contains(',') => Err(format!(
+            "{}`{}` is not a number: expected a decimal point",
+            column(),
+            shown(cell)
+        )),
+        Err(_) => Err(format!("{}`{}` is not a number", column(), shown(cell))),
+    }
+}

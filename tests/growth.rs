@@ -1,0 +1,151 @@
+//! Time and memory of `check` on long inputs: held by their growth, which no slow machine changes.
+#![cfg(target_os = "linux")]
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use crate::support::write;
+
+/// What a finished program took.
+#[derive(Clone, Copy, Debug)]
+struct Cost {
+    /// Time of the processor, clock ticks of 10 ms.
+    ticks: u64,
+    /// Largest memory, kB.
+    memory_kb: u64,
+}
+
+/// Runs `check` on a path and watches it.
+fn cost_of_check(folder: &Path, path: &str) -> Cost {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_fogbench"))
+        .args(["check", path])
+        .current_dir(folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let process = format!("/proc/{}", child.id());
+    let mut memory_kb = 0;
+    // It is not waited for before it has been asked: what has ended still tells its time.
+    let ticks = loop {
+        let status = fs::read_to_string(format!("{process}/status")).expect("it is there");
+        let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let peak = peak.and_then(|rest| rest.split_whitespace().next()?.parse().ok());
+        memory_kb = peak.unwrap_or(0).max(memory_kb);
+        let stat = fs::read_to_string(format!("{process}/stat")).expect("it is there");
+        let (_, fields) = stat.rsplit_once(')').expect("the name ends with a bracket");
+        let fields: Vec<&str> = fields.split_whitespace().collect();
+        if fields[0] == "Z" {
+            let ticks = |index: usize| fields[index].parse::<u64>().expect("a number");
+            break ticks(11) + ticks(12);
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    };
+    child.wait().expect("it has ended");
+    Cost { ticks, memory_kb }
+}
+
+/// The least cost of a few runs: what else the machine does only adds.
+fn least_cost(folder: &Path, path: &str, runs: usize) -> Cost {
+    let costs = (0..runs).map(|_| cost_of_check(folder, path));
+    let least = costs.reduce(|one, other| Cost {
+        ticks: one.ticks.min(other.ticks),
+        memory_kb: one.memory_kb.min(other.memory_kb),
+    });
+    least.expect("at least one run")
+}
+
+/// Asserts that ten times as much takes up to 13 times the time and 10 times the memory.
+#[track_caller]
+fn assert_growth(folder: &Path, small: &str, large: &str) {
+    const MEMORY_KB_MAX: u64 = 300_000;
+    let small = least_cost(folder, small, 3);
+    let mut large_cost = cost_of_check(folder, large);
+    if large_cost.ticks > 13 * small.ticks {
+        large_cost = least_cost(folder, large, 2);
+    }
+    assert!(small.ticks >= 3, "too short to be measured: {small:?}");
+    assert!(
+        large_cost.ticks <= 13 * small.ticks,
+        "{small:?}, {large_cost:?}"
+    );
+    assert!(
+        large_cost.memory_kb <= 10 * small.memory_kb,
+        "{small:?}, {large_cost:?}"
+    );
+    assert!(large_cost.memory_kb <= MEMORY_KB_MAX, "{large_cost:?}");
+}
+
+/// A sweep of so many points over a gyro with filters and gates.
+fn sweep(points: usize) -> String {
+    let mut text = "schema = 1\nname = \"m\"\nduration_s = 20.0\n".to_owned();
+    for index in 0..4 {
+        let _ = write!(
+            text,
+            "[[filter]]\nname = \"f{index}\"\n[filter.rls]\ntaps = {}\n",
+            4 + index
+        );
+        let _ = write!(
+            text,
+            "[[gate]]\nmetric = \"f{index}.mean_deg_per_h\"\nmax = 100.0\n"
+        );
+    }
+    let powers: Vec<String> = (0..points / 10)
+        .map(|index| format!("{:?}", 1.0 + 1e-4 * index as f64))
+        .collect();
+    let _ = write!(
+        text,
+        "[matrix]\nseed = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n\"gyro.source.power_uw\" = [{}]\n",
+        powers.join(", ")
+    );
+    text
+}
+
+#[test]
+fn points_of_a_sweep_cost_as_much_as_their_number() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    write(folder.path(), "small.toml", &sweep(1000));
+    write(folder.path(), "large.toml", &sweep(10_000));
+    assert_growth(folder.path(), "small.toml", "large.toml");
+}
+
+#[test]
+fn files_of_a_folder_cost_as_much_as_their_number() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    for (name, count) in [("small", 1000), ("large", 10_000)] {
+        for index in 0..count {
+            let text = format!("schema = 1\nname = \"s{index}\"\nduration_s = 10.0\n");
+            write(folder.path(), &format!("{name}/s{index}.toml"), &text);
+        }
+    }
+    assert_growth(folder.path(), "small", "large");
+}
+
+#[test]
+fn unknown_keys_cost_as_much_as_their_number() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    for (name, count, separator) in [
+        ("small", 20_000, "\n"),
+        ("large", 200_000, "\n"),
+        ("line", 20_000, ", "),
+    ] {
+        let keys: Vec<String> = (0..count).map(|index| format!("k{index} = 1")).collect();
+        let keys = keys.join(separator);
+        let gyro = match separator {
+            "\n" => format!("[gyro]\n{keys}\n"),
+            _ => format!("gyro = {{ {keys} }}\n"),
+        };
+        let text = format!("schema = 1\nname = \"x\"\nduration_s = 10.0\n{gyro}");
+        write(folder.path(), &format!("{name}.toml"), &text);
+    }
+    assert_growth(folder.path(), "small.toml", "large.toml");
+    let lines = least_cost(folder.path(), "small.toml", 2);
+    let line = least_cost(folder.path(), "line.toml", 2);
+    assert!(
+        line.ticks <= 2 * lines.ticks,
+        "on one line: {line:?}, on many: {lines:?}"
+    );
+}

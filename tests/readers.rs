@@ -1,0 +1,797 @@
+//! One reader of numbers: logs, stimuli, columns of an assembly, groups and scripts are spelled alike.
+
+use std::path::{Path, PathBuf};
+
+use fogbench::recording::{
+    AssemblyColumns, LogFormat, RateUnit, TimeUnit, read_assembly_log, read_groups, read_log,
+    read_stimulus,
+};
+use fogbench::scenario::{MotionConfig, load_suite};
+use proptest::prelude::*;
+
+use crate::support::{code, fogbench, npy, stderr, stdout, write};
+
+fn scratch() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a scratch folder")
+}
+
+/// deg/h at 100 Hz.
+fn format(column: Option<&str>) -> LogFormat {
+    LogFormat {
+        sample_rate_hz: Some(100.0),
+        unit: RateUnit::DegPerH,
+        scale: 1.0,
+        column: column.map(str::to_owned),
+        time_column: None,
+        time_unit: TimeUnit::Seconds,
+    }
+}
+
+/// How a table is written down.
+#[derive(Clone, Debug)]
+struct Spelling {
+    separator: &'static str,
+    line_end: &'static str,
+    has_mark: bool,
+    is_quoted: bool,
+    /// Whether a separator ends every line.
+    is_trailing: bool,
+    has_comments: bool,
+    ends_last_line: bool,
+}
+
+const PLAIN: Spelling = Spelling {
+    separator: ",",
+    line_end: "\n",
+    has_mark: false,
+    is_quoted: false,
+    is_trailing: false,
+    has_comments: false,
+    ends_last_line: true,
+};
+
+impl Spelling {
+    fn write(&self, lines: &[Vec<String>]) -> String {
+        let mut text = String::new();
+        if self.has_mark {
+            text.push('\u{feff}');
+        }
+        for (index, cells) in lines.iter().enumerate() {
+            if self.has_comments {
+                text.push_str(&format!("  # line {index}{0}{0}", self.line_end));
+            }
+            let quoted = cells.iter().map(|cell| match self.is_quoted {
+                true => format!("\"{cell}\""),
+                false => cell.clone(),
+            });
+            text.push_str(&quoted.collect::<Vec<_>>().join(self.separator));
+            if self.is_trailing {
+                text.push_str(self.separator);
+            }
+            if self.ends_last_line || index + 1 < lines.len() {
+                text.push_str(self.line_end);
+            }
+        }
+        text
+    }
+}
+
+fn spelling() -> impl Strategy<Value = Spelling> {
+    let separators = prop::sample::select(vec![",", ";", "\t", "  ", " , ", "; "]);
+    let line_ends = prop::sample::select(vec!["\n", "\r\n", "\r"]);
+    let flags = prop::collection::vec(any::<bool>(), 5);
+    (separators, line_ends, flags).prop_map(|(separator, line_end, flags)| Spelling {
+        separator,
+        line_end,
+        has_mark: flags[0],
+        is_quoted: flags[1],
+        is_trailing: flags[2],
+        has_comments: flags[3],
+        ends_last_line: flags[4],
+    })
+}
+
+fn cells(values: &[f64]) -> Vec<String> {
+    values.iter().map(|value| format!("{value:?}")).collect()
+}
+
+/// Rows of four columns, the last one a temperature.
+fn rows() -> impl Strategy<Value = Vec<Vec<f64>>> {
+    let rate = || prop_oneof![-1e6..1e6, -1e-6..1e-6, Just(0.0)];
+    let row = (rate(), rate(), rate(), -40.0..80.0).prop_map(|(x, y, z, c)| vec![x, y, z, c]);
+    prop::collection::vec(row, 1..12)
+}
+
+fn column(rows: &[Vec<f64>], index: usize) -> Vec<f64> {
+    rows.iter().map(|row| row[index]).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 200, failure_persistence: None, ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn every_spelling_of_a_table_is_read_to_the_bit(
+        spelling in spelling(), rows in rows(), has_heading in any::<bool>()
+    ) {
+        let folder = scratch();
+        let mut lines: Vec<Vec<String>> = rows.iter().map(|row| cells(row)).collect();
+        if has_heading {
+            let names = ["gx", "g y", "_z", "warmth"];
+            let is_blank = spelling.separator.trim().is_empty() && spelling.separator != "\t";
+            let names = names.map(|name| match is_blank && !spelling.is_quoted {
+                true => name.replace(' ', ""),
+                false => name.to_owned(),
+            });
+            lines.insert(0, names.to_vec());
+        }
+        let path = write(folder.path(), "log.txt", &spelling.write(&lines));
+        for (index, name) in ["1", "2", "3", "4"].into_iter().enumerate() {
+            let log = read_log(&path, &format(Some(name))).expect("a table");
+            prop_assert_eq!(&log.rate_deg_per_h, &column(&rows, index));
+            let words = read_stimulus(&path, Some(name), usize::MAX).expect("a table");
+            prop_assert_eq!(&words, &column(&rows, index));
+            let some = read_stimulus(&path, Some(name), 3).expect("a table");
+            prop_assert_eq!(&some[..], &words[..words.len().min(3)]);
+        }
+        let columns = AssemblyColumns { gyros: ["3", "1", "2"], temperature: Some("4") };
+        let assembly = read_assembly_log(&path, &format(None), &columns).expect("a table");
+        for (gyro, index) in assembly.gyros.iter().zip([2, 0, 1]) {
+            prop_assert_eq!(&gyro.rate_deg_per_h, &column(&rows, index));
+        }
+        prop_assert_eq!(assembly.temperature_c, Some(column(&rows, 3)));
+    }
+
+    #[test]
+    fn every_spelling_of_one_column_is_read_to_the_bit(
+        spelling in spelling(), rows in rows(), has_heading in any::<bool>()
+    ) {
+        let folder = scratch();
+        let values = column(&rows, 0);
+        let mut lines: Vec<Vec<String>> = values.iter().map(|value| cells(&[*value])).collect();
+        if has_heading {
+            lines.insert(0, vec!["rate".to_owned()]);
+        }
+        let path = write(folder.path(), "log.txt", &spelling.write(&lines));
+        let log = read_log(&path, &format(None)).expect("a column");
+        prop_assert_eq!(&log.rate_deg_per_h, &values);
+        prop_assert_eq!(&read_stimulus(&path, None, usize::MAX).expect("a column"), &values);
+    }
+
+    #[test]
+    fn every_spelling_of_groups_and_scripts_is_the_plain_one(spelling in spelling()) {
+        let folder = scratch();
+        let words = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<String>>();
+        let groups = [
+            "mounting,rate_deg_per_s,temperature_c,output_x_deg_per_h,output_y_deg_per_h,\
+             output_z_deg_per_h",
+            "x,10,25,36037.8,-45.2,19.5",
+            "-z,-10.5,26,1.5,2,3e4",
+        ].map(words);
+        let plain = read_groups(&write(folder.path(), "a.csv", &PLAIN.write(&groups)));
+        let spelled = read_groups(&write(folder.path(), "b.csv", &spelling.write(&groups)));
+        prop_assert_eq!(plain.expect("groups").groups.len(), 2);
+        let spelled = spelled.expect("groups").groups;
+        prop_assert_eq!(spelled[1].rate_deg_per_s.to_bits(), (-10.5_f64).to_bits());
+        let outputs = spelled[0].output_deg_per_h.map(f64::to_bits);
+        prop_assert_eq!(outputs, [36037.8, -45.2, 19.5].map(f64::to_bits));
+
+        let script = ["time_s,rate_deg_per_s", "0,0", "0.5,-1.25e1", "2.0,0.5"].map(words);
+        let text = "schema = 1\nname = \"x\"\nduration_s = 2.0\nwarm_up_s = 1.0\n\
+                    [turntable.script]\nfile = \"m.csv\"\n";
+        write(folder.path(), "m.csv", &spelling.write(&script));
+        let runs = load_suite(&[write(folder.path(), "x.toml", text)], &[]).expect("a script");
+        let MotionConfig::Script(script) = &runs[0].scenario.turntable.motion else {
+            panic!("a script");
+        };
+        prop_assert_eq!(&script.points.time_s, &[0.0, 0.5, 2.0]);
+        prop_assert_eq!(script.points.rate_deg_per_s.as_deref(), Some(&[0.0, -12.5, 0.5][..]));
+    }
+
+    #[test]
+    fn every_type_of_npy_is_read_to_the_bit(
+        values in prop::collection::vec(any::<i32>(), 1..20),
+        singles in prop::collection::vec(-1e30_f32..1e30, 1..20),
+        doubles in prop::collection::vec(-1e300_f64..1e300, 1..20),
+        is_big in any::<bool>(), version in 1_u8..=3,
+    ) {
+        let folder = scratch();
+        let read = |kind: &str, words: Vec<Vec<u8>>, want: Vec<f64>| {
+            let order = if want.is_empty() || words[0].len() == 1 { "|" } else if is_big { ">" } else { "<" };
+            let bytes = words.into_iter().flat_map(|mut word| {
+                if is_big {
+                    word.reverse();
+                }
+                word
+            });
+            let text = npy_bytes(version, &format!("{order}{kind}"), want.len(), &bytes.collect::<Vec<_>>());
+            let path = folder.path().join("log.npy");
+            std::fs::write(&path, text).expect("writable");
+            let log = read_log(&path, &format(None)).unwrap_or_else(|error| panic!("{kind}: {error}"));
+            assert_eq!(log.rate_deg_per_h, want, "{kind}");
+            assert_eq!(read_stimulus(&path, None, usize::MAX).expect(kind), want, "{kind}");
+            assert_eq!(read_stimulus(&path, None, 1).expect(kind), want[..1], "{kind}");
+        };
+        macro_rules! integers {
+            ($($kind:ty => $name:literal),*) => { $({
+                let cut: Vec<$kind> = values.iter().map(|value| <$kind>::try_from(*value).unwrap_or(<$kind>::MAX)).collect();
+                let words = cut.iter().map(|word| word.to_le_bytes().to_vec()).collect();
+                let sound = |word: &$kind| i128::from(*word).abs() <= 1 << 53;
+                if cut.iter().all(sound) {
+                    read($name, words, cut.iter().map(|word| *word as f64).collect());
+                }
+            })* };
+        }
+        integers!(i8 => "i1", i16 => "i2", i32 => "i4", i64 => "i8", u8 => "u1", u16 => "u2", u32 => "u4");
+        let sums: Vec<u64> = values.iter().map(|value| u64::from(value.unsigned_abs()) << 21).collect();
+        read("u8", sums.iter().map(|word| word.to_le_bytes().to_vec()).collect(),
+             sums.iter().map(|word| *word as f64).collect());
+        read("f4", singles.iter().map(|word| word.to_le_bytes().to_vec()).collect(),
+             singles.iter().map(|word| f64::from(*word)).collect());
+        read("f8", doubles.iter().map(|word: &f64| word.to_le_bytes().to_vec()).collect(), doubles.clone());
+    }
+}
+
+/// An NPY file of one dimension, of versions 1 to 3.
+fn npy_bytes(version: u8, descr: &str, count: usize, data: &[u8]) -> Vec<u8> {
+    let dictionary =
+        format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({count},), }}");
+    npy_of(version, &dictionary, data)
+}
+
+fn npy_of(version: u8, dictionary: &str, data: &[u8]) -> Vec<u8> {
+    let mut bytes = b"\x93NUMPY".to_vec();
+    bytes.extend([version, 0]);
+    let length = u32::try_from(dictionary.len() + 1).expect("short");
+    match version {
+        1 => bytes.extend(u16::try_from(length).expect("short").to_le_bytes()),
+        _ => bytes.extend(length.to_le_bytes()),
+    }
+    bytes.extend(dictionary.as_bytes());
+    bytes.push(b'\n');
+    bytes.extend(data);
+    bytes
+}
+
+/// The complaints of each reader about the bytes of `name`, the file named in each.
+fn complaints(bytes: &[u8]) -> Vec<String> {
+    let folder = scratch();
+    let path = folder.path().join("f.x");
+    std::fs::write(&path, bytes).expect("writable");
+    let columns = AssemblyColumns {
+        gyros: ["1", "2", "3"],
+        temperature: None,
+    };
+    let text = "schema = 1\nname = \"x\"\nduration_s = 2.0\n[turntable.script]\nfile = \"f.x\"\n";
+    let scenario = write(folder.path(), "x.toml", text);
+    let found = [
+        read_log(&path, &format(None))
+            .err()
+            .map(|it| it.to_string()),
+        read_stimulus(&path, None, 1000)
+            .err()
+            .map(|it| it.to_string()),
+        read_assembly_log(&path, &format(None), &columns)
+            .err()
+            .map(|it| it.to_string()),
+        read_groups(&path).err().map(|it| it.to_string()),
+        load_suite(&[scenario], &[])
+            .err()
+            .map(|it| it[0].to_string()),
+    ];
+    let named = found.into_iter().map(|message| {
+        let message =
+            message.unwrap_or_else(|| panic!("{:?} is read", bytes.escape_ascii().to_string()));
+        let at = message
+            .rfind("f.x:")
+            .or(message.rfind("f.x"))
+            .unwrap_or_else(|| panic!("{message}"));
+        message[at..].to_owned()
+    });
+    named.collect()
+}
+
+#[test]
+fn what_is_no_text_is_refused_alike_by_every_reader() {
+    let utf16 = |text: &str, order: fn(u16) -> [u8; 2]| -> Vec<u8> {
+        let marked = format!("\u{feff}{text}");
+        marked.encode_utf16().flat_map(order).collect()
+    };
+    let table = "time_s,rate_deg_per_s\n0,1\n";
+    for (bytes, part) in [
+        (b"a\x00,b\n1,2\n".to_vec(), "a NUL byte"),
+        (utf16(table, u16::to_le_bytes), "UTF-"),
+        (utf16(table, u16::to_be_bytes), "UTF-"),
+        (b"a,b,\xb5\n1,2,3\n".to_vec(), "UTF-8"),
+        (
+            [b"# ".to_vec(), vec![b'x'; 1 << 20]].concat(),
+            "more than 1048576 bytes",
+        ),
+    ] {
+        for message in complaints(&bytes) {
+            assert!(message.contains(part), "{message}");
+            assert!(
+                message.starts_with("f.x:1") || message.starts_with("f.x: "),
+                "{message}"
+            );
+        }
+    }
+    // Nothing is repeated in full.
+    for message in &complaints(&vec![b'1'; 1 << 20])[..4] {
+        assert!(message.len() < 400, "{message}");
+    }
+}
+
+#[test]
+fn a_first_line_that_begins_like_a_number_is_never_passed_over() {
+    let folder = scratch();
+    for first in [
+        "1.0x",
+        "-1.5.2",
+        "+3 deg",
+        "1e5.5",
+        "0x1F",
+        "(3.5)",
+        "'3.5'",
+        "\u{2212}3",
+        "1,5;2",
+        "\"1st\"",
+        "3_000",
+        "-",
+        "*",
+        "12:30:00",
+        "\u{feff}\u{feff}1.0",
+    ] {
+        let path = write(folder.path(), "log.csv", &format!("{first}\n1.0\n2.0\n"));
+        for (reader, found) in [
+            (
+                "log",
+                read_log(&path, &format(None)).map(|log| log.rate_deg_per_h),
+            ),
+            ("stimulus", read_stimulus(&path, None, 9)),
+        ] {
+            let message = found.expect_err(first).to_string();
+            assert!(message.contains("log.csv:1: "), "{reader}: {message}");
+            let shown = first
+                .trim_matches(['"', '\u{feff}'])
+                .split(';')
+                .next()
+                .unwrap_or_default();
+            assert!(
+                message.contains(shown) || message.contains("name one column"),
+                "{message}"
+            );
+        }
+    }
+    for heading in [
+        "x1.0",
+        "rate (deg/h)",
+        "deg/h",
+        "°/s",
+        "[1/s] x".trim_start_matches("[1/s] "),
+        "ω",
+        "_1",
+    ] {
+        let path = write(folder.path(), "log.csv", &format!("{heading}\n1.0\n2.0\n"));
+        let log = read_log(&path, &format(Some("1"))).expect(heading);
+        assert_eq!(log.rate_deg_per_h, [1.0, 2.0], "{heading}");
+    }
+}
+
+#[test]
+fn a_heading_of_numbers_is_not_taken_for_a_sample() {
+    // What pandas writes for a table whose columns have no names.
+    let folder = scratch();
+    let path = write(folder.path(), "log.csv", ",0\n0,1.5\n1,2.5\n");
+    let message = read_log(&path, &format(Some("2")))
+        .expect_err("a heading")
+        .to_string();
+    assert!(
+        message.contains("log.csv:2: column 1 has a number where the first row has ``"),
+        "{message}"
+    );
+    // Words that stand in every row are no heading.
+    let path = write(folder.path(), "log.csv", "ok,1.5\nbad,2.5\n");
+    let log = read_log(&path, &format(Some("2"))).expect("a state beside the rate");
+    assert_eq!(log.rate_deg_per_h, [1.5, 2.5]);
+}
+
+#[test]
+fn columns_of_an_assembly_are_four_different_ones() {
+    let folder = scratch();
+    let path = write(
+        folder.path(),
+        "log.csv",
+        "t,gx,gy,gz,c\n0,1,2,3,25\n0.01,1,2,3,251\n",
+    );
+    let read = |gyros: [&str; 3], temperature: Option<&str>, time: Option<&str>| {
+        let columns = AssemblyColumns { gyros, temperature };
+        let format = LogFormat {
+            time_column: time.map(str::to_owned),
+            ..format(None)
+        };
+        read_assembly_log(&path, &format, &columns).map_err(|error| error.to_string())
+    };
+    let xyz = ["gx", "gy", "gz"];
+    assert!(read(xyz, None, Some("t")).is_ok());
+    for (found, part) in [
+        (
+            read(["gx", "gx", "gz"], None, None),
+            ":1: column gx is named for two quantities",
+        ),
+        (
+            read(["gx", "gy", "2"], None, None),
+            ":1: column gx is named for two quantities",
+        ),
+        (
+            read(xyz, Some("gz"), None),
+            ":1: column gz is named for two quantities",
+        ),
+        (
+            read(xyz, Some("t"), Some("t")),
+            ":1: the column of the data is that of the time",
+        ),
+        (
+            read(["gx", "gy", "g"], None, None),
+            ":1: there is no column `g`",
+        ),
+        (
+            read(xyz, Some("c"), None),
+            ":3: a temperature of 251.0 deg C is out of range",
+        ),
+    ] {
+        let message = found.expect_err(part);
+        assert!(message.contains(part), "{message}");
+    }
+}
+
+/// Asserts that bytes are refused by both readers of arrays, in the same words.
+#[track_caller]
+fn assert_no_array(bytes: &[u8], part: &str) {
+    let folder = scratch();
+    let path = folder.path().join("log.npy");
+    std::fs::write(&path, bytes).expect("writable");
+    let of_log = read_log(&path, &format(None)).expect_err(part).to_string();
+    let of_stimulus = read_stimulus(&path, None, 2).expect_err(part).to_string();
+    assert_eq!(of_log, of_stimulus);
+    assert!(of_log.contains(part), "{of_log}");
+}
+
+#[test]
+fn npy_files_with_a_wrong_heading_are_refused_and_nothing_is_set_aside_for_them() {
+    let data = [0_u8; 32];
+    for (bytes, part) in [
+        (
+            npy_bytes(1, "<f8", 3, &data),
+            "and 8 more bytes follow them",
+        ),
+        (
+            npy_bytes(1, "<f8", 5, &data),
+            "not a whole NPY file: its heading names 5 numbers",
+        ),
+        (npy_bytes(4, "<f8", 4, &data), "version 4"),
+        (
+            npy_bytes(1, "<f8", usize::MAX, &data),
+            "not a whole NPY file",
+        ),
+        (npy_bytes(1, "|f8", 4, &data), "type '|f8'"),
+        (npy_bytes(1, "<U8", 1, &data), "type '<U8'"),
+        (npy_bytes(1, "|b1", 32, &data), "type '|b1'"),
+        (npy_bytes(1, "é8", 4, &data), "type 'é8'"),
+    ] {
+        assert_no_array(&bytes, part);
+    }
+}
+
+#[test]
+fn npy_files_of_another_shape_are_refused_and_no_heading_is_followed_deeply() {
+    let data = [0_u8; 32];
+    let plain = |rest: &str| format!("{{'descr': '<f8', 'fortran_order': False, {rest}}}");
+    let nested = "(".repeat(60_000);
+    for (bytes, part) in [
+        (npy_of(1, &plain("'shape': ()"), &data), "shape []"),
+        (
+            npy_of(
+                1,
+                &plain("'shape': (18446744073709551615, 18446744073709551615)"),
+                &data,
+            ),
+            "shape [18",
+        ),
+        (
+            npy_of(1, &plain("'shape': (99999999999999999999,)"), &data),
+            "its NPY heading is not",
+        ),
+        (
+            npy_of(1, &plain("'shape': (-4,)"), &data),
+            "its NPY heading is not",
+        ),
+        (
+            npy_of(1, &plain("'shape': (4,), 'shape': (4,)"), &data),
+            "its NPY heading is not",
+        ),
+        (
+            npy_of(
+                1,
+                "{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (4,)}",
+                &data,
+            ),
+            "plain numbers",
+        ),
+        (
+            npy_of(1, &plain(&format!("'shape': {nested}")), &data),
+            "its NPY heading is not",
+        ),
+        (npy_of(2, &" ".repeat(70_000), &data), "allowed up to 65536"),
+        (
+            b"\x93NUMPY\x02\x00\xff\xff\xff\xff{".to_vec(),
+            "4294967295 bytes: allowed",
+        ),
+        (b"\x93NUMPY\x01".to_vec(), "its heading is cut short"),
+        (npy_bytes(1, "<f8", 0, &[]), "holds no sample"),
+        (
+            npy_bytes(1, "<f4", 2, &[0, 0, 128, 63, 0, 0, 128, 127]),
+            "index 1: inf is not a finite number",
+        ),
+        (
+            npy_bytes(1, ">u8", 1, &[255; 8]),
+            "index 0: 18446744073709551615 lies beyond 2^53",
+        ),
+    ] {
+        assert_no_array(&bytes, part);
+    }
+}
+
+/// 300 numbers, a line each.
+fn numbers() -> String {
+    (0..300)
+        .map(|k| format!("{:?}\n", 10.0 + f64::from(k % 7)))
+        .collect()
+}
+
+/// Words of an exported stimulus.
+fn exported(folder: &Path, file: &str) -> Vec<f64> {
+    let arguments = [
+        "export",
+        "vectors",
+        "out",
+        "--stimulus",
+        file,
+        "--taps",
+        "2",
+        "--samples",
+        "400",
+    ];
+    let output = fogbench(folder, &arguments);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let hex = std::fs::read_to_string(folder.join("out/in.hex")).expect("words");
+    hex.lines()
+        .skip(1)
+        .step_by(2)
+        .map(|line| f64::from_bits(u64::from_str_radix(line.trim(), 16).expect("hex")))
+        .collect()
+}
+
+#[test]
+fn a_stimulus_is_read_as_a_log_is() {
+    let folder = scratch();
+    write(folder.path(), "plain.csv", &numbers());
+    write(folder.path(), "bom.csv", &format!("\u{feff}{}", numbers()));
+    let rows = numbers()
+        .lines()
+        .map(|line| format!("1;{line};\r\n"))
+        .collect::<String>();
+    write(folder.path(), "table.csv", &format!("t;rate;\r\n{rows}"));
+    let plain = exported(folder.path(), "plain.csv");
+    assert_eq!(plain.len(), 300);
+    assert_eq!(exported(folder.path(), "bom.csv"), plain);
+    let mut arguments = vec!["export", "vectors", "out", "--stimulus", "table.csv"];
+    let output = fogbench(folder.path(), &arguments);
+    assert!(
+        stderr(&output).contains("name one column with --column"),
+        "{}",
+        stderr(&output)
+    );
+    arguments.extend(["--column", "rate", "--taps", "2"]);
+    let output = fogbench(folder.path(), &arguments);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("300 samples"),
+        "{}",
+        stderr(&output)
+    );
+
+    write(
+        folder.path(),
+        "firstbad.csv",
+        &format!("1.0x\n{}", numbers()),
+    );
+    let data: Vec<u8> = (0..2000).flat_map(|k| f64::from(k).to_le_bytes()).collect();
+    std::fs::write(
+        folder.path().join("fewer.npy"),
+        npy_bytes(1, "<f8", 500, &data),
+    )
+    .expect("a file");
+    for file in ["firstbad.csv", "fewer.npy"] {
+        for command in [
+            &["export", "vectors", "o", "--stimulus", file][..],
+            &["analyze", file, "--unit", "deg/h", "--rate-hz", "100"],
+        ] {
+            let output = fogbench(folder.path(), command);
+            assert_eq!(code(&output), 2, "{command:?}: {}", stdout(&output));
+            let text = stderr(&output);
+            let part = if file == "fewer.npy" {
+                "12000 more bytes"
+            } else {
+                ":1: `1.0x` begins"
+            };
+            assert!(text.contains(file) && text.contains(part), "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_stimulus_in_words_of_four_bytes_is_exported() {
+    let folder = scratch();
+    let data: Vec<u8> = (0..40_u8)
+        .flat_map(|k| f32::from(k).to_be_bytes())
+        .collect();
+    std::fs::write(folder.path().join("s.npy"), npy_bytes(1, ">f4", 40, &data)).expect("a file");
+    let words = exported(folder.path(), "s.npy");
+    assert_eq!(words, (0..40).map(f64::from).collect::<Vec<_>>());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn pipes_are_read_and_endless_devices_are_refused() {
+    use std::io::Write as _;
+    use std::process::{Command, Stdio};
+    let folder = scratch();
+    let piped = |text: &[u8], arguments: &[&str]| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_fogbench"))
+            .args(arguments)
+            .current_dir(folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        let mut stdin = child.stdin.take().expect("a pipe");
+        stdin.write_all(text).expect("it is read");
+        drop(stdin);
+        child.wait_with_output().expect("it ends")
+    };
+    let log = [
+        "analyze",
+        "/dev/stdin",
+        "--unit",
+        "deg/h",
+        "--rate-hz",
+        "100",
+    ];
+    let output = piped(numbers().as_bytes(), &log);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(stdout(&output).contains("300 samples"));
+    let data: Vec<u8> = (0..300)
+        .flat_map(|k| f64::from(k % 5).to_le_bytes())
+        .collect();
+    let output = piped(&npy_bytes(1, "<f8", 300, &data), &log);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let output = piped(&npy_bytes(1, "<f8", 299, &data), &log);
+    assert!(
+        stderr(&output).contains("more bytes follow them"),
+        "{}",
+        stderr(&output)
+    );
+    let output = piped(&npy_bytes(1, "<f8", 301, &data), &log);
+    assert!(
+        stderr(&output).contains("it ends before them"),
+        "{}",
+        stderr(&output)
+    );
+
+    for (arguments, part) in [
+        (
+            &["analyze", "/dev/zero", "--unit", "deg/h", "--rate-hz", "1"][..],
+            "more than 1048576 bytes",
+        ),
+        (
+            &["export", "vectors", "o", "--stimulus", "/dev/zero"],
+            "more than 1048576 bytes",
+        ),
+        (
+            &["calibrate", "/dev/zero", "--latitude-deg", "30"],
+            "more than 16000000 bytes",
+        ),
+    ] {
+        let output = fogbench(folder.path(), arguments);
+        assert_eq!(code(&output), 2, "{}", stderr(&output));
+        let text = stderr(&output);
+        assert!(text.contains("/dev/zero") && text.contains(part), "{text}");
+    }
+}
+
+/// Groups of a small assembly at both senses of each mounting.
+fn six_groups() -> String {
+    let heading = "mounting,rate_deg_per_s,temperature_c,output_x_deg_per_s,output_y_deg_per_s,\
+                   output_z_deg_per_s";
+    let mut groups = format!("{heading}\n");
+    for (line, k) in ["x,10", "x,-10", "y,10", "y,-10", "z,10", "z,-10"]
+        .into_iter()
+        .zip(0..)
+    {
+        let (axis, rate) = line.split_once(',').expect("two");
+        let rate: f64 = rate.parse().expect("a number");
+        let out = ["x", "y", "z"].map(|other| {
+            if other == axis {
+                rate * 1.001 + 0.002
+            } else {
+                0.001
+            }
+        });
+        groups.push_str(&format!(
+            "{line},{},{},{},{}\n",
+            25 + k,
+            out[0],
+            out[1],
+            out[2]
+        ));
+    }
+    groups
+}
+
+#[test]
+fn a_calibration_file_is_read_with_a_byte_order_mark_and_crlf() {
+    let folder = scratch();
+    write(folder.path(), "groups.csv", &six_groups());
+    let arguments = [
+        "calibrate",
+        "groups.csv",
+        "--latitude-deg",
+        "32",
+        "-o",
+        "out",
+    ];
+    let output = fogbench(folder.path(), &arguments);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let path: PathBuf = folder.path().join("out/calibration.toml");
+    let text = std::fs::read_to_string(&path).expect("a calibration");
+    write(
+        folder.path(),
+        "bom.toml",
+        &format!("\u{feff}{}", text.replace('\n', "\r\n")),
+    );
+    let rows: String = (0..300)
+        .map(|k| format!("{},{},{}\n", k % 7, k % 5, k % 3))
+        .collect();
+    write(folder.path(), "log.csv", &format!("gx,gy,gz\n{rows}"));
+    let compensated = |file: &str| {
+        let output = fogbench(
+            folder.path(),
+            &[
+                "filter",
+                "log.csv",
+                "--unit",
+                "deg/h",
+                "--rate-hz",
+                "100",
+                "--columns",
+                "gx,gy,gz",
+                "--axis",
+                "y",
+                "--calibration",
+                file,
+                "--filters",
+                "f.toml",
+                "-o",
+                "words",
+            ],
+        );
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        npy(&folder.path().join("words/samples/compensated.npy"))
+    };
+    let filters = "schema = 1\n[[filter]]\nname = \"m\"\n[filter.moving_average]\ntaps = 2\n";
+    write(folder.path(), "f.toml", filters);
+    assert_eq!(compensated("bom.toml"), compensated("out/calibration.toml"));
+}
