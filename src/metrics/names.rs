@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use super::catalogue::{find, known_metrics};
 use super::key::MetricKey;
-use crate::wording::{Likeness, Vocabulary, likeness, words_of};
+use crate::wording::{Likeness, Name, Vocabulary, likeness, words_of};
 
 /// Most metrics that are named at once.
 const NAMED_MAX: usize = 8;
@@ -52,6 +52,9 @@ const SYNONYMS: &[(&[&str], &str)] = &[
     ),
 ];
 
+/// The words of each synonym and its metric.
+static SYNONYM_WORDS: OnceLock<Vec<(Vec<String>, &str)>> = OnceLock::new();
+
 /// The metric that a name must have been meant for, if there is one such.
 pub(crate) fn meant(name: &str) -> Option<&'static MetricKey> {
     match suggestions(name)[..] {
@@ -88,15 +91,32 @@ fn vocabulary() -> &'static Vocabulary {
     VOCABULARY.get_or_init(|| known_metrics().iter().map(|known| known.name).collect())
 }
 
+/// Every metric and its name, taken apart.
+fn names() -> &'static [(Name, &'static MetricKey)] {
+    static NAMES: OnceLock<Vec<(Name, &'static MetricKey)>> = OnceLock::new();
+    NAMES.get_or_init(|| {
+        let metrics = known_metrics().iter().copied();
+        metrics.map(|known| (Name::of(known.name), known)).collect()
+    })
+}
+
 /// The likest metrics of the same quantity.
 fn suggestions(name: &str) -> Vec<&'static str> {
     let words = words_of(name);
-    let means = |names: &[&str]| names.iter().any(|other| words_of(other) == words);
-    if let Some((_, metric)) = SYNONYMS.iter().find(|(names, _)| means(names)) {
-        return vec![metric];
+    let synonyms = SYNONYM_WORDS.get_or_init(|| {
+        let names = SYNONYMS.iter().flat_map(|(names, metric)| {
+            let words = names.iter().map(|name| words_of(name));
+            words.map(|words| (words, *metric))
+        });
+        names.collect()
+    });
+    if let Some((_, metric)) = synonyms.iter().find(|(synonym, _)| *synonym == words) {
+        return vec![*metric];
     }
-    let alike = known_metrics().iter().copied();
-    let alike = alike.filter_map(|known| Some((likeness(name, known.name, vocabulary())?, known)));
+    let written = Name::of(name);
+    let alike = names().iter();
+    let alike =
+        alike.filter_map(|(name, known)| Some((likeness(&written, name, vocabulary())?, *known)));
     let mut alike: Vec<(Likeness, &MetricKey)> = alike.collect();
     alike.sort_by_key(|(likeness, _)| *likeness);
     let best = alike.first().map(|(likeness, _)| *likeness);
@@ -153,9 +173,9 @@ mod tests {
 
     #[test]
     fn no_metric_is_taken_for_another_quantity() {
-        for one in known_metrics() {
-            for other in known_metrics() {
-                let found = likeness(one.name, other.name, vocabulary());
+        for (own, one) in names() {
+            for (known, other) in names() {
+                let found = likeness(own, known, vocabulary());
                 assert!(
                     found.is_none() || one.name == other.name,
                     "{} {}",

@@ -11,7 +11,7 @@ use super::keys::{GROUPS, keys};
 use super::schema::{children, join};
 use super::synonyms::{Meaning, meaning};
 use super::tree::{Node, Table};
-use crate::wording::{Likeness, Vocabulary, likeness};
+use crate::wording::{Likeness, Name, Vocabulary, likeness};
 
 /// Most keys that are suggested at once, equally like.
 const SUGGESTIONS_MAX: usize = 3;
@@ -84,6 +84,17 @@ fn vocabulary() -> &'static Vocabulary {
     VOCABULARY.get_or_init(|| keys().map(|key| key.path.trim_end_matches("[]")).collect())
 }
 
+/// Every path and the name at its end, taken apart.
+fn names() -> &'static [(Name, &'static str)] {
+    static NAMES: OnceLock<Vec<(Name, &'static str)>> = OnceLock::new();
+    NAMES.get_or_init(|| {
+        let names = paths()
+            .iter()
+            .map(|path| (Name::of(last_name(path)), *path));
+        names.collect()
+    })
+}
+
 /// Name at the end of a path, without the brackets of an array.
 fn last_name(path: &str) -> &str {
     let path = path.strip_suffix("[]").unwrap_or(path);
@@ -101,8 +112,9 @@ pub(crate) fn suggestions(schema_path: &str, name: &str) -> Vec<&'static str> {
     if name.len() > KNOWN_LENGTH_MAX {
         return Vec::new();
     }
-    let scored = paths().iter().filter_map(|path| {
-        let likeness = likeness(name, last_name(path), vocabulary())?;
+    let written = Name::of(name);
+    let scored = names().iter().filter_map(|(known, path)| {
+        let likeness = likeness(&written, known, vocabulary())?;
         path_is_open(schema_path, path).then(|| (rank(likeness, schema_path, path), *path))
     });
     let mut scored: Vec<((Likeness, usize), &'static str)> = scored.collect();
@@ -325,10 +337,10 @@ mod tests {
 
     #[test]
     fn no_key_is_taken_for_another_quantity() {
-        for one in paths() {
-            for other in paths() {
+        for (own, one) in names() {
+            for (known, other) in names() {
                 let (one, other) = (last_name(one), last_name(other));
-                if let Some(found) = likeness(one, other, vocabulary()) {
+                if let Some(found) = likeness(own, known, vocabulary()) {
                     let words = (
                         crate::wording::words_of(one),
                         crate::wording::words_of(other),

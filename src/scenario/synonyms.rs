@@ -3,6 +3,8 @@
 //! A row is found by the words of the written name, its unit left aside, in any table whose path
 //! begins as the row says.
 
+use std::sync::OnceLock;
+
 use crate::wording::words_of;
 
 /// What a name means.
@@ -205,13 +207,24 @@ const ROWS: &[Row] = &[
     (&["lower", "above"], "gate[]", Key("gate[].min")),
 ];
 
+/// The words of the names of each row.
+fn row_words() -> &'static [Vec<Vec<String>>] {
+    static WORDS: OnceLock<Vec<Vec<Vec<String>>>> = OnceLock::new();
+    WORDS.get_or_init(|| {
+        let rows = ROWS.iter();
+        rows.map(|(names, ..)| names.iter().map(|name| words_of(name)).collect())
+            .collect()
+    })
+}
+
 /// What a written name means in a table.
 pub(super) fn meaning(schema_path: &str, name: &str) -> Option<Meaning> {
     let words = words_of(name);
-    let means = |names: &[&str]| names.iter().any(|known| words_of(known) == words);
-    ROWS.iter()
-        .find(|(names, within, _)| schema_path.starts_with(within) && means(names))
-        .map(|(.., meaning)| *meaning)
+    let mut rows = ROWS.iter().zip(row_words());
+    let means = |(row, names): &(&Row, &Vec<Vec<String>>)| {
+        schema_path.starts_with(row.1) && names.contains(&words)
+    };
+    rows.find(means).map(|((.., meaning), _)| *meaning)
 }
 
 #[cfg(test)]

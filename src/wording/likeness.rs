@@ -36,12 +36,40 @@ pub(crate) enum Likeness {
     Misspelt(usize),
 }
 
+/// A name taken apart, once for many comparisons.
+#[derive(Clone, Debug)]
+pub(crate) struct Name {
+    text: String,
+    quantity: Quantity,
+    written: Vec<String>,
+    /// The written words without what stands between them.
+    letters: String,
+}
+
+impl Name {
+    pub(crate) fn of(text: &str) -> Self {
+        let written = written_words(text);
+        Self {
+            text: text.to_owned(),
+            quantity: Quantity::of(text),
+            letters: written.concat(),
+            written,
+        }
+    }
+
+    /// The words that another name does not have.
+    fn foreign<'a>(&'a self, other: &'a Self) -> impl Iterator<Item = &'a String> {
+        let words = self.written.iter();
+        words.filter(|word| !other.written.contains(word))
+    }
+}
+
 /// How `written` resembles `known`; none if it cannot stand for it.
-pub(crate) fn likeness(written: &str, known: &str, vocabulary: &Vocabulary) -> Option<Likeness> {
-    if written == known {
+pub(crate) fn likeness(written: &Name, known: &Name, vocabulary: &Vocabulary) -> Option<Likeness> {
+    if written.text == known.text {
         return Some(Likeness::Same);
     }
-    let (own, other) = (Quantity::of(written), Quantity::of(known));
+    let (own, other) = (&written.quantity, &known.quantity);
     if own.words == other.words {
         return match (&own.unit, &other.unit) {
             (one, two) if one == two => Some(Likeness::Same),
@@ -50,23 +78,17 @@ pub(crate) fn likeness(written: &str, known: &str, vocabulary: &Vocabulary) -> O
             _ => None,
         };
     }
-    let (own, other) = (written_words(written), written_words(known));
     // A word of its own is no misspelling, nor is a number one of another; and where nothing is
     // misspelt, a word is missing.
-    let foreign = |words: &[String], others: &[String]| -> Vec<String> {
-        let foreign = words.iter().filter(|word| !others.contains(word));
-        foreign.cloned().collect()
-    };
-    let (misspelt, meant) = (foreign(&own, &other), foreign(&other, &own));
     let is_known = |word: &String| vocabulary.holds(word) || has_digit(word);
-    if misspelt.is_empty()
-        || misspelt.iter().any(is_known)
-        || meant.iter().any(|word| has_digit(word))
+    if written.foreign(known).next().is_none()
+        || written.foreign(known).any(is_known)
+        || known.foreign(written).any(|word| has_digit(word))
     {
         return None;
     }
-    abbreviated(&own, &other).or_else(|| {
-        let distance = distance(&own.concat(), &other.concat())?;
+    abbreviated(&written.written, &known.written).or_else(|| {
+        let distance = distance(&written.letters, &known.letters)?;
         Some(Likeness::Misspelt(distance))
     })
 }

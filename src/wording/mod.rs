@@ -6,6 +6,6 @@ mod likeness;
 mod quantity;
 mod text;
 
-pub(crate) use likeness::{Likeness, Vocabulary, is_misspelling, likeness};
+pub(crate) use likeness::{Likeness, Name, Vocabulary, is_misspelling, likeness};
 pub(crate) use quantity::words_of;
 pub(crate) use text::{counted, number, plain};
