@@ -17,6 +17,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ("calibration", &["units", "signal"]),
     ("recording", &["units", "signal"]),
     ("gate", &["metrics", "scenario"]),
+    ("store", &[]),
     (
         "report",
         &["units", "metrics", "gate", "scenario", "signal"],
@@ -37,6 +38,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "recording",
             "gate",
             "report",
+            "store",
         ],
     ),
     (
@@ -48,6 +50,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "recording",
             "report",
             "scenario",
+            "store",
             "fpga",
         ],
     ),
