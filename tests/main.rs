@@ -43,6 +43,7 @@ mod metrics_intervals;
 mod metrics_records;
 mod metrology;
 mod noise_fit_coverage;
+mod output_folder;
 mod patent_calibration;
 mod patent_filter;
 mod patent_known_answers;

@@ -85,6 +85,9 @@ pub(super) struct BudgetOptions {
     /// Folder for budget.svg and budget.csv [default: neither is written]
     #[arg(short, long, value_name = "DIR")]
     pub(super) output: Option<PathBuf>,
+    /// Replace files in the folder that fogbench did not write
+    #[arg(long, requires = "output")]
+    pub(super) force: bool,
     /// Form of the budget on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(super) format: Format,
@@ -108,6 +111,9 @@ pub(super) struct RunOptions {
     /// Folder for the results
     #[arg(short, long, value_name = "DIR", default_value = "output")]
     pub(super) output: PathBuf,
+    /// Replace files and folders in it that fogbench did not write, or that were changed since
+    #[arg(long)]
+    pub(super) force: bool,
     /// Threads, 0 = one per core, at most 256; the results do not depend on it
     #[arg(short, long, value_name = "N", default_value_t = 0,
           value_parser = clap::value_parser!(u16).range(0..=256))]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::exit::Exit;
 use super::hardware_arguments::{ExportKind, ExportOptions};
-use super::{output, stimulus};
+use super::{output, place, stimulus};
 use crate::experiment::{
     CoreSettings, ExportForm, PipelineSettings, Stimulus, export_pipeline, plan_suite,
     scenario_stimulus,
@@ -24,20 +24,35 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
             return Ok(Exit::Usage);
         }
     };
+    if let Err(exit) = place::check(Some(&options.folder), options.force) {
+        return Ok(exit);
+    }
     let form = match options.what {
         ExportKind::Vectors => ExportForm::Vectors,
         ExportKind::Waveform => ExportForm::Waveform,
         ExportKind::Rtl => ExportForm::Rtl,
     };
     let samples = stimulus.words.len();
-    let written = export_pipeline(
-        &options.folder,
-        form,
-        &settings,
-        stimulus,
-        options.trace_samples,
-    );
-    match written {
+    let trace_samples = options.trace_samples;
+    let mut exported = Ok(Vec::new());
+    let filled = place::fill(&options.folder, options.force, |folder| {
+        let staged = folder.stage()?;
+        exported = export_pipeline(staged.path(), form, &settings, stimulus, trace_samples);
+        let Ok(files) = &mut exported else {
+            return Ok(());
+        };
+        for file in files {
+            if let Ok(name) = file.strip_prefix(staged.path()) {
+                *file = options.folder.join(name);
+            }
+        }
+        staged.seal_plainly("export")?;
+        staged.put_files_in_place()
+    });
+    if let Err(exit) = filled {
+        return Ok(exit);
+    }
+    match exported {
         Ok(files) => {
             let names: String = files
                 .iter()

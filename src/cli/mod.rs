@@ -15,6 +15,7 @@ mod list;
 mod log;
 mod log_arguments;
 mod output;
+mod place;
 mod run;
 mod schema;
 mod select;

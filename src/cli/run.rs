@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::arguments::{Format, RunOptions};
 use super::exit::Exit;
-use super::{output, select};
+use super::{output, place, select};
 use crate::experiment::{Observer, Plan, SuiteError, SuiteOptions, SuiteOutcome, run_suite};
 use crate::report::{self, RunOutcome, RunReport, RunStatus};
 
@@ -20,8 +20,9 @@ pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
     };
     let progress = Progress::new(&plans, options.format);
     let suite = SuiteOptions {
-        output: options.output.clone(),
         threads: usize::from(options.jobs),
+        force: options.force,
+        ..SuiteOptions::new(options.output.clone())
     };
     let result = run_suite(&plans, &suite, &progress);
     progress.bar.finish_and_clear();
@@ -30,7 +31,7 @@ pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
         Err(error) => {
             output::talk(&format!("error: {error}"));
             return Ok(match error {
-                SuiteError::Write { .. } => Exit::Io,
+                SuiteError::Store(error) => place::exit_of(&error),
                 SuiteError::Threads { .. } => Exit::Internal,
             });
         }
@@ -61,7 +62,9 @@ fn closing(suite: &SuiteOutcome, format: Format) -> String {
             let suite = report::suite_text(runs, width, colour);
             suite + &report::comparison_text(across, width, colour)
         }
-        Format::Json => report::suite_summary_json(env!("CARGO_PKG_VERSION"), runs, across),
+        Format::Json => {
+            report::suite_summary_json(env!("CARGO_PKG_VERSION"), runs, across, &suite.stale)
+        }
         // Every run has been printed on its own line.
         Format::Jsonl => String::new(),
     }
@@ -166,6 +169,11 @@ impl Observer for Progress {
         self.bar
             .suspend(|| output::talk(&format!("error: {}: {reason}", outcome.folder)));
         self.print_in_turn(index, String::new());
+    }
+
+    fn caution(&self, message: &str) {
+        self.bar
+            .suspend(|| output::talk(&format!("warning: {message}")));
     }
 }
 

@@ -32,7 +32,7 @@ const SLOW_NOISE: [&str; 2] = ["angle_random_walk_", "bias_stability_"];
 /// The tables, assumptions and figures that the scenarios of a suite carry, each once.
 #[derive(Debug, Default)]
 pub(super) struct Layout<'a> {
-    comparisons: Vec<&'a ComparisonConfig>,
+    pub(super) comparisons: Vec<&'a ComparisonConfig>,
     rows: Vec<&'a ComparisonRowConfig>,
     assumptions: Vec<&'a AssumptionConfig>,
     figures: Vec<&'a FigureConfig>,

@@ -37,6 +37,7 @@ mod run;
 mod run_files;
 mod simulate;
 mod suite;
+mod suite_output;
 mod textbook;
 mod theory;
 

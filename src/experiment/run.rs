@@ -1,7 +1,5 @@
 //! One scenario: its repeats, their measurement, the verdicts and the files.
 
-use std::path::Path;
-
 use rayon::prelude::*;
 
 use super::campaign;
@@ -13,18 +11,19 @@ use super::plan::Plan;
 use super::run_files;
 use super::simulate::{Faults, RecordLength, Simulation, count, simulate};
 use super::suite::{Observer, SuiteError, VERSION};
+use super::suite_output::SuiteOutput;
 use super::theory::theory;
 use crate::gate::judge;
 use crate::metrics::{ChannelMetrics, aggregate};
 use crate::report::{RunOutcome, RunReport};
 use crate::signal::CalibrationSheet;
 
-/// Runs `plan`, judges it and writes its folder under `output`.
+/// Runs `plan`, judges it and writes its folder under the output.
 pub(super) fn run_scenario(
     plan: &Plan,
     index: usize,
     layout: &Layout,
-    output: &Path,
+    output: &SuiteOutput,
     observer: &dyn Observer,
 ) -> Result<RunOutcome, SuiteError> {
     let resolved = plan.resolved();
@@ -75,12 +74,7 @@ pub(super) fn run_scenario(
         verdicts: &verdicts,
         notes: &notes,
     };
-    let target = output.join(&folder);
-    let written = run_files::write_folder(plan, &report, &simulation, &target);
-    let pictures = written.map_err(|source| SuiteError::Write {
-        path: target,
-        source,
-    })?;
+    let pictures = run_files::write_folder(plan, &report, &simulation, output)?;
     observer.finished(index, &report);
     let outcome = RunOutcome::from_report(&report, &folder);
     let outcome = outcome.keeping(&report, layout.metrics_of(&scenario.name));

@@ -1,9 +1,8 @@
 //! Many runs at once: the thread pool, the order of results and the files of the whole suite.
 
 use std::any::Any;
-use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
@@ -11,13 +10,12 @@ use rayon::prelude::*;
 use super::comparison::Layout;
 use super::plan::Plan;
 use super::run::run_scenario;
+use super::suite_output::{JUNIT, SUMMARY, SuiteOutput};
 use crate::report::{self, Comparison, RunOutcome, RunReport};
+use crate::store::StoreError;
 
 /// Version of the program, as every result names it.
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
-
-/// The suite's own files.
-const SUITE_FILES: [&str; 2] = ["summary.json", "junit.xml"];
 
 /// How a suite is run.
 #[derive(Clone, Debug)]
@@ -26,6 +24,20 @@ pub struct SuiteOptions {
     pub output: PathBuf,
     /// Threads; 0 = one per core.
     pub threads: usize,
+    /// Whether to replace files and folders in `output` that are the user's.
+    pub force: bool,
+}
+
+impl SuiteOptions {
+    /// Runs everything into `output`, on a thread for each core, and replaces nothing of the user's.
+    #[must_use]
+    pub fn new(output: PathBuf) -> Self {
+        Self {
+            output,
+            threads: 0,
+            force: false,
+        }
+    }
 }
 
 /// What the caller wants to hear while a suite runs; called from many threads.
@@ -34,8 +46,10 @@ pub trait Observer: Sync {
     fn advanced(&self, simulated_s: f64);
     /// Run `index` of the plan is done and its files stand in their place.
     fn finished(&self, index: usize, report: &RunReport);
-    /// Run `index` of the plan could not finish and has written nothing.
+    /// Run `index` of the plan could not finish; a folder that says so stands in its place.
     fn failed(&self, index: usize, outcome: &RunOutcome);
+    /// Something about the suite is worth saying.
+    fn caution(&self, _message: &str) {}
 }
 
 /// What came of a suite.
@@ -47,19 +61,16 @@ pub struct SuiteOutcome {
     pub comparison: Comparison,
     /// Whether a run was stopped by a broken invariant, which is a defect of the program.
     pub broken: bool,
+    /// Folders that hold results of earlier scenarios of these names.
+    pub stale: Vec<String>,
 }
 
 /// Why a suite stopped before its end.
 #[derive(Debug, thiserror::Error)]
 pub enum SuiteError {
-    /// A file could not be written.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
+    /// The output folder is in use or holds something of the user's, or a file could not be written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
     /// The thread pool could not be made.
     #[error("cannot start {threads} threads: {message}")]
     Threads {
@@ -78,19 +89,19 @@ pub enum SuiteError {
 /// that breaks an invariant fails by itself; the others go on.
 ///
 /// # Errors
-/// [`SuiteError`] if a file cannot be written or the threads cannot be started. Folders of runs
-/// that were complete by then stay.
+/// [`SuiteError`] if something of the user's would be replaced, before anything runs; if another
+/// process writes into the folder; if a file cannot be written or the threads cannot be started.
+/// Folders of runs that were complete by then stay.
 pub fn run_suite(
     plans: &[Plan],
     options: &SuiteOptions,
     observer: &dyn Observer,
 ) -> Result<SuiteOutcome, SuiteError> {
-    create_folder(&options.output)?;
-    for name in SUITE_FILES {
-        remove(&options.output.join(name))?;
-    }
-    remove_tables(&options.output)?;
     let layout = Layout::of(plans);
+    let output = SuiteOutput::open(plans, &layout, options)?;
+    if let Some(caution) = output.caution() {
+        observer.caution(caution);
+    }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build()
@@ -98,21 +109,22 @@ pub fn run_suite(
             threads: options.threads,
             message: error.to_string(),
         })?;
-    let (runs, broken) = pool.install(|| run_all(plans, &layout, options, observer))?;
+    let run = || run_all(plans, &layout, &output, observer);
+    let (runs, broken) = pool.install(run)?;
     let comparison = layout.fill(plans, &runs);
-    for (name, text) in report::comparison_files(&comparison) {
-        write(&options.output.join(name), &text)?;
-    }
-    let [summary, junit] = SUITE_FILES;
-    write(
-        &options.output.join(summary),
-        &report::suite_summary_json(VERSION, &runs, &comparison),
-    )?;
-    write(&options.output.join(junit), &report::junit_xml(&runs))?;
+    let stale = output.settle()?;
+    let mut files = report::comparison_files(&comparison);
+    files.push((
+        SUMMARY.to_owned(),
+        report::suite_summary_json(VERSION, &runs, &comparison, &stale),
+    ));
+    files.push((JUNIT.to_owned(), report::junit_xml(&runs)));
+    output.publish(&files)?;
     Ok(SuiteOutcome {
         runs,
         comparison,
         broken,
+        stale,
     })
 }
 
@@ -120,7 +132,7 @@ pub fn run_suite(
 fn run_all(
     plans: &[Plan],
     layout: &Layout,
-    options: &SuiteOptions,
+    output: &SuiteOutput,
     observer: &dyn Observer,
 ) -> Result<(Vec<RunOutcome>, bool), SuiteError> {
     let mut order: Vec<usize> = (0..plans.len()).collect();
@@ -133,11 +145,13 @@ fn run_all(
         .with_max_len(1)
         .filter(|_| !stopped.load(Ordering::Relaxed))
         .map(|&index| {
-            let run = || run_scenario(&plans[index], index, layout, &options.output, observer);
+            let plan = &plans[index];
+            let run = || run_scenario(plan, index, layout, output, observer);
             let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
                 broken.store(true, Ordering::Relaxed);
-                Ok(broken_run(&plans[index], &*panic))
+                Ok(broken_run(plan, &*panic))
             });
+            let result = result.and_then(|outcome| output.record_failure(plan, outcome));
             match &result {
                 Ok(outcome) if outcome.error.is_some() => observer.failed(index, outcome),
                 Ok(_) => {}
@@ -165,44 +179,4 @@ fn broken_run(plan: &Plan, panic: &(dyn Any + Send)) -> RunOutcome {
         &resolved.file,
         format!("internal error, please report it: {message}"),
     )
-}
-
-fn remove(path: &Path) -> Result<(), SuiteError> {
-    match std::fs::remove_file(path) {
-        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(SuiteError::Write {
-            path: path.to_owned(),
-            source,
-        }),
-        _ => Ok(()),
-    }
-}
-
-/// Removes the tables of an earlier suite: the tool names no other file so.
-fn remove_tables(output: &Path) -> Result<(), SuiteError> {
-    let read = |source| SuiteError::Write {
-        path: output.to_owned(),
-        source,
-    };
-    for entry in std::fs::read_dir(output).map_err(read)? {
-        let entry = entry.map_err(read)?;
-        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        if is_file && report::is_comparison_file(&entry.file_name().to_string_lossy()) {
-            remove(&entry.path())?;
-        }
-    }
-    Ok(())
-}
-
-fn create_folder(path: &Path) -> Result<(), SuiteError> {
-    std::fs::create_dir_all(path).map_err(|source| SuiteError::Write {
-        path: path.to_owned(),
-        source,
-    })
-}
-
-fn write(path: &Path, text: &str) -> Result<(), SuiteError> {
-    report::write_atomic(path, text.as_bytes()).map_err(|source| SuiteError::Write {
-        path: path.to_owned(),
-        source,
-    })
 }
