@@ -53,6 +53,7 @@ mod plain_loop;
 mod readme;
 mod recording;
 mod report;
+mod resume;
 mod rtl;
 mod scale_factor_test;
 mod scenario_errors;

@@ -6,10 +6,12 @@ use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::arguments::{Format, RunOptions};
+use super::arguments::{Format, ResumeFrom, RunOptions};
 use super::exit::Exit;
 use super::{output, place, select};
-use crate::experiment::{Observer, Plan, SuiteError, SuiteOptions, SuiteOutcome, run_suite};
+use crate::experiment::{
+    Observer, Plan, Resume, SuiteError, SuiteOptions, SuiteOutcome, run_suite,
+};
 use crate::report::{self, RunOutcome, RunReport, RunStatus};
 
 /// Plans, runs, prints and judges.
@@ -22,6 +24,7 @@ pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
     let suite = SuiteOptions {
         threads: usize::from(options.jobs),
         force: options.force,
+        resume: resume(options.resume),
         ..SuiteOptions::new(options.output.clone())
     };
     let result = run_suite(&plans, &suite, &progress);
@@ -40,6 +43,15 @@ pub(super) fn run(options: &RunOptions) -> io::Result<Exit> {
     output::data(&closing(&outcome, options.format))?;
     output::talk(&format!("results in {}", options.output.display()));
     Ok(exit_of(&outcome))
+}
+
+/// Whose results the suite takes over.
+fn resume(from: Option<ResumeFrom>) -> Resume {
+    match from {
+        None => Resume::Never,
+        Some(ResumeFrom::SameBuild) => Resume::SameBuild,
+        Some(ResumeFrom::AnyBuild) => Resume::AnyBuild,
+    }
 }
 
 /// The verdict of the whole suite: the worst of its runs.
@@ -169,6 +181,15 @@ impl Observer for Progress {
         self.bar
             .suspend(|| output::talk(&format!("error: {}: {reason}", outcome.folder)));
         self.print_in_turn(index, String::new());
+    }
+
+    fn taken_over(&self, index: usize, report: &RunReport) {
+        let scenario = &report.scenario.name;
+        let point = report.sweep.as_ref();
+        let point = point.map_or_else(String::new, |(index, _)| format!("/{index:04}"));
+        self.bar
+            .suspend(|| output::talk(&format!("{scenario}{point}: taken over")));
+        self.finished(index, report);
     }
 
     fn caution(&self, message: &str) {

@@ -8,6 +8,7 @@ use super::compensation::Parameters;
 use super::measurement::{Channels, measure_repeat};
 use super::pipeline_metrics;
 use super::plan::Plan;
+use super::resume::{Resume, take_over};
 use super::run_files;
 use super::simulate::{Faults, RecordLength, Simulation, count, simulate};
 use super::suite::{Observer, SuiteError, VERSION};
@@ -18,14 +19,18 @@ use crate::metrics::{ChannelMetrics, aggregate};
 use crate::report::{RunOutcome, RunReport};
 use crate::signal::CalibrationSheet;
 
-/// Runs `plan`, judges it and writes its folder under the output.
+/// Runs `plan`, judges it and writes its folder under the output, or takes over the result that stands
+/// there.
 pub(super) fn run_scenario(
     plan: &Plan,
     index: usize,
     layout: &Layout,
-    output: &SuiteOutput,
+    (output, resume): (&SuiteOutput, Resume),
     observer: &dyn Observer,
 ) -> Result<RunOutcome, SuiteError> {
+    if let Some(outcome) = take_over(plan, index, layout, (output, resume), observer) {
+        return Ok(outcome);
+    }
     let resolved = plan.resolved();
     let scenario = &resolved.scenario;
     let folder = resolved.folder();

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::comparison::Layout;
 use super::plan::Plan;
+use super::resume::Resume;
 use super::run::run_scenario;
 use super::suite_output::{JUNIT, SUMMARY, SuiteOutput};
 use crate::report::{self, Comparison, RunOutcome, RunReport};
@@ -26,6 +27,8 @@ pub struct SuiteOptions {
     pub threads: usize,
     /// Whether to replace files and folders in `output` that are the user's.
     pub force: bool,
+    /// Which results of an earlier suite to take over.
+    pub resume: Resume,
 }
 
 impl SuiteOptions {
@@ -36,6 +39,7 @@ impl SuiteOptions {
             output,
             threads: 0,
             force: false,
+            resume: Resume::Never,
         }
     }
 }
@@ -48,6 +52,10 @@ pub trait Observer: Sync {
     fn finished(&self, index: usize, report: &RunReport);
     /// Run `index` of the plan could not finish; a folder that says so stands in its place.
     fn failed(&self, index: usize, outcome: &RunOutcome);
+    /// Run `index` of the plan is not run again: its folder holds the result. It counts as finished.
+    fn taken_over(&self, index: usize, report: &RunReport) {
+        self.finished(index, report);
+    }
     /// Something about the suite is worth saying.
     fn caution(&self, _message: &str) {}
 }
@@ -109,7 +117,7 @@ pub fn run_suite(
             threads: options.threads,
             message: error.to_string(),
         })?;
-    let run = || run_all(plans, &layout, &output, observer);
+    let run = || run_all(plans, &layout, options, &output, observer);
     let (runs, broken) = pool.install(run)?;
     let comparison = layout.fill(plans, &runs);
     let stale = output.settle()?;
@@ -132,6 +140,7 @@ pub fn run_suite(
 fn run_all(
     plans: &[Plan],
     layout: &Layout,
+    options: &SuiteOptions,
     output: &SuiteOutput,
     observer: &dyn Observer,
 ) -> Result<(Vec<RunOutcome>, bool), SuiteError> {
@@ -146,7 +155,7 @@ fn run_all(
         .filter(|_| !stopped.load(Ordering::Relaxed))
         .map(|&index| {
             let plan = &plans[index];
-            let run = || run_scenario(plan, index, layout, output, observer);
+            let run = || run_scenario(plan, index, layout, (output, options.resume), observer);
             let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
                 broken.store(true, Ordering::Relaxed);
                 Ok(broken_run(plan, &*panic))

@@ -6,6 +6,7 @@ use std::io;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
+use super::build::BUILD;
 use super::comparison::Layout;
 use super::plan::Plan;
 use super::suite::{SuiteError, SuiteOptions, VERSION};
@@ -23,7 +24,7 @@ pub(super) const JUNIT: &str = "junit.xml";
 pub(super) struct SuiteOutput {
     folder: OutputFolder,
     scenarios: Vec<Scenario>,
-    /// Folders of runs that this suite has put in place.
+    /// Folders of runs that this suite has put in place or taken over.
     placed: Mutex<BTreeSet<String>>,
 }
 
@@ -104,6 +105,11 @@ impl SuiteOutput {
         self.folder.caution()
     }
 
+    /// The output folder.
+    pub(super) fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
     /// Starts the folder of a run.
     pub(super) fn stage(&self) -> Result<Staged<'_>, StoreError> {
         self.folder.stage()
@@ -111,13 +117,18 @@ impl SuiteOutput {
 
     /// Records what the folder of a run holds, with the run's origin, and swaps it into its place.
     pub(super) fn put_in_place(&self, staged: Staged, plan: &Plan) -> Result<(), StoreError> {
-        let manifest = manifest_toml(plan.resolved(), VERSION);
+        let manifest = manifest_toml(plan.resolved(), VERSION, BUILD);
         staged.seal(MANIFEST_FILE, &manifest)?;
         let folder = plan.resolved().folder();
         staged.put_in_place(&folder)?;
+        self.note_placed(folder);
+        Ok(())
+    }
+
+    /// Notes that the folder of a run holds the result of this suite.
+    pub(super) fn note_placed(&self, folder: String) {
         let mut placed = self.placed.lock().unwrap_or_else(PoisonError::into_inner);
         placed.insert(folder);
-        Ok(())
     }
 
     /// Puts a folder that says so in the place of a run that could not finish; no earlier result of the
@@ -151,10 +162,10 @@ impl SuiteOutput {
         let mut stale = Vec::new();
         for scenario in &self.scenarios {
             let read = |source| StoreError::Write {
-                path: self.folder.path().join(&scenario.name),
+                path: self.path().join(&scenario.name),
                 source,
             };
-            let left = scenario.leftovers(self.folder.path()).map_err(read)?;
+            let left = scenario.leftovers(self.path()).map_err(read)?;
             let is_done = scenario.is_complete()
                 && scenario
                     .folders
