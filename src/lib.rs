@@ -26,6 +26,8 @@ pub mod gate;
 
 pub mod report;
 
+pub mod store;
+
 pub mod experiment;
 
 pub mod cli;

@@ -18,6 +18,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ("calibration", &["units", "linear_algebra", "signal"]),
     ("recording", &["units", "signal"]),
     ("gate", &["metrics", "scenario"]),
+    ("store", &[]),
     (
         "report",
         &["units", "metrics", "gate", "scenario", "signal"],
@@ -38,6 +39,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "recording",
             "gate",
             "report",
+            "store",
         ],
     ),
     (
@@ -49,6 +51,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "recording",
             "report",
             "scenario",
+            "store",
             "fpga",
         ],
     ),

@@ -205,8 +205,8 @@ fn run_all(folder: &Path, end: &str) -> (usize, usize) {
     }
     let output = folder.join("out");
     let options = SuiteOptions {
-        output: output.clone(),
         threads: 0,
+        ..SuiteOptions::new(output.clone())
     };
     let done = run_suite(&plans, &options, &Silent).expect("a writable folder");
     for run in &done.runs {
