@@ -543,13 +543,13 @@ fn an_export_leaves_no_file_of_an_earlier_one() {
     let scenario = repository("scenarios/quick/static.toml");
     let scenario = scenario.to_str().expect("a path in Unicode");
     let export = |form: &str, more: &[&str]| {
-        let arguments = [&["export", form, "dir", "--samples", "20"], more].concat();
+        let arguments = [&["export", form, "dir"], more].concat();
         let output = fogbench(at, &arguments);
         assert_eq!(code(&output), 0, "{}", stderr(&output));
     };
-    export("vectors", &["--scenario", scenario]);
+    export("vectors", &["--samples", "20", "--scenario", scenario]);
     assert!(at.join("dir/in_codes.hex").is_file());
-    export("vectors", &["--stimulus", "log.csv"]);
+    export("vectors", &["--samples", "20", "--stimulus", "log.csv"]);
     assert!(!at.join("dir/in_codes.hex").exists());
     export("waveform", &["--stimulus", "log.csv"]);
     let left = [
