@@ -6,22 +6,23 @@ use std::path::{Path, PathBuf};
 /// Module, and the modules of the crate it may import.
 pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
     ("units", &[]),
+    ("wording", &[]),
     ("linear_algebra", &[]),
     ("random", &["units"]),
     ("signal", &["units"]),
-    ("scenario", &["units", "recording"]),
+    ("scenario", &["units", "recording", "wording"]),
     ("turntable", &["units", "signal", "random", "scenario"]),
     ("gyro", &["units", "signal", "random", "scenario"]),
     ("fpga", &[]),
     ("filters", &["signal"]),
-    ("metrics", &["units", "linear_algebra", "signal"]),
+    ("metrics", &["units", "linear_algebra", "signal", "wording"]),
     ("calibration", &["units", "linear_algebra", "signal"]),
-    ("recording", &["units", "signal"]),
+    ("recording", &["units", "signal", "wording"]),
     ("gate", &["metrics", "scenario"]),
     ("store", &[]),
     (
         "report",
-        &["units", "metrics", "gate", "scenario", "signal"],
+        &["units", "metrics", "gate", "scenario", "signal", "wording"],
     ),
     (
         "experiment",
@@ -40,6 +41,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "gate",
             "report",
             "store",
+            "wording",
         ],
     ),
     (
@@ -53,6 +55,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
             "scenario",
             "store",
             "fpga",
+            "wording",
         ],
     ),
 ];

@@ -373,7 +373,7 @@ fn contradictions_of_a_campaign_are_refused_where_they_stand() {
         ),
         (
             plan(FOUR, rates, along),
-            &["turntable.mounting.axis_along_table has no effect"],
+            &["turntable.mounting.axis_along_table = \"x\" has no effect"],
         ),
         (
             plan("[\"x\", \"x\", \"y\", \"w\"]", rates, ""),

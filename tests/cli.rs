@@ -369,7 +369,7 @@ fn a_published_figure_in_another_unit_exits_2() {
     assert_eq!(
         stderr(&output),
         "error: a.toml:9:1: published[0].unit = \"deg/s\" is not the unit of mean_deg_per_h: \
-         give the value in \"deg/h\"\n"
+         give the value in \"deg/h\"\n  |\n9 | unit = \"deg/s\"\n  | ^^^^^^^^^^^^^^\n"
     );
     let output = published("raw.mean_deg_per_h", "deg/h");
     assert_eq!(code(&output), 0, "{}", stderr(&output));

@@ -105,7 +105,7 @@ fn unknown_key_names_the_nearest_known_one() {
     );
     assert_eq!(
         complaints("[[filter]]\nname = \"a\"\n[filter.rls]\ntap = 4\n"),
-        ["x.toml:7:1: unknown key filter[0].rls.tap: did you mean filter[].rls.taps?"]
+        ["x.toml:7:1: unknown key filter[0].rls.tap: did you mean filter[0].rls.taps?"]
     );
     assert_eq!(
         complaints("[turntable.static]\nfast = true\n"),
@@ -180,8 +180,8 @@ fn numbers_that_are_not_finite_are_refused() {
     assert_eq!(
         complaints("[gyro.source]\npower_uw = nan\nlinewidth_nm = inf\n"),
         [
-            "x.toml:6:1: gyro.source.linewidth_nm = inf is not a finite number: allowed [1e-6, 500] nm",
             "x.toml:5:1: gyro.source.power_uw = nan is not a finite number: allowed [0.001, 100000] uW",
+            "x.toml:6:1: gyro.source.linewidth_nm = inf is not a finite number: allowed [1e-6, 500] nm",
         ]
     );
 }
@@ -521,10 +521,14 @@ fn gates_need_limits_and_channels() {
         gate("metric = \"raw.noise_gain\"\nmin = 2\nmax = 1\n"),
         ["x.toml:6:1: gate[0].min = 2.0 is greater than gate[0].max = 1.0"]
     );
-    let got = gate("metric = \"noise_gain\"\nmin = 2\n");
+    let text = scenario("[[gate]]\nmetric = \"noise_gain\"\nmin = 2\n");
+    let suite = Suite::new(&[("x.toml", &text)]);
+    let errors = fogbench::experiment::plan_suite(&[suite.path("x.toml")], &[]).unwrap_err();
     assert!(
-        got[0].starts_with("x.toml:5:1: gate[0].metric = \"noise_gain\" names no channel"),
-        "{got:?}"
+        errors[0]
+            .message
+            .starts_with("gate[0].metric = \"noise_gain\" names no channel"),
+        "{errors:?}"
     );
     assert_eq!(
         gate("metric = \"rls.noise_gain\"\nmin = 2\nrelative_to = \"lms\"\n"),
@@ -888,4 +892,124 @@ fn contradictory_bias_waves_are_refused_with_the_reason() {
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(found[0].contains(reason), "{found:?}");
     }
+}
+
+#[test]
+fn later_layers_are_checked_though_an_earlier_one_complains() {
+    // An unknown key, a value out of range, a contradiction and an inert key.
+    let got = complaints(
+        "sed = 2\n[gyro.coil]\nlength_m = -5\n[gyro.slow_noise]\n\
+         gauss_markov_correlation_time_s = 7.0\n[[gate]]\nmetric = \"rls.noise_gain\"\nmax = 1\n",
+    );
+    let starts = [
+        "x.toml:4:1: unknown key sed: did you mean seed?",
+        "x.toml:6:1: gyro.coil.length_m = -5 m is out of range",
+        "x.toml:8:1: gyro.slow_noise.gauss_markov_correlation_time_s = 7.0 has no effect",
+        "x.toml:10:1: gate[0].metric = \"rls.noise_gain\": there is no channel rls",
+    ];
+    assert_eq!(got.len(), starts.len(), "{got:#?}");
+    for (line, start) in got.iter().zip(starts) {
+        assert!(line.starts_with(start), "{line}");
+    }
+}
+
+#[test]
+fn complaints_that_only_follow_from_a_fault_are_not_made() {
+    // A missing duration makes no record too short, and a misspelt table no channel unknown.
+    let gate = "[[gate]]\nmetric = \"raw.bias_stability_100s_deg_per_h\"\nmax = 1\n";
+    let suite = Suite::new(&[
+        (
+            "d.toml",
+            &format!("name = \"d\"\nduration_s = \"long\"\n{gate}"),
+        ),
+        (
+            "f.toml",
+            "name = \"f\"\nduration_s = 20.0\n[[filtre]]\nname = \"a\"\n[filtre.rls]\n\
+             [[gate]]\nmetric = \"a.noise_gain\"\nmax = 1\n",
+        ),
+        (
+            "w.toml",
+            "name = \"w\"\nduration_s = 20.0\nwarm_up_s = -1\n[turntable.swing]\n\
+             frequency_hz = 1\nangle_amplitude_deg = 1\n",
+        ),
+    ]);
+    for (file, count) in [("d.toml", 1), ("f.toml", 1), ("w.toml", 1)] {
+        let path = suite.path(file);
+        let errors = fogbench::experiment::plan_suite(&[path], &[]).unwrap_err();
+        assert_eq!(errors.len(), count, "{file}: {errors:#?}");
+    }
+}
+
+#[test]
+fn a_missing_base_does_not_hide_what_is_wrong_here() {
+    let got = complaints("extends = \"nowhere.toml\"\n[gyro.coil]\nlenght_m = 1\n");
+    assert_eq!(
+        got,
+        [
+            "x.toml:4:1: extends nowhere.toml: no such file",
+            "x.toml:6:1: unknown key gyro.coil.lenght_m: did you mean gyro.coil.length_m?",
+        ]
+    );
+}
+
+#[test]
+fn a_bad_metric_is_found_beside_an_unknown_key_and_a_contradiction() {
+    let gates =
+        "[[gate]]\nmetric = \"raw.arw\"\nmax = 1\n[[gate]]\nmetric = \"mean_deg_per_h\"\nmax = 1\n";
+    for more in [
+        "sed = 1\n",
+        "[turntable.trapezoid]\nrate_deg_per_s = 0\nacceleration_deg_per_s2 = 1\nhold_s = 1\n",
+    ] {
+        let suite = Suite::new(&[("x.toml", &scenario(&format!("{more}{gates}")))]);
+        let errors = fogbench::experiment::plan_suite(&[suite.path("x.toml")], &[]).unwrap_err();
+        let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
+        assert_eq!(texts.len(), 3, "{texts:#?}");
+        assert!(
+            texts[1].contains("did you mean `angle_random_walk_deg_per_sqrt_h`?"),
+            "{texts:#?}"
+        );
+        assert!(texts[2].contains("as in raw.mean_deg_per_h"), "{texts:#?}");
+    }
+}
+
+#[test]
+fn complaints_show_the_text_that_they_are_about() {
+    let shown = |more: &str, sets: &[&str]| {
+        let suite = Suite::new(&[("x.toml", &scenario(more))]);
+        let errors = suite.load(&["x.toml"], sets).unwrap_err();
+        let (text, line, span) = errors[0].source().unwrap();
+        (line, text[span].to_owned())
+    };
+    let coil = "[gyro.coil]\n";
+    assert_eq!(
+        shown(&format!("{coil}  lenght_m = 1 # m\n"), &[]),
+        (5, "lenght_m".to_owned())
+    );
+    assert_eq!(
+        shown(&format!("{coil}length_m = -5 # m\n"), &[]),
+        (5, "length_m = -5".to_owned())
+    );
+    assert_eq!(shown("", &["seed=-1"]), (1, "seed=-1".to_owned()));
+    // What is missing cannot be shown.
+    let suite = Suite::new(&[("x.toml", "seed = 3\n")]);
+    let errors = suite.load(&["x.toml"], &[]).unwrap_err();
+    assert!(
+        errors.iter().all(|error| error.source().is_none()),
+        "{errors:?}"
+    );
+}
+
+#[test]
+fn array_brackets_without_an_index_are_explained() {
+    let got = complaints_of_set(
+        "[[filter]]\nname = \"rls\"\n[filter.rls]\n",
+        &["filter[].rls.taps=4"],
+    );
+    assert_eq!(
+        got,
+        [
+            "--set filter[].rls.taps=4: `filter[].rls.taps` does not say which filter: give its index, \
+          as in filter[0].rls.taps, or the name of a filter, as in filter.rls.taps"
+        ]
+    );
 }

@@ -4,7 +4,7 @@ use std::io;
 
 use super::arguments::{BudgetOptions, Format};
 use super::exit::Exit;
-use super::{output, place};
+use super::{complaint, output, place};
 use crate::experiment::{GyroBudget, gyro_budget};
 use crate::report::{budget_csv, budget_json, budget_svg, budget_text};
 use crate::store::{OutputFolder, StoreError};
@@ -17,7 +17,7 @@ pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
     let budget = match gyro_budget(&options.path, &options.set) {
         Ok(budget) => budget,
         Err(errors) => {
-            output::complain(&errors);
+            complaint::print(&errors);
             return Ok(Exit::Usage);
         }
     };

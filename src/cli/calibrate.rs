@@ -5,7 +5,7 @@ use std::io;
 use super::arguments::Format;
 use super::calibrate_arguments::CalibrateOptions;
 use super::exit::Exit;
-use super::{output, place};
+use super::{complaint, output, place};
 use crate::experiment::{
     CalibrateError, CalibrationTrial, Observer, calibrate_campaign, calibrate_groups,
 };
@@ -55,7 +55,7 @@ fn of_groups(options: &CalibrateOptions) -> Result<CalibrationTrial, Exit> {
     calibrate_groups(&options.path, &options.groups_settings()).map_err(|errors| {
         let is_unreadable =
             |error: &CalibrateError| matches!(error, CalibrateError::File(LogError::Read { .. }));
-        output::complain(&errors);
+        complaint::print(&errors);
         if errors.iter().any(is_unreadable) {
             Exit::Io
         } else {
@@ -71,13 +71,13 @@ fn of_scenario(options: &CalibrateOptions) -> Result<CalibrationTrial, Exit> {
         ));
     }
     calibrate_campaign(&options.path, &options.scenario_sets(), &Silent).map_err(|errors| {
-        output::complain(&errors);
+        complaint::print(&errors);
         Exit::Usage
     })
 }
 
 fn misused(message: &str) -> Exit {
-    output::complain(&[message]);
+    complaint::print(&[message.to_owned()]);
     Exit::Usage
 }
 

@@ -7,6 +7,7 @@ use super::arguments::SelectOptions;
 use super::exit::Exit;
 use super::{output, select};
 use crate::experiment::Sound;
+use crate::wording::counted;
 
 /// Says for every run that it is sound, or lists what is wrong.
 pub(super) fn check(options: &SelectOptions) -> io::Result<Exit> {
@@ -32,10 +33,4 @@ fn lines(run: &Sound) -> Vec<String> {
     let warnings = run.remarks.iter().chain(&run.warnings);
     let warnings = warnings.map(|warning| format!("warning: {warning}"));
     plan.into_iter().chain(warnings).collect()
-}
-
-/// A number and its noun, in the plural unless there is one.
-fn counted(count: usize, noun: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{plural}")
 }

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use super::complaint;
 use super::exit::Exit;
 use super::hardware_arguments::{ExportKind, ExportOptions};
 use super::log::unreadable;
@@ -12,6 +13,8 @@ use crate::experiment::{
 };
 use crate::fpga::FpgaError;
 use crate::recording::read_stimulus;
+use crate::scenario::{FilterConfig, FilterKind};
+use crate::wording::{counted, is_misspelling};
 
 /// Writes the folder and says what stands in it.
 pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
@@ -57,7 +60,7 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
                 .map(|file| format!("{}\n", file.display()))
                 .collect();
             output::data(&names)?;
-            output::talk(&format!("{samples} samples"));
+            output::talk(&counted(samples, "sample"));
             if form == ExportForm::Rtl {
                 let script = options.folder.join("run.sh");
                 output::talk(&format!("simulate with: sh {}", script.display()));
@@ -76,7 +79,6 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
 
 /// Pipeline and stimulus, both checked before anything is written.
 fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Exit> {
-    let one = |complaint: String| refused(&[complaint]);
     let mut settings = options.filter.settings();
     let stimulus = match (&options.stimulus, &options.scenario) {
         (Some(path), _) => Stimulus {
@@ -85,38 +87,41 @@ fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Exit
             codes: None,
         },
         (None, Some(path)) => {
-            let (found, stimulus) =
-                from_scenario(path, options).map_err(|complaints| refused(&complaints))?;
+            let (found, stimulus) = from_scenario(path, options)?;
             settings = found.unwrap_or(settings);
             stimulus
         }
-        (None, None) => return Err(one("give --scenario or --stimulus".to_owned())),
+        (None, None) => return Err(refused("give --scenario or --stimulus".to_owned())),
     };
     if !settings.core.has_hardware() {
         let complaint = "update_order = \"gain-first\" has no hardware to export: use \"schedule\"";
-        return Err(one(complaint.to_owned()));
+        return Err(refused(complaint.to_owned()));
     }
-    settings.timing().map_err(|error| one(error.to_string()))?;
+    settings
+        .timing()
+        .map_err(|error| refused(error.to_string()))?;
     Ok((settings, stimulus))
 }
 
-fn refused(complaints: &[String]) -> Exit {
-    output::complain(complaints);
+fn refused(complaint: String) -> Exit {
+    complaint::print(&[complaint]);
     Exit::Usage
 }
 
 fn from_scenario(
     path: &Path,
     options: &ExportOptions,
-) -> Result<(Option<PipelineSettings>, Stimulus), Vec<String>> {
-    let plans = plan_suite(&[path.to_path_buf()], &[])
-        .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+) -> Result<(Option<PipelineSettings>, Stimulus), Exit> {
+    let plans = plan_suite(&[path.to_path_buf()], &[]).map_err(|errors| {
+        complaint::print(&errors);
+        Exit::Usage
+    })?;
     let [plan] = plans.as_slice() else {
-        return Err(vec![format!(
-            "{}: holds {} runs: expected one",
+        return Err(refused(format!(
+            "{}: holds {}: expected one",
             path.display(),
-            plans.len()
-        )]);
+            counted(plans.len(), "run")
+        )));
     };
     let settings = match &options.name {
         None => None,
@@ -124,22 +129,47 @@ fn from_scenario(
             let filters = &plan.resolved().scenario.filters;
             let filter = filters.iter().find(|filter| filter.name == *name);
             let settings = filter.and_then(|filter| PipelineSettings::of(&filter.kind));
-            Some(settings.ok_or_else(|| {
-                vec![format!(
-                    "{}: there is no filter `{name}` with pipeline = \"fpga\"",
-                    path.display()
-                )]
-            })?)
+            Some(settings.ok_or_else(|| refused(no_hardware(path, name, filters)))?)
         }
     };
     if plan.resolved().scenario.compensation.is_some() {
-        return Err(vec![format!(
+        return Err(refused(format!(
             "{}: its filters are given compensated words, and an export the words of the gyro: put \
              the words of a run's samples/<axis>_compensated.npy in by --stimulus",
             path.display()
-        )]);
+        )));
     }
     let stimulus =
-        scenario_stimulus(plan, options.samples).map_err(|error| vec![error.to_string()])?;
+        scenario_stimulus(plan, options.samples).map_err(|error| refused(error.to_string()))?;
     Ok((settings, stimulus))
+}
+
+/// Why a filter of a scenario has no hardware to export, and how to get it.
+fn no_hardware(path: &Path, name: &str, filters: &[FilterConfig]) -> String {
+    let lack = format!(
+        "{}: there is no filter `{name}` with pipeline = \"fpga\"",
+        path.display()
+    );
+    let kind = |filter: &FilterConfig| match filter.kind {
+        FilterKind::Rls(_) => Some("rls"),
+        FilterKind::Lms(_) => Some("lms"),
+        FilterKind::SignLms(_) => Some("sign_lms"),
+        _ => None,
+    };
+    if let Some(filter) = filters.iter().find(|filter| filter.name == name) {
+        return match kind(filter) {
+            Some(kind) => {
+                format!("{lack}: write pipeline = \"fpga\" into its table [filter.{kind}]")
+            }
+            None => format!("{lack}: its kind has no hardware, only rls, lms and sign_lms have"),
+        };
+    }
+    let names = filters.iter().filter(|filter| kind(filter).is_some());
+    let names: Vec<&str> = names.map(|filter| filter.name.as_str()).collect();
+    let mut alike = names.iter().filter(|known| is_misspelling(name, known));
+    match (alike.next(), names.is_empty()) {
+        (Some(known), _) => format!("{lack}: did you mean `{known}`?"),
+        (None, false) => format!("{lack}: expected one of {}", names.join(", ")),
+        (None, true) => format!("{lack}: the scenario has no rls, lms or sign_lms filter"),
+    }
 }

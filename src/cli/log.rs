@@ -3,6 +3,7 @@
 use std::io;
 
 use super::arguments::Format;
+use super::complaint::{self, Complaint};
 use super::exit::Exit;
 use super::log_arguments::{AnalyzeOptions, FilterLogOptions, LogOptions};
 use super::{output, place};
@@ -94,8 +95,8 @@ pub(super) fn unreadable(error: &LogError) -> Exit {
     }
 }
 
-fn refused<E: std::fmt::Display>(errors: &[E]) -> Exit {
-    output::complain(errors);
+fn refused<C: Complaint>(errors: &[C]) -> Exit {
+    complaint::print(errors);
     Exit::Usage
 }
 

@@ -7,6 +7,7 @@ mod budget;
 mod calibrate;
 mod calibrate_arguments;
 mod check;
+mod complaint;
 mod exit;
 mod expand;
 mod export;

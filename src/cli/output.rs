@@ -40,17 +40,19 @@ pub(super) fn talk(line: &str) {
 /// Most complaints, and most warnings, that are printed.
 const LINES_MAX: usize = 50;
 
-/// Writes complaints to stderr: the first of them, and how many more there are.
-pub(super) fn complain<E: Display>(errors: &[E]) {
-    talk_first("error: ", errors.iter());
-}
-
 /// Writes the first of many lines to stderr, each behind a prefix, and how many more there are.
 pub(super) fn talk_first<L: Display>(prefix: &str, lines: impl Iterator<Item = L>) {
+    talk_first_as(lines, |line| {
+        format!("{prefix}{}", bounded(&line.to_string()))
+    });
+}
+
+/// Writes the first of many things to stderr in words, and how many more there are.
+pub(super) fn talk_first_as<T>(things: impl Iterator<Item = T>, shown: impl Fn(&T) -> String) {
     let mut more = 0_usize;
-    for (index, line) in lines.enumerate() {
+    for (index, thing) in things.enumerate() {
         if index < LINES_MAX {
-            talk(&format!("{prefix}{}", bounded(&line.to_string())));
+            talk(&shown(&thing));
         } else {
             more += 1;
         }
@@ -62,7 +64,12 @@ pub(super) fn talk_first<L: Display>(prefix: &str, lines: impl Iterator<Item = L
 
 /// Whether stdout may carry colours: a terminal, and `NO_COLOR` is not set.
 pub(super) fn colour() -> bool {
-    std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()) && io::stdout().is_terminal()
+    !refuses_colour() && io::stdout().is_terminal()
+}
+
+/// Whether `NO_COLOR` is set.
+pub(super) fn refuses_colour() -> bool {
+    std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
 /// Width of tables in columns: `COLUMNS` where it is set, else 100.

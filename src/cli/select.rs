@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::arguments::SelectOptions;
 use super::exit::Exit;
-use super::output;
+use super::{complaint, output};
 use crate::experiment::{Plan, Sound, check_suite, plan_suite};
 use crate::scenario::ScenarioError;
 
@@ -48,7 +48,7 @@ fn selected<T>(
         return Err(Exit::NothingSelected);
     }
     let found = read(&paths, &options.set).map_err(|errors| {
-        output::complain(&errors);
+        complaint::print(&errors);
         Exit::Usage
     })?;
     if found.is_empty() {

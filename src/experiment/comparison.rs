@@ -168,8 +168,7 @@ fn add<'a, T: PartialEq>(all: &mut Vec<&'a T>, more: &'a [T]) {
     }
 }
 
-/// Complaints about tables of a suite that share a file name and are not the same, and about
-/// metrics that nobody knows.
+/// Complaints about tables of a suite that share a file name and are not the same.
 pub(super) fn contradictions(plans: &[Plan]) -> Vec<ScenarioError> {
     let mut first: BTreeMap<String, (&Plan, &ComparisonConfig)> = BTreeMap::new();
     let mut errors = Vec::new();
@@ -187,17 +186,6 @@ pub(super) fn contradictions(plans: &[Plan]) -> Vec<ScenarioError> {
                     other.resolved().shown_file()
                 );
                 errors.push(ScenarioError::at(resolved.locate(&key), message));
-            }
-            let columns = comparison.columns.iter();
-            for column in columns.filter_map(|text| ComparisonColumn::parse(text)) {
-                if find(&column.metric).is_none() {
-                    let key = format!("comparison[{index}].columns");
-                    let message = format!("{key}: there is no metric {}", column.metric);
-                    let error = ScenarioError::at(resolved.locate(&key), message);
-                    if !errors.contains(&error) {
-                        errors.push(error);
-                    }
-                }
             }
         }
     }

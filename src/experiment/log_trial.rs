@@ -19,6 +19,7 @@ use crate::scenario::{AllanConfig, MotionConfig, StaticConfig, SwingConfig};
 use crate::signal::RunSignals;
 use crate::store::{OutputFolder, StoreError};
 use crate::turntable::first_measured_index;
+use crate::wording::{counted, plain};
 
 /// Name of the log's own channel.
 const RAW: &str = "raw";
@@ -226,8 +227,10 @@ fn record_length(log: &Log, settings: &LogSettings) -> Result<RecordLength, LogT
     let warm_up = usize::try_from(warm_up).unwrap_or(usize::MAX);
     if warm_up >= samples {
         return Err(refuse(format!(
-            "--warm-up-s {} leaves no sample: {samples} samples at {} Hz",
-            settings.warm_up_s, log.sample_rate_hz
+            "--warm-up-s {} leaves no sample: {} at {} Hz",
+            settings.warm_up_s,
+            counted(samples, "sample"),
+            plain(log.sample_rate_hz)
         )));
     }
     let averaging_time_s = settings.bias_averaging_time_s;
@@ -244,7 +247,7 @@ fn record_length(log: &Log, settings: &LogSettings) -> Result<RecordLength, LogT
     {
         return Err(refuse(format!(
             "a swing of {frequency_hz} Hz needs four samples a cycle: the log has {} Hz",
-            log.sample_rate_hz
+            plain(log.sample_rate_hz)
         )));
     }
     Ok(RecordLength {

@@ -32,6 +32,7 @@ mod pipeline_metrics;
 mod pipeline_settings;
 mod plan;
 mod plan_filters;
+mod plan_metrics;
 mod published_check;
 mod rate_twins;
 mod record_length;

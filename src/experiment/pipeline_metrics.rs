@@ -8,6 +8,7 @@ use crate::metrics::catalogue::{
 use crate::metrics::{ChannelMetrics, Estimate, MetricKey};
 use crate::scenario::OutputRegister;
 use crate::units::us_to_s;
+use crate::wording::counted;
 
 /// Metrics of the matrix of recursive least squares.
 pub(super) static MATRIX_METRICS: [&MetricKey; 3] =
@@ -91,8 +92,8 @@ pub(super) fn notes(filter: &FinishedFilter, sample_period_s: f64) -> Vec<String
         let observed = match &filter.words {
             Ok(_) => "it has not failed in this run".to_owned(),
             Err(divergence) => format!(
-                "it failed after {} samples ({:.3} s)",
-                divergence.sample + 1,
+                "it failed after {} ({:.3} s)",
+                counted(divergence.sample + 1, "sample"),
                 whole(divergence.sample + 1) * sample_period_s
             ),
         };

@@ -5,18 +5,18 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::assembly_motion;
 use super::campaign;
 use super::comparison::contradictions;
 use super::compensation::CompensationPlan;
-use super::motion::{motion, motion_extremes};
-use super::pipeline_check;
-use super::published_check::wrong_unit;
+use super::motion::motion_extremes;
 use crate::gyro;
-use crate::metrics::catalogue::DIVERGED_AT;
-use crate::metrics::{self, MetricKey};
-use crate::scenario::{Fidelity, Resolved, Scenario, ScenarioError, visit_suite};
+use crate::scenario::{
+    Fidelity, Resolved, ScenarioError, UnsoundReading, in_both, in_order, read_suite,
+};
 use crate::signal::GyroFacts;
+
+/// Most scenarios of a suite that are not sound and are checked further: nobody reads on.
+const UNSOUND_MAX: usize = 100;
 
 /// One run that has passed every check.
 #[derive(Clone, Debug)]
@@ -103,7 +103,7 @@ impl Plan {
 /// Every complaint about every file; then nothing may run.
 pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<ScenarioError>> {
     let mut plans = Vec::new();
-    let errors = visit_plans(paths, sets, &mut |plan| plans.push(plan))?;
+    let errors = visit_plans(paths, sets, &mut |plan| plans.push(plan));
     compared(plans, errors)
 }
 
@@ -119,38 +119,54 @@ pub(super) fn compared(
     if errors.is_empty() {
         Ok(plans)
     } else {
-        Err(errors)
+        Err(in_order(errors))
     }
 }
 
 /// Reads everything under `paths` and hands over each run that passes its own checks; returns the
-/// complaints about the others, each once.
-///
-/// # Errors
-/// Every complaint, if there are some about what was read.
+/// complaints about the others.
 pub(super) fn visit_plans(
     paths: &[PathBuf],
     sets: &[String],
     visit: &mut dyn FnMut(Plan),
-) -> Result<Vec<ScenarioError>, Vec<ScenarioError>> {
-    let (mut errors, mut known) = (Vec::new(), BTreeSet::new());
+) -> Vec<ScenarioError> {
+    let (mut found, mut known) = (Vec::new(), BTreeSet::new());
     let mut campaigns = SoundCampaigns::default();
-    let mut take = |resolved| match plan(resolved, &mut campaigns) {
-        Ok(plan) => visit(plan),
+    let mut unsound_count = 0;
+    let mut errors = read_suite(paths, sets, &mut |reading| {
+        let more = match reading {
+            Ok(resolved) => match plan(resolved, &mut campaigns) {
+                Ok(plan) => return visit(plan),
+                Err(more) => more,
+            },
+            Err(reading) => {
+                unsound_count += 1;
+                if unsound_count > UNSOUND_MAX {
+                    return;
+                }
+                unsound(reading, &mut campaigns)
+            }
+        };
         // The points of a sweep share most of what is wrong with them.
-        Err(found) => errors.extend(
-            found
-                .into_iter()
-                .filter(|error| known.insert(error.clone())),
-        ),
-    };
-    match visit_suite(paths, sets, &mut take) {
-        Ok(()) => Ok(errors),
-        Err(mut read) => {
-            read.extend(errors);
-            Err(read)
+        found.extend(more.into_iter().filter(|error| known.insert(error.clone())));
+    });
+    errors.extend(found);
+    errors
+}
+
+/// What else is wrong with a scenario that is not sound: the complaints that all its variants give.
+fn unsound(reading: UnsoundReading, campaigns: &mut SoundCampaigns) -> Vec<ScenarioError> {
+    let mut variants = reading.variants.into_iter().map(|resolved| {
+        if reading.is_contradictory {
+            let mut checker = Checker::new(&resolved);
+            checker.names();
+            checker.errors
+        } else {
+            plan(resolved, campaigns).err().unwrap_or_default()
         }
-    }
+    });
+    let first = variants.next().unwrap_or_default();
+    variants.fold(first, |common, found| in_both(common, &found))
 }
 
 /// The campaign that passed its checks last: the points of a sweep share one.
@@ -170,12 +186,8 @@ impl SoundCampaigns {
 }
 
 fn plan(resolved: Resolved, campaigns: &mut SoundCampaigns) -> Result<Plan, Vec<ScenarioError>> {
-    let mut checker = Checker {
-        resolved: &resolved,
-        errors: Vec::new(),
-        warnings: resolved.warnings.clone(),
-        calibration: None,
-    };
+    let mut checker = Checker::new(&resolved);
+    checker.names();
     let facts = checker.gyro();
     let compensation = checker.compensation(campaigns);
     if let Some(facts) = &facts {
@@ -209,6 +221,17 @@ pub(super) struct Checker<'a> {
     errors: Vec<ScenarioError>,
     pub(super) warnings: Vec<String>,
     calibration: Option<String>,
+}
+
+impl<'a> Checker<'a> {
+    fn new(resolved: &'a Resolved) -> Self {
+        Self {
+            resolved,
+            errors: Vec::new(),
+            warnings: resolved.warnings.clone(),
+            calibration: None,
+        }
+    }
 }
 
 impl Checker<'_> {
@@ -272,68 +295,6 @@ impl Checker<'_> {
             Err((key, message)) => self.complain(key, message),
         }
     }
-
-    /// Refuses gates and published figures that this record can never support.
-    fn metrics(&mut self, facts: &GyroFacts) {
-        let scenario = &self.resolved.scenario;
-        let motion = motion(scenario, 1.0 / facts.output_rate_hz);
-        let mut requested: Vec<(String, &str, &str)> = Vec::new();
-        for (index, gate) in scenario.gates.iter().enumerate() {
-            // The reader has checked that there is a dot and that the channel exists.
-            let Some((channel, name)) = gate.metric.rsplit_once('.') else {
-                continue;
-            };
-            requested.push((format!("gate[{index}].metric"), channel, name));
-            if let Some(reference) = &gate.relative_to {
-                requested.push((format!("gate[{index}].relative_to"), reference, name));
-            }
-        }
-        for (index, figure) in scenario.published.iter().enumerate() {
-            let Some((channel, name)) = figure.metric.rsplit_once('.') else {
-                continue;
-            };
-            requested.push((format!("published[{index}].metric"), channel, name));
-            if let Some((key, message)) = wrong_unit(index, name, &figure.unit) {
-                self.complain(&key, message);
-            }
-        }
-        for (key, channel, name) in requested {
-            // The divergence of a channel may be what the gate expects.
-            if name == DIVERGED_AT.name {
-                continue;
-            }
-            if let Some(estimator) = campaign::estimator_of(scenario, channel) {
-                if let Err(reason) = campaign::supports(estimator, name) {
-                    self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
-                }
-                continue;
-            }
-            let supported = metrics::support(
-                name,
-                scenario.duration_s,
-                1.0 / facts.output_rate_hz,
-                &motion,
-                !scenario.is_unfiltered(channel),
-                scenario.bias_averaging_time_s,
-            );
-            let lack = || metrics::find(name).and_then(|key| lacks(scenario, channel, key));
-            if let Some(reason) = supported.err().or_else(lack) {
-                self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
-            }
-        }
-    }
-}
-
-/// Why a channel of this scenario can never have a metric, whatever the length of its record.
-fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<String> {
-    let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
-    let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
-    pipeline_check::lacks(scenario, channel, key)
-        .or_else(|| assembly_motion::lacks(scenario, channel, key))
-        .or_else(|| campaign::lacks(scenario, key))
-        .or_else(|| metrics::encoder_lack(key, has_encoder))
-        .map(str::to_owned)
-        .or_else(|| metrics::repeats_lack(key, repeats))
 }
 
 /// A small count as a number.

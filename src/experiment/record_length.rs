@@ -3,6 +3,7 @@
 use super::plan::{Checker, count};
 use crate::scenario::SamplesFormat;
 use crate::signal::GyroFacts;
+use crate::wording::plain;
 
 /// Longest record held in memory, samples (two hours at 4 kHz).
 const SAMPLES_MAX: f64 = 3.0e7;
@@ -22,7 +23,7 @@ impl Checker<'_> {
                 format!(
                     "duration_s = {duration_s} s holds no sample: one sample of this gyro takes \
                      {} s",
-                    1.0 / rate_hz
+                    plain(1.0 / rate_hz)
                 ),
             );
         }
@@ -34,7 +35,7 @@ impl Checker<'_> {
                     "duration_s + warm_up_s = {} s at {rate_hz:.2} Hz are {samples:.3e} samples: \
                      at most {SAMPLES_MAX:e} are held in memory; use `repeats`, or a larger \
                      gyro.output.average_samples",
-                    duration_s + warm_up_s
+                    plain(duration_s + warm_up_s)
                 ),
             );
         }
@@ -48,7 +49,7 @@ impl Checker<'_> {
                      {records} records (the true rate and the channels of every gyro): at most \
                      {WORDS_MAX:e} are held in memory; use `repeats`, fewer filters, or a larger \
                      gyro.output.average_samples",
-                    duration_s + warm_up_s
+                    plain(duration_s + warm_up_s)
                 ),
             );
         }

@@ -21,6 +21,7 @@ use super::steady::{LAGS_MIN, RATIO_BLOCKS, equal_block_means, measure_steady, p
 use super::step_shape::{Step, put_step_shape};
 use super::support::{NO_TRUTH, SAMPLES_MIN, encoder_lack, repeats_lack, support, truth_lack};
 use super::swing::measure_swing;
+use crate::wording::counted;
 
 /// Settling time.
 pub static SETTLING_TIME: MetricKey = MetricKey::new(
@@ -175,8 +176,8 @@ fn measure_motion(
     let values = record.channel_deg_per_h;
     if values.len() < SAMPLES_MIN {
         return Err(format!(
-            "the record holds {} samples; metrics need {SAMPLES_MIN}",
-            values.len()
+            "the record holds {}; metrics need {SAMPLES_MIN}",
+            counted(values.len(), "sample")
         ));
     }
     if let Some(index) = values.iter().position(|value| !value.is_finite()) {

@@ -33,6 +33,7 @@ mod interval;
 mod key;
 mod memory;
 mod multi_sine;
+mod names;
 mod noise_delay;
 mod noise_fit;
 mod noise_identification;
@@ -84,6 +85,7 @@ pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 pub(crate) use key::{Against, Headline, Table};
 pub use key::{Applies, MetricKey};
 pub use memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
+pub(crate) use names::{meant, unknown};
 pub use noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
     fit_noise, fit_pooled_noise, mixed_degrees_of_freedom,

@@ -6,6 +6,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::estimate::Estimate;
 use super::interval;
+use crate::wording::counted;
 
 /// Blocks that leave the fit in turn, for the jackknife.
 const BLOCKS: usize = 20;
@@ -139,8 +140,9 @@ pub fn fit_tones<'a>(series: &[&[f64]], clock: &ToneClock<'a>) -> Result<ToneFit
     let samples = series.first().map_or(0, |values| values.len());
     let undetermined = || {
         format!(
-            "{samples} samples do not determine {} sines",
-            clock.frequencies_hz.len()
+            "{} do not determine {}",
+            counted(samples, "sample"),
+            counted(clock.frequencies_hz.len(), "sine")
         )
     };
     if series.iter().any(|values| values.len() != samples) {

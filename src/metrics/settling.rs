@@ -3,6 +3,7 @@
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::interval;
+use crate::wording::counted;
 
 /// Half width of the band as a part of the step.
 const BAND_PER_STEP: f64 = 0.01;
@@ -61,8 +62,8 @@ pub fn settling(
     let samples = rate_deg_per_h.len();
     if samples < step_index + STEP_SAMPLES_MIN {
         return Err(format!(
-            "{} samples follow the last step; settling needs {STEP_SAMPLES_MIN}",
-            samples.saturating_sub(step_index)
+            "{} after the last step; settling needs {STEP_SAMPLES_MIN}",
+            counted(samples.saturating_sub(step_index), "sample")
         ));
     }
     let start = tail_start(samples, step_index);

@@ -14,6 +14,7 @@ use super::scale_factor::{
 use super::small_input::measure_small_inputs;
 use super::steady::equal_block_means;
 use crate::units::{deg_per_h_to_deg_per_s, ratio_to_ppm};
+use crate::wording::plain;
 
 /// Scale factor error.
 pub static SCALE_FACTOR_ERROR: MetricKey = MetricKey::new(
@@ -106,9 +107,10 @@ pub(crate) fn lack(key: &MetricKey, staircase: &Staircase, samples: usize) -> Op
     let settle_s = staircase.settle_s;
     if distinct < RATES_MIN {
         return Some(format!(
-            "{} among the dwells that hold {DWELL_SAMPLES_MIN} samples after {settle_s} s of \
+            "{} among the dwells that hold {DWELL_SAMPLES_MIN} samples after {} s of \
              settling",
-            too_few_rates(distinct)
+            too_few_rates(distinct),
+            plain(settle_s)
         ));
     }
     let senses = distinct_rates_by_sense(&rates, staircase.rest_deg_per_h);

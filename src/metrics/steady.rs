@@ -25,6 +25,7 @@ use super::table::{DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION};
 use super::truth_response::without_motion;
 use super::weight_noise::measure_weight_noise;
 use crate::units;
+use crate::wording::{counted, plain};
 
 /// Angle random walk over DC gain.
 pub static ANGLE_RANDOM_WALK_OVER_DC_GAIN: MetricKey = MetricKey::of_filters(
@@ -218,9 +219,10 @@ fn measure_bias(
         let means = bias::block_means(record.channel_deg_per_h, block);
         if means.len() < BLOCKS_MIN {
             let reason = format!(
-                "the record holds {} blocks of {averaging_time_s} s; a standard deviation with an \
-                 interval needs {BLOCKS_MIN}",
-                means.len()
+                "the record holds {} of {} s; a standard deviation with an interval needs \
+                 {BLOCKS_MIN}",
+                counted(means.len(), "block"),
+                plain(averaging_time_s)
             );
             metrics.miss(name, reason);
             continue;

@@ -1,37 +1,15 @@
 //! Whether a record of given length and motion can support a metric at all.
 
 use super::bias::is_sample_or_longer;
-use super::catalogue::{find, known_metrics};
+use super::catalogue::find;
 use super::delay::{CYCLES_MIN, SwingClock};
 use super::interval::round_to_count;
 use super::key::{Against, Applies, MetricKey, Needs};
+use super::names::unknown;
 use super::record::Motion;
 use super::settling::{STEP_SAMPLES_MIN, tail_start};
 use super::staircase::lack;
-
-/// The name that is fewest edits away.
-fn nearest(name: &str) -> &'static str {
-    known_metrics()
-        .iter()
-        .min_by_key(|known| edit_distance(name, known.name))
-        .map_or("", |known| known.name)
-}
-
-/// Levenshtein distance.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, from) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, to) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(from != *to);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(row[j] + 1).min(row[j + 1] + 1);
-        }
-    }
-    row[b.len()]
-}
+use crate::wording::plain;
 
 /// Fewest samples worth measuring.
 pub(crate) const SAMPLES_MIN: usize = 64;
@@ -53,15 +31,20 @@ pub(crate) fn slow_noise_lack(key: &MetricKey, duration_s: f64) -> Option<String
 }
 
 fn too_short(metric: &str, needed_s: f64, duration_s: f64) -> String {
-    format!("`{metric}` needs a record of at least {needed_s} s; this one has {duration_s} s")
+    format!(
+        "`{metric}` needs a record of at least {} s; this one has {} s",
+        plain(needed_s),
+        plain(duration_s)
+    )
 }
 
 /// Why samples of a period cannot be averaged over a time; nothing if they can.
 pub(crate) fn averaging_lack(averaging_time_s: f64, sample_period_s: f64) -> Option<String> {
     (!is_sample_or_longer(averaging_time_s, sample_period_s)).then(|| {
         format!(
-            "an averaging time of {averaging_time_s} s is shorter than a sample, which takes \
-             {sample_period_s} s"
+            "an averaging time of {} s is shorter than a sample, which takes {} s",
+            plain(averaging_time_s),
+            plain(sample_period_s)
         )
     })
 }
@@ -82,10 +65,7 @@ pub fn support(
     bias_averaging_time_s: f64,
 ) -> Result<(), String> {
     let Some(known) = find(metric) else {
-        return Err(format!(
-            "`{metric}` is not a metric; the nearest is `{}`",
-            nearest(metric)
-        ));
+        return Err(unknown(metric).unwrap_or_default());
     };
     if known.filters_only && !is_filter {
         return Err(format!(
@@ -115,8 +95,9 @@ pub fn support(
     let samples = samples_in_record(duration_s, sample_period_s);
     if samples < SAMPLES_MIN {
         return Err(format!(
-            "`{metric}` needs a record of at least {SAMPLES_MIN} samples; {duration_s} s hold \
-             {samples}"
+            "`{metric}` needs a record of at least {SAMPLES_MIN} samples; {} s hold \
+             {samples}",
+            plain(duration_s)
         ));
     }
     if known.needs == Needs::Samples {
@@ -276,13 +257,15 @@ fn check_cycles(
     let cycles = clock.whole_cycles(samples);
     if cycles < CYCLES_MIN {
         return Err(format!(
-            "`{metric}` needs {CYCLES_MIN} whole cycles of {frequency_hz} Hz; {samples} samples \
-             hold {cycles}"
+            "`{metric}` needs {CYCLES_MIN} whole cycles of {} Hz; {samples} samples \
+             hold {cycles}",
+            plain(frequency_hz)
         ));
     }
     if frequency_hz * sample_period_s > 0.25 {
         return Err(format!(
-            "`{metric}` needs four samples per cycle of {frequency_hz} Hz"
+            "`{metric}` needs four samples per cycle of {} Hz",
+            plain(frequency_hz)
         ));
     }
     Ok(())
@@ -292,6 +275,7 @@ fn check_cycles(
 mod tests {
     use super::super::record::Staircase;
     use super::*;
+    use crate::metrics::known_metrics;
 
     const PERIOD_S: f64 = 1.0 / 3989.45;
 

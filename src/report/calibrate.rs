@@ -7,6 +7,7 @@ use crate::report::json::{object, pretty, put};
 use crate::report::summary::{SCHEMA, tool};
 use crate::report::text::{Grid, Tone, toned, wrapped};
 use crate::signal::{AssemblyParameters, CalibrationEstimate, CalibrationSheet};
+use crate::wording::counted;
 
 const INDENT: &str = "  ";
 
@@ -36,9 +37,9 @@ pub fn calibrate_text(report: &CalibrateReport, width: usize, colour: bool) -> S
         .latitude_deg
         .map_or_else(String::new, |it| format!(", latitude {} deg", plain(it)));
     let mut text = format!(
-        "{}  calibration, {} groups{latitude}\n",
+        "{}  calibration, {}{latitude}\n",
         toned(report.file, Tone::Heading, colour),
-        sheet.groups.len(),
+        counted(sheet.groups.len(), "group"),
     );
     text.push_str(&calibration_text(sheet, width, colour));
     text.push_str(&estimates_text(sheet, width, colour));

@@ -5,6 +5,7 @@ use crate::report::text::{Grid, Tone, toned, wrapped};
 use crate::signal::{
     AssemblyParameters, CalibrationEstimate, CalibrationGroup, CalibrationPlan, CalibrationSheet,
 };
+use crate::wording::counted;
 
 const INDENT: &str = "  ";
 
@@ -42,9 +43,9 @@ fn heads<const N: usize>(grid: &mut Grid, heads: [&str; N], colour: bool) {
 
 fn plan_line(name: &str, plan: &CalibrationPlan, width: usize) -> String {
     let line = format!(
-        "{name}: {} groups, rank {}, condition number {}; per deg/h of a mean's standard error {} deg/h \
+        "{name}: {}, rank {}, condition number {}; per deg/h of a mean's standard error {} deg/h \
          of bias and {} ppm of scale factor, correlation {} (x, y, z)",
-        plan.groups,
+        counted(plan.groups, "group"),
         plan.rank,
         triple(&plan.condition_number, 1),
         triple(&plan.bias_per_standard_error, 3),

@@ -13,6 +13,7 @@ use crate::report::table::{channels_text, failures_text, filter_verdicts};
 use crate::report::text::{Tone, toned, wrapped};
 use crate::scenario::MotionConfig;
 use crate::signal::RunSignals;
+use crate::wording::counted;
 
 /// Everything the report of one log shows.
 #[derive(Clone, Debug)]
@@ -66,10 +67,10 @@ pub fn log_text(report: &LogReport, width: usize, colour: bool) -> String {
         .column
         .map_or_else(String::new, |column| format!(", column {column}"));
     let mut text = format!(
-        "{}{column}  recorded log, {}, {} samples at {} Hz: {} s after {} s of warm-up\n",
+        "{}{column}  recorded log, {}, {} at {} Hz: {} s after {} s of warm-up\n",
         toned(report.file, Tone::Heading, colour),
         report.unit,
-        report.samples,
+        counted(report.samples, "sample"),
         plain(report.sample_rate_hz),
         plain(report.seconds(report.samples)),
         plain(report.seconds(report.warm_up_samples)),

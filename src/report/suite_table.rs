@@ -3,6 +3,7 @@
 use crate::gate::{VerdictKind, limits_text, plain};
 use crate::report::text::{Grid, Tone, toned, wrapped};
 use crate::report::{RunOutcome, RunStatus};
+use crate::wording::counted;
 
 const INDENT: &str = "  ";
 
@@ -119,16 +120,18 @@ fn totals(runs: &[RunOutcome], colour: bool) -> String {
         count => format!(", {count} not run"),
     };
     format!(
-        "{}  {} run{}: {} passed, {} with a failed gate, {} with a failed channel, {} failed{not_run}; \
-         {} gates: {} passed, {} failed, {} inconclusive\n",
+        "{}  {}: {} passed, {} with a failed gate, {} with a failed channel, {} failed{not_run}; \
+         {}: {} passed, {} failed, {} inconclusive\n",
         toned(word, tone, colour),
-        runs.len(),
-        if runs.len() == 1 { "" } else { "s" },
+        counted(runs.len(), "run"),
         passed,
         with(RunStatus::GateFailed),
         with(RunStatus::ChannelFailed),
         with(RunStatus::RunFailed),
-        runs.iter().map(|run| run.verdicts.len()).sum::<usize>(),
+        counted(
+            runs.iter().map(|run| run.verdicts.len()).sum::<usize>(),
+            "gate"
+        ),
         gates(VerdictKind::Pass),
         gates(VerdictKind::Fail),
         gates(VerdictKind::Inconclusive),

@@ -6,10 +6,10 @@
 
 use std::sync::Arc;
 
-use super::check::unknown_key;
 use super::excerpt::excerpt;
 use super::schema::{self, Child, Group, Key, join};
 use super::source::Mark;
+use super::suggest::{self, unknown_key};
 use super::tree::{Node, Table, Value, merge_node};
 
 /// One step into a tree.
@@ -46,6 +46,13 @@ pub(crate) fn parse(path: &str) -> Result<Vec<Step>, String> {
             .and_then(|digits| digits.parse().ok());
         match index {
             Some(index) => steps.push(Step::Index(index)),
+            None if indices == "[]" => {
+                let numbered = path.replacen("[]", "[0]", 1);
+                return Err(format!(
+                    "`{path}` does not say which {name}: give its index, as in {numbered}, or the name of \
+                     a filter, as in filter.rls.taps"
+                ));
+            }
             None => {
                 let path = excerpt(path);
                 return Err(format!(
@@ -89,9 +96,15 @@ pub(crate) fn resolve(
         if key.is_some() {
             return Err(format!("{} is not a table", display(&path)));
         }
-        let shown = join(&display(&path), &name);
         match schema::child(&schema_path, &name) {
-            None => return Err(unknown_key(&schema_path, &shown, &name)),
+            None => {
+                let table = suggest::Place {
+                    schema_path: &schema_path,
+                    shown: written_table(written, &path, &name),
+                    root: Some(root),
+                };
+                return Err(unknown_key(table, &name));
+            }
             Some(Child::Leaf(leaf)) => {
                 key = Some(leaf);
                 path.push(Step::Key(name));
@@ -122,6 +135,18 @@ pub(crate) fn resolve(
         }
     }
     Ok((path, key))
+}
+
+/// The table of an unknown key as it was written.
+fn written_table<'a>(written: &'a str, path: &[Step], name: &str) -> &'a str {
+    if path.is_empty() {
+        return "";
+    }
+    // The kind of a filter may stand in the path though it was not written: the name is found from
+    // the left, behind as many dots as the shorter of both has.
+    let ends = written.match_indices('.').map(|(at, _)| at);
+    let follows = |at: &usize| written[at + 1..].split(['.', '[']).next() == Some(name);
+    ends.rev().find(follows).map_or("", |at| &written[..at])
 }
 
 /// The index of the element that a step selects by index or by name.

@@ -1,40 +1,50 @@
-//! Checks of single keys: known, of the right type, inside the range, present.
+//! Checks of single keys: known, of the right type, inside the range.
 
 use super::error::ScenarioError;
 use super::excerpt::excerpt;
+use super::faults::{Faults, Taken};
 use super::leaf::check_leaf;
-use super::schema::{self, Child, Group, Key, Presence, join};
+use super::schema::{self, Child, Key, join};
 use super::source::{Mark, Sources};
+use super::suggest::{self, sole_sibling, unknown_key};
 use super::tree::{Node, Table, Value};
 
 /// The version of the file format this build reads.
 const SCHEMA_VERSION: i64 = 1;
 
 /// Most complaints of a scenario that say what may have been meant.
-const HINTS_MAX: usize = 64;
+const SUGGESTED_MAX: usize = 64;
 
 /// Most tables of an array.
 const TABLES_MAX: usize = 10_000;
 
-/// Most bytes of a name that may stand for a known one: all are shorter.
-const KNOWN_LENGTH_MAX: usize = 128;
-
 /// Walks a tree and gathers complaints.
-pub(crate) struct Checker<'a> {
-    sources: &'a Sources,
-    errors: Vec<ScenarioError>,
+pub(super) struct Checker<'a> {
+    pub(super) sources: &'a Sources,
+    pub(super) errors: Vec<ScenarioError>,
+    pub(super) taken: Vec<Taken>,
+}
+
+/// What a check leaves of a value.
+enum Left {
+    /// All of it.
+    Whole,
+    /// Something was taken out of it.
+    Rest(Value),
+    /// None of it.
+    Nothing,
 }
 
 /// A table under check.
 #[derive(Clone, Copy)]
-struct Place<'a> {
-    schema_path: &'a str,
-    shown_path: &'a str,
-    mark: Mark,
+pub(super) struct Place<'a> {
+    pub(super) schema_path: &'a str,
+    pub(super) shown_path: &'a str,
+    pub(super) mark: Mark,
 }
 
 /// The place of the root: the first byte of the scenario's own file.
-fn root_place(root: Mark) -> Place<'static> {
+pub(super) fn root_place(root: Mark) -> Place<'static> {
     Place {
         schema_path: "",
         shown_path: "",
@@ -42,41 +52,25 @@ fn root_place(root: Mark) -> Place<'static> {
     }
 }
 
-/// Refuses unknown keys, wrong types and values out of range.
-pub(crate) fn check_values(root: &Table, mark: Mark, sources: &Sources) -> Vec<ScenarioError> {
+/// Refuses unknown keys, wrong types and values out of range, and takes them out; what is in order
+/// stays shared.
+pub(crate) fn check_values(root: &mut Table, mark: Mark, sources: &Sources) -> Faults {
     if let Some(error) = wrong_version(root, sources, mark) {
-        return vec![error];
+        return Faults {
+            errors: vec![error],
+            taken: Vec::new(),
+            is_other_version: true,
+        };
     }
-    let mut checker = Checker {
-        sources,
-        errors: Vec::new(),
-    };
-    checker.table(root_place(mark), root);
-    checker.errors
-}
-
-/// Refuses missing required keys and missing choices, after defaults have been filled in.
-pub(crate) fn check_presence(root: &Table, mark: Mark, sources: &Sources) -> Vec<ScenarioError> {
-    let mut checker = Checker {
-        sources,
-        errors: Vec::new(),
-    };
-    checker.presence(root_place(mark), root);
-    checker.errors
-}
-
-/// Refuses a file that gives two alternatives of one group.
-pub(crate) fn check_contradictions(
-    root: &Table,
-    mark: Mark,
-    sources: &Sources,
-) -> Vec<ScenarioError> {
-    let mut checker = Checker {
-        sources,
-        errors: Vec::new(),
-    };
-    checker.contradictions(root_place(mark), root);
-    checker.errors
+    let mut checker = Checker::new(sources);
+    if let Some(rest) = checker.table(root_place(mark), root) {
+        *root = rest;
+    }
+    Faults {
+        errors: checker.errors,
+        taken: checker.taken,
+        is_other_version: false,
+    }
 }
 
 /// A complaint if the file is written for another version of the format.
@@ -93,58 +87,152 @@ fn wrong_version(root: &Table, sources: &Sources, mark: Mark) -> Option<Scenario
     }
 }
 
+impl<'a> Checker<'a> {
+    pub(super) fn new(sources: &'a Sources) -> Self {
+        Self {
+            sources,
+            errors: Vec::new(),
+            taken: Vec::new(),
+        }
+    }
+}
+
 impl Checker<'_> {
     fn complain(&mut self, mark: Mark, message: String) {
         self.errors.push(self.sources.error(mark, message));
     }
 
-    fn table(&mut self, place: Place<'_>, table: &Table) {
+    /// Checks a table; returns what is left of it if something had to be taken out.
+    fn table(&mut self, place: Place<'_>, table: &Table) -> Option<Table> {
+        let mut rest: Option<Table> = None;
+        let mut faulty: Vec<&String> = Vec::new();
         for (name, node) in table {
-            let shown = join(place.shown_path, name);
-            let below = join(place.schema_path, name);
-            let mark = node.mark.unwrap_or(place.mark);
-            let inner = Place {
-                schema_path: &below,
-                shown_path: &shown,
-                mark,
-            };
-            match schema::child(place.schema_path, name) {
-                None => self.unknown(place, name, mark),
-                Some(Child::Leaf(key)) => self.leaf(key, inner, node),
-                Some(Child::Table) => match &node.value {
-                    Value::Table(table) => self.table(inner, table),
-                    other => self.not_a_table(inner, other, &format!("[{shown}]")),
-                },
-                Some(Child::Tables) => self.tables(inner, node),
+            let left = self.value(place, name, node);
+            if let Left::Whole = left {
+                continue;
             }
+            let changed = rest.get_or_insert_with(|| table.clone());
+            if let Left::Rest(value) = left {
+                let mark = node.mark;
+                changed.insert(name.clone(), Node { value, mark });
+            } else {
+                changed.remove(name);
+                faulty.push(name);
+            }
+        }
+        if let Some(rest) = &mut rest {
+            for name in faulty {
+                self.take(place, rest, name, &table[name]);
+            }
+        }
+        rest
+    }
+
+    /// Checks one entry of a table.
+    fn value(&mut self, place: Place<'_>, name: &str, node: &Node) -> Left {
+        let Some(child) = schema::child(place.schema_path, name) else {
+            self.unknown(place, name, node.mark.unwrap_or(place.mark));
+            return Left::Nothing;
+        };
+        let shown = join(place.shown_path, name);
+        let inner = Place {
+            schema_path: &join(place.schema_path, name),
+            shown_path: &shown,
+            mark: node.mark.unwrap_or(place.mark),
+        };
+        match (child, &node.value) {
+            (Child::Leaf(key), _) => self.leaf(key, inner, node),
+            (Child::Table, Value::Table(table)) => match self.table(inner, table) {
+                None => Left::Whole,
+                Some(rest) => Left::Rest(rest.into()),
+            },
+            (Child::Table, other) => {
+                self.not_a_table(inner, other, &format!("[{shown}]"));
+                Left::Nothing
+            }
+            (Child::Tables, _) => self.tables(inner, node),
         }
     }
 
-    fn tables(&mut self, place: Place<'_>, node: &Node) {
+    /// Sets a faulty value aside, or puts it where it must have been meant to stand; what is wrong
+    /// with it there follows from the fault and is not said.
+    fn take(&mut self, place: Place<'_>, rest: &mut Table, name: &str, node: &Node) {
+        let mark = node.mark.unwrap_or(place.mark);
+        let meant = match schema::child(place.schema_path, name) {
+            // Nothing depends on a key that does not exist.
+            None if self.errors.len() > SUGGESTED_MAX => return,
+            None => {
+                let sibling = sole_sibling(place.schema_path, name);
+                match sibling.filter(|sibling| !rest.contains_key(*sibling)) {
+                    Some(sibling) => (sibling.to_owned(), node.clone()),
+                    None => return,
+                }
+            }
+            Some(Child::Tables) if node.as_table().is_some() => {
+                let value = vec![node.clone()].into();
+                let mark = Some(mark);
+                (name.to_owned(), Node { value, mark })
+            }
+            child => {
+                let key = match child {
+                    Some(Child::Leaf(key)) => Some(key),
+                    _ => None,
+                };
+                let shown = join(place.shown_path, name);
+                self.taken.push(Taken { shown, key, mark });
+                return;
+            }
+        };
+        let said = self.errors.len();
+        let shown = join(place.shown_path, &meant.0);
+        let meant = Table::from([meant]);
+        let mut meant = self.table(place, &meant).unwrap_or(meant);
+        self.errors.truncate(said);
+        rest.append(&mut meant);
+        let key = None;
+        self.taken.push(Taken { shown, key, mark });
+    }
+
+    /// Checks an array of tables; what is no table in it becomes an empty one.
+    fn tables(&mut self, place: Place<'_>, node: &Node) -> Left {
+        let header = format!("[[{}]]", place.shown_path);
         let Value::Array(elements) = &node.value else {
-            let header = format!("[[{}]]", place.shown_path);
-            return self.not_a_table(place, &node.value, &header);
+            self.not_a_table(place, &node.value, &header);
+            return Left::Nothing;
         };
         if elements.len() > TABLES_MAX {
             let count = elements.len();
             let shown = place.shown_path;
             let message = format!("{shown} holds {count} tables: allowed up to {TABLES_MAX}");
-            return self.complain(place.mark, message);
+            self.complain(place.mark, message);
+            return Left::Nothing;
         }
+        let mut rest: Option<Vec<Node>> = None;
         for (index, element) in elements.iter().enumerate() {
             let shown = format!("{}[{index}]", place.shown_path);
+            let mark = element.mark.unwrap_or(place.mark);
             let inner = Place {
                 schema_path: &format!("{}[]", place.schema_path),
                 shown_path: &shown,
-                mark: element.mark.unwrap_or(place.mark),
+                mark,
             };
-            match &element.value {
-                Value::Table(table) => self.table(inner, table),
-                other => self.not_a_table(inner, other, &format!("[[{}]]", place.shown_path)),
+            let left = if let Value::Table(table) = &element.value {
+                self.table(inner, table)
+            } else {
+                self.not_a_table(inner, &element.value, &header);
+                let key = None;
+                self.taken.push(Taken { shown, key, mark });
+                Some(Table::new())
+            };
+            if let Some(table) = left {
+                let changed = rest.get_or_insert_with(|| elements.to_vec());
+                changed[index].value = table.into();
             }
         }
+        rest.map_or(Left::Whole, |rest| Left::Rest(rest.into()))
     }
 
+    /// Complains of a value that is no table.
     fn not_a_table(&mut self, place: Place<'_>, value: &Value, header: &str) {
         let message = format!(
             "{} has the wrong type: expected a table, written {header}, got {}",
@@ -154,152 +242,28 @@ impl Checker<'_> {
         self.complain(place.mark, message);
     }
 
+    /// Complains of an unknown key.
     fn unknown(&mut self, place: Place<'_>, name: &str, mark: Mark) {
-        let shown = join(place.shown_path, name);
         // The search for what was meant takes longest, and nobody reads the thousandth complaint.
-        let message = if self.errors.len() < HINTS_MAX {
-            unknown_key(place.schema_path, &shown, name)
+        let message = if self.errors.len() < SUGGESTED_MAX {
+            let table = suggest::Place {
+                schema_path: place.schema_path,
+                shown: place.shown_path,
+                root: None,
+            };
+            unknown_key(table, name)
         } else {
-            format!("unknown key {}", excerpt(&shown))
+            format!("unknown key {}", excerpt(&join(place.shown_path, name)))
         };
-        self.complain(mark, message);
+        let error = self.sources.error(mark, message).at_key();
+        self.errors.push(error);
     }
 
-    fn leaf(&mut self, key: &Key, place: Place<'_>, node: &Node) {
-        if let Err(fault) = check_leaf(key, place.shown_path, node) {
-            self.complain(fault.mark.unwrap_or(place.mark), fault.message);
-        }
-    }
-
-    fn presence(&mut self, place: Place<'_>, table: &Table) {
-        let group = Group::of_table(place.schema_path);
-        if let Some(group) = group
-            && !group
-                .alternatives
-                .iter()
-                .any(|name| table.contains_key(*name))
-        {
-            let message = format!(
-                "{} needs exactly one {}: {}",
-                place.shown_path,
-                group.noun,
-                choices(group, place.shown_path)
-            );
-            self.complain(place.mark, message);
-        }
-        for (name, child) in schema::children(place.schema_path) {
-            let node = table.get(name);
-            let is_settled = match child {
-                Child::Leaf(key) => node.is_some() || key.presence != Presence::Required,
-                Child::Table | Child::Tables => node.is_none(),
-            };
-            if is_settled {
-                continue;
-            }
-            let shown = join(place.shown_path, name);
-            let below = join(place.schema_path, name);
-            let mark = node.and_then(|node| node.mark).unwrap_or(place.mark);
-            match (child, node) {
-                (Child::Leaf(key), None) if key.presence == Presence::Required => {
-                    let message = format!(
-                        "{shown} is required: expected {} ({})",
-                        key.expected(),
-                        key.doc.trim_end_matches('.')
-                    );
-                    self.complain(mark, message);
-                }
-                (Child::Table, Some(node)) => {
-                    let inner = Place {
-                        schema_path: &below,
-                        shown_path: &shown,
-                        mark,
-                    };
-                    if let Some(table) = node.as_table() {
-                        self.presence(inner, table);
-                    }
-                }
-                (Child::Tables, Some(node)) => self.presence_in_tables(&below, &shown, mark, node),
-                _ => {}
-            }
-        }
-    }
-
-    fn presence_in_tables(&mut self, below: &str, shown: &str, mark: Mark, node: &Node) {
-        for (index, element) in node.as_array().unwrap_or_default().iter().enumerate() {
-            let inner = Place {
-                schema_path: &format!("{below}[]"),
-                shown_path: &format!("{shown}[{index}]"),
-                mark: element.mark.unwrap_or(mark),
-            };
-            if let Some(table) = element.as_table() {
-                self.presence(inner, table);
-            }
-        }
-    }
-
-    fn contradictions(&mut self, place: Place<'_>, table: &Table) {
-        if let Some(group) = Group::of_table(place.schema_path) {
-            let mut given: Vec<(Mark, &str)> = group
-                .alternatives
-                .iter()
-                .filter_map(|name| Some((table.get(*name)?.mark?, *name)))
-                .collect();
-            given.sort_unstable();
-            if let [(_, first), .., (mark, last)] = given[..] {
-                let message = format!(
-                    "{} contradicts {}: give exactly one {}: {}",
-                    join(place.shown_path, last),
-                    join(place.shown_path, first),
-                    group.noun,
-                    choices(group, place.shown_path)
-                );
-                self.complain(mark, message);
-            }
-        }
-        for (name, node) in table {
-            let mark = node.mark.unwrap_or(place.mark);
-            let shown = join(place.shown_path, name);
-            let below = join(place.schema_path, name);
-            if let Some(table) = node.as_table() {
-                let inner = Place {
-                    schema_path: &below,
-                    shown_path: &shown,
-                    mark,
-                };
-                self.contradictions(inner, table);
-            }
-            for (index, element) in node.as_array().unwrap_or_default().iter().enumerate() {
-                if let Some(table) = element.as_table() {
-                    let inner = Place {
-                        schema_path: &format!("{below}[]"),
-                        shown_path: &format!("{shown}[{index}]"),
-                        mark: element.mark.unwrap_or(mark),
-                    };
-                    self.contradictions(inner, table);
-                }
-            }
-        }
-    }
-}
-
-/// The alternatives of a group as they are written in a file.
-fn choices(group: &Group, shown_path: &str) -> String {
-    let paths: Vec<String> = group
-        .alternatives
-        .iter()
-        .map(|name| join(shown_path, name))
-        .collect();
-    paths.join(", ")
-}
-
-/// The complaint about a key that nobody knows.
-pub(crate) fn unknown_key(schema_path: &str, shown: &str, name: &str) -> String {
-    let shown = excerpt(shown);
-    if name.len() > KNOWN_LENGTH_MAX {
-        return format!("unknown key {shown}");
-    }
-    match schema::nearest(schema_path, name) {
-        (nearest, true) => format!("unknown key {shown}: did you mean {nearest}?"),
-        (nearest, false) => format!("unknown key {shown}: the nearest known key is {nearest}"),
+    fn leaf(&mut self, key: &Key, place: Place<'_>, node: &Node) -> Left {
+        let Err(fault) = check_leaf(key, place.shown_path, node) else {
+            return Left::Whole;
+        };
+        self.complain(fault.mark.unwrap_or(place.mark), fault.message);
+        Left::Nothing
     }
 }

@@ -6,12 +6,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::chain;
 use super::compensation_config::CompensationParameters;
+use super::draft::Draft;
 use super::error::{Location, ScenarioError};
 use super::input::{self, Input};
-use super::resolved::{Draft, InputFile, Resolved};
+use super::resolved::{InputFile, Resolved};
 use super::source::{Label, Mark, Sources, shown_path};
-use super::suite;
 use super::tree::{Node, Table, Value, parse_document};
 
 /// The table of a scenario and of a calibration file.
@@ -99,8 +100,11 @@ pub fn load_calibration(
         recorded: None,
         warnings: Vec::new(),
         remarks: Vec::new(),
+        is_record: true,
+        is_partial: false,
     }
-    .resolve()?;
+    .resolve()
+    .map_err(|unsound| unsound.errors)?;
     let found = resolved.scenario.compensation;
     let found = found.and_then(|compensation| compensation.parameters);
     let digest = inputs.into_iter().next().map(|input| input.digest);
@@ -196,7 +200,7 @@ fn campaign(named: &Named, sources: &Sources) -> Result<Resolved, Vec<ScenarioEr
     if !named.path.is_file() {
         named.read(sources).map_err(|error| vec![error])?;
     }
-    let draft = suite::load_campaign(&named.path, &named.label)?;
+    let draft = chain::load_campaign(&named.path, &named.label)?;
     resolve(draft)
 }
 
@@ -226,6 +230,8 @@ fn written_campaign(
         recorded: None,
         warnings: Vec::new(),
         remarks: Vec::new(),
+        is_record: true,
+        is_partial: false,
     })
 }
 
@@ -247,5 +253,5 @@ fn resolve(draft: Draft) -> Result<Resolved, Vec<ScenarioError>> {
             return Err(vec![draft.sources.error(mark, message)]);
         }
     }
-    draft.resolve()
+    draft.resolve().map_err(|unsound| unsound.errors)
 }

@@ -1,6 +1,7 @@
 //! Checks across values that need no physics beyond the transit time of the coil.
 
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
+use crate::wording::{counted, is_misspelling, number};
 
 use super::cross_comparison;
 use super::cross_compensation;
@@ -8,11 +9,10 @@ use super::cross_filter;
 use super::cross_gyro;
 use super::cross_multi_sine;
 use super::cross_optics;
-use super::cross_output;
 use super::cross_servo;
 use super::cross_vibration;
 use super::error::ScenarioError;
-use super::filter_config::{FilterKind, Pipeline};
+use super::filter_config::FilterKind;
 use super::injection_config::InjectionConfig;
 use super::resolved::Resolved;
 use super::turntable_config::{MotionConfig, MultiSineConfig};
@@ -26,10 +26,6 @@ pub(super) const SAMPLES_PER_CYCLE_MIN: f64 = 8.0;
 /// Relative slack when times are compared, so that `3 x 0.1 s` fits into 0.3 s.
 pub(super) const TIME_SLACK: f64 = 1e-9;
 
-/// Keys that only a hardware pipeline of either kind reads.
-const RLS_HARDWARE_KEYS: &[&str] = &["number_format", "clock_mhz", "division", "update_order"];
-const LMS_HARDWARE_KEYS: &[&str] = &["number_format", "clock_mhz"];
-
 /// Every complaint about a scenario whose single values are all in order.
 pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     let mut checks = Checks {
@@ -37,7 +33,6 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
         errors: Vec::new(),
     };
     checks.names();
-    checks.hardware_keys();
     checks.smoothing_polynomials();
     for (key, message) in cross_filter::check(&resolved.scenario.filters) {
         checks.complain(&key, message);
@@ -64,7 +59,6 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     for (key_path, message) in cross_servo::check(resolved) {
         checks.complain(&key_path, message);
     }
-    checks.errors.extend(cross_output::check(resolved));
     checks.errors
 }
 
@@ -98,32 +92,6 @@ impl Checks<'_> {
                     filter.name
                 );
                 self.complain(&path, message);
-            }
-        }
-    }
-
-    /// A hardware key that would change something must not stand where nothing reads it.
-    fn hardware_keys(&mut self) {
-        for (index, filter) in self.resolved.scenario.filters.iter().enumerate() {
-            let (kind, pipeline, keys) = match &filter.kind {
-                FilterKind::Rls(config) => ("rls", config.pipeline, RLS_HARDWARE_KEYS),
-                FilterKind::Lms(config) => ("lms", config.pipeline, LMS_HARDWARE_KEYS),
-                FilterKind::SignLms(config) => ("sign_lms", config.pipeline, LMS_HARDWARE_KEYS),
-                _ => continue,
-            };
-            if pipeline == Pipeline::Fpga {
-                continue;
-            }
-            for key in keys {
-                let path = format!("filter[{index}].{kind}.{key}");
-                let schema_path = format!("filter[].{kind}.{key}");
-                if let Some(value) = self.resolved.departure(&path, &schema_path) {
-                    let message = format!(
-                        "{path} = {value} has no effect: pipeline = \"textbook\" has no hardware; \
-                         set pipeline = \"fpga\" or leave the key out"
-                    );
-                    self.complain(&path, message);
-                }
             }
         }
     }
@@ -170,15 +138,18 @@ impl Checks<'_> {
                 let needed_s = count_f64 * steps.dwell_s;
                 if needed_s > scenario.duration_s * (1.0 + TIME_SLACK) {
                     let message = format!(
-                        "turntable.steps.dwell_s = {:?} s is too long: {count} rates take {needed_s:?} s, \
+                        "turntable.steps.dwell_s = {:?} s is too long: {} take {} s, \
                          but duration_s = {:?} s",
-                        steps.dwell_s, scenario.duration_s
+                        steps.dwell_s,
+                        counted(count, "rate"),
+                        number(needed_s),
+                        scenario.duration_s
                     );
                     self.complain("turntable.steps.dwell_s", message);
                 }
                 let settle = "turntable.steps.settle_s";
                 // The default is no wish: short dwells merely have no scale factor.
-                if steps.settle_s >= steps.dwell_s && self.resolved.is_written(settle) {
+                if steps.settle_s >= steps.dwell_s && self.resolved.is_asked_for(settle) {
                     let message = format!(
                         "{settle} = {:?} s leaves nothing of turntable.steps.dwell_s = {:?} s",
                         steps.settle_s, steps.dwell_s
@@ -262,7 +233,7 @@ impl Checks<'_> {
             self.resolved.scenario.bias_averaging_time_s,
             self.sample_period_s(),
         );
-        if asked_s < sample_s * (1.0 - TIME_SLACK) && self.resolved.is_written(KEY) {
+        if asked_s < sample_s * (1.0 - TIME_SLACK) && self.resolved.is_asked_for(KEY) {
             let message = format!(
                 "{KEY} = {asked_s:?} s is shorter than a sample of this gyro: allowed from \
                  {sample_s:.9} s on, or make the samples of gyro.output shorter"
@@ -310,19 +281,14 @@ impl Checks<'_> {
         }
     }
 
-    /// Checks `<channel>.<metric>`.
+    /// Checks the channel of `<channel>.<metric>`; a name without one is refused where metrics are
+    /// known.
     fn metric(&mut self, path: &str, metric: &str) {
-        match metric.rsplit_once('.') {
-            Some((channel, name)) if !channel.is_empty() && !name.is_empty() => {
-                self.channel(path, metric, channel);
-            }
-            _ => {
-                let message = format!(
-                    "{path} = \"{metric}\" names no channel: expected <channel>.<metric>, \
-                     as in raw.angle_random_walk_deg_per_sqrt_h"
-                );
-                self.complain(path, message);
-            }
+        if let Some((channel, name)) = metric.rsplit_once('.')
+            && !channel.is_empty()
+            && !name.is_empty()
+        {
+            self.channel(path, metric, channel);
         }
     }
 
@@ -332,8 +298,13 @@ impl Checks<'_> {
         if known.iter().any(|name| name == channel) {
             return;
         }
+        let mut alike = known.iter().filter(|name| is_misspelling(channel, name));
+        let hint = match (alike.next(), alike.next()) {
+            (Some(one), None) => format!(" (did you mean {one}?)"),
+            _ => String::new(),
+        };
         let message = format!(
-            "{path} = \"{written}\": there is no channel {channel}: expected one of {}",
+            "{path} = \"{written}\": there is no channel {channel}: expected one of {}{hint}",
             known.join(", ")
         );
         self.complain(path, message);

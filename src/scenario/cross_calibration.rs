@@ -2,6 +2,7 @@
 
 use super::calibration_config::CampaignConfig;
 use super::cross::{Checks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
+use crate::wording::number;
 
 /// Fewest output samples of a group: twenty blocks of two.
 const GROUP_SAMPLES_MIN: f64 = 40.0;
@@ -26,14 +27,6 @@ impl Checks<'_> {
             self.complain(RATES, message);
             return;
         }
-        let along = "turntable.mounting.axis_along_table";
-        // A manifest writes every key: the default is no wish.
-        if self.resolved.departure(along, along).is_some() {
-            let message = format!(
-                "{along} has no effect beside turntable.calibration, whose axes say it for each group"
-            );
-            self.complain(along, message);
-        }
         self.campaign_length(campaign);
         self.campaign_pauses(campaign);
         if campaign.whole_turns {
@@ -47,8 +40,9 @@ impl Checks<'_> {
         if needed_s > duration_s * (1.0 + TIME_SLACK) {
             let message = format!(
                 "duration_s = {duration_s:?} s is too short: the {} groups of turntable.calibration \
-                 with their pauses take {needed_s:?} s",
-                campaign.axes.len()
+                 with their pauses take {} s",
+                campaign.axes.len(),
+                number(needed_s)
             );
             self.complain("duration_s", message);
         }

@@ -3,7 +3,7 @@
 use super::config::Scenario;
 use super::thermal_config::{
     PowerConfig, TemperatureConfig, TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig,
-    ThermalWarmUp, Winding,
+    Winding,
 };
 
 /// Key to blame and what is wrong with it, for every contradiction.
@@ -16,12 +16,6 @@ pub(crate) fn check(scenario: &Scenario) -> Vec<(String, String)> {
     };
     found.extend(winding(thermal, scenario.gyro.coil.length_m));
     found.extend(power(thermal));
-    if thermal.warm_up == ThermalWarmUp::Cold && thermal.self_heating_c <= 0.0 {
-        found.push(complaint(
-            "gyro.thermal.warm_up",
-            "\"cold\" has no effect: without gyro.thermal.self_heating_c there is nothing to warm up",
-        ));
-    }
     found
 }
 

@@ -5,16 +5,7 @@ use crate::units::s_to_us;
 use super::resolved::Resolved;
 use super::servo_config::DirectDriveServoConfig;
 use super::turntable_config::ServoConfig;
-
-/// Keys that only a table with an encoder reads.
-const ENCODER_KEYS: [&str; 6] = [
-    "latency_us",
-    "eccentricity_error_arcsec",
-    "eccentricity_phase_deg",
-    "interpolation_error_arcsec",
-    "interpolation_phase_deg",
-    "lines_per_revolution",
-];
+use crate::wording::number;
 
 /// Fewest ticks of the controller per cycle of its natural frequency: at ten, sampling alone turns
 /// the phase of the loop by 36 deg.
@@ -27,25 +18,11 @@ const FRICTION_STIFFNESS_MAX_PER_S: f64 = 1e6;
 pub(crate) fn check(resolved: &Resolved) -> Vec<(String, String)> {
     let mut errors = Vec::new();
     let turntable = &resolved.scenario.turntable;
-    if turntable.encoder.resolution_arcsec.is_none() {
-        errors.extend(ENCODER_KEYS.iter().filter_map(|key| idle(resolved, key)));
-    }
     if let ServoConfig::DirectDrive(servo) = &turntable.servo {
         check_friction(servo, &mut errors);
         check_loop(servo, turntable.encoder.latency_us, &mut errors);
     }
     errors
-}
-
-/// The complaint about a key that would change something where nothing reads it.
-fn idle(resolved: &Resolved, key: &str) -> Option<(String, String)> {
-    let path = format!("turntable.encoder.{key}");
-    let value = resolved.departure(&path, &path)?;
-    let message = format!(
-        "{path} = {value} has no effect: the table has no encoder; give \
-         turntable.encoder.resolution_arcsec (0.0 for one that does not round)"
-    );
-    Some((path, message))
 }
 
 fn servo_key(key: &str) -> String {
@@ -91,9 +68,9 @@ fn check_loop(servo: &DirectDriveServoConfig, latency_us: f64, errors: &mut Vec<
     if servo.integral_ratio >= 2.0 * servo.damping_ratio {
         let path = servo_key("integral_ratio");
         let message = format!(
-            "{path} = {:?} is unstable: it must stay below 2 damping_ratio = {:?}",
+            "{path} = {:?} is unstable: it must stay below 2 damping_ratio = {}",
             servo.integral_ratio,
-            2.0 * servo.damping_ratio
+            number(2.0 * servo.damping_ratio)
         );
         errors.push((path, message));
     }
@@ -102,7 +79,8 @@ fn check_loop(servo: &DirectDriveServoConfig, latency_us: f64, errors: &mut Vec<
         let path = "turntable.encoder.latency_us".to_owned();
         let message = format!(
             "{path} = {latency_us:?} us is longer than a tick of the servo that reads the \
-             encoder: allowed up to {period_us:?} us"
+             encoder: allowed up to {} us",
+            number(period_us)
         );
         errors.push((path, message));
     }

@@ -6,6 +6,7 @@ use super::stairs::{Stairs, TEST_RATES_MIN};
 use super::turntable_config::{
     ChirpConfig, ScaleFactorTestConfig, ScriptPoints, SwingConfig, TrapezoidConfig,
 };
+use crate::wording::number;
 
 impl Checks<'_> {
     /// Refuses ramps of a few samples and trapezoids that the record cuts off.
@@ -32,9 +33,10 @@ impl Checks<'_> {
         let needed_s = trapezoid.length_s();
         if needed_s > duration_s * (1.0 + TIME_SLACK) {
             let message = format!(
-                "turntable.trapezoid.cycles = {}: the motion takes {needed_s:?} s, but duration_s = \
+                "turntable.trapezoid.cycles = {}: the motion takes {} s, but duration_s = \
                  {duration_s:?} s",
-                trapezoid.cycles
+                trapezoid.cycles,
+                number(needed_s)
             );
             let path = "turntable.trapezoid.cycles";
             let is_written = self.resolved.is_written(path);
@@ -42,20 +44,13 @@ impl Checks<'_> {
         }
     }
 
-    /// Refuses to reset filters where no rate follows another, and where twins would go on.
+    /// Refuses to reset filters where twins would go on.
     pub(super) fn filter_state(&mut self) {
         let scenario = &self.resolved.scenario;
         if scenario.trial.filter_state == FilterState::Carried {
             return;
         }
         let key = "trial.filter_state";
-        if Stairs::of(&scenario.turntable.motion).is_none() {
-            let message = format!(
-                "{key} = \"reset\" needs dwells to begin afresh at: give [turntable.steps] or \
-                 [turntable.scale_factor_test]"
-            );
-            self.complain(key, message);
-        }
         if scenario.trial.rate_gain {
             let message = format!(
                 "{key} = \"reset\" contradicts trial.rate_gain = true, which measures filters \
@@ -171,10 +166,10 @@ impl Checks<'_> {
         if let Some(before) = close {
             let (earlier, later) = (times[before], times[before + 1]);
             let message = format!(
-                "{} = {later:?} s is too early: allowed from {:?} s, one output sample after the \
+                "{} = {later:?} s is too early: allowed from {} s, one output sample after the \
                  {earlier:?} s before it",
                 path(before + 1),
-                earlier + period_s
+                number(earlier + period_s)
             );
             self.complain(&path(before + 1), message);
         }

@@ -90,14 +90,6 @@ fn check_random(gyro: &GyroConfig, random: &RandomVibrationConfig) -> Vec<(&'sta
                        rate_psd_deg2_per_s2_per_hz or both";
         found.push(("gyro.vibration.random", message.to_owned()));
     }
-    if !random.coherent && random.rate_phase_deg != 0.0 {
-        let message = format!(
-            "gyro.vibration.random.rate_phase_deg = {:?} deg has no effect: without coherent = true \
-             the rate has no fixed phase to the acceleration",
-            random.rate_phase_deg
-        );
-        found.push(("gyro.vibration.random.rate_phase_deg", message));
-    }
     found
 }
 

@@ -4,6 +4,7 @@ use super::excerpt::excerpt;
 use super::schema::{self, Key, Kind, join};
 use super::source::Mark;
 use super::tree::{Node, Value};
+use crate::wording::is_misspelling;
 
 /// Most values of an array: as many as the rows of a script.
 const ELEMENTS_MAX: usize = 100_000;
@@ -121,16 +122,35 @@ fn check_words(key: &Key, shown: &str, words: &[&str], values: &[Node]) -> Resul
 /// Most bytes of a word that may stand for a known one: all are shorter.
 const WORD_LENGTH_MAX: usize = 128;
 
-/// The nearest known word, if it may be what was meant.
+/// Words of the field for some choices.
+const SYNONYMS: &[(&str, &str)] = &[
+    ("adev", "plain"),
+    ("oadev", "overlapping"),
+    ("mdev", "modified"),
+    ("hdev", "hadamard"),
+    ("double", "binary64"),
+    ("float64", "binary64"),
+    ("float", "binary32"),
+    ("float32", "binary32"),
+    ("single", "binary32"),
+    ("quadrupolar", "quadrupole"),
+];
+
+/// The known word that may be what was meant: the only one that is a slip away.
 fn hint(words: &[&str], word: &str) -> String {
     if word.len() > WORD_LENGTH_MAX {
         return String::new();
     }
-    let near = words
-        .iter()
-        .min_by_key(|known| strsim::damerau_levenshtein(known, word))
-        .filter(|known| strsim::damerau_levenshtein(known, word) <= 2.max(known.len() / 3));
-    near.map_or_else(String::new, |known| format!(" (did you mean \"{known}\"?)"))
+    let means = |known: &&&str| SYNONYMS.contains(&(word, known));
+    let synonym = words.iter().find(means);
+    let mut alike = words.iter().filter(|known| is_misspelling(word, known));
+    let only = match (alike.next(), alike.next()) {
+        (Some(one), None) => Some(one),
+        _ => None,
+    };
+    synonym
+        .or(only)
+        .map_or_else(String::new, |known| format!(" (did you mean \"{known}\"?)"))
 }
 
 /// Checks the numbers of an array; the first wrong one is blamed where it stands.

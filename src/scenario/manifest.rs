@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use super::discover::identity;
+use super::draft::{Draft, Recorded};
 use super::error::{ScenarioError, portable_place};
 use super::excerpt::excerpt;
 use super::input;
 use super::matrix::POINTS_MAX;
-use super::resolved::{Draft, InputFile, Recorded, Resolved, SweepPoint};
+use super::resolved::{InputFile, Resolved, SweepPoint};
 use super::source::{Mark, Sources, shown_path};
 use super::tree::{Node, Table, Value};
 
@@ -126,6 +127,8 @@ pub(crate) fn read(
         recorded: Some(recorded),
         warnings,
         remarks: Vec::new(),
+        is_record: true,
+        is_partial: false,
     };
     draft.remarks = changes(&draft, start, version == TOOL_VERSION);
     Ok(draft)

@@ -4,8 +4,9 @@ use std::cmp::Reverse;
 use std::sync::Arc;
 
 use super::address::{self, Step};
+use super::draft::{Draft, Unsound};
 use super::error::ScenarioError;
-use super::resolved::{Draft, Resolved, SweepPoint};
+use super::resolved::{Resolved, SweepPoint};
 use super::schema::Key;
 use super::script;
 use super::source::{Mark, Sources};
@@ -20,6 +21,9 @@ const TRIALS_MAX: usize = 100;
 
 /// Most numbers in the arrays of all points of one sweep: a script has two in a row.
 const NUMBERS_MAX: usize = 10_000_000;
+
+/// The path of a swept key, and where the matrix names it.
+pub(super) type Swept = (Vec<Step>, Mark);
 
 /// A swept key.
 struct Axis {
@@ -39,63 +43,105 @@ impl Axis {
     }
 }
 
-/// Resolves every point of a sweep, in the order of their indices.
+/// Resolves every point of a sweep, in the order of their indices, and hands it over with what is
+/// swept.
 ///
 /// # Errors
 /// Every complaint about the matrix; if it is in order, every complaint about its points.
-pub(crate) fn expand(
+pub(super) fn expand(
     draft: &Draft,
     matrix: &Node,
     set_paths: &[Vec<Step>],
-    visit: &mut dyn FnMut(Resolved),
-) -> Result<(), Vec<ScenarioError>> {
-    let axes = axes(draft, matrix, set_paths)?;
+    visit: &mut dyn FnMut(Resolved, &[Swept]),
+) -> Result<(), Unsound> {
+    let (axes, errors) = axes(draft, matrix, set_paths)?;
+    if !errors.is_empty() {
+        // What else is wrong is seen at the first point of the axes that are in order.
+        let first = point(draft, &axes, &point_values(&axes, 0));
+        let mut unsound = first.err().unwrap_or_default();
+        unsound.errors.splice(0..0, errors);
+        return Err(unsound);
+    }
     let count = axes
         .iter()
         .try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len()))
         .filter(|count| *count <= POINTS_MAX);
     let Some(count) = count else {
         let message = format!("matrix has too many points: allowed 1..={POINTS_MAX}");
-        return Err(vec![
-            draft
-                .sources
-                .error(matrix.mark.unwrap_or(draft.root_mark), message),
-        ]);
+        let mark = matrix.mark.unwrap_or(draft.root_mark);
+        return Err(vec![draft.sources.error(mark, message)].into());
     };
     let base = base_values(draft, &axes);
-    let mut errors = Vec::new();
-    let mut template: Option<Template> = None;
-    let mut has_template = true;
+    let swept = axes.iter().map(|axis| (axis.path.clone(), axis.mark));
+    let swept: Vec<Swept> = swept.collect();
+    let mut unsound = Unsound::default();
+    let mut points = Points::new(draft, &axes);
     for index in 0..count {
-        let swept = point_values(&axes, index);
-        let run = match &template {
-            Some(template) => template.point(&swept),
-            None => point(draft, &axes, &swept),
-        };
-        match run {
+        let is_first = points.template.is_none() && points.has_template;
+        match points.resolve(index, unsound.reading.is_none()) {
             Ok(mut resolved) => {
-                if template.is_none() && has_template {
-                    let swept = axes.iter().map(|axis| (&axis.path[..], axis.key));
-                    template = Template::of(&resolved, swept);
-                    has_template = template.is_some();
-                    if let Err(error) = check_size(&resolved, matrix, count) {
-                        return Err(vec![error]);
-                    }
+                if is_first {
+                    check_size(&resolved, matrix, count).map_err(|error| vec![error])?;
                 }
                 resolved.sweep = Some(sweep_point(&resolved, &axes, index, count));
                 resolved.is_base_point = base.is_some() && base == values(&resolved, &axes);
-                visit(resolved);
+                visit(resolved, &swept);
             }
-            Err(more) => errors.extend(more),
+            Err(more) => {
+                unsound.errors.extend(more.errors);
+                unsound.reading = unsound.reading.or(more.reading);
+            }
         }
-        if template.is_none() && index + 1 >= TRIALS_MAX && !errors.is_empty() {
+        let has_tried = points.template.is_none() && index + 1 >= TRIALS_MAX;
+        if has_tried && !unsound.errors.is_empty() {
             break;
         }
     }
-    if errors.is_empty() {
+    if unsound.errors.is_empty() {
         Ok(())
     } else {
-        Err(errors)
+        Err(unsound)
+    }
+}
+
+/// The points of a sweep, resolved by the pattern of the first sound one.
+struct Points<'a> {
+    draft: &'a Draft,
+    axes: &'a [Axis],
+    template: Option<Template>,
+    /// Whether there is a pattern, or may still be one.
+    has_template: bool,
+}
+
+impl<'a> Points<'a> {
+    fn new(draft: &'a Draft, axes: &'a [Axis]) -> Self {
+        Self {
+            draft,
+            axes,
+            template: None,
+            has_template: true,
+        }
+    }
+
+    /// Resolves one point.
+    ///
+    /// * `is_thorough`: whether a point that is not sound is resolved from the beginning, which says
+    ///   how it can be checked further.
+    fn resolve(&mut self, index: usize, is_thorough: bool) -> Result<Resolved, Unsound> {
+        let values = point_values(self.axes, index);
+        let found = self.template.as_ref().map(|it| it.point(&values));
+        match found {
+            Some(Err(errors)) if !is_thorough => return Err(errors.into()),
+            Some(Ok(resolved)) => return Ok(resolved),
+            Some(Err(_)) | None => {}
+        }
+        let resolved = point(self.draft, self.axes, &values)?;
+        if self.template.is_none() && self.has_template {
+            let swept = self.axes.iter().map(|axis| (&axis.path[..], axis.key));
+            self.template = Template::of(&resolved, swept);
+            self.has_template = self.template.is_some();
+        }
+        Ok(resolved)
     }
 }
 
@@ -129,7 +175,7 @@ fn point_values(axes: &[Axis], index: usize) -> Vec<Node> {
 }
 
 /// Resolves one point from the beginning.
-fn point(draft: &Draft, axes: &[Axis], values: &[Node]) -> Result<Resolved, Vec<ScenarioError>> {
+fn point(draft: &Draft, axes: &[Axis], values: &[Node]) -> Result<Resolved, Unsound> {
     let mut draft = draft.clone();
     for (axis, value) in axes.iter().zip(values).rev() {
         let mark = value.mark.unwrap_or(axis.mark);
@@ -165,12 +211,12 @@ fn check_size(resolved: &Resolved, matrix: &Node, count: usize) -> Result<(), Sc
     Err(resolved.error(matrix.mark, message))
 }
 
-/// The swept keys in the order of the file, those of bases first.
+/// The swept keys in the order of the file, those of bases first, and what is wrong with others.
 fn axes(
     draft: &Draft,
     matrix: &Node,
     set_paths: &[Vec<Step>],
-) -> Result<Vec<Axis>, Vec<ScenarioError>> {
+) -> Result<(Vec<Axis>, Vec<ScenarioError>), Vec<ScenarioError>> {
     let sources: &Arc<Sources> = &draft.sources;
     let matrix_mark = matrix.mark.unwrap_or(draft.root_mark);
     let Value::Table(table) = &matrix.value else {
@@ -203,11 +249,7 @@ fn axes(
             "matrix is empty: expected keys and their values, as in \"gyro.source.power_uw\" = [0.5, 1.0]",
         ));
     }
-    if errors.is_empty() {
-        Ok(axes)
-    } else {
-        Err(errors)
-    }
+    Ok((axes, errors))
 }
 
 /// Checks one swept key.

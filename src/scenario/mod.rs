@@ -7,8 +7,10 @@
 mod address;
 mod assembly_config;
 mod calibration_config;
+mod chain;
 mod channels;
 mod check;
+mod clashes;
 mod comparison_config;
 mod compensation_config;
 mod compensation_source;
@@ -21,18 +23,21 @@ mod cross_filter;
 mod cross_gyro;
 mod cross_multi_sine;
 mod cross_optics;
-mod cross_output;
 mod cross_servo;
 mod cross_turntable;
 mod cross_vibration;
 mod defaults;
 mod deserialize;
 mod discover;
+mod draft;
 mod emit;
 mod error;
 mod excerpt;
+mod faults;
 mod filter_config;
 mod gyro_config;
+mod inert;
+mod inert_rules;
 mod injection_config;
 mod input;
 mod json_schema;
@@ -41,13 +46,17 @@ mod leaf;
 mod manifest;
 mod matrix;
 mod numbers;
+mod presence;
 mod resolved;
 mod schema;
 mod script;
 mod servo_config;
 mod source;
 mod stairs;
+mod stand_in;
+mod suggest;
 mod suite;
+mod synonyms;
 mod template;
 mod thermal_config;
 mod tree;
@@ -71,8 +80,9 @@ pub use config::{
 };
 pub(crate) use cross_comparison::slug;
 pub use defaults::{reference_calibration, reference_toml};
-pub(crate) use error::portable_place;
+pub(crate) use draft::UnsoundReading;
 pub use error::{Location, ScenarioError};
+pub(crate) use error::{in_both, in_order, portable_place};
 pub use excerpt::{bounded, excerpt};
 pub use filter_config::{
     ButterworthFilterConfig, ConstantUnit, ConstrainedRlsFilterConfig, DesiredSignal, Division,
@@ -92,6 +102,7 @@ pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
 pub use stairs::{Stairs, TEST_RATES_MIN};
+pub(crate) use suite::read_suite;
 pub use suite::{load_base_or_scenario, load_suite, visit_suite};
 pub use thermal_config::{
     ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig, SoakConfig,
@@ -109,4 +120,8 @@ pub use vibration_config::{
 };
 
 #[cfg(test)]
+mod inert_tests;
+#[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wish_tests;

@@ -3,16 +3,12 @@
 use std::sync::Arc;
 
 use super::address::{self, nearest_mark};
-use super::check::{check_presence, check_values};
-use super::compensation_source;
 use super::config::Scenario;
 use super::cross;
-use super::defaults::{default_of, fill};
+use super::defaults::default_of;
 use super::deserialize::from_table;
 use super::emit::to_toml;
 use super::error::{Location, ScenarioError};
-use super::numbers;
-use super::script;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
 
@@ -62,13 +58,15 @@ pub struct Resolved {
     /// The calibration scenario whose result its compensation applies.
     pub campaign: Option<Arc<Resolved>>,
     /// Where its gates were written, if a manifest records that.
-    gate_places: Vec<String>,
+    pub(super) gate_places: Vec<String>,
     /// Every value, defaults included.
-    tree: Table,
+    pub(super) tree: Table,
     /// What the marks of the tree point into.
-    sources: Arc<Sources>,
+    pub(super) sources: Arc<Sources>,
     /// Beginning of the scenario's own file.
-    root_mark: Mark,
+    pub(super) root_mark: Mark,
+    /// Whether that file is a record rather than a scenario that somebody wrote.
+    pub(super) is_record: bool,
 }
 
 /// Equality of the run; where its values were written does not count.
@@ -79,118 +77,6 @@ impl PartialEq for Resolved {
             && self.digest == other.digest
             && self.inputs == other.inputs
             && self.sweep == other.sweep
-    }
-}
-
-/// What a scenario is resolved from.
-#[derive(Clone, Debug)]
-pub(crate) struct Draft {
-    /// Merged values, without defaults.
-    pub(crate) root: Table,
-    /// Beginning of the scenario's own file.
-    pub(crate) root_mark: Mark,
-    /// What the marks point into.
-    pub(crate) sources: Arc<Sources>,
-    /// Name of the scenario's own file.
-    pub(crate) file: String,
-    /// Files it was read from.
-    pub(crate) inputs: Vec<InputFile>,
-    /// What a manifest says about the origin of its scenario.
-    pub(crate) recorded: Option<Recorded>,
-    /// What is worth saying about how it was read.
-    pub(crate) warnings: Vec<String>,
-    /// What is worth saying but must not stand in results.
-    pub(crate) remarks: Vec<String>,
-}
-
-/// The origin of a resolved scenario, as a manifest records it.
-#[derive(Clone, Debug)]
-pub(crate) struct Recorded {
-    /// Digest of the scenario that the record is true of.
-    pub(crate) digest: String,
-    /// Name of the scenario's own file.
-    pub(crate) file: String,
-    /// Files it was read from.
-    pub(crate) inputs: Vec<InputFile>,
-    /// Which point of a sweep it was.
-    pub(crate) sweep: Option<SweepPoint>,
-    /// Where its gates were written.
-    pub(crate) gate_places: Vec<String>,
-}
-
-impl Recorded {
-    /// The first swept key that has another value than the record says, and what that is.
-    pub(crate) fn broken_point(&self, root: &Table) -> Option<(&str, &str)> {
-        broken(root, self.sweep.as_ref()?)
-    }
-}
-
-impl Draft {
-    /// Checks every value, fills in the defaults and checks across values.
-    ///
-    /// # Errors
-    /// Every complaint about the scenario.
-    pub(crate) fn resolve(mut self) -> Result<Resolved, Vec<ScenarioError>> {
-        let sources = Arc::make_mut(&mut self.sources);
-        script::read_into(&mut self.root, sources, &mut self.inputs)
-            .map_err(|error| vec![error])?;
-        let campaign = compensation_source::read_into(&mut self.root, sources, &mut self.inputs)?;
-        let mut errors = check_values(&self.root, self.root_mark, &self.sources);
-        numbers::settle(&mut self.root);
-        if errors.is_empty() || !self.is_other_version() {
-            fill(&mut self.root);
-            errors.extend(check_presence(&self.root, self.root_mark, &self.sources));
-        }
-        if !errors.is_empty() {
-            return Err(errors);
-        }
-        let scenario = configuration(&self.root, self.root_mark, &self.sources)?;
-        let digest = digest(&to_toml(&self.root, ""));
-        let origin = match self.recorded {
-            Some(recorded)
-                if recorded.digest == digest && recorded.broken_point(&self.root).is_none() =>
-            {
-                recorded
-            }
-            // The record is of another scenario: what was read now is the origin. A sweep point
-            // stays one as long as the swept keys have their values.
-            recorded => Recorded {
-                digest,
-                file: self.file,
-                inputs: self.inputs,
-                sweep: recorded
-                    .and_then(|recorded| recorded.sweep)
-                    .filter(|point| broken(&self.root, point).is_none()),
-                gate_places: Vec::new(),
-            },
-        };
-        let resolved = Resolved {
-            scenario,
-            file: origin.file,
-            digest: origin.digest,
-            inputs: origin.inputs,
-            sweep: origin.sweep,
-            warnings: self.warnings,
-            remarks: self.remarks,
-            is_base_point: false,
-            campaign,
-            gate_places: origin.gate_places,
-            tree: self.root,
-            sources: self.sources,
-            root_mark: self.root_mark,
-        };
-        let errors = cross::check(&resolved);
-        if errors.is_empty() {
-            Ok(resolved)
-        } else {
-            Err(errors)
-        }
-    }
-
-    /// Whether the file is written for another version of the format.
-    fn is_other_version(&self) -> bool {
-        let version = self.root.get("schema").map(|node| &node.value);
-        !matches!(version, None | Some(Value::Integer(1)))
     }
 }
 
@@ -214,6 +100,7 @@ impl Resolved {
             gate_places: self.gate_places.clone(),
             sources: Arc::clone(&self.sources),
             root_mark: self.root_mark,
+            is_record: self.is_record,
         };
         let errors = cross::check(&other);
         if errors.is_empty() {
@@ -245,18 +132,6 @@ impl Resolved {
         self.sources.error(mark.unwrap_or(self.root_mark), message)
     }
 
-    /// The value at a path if it is not the default of its key, as TOML.
-    ///
-    /// * `schema_path`: the path without indices, as the key table has it.
-    pub(crate) fn departure(&self, path: &str, schema_path: &str) -> Option<String> {
-        let node = address::get(&self.tree, &address::parse(path).ok()?)?;
-        // What nobody has written is the default.
-        node.mark?;
-        let value = node.value.to_toml();
-        let default = default_of(schema_path)?.to_toml();
-        (value != default).then_some(value)
-    }
-
     /// Folder of the run below the output folder: `<name>`, or `<name>/<nnnn>` in a sweep.
     #[must_use]
     pub fn folder(&self) -> String {
@@ -281,8 +156,10 @@ impl Resolved {
     #[must_use]
     pub fn locate(&self, key_path: &str) -> Location {
         let path = address::parse(key_path).unwrap_or_default();
-        let mark = nearest_mark(&self.tree, &path).unwrap_or(self.root_mark);
-        self.sources.locate(mark)
+        match nearest_mark(&self.tree, &path) {
+            Some(mark) => self.sources.locate(mark),
+            None => self.sources.locate(self.root_mark).unseen(),
+        }
     }
 
     /// Where the metric of a gate was written: `file:line:column`, or the `--set` argument.
@@ -306,6 +183,52 @@ impl Resolved {
             .ok()
             .and_then(|path| address::get(&self.tree, &path)?.mark)
             .is_some()
+    }
+
+    /// Whether somebody asked for the value of a key: it was written, and not by a record, in which
+    /// every value is written, if it says what the default says.
+    ///
+    /// * `key_path`: a path without indices.
+    pub(super) fn is_asked_for(&self, key_path: &str) -> bool {
+        let path = address::parse(key_path).unwrap_or_default();
+        let Some(node) = address::get(&self.tree, &path) else {
+            return false;
+        };
+        let Some(mark) = node.mark else {
+            return false;
+        };
+        let departs =
+            || default_of(key_path).is_none_or(|default| default.to_toml() != node.value.to_toml());
+        self.is_set_argument(mark) || departs() || !(self.is_record || self.is_written_out())
+    }
+
+    /// Where a mark points.
+    pub(super) fn place(&self, mark: Mark) -> Location {
+        self.sources.locate(mark)
+    }
+
+    /// Whether a mark lies in a `--set` argument.
+    pub(super) fn is_set_argument(&self, mark: Mark) -> bool {
+        self.sources.is_set_argument(mark)
+    }
+
+    /// Whether a mark lies in the scenario's own file, and what stands there is its author's wish:
+    /// a manifest is a record.
+    pub(super) fn is_own(&self, mark: Mark) -> bool {
+        !self.is_record && mark.source == self.root_mark.source
+    }
+
+    /// Whether every value was written by somebody: a record such as `expand` prints.
+    pub(super) fn is_written_out(&self) -> bool {
+        fn is_written(node: &Node) -> bool {
+            node.mark.is_some()
+                && match &node.value {
+                    Value::Table(table) => table.values().all(is_written),
+                    Value::Array(nodes) => nodes.iter().all(is_written),
+                    _ => true,
+                }
+        }
+        self.tree.values().all(is_written)
     }
 
     /// The settled values.
@@ -354,7 +277,7 @@ impl Resolved {
 }
 
 /// The configuration in a checked and filled tree.
-fn configuration(
+pub(super) fn configuration(
     root: &Table,
     root_mark: Mark,
     sources: &Sources,
@@ -366,12 +289,12 @@ fn configuration(
 }
 
 /// BLAKE3 of a canonical text, hexadecimal.
-fn digest(text: &str) -> String {
+pub(super) fn digest(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
 /// The first swept key of a point that has another value than the point says, and what that is.
-fn broken<'a>(root: &Table, point: &'a SweepPoint) -> Option<(&'a str, &'a str)> {
+pub(super) fn broken<'a>(root: &Table, point: &'a SweepPoint) -> Option<(&'a str, &'a str)> {
     let is_true = |(key, value): &&(String, String)| {
         address::resolve(root, key)
             .ok()

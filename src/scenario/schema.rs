@@ -230,43 +230,6 @@ pub(crate) fn join(parent: &str, name: &str) -> String {
     }
 }
 
-/// The known path nearest to an unknown one, and whether it is near enough to be what was meant.
-///
-/// Distance is that of Damerau and Levenshtein between the last names; a candidate in another
-/// table counts one more, so that a slip in a name beats a slip in its place.
-pub(crate) fn nearest(schema_path: &str, name: &str) -> (String, bool) {
-    let scored = paths().iter().map(|path| {
-        let path = path.strip_suffix("[]").unwrap_or(path);
-        let (parent, last) = path.rsplit_once('.').unwrap_or(("", path));
-        let elsewhere = usize::from(parent != schema_path);
-        let distance = strsim::damerau_levenshtein(last, name);
-        (distance + elsewhere, distance, path)
-    });
-    let (_, distance, path) = scored
-        .min_by_key(|(score, ..)| *score)
-        .expect("the key table is not empty");
-    let is_near = distance <= 2.max(name.chars().count() / 3);
-    (path.to_owned(), is_near)
-}
-
-/// The paths of every table and key, each once, in the order of the key table.
-fn paths() -> &'static [&'static str] {
-    static PATHS: OnceLock<Vec<&'static str>> = OnceLock::new();
-    PATHS.get_or_init(|| {
-        let mut paths: Vec<&'static str> = Vec::new();
-        for key in keys() {
-            let ends = key.path.match_indices('.').map(|(at, _)| at);
-            for end in ends.chain([key.path.len()]) {
-                let path = &key.path[..end];
-                if !paths.contains(&path) {
-                    paths.push(path);
-                }
-            }
-        }
-        paths
-    })
-}
-
 impl Key {
     /// Allowed values with the unit, as error messages print them.
     pub(crate) fn allowed(&self) -> String {

@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use super::error::{Location, ScenarioError};
+use super::error::{Location, ScenarioError, Snippet};
 use super::excerpt::excerpt;
 
 /// Bytes from one [`Waypoint`] to the next.
@@ -114,18 +114,20 @@ impl Sources {
         }
     }
 
+    /// Whether a mark lies in a `--set` argument.
+    pub(crate) fn is_set_argument(&self, mark: Mark) -> bool {
+        self.0[mark.source].label.is_none()
+    }
+
     /// Where a mark points.
     pub(crate) fn locate(&self, mark: Mark) -> Location {
         let source = &self.0[mark.source];
         if source.label.is_none() {
-            return Location::of_file(source.shown.clone());
+            return Location::of_set(&source.shown);
         }
         let Waypoint { line, column } = source.place(mark.start);
-        Location {
-            file: source.shown.clone(),
-            line,
-            column,
-        }
+        let snippet = Snippet::around(&source.text, mark.start);
+        Location::in_file(source.shown.clone(), line, column, snippet)
     }
 
     /// A complaint about a marked place.

@@ -193,16 +193,11 @@ fn a_chosen_alternative_replaces_the_default_one_and_brings_its_own_defaults() {
 }
 
 #[test]
-fn suggestions_prefer_the_same_table_and_say_when_nothing_is_near() {
-    assert_eq!(
-        schema::nearest("gyro.coil", "lenght_m"),
-        ("gyro.coil.length_m".to_owned(), true)
-    );
-    assert_eq!(
-        schema::nearest("gyro", "length_m"),
-        ("gyro.coil.length_m".to_owned(), true)
-    );
-    assert!(!schema::nearest("", "completely_different").1);
+fn suggestions_prefer_the_same_table_and_are_none_when_nothing_is_near() {
+    let found = super::suggest::suggestions;
+    assert_eq!(found("gyro.coil", "lenght_m"), ["gyro.coil.length_m"]);
+    assert_eq!(found("gyro", "length_m"), ["gyro.coil.length_m"]);
+    assert!(found("", "completely_different").is_empty());
 }
 
 #[test]

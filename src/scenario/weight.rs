@@ -109,8 +109,7 @@ mod tests {
 
     #[test]
     fn the_place_where_memory_ends_is_told() {
-        // The equals sign, the bracket and the first comma take a value each; the second finds none.
-        let mut left = 10 * TOKEN_BYTES + 3 * VALUE_BYTES;
-        assert_eq!(charge("a=[1,1,1,1,1]", &mut left), Err(6));
+        let mut left = 10 * TOKEN_BYTES + 4 * VALUE_BYTES;
+        assert_eq!(charge("a=[1,1,1,1,1]", &mut left), Err(8));
     }
 }

@@ -1,0 +1,227 @@
+//! Names taken apart: the words of a quantity, and the unit that closes them.
+//!
+//! `rate_random_walk_deg_per_h_per_sqrt_h` is *rate random walk* in `deg/h/sqrt(h)`. Two names stand
+//! for one quantity if their words agree, in any order, and their units measure the same.
+
+/// Words that stand for others, in any name.
+const ABBREVIATIONS: &[(&str, &[&str])] = &[
+    ("arw", &["angle", "random", "walk"]),
+    ("rrw", &["rate", "random", "walk"]),
+    ("bi", &["bias", "instability"]),
+    ("sf", &["scale", "factor"]),
+    ("acc", &["acceleration"]),
+    ("accel", &["acceleration"]),
+    ("amp", &["amplitude"]),
+    ("ampl", &["amplitude"]),
+    ("avg", &["average"]),
+    ("bw", &["bandwidth"]),
+    ("corr", &["correlation"]),
+    ("dia", &["diameter"]),
+    ("diam", &["diameter"]),
+    ("dur", &["duration"]),
+    ("freq", &["frequency"]),
+    ("frequencies", &["frequency"]),
+    ("len", &["length"]),
+    ("maximum", &["max"]),
+    ("minimum", &["min"]),
+    ("num", &[]),
+    ("pol", &["polarisation"]),
+    ("polarization", &["polarisation"]),
+    ("quantization", &["quantisation"]),
+    ("regularization", &["regularisation"]),
+    ("normalized", &["normalised"]),
+    ("pwr", &["power"]),
+    ("sigma", &["std"]),
+    ("temp", &["temperature"]),
+    ("warmup", &["warm", "up"]),
+    ("wl", &["wavelength"]),
+];
+
+/// Words of units that are spelled otherwise.
+const UNIT_SPELLINGS: &[(&str, &[&str])] = &[
+    ("degree", &["deg"]),
+    ("degrees", &["deg"]),
+    ("dph", &["deg", "per", "h"]),
+    ("dps", &["deg", "per", "s"]),
+    ("hr", &["h"]),
+    ("hrs", &["h"]),
+    ("hour", &["h"]),
+    ("hours", &["h"]),
+    ("hertz", &["hz"]),
+    ("meter", &["m"]),
+    ("metre", &["m"]),
+    ("metres", &["m"]),
+    ("meters", &["m"]),
+    ("minute", &["min"]),
+    ("minutes", &["min"]),
+    ("pct", &["percent"]),
+    ("root", &["sqrt"]),
+    ("rt", &["sqrt"]),
+    ("rthz", &["sqrt", "hz"]),
+    ("sec", &["s"]),
+    ("secs", &["s"]),
+    ("second", &["s"]),
+    ("seconds", &["s"]),
+    ("sqrth", &["sqrt", "h"]),
+    ("sqrthr", &["sqrt", "h"]),
+    ("sqrthz", &["sqrt", "hz"]),
+];
+
+/// Base quantities that units are made of.
+const BASES: usize = 11;
+/// Twice the powers of the base quantities, so that a square root is a whole number.
+pub(super) type Dimension = [i8; BASES];
+
+/// Base quantity of a unit's word, and the power in which the word stands for it.
+fn base(word: &str) -> Option<(usize, i8)> {
+    Some(match word {
+        "deg" | "rad" | "urad" | "mrad" | "arcsec" | "arcmin" => (0, 1),
+        "s" | "ms" | "us" | "ns" | "h" | "min" => (1, 1),
+        "hz" | "khz" | "mhz" | "ghz" => (1, -1),
+        "m" | "mm" | "um" | "nm" | "km" | "cm" => (2, 1),
+        "c" | "k" => (3, 1),
+        "w" | "mw" | "uw" | "nw" => (4, 1),
+        "v" | "mv" | "uv" | "nv" => (5, 1),
+        "a" | "ma" | "ua" | "na" | "pa" => (6, 1),
+        "ohm" | "kohm" | "mohm" => (7, 1),
+        "kg" => (8, 1),
+        "ppm" | "percent" => (9, 1),
+        "g" | "mg" | "n" => (10, 1),
+        _ => return None,
+    })
+}
+
+/// A unit: its words, and what it measures.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Unit {
+    words: Vec<String>,
+    pub(super) dimension: Dimension,
+}
+
+/// A name taken apart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Quantity {
+    /// Words of the quantity in the singular, in the order of the alphabet.
+    pub(super) words: Vec<String>,
+    /// Its unit, if the name closes with one.
+    pub(super) unit: Option<Unit>,
+}
+
+impl Quantity {
+    pub(super) fn of(name: &str) -> Self {
+        let tokens = tokens(name);
+        let unit_at = (1..tokens.len()).find_map(|at| Some((at, unit(&tokens[at..])?)));
+        let (words, unit) = match unit_at {
+            Some((at, unit)) => (&tokens[..at], Some(unit)),
+            None => (&tokens[..], None),
+        };
+        let mut words: Vec<String> = words.iter().map(|word| singular(word)).collect();
+        words.sort_unstable();
+        Self { words, unit }
+    }
+}
+
+/// The words of a name's quantity, without its unit, in the order of the alphabet.
+pub(crate) fn words_of(name: &str) -> Vec<String> {
+    Quantity::of(name).words
+}
+
+/// The words of a name as they are written.
+pub(super) fn written_words(name: &str) -> Vec<String> {
+    let lower = name.to_lowercase();
+    let words = lower.split(['_', '-', '.', ' ', '[', ']']);
+    let words = words.filter(|word| !word.is_empty());
+    words.map(str::to_owned).collect()
+}
+
+/// The words of a name, abbreviations written out.
+fn tokens(name: &str) -> Vec<String> {
+    let mut tokens = Vec::new();
+    for token in written_words(name) {
+        let found = ABBREVIATIONS.iter().find(|(short, _)| *short == token);
+        match found {
+            Some((_, words)) => tokens.extend(words.iter().map(|&word| word.to_owned())),
+            None => tokens.push(token),
+        }
+    }
+    tokens
+}
+
+fn singular(word: &str) -> String {
+    let is_plural = word.len() > 3 && word.ends_with('s') && !word.ends_with("ss");
+    if is_plural {
+        word[..word.len() - 1].to_owned()
+    } else {
+        word.to_owned()
+    }
+}
+
+/// The unit that words spell: factors, each behind `per` a divisor, `sqrt` before or a power behind.
+fn unit(tokens: &[String]) -> Option<Unit> {
+    let spelled = tokens.iter().flat_map(|token| {
+        let known = UNIT_SPELLINGS.iter().find(|(other, _)| other == token);
+        match known {
+            Some((_, words)) => words.iter().map(|&word| word.to_owned()).collect(),
+            None => vec![token.clone()],
+        }
+    });
+    let words: Vec<String> = spelled.collect();
+    let mut dimension = [0; BASES];
+    let (mut is_divisor, mut is_root, mut is_open) = (false, false, true);
+    for word in &words {
+        match word.as_str() {
+            "per" => (is_divisor, is_open) = (true, true),
+            "sqrt" => (is_root, is_open) = (true, true),
+            word => {
+                let power = word.chars().last()?.to_digit(10);
+                let name = word.trim_end_matches(|c: char| c.is_ascii_digit());
+                let (index, own) = base(name)?;
+                let power = i8::try_from(power.unwrap_or(1)).ok()?;
+                let halves = if is_root { 1 } else { 2 };
+                let sign = if is_divisor { -1 } else { 1 };
+                dimension[index] += sign * own * power * halves;
+                (is_divisor, is_root, is_open) = (false, false, false);
+            }
+        }
+    }
+    (!is_open).then_some(Unit { words, dimension })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_words_and_a_unit() {
+        let walk = Quantity::of("rate_random_walk_deg_per_h_per_sqrt_h");
+        assert_eq!(walk.words, ["random", "rate", "walk"]);
+        let unit = walk.unit.unwrap();
+        assert_eq!(&unit.dimension[..2], [2, -3]);
+        assert!(Quantity::of("group_index").unit.is_none());
+        assert_eq!(Quantity::of("gate_duty").words, ["duty", "gate"]);
+        assert_eq!(Quantity::of("index_per_k").words, ["index"]);
+        assert_eq!(Quantity::of("max").words, ["max"], "a name is no unit");
+    }
+
+    #[test]
+    fn spellings_of_one_unit_are_one() {
+        for (one, other) in [
+            ("arw_deg_per_rt_hr", "angle_random_walk_deg_per_sqrt_h"),
+            ("bias_dph", "bias_deg_per_h"),
+            ("warmup_sec", "warm_up_s"),
+            (
+                "walk_random_angle_deg_per_sqrthr",
+                "angle_random_walk_deg_per_sqrt_h",
+            ),
+        ] {
+            assert_eq!(Quantity::of(one), Quantity::of(other));
+        }
+        let dimension = |name| Quantity::of(name).unit.map(|unit| unit.dimension);
+        assert_eq!(dimension("clock_hz"), dimension("clock_mhz"));
+        assert_ne!(dimension("start_s"), dimension("start_c"));
+        assert_ne!(
+            dimension("bias_deg_per_h"),
+            dimension("bias_deg_per_h_per_h")
+        );
+    }
+}

@@ -1,0 +1,67 @@
+//! Numbers and counts in messages.
+
+use std::fmt::Display;
+
+/// Most significant digits of a number that is printed as it is.
+const DIGITS_MAX: usize = 9;
+
+/// A number and its noun, in the plural unless there is one.
+pub(crate) fn counted<N: Display + PartialEq + From<u8>>(count: N, noun: &str) -> String {
+    let plural = if count == N::from(1) { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
+/// A number with the digits that say something: one of more than nine, which nobody wrote but a
+/// product of rounded numbers, is rounded to six.
+pub(crate) fn number(value: f64) -> String {
+    let exact = format!("{value:?}");
+    let mantissa = exact.split('e').next().unwrap_or_default();
+    let digits = mantissa.trim_start_matches(['-', '0', '.']);
+    let count = digits.chars().filter(char::is_ascii_digit).count();
+    // The zeros of 3600000000.0 are no digits that anyone has to read.
+    let is_whole = mantissa.ends_with(".0");
+    if count <= DIGITS_MAX || is_whole || !value.is_finite() {
+        return exact;
+    }
+    format!("{value:.5e}")
+        .parse::<f64>()
+        .map_or(exact, |rounded| format!("{rounded:?}"))
+}
+
+/// As [`number`], a whole one without its `.0`.
+pub(crate) fn plain(value: f64) -> String {
+    let text = number(value);
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_thing_is_singular() {
+        assert_eq!(counted(1_usize, "gate"), "1 gate");
+        assert_eq!(counted(0_usize, "gate"), "0 gates");
+        assert_eq!(counted(2_u64, "sample"), "2 samples");
+    }
+
+    #[test]
+    fn no_number_has_more_digits_than_say_something() {
+        for (value, text) in [
+            (7.0, "7.0"),
+            (0.1 + 0.2, "0.3"),
+            (59.999_753_797_675_59, "59.9998"),
+            (29.999_720_235_790_587, "29.9997"),
+            (0.123_456_789, "0.123456789"),
+            (-1.0 / 3.0, "-0.333333"),
+            (2.0e-9 / 3.0, "6.66667e-10"),
+            (1e7, "10000000.0"),
+            (3_600_000_000.0, "3600000000.0"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(number(value), text);
+        }
+        assert_eq!(plain(90.0), "90");
+        assert_eq!(plain(29.999_720_235_790_587), "29.9997");
+    }
+}
