@@ -31,7 +31,10 @@ fn plans(files: &[&str], sets: &[&str]) -> Vec<Plan> {
 
 fn wall_s(plans: &[Plan], threads: usize) -> f64 {
     let output = std::env::temp_dir().join(format!("fogbench-bench-{}", std::process::id()));
-    let options = SuiteOptions { output, threads };
+    let options = SuiteOptions {
+        threads,
+        ..SuiteOptions::new(output)
+    };
     let start = Instant::now();
     run_suite(plans, &options, &Silent).expect("the scratch folder is writable");
     let elapsed = start.elapsed().as_secs_f64();

@@ -27,6 +27,8 @@ pub mod gate;
 
 pub mod report;
 
+pub mod store;
+
 pub mod experiment;
 
 pub mod cli;

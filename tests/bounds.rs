@@ -218,7 +218,7 @@ fn said_about_manifest(from: &str, to: &str) -> (i32, String) {
     let sweep = "[matrix]\nseed = [5, 6]\n";
     let file = write(folder.path(), "s/x.toml", &format!("{SOUND}{sweep}"));
     let run = load_suite(&[file], &[]).expect("a sound sweep").remove(1);
-    let manifest = manifest_toml(&run, env!("CARGO_PKG_VERSION"));
+    let manifest = manifest_toml(&run, env!("CARGO_PKG_VERSION"), "unknown");
     assert!(manifest.contains(from), "{manifest}");
     write(folder.path(), "m.toml", &manifest.replace(from, to));
     let output = fogbench(folder.path(), &["check", "m.toml"]);
@@ -318,7 +318,7 @@ fn an_input_beside_a_manifest_that_is_another_file_now_is_named() {
     write(
         folder.path(),
         "m.toml",
-        &manifest_toml(&run, env!("CARGO_PKG_VERSION")),
+        &manifest_toml(&run, env!("CARGO_PKG_VERSION"), "unknown"),
     );
     let check = || stderr(&fogbench(folder.path(), &["check", "m.toml"]));
     assert_eq!(check(), "");

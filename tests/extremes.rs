@@ -189,7 +189,7 @@ fn run_all(folder: &Path, end: &str) -> (usize, usize) {
     for (index, (path, value)) in ends.iter().enumerate() {
         let name = format!("k{index}");
         let file = write(folder, &format!("{name}.toml"), &scenario(&name, path));
-        let base = plan_suite(&[file.clone()], &[]);
+        let base = plan_suite(std::slice::from_ref(&file), &[]);
         assert!(base.is_ok(), "{path}: {base:?}");
         match plan_suite(&[file], &[set(path, value)]) {
             Ok(plan) => plans.extend(plan),
@@ -205,8 +205,8 @@ fn run_all(folder: &Path, end: &str) -> (usize, usize) {
     }
     let output = folder.join("out");
     let options = SuiteOptions {
-        output: output.clone(),
         threads: 0,
+        ..SuiteOptions::new(output.clone())
     };
     let done = run_suite(&plans, &options, &Silent).expect("a writable folder");
     for run in &done.runs {
@@ -333,7 +333,8 @@ fn logs_of_odd_but_possible_words_are_measured_in_finite_numbers() {
          name = \"kalman\"\n[filter.kalman]\n[[filter]]\nname = \"held\"\n[filter.constrained_rls]\n",
     );
     let alternating = |size: f64| move |k: u32| if k.is_multiple_of(2) { size } else { -size };
-    let cases: [(&str, Box<dyn Fn(u32) -> f64>); 7] = [
+    type Word = Box<dyn Fn(u32) -> f64>;
+    let cases: [(&str, Word); 7] = [
         ("zeros", Box::new(|_| 0.0)),
         ("constant", Box::new(|_| 7.25)),
         ("largest", Box::new(alternating(1e12))),

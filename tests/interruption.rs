@@ -89,8 +89,8 @@ fn a_panic_anywhere_fails_one_run_and_the_suite_has_its_verdict() {
         ];
         let plans = plan_suite(&paths, &[]).expect("sound scenarios");
         let options = SuiteOptions {
-            output: folder.path().join("out"),
             threads: 2,
+            ..SuiteOptions::new(folder.path().join("out"))
         };
         let observer = Breaks {
             place,
@@ -160,8 +160,8 @@ fn a_suite_stops_between_blocks_repeats_and_channels_and_says_what_has_not_run()
         let path = scenario(folder.path(), "long", &text);
         let plans = plan_suite(&[path], &[]).expect("a sound scenario");
         let options = SuiteOptions {
-            output: folder.path().join("out"),
             threads: 2,
+            ..SuiteOptions::new(folder.path().join("out"))
         };
         let observer = Stops::after(stop_s);
         let outcome = run_suite(&plans, &options, &observer).expect("a writable folder");
@@ -200,8 +200,8 @@ fn what_ended_before_a_stop_stays_and_a_stopped_campaign_has_not_failed() {
     ];
     let plans = plan_suite(&paths, &[]).expect("sound scenarios");
     let options = SuiteOptions {
-        output: folder.path().join("out"),
         threads: 2,
+        ..SuiteOptions::new(folder.path().join("out"))
     };
     let observer = Stops::after(f64::INFINITY);
     let outcome = run_suite(&plans, &options, &observer).expect("a writable folder");
@@ -257,8 +257,8 @@ fn a_run_that_is_given_up_writes_nothing_more() {
     let plans = plan_suite(&[path], &[]).expect("a sound scenario");
     let output = folder.path().join("out");
     let options = SuiteOptions {
-        output: output.clone(),
         threads: 1,
+        ..SuiteOptions::new(output.clone())
     };
     let observer = Stuck {
         output: output.clone(),

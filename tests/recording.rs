@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fogbench::recording::{Log, LogError, LogFormat, RateUnit, TimeUnit, csv_text, read_log};
-use fogbench::report::write_npy;
+use fogbench::store::write_npy;
 
 use crate::support::{assert_close, write};
 

@@ -654,12 +654,12 @@ fn a_manifest_repeats_its_run() {
     );
     let suite = Suite::new(&[("x.toml", &text)]);
     for run in suite.load(&["x.toml"], &[]).unwrap() {
-        let manifest = manifest_toml(&run, "0.1.0");
+        let manifest = manifest_toml(&run, "0.1.0", "b");
         fs::write(suite.path("manifest.toml"), &manifest).unwrap();
         let again = suite.load(&["manifest.toml"], &[]).unwrap();
         assert_eq!(again.len(), 1);
         assert_eq!(again[0], run);
-        assert_eq!(manifest_toml(&again[0], "0.1.0"), manifest);
+        assert_eq!(manifest_toml(&again[0], "0.1.0", "b"), manifest);
         // The canonical text is a scenario that resolves to itself.
         fs::write(suite.path("y.toml"), run.to_toml()).unwrap();
         let canonical = suite.load(&["y.toml"], &[]).unwrap();
@@ -674,7 +674,7 @@ fn a_changed_manifest_is_its_own_origin() {
         scenario("[matrix]\nseed = [4, 5]\n[[gate]]\nmetric = \"raw.noise_gain\"\nmax = 1\n");
     let suite = Suite::new(&[("x.toml", &text)]);
     let run = suite.load(&["x.toml"], &[]).unwrap().remove(1);
-    let manifest = manifest_toml(&run, env!("CARGO_PKG_VERSION"));
+    let manifest = manifest_toml(&run, env!("CARGO_PKG_VERSION"), "b");
     let load = |text: &str, sets: &[&str]| {
         fs::write(suite.path("m.toml"), text).unwrap();
         suite.load(&["m.toml"], sets).unwrap().remove(0)
@@ -703,14 +703,14 @@ fn a_changed_manifest_is_its_own_origin() {
     assert_ne!(edited.inputs[0].digest, set.inputs[0].digest);
     assert_eq!(load(&manifest, &["seed=6"]).sweep, None);
     // The manifest of the changed run is true of itself.
-    let again = load(&manifest_toml(&set, env!("CARGO_PKG_VERSION")), &[]);
+    let again = load(&manifest_toml(&set, env!("CARGO_PKG_VERSION"), "b"), &[]);
     assert_eq!(again, set);
 }
 
 #[test]
 fn a_manifest_of_another_version_of_the_tool_warns() {
     let run = run("", &[]);
-    let suite = Suite::new(&[("m.toml", &manifest_toml(&run, "0.0.1"))]);
+    let suite = Suite::new(&[("m.toml", &manifest_toml(&run, "0.0.1", "b"))]);
     let again = suite.load(&["m.toml"], &[]).unwrap().remove(0);
     assert_eq!(again.warnings.len(), 1);
     assert!(
@@ -718,7 +718,10 @@ fn a_manifest_of_another_version_of_the_tool_warns() {
         "{:?}",
         again.warnings
     );
-    let suite = Suite::new(&[("m.toml", &manifest_toml(&run, env!("CARGO_PKG_VERSION")))]);
+    let suite = Suite::new(&[(
+        "m.toml",
+        &manifest_toml(&run, env!("CARGO_PKG_VERSION"), "b"),
+    )]);
     assert!(suite.load(&["m.toml"], &[]).unwrap()[0].warnings.is_empty());
 }
 

@@ -38,8 +38,8 @@ fn a_broken_run_fails_by_itself_and_the_suite_still_has_a_verdict() {
     let paths = ["broken", "fine"].map(|name| named(folder.path(), name));
     let plans = plan_suite(&paths, &[]).expect("sound scenarios");
     let options = SuiteOptions {
-        output: folder.path().join("out"),
         threads: 1,
+        ..SuiteOptions::new(folder.path().join("out"))
     };
     let outcome = run_suite(&plans, &options, &Breaks).expect("a writable folder");
     assert!(outcome.broken);
@@ -67,22 +67,46 @@ fn the_order_of_the_arguments_leaves_no_trace() {
     );
 }
 
+/// Puts a file of the user's in the way of the run called `two` once `one` is done.
+struct GetsInTheWay(PathBuf);
+
+impl Observer for GetsInTheWay {
+    fn advanced(&self, _simulated_s: f64) {}
+
+    fn finished(&self, _index: usize, report: &RunReport) {
+        if report.scenario.name == "one" {
+            write(&self.0, "two/thesis.txt", "in the way");
+        }
+    }
+
+    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
+}
+
 #[test]
 fn an_earlier_verdict_does_not_outlive_a_suite_that_cannot_finish() {
     let folder = tempfile::tempdir().expect("a scratch folder");
-    named(folder.path(), "one");
-    assert_eq!(code(&fogbench(folder.path(), &["run", "one.toml"])), 0);
-    // A file stands where the second run needs its folder's parent.
-    write(folder.path(), "output/.two.partial", "in the way");
     named(folder.path(), "two");
-    let output = fogbench(folder.path(), &["run", "two.toml"]);
-    assert_eq!(code(&output), 74);
-    assert!(
-        !folder.path().join("output/junit.xml").exists(),
-        "a stale verdict stays"
+    // The longest run comes first.
+    write(
+        folder.path(),
+        "one.toml",
+        &format!("name = \"one\"\n{SHORT}repeats = 3\n"),
     );
+    assert_eq!(code(&fogbench(folder.path(), &["run", "one.toml"])), 0);
+    let paths = ["one", "two"].map(|name| folder.path().join(format!("{name}.toml")));
+    let plans = plan_suite(&paths, &[]).expect("sound scenarios");
+    let output = folder.path().join("output");
+    let options = SuiteOptions {
+        threads: 1,
+        ..SuiteOptions::new(output.clone())
+    };
+    let error = run_suite(&plans, &options, &GetsInTheWay(output.clone()))
+        .expect_err("a folder of the user's stands in the way");
+    assert!(error.to_string().contains("thesis.txt"), "{error}");
+    assert!(!output.join("junit.xml").exists(), "a stale verdict stays");
+    assert!(output.join("one/summary.json").is_file(), "results stay");
     assert!(
-        folder.path().join("output/one/summary.json").is_file(),
-        "results stay"
+        output.join("two/thesis.txt").is_file(),
+        "the user's file stays"
     );
 }

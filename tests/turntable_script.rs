@@ -60,7 +60,11 @@ fn a_script_is_found_beside_the_file_that_names_it_and_its_digest_is_recorded() 
     // The manifest repeats the run wherever it lies, without the file.
     let elsewhere = tempfile::tempdir().unwrap();
     let manifest = elsewhere.path().join("manifest.toml");
-    fs::write(&manifest, manifest_toml(&run, env!("CARGO_PKG_VERSION"))).unwrap();
+    fs::write(
+        &manifest,
+        manifest_toml(&run, env!("CARGO_PKG_VERSION"), "b"),
+    )
+    .unwrap();
     fs::remove_file(base.join("motion.csv")).unwrap();
     let repeated = load_suite(&[manifest], &[]).unwrap().remove(0);
     assert_eq!(repeated, run);

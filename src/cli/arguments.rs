@@ -8,6 +8,14 @@ use super::calibrate_arguments::CalibrateOptions;
 use super::hardware_arguments::{ExportOptions, TimingOptions};
 use super::log_arguments::{AnalyzeOptions, FilterLogOptions};
 
+/// Version and build of the program.
+const VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (build ",
+    env!("FOGBENCH_BUILD"),
+    ")"
+);
+
 /// Closed-loop fibre-optic-gyro and rate-turntable testbench.
 ///
 /// Runs TOML scenarios through turntable, gyro, denoising filters and metrics, and judges them.
@@ -17,7 +25,7 @@ use super::log_arguments::{AnalyzeOptions, FilterLogOptions};
 #[derive(Debug, Parser)]
 #[command(
     name = "fogbench",
-    version,
+    version = VERSION,
     propagate_version = true,
     arg_required_else_help = true
 )]
@@ -75,6 +83,15 @@ pub(super) enum Format {
     Jsonl,
 }
 
+/// Whose results `run --resume` takes over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ResumeFrom {
+    /// Those of this very build
+    SameBuild,
+    /// Those of any build of this version
+    AnyBuild,
+}
+
 /// Options of `budget`.
 #[derive(Args, Debug)]
 pub(super) struct BudgetOptions {
@@ -86,6 +103,9 @@ pub(super) struct BudgetOptions {
     /// Folder for budget.svg and budget.csv [default: neither is written]
     #[arg(short, long, value_name = "DIR")]
     pub(super) output: Option<PathBuf>,
+    /// Replace files in the folder that fogbench did not write
+    #[arg(long, requires = "output")]
+    pub(super) force: bool,
     /// Form of the budget on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(super) format: Format,
@@ -109,6 +129,14 @@ pub(super) struct RunOptions {
     /// Folder for the results
     #[arg(short, long, value_name = "DIR", default_value = "output")]
     pub(super) output: PathBuf,
+    /// Replace files and folders in it that fogbench did not write, or that were changed since
+    #[arg(long)]
+    pub(super) force: bool,
+    /// Take over undamaged results of the same build, scenario, seed and inputs; `any-build`: of any
+    /// build of this version
+    #[arg(long, value_name = "BUILD", num_args = 0..=1, require_equals = true,
+          default_missing_value = "same-build")]
+    pub(super) resume: Option<ResumeFrom>,
     /// Threads, at most 256; 0 = RAYON_NUM_THREADS, else one per core; no result depends on it
     #[arg(short, long, value_name = "N", default_value_t = 0,
           value_parser = clap::value_parser!(u16).range(0..=256))]

@@ -1,16 +1,19 @@
 //! `fogbench budget`: the noise budget of a gyro in closed form.
 
 use std::io;
-use std::path::Path;
 
 use super::arguments::{BudgetOptions, Format};
 use super::exit::Exit;
-use super::{complaint, output};
+use super::{complaint, output, place};
 use crate::experiment::{GyroBudget, gyro_budget};
-use crate::report::{budget_csv, budget_json, budget_svg, budget_text, write_atomic};
+use crate::report::{budget_csv, budget_json, budget_svg, budget_text};
+use crate::store::{OutputFolder, StoreError};
 
 /// Prints the budget; with a folder, writes `budget.svg` and `budget.csv` into it as well.
 pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
+    if let Err(exit) = place::check(options.output.as_deref(), options.force) {
+        return Ok(exit);
+    }
     let budget = match gyro_budget(&options.path, &options.set) {
         Ok(budget) => budget,
         Err(errors) => {
@@ -19,13 +22,10 @@ pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
         }
     };
     let GyroBudget { file, sheet } = &budget;
-    if let Some(folder) = &options.output {
-        std::fs::create_dir_all(folder).map_err(|error| at(folder, &error))?;
-        let svg = budget_svg(file, sheet).map(|svg| ("budget.svg", svg));
-        for (name, text) in svg.into_iter().chain([("budget.csv", budget_csv(sheet))]) {
-            let path = folder.join(name);
-            write_atomic(&path, text.as_bytes()).map_err(|error| at(&path, &error))?;
-        }
+    if let Some(path) = &options.output
+        && let Err(exit) = place::fill(path, options.force, |folder| write(folder, &budget))
+    {
+        return Ok(exit);
     }
     output::data(&match options.format {
         Format::Text => budget_text(file, sheet),
@@ -38,10 +38,13 @@ pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// An error of the file system with the place it is about.
-fn at(path: &Path, error: &io::Error) -> io::Error {
-    io::Error::new(
-        error.kind(),
-        format!("cannot write {}: {error}", path.display()),
-    )
+fn write(folder: &OutputFolder, budget: &GyroBudget) -> Result<(), StoreError> {
+    let GyroBudget { file, sheet } = budget;
+    let staged = folder.stage()?;
+    if let Some(svg) = budget_svg(file, sheet) {
+        staged.write("budget.svg", svg.as_bytes())?;
+    }
+    staged.write("budget.csv", budget_csv(sheet).as_bytes())?;
+    staged.seal_plainly("budget")?;
+    staged.put_files_in_place()
 }

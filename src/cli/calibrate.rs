@@ -5,7 +5,7 @@ use std::io;
 use super::arguments::Format;
 use super::calibrate_arguments::CalibrateOptions;
 use super::exit::Exit;
-use super::{complaint, output};
+use super::{complaint, output, place};
 use crate::experiment::{
     CalibrateError, CalibrationTrial, Observer, calibrate_campaign, calibrate_groups,
 };
@@ -14,6 +14,9 @@ use crate::report::{RunOutcome, RunReport, calibrate_json, calibrate_text};
 
 /// Prints the calibration; with a folder, writes `calibration.toml` and `groups.csv` into it.
 pub(super) fn calibrate(options: &CalibrateOptions) -> io::Result<Exit> {
+    if let Err(exit) = place::check(options.output.as_deref(), options.force) {
+        return Ok(exit);
+    }
     let found = if options.is_scenario() {
         of_scenario(options)
     } else {
@@ -23,8 +26,10 @@ pub(super) fn calibrate(options: &CalibrateOptions) -> io::Result<Exit> {
         Ok(found) => found,
         Err(exit) => return Ok(exit),
     };
-    if let Some(folder) = &options.output {
-        found.write(folder)?;
+    if let Some(path) = &options.output
+        && let Err(exit) = place::fill(path, options.force, |folder| found.write(folder))
+    {
+        return Ok(exit);
     }
     let report = found.report();
     output::data(&match options.format {

@@ -59,6 +59,9 @@ pub(super) struct CalibrateOptions {
     /// Folder for calibration.toml and groups.csv [default: neither is written]
     #[arg(short, long, value_name = "DIR")]
     pub(super) output: Option<PathBuf>,
+    /// Replace files in the folder that fogbench did not write
+    #[arg(long, requires = "output")]
+    pub(super) force: bool,
     /// Form of the results on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(super) format: Format,

@@ -7,7 +7,7 @@ use super::complaint;
 use super::exit::Exit;
 use super::hardware_arguments::{ExportKind, ExportOptions};
 use super::log::unreadable;
-use super::output;
+use super::{output, place};
 use crate::experiment::{
     ExportForm, PipelineSettings, Stimulus, export_pipeline, plan_suite, scenario_stimulus,
 };
@@ -22,23 +22,38 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
         Ok(prepared) => prepared,
         Err(exit) => return Ok(exit),
     };
+    if let Err(exit) = place::check(Some(&options.folder), options.force) {
+        return Ok(exit);
+    }
     let form = match options.what {
         ExportKind::Vectors => ExportForm::Vectors,
         ExportKind::Waveform => ExportForm::Waveform,
         ExportKind::Rtl => ExportForm::Rtl,
     };
+    let trace_samples = options.trace_samples;
     let samples = match form {
-        ExportForm::Waveform => stimulus.words.len().min(options.trace_samples),
+        ExportForm::Waveform => stimulus.words.len().min(trace_samples),
         _ => stimulus.words.len(),
     };
-    let written = export_pipeline(
-        &options.folder,
-        form,
-        &settings,
-        stimulus,
-        options.trace_samples,
-    );
-    match written {
+    let mut exported = Ok(Vec::new());
+    let filled = place::fill(&options.folder, options.force, |folder| {
+        let staged = folder.stage()?;
+        exported = export_pipeline(staged.path(), form, &settings, stimulus, trace_samples);
+        let Ok(files) = &mut exported else {
+            return Ok(());
+        };
+        for file in files {
+            if let Ok(name) = file.strip_prefix(staged.path()) {
+                *file = options.folder.join(name);
+            }
+        }
+        staged.seal_plainly("export")?;
+        staged.put_files_in_place()
+    });
+    if let Err(exit) = filled {
+        return Ok(exit);
+    }
+    match exported {
         Ok(files) => {
             let names: String = files
                 .iter()

@@ -262,6 +262,9 @@ pub(super) struct ExportOptions {
     /// Folder to write into
     #[arg(value_name = "DIR")]
     pub(super) folder: PathBuf,
+    /// Replace files in the folder that fogbench did not write
+    #[arg(long)]
+    pub(super) force: bool,
     /// Scenario whose gyro gives the stimulus
     #[arg(long, value_name = "FILE", required_unless_present = "stimulus")]
     pub(super) scenario: Option<PathBuf>,

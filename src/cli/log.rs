@@ -1,13 +1,12 @@
 //! `fogbench analyze` and `fogbench filter`: a recorded log in place of table and gyro.
 
 use std::io;
-use std::path::Path;
 
 use super::arguments::Format;
 use super::complaint::{self, Complaint};
 use super::exit::Exit;
 use super::log_arguments::{AnalyzeOptions, FilterLogOptions, LogOptions};
-use super::output;
+use super::{output, place};
 use crate::experiment::{
     LogFilters, LogInput, LogSettings, LogTrial, compensate_log, load_log_compensation,
     load_log_filters, try_log,
@@ -18,16 +17,21 @@ use crate::scenario::AllanConfig;
 
 /// Measures a log.
 pub(super) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
+    if let Err(exit) = place::check(options.log.output.as_deref(), options.log.force) {
+        return Ok(exit);
+    }
     let input = match read(&options.log) {
         Ok((input, _)) => input,
         Err(exit) => return Ok(exit),
     };
-    let folder = options.log.output.as_deref();
-    conclude(input, None, &options.log, folder, false)
+    conclude(input, None, &options.log, false)
 }
 
 /// Puts a log through the filters of a scenario and measures what they make of it.
 pub(super) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
+    if let Err(exit) = place::check(options.log.output.as_deref(), options.log.force) {
+        return Ok(exit);
+    }
     let (input, sample_rate_hz) = match read(&options.log) {
         Ok(read) => read,
         Err(exit) => return Ok(exit),
@@ -36,8 +40,7 @@ pub(super) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
         Ok(filters) => filters,
         Err(errors) => return Ok(refused(&errors)),
     };
-    let folder = options.log.output.as_deref();
-    conclude(input, Some(&filters), &options.log, folder, options.csv)
+    conclude(input, Some(&filters), &options.log, options.csv)
 }
 
 /// The words to measure and their rate, Hz: of one column, or of three and a calibration.
@@ -101,7 +104,6 @@ fn conclude(
     input: LogInput,
     filters: Option<&LogFilters>,
     options: &LogOptions,
-    folder: Option<&Path>,
     as_csv: bool,
 ) -> io::Result<Exit> {
     let settings = LogSettings {
@@ -121,8 +123,11 @@ fn conclude(
             return Ok(Exit::Usage);
         }
     };
-    if let Some(folder) = folder {
-        trial.write(folder, as_csv)?;
+    let folder = options.output.as_deref();
+    if let Some(path) = folder
+        && let Err(exit) = place::fill(path, options.force, |folder| trial.write(folder, as_csv))
+    {
+        return Ok(exit);
     }
     output::data(&text(&trial, options.format))?;
     if let Some(folder) = folder {

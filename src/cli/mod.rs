@@ -19,6 +19,7 @@ mod log_arguments;
 mod numbers;
 mod output;
 mod panics;
+mod place;
 mod run;
 mod schema;
 mod select;

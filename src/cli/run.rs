@@ -6,12 +6,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::arguments::{Format, RunOptions};
+use super::arguments::{Format, ResumeFrom, RunOptions};
 use super::exit::{Exit, io_failure};
 use super::signals::Interrupt;
-use super::{output, select};
+use super::{output, place, select};
 use crate::experiment::{
-    Observer, Plan, SuiteError, SuiteOptions, SuiteOutcome, run_suite, thread_count,
+    Observer, Plan, Resume, SuiteError, SuiteOptions, SuiteOutcome, run_suite, thread_count,
 };
 use crate::report::{self, RunOutcome, RunReport, RunStatus};
 
@@ -22,13 +22,24 @@ pub(super) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exi
         Err(exit) => return Ok(exit),
     };
     let suite = SuiteOptions {
-        output: options.output.clone(),
         threads: usize::from(options.jobs),
+        force: options.force,
+        resume: resume(options.resume),
+        ..SuiteOptions::new(options.output.clone())
     };
     let progress = Progress::new(&plans, options, interrupt);
     interrupt.defer();
     let result = run_suite(&plans, &suite, &progress);
     Ok(progress.conclude(&result))
+}
+
+/// Whose results the suite takes over.
+fn resume(from: Option<ResumeFrom>) -> Resume {
+    match from {
+        None => Resume::Never,
+        Some(ResumeFrom::SameBuild) => Resume::SameBuild,
+        Some(ResumeFrom::AnyBuild) => Resume::AnyBuild,
+    }
 }
 
 /// The verdict of the whole suite: the worst of its runs.
@@ -63,7 +74,9 @@ fn closing(suite: &SuiteOutcome, format: Format) -> String {
             let suite = report::suite_text(runs, width, colour);
             suite + &report::comparison_text(across, width, colour)
         }
-        Format::Json => report::suite_summary_json(env!("CARGO_PKG_VERSION"), runs, across),
+        Format::Json => {
+            report::suite_summary_json(env!("CARGO_PKG_VERSION"), runs, across, &suite.stale)
+        }
         // Every run has been printed on its own line.
         Format::Jsonl => String::new(),
     }
@@ -125,7 +138,10 @@ impl<'a> Progress<'a> {
             }
             Err(error) => {
                 self.talk(&format!("error: {error}"));
-                Exit::Io
+                match error {
+                    SuiteError::Store(error) => place::exit_of(error),
+                    SuiteError::Threads { .. } => Exit::Io,
+                }
             }
         };
         self.bar.finish_and_clear();
@@ -233,6 +249,18 @@ impl Observer for Progress<'_> {
     fn abandoned(&self, result: &Result<SuiteOutcome, SuiteError>) {
         let exit = self.conclude(result);
         std::process::exit(i32::from(exit.number()));
+    }
+
+    fn taken_over(&self, index: usize, report: &RunReport) {
+        let scenario = &report.scenario.name;
+        let point = report.sweep.as_ref();
+        let point = point.map_or_else(String::new, |(index, _)| format!("/{index:04}"));
+        self.talk(&format!("{scenario}{point}: taken over"));
+        self.finished(index, report);
+    }
+
+    fn caution(&self, message: &str) {
+        self.talk(&format!("warning: {message}"));
     }
 }
 

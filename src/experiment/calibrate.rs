@@ -1,6 +1,5 @@
 //! The calibration of an assembly from a file of group means, or from a simulated campaign.
 
-use std::io;
 use std::path::Path;
 
 use super::calibration_sheet::calibration_sheet;
@@ -14,11 +13,10 @@ use crate::calibration::{
     horizontal_residue_deg_per_s, reference_rate,
 };
 use crate::recording::{LogError, RecordedGroup, RecordedGroups, read_groups};
-use crate::report::{
-    CalibrateReport, CalibrationProvenance, calibration_toml, groups_csv, write_atomic,
-};
+use crate::report::{CalibrateReport, CalibrationProvenance, calibration_toml, groups_csv};
 use crate::scenario::{CalibrationConfig, EstimatorKind, ScenarioError};
 use crate::signal::{CalibrationGroup, CalibrationSheet};
+use crate::store::{OutputFolder, StoreError};
 use crate::units::{
     EARTH_RATE_RAD_PER_S, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, deg_to_rad,
     rad_per_s_to_deg_per_s,
@@ -57,35 +55,23 @@ impl CalibrationTrial {
         }
     }
 
-    /// Writes `calibration.toml` and `groups.csv` into `folder`; other files there stay.
+    /// Writes `calibration.toml` and `groups.csv` into `folder`, in place of what stood there, as one.
     ///
     /// # Errors
     /// Whatever the file system says, with the path.
-    pub fn write(&self, folder: &Path) -> io::Result<()> {
+    pub fn write(&self, folder: &OutputFolder) -> Result<(), StoreError> {
         let provenance = CalibrationProvenance {
             tool_version: VERSION,
             file: &self.file,
             digest: &self.digest,
         };
-        std::fs::create_dir_all(folder).map_err(|error| at(folder, &error))?;
-        for (name, text) in [
-            (
-                "calibration.toml",
-                calibration_toml(&self.sheet, &provenance),
-            ),
-            ("groups.csv", groups_csv(&self.sheet.groups)),
-        ] {
-            let path = folder.join(name);
-            write_atomic(&path, text.as_bytes()).map_err(|error| at(&path, &error))?;
-        }
-        Ok(())
+        let staged = folder.stage()?;
+        let parameters = calibration_toml(&self.sheet, &provenance);
+        staged.write("calibration.toml", parameters.as_bytes())?;
+        staged.write("groups.csv", groups_csv(&self.sheet.groups).as_bytes())?;
+        staged.seal_plainly("calibration")?;
+        staged.put_files_in_place()
     }
-}
-
-/// An error of the file system with the place it is about.
-fn at(path: &Path, error: &io::Error) -> io::Error {
-    let message = format!("cannot write {}: {error}", path.display());
-    io::Error::new(error.kind(), message)
 }
 
 /// Why there is no calibration.

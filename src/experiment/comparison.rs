@@ -31,7 +31,7 @@ static COMPANIONS: [&MetricKey; 5] = [
 /// The tables, assumptions and figures that the scenarios of a suite carry, each once.
 #[derive(Debug, Default)]
 pub(super) struct Layout<'a> {
-    comparisons: Vec<&'a ComparisonConfig>,
+    pub(super) comparisons: Vec<&'a ComparisonConfig>,
     rows: Vec<&'a ComparisonRowConfig>,
     assumptions: Vec<&'a AssumptionConfig>,
     figures: Vec<&'a FigureConfig>,

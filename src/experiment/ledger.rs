@@ -1,6 +1,5 @@
 //! The ledger of a suite: which runs have ended, and the moment after which none is added.
 
-use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
@@ -9,6 +8,7 @@ use std::time::{Duration, Instant};
 use super::plan::Plan;
 use super::suite::{Observer, SuiteError};
 use crate::report::RunOutcome;
+use crate::store::StoreError;
 
 /// Time that runs have to reach their next block once the suite is to stop. The whole program must
 /// end within 2 s of a signal: what is left is for the files of the suite.
@@ -61,8 +61,8 @@ impl Ledger {
         &self,
         index: usize,
         outcome: &RunOutcome,
-        swap: impl FnOnce() -> io::Result<()>,
-    ) -> io::Result<bool> {
+        swap: impl FnOnce() -> Result<(), StoreError>,
+    ) -> Result<bool, StoreError> {
         let is_closed = self
             .is_closed
             .read()
@@ -152,7 +152,16 @@ pub(super) fn wait(work: &Receiver<()>, observer: &dyn Observer) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::io;
+
     use super::*;
+
+    fn full(path: &str) -> StoreError {
+        StoreError::Write {
+            path: path.into(),
+            source: io::Error::other("full"),
+        }
+    }
 
     fn outcome(name: &str) -> RunOutcome {
         RunOutcome::not_run(name, name, "a.toml")
@@ -169,15 +178,11 @@ mod tests {
     #[test]
     fn a_failed_swap_is_not_entered_and_the_first_run_is_blamed() {
         let ledger = Ledger::new(2);
-        let refused = || Err(io::Error::other("full"));
+        let refused = || Err(full("b"));
         assert!(ledger.commit(1, &outcome("b"), refused).is_err());
         assert!(ledger.entries().outcomes.iter().all(Option::is_none));
         for (index, path) in [(1, "b"), (0, "a")] {
-            let error = SuiteError::Write {
-                path: path.into(),
-                source: io::Error::other("full"),
-            };
-            ledger.fail(index, error);
+            ledger.fail(index, full(path).into());
         }
         assert!(ledger.is_stopped());
         let error = ledger.close(&[]).expect_err("it could not write");

@@ -1,7 +1,5 @@
 //! A recorded log in place of table and gyro: measured as it is, or through filters.
 
-use std::io;
-use std::path::Path;
 use std::str::FromStr;
 
 use rayon::prelude::*;
@@ -16,9 +14,10 @@ use super::simulate::{GyroRecord, RecordLength};
 use super::suite::VERSION;
 use crate::metrics::{ChannelMetrics, Motion, Settings, is_sample_or_longer, record_fit_tau_min_s};
 use crate::recording::{Log, csv_text};
-use crate::report::{LogReport, log_files, write_atomic, write_npy};
+use crate::report::{LogReport, log_files};
 use crate::scenario::{AllanConfig, MotionConfig, StaticConfig, SwingConfig};
 use crate::signal::RunSignals;
+use crate::store::{OutputFolder, StoreError};
 use crate::turntable::first_measured_index;
 use crate::wording::{counted, plain};
 
@@ -312,33 +311,29 @@ impl LogTrial {
     }
 
     /// Writes `summary.json`, curves and pictures into `folder`, and the words of every filter
-    /// below `samples/` as NPY, with `as_csv` as CSV as well; other files there stay.
+    /// below `samples/` as NPY, with `as_csv` as CSV as well; in place of what stood there, as one.
     ///
     /// # Errors
     /// Whatever the file system says, with the path.
-    pub fn write(&self, folder: &Path, as_csv: bool) -> io::Result<()> {
-        create(folder)?;
+    pub fn write(&self, folder: &OutputFolder, as_csv: bool) -> Result<(), StoreError> {
+        let staged = folder.stage()?;
         let files = self.with_report(|report| log_files(report, &self.signals()));
         for (name, text) in files {
-            let path = folder.join(name);
-            write_atomic(&path, text.as_bytes()).map_err(|error| at(&path, &error))?;
+            staged.write(&name, text.as_bytes())?;
         }
-        let samples = folder.join("samples");
         for (name, words) in self
             .compensated_words()
             .into_iter()
             .chain(self.filter_words())
         {
-            create(&samples)?;
-            let path = samples.join(format!("{name}.npy"));
-            write_npy(&path, words).map_err(|error| at(&path, &error))?;
+            staged.write_npy(&format!("samples/{name}.npy"), words)?;
             if as_csv {
                 let text = csv_text(words, self.log.sample_period_s());
-                let path = samples.join(format!("{name}.csv"));
-                write_atomic(&path, text.as_bytes()).map_err(|error| at(&path, &error))?;
+                staged.write(&format!("samples/{name}.csv"), text.as_bytes())?;
             }
         }
-        Ok(())
+        staged.seal_plainly("log")?;
+        staged.put_files_in_place()
     }
 
     /// The words of the filters that did not fail.
@@ -369,14 +364,4 @@ impl LogTrial {
             temperature: None,
         }
     }
-}
-
-fn create(folder: &Path) -> io::Result<()> {
-    std::fs::create_dir_all(folder).map_err(|error| at(folder, &error))
-}
-
-/// An error of the file system with the place it is about.
-fn at(path: &Path, error: &io::Error) -> io::Error {
-    let message = format!("cannot write {}: {error}", path.display());
-    io::Error::new(error.kind(), message)
 }

@@ -6,6 +6,7 @@
 mod allan_settings;
 mod assembly_motion;
 mod budget;
+mod build;
 mod calibrate;
 mod calibration_sheet;
 mod calibration_units;
@@ -35,17 +36,20 @@ mod plan_metrics;
 mod published_check;
 mod rate_twins;
 mod record_length;
+mod resume;
 mod run;
 mod run_files;
 mod simulate;
 mod stop;
 mod suite;
+mod suite_output;
 mod survey;
 mod textbook;
 mod theory;
 mod threads;
 
 pub use budget::{GyroBudget, gyro_budget};
+pub use build::BUILD;
 pub use calibrate::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
 };
@@ -60,6 +64,7 @@ pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimul
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{PipelineSettings, PipelineTiming};
 pub use plan::{Plan, plan_suite};
+pub use resume::Resume;
 pub use suite::{Observer, SuiteError, SuiteOptions, SuiteOutcome, run_suite};
 pub use survey::{Sound, check_suite};
 pub use threads::{THREADS_MAX, start_threads, thread_count};

@@ -1,36 +1,39 @@
 //! One scenario: its repeats, their measurement, the verdicts and the files.
 
-use std::path::Path;
-
 use rayon::prelude::*;
 
 use super::campaign;
 use super::comparison::Layout;
 use super::compensation::Parameters;
-use super::ledger::Ledger;
 use super::measurement::{Channels, measure_repeat};
 use super::pipeline_metrics;
 use super::plan::Plan;
+use super::resume::take_over;
 use super::run_files;
 use super::simulate::{Faults, RecordLength, Simulation, count, simulate};
 use super::stop::Unfinished;
-use super::suite::{Observer, SuiteError, VERSION};
+use super::suite::{Observer, Suite, SuiteError, VERSION};
 use super::theory::theory;
 use crate::gate::judge;
 use crate::metrics::{ChannelMetrics, aggregate};
 use crate::report::{RunOutcome, RunReport};
 use crate::signal::CalibrationSheet;
 
-/// Runs `plan`, judges it, writes its folder under `output` and enters it in the ledger; none if it
-/// was stopped before that. A run that fails is left to the caller to enter.
+/// Runs `plan`, judges it, puts its folder in place and enters it in the ledger, or takes over the
+/// result that stands there; none if it was stopped before that. A run that fails is left to the
+/// caller to enter.
 pub(super) fn run_scenario(
     plan: &Plan,
     index: usize,
     layout: &Layout,
-    output: &Path,
-    ledger: &Ledger,
+    suite: &Suite,
     observer: &dyn Observer,
 ) -> Result<Option<RunOutcome>, SuiteError> {
+    let Suite { output, ledger, .. } = *suite;
+    if let Some(outcome) = take_over(plan, index, layout, (output, suite.resume), observer) {
+        ledger.enter(index, &outcome);
+        return Ok(Some(outcome));
+    }
     let resolved = plan.resolved();
     let scenario = &resolved.scenario;
     let folder = resolved.folder();
@@ -86,13 +89,7 @@ pub(super) fn run_scenario(
         notes: &notes,
         ..report
     };
-    let target = output.join(&folder);
-    let unwritten = |source| SuiteError::Write {
-        path: target.clone(),
-        source,
-    };
-    let written = run_files::write_folder(plan, &report, &simulation, &pictures, &target)
-        .map_err(unwritten)?;
+    let written = run_files::write_folder(plan, &report, &simulation, &pictures, output)?;
     let outcome = RunOutcome::from_report(&report, &folder);
     let outcome = RunOutcome {
         pictures: pictures
@@ -102,8 +99,8 @@ pub(super) fn run_scenario(
             .collect(),
         ..outcome.keeping(&report, layout.metrics_of(&scenario.name))
     };
-    let entered = ledger.commit(index, &outcome, || written.commit());
-    if !entered.map_err(unwritten)? {
+    let entered = ledger.commit(index, &outcome, || output.put_in_place(written, plan));
+    if !entered? {
         return Ok(None);
     }
     observer.finished(index, &report);

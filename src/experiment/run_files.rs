@@ -1,16 +1,14 @@
 //! The files of one run.
 
-use std::io;
-use std::path::Path;
-
 use super::measurement::stamp_s;
 use super::plan::Plan;
 use super::simulate::{RecordLength, Simulation};
-use super::suite::VERSION;
+use super::suite_output::SuiteOutput;
 use crate::gyro::temperature_record;
-use crate::report::{self, CalibrationProvenance, FolderWriter, Pictures, RunReport};
-use crate::scenario::{SamplesFormat, manifest_toml};
+use crate::report::{self, CalibrationProvenance, Pictures, RunReport};
+use crate::scenario::SamplesFormat;
 use crate::signal::{CalibrationSheet, RunSignals};
+use crate::store::{Staged, StoreError};
 use crate::units::rad_to_arcsec;
 
 /// Picture of a calibration.
@@ -31,19 +29,15 @@ pub(super) fn draw(plan: &Plan, report: &RunReport, simulation: &Simulation) -> 
 }
 
 /// Writes everything of one run beside its place, to be swapped in whole.
-pub(super) fn write_folder(
+pub(super) fn write_folder<'a>(
     plan: &Plan,
     report: &RunReport,
     simulation: &Simulation,
     pictures: &Pictures,
-    target: &Path,
-) -> io::Result<FolderWriter> {
-    let folder = FolderWriter::create(target)?;
+    output: &'a SuiteOutput,
+) -> Result<Staged<'a>, StoreError> {
+    let folder = output.stage()?;
     folder.write("summary.json", report::run_summary_json(report).as_bytes())?;
-    folder.write(
-        "manifest.toml",
-        manifest_toml(plan.resolved(), VERSION).as_bytes(),
-    )?;
     if let Some(csv) = report::allan_csv(report) {
         folder.write("allan.csv", csv.as_bytes())?;
     }
@@ -74,10 +68,10 @@ pub(super) fn write_folder(
 
 /// The groups of a campaign and the parameters to apply.
 fn write_calibration(
-    folder: &FolderWriter,
+    folder: &Staged,
     report: &RunReport,
     sheet: &CalibrationSheet,
-) -> io::Result<()> {
+) -> Result<(), StoreError> {
     let provenance = CalibrationProvenance {
         tool_version: report.tool_version,
         file: report.file,
@@ -136,7 +130,7 @@ fn signals<'a>(plan: &Plan, simulation: &'a Simulation, names: &'a Names) -> Vec
     signals.collect()
 }
 
-fn write_samples(folder: &FolderWriter, gyros: &[RunSignals]) -> io::Result<()> {
+fn write_samples(folder: &Staged, gyros: &[RunSignals]) -> Result<(), StoreError> {
     for signals in gyros {
         for (name, words) in &signals.channels {
             folder.write_npy(&format!("samples/{name}.npy"), words)?;

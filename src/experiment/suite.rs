@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::channel;
 
 use rayon::prelude::*;
@@ -11,15 +11,15 @@ use rayon::prelude::*;
 use super::comparison::Layout;
 use super::ledger::{Ledger, wait};
 use super::plan::Plan;
+use super::resume::Resume;
 use super::run::run_scenario;
+use super::suite_output::{JUNIT, SUMMARY, SuiteOutput};
 use super::threads;
 use crate::report::{self, Comparison, RunOutcome, RunReport};
+use crate::store::StoreError;
 
 /// Version of the program, as every result names it.
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
-
-/// The suite's own files.
-const SUITE_FILES: [&str; 2] = ["summary.json", "junit.xml"];
 
 /// How a suite is run.
 #[derive(Clone, Debug)]
@@ -28,6 +28,23 @@ pub struct SuiteOptions {
     pub output: PathBuf,
     /// Threads, as [`thread_count`](super::thread_count) takes them.
     pub threads: usize,
+    /// Whether to replace files and folders in `output` that are the user's.
+    pub force: bool,
+    /// Which results of an earlier suite to take over.
+    pub resume: Resume,
+}
+
+impl SuiteOptions {
+    /// Runs everything into `output`, on a thread for each core, and replaces nothing of the user's.
+    #[must_use]
+    pub fn new(output: PathBuf) -> Self {
+        Self {
+            output,
+            threads: 0,
+            force: false,
+            resume: Resume::Never,
+        }
+    }
 }
 
 /// What the caller wants to hear and to say while a suite runs; called from many threads.
@@ -36,7 +53,7 @@ pub trait Observer: Sync {
     fn advanced(&self, simulated_s: f64);
     /// Run `index` of the plan is done and its files stand in their place.
     fn finished(&self, index: usize, report: &RunReport);
-    /// Run `index` of the plan could not finish and has written nothing.
+    /// Run `index` of the plan could not finish; a folder that says so stands in its place.
     fn failed(&self, index: usize, outcome: &RunOutcome);
     /// Whether the suite is to stop. Asked between the blocks and stages of every run; what has
     /// ended by then stays, the rest is not run.
@@ -47,6 +64,12 @@ pub trait Observer: Sync {
     /// Its files stand; these runs will write nothing more. The caller may end the program here:
     /// [`run_suite`] returns the same only once they have come to the end of their stage.
     fn abandoned(&self, _result: &Result<SuiteOutcome, SuiteError>) {}
+    /// Run `index` of the plan is not run again: its folder holds the result. It counts as finished.
+    fn taken_over(&self, index: usize, report: &RunReport) {
+        self.finished(index, report);
+    }
+    /// Something about the suite is worth saying.
+    fn caution(&self, _message: &str) {}
 }
 
 /// What came of a suite.
@@ -60,25 +83,32 @@ pub struct SuiteOutcome {
     pub broken: bool,
     /// Threads that it ran on: fewer than asked for where the system had no more.
     pub threads: usize,
+    /// Folders that hold results of earlier scenarios of these names.
+    pub stale: Vec<String>,
 }
 
 /// Why a suite stopped before its end.
 #[derive(Debug, thiserror::Error)]
 pub enum SuiteError {
-    /// A file could not be written.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
+    /// The output folder is in use or holds something of the user's, or a file could not be written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
     /// The system gave not one thread.
     #[error("cannot start a thread: {source}")]
     Threads {
         /// What the system said.
         source: io::Error,
     },
+}
+
+/// What the runs of a suite share.
+pub(super) struct Suite<'a> {
+    /// Where their folders go.
+    pub(super) output: &'a SuiteOutput,
+    /// Whose results are taken over.
+    pub(super) resume: Resume,
+    /// Which of them have ended.
+    pub(super) ledger: &'a Ledger,
 }
 
 /// Runs every plan and writes `options.output`.
@@ -90,35 +120,41 @@ pub enum SuiteError {
 /// itself; the others go on.
 ///
 /// # Errors
-/// [`SuiteError`] if a file cannot be written or no thread can be started. Folders of runs that
-/// were complete by then stay.
+/// [`SuiteError`] if something of the user's would be replaced, before anything runs; if another
+/// process writes into the folder; if a file cannot be written or no thread can be started. Folders
+/// of runs that were complete by then stay.
 pub fn run_suite(
     plans: &[Plan],
     options: &SuiteOptions,
     observer: &dyn Observer,
 ) -> Result<SuiteOutcome, SuiteError> {
-    create_folder(&options.output)?;
-    for name in SUITE_FILES {
-        remove(&options.output.join(name))?;
-    }
-    remove_tables(&options.output)?;
     let layout = &Layout::of(plans);
     let pool = threads::pool(threads::thread_count(options.threads))
         .map_err(|source| SuiteError::Threads { source })?;
+    let output = &SuiteOutput::open(plans, layout, options)?;
+    if let Some(caution) = output.caution() {
+        observer.caution(caution);
+    }
     let ledger = &Ledger::new(plans.len());
+    let suite = &Suite {
+        output,
+        resume: options.resume,
+        ledger,
+    };
     let conclude = || {
-        let outcome = conclude(plans, layout, options, ledger)?;
+        let outcome = conclude(plans, layout, suite)?;
         let threads = pool.current_num_threads();
         Ok(SuiteOutcome { threads, ..outcome })
     };
     let (end_of_work, work) = channel();
     let stopped = pool.in_place_scope(|scope| {
         scope.spawn(move |_| {
-            run_all(plans, layout, options, ledger, observer);
+            run_all(plans, layout, suite, observer);
             drop(end_of_work);
         });
         (!wait(&work, observer)).then(|| {
             let result = conclude();
+            output.sign_off();
             observer.abandoned(&result);
             result
         })
@@ -127,70 +163,76 @@ pub fn run_suite(
 }
 
 /// Runs the plans longest first, so that the last core is not left alone with the longest run.
-fn run_all(
-    plans: &[Plan],
-    layout: &Layout,
-    options: &SuiteOptions,
-    ledger: &Ledger,
-    observer: &dyn Observer,
-) {
+fn run_all(plans: &[Plan], layout: &Layout, suite: &Suite, observer: &dyn Observer) {
     let mut order: Vec<usize> = (0..plans.len()).collect();
     order.sort_by(|&a, &b| plans[b].cost().total_cmp(&plans[a].cost()));
     // One item at a time, so that a thread takes the next longest run when it is free.
     let order = order.par_iter().with_max_len(1);
+    let ledger = suite.ledger;
     order.for_each(|&index| {
         if ledger.is_stopped() || observer.should_stop() {
             return;
         }
         let plan = &plans[index];
-        let run = || run_scenario(plan, index, layout, &options.output, ledger, observer);
+        let run = || run_scenario(plan, index, layout, suite, observer);
         let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
             ledger.note_broken();
             Ok(Some(broken_run(plan, &*panic)))
         });
         match result {
-            Ok(Some(outcome)) if outcome.error.is_some() => {
-                ledger.enter(index, &outcome);
-                let tell = || observer.failed(index, &outcome);
-                if catch_unwind(AssertUnwindSafe(tell)).is_err() {
-                    ledger.note_broken();
+            Ok(Some(outcome)) => {
+                if let Some(reason) = &outcome.error {
+                    enter_failure((plan, index), &outcome, reason, suite, observer);
                 }
             }
-            Ok(_) => {}
+            Ok(None) => {}
             Err(error) => ledger.fail(index, error),
         }
     });
 }
 
+/// Puts a folder that says so in the place of a run that could not finish, enters the run and tells
+/// the observer.
+fn enter_failure(
+    (plan, index): (&Plan, usize),
+    outcome: &RunOutcome,
+    reason: &str,
+    suite: &Suite,
+    observer: &dyn Observer,
+) {
+    let ledger = suite.ledger;
+    match ledger.commit(index, outcome, || suite.output.record_failure(plan, reason)) {
+        Ok(true) => {
+            let tell = || observer.failed(index, outcome);
+            if catch_unwind(AssertUnwindSafe(tell)).is_err() {
+                ledger.note_broken();
+            }
+        }
+        Ok(false) => {}
+        Err(error) => ledger.fail(index, error.into()),
+    }
+}
+
 /// Closes the ledger and writes the files of the suite. What breaks an invariant is left out, and
 /// the rest is written all the same.
-fn conclude(
-    plans: &[Plan],
-    layout: &Layout,
-    options: &SuiteOptions,
-    ledger: &Ledger,
-) -> Result<SuiteOutcome, SuiteError> {
+fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> Result<SuiteOutcome, SuiteError> {
+    let Suite { output, ledger, .. } = *suite;
     let runs = ledger.close(plans)?;
     let comparison = unbroken(ledger, || layout.fill(plans, &runs)).unwrap_or_default();
+    let stale = output.settle()?;
     let tables = unbroken(ledger, || report::comparison_files(&comparison));
-    for (name, text) in tables.into_iter().flatten() {
-        write(&options.output.join(name), &text)?;
-    }
-    let summary = || report::suite_summary_json(VERSION, &runs, &comparison);
-    let texts = [
-        unbroken(ledger, summary),
-        unbroken(ledger, || report::junit_xml(&runs)),
-    ];
-    for (name, text) in SUITE_FILES.into_iter().zip(texts) {
-        if let Some(text) = text {
-            write(&options.output.join(name), &text)?;
-        }
-    }
+    let mut files = tables.unwrap_or_default();
+    let summary = || report::suite_summary_json(VERSION, &runs, &comparison, &stale);
+    let junit = || report::junit_xml(&runs);
+    files.extend(unbroken(ledger, summary).map(|text| (SUMMARY.to_owned(), text)));
+    files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
+    output.publish(&files)?;
     Ok(SuiteOutcome {
         runs,
         comparison,
         broken: ledger.is_broken(),
         threads: 0,
+        stale,
     })
 }
 
@@ -217,44 +259,4 @@ fn broken_run(plan: &Plan, panic: &(dyn Any + Send)) -> RunOutcome {
         &resolved.file,
         format!("internal error, please report it: {message}"),
     )
-}
-
-fn remove(path: &Path) -> Result<(), SuiteError> {
-    match std::fs::remove_file(path) {
-        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(SuiteError::Write {
-            path: path.to_owned(),
-            source,
-        }),
-        _ => Ok(()),
-    }
-}
-
-/// Removes the tables of an earlier suite: the tool names no other file so.
-fn remove_tables(output: &Path) -> Result<(), SuiteError> {
-    let read = |source| SuiteError::Write {
-        path: output.to_owned(),
-        source,
-    };
-    for entry in std::fs::read_dir(output).map_err(read)? {
-        let entry = entry.map_err(read)?;
-        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        if is_file && report::is_comparison_file(&entry.file_name().to_string_lossy()) {
-            remove(&entry.path())?;
-        }
-    }
-    Ok(())
-}
-
-fn create_folder(path: &Path) -> Result<(), SuiteError> {
-    std::fs::create_dir_all(path).map_err(|source| SuiteError::Write {
-        path: path.to_owned(),
-        source,
-    })
-}
-
-fn write(path: &Path, text: &str) -> Result<(), SuiteError> {
-    report::write_atomic(path, text.as_bytes()).map_err(|source| SuiteError::Write {
-        path: path.to_owned(),
-        source,
-    })
 }

@@ -186,6 +186,7 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
     let gain = pooled.get(&DC_GAIN);
     let gain = gain.map(|gain| gain.estimate.value);
     if gain.is_some() && pooled.get(&ANGLE_RANDOM_WALK_OVER_DC_GAIN).is_some() {
+        pooled.metrics.remove(ANGLE_RANDOM_WALK_OVER_DC_GAIN.name);
         put_over_dc_gain(
             &ANGLE_RANDOM_WALK,
             &ANGLE_RANDOM_WALK_OVER_DC_GAIN,

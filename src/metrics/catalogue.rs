@@ -107,3 +107,33 @@ pub fn repeated_metrics() -> Vec<&'static MetricKey> {
 pub fn find(name: &str) -> Option<&'static MetricKey> {
     CATALOGUE.iter().copied().find(|known| known.name == name)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_metric_has_a_name_of_its_own_and_a_heading_where_a_table_shows_it() {
+        let names: BTreeSet<&str> = CATALOGUE.iter().map(|key| key.name).collect();
+        assert_eq!(names.len(), CATALOGUE.len());
+        for key in CATALOGUE {
+            assert_eq!(find(key.name), Some(*key));
+            let is_shown = !key.tables.is_empty() || key.closes_tables;
+            assert!(!is_shown || key.heading.is_some(), "{}", key.name);
+            let is_headline_only = key.tables.is_empty() && !key.headlines.is_empty();
+            assert!(!is_headline_only, "{} heads a line of no table", key.name);
+        }
+    }
+
+    #[test]
+    fn columns_of_repeats_stand_in_places_of_their_own() {
+        let places: Vec<Option<u8>> = repeated_metrics()
+            .iter()
+            .map(|key| key.run_column)
+            .collect();
+        let expected: Vec<Option<u8>> = (1..).map(Some).take(places.len()).collect();
+        assert_eq!(places, expected);
+    }
+}

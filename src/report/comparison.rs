@@ -194,11 +194,7 @@ impl ComparedTable {
 
     /// Name of its files without the extension.
     pub(crate) fn file_stem(&self) -> String {
-        let kind = match self.kind {
-            ComparisonKind::Published => "published",
-            ComparisonKind::Sensitivity => "sensitivity",
-        };
-        format!("{kind}-{}", self.slug)
+        file_stem(self.kind, &self.slug)
     }
 
     /// Whether a column holds a number.
@@ -233,4 +229,13 @@ impl ComparedTable {
         let mut rows = self.rows.iter();
         rows.find_map(|row| Some(&row.cells[column].as_ref()?.simulated))
     }
+}
+
+/// Name of a table's files without its extension.
+pub(super) fn file_stem(kind: ComparisonKind, slug: &str) -> String {
+    let kind = match kind {
+        ComparisonKind::Published => "published",
+        ComparisonKind::Sensitivity => "sensitivity",
+    };
+    format!("{kind}-{slug}")
 }

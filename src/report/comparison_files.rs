@@ -1,30 +1,26 @@
 //! The files of a suite's tables: CSV and SVG beside the suite's summary.
 
-use crate::report::comparison::{ComparedTable, Comparison};
+use crate::report::comparison::{ComparedTable, Comparison, file_stem};
 use crate::report::plot::comparison_svg;
-
-/// How the names of these files begin.
-const PREFIXES: [&str; 2] = ["published-", "sensitivity-"];
-/// How they end.
-const EXTENSIONS: [&str; 2] = [".csv", ".svg"];
+use crate::scenario::ComparisonKind;
 
 /// Name and text of every file: `published-<table>.csv` and `.svg`, `sensitivity-<table>.…`;
 /// a picture that would be too large is left out, as the CSV holds all of it.
 #[must_use]
 pub fn comparison_files(across: &Comparison) -> Vec<(String, String)> {
     let files = across.tables.iter().flat_map(|table| {
-        let stem = table.file_stem();
-        let svg = comparison_svg(table).map(|svg| (format!("{stem}.svg"), svg));
-        std::iter::once((format!("{stem}.csv"), csv(table))).chain(svg)
+        let [csv_name, svg_name] = comparison_file_names(table.kind, &table.slug);
+        let svg = comparison_svg(table).map(|svg| (svg_name, svg));
+        std::iter::once((csv_name, csv(table))).chain(svg)
     });
     files.collect()
 }
 
-/// Whether a file of the output folder has the name of such a file.
+/// Names of the files of a table.
 #[must_use]
-pub fn is_comparison_file(name: &str) -> bool {
-    PREFIXES.iter().any(|prefix| name.starts_with(prefix))
-        && EXTENSIONS.iter().any(|extension| name.ends_with(extension))
+pub fn comparison_file_names(kind: ComparisonKind, slug: &str) -> [String; 2] {
+    let stem = file_stem(kind, slug);
+    [format!("{stem}.csv"), format!("{stem}.svg")]
 }
 
 fn csv(table: &ComparedTable) -> String {

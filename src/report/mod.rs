@@ -1,5 +1,4 @@
-//! Formats results: JSON, JUnit, SVG, CSV, text, NPY; and writes files so that none is ever half
-//! written.
+//! Formats results: JSON, JUnit, SVG, CSV, text.
 //!
 //! Invariant: formats, does not compute. The same records give the same bytes: nothing here reads
 //! a clock, a host name or an environment variable.
@@ -15,7 +14,7 @@ mod comparison_json;
 mod comparison_text;
 mod compensation;
 mod csv;
-mod files;
+mod failed;
 mod json;
 mod junit;
 mod log;
@@ -23,6 +22,8 @@ mod measured;
 mod plot;
 mod record;
 mod repeats;
+mod restore;
+mod restore_calibration;
 mod scale_factor;
 mod suite_table;
 mod summary;
@@ -38,15 +39,16 @@ pub use comparison::{
     Assumed, Cause, ChangePerUnit, ColumnChange, ComparedCell, ComparedColumn, ComparedRow,
     ComparedTable, Comparison, DrawnFigure,
 };
-pub use comparison_files::{comparison_files, is_comparison_file};
+pub use comparison_files::{comparison_file_names, comparison_files};
 pub use comparison_text::comparison_text;
 pub use csv::{allan_csv, autocovariance_csv, psd_csv};
-pub use files::{FolderWriter, write_atomic, write_npy};
+pub use failed::{FailedRun, failed_run_json};
 pub use junit::junit_xml;
 pub use log::{LogReport, log_files, log_json, log_text};
 pub use plot::{Pictures, SVG_BYTES_MAX, budget_svg, calibration_svg, plots};
 pub use record::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
 pub use repeats::runs_csv;
+pub use restore::RestoredRun;
 pub use scale_factor::scale_factor_csv;
 pub use suite_table::suite_text;
 pub use summary::{run_summary_json, suite_summary_json};

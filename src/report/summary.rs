@@ -52,9 +52,14 @@ pub fn run_summary_json(report: &RunReport) -> String {
 }
 
 /// The text of the suite's `summary.json`: every run with its folder, verdict counts and status;
-/// then what the suite says across its scenarios.
+/// then what the suite says across its scenarios, and folders that hold results of earlier ones.
 #[must_use]
-pub fn suite_summary_json(tool_version: &str, runs: &[RunOutcome], across: &Comparison) -> String {
+pub fn suite_summary_json(
+    tool_version: &str,
+    runs: &[RunOutcome],
+    across: &Comparison,
+    stale: &[String],
+) -> String {
     let with = |status: RunStatus| runs.iter().filter(|run| run.status() == status).count();
     let verdicts = |kind: VerdictKind| runs.iter().map(|run| run.count(kind)).sum::<usize>();
     let mut totals = object([
@@ -81,6 +86,9 @@ pub fn suite_summary_json(tool_version: &str, runs: &[RunOutcome], across: &Comp
         ("runs", runs.iter().map(run_entry).collect()),
         ("totals", totals.into()),
     ]);
+    if !stale.is_empty() {
+        root.insert("stale".to_owned(), stale.to_vec().into());
+    }
     root.extend(comparison(across));
     pretty(&root.into())
 }

@@ -323,7 +323,7 @@ fn inherited_keys_defaults_and_records_are_never_refused() {
             // A few stand beside contradictions of their own.
             Err(errors) => panic!("{}: {errors:?}", case.key),
         };
-        let manifest = super::manifest_toml(&run, env!("CARGO_PKG_VERSION"));
+        let manifest = super::manifest_toml(&run, env!("CARGO_PKG_VERSION"), "unknown");
         assert!(
             load(&manifest, "", &[]).is_ok(),
             "{} in a manifest",

@@ -27,12 +27,14 @@ pub(crate) fn is_manifest(root: &Table) -> bool {
 ///
 /// Given to `run` as a scenario, it resolves to an equal [`Resolved`]. The origin is a record of
 /// one resolved scenario, named by its digest: once a value has been changed, in the file or by
-/// `--set`, the manifest itself is the origin of what it gives.
+/// `--set`, the manifest itself is the origin of what it gives. The line `build` is for `--resume`, which
+/// takes over what the same build wrote; it has no part in the result.
 #[must_use]
-pub fn manifest_toml(resolved: &Resolved, tool_version: &str) -> String {
+pub fn manifest_toml(resolved: &Resolved, tool_version: &str, build: &str) -> String {
     let text = |text: &str| Value::Text(text.to_owned()).to_toml();
     let mut manifest = format!(
-        "manifest = {MANIFEST_VERSION}\n\n[tool]\nname = \"fogbench\"\nversion = {}\n\n[origin]\nfile = {}\ndigest = {}\n",
+        "manifest = {MANIFEST_VERSION}\nbuild = {}\n\n[tool]\nname = \"fogbench\"\nversion = {}\n\n[origin]\nfile = {}\ndigest = {}\n",
+        text(build),
         text(tool_version),
         text(&resolved.file),
         text(&resolved.digest)

@@ -26,7 +26,7 @@ fn a_set_key_is_refused_if_it_acts_nowhere() {
     assert!(load_suite(&[folder.path().to_owned()], &sets).is_ok());
     // On a manifest it is a wish as well.
     let run = load(least, "", &[]).unwrap().remove(0);
-    let manifest = super::manifest_toml(&run, env!("CARGO_PKG_VERSION"));
+    let manifest = super::manifest_toml(&run, env!("CARGO_PKG_VERSION"), "unknown");
     assert_eq!(idle(&manifest, "", &set).len(), 1);
 }
 
@@ -60,7 +60,7 @@ fn what_a_record_says_by_default_contradicts_nothing() {
     let run = load(steps, "", &[]).unwrap().remove(0);
     let settle_s = run.number_of("turntable.steps.settle_s").unwrap();
     assert!(settle_s >= 0.1, "the default is longer than the dwell");
-    let manifest = super::manifest_toml(&run, env!("CARGO_PKG_VERSION"));
+    let manifest = super::manifest_toml(&run, env!("CARGO_PKG_VERSION"), "unknown");
     for record in [&manifest, &run.to_toml()] {
         assert_eq!(load(record, "", &[]).unwrap().remove(0).digest, run.digest);
     }

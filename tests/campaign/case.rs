@@ -93,8 +93,8 @@ impl Workshop {
     pub(crate) fn run(&self, plans: &[Plan], name: &str, threads: usize) -> Result<Ran, Fault> {
         let output = self.path().join(name);
         let options = SuiteOptions {
-            output: output.clone(),
             threads,
+            ..SuiteOptions::new(output.clone())
         };
         let listener = Listener::default();
         let outcome = caught(|| run_suite(plans, &options, &listener))?

@@ -14,12 +14,15 @@ mod draft;
 mod generator;
 mod hints;
 mod invariants;
+mod kills;
+mod pairs;
 mod scenarios;
 mod schema;
 mod tally;
 mod texts;
 mod values;
 mod watchdog;
+mod yard;
 
 use std::str::FromStr;
 

@@ -10,7 +10,7 @@ use fogbench::scenario::{CalibrationConfig, EstimatorKind, reference_calibration
 use fogbench::units::{deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h};
 
 use super::values::{Spelling, mutate_bytes, mutate_table};
-use super::{Outcome, assert_complaint, assert_document, campaign};
+use super::{Outcome, assert_complaint, assert_document, campaign, result_folder};
 use crate::support::patent_cases::{rates, truth};
 use crate::support::seeded::Draws;
 
@@ -241,7 +241,7 @@ fn case(draws: &mut Draws, folder: &Path) -> Outcome {
             let odd = words.filter(|word| ["inf", "NaN"].contains(word)).count();
             assert_eq!(odd, 0, "{text}");
             if draws.chance(0.01) {
-                trial.write(&folder.join("out")).expect("a folder");
+                trial.write(&result_folder(folder)).expect("a folder");
             }
             Outcome::Measured
         }

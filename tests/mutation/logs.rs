@@ -11,7 +11,7 @@ use fogbench::report::{log_json, log_text};
 use fogbench::scenario::{AllanConfig, AllanEstimatorConfig, AveragingTimes};
 
 use super::values::{Spelling, mutate_bytes, mutate_table, record};
-use super::{Outcome, assert_complaint, assert_document, campaign};
+use super::{Outcome, assert_complaint, assert_document, campaign, result_folder};
 use crate::support::seeded::Draws;
 
 /// Filters without a corner, so that they stand behind a log of any rate.
@@ -140,7 +140,7 @@ pub(super) fn measure(draws: &mut Draws, log: Log, folder: &Path) -> Outcome {
             let text = trial.with_report(|report| log_text(report, 100, false));
             assert!(text.contains(&file));
             if is_written {
-                trial.write(&folder.join("out"), true).expect("a folder");
+                trial.write(&result_folder(folder), true).expect("a folder");
             }
             Outcome::Measured
         }

@@ -24,6 +24,7 @@ use std::path::Path;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
+use fogbench::store::{OutputFolder, StoreOptions};
 use serde_json::Value;
 
 use crate::support::seeded::{Draws, case_seed};
@@ -143,6 +144,11 @@ fn watch(kind: &str) -> Sender<u64> {
         }
     });
     sender
+}
+
+/// The folder of a result, below that of the case.
+fn result_folder(folder: &Path) -> OutputFolder {
+    OutputFolder::of_result(&folder.join("out"), StoreOptions::default()).expect("a free folder")
 }
 
 /// Asserts that a complaint is short, on one line and about the file.

@@ -83,7 +83,8 @@ pub(crate) fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
     path
 }
 
-/// Every file below `folder`, as (path below it, bytes), sorted.
+/// Every file below `folder`, as (path below it, bytes), sorted; what the tool keeps for itself in
+/// `.fogbench/` is no part of any result.
 pub(crate) fn tree(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     fn walk(root: &Path, folder: &Path, files: &mut Vec<(PathBuf, Vec<u8>)>) {
         for entry in std::fs::read_dir(folder)
@@ -91,6 +92,9 @@ pub(crate) fn tree(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
             .flatten()
         {
             let path = entry.path();
+            if path.is_dir() && path.ends_with(".fogbench") {
+                continue;
+            }
             if path.is_dir() {
                 walk(root, &path, files);
             } else {

@@ -1,0 +1,11 @@
+//! Which build of the program this is.
+
+/// What `git describe` said of the sources, `-dirty` behind it where they were changed; `unknown` where
+/// they were in no repository.
+pub const BUILD: &str = env!("FOGBENCH_BUILD");
+
+/// Whether two results of `build` come from the same program: a name that other sources may share says
+/// nothing.
+pub(super) fn names_one_program(build: &str) -> bool {
+    build != "unknown" && !build.ends_with("-dirty")
+}

@@ -1,0 +1,34 @@
+//! Folders of results: whose they are, one writer at a time, swapped whole.
+//!
+//! Every folder written carries a record of its files with their BLAKE3 digests, in `manifest.toml` where
+//! there is one, else in `.fogbench.toml`. What a record does not tell of belongs to the user, and nothing
+//! of the user's is replaced unless asked for. What is being written, the lock of the writer and the
+//! journals of what a kill may cut short stand in `.fogbench/` of the output folder, and nowhere else.
+//!
+//! Invariant: knows files and digests, not what they mean; imports nothing of the crate.
+
+mod error;
+mod files;
+mod flush;
+mod journal;
+mod legacy;
+mod lock;
+mod output_folder;
+mod ownership;
+mod record;
+mod staged;
+mod suite_files;
+mod swap;
+mod update;
+
+pub use error::{Foreign, StoreError};
+pub use files::write_npy;
+pub use output_folder::{OutputFolder, StoreOptions, refuse_theirs};
+pub use ownership::{Ownership, inspect};
+pub use record::{Head, MANIFEST_FILE, RECORD_FILE, Record};
+pub use staged::Staged;
+pub use suite_files::SuiteFileNames;
+pub use swap::Swap;
+
+/// Folder of the lock, the journals and what is being written.
+pub const WORKSHOP: &str = ".fogbench";

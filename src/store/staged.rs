@@ -1,0 +1,160 @@
+//! A folder being built in the workshop.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::error::StoreError;
+use super::files::{remove, write_npy};
+use super::flush::flush_tree;
+use super::journal::UpdateJournal;
+use super::output_folder::OutputFolder;
+use super::record::{RECORD_FILE, Record};
+use super::{WORKSHOP, files, swap, update};
+
+/// A folder being built; dropped before it is put in place, it goes.
+#[derive(Debug)]
+pub struct Staged<'a> {
+    output: &'a OutputFolder,
+    /// Name in the workshop.
+    name: String,
+    path: PathBuf,
+    is_in_place: bool,
+}
+
+impl<'a> Staged<'a> {
+    pub(super) fn create(output: &'a OutputFolder, name: String) -> Result<Self, StoreError> {
+        let path = output.path().join(WORKSHOP).join(&name);
+        fs::create_dir(&path).map_err(StoreError::at(&path))?;
+        Ok(Self {
+            output,
+            name,
+            path,
+            is_in_place: false,
+        })
+    }
+
+    /// The folder being built.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes one file; `name` may lead through folders, which are made.
+    ///
+    /// # Errors
+    /// Whatever the file system says.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
+        let path = self.place(name)?;
+        fs::write(&path, bytes).map_err(|source| self.failed(name, source))
+    }
+
+    /// Writes one NPY file of binary64; see [`write_npy`].
+    ///
+    /// # Errors
+    /// Whatever the file system says.
+    pub fn write_npy(&self, name: &str, values: &[f64]) -> Result<(), StoreError> {
+        let path = self.place(name)?;
+        write_npy(&path, values).map_err(|source| self.failed(name, source))
+    }
+
+    /// Writes the record of what has been written so far, below `head`, into the file `name`.
+    ///
+    /// * `name`: [`super::MANIFEST_FILE`] or [`super::RECORD_FILE`].
+    ///
+    /// # Errors
+    /// Whatever the file system says.
+    pub fn seal(&self, name: &str, head: &str) -> Result<(), StoreError> {
+        let record = Record::of(&self.path).map_err(|source| self.failed("", source))?;
+        self.write(name, record.sealed(head).as_bytes())
+    }
+
+    /// Writes the record of a folder without a manifest.
+    ///
+    /// # Errors
+    /// Whatever the file system says.
+    pub fn seal_plainly(&self, holds: &str) -> Result<(), StoreError> {
+        let head = format!(
+            "# Written by fogbench: the files of this folder. A command replaces them only while they are\n\
+             # unchanged.\nschema = 1\nholds = \"{holds}\"\n\n[tool]\nname = \"fogbench\"\nversion = \"{}\"\n",
+            env!("CARGO_PKG_VERSION")
+        );
+        self.seal(RECORD_FILE, &head)
+    }
+
+    /// Makes the files of a finished folder of the output stand here as well, under `name`.
+    pub(super) fn adopt(&self, finished: &Path, name: &str) -> Result<(), StoreError> {
+        let from = self.output.path().join(finished);
+        files::link_tree(&from, &self.path.join(name)).map_err(StoreError::at(&from))
+    }
+
+    /// Flushes the folder and swaps it into its place below the output folder.
+    ///
+    /// # Errors
+    /// [`StoreError::NotOurs`] if what stands there has become the user's meanwhile; whatever the file
+    /// system says, and what stood there then stands untouched.
+    pub fn put_in_place(mut self, place: &str) -> Result<(), StoreError> {
+        let target = self.output.path().join(place);
+        self.output.refuse_theirs(&target)?;
+        let put = flush_tree(&self.path).and_then(|()| {
+            let how = self.output.options().swap;
+            swap::put(self.output.path(), &self.name, Path::new(place), how)
+        });
+        put.map_err(StoreError::at(&target))?;
+        self.is_in_place = true;
+        Ok(())
+    }
+
+    /// Flushes the files and makes them those of the output folder itself, in place of the recorded ones.
+    ///
+    /// # Errors
+    /// Whatever the file system says; the old files then stand untouched.
+    pub fn put_files_in_place(mut self) -> Result<(), StoreError> {
+        let output = self.output.path().to_owned();
+        let at = StoreError::at(&output);
+        let mut removed = self.output.known_files()?;
+        let own = Record::of(&self.path).map_err(&at)?;
+        let mut installed: Vec<String> = own.names().map(str::to_owned).collect();
+        installed.extend(
+            [RECORD_FILE]
+                .into_iter()
+                .filter(|name| self.path.join(name).is_file())
+                .map(str::to_owned),
+        );
+        removed.retain(|name| !installed.contains(name));
+        let change = UpdateJournal {
+            new: self.name.clone(),
+            removed,
+            installed,
+        };
+        flush_tree(&self.path).map_err(&at)?;
+        update::refuse_obstacles(&output, &change).map_err(&at)?;
+        // From here on a journal may tell of the folder, and then the next run needs it.
+        self.is_in_place = true;
+        update::update(&output, &change).map_err(at)
+    }
+
+    fn place(&self, name: &str) -> Result<PathBuf, StoreError> {
+        let path = self.path.join(name);
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder).map_err(|source| self.failed(name, source))?;
+        }
+        Ok(path)
+    }
+
+    fn failed(&self, name: &str, source: io::Error) -> StoreError {
+        StoreError::Write {
+            path: self.path.join(name),
+            source,
+        }
+    }
+}
+
+impl Drop for Staged<'_> {
+    fn drop(&mut self) {
+        if !self.is_in_place {
+            // Best effort: the next run clears the workshop.
+            let _ = remove(&self.path);
+        }
+    }
+}
