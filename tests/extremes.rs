@@ -1,6 +1,6 @@
 //! Numbers at the ends of their ranges: finite results or a clear refusal, never a panic.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use fogbench::experiment::{Observer, Plan, SuiteOptions, plan_suite, run_suite};
 use fogbench::metrics::{AllanOptions, Motion, Record, Settings, measure, predict};
@@ -100,9 +100,17 @@ const BESIDE: [(&str, &str); 28] = [
     ("filter[]", ""),
 ];
 
-/// The text of a scenario in which a key means something.
-fn scenario(name: &str, path: &str) -> String {
-    let mut text = format!("name = \"{name}\"\n{SHORT}");
+/// Writes a scenario in which a key means something. It inherits all but its name: keys beside the
+/// one under test may be without effect.
+fn write_scenario(folder: &Path, name: &str, path: &str) -> PathBuf {
+    write(folder, &format!("bases/{name}.toml"), &base(path));
+    let own = format!("name = \"{name}\"\nextends = \"bases/{name}.toml\"\n");
+    write(folder, &format!("{name}.toml"), &own)
+}
+
+/// The text of a base in which a key means something.
+fn base(path: &str) -> String {
+    let mut text = SHORT.to_owned();
     let (table, beside) = match BESIDE.iter().find(|(table, _)| path.starts_with(table)) {
         Some(("calibration", _)) => BESIDE[8],
         Some(found) => *found,
@@ -188,7 +196,7 @@ fn run_all(folder: &Path, end: &str) -> (usize, usize) {
     assert!(ends.len() > 180, "{} keys have a {end}", ends.len());
     for (index, (path, value)) in ends.iter().enumerate() {
         let name = format!("k{index}");
-        let file = write(folder, &format!("{name}.toml"), &scenario(&name, path));
+        let file = write_scenario(folder, &name, path);
         let base = plan_suite(std::slice::from_ref(&file), &[]);
         assert!(base.is_ok(), "{path}: {base:?}");
         match plan_suite(&[file], &[set(path, value)]) {
@@ -257,11 +265,7 @@ fn no_key_takes_a_number_below_its_least_value() {
             continue;
         }
         let name = format!("k{index}");
-        let file = write(
-            folder.path(),
-            &format!("{name}.toml"),
-            &scenario(&name, path),
-        );
+        let file = write_scenario(folder.path(), &name, path);
         let found = plan_suite(&[file], &[set(path, "5e-324")])
             .map(|_| ())
             .unwrap_err();
