@@ -29,14 +29,13 @@ pub(super) fn run_scenario(
     suite: &Suite,
     observer: &dyn Observer,
 ) -> Result<Option<RunOutcome>, SuiteError> {
-    let Suite { output, ledger, .. } = *suite;
-    if let Some(outcome) = take_over(plan, index, layout, (output, suite.resume), observer) {
-        ledger.enter(index, &outcome);
+    let kept = (suite.output, suite.resume);
+    if let Some(outcome) = take_over(plan, index, layout, kept, observer) {
+        suite.ledger.enter(index, &outcome);
         return Ok(Some(outcome));
     }
     let resolved = plan.resolved();
     let scenario = &resolved.scenario;
-    let folder = resolved.folder();
     let done = theory(scenario)
         .map_err(Unfinished::from)
         .and_then(|curves| Ok((curves, run_repeats(plan, observer)?)));
@@ -45,7 +44,12 @@ pub(super) fn run_scenario(
         Err(Unfinished::Stopped) => return Ok(None),
         Err(Unfinished::Failed(error)) => {
             let (name, file) = (&scenario.name, &resolved.file);
-            return Ok(Some(RunOutcome::failed(name, &folder, file, error)));
+            return Ok(Some(RunOutcome::failed(
+                name,
+                &resolved.folder(),
+                file,
+                error,
+            )));
         }
     };
     let Repeats {
@@ -83,27 +87,38 @@ pub(super) fn run_scenario(
         verdicts: &verdicts,
         notes: &notes,
     };
-    let pictures = run_files::draw(plan, &report, &simulation);
-    let notes = [&notes[..], &pictures.notes].concat();
-    let report = RunReport {
+    enter_result((plan, index), &report, &simulation, layout, suite, observer)
+}
+
+/// Draws and writes a result, puts its folder in place and enters it in the ledger; none if the suite
+/// has come to its end before that.
+fn enter_result(
+    (plan, index): (&Plan, usize),
+    report: &RunReport,
+    simulation: &Simulation,
+    layout: &Layout,
+    suite: &Suite,
+    observer: &dyn Observer,
+) -> Result<Option<RunOutcome>, SuiteError> {
+    let output = suite.output;
+    let pictures = run_files::draw(plan, report, simulation);
+    let notes = [report.notes, &pictures.notes].concat();
+    let report = &RunReport {
         notes: &notes,
-        ..report
+        ..report.clone()
     };
-    let written = run_files::write_folder(plan, &report, &simulation, &pictures, output)?;
-    let outcome = RunOutcome::from_report(&report, &folder);
+    let written = run_files::write_folder(plan, report, simulation, &pictures, output)?;
+    let outcome = RunOutcome::from_report(report, &plan.resolved().folder());
+    let pictures = pictures.drawn.into_iter().map(|(name, _)| name).collect();
     let outcome = RunOutcome {
-        pictures: pictures
-            .drawn
-            .iter()
-            .map(|(name, _)| name.clone())
-            .collect(),
-        ..outcome.keeping(&report, layout.metrics_of(&scenario.name))
+        pictures,
+        ..outcome.keeping(report, layout.metrics_of(&report.scenario.name))
     };
-    let entered = ledger.commit(index, &outcome, || output.put_in_place(written, plan));
-    if !entered? {
+    let swap = || output.put_in_place(written, plan);
+    if !suite.ledger.commit(index, &outcome, swap)? {
         return Ok(None);
     }
-    observer.finished(index, &report);
+    observer.finished(index, report);
     Ok(Some(outcome))
 }
 

@@ -24,8 +24,6 @@ const CURVE: &str = "allan";
 /// The curve that is fitted.
 const FIT_CURVE: &str = "allan_fit";
 
-/// Bias stability at restored scale.
-
 /// Columns of the curve that pooling takes the mean of.
 const MEANS: [&str; 2] = ["count", "noise_identified"];
 

@@ -25,8 +25,6 @@ pub static READAPTATION_TIME: MetricKey = MetricKey::of_filters(
 .needs(Needs::SettledStep)
 .tables(&[Table::Swing, Table::Steps]);
 
-/// Key of the metric.
-
 /// How the reason begins where the gain does not come back.
 pub(crate) const NOT_WITHIN: &str = "not within the record";
 

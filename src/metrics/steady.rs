@@ -101,8 +101,6 @@ pub static DELAY_AT_DC: MetricKey = MetricKey::of_filters(
 /// Blocks of time whose scatter gives the intervals of ratios.
 pub(crate) const RATIO_BLOCKS: usize = 20;
 
-/// Angle random walk over the DC gain.
-
 /// Lags of the autocovariance, at least; correlation beyond counts as slow noise.
 pub(crate) const LAGS_MIN: usize = CURVE_LAGS;
 

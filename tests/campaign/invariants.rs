@@ -223,7 +223,10 @@ pub(crate) fn watch_panics() {
         let earlier = panic::take_hook();
         panic::set_hook(Box::new(move |info| {
             let place = info.location().map(ToString::to_string).unwrap_or_default();
-            let message = info.payload_as_str().unwrap_or_default().to_owned();
+            let payload = info.payload();
+            let text = payload.downcast_ref::<&str>().copied();
+            let message = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+            let message = message.unwrap_or_default().to_owned();
             let mut panics = PANICS.lock().unwrap_or_else(PoisonError::into_inner);
             panics.push((place, message));
             drop(panics);

@@ -93,7 +93,7 @@ impl Tracer {
     /// The next call to kill at.
     fn place(&mut self, start: Start) -> (usize, usize) {
         // Every second kill is at a rename, where folders change places.
-        let kind = if self.turn % 2 == 0 {
+        let kind = if self.turn.is_multiple_of(2) {
             0
         } else {
             1 + (self.turn / 2) % (CALLS.len() - 1)
