@@ -90,7 +90,7 @@ impl<R: BufRead> Lines<R> {
     /// The next line that is neither empty nor a comment; none at the end.
     ///
     /// # Errors
-    /// [`TextError`]: bytes that are no UTF-8, NUL, a line beyond [`LINE_BYTES_MAX`].
+    /// [`TextError`]: bytes that are no UTF-8, NUL, a line beyond 1 MiB.
     pub fn next_line(&mut self) -> Result<Option<Line<'_>>, TextError> {
         loop {
             if !self.advance()? {

@@ -67,7 +67,7 @@ impl OutputFolder {
     }
 
     /// Takes a folder for a suite, made if absent; the suite's own files must be absent or the tool's,
-    /// and so must every folder that `check` looks into with [`OutputFolder::refuse_theirs`].
+    /// and so must every folder that `check` looks into with [`refuse_theirs`].
     ///
     /// Everything is checked before anything is made, so that a refusal leaves no trace.
     ///
