@@ -265,7 +265,7 @@ fn errors_in_a_calibration_file_point_into_that_file() {
     let cases = [
         (
             "schema = 1\n[compensation]\nbias_deg_h = [0.0, 0.0, 0.0]\n",
-            "found.toml:3:1: unknown key compensation.parameters.bias_deg_h: the nearest known key is compensation.parameters.bias",
+            "found.toml:3:1: unknown key compensation.parameters.bias_deg_h: did you mean compensation.parameters.bias_deg_per_h?",
         ),
         (
             "schema = 1\n[compensation]\nbias_deg_per_h = [0.0, 0.0]\n",

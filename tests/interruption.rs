@@ -411,7 +411,7 @@ mod process {
         let motion = |table: &str, keys: &str| format!("{hour}[turntable.{table}]\n{keys}\n");
         let base = repository("scenarios/base/patent.toml");
         let campaign = format!(
-            "extends = \"{}\"\nduration_s = 6480.0\n[turntable.calibration]\n\
+            "extends = \"{}\"\nrepeats = 1000\nduration_s = 6480.0\n[turntable.calibration]\n\
              axes = [\"x\", \"x\", \"y\", \"y\", \"z\", \"z\"]\n\
              rates_deg_per_s = [10.0, -90.0, 50.0, 20.0, 90.0, -10.0]\n",
             base.display()

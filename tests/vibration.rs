@@ -284,7 +284,10 @@ fn vibrations_that_make_no_sense_are_refused_with_the_reason() {
     assert!(refused(sine).is_empty());
     assert!(refused(&format!("{random}to_hz = 2000.0\n")).is_empty());
     let bare = "[gyro.vibration]\nintensity_per_g = 0.5\n";
-    assert!(refused(bare).is_empty());
+    let idle = refused(bare);
+    assert_eq!(idle.len(), 1, "{idle:?}");
+    assert!(idle[0].message.contains("intensity_per_g"), "{idle:?}");
+    assert!(refused(&format!("{bare}{sine}")).is_empty());
     for (text, reason) in [
         (format!("{random}to_hz = 20.0\n"), "not below to_hz"),
         (

@@ -156,6 +156,20 @@ fn singular(word: &str) -> String {
     }
 }
 
+/// Words of a unit with the `per` that is often left out: nothing is given in degree hours or degree
+/// seconds, so that `deg_h` stands for deg/h.
+fn with_divisions(words: Vec<String>) -> Vec<String> {
+    let mut written: Vec<String> = Vec::new();
+    for word in words {
+        let is_time = matches!(word.as_str(), "h" | "s" | "min" | "sqrt");
+        if is_time && written.last().is_some_and(|last| last == "deg") {
+            written.push("per".to_owned());
+        }
+        written.push(word);
+    }
+    written
+}
+
 /// The unit that words spell: factors, each behind `per` a divisor, `sqrt` before or a power behind.
 fn unit(tokens: &[String]) -> Option<Unit> {
     let spelled = tokens.iter().flat_map(|token| {
@@ -165,7 +179,7 @@ fn unit(tokens: &[String]) -> Option<Unit> {
             None => vec![token.clone()],
         }
     });
-    let words: Vec<String> = spelled.collect();
+    let words = with_divisions(spelled.collect());
     let mut dimension = [0; BASES];
     let (mut is_divisor, mut is_root, mut is_open) = (false, false, true);
     for word in &words {
@@ -208,6 +222,7 @@ mod tests {
         for (one, other) in [
             ("arw_deg_per_rt_hr", "angle_random_walk_deg_per_sqrt_h"),
             ("bias_dph", "bias_deg_per_h"),
+            ("bias_deg_h", "bias_deg_per_h"),
             ("warmup_sec", "warm_up_s"),
             (
                 "walk_random_angle_deg_per_sqrthr",
