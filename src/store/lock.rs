@@ -1,8 +1,9 @@
 //! One writer at a time.
 
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Read, Write};
+use std::io::{self, Read, Seek, Write};
 use std::path::Path;
+use std::time::Duration;
 
 use super::error::StoreError;
 
@@ -32,15 +33,15 @@ impl Lock {
             .truncate(false)
             .open(&path);
         let mut file = opened.map_err(&at)?;
-        let caution = match file.try_lock() {
+        let caution = match try_for_a_moment(&mut file) {
             Ok(()) => None,
-            Err(TryLockError::WouldBlock) => {
+            Err(Refusal::Held { holder }) => {
                 return Err(StoreError::InUse {
                     folder: output.to_owned(),
-                    holder: holder(&mut file),
+                    holder,
                 });
             }
-            Err(TryLockError::Error(error)) => Some(format!(
+            Err(Refusal::Unsupported(error)) => Some(format!(
                 "{}: locking is not supported here ({error}): let nothing else write into {}",
                 path.display(),
                 output.display()
@@ -49,6 +50,7 @@ impl Lock {
         let words = format!("process {} on {}\n", std::process::id(), host_name());
         let written = file
             .set_len(0)
+            .and_then(|()| file.rewind())
             .and_then(|()| file.write_all(words.as_bytes()));
         written.map_err(at)?;
         Ok(Self { file, caution })
@@ -70,15 +72,44 @@ impl Drop for Lock {
     }
 }
 
-/// Who holds a lock, as its file says.
-fn holder(file: &mut File) -> String {
-    let mut words = String::new();
-    let read = file.take(1000).read_to_string(&mut words);
-    match (read, words.trim()) {
-        // The holder has not written its name yet, or the system does not let it be read.
-        (Err(_), _) | (_, "") => "another process".to_owned(),
-        (Ok(_), words) => words.to_owned(),
+/// Why a lock was not taken.
+enum Refusal {
+    /// Another process has it.
+    Held { holder: String },
+    /// The file system cannot lock.
+    Unsupported(io::Error),
+}
+
+/// Takes the lock of a file. A holder that has not written its name yet is given a moment to do so, or
+/// to end.
+fn try_for_a_moment(file: &mut File) -> Result<(), Refusal> {
+    const TRIES: u32 = 20;
+    const PAUSE: Duration = Duration::from_millis(10);
+    for _ in 0..TRIES {
+        match file.try_lock() {
+            Ok(()) => return Ok(()),
+            Err(TryLockError::Error(error)) => return Err(Refusal::Unsupported(error)),
+            Err(TryLockError::WouldBlock) => {
+                if let Some(holder) = holder(file) {
+                    return Err(Refusal::Held { holder });
+                }
+            }
+        }
+        std::thread::sleep(PAUSE);
     }
+    // The system does not let the name be read.
+    let holder = "another process".to_owned();
+    Err(Refusal::Held { holder })
+}
+
+/// Who holds a lock, as its file says; none if it does not say so.
+fn holder(file: &mut File) -> Option<String> {
+    let mut words = String::new();
+    file.rewind().ok()?;
+    file.take(1000).read_to_string(&mut words).ok()?;
+    // A name without its end is being written.
+    let (line, _) = words.split_once('\n')?;
+    Some(line.to_owned())
 }
 
 #[cfg(unix)]

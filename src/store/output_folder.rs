@@ -100,8 +100,13 @@ impl OutputFolder {
             }
         };
         let workshop = path.join(WORKSHOP);
-        if !workshop.is_dir() {
-            checked()?;
+        // Without the lock another process may be changing what is looked into, which its workshop shows:
+        // the check under the lock then decides.
+        if !workshop.is_dir()
+            && let Err(refusal) = checked()
+            && !workshop.is_dir()
+        {
+            return Err(refusal);
         }
         fs::create_dir_all(path).map_err(StoreError::at(path))?;
         make_workshop(&workshop).map_err(StoreError::at(&workshop))?;
