@@ -426,7 +426,12 @@ fn hexadecimal_files_are_complete_and_parameters_name_every_choice() {
     let refused = stimulus_pairs::<f64>(&[0.0, f64::INFINITY], &mut FrontEnd::one_step_predictor());
     assert_eq!(
         refused.unwrap_err().to_string(),
-        "stimulus sample 1 is inf: expected a finite number"
+        "stimulus sample 1 is inf: expected a number that is finite in binary64"
+    );
+    let refused = stimulus_pairs::<f32>(&[1e300], &mut FrontEnd::one_step_predictor());
+    assert_eq!(
+        refused.unwrap_err().to_string(),
+        "stimulus sample 0 is 1e300: expected a number that is finite in binary32"
     );
 }
 

@@ -34,13 +34,15 @@ pub enum FpgaError {
         /// Allowed range, in words.
         range: &'static str,
     },
-    /// A stimulus holds a value that is not a finite number.
-    #[error("stimulus sample {index} is {value}: expected a finite number")]
+    /// A stimulus holds a value that is not a finite number in the word format.
+    #[error("stimulus sample {index} is {value:e}: expected a number that is finite in {format}")]
     NonFiniteStimulus {
         /// Index of the sample.
         index: usize,
         /// Refused value.
         value: f64,
+        /// Word format of the pipeline.
+        format: &'static str,
     },
     /// Two sequences that belong together differ in length.
     #[error("{name} holds {got} values: expected {want}, one per sample")]

@@ -71,6 +71,7 @@ pub fn stimulus_pairs<F: Fp>(
                 Err(FpgaError::NonFiniteStimulus {
                     index,
                     value: *value,
+                    format: F::NAME,
                 })
             }
         })
