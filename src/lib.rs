@@ -1,9 +1,11 @@
 #![doc = include_str!("../README.md")]
 
+pub mod declare;
 mod linear_algebra;
 pub mod random;
 pub mod signal;
 pub mod units;
+pub mod vocabulary;
 mod wording;
 
 // In the order of the data flow.

@@ -9,3 +9,11 @@ fn the_generated_schema_is_that_of_the_declared_keys() {
     let text = format!("{:#}\n", fogbench::scenario::json_schema());
     generated("scenarios/scenario.schema.json", &text);
 }
+
+#[test]
+fn the_generated_reference_is_that_of_the_declared_keys() {
+    generated(
+        "scenarios/reference.toml",
+        fogbench::scenario::reference_toml(),
+    );
+}

@@ -30,6 +30,7 @@ mod front_end;
 mod lms;
 mod recursive;
 mod rls;
+mod settings;
 mod sign_lms;
 mod stability;
 mod update_sign;
@@ -45,6 +46,11 @@ pub use recursive::{
     Kalman, KalmanCore, RecursiveFilter, SectionsCore, butterworth, kalman_gain, one_pole,
 };
 pub use rls::{Rls, RlsConfig, RlsCore};
+pub use settings::{
+    ButterworthFilterConfig, ConstrainedRlsFilterConfig, FilterConfig, FilterKind,
+    KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, OnePoleFilterConfig,
+    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig,
+};
 pub use sign_lms::{
     SignLms, SignLmsConfig, SignLmsCore, SignLmsForm, sign_lms_slew_per_sample,
     sign_lms_slew_samples,

@@ -8,7 +8,7 @@ use crate::gyro::limits::{MotionExtremes, cautions};
 use crate::gyro::modulator::{Modulator, optimum_depth_rad};
 use crate::gyro::noise_budget::NoiseBudget;
 use crate::gyro::parts::Parts;
-use crate::scenario::{Fidelity, GyroConfig};
+use crate::gyro::{Fidelity, GyroConfig};
 use crate::signal::{BudgetEntry, BudgetPoint, BudgetSheet};
 use crate::units::{
     ELEMENTARY_CHARGE_C, deg_per_sqrt_h_to_rad_per_sqrt_s, rad_to_deg, rad_to_urad,

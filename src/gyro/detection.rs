@@ -9,8 +9,8 @@ use crate::gyro::parts::Parts;
 use crate::gyro::sampler::{
     CombinedSampler, ExactSampler, Faults, PowerSampler, Sampler, ScaledSampler, levels_per_ampere,
 };
+use crate::gyro::{GyroConfig, NoiseDraw};
 use crate::random::Streams;
-use crate::scenario::{GyroConfig, NoiseDraw};
 
 /// The samplers a configuration can ask for.
 #[derive(Clone, Debug)]

@@ -2,13 +2,13 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::gyro::ModulationScheme;
 use crate::gyro::loop_kernel::{LoopConstants, Registers};
 use crate::gyro::modulation::{BiasState, states};
 use crate::gyro::optics::Optics;
 use crate::gyro::parts::Parts;
 use crate::gyro::sampler::{Sampler, round_whole};
 use crate::random::{Stream, Streams};
-use crate::scenario::ModulationScheme;
 
 /// Configuration and state of the effects; the registers are those of the plain kernel.
 ///

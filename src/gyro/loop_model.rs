@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::gyro::GyroConfig;
 use crate::gyro::coil::Coil;
 use crate::gyro::condition::{Condition, Schedule};
 use crate::gyro::controller::Controller;
@@ -16,7 +17,6 @@ use crate::gyro::rate_word::RateWord;
 use crate::gyro::slow_noise::SlowNoise;
 use crate::gyro::vibration::Vibration;
 use crate::random::Streams;
-use crate::scenario::GyroConfig;
 use crate::signal::MotionSegment;
 use crate::units::rad_per_s_to_deg_per_s;
 

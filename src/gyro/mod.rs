@@ -52,6 +52,7 @@ mod rate_model;
 mod rate_optics;
 mod rate_word;
 mod sampler;
+mod settings;
 mod slow_noise;
 mod source;
 mod thermal;
@@ -72,6 +73,15 @@ pub use modulator::{Modulator, optimum_depth_rad};
 pub use noise_budget::NoiseBudget;
 pub use optics::{expected_mean_rate_rad_per_s, spike_share};
 pub use rate_model::RateModel;
+pub use settings::{
+    AdcConfig, AssemblyConfig, CoilConfig, ConstantPowerConfig, ControllerConfig, DetectorConfig,
+    ExponentialPowerConfig, Fidelity, GyroConfig, InjectionConfig, ModulationScheme,
+    ModulatorConfig, NoVibrationConfig, NoiseConfig, NoiseDraw, OutputQuantisation, PowerConfig,
+    QuadraticPowerConfig, RandomVibrationConfig, RateOutputConfig, ResetSample,
+    SineVibrationConfig, SlowNoiseConfig, SoakConfig, SourceConfig, TemperatureConfig,
+    TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig, ThermalWarmUp, VibrationConfig,
+    VibrationMotion, Winding,
+};
 pub use slow_noise::SlowNoise;
 pub use source::relative_intensity_noise_per_hz;
 pub use thermal::{Chamber, Network, NetworkState, Propagator, Shupe, layer_integral, layer_order};

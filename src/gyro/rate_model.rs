@@ -1,5 +1,6 @@
 //! Gyro model at the output rate, for long runs.
 
+use crate::gyro::GyroConfig;
 use crate::gyro::coil::Coil;
 use crate::gyro::condition::{Condition, Schedule};
 use crate::gyro::controller::Controller;
@@ -12,7 +13,6 @@ use crate::gyro::rate_word::RateWord;
 use crate::gyro::slow_noise::SlowNoise;
 use crate::gyro::vibration::{VibrationResponse, tones};
 use crate::random::{Stream, Streams};
-use crate::scenario::GyroConfig;
 use crate::signal::MotionSegment;
 use crate::units::deg_per_sqrt_h_to_rad_per_sqrt_s;
 

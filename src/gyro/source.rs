@@ -2,7 +2,7 @@
 
 use std::f64::consts::{LN_2, PI};
 
-use crate::scenario::SourceConfig;
+use crate::gyro::SourceConfig;
 use crate::units::{NANO, SPEED_OF_LIGHT_M_PER_S};
 
 /// One-sided relative intensity noise of thermal-like light with a Gaussian spectrum, 1/Hz.

@@ -1,0 +1,16 @@
+//! Settings of a Butterworth low pass.
+
+use crate::declare::table;
+use crate::vocabulary::OutputRegister;
+
+table! {
+    /// Butterworth low pass.
+    pub struct ButterworthFilterConfig {
+        /// Number of poles. Source of the default: assumed.
+        order: u32 = 2, in 1..=12;
+        /// Half-power frequency, below half the output rate. Source of the default: assumed.
+        cutoff_hz: f64 = 100.0, in 1e-9..=1e6, "Hz";
+        /// When the result appears: at the next sample tick, or as soon as it is computed.
+        output_register: OutputRegister = "next-sample";
+    }
+}
