@@ -1,0 +1,6 @@
+//! Numbers with their intervals, and the table of one channel that holds them.
+
+pub(super) mod interval;
+pub(super) mod repeat_statistics;
+pub(super) mod table;
+pub(super) mod value;
