@@ -5,8 +5,8 @@
 //! n, `q^2 / 12 n`, and one normal the same ratio to the step as each of n would have), or the
 //! voltage of the nominal mean power for an ideal converter.
 
-use crate::gyro::detector::Detector;
-use crate::gyro::modulator::Modulator;
+use crate::gyro::optics::detector::Detector;
+use crate::gyro::optics::modulator::Modulator;
 use crate::random::{Stream, Streams};
 use crate::units::ELEMENTARY_CHARGE_C;
 

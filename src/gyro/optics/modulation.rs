@@ -6,30 +6,30 @@ use crate::scenario::ModulationScheme;
 
 /// One state of the bias wave, as the interferometer sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct BiasState {
+pub(in crate::gyro) struct BiasState {
     /// Whether the bias phase is `+phi_m` modulo a turn (else `-phi_m`): the rate demodulation
     /// subtracts this state.
-    pub(super) is_plus: bool,
+    pub(in crate::gyro) is_plus: bool,
     /// Bias phase difference as commanded, rad; it carries the modulator's gain error.
-    pub(super) phase_rad: f64,
+    pub(in crate::gyro) phase_rad: f64,
     /// Sign with which the demodulation of the modulator's gain takes this state; 0 = not at all.
-    pub(super) gain_sign: f64,
+    pub(in crate::gyro) gain_sign: f64,
 }
 
 /// Timing of a bias wave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Timing {
+pub(in crate::gyro) struct Timing {
     /// States in one loop period.
-    pub(super) states: u32,
+    pub(in crate::gyro) states: u32,
     /// Half modulation periods (transit times) in one loop period.
-    pub(super) half_periods: u32,
+    pub(in crate::gyro) half_periods: u32,
     /// States in one half period: the interferometer compares states this far apart.
-    pub(super) states_per_half_period: u32,
+    pub(in crate::gyro) states_per_half_period: u32,
 }
 
 impl Timing {
     /// The timing of a scheme.
-    pub(super) fn new(scheme: ModulationScheme) -> Self {
+    pub(in crate::gyro) fn new(scheme: ModulationScheme) -> Self {
         let (states, half_periods) = match scheme {
             ModulationScheme::TwoState => (2, 2),
             ModulationScheme::FourState => (4, 4),
@@ -59,7 +59,7 @@ impl Timing {
 ///
 /// # Source
 /// Lefevre, The Fiber-Optic Gyroscope, 2nd ed., section 8.2.3 (four-state modulation).
-pub(super) fn states(scheme: ModulationScheme, depth_rad: f64) -> Vec<BiasState> {
+pub(in crate::gyro) fn states(scheme: ModulationScheme, depth_rad: f64) -> Vec<BiasState> {
     let far = 2.0 * PI - depth_rad;
     let table: &[(bool, f64, f64)] = match scheme {
         ModulationScheme::TwoState => &[(true, depth_rad, 0.0), (false, -depth_rad, 0.0)],

@@ -2,37 +2,37 @@
 
 use std::f64::consts::TAU;
 
-use crate::gyro::coil::Coil;
-use crate::gyro::condition::Condition;
+use crate::gyro::optics::coil::Coil;
+use crate::gyro::thermal::condition::Condition;
 use crate::scenario::{GyroConfig, ModulationScheme, ResetSample};
 use crate::units::{MICRO, deg_per_h_to_rad_per_s, deg_to_rad};
 
 /// Settings of the second-order effects, SI, as both models use them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Optics {
-    pub(super) scheme: ModulationScheme,
+pub(in crate::gyro) struct Optics {
+    pub(in crate::gyro) scheme: ModulationScheme,
     /// Applied over commanded phase, less one, before any correction.
-    pub(super) gain_error: f64,
-    pub(super) is_reset_blanked: bool,
-    pub(super) second_loop_gain: f64,
-    pub(super) coupling_rad: f64,
-    pub(super) coupling_phase_rad: f64,
-    pub(super) dither_rad: f64,
-    pub(super) dither_interval_periods: u32,
+    pub(in crate::gyro) gain_error: f64,
+    pub(in crate::gyro) is_reset_blanked: bool,
+    pub(in crate::gyro) second_loop_gain: f64,
+    pub(in crate::gyro) coupling_rad: f64,
+    pub(in crate::gyro) coupling_phase_rad: f64,
+    pub(in crate::gyro) dither_rad: f64,
+    pub(in crate::gyro) dither_interval_periods: u32,
     /// Half period over transit time, less one.
-    pub(super) mismatch: f64,
+    pub(in crate::gyro) mismatch: f64,
     /// Share of a half period that the averaged spikes take; 0 if they are gated.
-    pub(super) gap_share: f64,
-    pub(super) intensity_modulation: f64,
+    pub(in crate::gyro) gap_share: f64,
+    pub(in crate::gyro) intensity_modulation: f64,
     /// Step of the ramp's register as applied, rad; 0 = ideal.
-    pub(super) step_lsb_rad: f64,
+    pub(in crate::gyro) step_lsb_rad: f64,
     /// Largest step, rad; infinite if not limited.
-    pub(super) step_limit_rad: f64,
+    pub(in crate::gyro) step_limit_rad: f64,
 }
 
 impl Optics {
     /// The effects of a configuration.
-    pub(super) fn new(config: &GyroConfig) -> Self {
+    pub(in crate::gyro) fn new(config: &GyroConfig) -> Self {
         let modulator = &config.modulator;
         let controller = &config.controller;
         let mismatch = modulator.half_period_mismatch;
@@ -66,7 +66,7 @@ impl Optics {
     }
 
     /// Whether any effect is on that the plain kernel leaves out.
-    pub(super) fn is_needed(&self) -> bool {
+    pub(in crate::gyro) fn is_needed(&self) -> bool {
         self.scheme != ModulationScheme::TwoState
             || self.gain_error != 0.0
             || self.is_reset_blanked
@@ -79,7 +79,7 @@ impl Optics {
     }
 
     /// Share of the loop periods that reaches the integrator when the ramp rests.
-    pub(super) fn update_share(&self) -> f64 {
+    pub(in crate::gyro) fn update_share(&self) -> f64 {
         if self.dither_rad > 0.0 {
             1.0 - f64::from(self.dither_interval_periods).recip()
         } else {
@@ -92,7 +92,7 @@ impl Optics {
     /// A reset leaves `d = 2 pi eps` in one half period. Blanked, the loop balances
     /// `phi_s = (1 + eps) r`. Demodulated, each turn of the ramp adds `sin d` to the balance:
     /// `phi_s = (1 + eps) r - sin(d) r / 2 pi`, a scale factor right to the third order in d.
-    pub(super) fn scale(&self, gain_error: f64) -> f64 {
+    pub(in crate::gyro) fn scale(&self, gain_error: f64) -> f64 {
         let excess = if self.is_reset_blanked {
             gain_error
         } else {
@@ -108,7 +108,7 @@ impl Optics {
     /// `1 + m s` of it, while in a plateau the two passes see opposite states and it cancels. The
     /// spike has the state of its own half period for either sign of the mismatch, so that the
     /// sign of the bias is that of -m. For V = 1 and a small mismatch: `2 m |delta| / sin phi_m`.
-    pub(super) fn intensity_bias_rad(
+    pub(in crate::gyro) fn intensity_bias_rad(
         &self,
         visibility: f64,
         depth_rad: f64,
@@ -179,7 +179,12 @@ pub fn expected_mean_rate_rad_per_s(config: &GyroConfig, rate_rad_per_s: f64) ->
 /// `q' = -(phi p + a q) / 2`; the square of its matrix is `(a^2 - phi^2) / 4` times the unit
 /// matrix, so that its exponential is a sine and cosine, or their hyperbolic twins. Outside the
 /// dead band the half angle turns by pi in every half cycle, which counts the turns.
-pub(super) fn adler_advance_rad(start_rad: f64, phase_rad: f64, dead_rad: f64, time: f64) -> f64 {
+pub(in crate::gyro) fn adler_advance_rad(
+    start_rad: f64,
+    phase_rad: f64,
+    dead_rad: f64,
+    time: f64,
+) -> f64 {
     let (p, q) = (0.5 * start_rad).sin_cos();
     let square = 0.25 * (phase_rad * phase_rad - dead_rad * dead_rad);
     let (turns, even, odd) = if square > 0.0 {

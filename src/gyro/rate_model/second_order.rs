@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::gyro::modulation::Timing;
-use crate::gyro::optics::{Optics, adler_advance_rad};
+use crate::gyro::optics::modulation::Timing;
+use crate::gyro::optics::second_order::{Optics, adler_advance_rad};
 use crate::random::{Stream, Streams};
 use crate::scenario::ModulationScheme;
 

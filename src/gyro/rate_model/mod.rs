@@ -1,15 +1,18 @@
 //! Gyro model at the output rate, for long runs.
 
-use crate::gyro::coil::Coil;
-use crate::gyro::condition::{Condition, Schedule};
+mod matrices;
+mod second_order;
+
 use crate::gyro::controller::Controller;
 use crate::gyro::error::GyroError;
-use crate::gyro::noise_budget::NoiseBudget;
+use crate::gyro::noise::budget::NoiseBudget;
+use crate::gyro::noise::slow_noise::SlowNoise;
+use crate::gyro::optics::coil::Coil;
 use crate::gyro::parts::Parts;
-use crate::gyro::rate_matrices::RateMatrices;
-use crate::gyro::rate_optics::RateOptics;
+use crate::gyro::rate_model::matrices::RateMatrices;
+use crate::gyro::rate_model::second_order::RateOptics;
 use crate::gyro::rate_word::RateWord;
-use crate::gyro::slow_noise::SlowNoise;
+use crate::gyro::thermal::condition::{Condition, Schedule};
 use crate::gyro::vibration::{VibrationResponse, tones};
 use crate::random::{Stream, Streams};
 use crate::scenario::GyroConfig;

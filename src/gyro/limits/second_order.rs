@@ -2,10 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use crate::gyro::coil::Coil;
 use crate::gyro::error::GyroError;
 use crate::gyro::limits::MotionExtremes;
-use crate::gyro::noise_budget::NoiseBudget;
+use crate::gyro::noise::budget::NoiseBudget;
+use crate::gyro::optics::coil::Coil;
 use crate::gyro::parts::Parts;
 use crate::gyro::vibration::Tone;
 use crate::scenario::Fidelity;
@@ -24,7 +24,7 @@ const BLANKED_SHARE_SAID: f64 = 0.1;
 ///
 /// # Errors
 /// [`GyroError::RateModelLacks`].
-pub(super) fn optics(
+pub(in crate::gyro) fn optics(
     parts: &Parts,
     fidelity: Fidelity,
     motion: &MotionExtremes,

@@ -1,7 +1,7 @@
 //! Angle random walk by source, in closed form.
 
-use crate::gyro::coil::Coil;
-use crate::gyro::detector::Detector;
+use crate::gyro::optics::coil::Coil;
+use crate::gyro::optics::detector::Detector;
 use crate::units::rad_per_sqrt_s_to_deg_per_sqrt_h;
 
 /// Angle random walk of each source, deg/sqrt(h); a source switched off has 0.

@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::gyro::loop_kernel::{LoopConstants, Registers};
-use crate::gyro::modulation::{BiasState, states};
-use crate::gyro::optics::Optics;
+use crate::gyro::loop_model::plain_kernel::{LoopConstants, Registers};
+use crate::gyro::loop_model::sampler::{Sampler, round_whole};
+use crate::gyro::optics::modulation::{BiasState, states};
+use crate::gyro::optics::second_order::Optics;
 use crate::gyro::parts::Parts;
-use crate::gyro::sampler::{Sampler, round_whole};
 use crate::random::{Stream, Streams};
 use crate::scenario::ModulationScheme;
 

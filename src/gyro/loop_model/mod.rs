@@ -1,19 +1,25 @@
 //! Gyro model that runs every half modulation period.
 
+mod detection;
+pub(in crate::gyro) mod faults;
+mod full_kernel;
+mod plain_kernel;
+mod sampler;
+
 use std::f64::consts::{PI, TAU};
 
-use crate::gyro::coil::Coil;
-use crate::gyro::condition::{Condition, Schedule};
 use crate::gyro::controller::Controller;
-use crate::gyro::detection::{Detection, Drive, levels_per_rad};
 use crate::gyro::error::GyroError;
-use crate::gyro::full_kernel::FullLoop;
-use crate::gyro::loop_faults::LoopFaults;
-use crate::gyro::loop_kernel::{LoopConstants, Registers};
-use crate::gyro::modulation::Timing;
+use crate::gyro::loop_model::detection::{Detection, Drive, levels_per_rad};
+use crate::gyro::loop_model::faults::LoopFaults;
+use crate::gyro::loop_model::full_kernel::FullLoop;
+use crate::gyro::loop_model::plain_kernel::{LoopConstants, Registers};
+use crate::gyro::noise::slow_noise::SlowNoise;
+use crate::gyro::optics::coil::Coil;
+use crate::gyro::optics::modulation::Timing;
 use crate::gyro::parts::Parts;
 use crate::gyro::rate_word::RateWord;
-use crate::gyro::slow_noise::SlowNoise;
+use crate::gyro::thermal::condition::{Condition, Schedule};
 use crate::gyro::vibration::Vibration;
 use crate::random::Streams;
 use crate::scenario::GyroConfig;

@@ -1,14 +1,16 @@
 //! Where the models' assumptions hold: what is refused and what is worth a caution.
 
+mod second_order;
+
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::gyro::coil::Coil;
 use crate::gyro::controller::Controller;
-use crate::gyro::detector::Detector;
 use crate::gyro::error::{GyroError, slopes_text};
-use crate::gyro::limits_optics::optics;
-use crate::gyro::modulator::Modulator;
-use crate::gyro::noise_budget::NoiseBudget;
+use crate::gyro::limits::second_order::optics;
+use crate::gyro::noise::budget::NoiseBudget;
+use crate::gyro::optics::coil::Coil;
+use crate::gyro::optics::detector::Detector;
+use crate::gyro::optics::modulator::Modulator;
 use crate::gyro::parts::Parts;
 use crate::gyro::vibration::{Tone, VibrationResponse, tones};
 use crate::random::Streams;

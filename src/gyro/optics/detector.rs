@@ -1,9 +1,9 @@
 //! Photodetector, amplifier and converter: levels at the bias point and noise densities.
 
-use crate::gyro::condition::Condition;
 use crate::gyro::error::GyroError;
-use crate::gyro::modulator::Modulator;
-use crate::gyro::source::relative_intensity_noise_per_hz;
+use crate::gyro::noise::rin::relative_intensity_noise_per_hz;
+use crate::gyro::optics::modulator::Modulator;
+use crate::gyro::thermal::condition::Condition;
 use crate::scenario::GyroConfig;
 use crate::units::{
     BOLTZMANN_J_PER_K, ELEMENTARY_CHARGE_C, KILO, MICRO, NANO, PICO, celsius_to_kelvin,

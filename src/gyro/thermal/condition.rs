@@ -105,7 +105,7 @@ impl Course {
 
 /// Conditions of a run, one per update interval.
 #[derive(Clone, Debug)]
-pub(super) struct Schedule {
+pub(in crate::gyro) struct Schedule {
     course: Course,
     interval_s: f64,
     step: Propagator,
@@ -115,7 +115,7 @@ pub(super) struct Schedule {
 
 impl Schedule {
     /// The schedule of a configuration; `None` where the condition never changes.
-    pub(super) fn new(config: &GyroConfig, sample_period_s: f64) -> Option<Self> {
+    pub(in crate::gyro) fn new(config: &GyroConfig, sample_period_s: f64) -> Option<Self> {
         let mut course = Course::new(config);
         if course.is_constant() {
             return None;
@@ -140,7 +140,7 @@ impl Schedule {
     }
 
     /// The condition of the next output sample if it differs from that of the sample before.
-    pub(super) fn next_change(&mut self) -> Option<Condition> {
+    pub(in crate::gyro) fn next_change(&mut self) -> Option<Condition> {
         if self.samples_to_update > 0 {
             self.samples_to_update -= 1;
             return None;
@@ -184,7 +184,7 @@ impl CoilThermometer {
 /// # Errors
 /// [`GyroError::NoPower`] if the power law gives no light at a temperature of the run,
 /// [`GyroError::ThermalLawTooSteep`] if another law leaves the small changes it holds for.
-pub(super) fn power_range(config: &GyroConfig) -> Result<(f64, f64), GyroError> {
+pub(in crate::gyro) fn power_range(config: &GyroConfig) -> Result<(f64, f64), GyroError> {
     let course = Course::new(config);
     course.sensitivities.check(course.range_c())?;
     course.sensitivities.power_range(course.range_c())

@@ -1,6 +1,6 @@
 //! The hot path: ramp, demodulation and integrator of one loop period after another.
 
-use crate::gyro::sampler::{Sampler, round_whole};
+use crate::gyro::loop_model::sampler::{Sampler, round_whole};
 
 /// All state of the loop besides the noise streams. Phases are in ramp codes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,14 +1,14 @@
 //! The sampler a configuration asks for, and the kernel that runs on it.
 
-use crate::gyro::detector::Detector;
-use crate::gyro::full_kernel::FullLoop;
-use crate::gyro::loop_kernel::{LoopConstants, Registers, advance};
-use crate::gyro::modulation::Timing;
-use crate::gyro::modulator::Modulator;
-use crate::gyro::parts::Parts;
-use crate::gyro::sampler::{
+use crate::gyro::loop_model::full_kernel::FullLoop;
+use crate::gyro::loop_model::plain_kernel::{LoopConstants, Registers, advance};
+use crate::gyro::loop_model::sampler::{
     CombinedSampler, ExactSampler, Faults, PowerSampler, Sampler, ScaledSampler, levels_per_ampere,
 };
+use crate::gyro::optics::detector::Detector;
+use crate::gyro::optics::modulation::Timing;
+use crate::gyro::optics::modulator::Modulator;
+use crate::gyro::parts::Parts;
 use crate::random::Streams;
 use crate::scenario::{GyroConfig, NoiseDraw};
 

@@ -1,13 +1,13 @@
 //! The noise budget over modulation depth and power, and the depth of least noise.
 
-use crate::gyro::coil::Coil;
-use crate::gyro::condition::Condition;
-use crate::gyro::detector::Detector;
 use crate::gyro::error::GyroError;
 use crate::gyro::limits::{MotionExtremes, cautions};
-use crate::gyro::modulator::{Modulator, optimum_depth_rad};
-use crate::gyro::noise_budget::NoiseBudget;
+use crate::gyro::noise::budget::NoiseBudget;
+use crate::gyro::optics::coil::Coil;
+use crate::gyro::optics::detector::Detector;
+use crate::gyro::optics::modulator::{Modulator, optimum_depth_rad};
 use crate::gyro::parts::Parts;
+use crate::gyro::thermal::condition::Condition;
 use crate::scenario::{Fidelity, GyroConfig};
 use crate::signal::{BudgetEntry, BudgetPoint, BudgetSheet};
 use crate::units::{
