@@ -66,7 +66,7 @@ pub use allan::{
 };
 pub use allan_stream::AllanStream;
 pub use allan_variants::{
-    AllanEstimator, AllanOptions, AllanVariantPoint, TauGrid, allan_variant, allan_variant_at,
+    AllanEstimator, AllanOptions, AllanVariantPoint, allan_variant, allan_variant_at,
 };
 pub use audit::{
     Prediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
