@@ -4,18 +4,17 @@ use super::campaign::run_campaign;
 use super::stop::Unfinished;
 use super::suite::Observer;
 use crate::calibration::{
-    Calibration, CalibrationError, Compensation, CompensationForm, ErrorParameters, Misalignment,
+    Calibration, CalibrationError, Compensation, ErrorParameters, Misalignment,
 };
 use crate::gyro::CoilThermometer;
 use crate::report::{RunOutcome, RunReport};
-use crate::scenario::{
-    CompensationConfig, CompensationParameters, CompensationRule, GyroConfig, Resolved, Scenario,
-};
+use crate::scenario::{CompensationParameters, GyroConfig, Resolved, Scenario};
 use crate::signal::CompensationSheet;
 use crate::units::{
     MICRO, arcsec_to_rad, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, rad_to_arcsec,
     ratio_to_ppm,
 };
+use crate::vocabulary::CompensationForm;
 
 /// What is taken out of the outputs, and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,10 +91,7 @@ impl Parameters {
         };
         let angles = &self.found.misalignment_rad;
         CompensationSheet {
-            form: match self.form {
-                CompensationForm::Exact => "exact",
-                CompensationForm::FirstOrder => "first-order",
-            },
+            form: self.form.word(),
             source: self.source.clone(),
             bias_deg_per_h: self.found.bias_deg_per_h(),
             scale_factor_error_ppm: self.found.scale_error.map(ratio_to_ppm),
@@ -139,7 +135,7 @@ impl CompensationPlan {
         let Some(config) = &resolved.scenario.compensation else {
             return Ok(None);
         };
-        let form = form(config);
+        let form = config.form;
         if let Some(campaign) = &resolved.campaign {
             let scenario = Box::new(campaign.scenario.clone());
             return Ok(Some(Self::Campaign { scenario, form }));
@@ -181,14 +177,6 @@ impl Observer for Unseen<'_> {
     fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
     fn should_stop(&self) -> bool {
         self.0.should_stop()
-    }
-}
-
-/// The form that a scenario asks for.
-fn form(config: &CompensationConfig) -> CompensationForm {
-    match config.form {
-        CompensationRule::Exact => CompensationForm::Exact,
-        CompensationRule::FirstOrder => CompensationForm::FirstOrder,
     }
 }
 

@@ -60,7 +60,7 @@ pub use log_compensation::{
 };
 pub use log_filters::{LogFilters, load_log_filters};
 pub use log_trial::{LogInput, LogMotion, LogSettings, LogTrial, LogTrialError, try_log};
-pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
+pub use pipeline_export::{Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{PipelineSettings, PipelineTiming};
 pub use plan::{Plan, plan_suite};

@@ -34,7 +34,7 @@ pub use allan::overlapping::{
 };
 pub use allan::stream::AllanStream;
 pub use allan::variants::{
-    AllanEstimator, AllanOptions, AllanVariantPoint, TauGrid, allan_variant, allan_variant_at,
+    AllanEstimator, AllanOptions, AllanVariantPoint, allan_variant, allan_variant_at,
 };
 pub(crate) use catalogue::names::{meant, unknown};
 pub use catalogue::support::{encoder_lack, repeats_lack, support, truth_lack};

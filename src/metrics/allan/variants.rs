@@ -9,8 +9,9 @@ use super::overlapping::AllanPoint;
 use super::sums::second_difference_sums_of_record;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::value::CONFIDENCE;
+use crate::vocabulary::AveragingTimes;
 
-/// Most averaging times of [`TauGrid::All`].
+/// Most averaging times of [`AveragingTimes::All`].
 const ALL_MAX: usize = 1000;
 
 /// Fewest of them that a long record is cut down to.
@@ -74,21 +75,7 @@ impl AllanEstimator {
     }
 }
 
-/// Averaging times at which a curve is asked for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TauGrid {
-    /// Doubling: m = 1, 2, 4, 8, ...
-    #[default]
-    Octave,
-    /// Three to the decade: m = 1, 2, 5, 10, 20, 50, ...
-    Decade,
-    /// Every m of a short record. The work grows with the square of the record, so that there are
-    /// 1000 at most, and fewer, but 100, where they would take more than 2e9 differences: every m at
-    /// the short end, then a constant ratio.
-    All,
-}
-
-impl TauGrid {
+impl AveragingTimes {
     /// Averaging factors up to `largest`, rising.
     #[must_use]
     pub fn averaging_factors(self, largest: usize) -> Vec<usize> {
@@ -131,7 +118,7 @@ pub struct AllanOptions {
     /// The mean square taken.
     pub estimator: AllanEstimator,
     /// The averaging times.
-    pub taus: TauGrid,
+    pub taus: AveragingTimes,
     /// Two-sided coverage of the intervals, between 0 and 1.
     pub confidence: f64,
 }
@@ -140,7 +127,7 @@ impl Default for AllanOptions {
     fn default() -> Self {
         Self {
             estimator: AllanEstimator::default(),
-            taus: TauGrid::default(),
+            taus: AveragingTimes::Octave,
             confidence: CONFIDENCE,
         }
     }
