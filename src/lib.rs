@@ -32,3 +32,5 @@ pub mod store;
 pub mod experiment;
 
 pub mod cli;
+
+pub use experiment::{Plan, Run, Scenario};

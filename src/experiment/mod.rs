@@ -17,6 +17,7 @@ mod channel_filter;
 mod comparison;
 mod compensation;
 mod group_findings;
+mod in_memory;
 mod ledger;
 mod line_enhancer;
 mod log_compensation;
@@ -33,14 +34,15 @@ mod pipeline_settings;
 mod plan;
 mod plan_filters;
 mod plan_metrics;
+mod progress;
 mod published_check;
 mod rate_twins;
 mod record_length;
+mod results;
 mod resume;
 mod run;
 mod run_files;
 mod simulate;
-mod stop;
 mod suite;
 mod suite_output;
 mod survey;
@@ -55,6 +57,7 @@ pub use calibrate::{
 };
 pub use calibration_sheet::calibration_sheet;
 pub use campaign::calibrate_scenario;
+pub use in_memory::{Run, RunError, Samples, Scenario, UnknownName};
 pub use log_compensation::{
     CompensatedLog, LogCompensation, compensate_log, load_log_compensation,
 };
@@ -64,7 +67,8 @@ pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimul
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{PipelineSettings, PipelineTiming};
 pub use plan::{Plan, plan_suite};
+pub use progress::Progress;
 pub use resume::Resume;
-pub use suite::{Observer, SuiteError, SuiteOptions, SuiteOutcome, run_suite};
+pub use suite::{Observer, SuiteError, SuiteOptions, SuiteOutcome, run_suite, write_runs};
 pub use survey::{Sound, check_suite};
 pub use threads::{THREADS_MAX, start_threads, thread_count};

@@ -27,11 +27,13 @@ mod combined_freedom;
 mod correlation;
 mod delay;
 mod estimate;
+mod estimate_text;
 mod estimates;
 mod frozen_response;
 mod interval;
 mod key;
 mod memory;
+mod missing;
 mod multi_sine;
 mod names;
 mod noise_delay;
@@ -82,9 +84,11 @@ pub use channel::measure;
 pub use correlation::correlation_delay_s;
 pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
+pub(crate) use estimate_text::{estimate_text, is_exact, plain, wants_exponent};
 pub(crate) use key::{Against, Headline, Table};
 pub use key::{Applies, MetricKey};
 pub use memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
+pub use missing::MissingMetric;
 pub(crate) use names::{meant, unknown};
 pub use noise_fit::{
     FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
