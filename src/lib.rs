@@ -33,3 +33,5 @@ pub mod store;
 pub mod experiment;
 
 pub mod cli;
+
+pub use experiment::{Plan, Run, Scenario};

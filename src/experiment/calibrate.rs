@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use super::build::VERSION;
 use super::calibration_sheet::calibration_sheet;
 use super::campaign::{calibrate_scenario, campaign};
 use super::group_findings::complaint;
 use super::plan::count;
 use super::plan::plan_suite;
-use super::suite::{Observer, VERSION};
+use super::progress::Progress;
 use crate::calibration::{
     CalibrationError, GroupDesign, GroupObservation, TableGroup, diagnose,
     horizontal_residue_deg_per_s, reference_rate,
@@ -177,7 +178,7 @@ pub fn calibrate_groups(
 pub fn calibrate_campaign(
     path: &Path,
     sets: &[String],
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<CalibrationTrial, Vec<CalibrateError>> {
     let plans = plan_suite(&[path.to_owned()], sets).map_err(|errors| {
         errors
@@ -202,7 +203,7 @@ pub fn calibrate_campaign(
                 .to_owned(),
         ));
     }
-    let (sheet, _) = calibrate_scenario(&resolved.scenario, 0, observer).map_err(refuse)?;
+    let (sheet, _) = calibrate_scenario(&resolved.scenario, 0, progress).map_err(refuse)?;
     Ok(CalibrationTrial {
         file: resolved.file.clone(),
         digest: resolved.digest.clone(),

@@ -1,13 +1,11 @@
 //! The compensation stage: from three words of an assembly to three compensated ones.
 
 use super::campaign::run_campaign;
-use super::stop::Unfinished;
-use super::suite::Observer;
+use super::progress::{Progress, Unfinished};
 use crate::calibration::{
     Calibration, CalibrationError, Compensation, ErrorParameters, Misalignment,
 };
 use crate::gyro::CoilThermometer;
-use crate::report::{RunOutcome, RunReport};
 use crate::scenario::{CompensationParameters, GyroConfig, Resolved, Scenario};
 use crate::signal::CompensationSheet;
 use crate::units::{
@@ -150,8 +148,8 @@ impl CompensationPlan {
     /// The parameters; a campaign is run for them, its first repeat.
     ///
     /// # Errors
-    /// Why the campaign gives none, or that the observer has stopped it.
-    pub(super) fn parameters(&self, observer: &dyn Observer) -> Result<Parameters, Unfinished> {
+    /// Why the campaign gives none, or that the listener has stopped it.
+    pub(super) fn parameters(&self, progress: &dyn Progress) -> Result<Parameters, Unfinished> {
         let (scenario, form) = match self {
             Self::Given(known) => return Ok(Parameters::clone(known)),
             Self::Campaign { scenario, form } => (scenario, *form),
@@ -159,7 +157,7 @@ impl CompensationPlan {
         let failed =
             |error: String| Unfinished::Failed(format!("campaign {}: {error}", scenario.name));
         let (sheet, calibration) =
-            run_campaign(scenario, 0, &Unseen(observer)).map_err(|error| match error {
+            run_campaign(scenario, 0, &Unseen(progress)).map_err(|error| match error {
                 Unfinished::Failed(error) => failed(error),
                 Unfinished::Stopped => Unfinished::Stopped,
             })?;
@@ -169,12 +167,9 @@ impl CompensationPlan {
 }
 
 /// Hears nothing of a campaign, whose time is no part of the run's, but stops with the run.
-struct Unseen<'a>(&'a dyn Observer);
+struct Unseen<'a>(&'a dyn Progress);
 
-impl Observer for Unseen<'_> {
-    fn advanced(&self, _simulated_s: f64) {}
-    fn finished(&self, _index: usize, _report: &RunReport) {}
-    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
+impl Progress for Unseen<'_> {
     fn should_stop(&self) -> bool {
         self.0.should_stop()
     }

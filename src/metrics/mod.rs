@@ -39,7 +39,9 @@ pub use allan::variants::{
 pub(crate) use catalogue::names::{meant, unknown};
 pub use catalogue::support::{encoder_lack, repeats_lack, support, truth_lack};
 pub use catalogue::{find, known_metrics, repeated_metrics};
+pub use estimate::missing::MissingMetric;
 pub use estimate::repeat_statistics::RepeatStatistics;
+pub(crate) use estimate::text::{estimate_text, is_exact, plain, wants_exponent};
 pub use estimate::value::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 pub(crate) use key::metric::{Against, Headline, Table};
 pub use key::metric::{Applies, MetricKey};
