@@ -76,7 +76,8 @@ fn a_gate_that_fails_is_not_accepted() -> Result<(), Box<dyn Error>> {
 fn a_channel_that_fails_is_accepted_only_if_a_gate_expects_it() -> Result<(), Box<dyn Error>> {
     let text = |gate: &str| {
         format!(
-            "schema = 1\nname = \"a\"\nduration_s = 2.0\nwarm_up_s = 1.0\n{gate}\
+            "schema = 1\nname = \"a\"\nduration_s = 2.0\nwarm_up_s = 1.0\n\
+             fidelity = \"rate\"\n{gate}\
              [[filter]]\nname = \"f\"\n[filter.rls]\nupdate_sign = \"as-printed\"\n"
         )
     };
