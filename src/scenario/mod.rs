@@ -10,6 +10,7 @@ mod channels;
 mod check;
 mod clashes;
 mod compensation_source;
+mod complaints;
 mod config;
 mod cross;
 mod cross_calibration;
@@ -43,6 +44,7 @@ mod reference;
 mod resolved;
 mod schema;
 mod script;
+mod setting;
 mod source;
 mod stand_in;
 mod suggest;
@@ -50,6 +52,7 @@ mod suite;
 mod synonyms;
 mod template;
 mod tree;
+mod unresolved;
 mod weight;
 
 pub use crate::calibration::{CalibrationConfig, CompensationConfig, CompensationParameters};
@@ -74,12 +77,8 @@ pub use crate::turntable::{
     SiteConfig, Stairs, StaticConfig, StepsConfig, SwingConfig, TEST_RATES_MIN, TrapezoidConfig,
     TurntableConfig,
 };
-pub use crate::vocabulary::{
-    AveragingTimes, CaseAxis, CompensationRule, ConstantUnit, DesiredSignal, Division,
-    EstimatorKind, ForgettingLaw, InitialWeights, NumberFormat, OutputRegister, PhaseRule,
-    Pipeline, SignLmsForm, UpdateOrder, UpdateSign,
-};
 pub use compensation_source::load_calibration;
+pub use complaints::ScenarioErrors;
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, ComparisonColumn, ComparisonConfig,
     ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig, GateDecision,
@@ -94,8 +93,10 @@ pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use reference::reference_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
-pub(crate) use suite::read_suite;
+pub use setting::Setting;
+pub(crate) use suite::{Reading, read_suite};
 pub use suite::{load_base_or_scenario, load_suite, visit_suite};
+pub(crate) use unresolved::Unresolved;
 
 #[cfg(test)]
 mod inert_tests;

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use proptest::prelude::*;
 
+use super::config::Scenario;
 use super::defaults::default_of;
+use super::reference_toml;
 use super::schema::{self, Child, Key, Kind, Presence, groups, keys};
 use super::tree::{Node, Table, Value, merge, parse_document};
 use super::{Resolved, ScenarioError, load_suite};
-use super::{Scenario, reference_toml};
 use crate::gyro::Fidelity;
 use crate::turntable::{MotionConfig, ServoConfig};
 

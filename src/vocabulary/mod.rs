@@ -3,15 +3,19 @@
 //!
 //! Invariant: data only; imports nothing, and every stage may import it.
 
-mod interim;
+mod allan;
+mod calibration;
+mod filter;
+mod hardware;
 mod motion;
 mod word;
 
-pub use interim::{
-    AveragingTimes, CompensationRule, ConstantUnit, DesiredSignal, Division, EstimatorKind,
-    ForgettingLaw, InitialWeights, NumberFormat, OutputRegister, Pipeline, SignLmsForm,
-    UpdateOrder, UpdateSign,
+pub use allan::AveragingTimes;
+pub use calibration::{CompensationForm, EstimatorKind, ForgettingForm};
+pub use filter::{
+    ConstantUnit, DesiredSignal, InitialWeights, OutputRegister, Pipeline, SignLmsForm, UpdateSign,
 };
+pub use hardware::{Division, ExportForm, NumberFormat, UpdateOrder};
 pub use motion::{CaseAxis, PhaseRule};
 pub(crate) use word::words;
 pub use word::{UnknownWord, Word};

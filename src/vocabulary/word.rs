@@ -87,21 +87,24 @@ pub(crate) use words;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vocabulary::PhaseRule;
+    use crate::vocabulary::NumberFormat;
 
     #[test]
     fn a_word_is_read_as_it_is_written() {
-        for (format, word) in PhaseRule::ALL.iter().zip(PhaseRule::WORDS) {
+        for (format, word) in NumberFormat::ALL.iter().zip(NumberFormat::WORDS) {
             assert_eq!(format.to_string(), *word);
-            assert_eq!(word.parse::<PhaseRule>().as_ref(), Ok(format));
+            assert_eq!(word.parse::<NumberFormat>().as_ref(), Ok(format));
             let quoted = format!("\"{word}\"");
-            assert_eq!(serde_json::from_str::<PhaseRule>(&quoted).unwrap(), *format);
+            assert_eq!(
+                serde_json::from_str::<NumberFormat>(&quoted).unwrap(),
+                *format
+            );
             assert!(!format.about().is_empty() && !format.about().ends_with('.'));
         }
-        let refused = "random".parse::<PhaseRule>().unwrap_err();
+        let refused = "double".parse::<NumberFormat>().unwrap_err();
         assert_eq!(
             refused.to_string(),
-            "expected one of schroeder, newman, zero"
+            "expected one of binary64, binary32, binary64-ftz, binary32-ftz"
         );
     }
 }

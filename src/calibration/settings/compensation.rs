@@ -1,7 +1,7 @@
 //! Settings of the compensation of an assembly's errors.
 
 use crate::declare::table;
-use crate::vocabulary::CompensationRule;
+use crate::vocabulary::CompensationForm;
 
 table! {
     /// Compensation: what a calibration has found is taken out of the outputs of an assembly, sample by
@@ -18,7 +18,7 @@ table! {
         /// is XA^-1 (Wm - XB); "first-order" is Wm - (K_G Wm + theta_G Wm + B_G) of patent CN101221046,
         /// equations (23) and (24), which leaves errors of second order. Source of the default: the first
         /// order leaves up to 1 deg/h at 100 deg/s and 1e-3 errors.
-        form: CompensationRule = "exact";
+        form: CompensationForm = "exact";
         /// Path of a calibration.toml, whose parameters take the place of this key. Relative to this file.
         file: Option<String>, example "calibration.toml",
             apart "its values have been put in the place of the parameters";

@@ -1,7 +1,7 @@
 //! Settings of the estimation: how the means of a campaign become parameters.
 
 use crate::declare::table;
-use crate::vocabulary::{EstimatorKind, ForgettingLaw};
+use crate::vocabulary::{EstimatorKind, ForgettingForm};
 
 table! {
     /// Calibration: what is made of the groups of `[turntable.calibration]`.
@@ -18,7 +18,7 @@ table! {
         /// Forgetting factor against the step dT of temperature between groups: 1 - c dT, exp(-c dT),
         /// 1 / (1 + c dT) or exp(-(c dT)^2), never below 1e-3. The patent's own equation (17) is lost. Source
         /// of the default: assumed; results depend on the weights, hardly on the form.
-        forgetting_form: ForgettingLaw = "exponential";
+        forgetting_form: ForgettingForm = "exponential";
         /// Its constant c for the estimators without a coefficient of temperature. Source of the default:
         /// the equation's list of symbols names none, as if c were 1; least bias errors from 0.5 to 2.
         forgetting_constant_per_k: f64 = 1.0, in 0.0..=1000.0, "1/K";
