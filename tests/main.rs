@@ -22,6 +22,7 @@ mod comparison_filters;
 mod compensation;
 mod cycle_exact;
 mod determinism;
+mod documents;
 mod encoder;
 mod extremes;
 mod filters;
@@ -58,7 +59,6 @@ mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
 mod readers;
-mod readme;
 mod recording;
 mod report;
 mod resume;
