@@ -52,6 +52,7 @@ mod metrology;
 mod mutation;
 mod noise_fit_coverage;
 mod output_folder;
+mod packages;
 mod patent_calibration;
 mod patent_filter;
 mod patent_known_answers;
