@@ -73,39 +73,54 @@ fn subject(text: &str) -> String {
         .take_while(|line| !line.is_empty())
         .collect();
     let doc = doc.join(" ");
-    doc.split_inclusive(". ")
-        .next()
-        .unwrap_or_default()
-        .trim()
-        .to_owned()
+    let first = doc.split_inclusive(". ").next();
+    first.unwrap_or_default().trim().to_owned()
+}
+
+/// Module of `src/metrics` that holds a file: its folder there, or the file itself.
+fn room(path: &str) -> &str {
+    let inside = path.strip_prefix("src/metrics/").unwrap_or(path);
+    inside.split(['/', '.']).next().unwrap_or_default()
+}
+
+/// Metrics of a module with the files that declare them.
+struct Room<'a> {
+    name: String,
+    keys: Vec<(&'a MetricKey, String)>,
+}
+
+fn rooms(sources: &BTreeMap<String, String>) -> Vec<Room<'static>> {
+    let mut rooms: Vec<Room> = Vec::new();
+    for key in known_metrics() {
+        let file = declaration(key, sources);
+        let name = room(&file);
+        if let Some(room) = rooms.iter_mut().find(|room| room.name == name) {
+            room.keys.push((key, file));
+        } else {
+            rooms.push(Room {
+                name: name.to_owned(),
+                keys: vec![(key, file)],
+            });
+        }
+    }
+    rooms
 }
 
 /// Markdown page of the metrics.
 pub(crate) fn page() -> String {
     let mut sources = BTreeMap::new();
     read_sources("src/metrics", &mut sources);
-    let mut rooms: Vec<(String, Vec<(&MetricKey, String)>)> = Vec::new();
-    for key in known_metrics() {
-        let file = declaration(key, &sources);
-        let folder = file
-            .rsplit_once('/')
-            .map_or("", |(folder, _)| folder)
-            .to_owned();
-        match rooms.iter_mut().find(|(room, _)| *room == folder) {
-            Some((_, keys)) => keys.push((key, file)),
-            None => rooms.push((folder, vec![(key, file)])),
-        }
-    }
     let mut page = HEAD.to_owned();
-    for (room, keys) in rooms {
-        let name = room.rsplit('/').next().unwrap_or_default();
-        let module = sources.get(&format!("{room}/mod.rs"));
-        let doc = subject(module.map_or("", String::as_str));
+    for Room { name, keys } in rooms(&sources) {
+        let folder = format!("src/metrics/{name}/mod.rs");
+        let file = format!("src/metrics/{name}.rs");
+        let module = sources.get(&folder).or_else(|| sources.get(&file));
+        let doc = subject(module.expect("a module has a file"));
         write!(page, "\n## {name}\n\n{doc}\n\n").expect("a string takes it");
         page.push_str("| key | unit | definition | source |\n|---|---|---|---|\n");
         for (key, file) in keys {
             let only = if key.filters_only { "filters: " } else { "" };
-            let source = file.strip_prefix("src/metrics/").unwrap_or(&file);
+            let source = file.rsplit('/').next().unwrap_or_default();
             let (name, unit, definition) = (key.name, key.unit, key.definition);
             writeln!(
                 page,
