@@ -94,8 +94,8 @@ pub fn change_divisor(key: &MetricKey, reference: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::metrics::scale_factor_temperature_sensitivity;
     use super::*;
+    use crate::metrics::scale_factor_temperature_sensitivity;
 
     fn point(condition: f64, value: f64, half_width: f64) -> ConditionPoint {
         let estimate = Estimate::symmetric(value, half_width);
