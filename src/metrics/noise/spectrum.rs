@@ -1,10 +1,15 @@
 //! Power spectral density of a rate record.
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use realfft::RealFftPlanner;
 
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::ChannelMetrics;
+
+/// Column of the two-sided density in the curve `psd`; `psd_deg2_per_h2_per_hz` is one-sided.
+pub(crate) const TWO_SIDED_PSD: &str = "two_sided_psd_deg2_per_h2_per_hz";
 
 /// Longest segment, samples: 2^18 at 4 kHz reaches down to 15 mHz.
 const SEGMENT_MAX: usize = 1 << 18;
@@ -116,4 +121,21 @@ pub fn log_binned(spectrum: &Spectrum, points_max: usize) -> Spectrum {
         start = end;
     }
     binned
+}
+
+/// Enters the spectrum.
+pub(crate) fn put_spectrum(spectrum: Spectrum, metrics: &mut ChannelMetrics) {
+    let mut curve = BTreeMap::new();
+    // Half the one-sided density at either sign of the frequency: N^2 of white noise.
+    let halves = spectrum.density_deg2_per_h2_per_hz.iter();
+    curve.insert(
+        TWO_SIDED_PSD.into(),
+        halves.map(|density| density / 2.0).collect(),
+    );
+    curve.insert("frequency_hz".into(), spectrum.frequency_hz);
+    curve.insert(
+        "psd_deg2_per_h2_per_hz".into(),
+        spectrum.density_deg2_per_h2_per_hz,
+    );
+    metrics.curves.insert("psd".into(), curve);
 }

@@ -1,11 +1,14 @@
 //! Frequency response from several sines at once, by one joint least-squares fit.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
+use crate::units;
 use crate::wording::counted;
 
 /// Blocks that leave the fit in turn, for the jackknife.
@@ -301,4 +304,47 @@ pub fn bandwidth_hz(frequencies_hz: &[f64], gains: &[f64]) -> Option<f64> {
             (squares[0] + part * (squares[1] - squares[0])).sqrt()
         })
     })
+}
+
+/// Enters gain, phase and delay of every tone with their intervals.
+pub(crate) fn put_responses(name: &str, responses: &[ToneResponse], metrics: &mut ChannelMetrics) {
+    type Pick = fn(&ToneResponse) -> Estimate;
+    let quantities: [(&str, &str, Pick); 3] = [
+        ("gain", "", |response| response.gain),
+        ("phase", "_deg", |response| {
+            response.phase_rad.scaled(units::rad_to_deg(1.0))
+        }),
+        ("delay", "_ms", |response| {
+            response.delay_s.scaled(units::s_to_ms(1.0))
+        }),
+    ];
+    let frequencies_hz = responses.iter().map(|response| response.frequency_hz);
+    let mut curve = BTreeMap::from([("frequency_hz".to_owned(), frequencies_hz.collect())]);
+    for (quantity, unit, pick) in quantities {
+        let column = |end: fn(Estimate) -> f64| -> Vec<f64> {
+            responses
+                .iter()
+                .map(|response| end(pick(response)))
+                .collect()
+        };
+        curve.insert(
+            format!("{quantity}{unit}"),
+            column(|estimate| estimate.value),
+        );
+        curve.insert(
+            format!("{quantity}_low{unit}"),
+            column(|estimate| estimate.low),
+        );
+        curve.insert(
+            format!("{quantity}_high{unit}"),
+            column(|estimate| estimate.high),
+        );
+    }
+    if curve
+        .values()
+        .flatten()
+        .all(|value: &f64| value.is_finite())
+    {
+        metrics.curves.insert(name.to_owned(), curve);
+    }
 }

@@ -8,10 +8,11 @@ use super::scale_factor::{
     distinct_rates_by_sense, fit_scale_factor, too_few_rates,
 };
 use super::small_input::measure_small_inputs;
+use crate::metrics::estimate::blocks::equal_block_means;
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
-use crate::metrics::motion::steady::equal_block_means;
 use crate::metrics::record::{Dwell, Record, Staircase};
 use crate::units::{deg_per_h_to_deg_per_s, ratio_to_ppm};
 use crate::wording::plain;

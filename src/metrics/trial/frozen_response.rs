@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
-use crate::metrics::motion::multi_sine::put_curve;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
 use crate::metrics::record::FilterFacts;
-use crate::metrics::sine::tones::{ToneResponse, near};
+use crate::metrics::sine::tones::{ToneResponse, near, put_responses};
 use crate::metrics::theory::prediction::Prediction;
 
 /// Points of the curve, equally spaced by the logarithm of the frequency.
@@ -66,5 +66,5 @@ pub(crate) fn put_frozen_response(
             }
         })
         .collect();
-    put_curve("frozen_response", &responses, metrics);
+    put_responses("frozen_response", &responses, metrics);
 }

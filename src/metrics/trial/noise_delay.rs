@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::FilterFacts;
-use crate::metrics::theory::prediction::{filter_bound, noise_delay_bound};
+use crate::metrics::theory::bound::{filter_bound, noise_delay_bound};
 use crate::units;
 
 /// Least noise power gain at the delay of the filter.
