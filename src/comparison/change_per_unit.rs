@@ -1,9 +1,8 @@
 //! The closing lines of a table: how far its columns move per unit of a key that its rows differ in.
 
-use super::plan::Plan;
+use super::table::{ChangePerUnit, ColumnChange, ComparedTable};
 use crate::metrics::{ConditionPoint, change_divisor, find, largest_change_per_unit};
-use crate::report::{ChangePerUnit, ColumnChange, ComparedTable};
-use crate::scenario::{ComparisonConfig, ComparisonRowConfig, ScenarioError};
+use crate::scenario::{ComparisonConfig, ComparisonRowConfig, Resolved, ScenarioError};
 
 /// The closing lines of a table whose rows carry their value of `key`; `None` with fewer than two
 /// values.
@@ -68,39 +67,38 @@ pub(super) fn change_per_unit(
 pub(super) fn contradictions(
     comparisons: &[&ComparisonConfig],
     rows: &[&ComparisonRowConfig],
-    plans: &[Plan],
+    suite: &[&Resolved],
 ) -> Vec<ScenarioError> {
     let complaints = comparisons.iter().filter_map(|comparison| {
         let key = comparison.per_change_of.as_deref()?;
         let rows = rows.iter().filter(|row| row.comparison == comparison.name);
         let rows: Vec<&ComparisonRowConfig> = rows.copied().collect();
-        let complaint = complaint(key, &rows, plans)?;
-        let carries = |plan: &Plan| {
-            let mut own = plan.resolved().scenario.comparisons.iter();
+        let complaint = complaint(key, &rows, suite)?;
+        let carries = |resolved: &&Resolved| {
+            let mut own = resolved.scenario.comparisons.iter();
             let index = own.position(|one| one == *comparison)?;
             let written = format!("comparison[{index}].per_change_of");
             let message = format!("{written} = \"{key}\": {complaint}");
-            Some(ScenarioError::at(plan.resolved().locate(&written), message))
+            Some(ScenarioError::at(resolved.locate(&written), message))
         };
-        plans.iter().find_map(carries)
+        suite.iter().find_map(carries)
     });
     complaints.collect()
 }
 
 /// What is wrong with the rows of one table; those of which only a part runs may share a value.
-fn complaint(key: &str, rows: &[&ComparisonRowConfig], plans: &[Plan]) -> Option<String> {
+fn complaint(key: &str, rows: &[&ComparisonRowConfig], suite: &[&Resolved]) -> Option<String> {
     let mut all: Vec<f64> = Vec::new();
     let mut is_whole = !rows.is_empty();
     for row in rows {
         let mut fixed: Option<(f64, &str)> = None;
         for name in &row.scenarios {
-            let mut own = plans
+            let mut own = suite
                 .iter()
-                .filter(|plan| plan.resolved().scenario.name == *name)
+                .filter(|resolved| resolved.scenario.name == *name)
                 .peekable();
             is_whole &= own.peek().is_some();
-            for plan in own {
-                let resolved = plan.resolved();
+            for resolved in own {
                 let Some(value) = resolved.number_of(key) else {
                     return Some(format!("{name} of row \"{}\" has no such key", row.label));
                 };

@@ -3,20 +3,19 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::change_per_unit::{self, change_per_unit};
-use super::plan::Plan;
+use super::table::{
+    Assumed, Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
+    DrawnFigure,
+};
 use crate::gate::quotient;
 use crate::metrics::catalogue::{
     AMPLITUDE_RATIO, ANGLE_RANDOM_WALK_OVER_DC_GAIN, DC_GAIN, MEAN_RATIO, NOISE_GAIN,
     WEIGHT_NOISE_RATIO,
 };
 use crate::metrics::{Estimate, Finding, Metric, MetricKey, find, paired_ratio};
-use crate::report::{
-    Assumed, Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
-    DrawnFigure, RunOutcome,
-};
 use crate::scenario::{
     AssumptionConfig, ComparisonColumn, ComparisonConfig, ComparisonKind, ComparisonRowConfig,
-    FigureConfig, ScenarioError, slug,
+    FigureConfig, Resolved, ScenarioError, slug,
 };
 
 /// Metrics that bear on the cause of a lower noise, beside those of the columns.
@@ -30,8 +29,8 @@ static COMPANIONS: [&MetricKey; 5] = [
 
 /// The tables, assumptions and figures that the scenarios of a suite carry, each once.
 #[derive(Debug, Default)]
-pub(super) struct Layout<'a> {
-    pub(super) comparisons: Vec<&'a ComparisonConfig>,
+pub(crate) struct Layout<'a> {
+    pub(crate) comparisons: Vec<&'a ComparisonConfig>,
     rows: Vec<&'a ComparisonRowConfig>,
     assumptions: Vec<&'a AssumptionConfig>,
     figures: Vec<&'a FigureConfig>,
@@ -40,11 +39,11 @@ pub(super) struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    /// Gathers what the plans carry.
-    pub(super) fn of(plans: &'a [Plan]) -> Self {
+    /// Gathers what the scenarios of a suite carry.
+    pub(crate) fn of(suite: &[&'a Resolved]) -> Self {
         let mut layout = Self::default();
-        for plan in plans {
-            let scenario = &plan.resolved().scenario;
+        for resolved in suite {
+            let scenario = &resolved.scenario;
             add(&mut layout.comparisons, &scenario.comparisons);
             add(&mut layout.rows, &scenario.comparison_rows);
             add(&mut layout.assumptions, &scenario.assumptions);
@@ -63,7 +62,7 @@ impl<'a> Layout<'a> {
     }
 
     /// The metrics that a table may ask of a scenario; empty where none names it.
-    pub(super) fn metrics_of(&self, scenario: &str) -> &BTreeSet<&'a str> {
+    pub(crate) fn metrics_of(&self, scenario: &str) -> &BTreeSet<&'a str> {
         static NONE: BTreeSet<&str> = BTreeSet::new();
         if self.scenarios.contains(scenario) {
             &self.metrics
@@ -72,35 +71,29 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// The tables of a suite that has run; `runs` are those of `plans`, in their order.
-    pub(super) fn fill(&self, plans: &[Plan], runs: &[RunOutcome]) -> Comparison {
-        let suite: Vec<Run> = plans
-            .iter()
-            .zip(runs)
-            .filter(|(_, outcome)| !outcome.is_not_run)
-            .map(|(plan, outcome)| Run { plan, outcome })
-            .collect();
+    /// The tables of a suite that has run.
+    pub(crate) fn fill(&self, suite: &[ComparedRun]) -> Comparison {
         let tables: Vec<ComparedTable> = self
             .comparisons
             .iter()
-            .map(|comparison| self.table(comparison, &suite))
+            .map(|comparison| self.table(comparison, suite))
             .filter(|table| !table.rows.is_empty())
             .collect();
         let assumptions = self.assumptions.iter();
-        let readings = self.reproducing(&suite);
+        let readings = self.reproducing(suite);
         let figures = self.figures.iter();
         Comparison {
             assumptions: assumptions
                 .filter_map(|one| assumed(one, &readings, &tables))
                 .collect(),
-            figures: figures.filter_map(|figure| drawn(figure, runs)).collect(),
+            figures: figures.filter_map(|figure| drawn(figure, suite)).collect(),
             tables,
         }
     }
 
     /// The runs that stand beside published figures, whose values are the readings of what the
     /// publication leaves open; all runs if none does.
-    fn reproducing<'b>(&self, suite: &'b [Run<'b>]) -> Vec<&'b Run<'b>> {
+    fn reproducing<'b>(&self, suite: &'b [ComparedRun<'b>]) -> Vec<&'b ComparedRun<'b>> {
         let is_published = |row: &&&ComparisonRowConfig| {
             let mut tables = self.comparisons.iter();
             tables.any(|table| {
@@ -109,8 +102,8 @@ impl<'a> Layout<'a> {
         };
         let rows = self.rows.iter().filter(is_published);
         let named: BTreeSet<&String> = rows.flat_map(|row| &row.scenarios).collect();
-        let stands = |run: &&Run| named.contains(&run.plan.resolved().scenario.name);
-        let found: Vec<&Run> = suite.iter().filter(stands).collect();
+        let stands = |run: &&ComparedRun| named.contains(&run.resolved.scenario.name);
+        let found: Vec<&ComparedRun> = suite.iter().filter(stands).collect();
         if found.is_empty() {
             suite.iter().collect()
         } else {
@@ -118,7 +111,7 @@ impl<'a> Layout<'a> {
         }
     }
 
-    fn table(&self, comparison: &ComparisonConfig, suite: &[Run]) -> ComparedTable {
+    fn table(&self, comparison: &ComparisonConfig, suite: &[ComparedRun]) -> ComparedTable {
         let columns: Vec<ComparedColumn> = comparison
             .columns
             .iter()
@@ -148,7 +141,7 @@ impl<'a> Layout<'a> {
             enter(&mut table, row, comparison.per_change_of.as_deref(), suite);
         }
         if let (Some(key), Some(run)) = (&comparison.per_change_of, suite.first()) {
-            table.change = change_per_unit(&table, key, run.plan.resolved().unit_of(key));
+            table.change = change_per_unit(&table, key, run.resolved.unit_of(key));
         }
         if table.kind == ComparisonKind::Published {
             for row in &table.rows {
@@ -169,55 +162,60 @@ fn add<'a, T: PartialEq>(all: &mut Vec<&'a T>, more: &'a [T]) {
 }
 
 /// Complaints about tables of a suite that share a file name and are not the same.
-pub(super) fn contradictions(plans: &[Plan]) -> Vec<ScenarioError> {
-    let mut first: BTreeMap<String, (&Plan, &ComparisonConfig)> = BTreeMap::new();
+pub(crate) fn contradictions(suite: &[&Resolved]) -> Vec<ScenarioError> {
+    let mut first: BTreeMap<String, (&Resolved, &ComparisonConfig)> = BTreeMap::new();
     let mut errors = Vec::new();
-    for plan in plans {
-        let resolved = plan.resolved();
+    for resolved in suite {
         for (index, comparison) in resolved.scenario.comparisons.iter().enumerate() {
             let earlier = first.entry(slug(&comparison.name));
-            let (other, known) = *earlier.or_insert((plan, comparison));
+            let (other, known) = *earlier.or_insert((resolved, comparison));
             if known != comparison {
                 let key = format!("comparison[{index}].name");
                 let message = format!(
                     "{key} = \"{}\" stands for another table in {}: give each table of a suite a \
                      name of its own",
                     comparison.name,
-                    other.resolved().shown_file()
+                    other.shown_file()
                 );
                 errors.push(ScenarioError::at(resolved.locate(&key), message));
             }
         }
     }
-    let layout = Layout::of(plans);
-    let changes = change_per_unit::contradictions(&layout.comparisons, &layout.rows, plans);
+    let layout = Layout::of(suite);
+    let changes = change_per_unit::contradictions(&layout.comparisons, &layout.rows, suite);
     errors.extend(changes);
     errors
 }
 
-/// A run with its plan.
-#[derive(Clone, Copy)]
-struct Run<'a> {
-    plan: &'a Plan,
-    outcome: &'a RunOutcome,
+/// A run of the suite, as tables see it.
+#[derive(Clone, Debug)]
+pub(crate) struct ComparedRun<'a> {
+    /// Its scenario.
+    pub(crate) resolved: &'a Resolved,
+    /// Folder below the output folder.
+    pub(crate) folder: &'a str,
+    /// Metrics that the layout asks for, by channel and key.
+    pub(crate) kept: &'a [(String, BTreeMap<String, Metric>)],
+    /// Pictures in its folder.
+    pub(crate) pictures: &'a [String],
 }
 
-impl Run<'_> {
+impl ComparedRun<'_> {
     fn metric(&self, channel: &str, key: &str) -> Option<&Metric> {
-        let mut kept = self.outcome.kept.iter();
+        let mut kept = self.kept.iter();
         let (_, metrics) = kept.find(|(name, _)| name == channel)?;
         metrics.get(key)
     }
 
     fn point(&self) -> &[(String, String)] {
-        let sweep = &self.plan.resolved().sweep;
+        let sweep = &self.resolved.sweep;
         sweep.as_ref().map_or(&[], |point| &point.assignments)
     }
 
     /// The published figure for a metric, with its source.
     fn published(&self, channel: &str, key: &str) -> Option<(f64, String)> {
         let wanted = format!("{channel}.{key}");
-        let mut figures = self.plan.resolved().scenario.published.iter();
+        let mut figures = self.resolved.scenario.published.iter();
         let figure = figures.find(|figure| figure.metric == wanted)?;
         Some((figure.value, figure.source.clone()))
     }
@@ -248,7 +246,7 @@ impl Run<'_> {
             }
         };
         Some(ComparedCell {
-            folder: self.outcome.folder.clone(),
+            folder: self.folder.to_owned(),
             simulated,
             published,
         })
@@ -256,12 +254,22 @@ impl Run<'_> {
 }
 
 /// The runs of one scenario.
-fn runs_of<'s, 'a>(suite: &'s [Run<'a>], name: &'s str) -> impl Iterator<Item = &'s Run<'a>> {
-    suite.iter().filter(move |run| run.outcome.name == name)
+fn runs_of<'s, 'a>(
+    suite: &'s [ComparedRun<'a>],
+    name: &'s str,
+) -> impl Iterator<Item = &'s ComparedRun<'a>> {
+    suite
+        .iter()
+        .filter(move |run| run.resolved.scenario.name == name)
 }
 
 /// Enters a row, or a row for each point of a sweep, and what it lacks.
-fn enter(table: &mut ComparedTable, row: &ComparisonRowConfig, key: Option<&str>, suite: &[Run]) {
+fn enter(
+    table: &mut ComparedTable,
+    row: &ComparisonRowConfig,
+    key: Option<&str>,
+    suite: &[ComparedRun],
+) {
     let absent = row.scenarios.iter().map(String::as_str);
     let absent: Vec<&str> = absent
         .filter(|name| runs_of(suite, name).next().is_none())
@@ -279,7 +287,7 @@ fn enter(table: &mut ComparedTable, row: &ComparisonRowConfig, key: Option<&str>
         }
     }
     for point in points {
-        let runs: Vec<&Run> = row
+        let runs: Vec<&ComparedRun> = row
             .scenarios
             .iter()
             .flat_map(|name| runs_of(suite, name))
@@ -297,8 +305,8 @@ fn enter(table: &mut ComparedTable, row: &ComparisonRowConfig, key: Option<&str>
         let label: Vec<&str> = std::iter::once(row.label.as_str()).chain(values).collect();
         table.rows.push(ComparedRow {
             label: label.join(" "),
-            is_base: runs.iter().any(|run| run.plan.resolved().is_base_point),
-            at: key.and_then(|key| runs.first()?.plan.resolved().number_of(key)),
+            is_base: runs.iter().any(|run| run.resolved.is_base_point),
+            at: key.and_then(|key| runs.first()?.resolved.number_of(key)),
             cells,
         });
     }
@@ -306,11 +314,11 @@ fn enter(table: &mut ComparedTable, row: &ComparisonRowConfig, key: Option<&str>
 
 /// Why slow noise is lower in one channel than in another: a finding for each ratio of a row; for a
 /// ratio of delays what the channel does to noise under the motion.
-fn causes(row: &ComparedRow, columns: &[ComparedColumn], suite: &[Run]) -> Vec<Cause> {
+fn causes(row: &ComparedRow, columns: &[ComparedColumn], suite: &[ComparedRun]) -> Vec<Cause> {
     let found = columns.iter().zip(&row.cells).filter_map(|(column, cell)| {
         let (cell, other) = (cell.as_ref()?, column.relative_to.as_ref()?);
         let mut runs = suite.iter();
-        let run = runs.find(|run| run.outcome.folder == cell.folder)?;
+        let run = runs.find(|run| run.folder == cell.folder)?;
         let gain = |channel: &str| {
             run.metric(channel, DC_GAIN.name)
                 .map(|metric| metric.estimate)
@@ -341,10 +349,14 @@ fn causes(row: &ComparedRow, columns: &[ComparedColumn], suite: &[Run]) -> Vec<C
 }
 
 /// An assumption with the values that the runs have; none if no run has the key.
-fn assumed(one: &AssumptionConfig, suite: &[&Run], tables: &[ComparedTable]) -> Option<Assumed> {
+fn assumed(
+    one: &AssumptionConfig,
+    suite: &[&ComparedRun],
+    tables: &[ComparedTable],
+) -> Option<Assumed> {
     let mut values: Vec<String> = Vec::new();
     for run in suite {
-        let resolved = run.plan.resolved();
+        let resolved = run.resolved;
         let carries = resolved.scenario.assumptions.contains(one);
         if !carries || (resolved.sweep.is_some() && !resolved.is_base_point) {
             continue;
@@ -373,8 +385,8 @@ fn assumed(one: &AssumptionConfig, suite: &[&Run], tables: &[ComparedTable]) -> 
     })
 }
 
-fn drawn(figure: &FigureConfig, runs: &[RunOutcome]) -> Option<DrawnFigure> {
-    let mut named = runs.iter().filter(|run| run.name == figure.scenario);
+fn drawn(figure: &FigureConfig, suite: &[ComparedRun]) -> Option<DrawnFigure> {
+    let mut named = runs_of(suite, &figure.scenario);
     let run = named.find(|run| run.pictures.contains(&figure.file))?;
     Some(DrawnFigure {
         name: figure.name.clone(),

@@ -1,4 +1,4 @@
-//! What a suite says across its scenarios, ready to be written down.
+//! Tables over several scenarios, ready to be written down.
 
 use crate::metrics::{Estimate, Finding, Metric};
 use crate::scenario::ComparisonKind;
@@ -232,7 +232,7 @@ impl ComparedTable {
 }
 
 /// Name of a table's files without its extension.
-pub(super) fn file_stem(kind: ComparisonKind, slug: &str) -> String {
+pub(crate) fn file_stem(kind: ComparisonKind, slug: &str) -> String {
     let kind = match kind {
         ComparisonKind::Published => "published",
         ComparisonKind::Sensitivity => "sensitivity",

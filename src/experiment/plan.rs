@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::campaign;
-use super::comparison::contradictions;
 use super::compensation::CompensationPlan;
 use super::motion::motion_extremes;
+use crate::comparison::contradictions;
 use crate::gyro;
 use crate::scenario::{
     Fidelity, Reading, Resolved, ScenarioError, UnsoundReading, in_both, in_order, read_suite,
@@ -126,7 +126,8 @@ pub(super) fn compared(
 ) -> Result<Vec<Plan>, Vec<ScenarioError>> {
     // By folder, so that the order of the arguments leaves no trace in the results.
     plans.sort_by_cached_key(|plan: &Plan| plan.resolved.folder());
-    errors.extend(contradictions(&plans));
+    let suite: Vec<&Resolved> = plans.iter().map(Plan::resolved).collect();
+    errors.extend(contradictions(&suite));
     if errors.is_empty() {
         Ok(plans)
     } else {

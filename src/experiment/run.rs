@@ -1,13 +1,13 @@
 //! One run of a suite: its result or an earlier one, its files and its entry in the ledger.
 
 use super::build::VERSION;
-use super::comparison::Layout;
 use super::plan::Plan;
 use super::progress::Unfinished;
 use super::results::{Results, run_plan};
 use super::resume::take_over;
 use super::run_files;
 use super::suite::{Observer, Suite, SuiteError};
+use crate::comparison::Layout;
 use crate::report::{RunOutcome, RunReport};
 
 /// Runs `plan`, judges it, puts its folder in place and enters it in the ledger, or takes over the

@@ -9,7 +9,6 @@ use std::sync::mpsc::channel;
 use rayon::prelude::*;
 
 use super::build::VERSION;
-use super::comparison::Layout;
 use super::in_memory::Run;
 use super::ledger::{Ledger, wait};
 use super::plan::Plan;
@@ -18,7 +17,9 @@ use super::resume::Resume;
 use super::run::{enter_result, run_scenario};
 use super::suite_output::{JUNIT, SUMMARY, SuiteOutput};
 use super::threads;
-use crate::report::{self, Comparison, RunOutcome, RunReport};
+use crate::comparison::{ComparedRun, Comparison, Layout};
+use crate::report::{self, RunOutcome, RunReport};
+use crate::scenario::Resolved;
 use crate::store::StoreError;
 
 /// How a suite is run.
@@ -123,7 +124,7 @@ pub fn run_suite(
     options: &SuiteOptions,
     observer: &dyn Observer,
 ) -> Result<SuiteOutcome, SuiteError> {
-    let layout = &Layout::of(plans);
+    let layout = &layout(plans);
     let pool = threads::pool(threads::thread_count(options.threads))
         .map_err(|source| SuiteError::Threads { source })?;
     let output = &SuiteOutput::open(plans, layout, options)?;
@@ -163,7 +164,7 @@ pub fn run_suite(
 /// As [`run_suite`], threads aside.
 pub fn write_runs(runs: &[Run], options: &SuiteOptions) -> Result<SuiteOutcome, SuiteError> {
     let plans: Vec<Plan> = runs.iter().map(|run| run.plan().clone()).collect();
-    let layout = &Layout::of(&plans);
+    let layout = &layout(&plans);
     let suite = &Suite {
         output: &SuiteOutput::open(&plans, layout, options)?,
         resume: Resume::Never,
@@ -228,12 +229,30 @@ fn enter_failure(
     }
 }
 
+/// What the plans ask of the runs of all.
+fn layout(plans: &[Plan]) -> Layout<'_> {
+    let suite: Vec<&Resolved> = plans.iter().map(Plan::resolved).collect();
+    Layout::of(&suite)
+}
+
+/// The tables over the runs that have ended; `runs` are those of `plans`, in their order.
+fn compare(plans: &[Plan], layout: &Layout, runs: &[RunOutcome]) -> Comparison {
+    let ended = plans.iter().zip(runs).filter(|(_, run)| !run.is_not_run);
+    let suite = ended.map(|(plan, run)| ComparedRun {
+        resolved: plan.resolved(),
+        folder: &run.folder,
+        kept: &run.kept,
+        pictures: &run.pictures,
+    });
+    layout.fill(&suite.collect::<Vec<_>>())
+}
+
 /// Closes the ledger and writes the files of the suite. What breaks an invariant is left out, and
 /// the rest is written all the same.
 fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> Result<SuiteOutcome, SuiteError> {
     let Suite { output, ledger, .. } = *suite;
     let runs = ledger.close(plans)?;
-    let comparison = unbroken(ledger, || layout.fill(plans, &runs)).unwrap_or_default();
+    let comparison = unbroken(ledger, || compare(plans, layout, &runs)).unwrap_or_default();
     let stale = output.settle()?;
     let tables = unbroken(ledger, || report::comparison_files(&comparison));
     let mut files = tables.unwrap_or_default();

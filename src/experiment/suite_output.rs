@@ -7,9 +7,9 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use super::build::{BUILD, VERSION};
-use super::comparison::Layout;
 use super::plan::Plan;
 use super::suite::SuiteOptions;
+use crate::comparison::Layout;
 use crate::report::{self, FailedRun};
 use crate::scenario::{manifest_toml, slug};
 use crate::store::{
