@@ -1,14 +1,10 @@
 //! The compensation stage: from three words of an assembly to three compensated ones.
 
-use super::campaign::run_campaign;
-use super::progress::{Progress, Unfinished};
 use crate::calibration::{
     Calibration, CalibrationError, Compensation, CompensationForm, ErrorParameters, Misalignment,
 };
 use crate::gyro::CoilThermometer;
-use crate::scenario::{
-    CompensationConfig, CompensationParameters, CompensationRule, GyroConfig, Resolved, Scenario,
-};
+use crate::scenario::{CompensationParameters, GyroConfig};
 use crate::signal::CompensationSheet;
 use crate::units::{
     MICRO, arcsec_to_rad, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, rad_to_arcsec,
@@ -17,7 +13,7 @@ use crate::units::{
 
 /// What is taken out of the outputs, and how.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Parameters {
+pub(crate) struct Parameters {
     compensation: Compensation,
     form: CompensationForm,
     found: ErrorParameters,
@@ -30,7 +26,7 @@ impl Parameters {
     ///
     /// # Errors
     /// [`CalibrationError::SingularSensitivity`] if their matrix has no inverse.
-    pub(super) fn given(
+    pub(crate) fn given(
         form: CompensationForm,
         given: &CompensationParameters,
     ) -> Result<Self, CalibrationError> {
@@ -50,7 +46,7 @@ impl Parameters {
     ///
     /// # Errors
     /// [`CalibrationError::SingularSensitivity`] if their matrix has no inverse.
-    fn found(
+    pub(crate) fn found(
         form: CompensationForm,
         calibration: &Calibration,
         source: String,
@@ -64,12 +60,12 @@ impl Parameters {
     }
 
     /// Whether the biases follow the temperatures of the gyros.
-    pub(super) fn needs_temperature(&self) -> bool {
+    pub(crate) fn needs_temperature(&self) -> bool {
         self.compensation.needs_temperature()
     }
 
     /// Rates about the case axes for one word of each gyro, deg/h.
-    pub(super) fn rates_deg_per_h(
+    pub(crate) fn rates_deg_per_h(
         &self,
         output_deg_per_h: [f64; 3],
         temperature_c: Option<[f64; 3]>,
@@ -82,7 +78,7 @@ impl Parameters {
     /// What the report shows of it.
     ///
     /// * `rate_deg_per_h`: mean true rates of the record.
-    pub(super) fn sheet(&self, rate_deg_per_h: [f64; 3]) -> CompensationSheet {
+    pub(crate) fn sheet(&self, rate_deg_per_h: [f64; 3]) -> CompensationSheet {
         let rate_deg_per_s = rate_deg_per_h.map(deg_per_h_to_deg_per_s);
         let left = |form| {
             let residual = self.compensation.residual(form, rate_deg_per_s);
@@ -114,79 +110,6 @@ impl Parameters {
     }
 }
 
-/// How a run comes by its parameters.
-#[derive(Clone, Debug)]
-pub(super) enum CompensationPlan {
-    /// They are given.
-    Given(Box<Parameters>),
-    /// A campaign finds them.
-    Campaign {
-        /// The calibration scenario, which has passed the checks of a plan.
-        scenario: Box<Scenario>,
-        /// How rates follow from the outputs.
-        form: CompensationForm,
-    },
-}
-
-impl CompensationPlan {
-    /// The plan of a scenario; none without a compensation. A campaign is still to be checked.
-    ///
-    /// # Errors
-    /// [`CalibrationError::SingularSensitivity`] if given parameters have no inverse.
-    pub(super) fn of(resolved: &Resolved) -> Result<Option<Self>, CalibrationError> {
-        let Some(config) = &resolved.scenario.compensation else {
-            return Ok(None);
-        };
-        let form = form(config);
-        if let Some(campaign) = &resolved.campaign {
-            let scenario = Box::new(campaign.scenario.clone());
-            return Ok(Some(Self::Campaign { scenario, form }));
-        }
-        let given = config.parameters.as_ref();
-        let parameters = given
-            .map(|given| Parameters::given(form, given))
-            .transpose()?;
-        Ok(parameters.map(|known| Self::Given(Box::new(known))))
-    }
-
-    /// The parameters; a campaign is run for them, its first repeat.
-    ///
-    /// # Errors
-    /// Why the campaign gives none, or that the listener has stopped it.
-    pub(super) fn parameters(&self, progress: &dyn Progress) -> Result<Parameters, Unfinished> {
-        let (scenario, form) = match self {
-            Self::Given(known) => return Ok(Parameters::clone(known)),
-            Self::Campaign { scenario, form } => (scenario, *form),
-        };
-        let failed =
-            |error: String| Unfinished::Failed(format!("campaign {}: {error}", scenario.name));
-        let (sheet, calibration) =
-            run_campaign(scenario, 0, &Unseen(progress)).map_err(|error| match error {
-                Unfinished::Failed(error) => failed(error),
-                Unfinished::Stopped => Unfinished::Stopped,
-            })?;
-        let source = format!("campaign {}, {}", scenario.name, sheet.applied);
-        Parameters::found(form, &calibration, source).map_err(|error| failed(error.to_string()))
-    }
-}
-
-/// Hears nothing of a campaign, whose time is no part of the run's, but stops with the run.
-struct Unseen<'a>(&'a dyn Progress);
-
-impl Progress for Unseen<'_> {
-    fn should_stop(&self) -> bool {
-        self.0.should_stop()
-    }
-}
-
-/// The form that a scenario asks for.
-fn form(config: &CompensationConfig) -> CompensationForm {
-    match config.form {
-        CompensationRule::Exact => CompensationForm::Exact,
-        CompensationRule::FirstOrder => CompensationForm::FirstOrder,
-    }
-}
-
 /// The twelve parameters in the units of the calibration.
 fn error_parameters(given: &CompensationParameters) -> ErrorParameters {
     ErrorParameters {
@@ -205,7 +128,7 @@ fn error_parameters(given: &CompensationParameters) -> ErrorParameters {
 
 /// The stage while it runs.
 #[derive(Debug)]
-pub(super) struct Compensator {
+pub(crate) struct Compensator {
     parameters: Parameters,
     /// One for all three gyros, whose coils share one temperature; none where no bias follows it.
     thermometer: Option<CoilThermometer>,
@@ -213,7 +136,7 @@ pub(super) struct Compensator {
 
 impl Compensator {
     /// The stage before the first sample of the warm-up.
-    pub(super) fn new(parameters: &Parameters, gyro: &GyroConfig, sample_period_s: f64) -> Self {
+    pub(crate) fn new(parameters: &Parameters, gyro: &GyroConfig, sample_period_s: f64) -> Self {
         let needs_temperature = parameters.compensation.needs_temperature();
         Self {
             parameters: parameters.clone(),
@@ -222,7 +145,7 @@ impl Compensator {
     }
 
     /// The next words of the gyros x, y, z, compensated, deg/h.
-    pub(super) fn take(&mut self, raw_deg_per_h: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    pub(crate) fn take(&mut self, raw_deg_per_h: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let [x, y, z] = raw_deg_per_h else {
             // The reader refuses a compensation without an assembly.
             return raw_deg_per_h.to_vec();

@@ -7,7 +7,7 @@ use crate::recording::{RateUnit, RecordedGroups};
 const ROUNDING: f64 = 1e-6;
 
 /// A finding with the lines it is about, and units as the headings name them.
-pub(super) fn complaint(finding: &Finding, recorded: &RecordedGroups) -> String {
+pub(crate) fn complaint(finding: &Finding, recorded: &RecordedGroups) -> String {
     match finding {
         Finding::WrongUnit { ratio, scope } => {
             let lines = lines(scope, recorded);

@@ -1,16 +1,13 @@
 //! A calibration campaign of a scenario: what its plan can determine, and its groups once it ran.
 
-use super::assembly_motion::axis_index;
-use super::calibration_sheet::calibration_sheet;
-use super::campaign_metrics::mean;
-pub(super) use super::campaign_metrics::{
-    drop_lacking, estimate_channels, estimator_of, lacks, ranked, supports,
-};
-use super::progress::{Progress, Unfinished};
-use super::simulate::{RecordLength, Simulation, simulate};
+use super::metrics::mean;
+use super::sheet::calibration_sheet;
 use crate::calibration::{
     Averaging, Calibration, CalibrationError, GroupDesign, GroupSamples, TemperatureColumns,
     check_plan, group_means, horizontal_residue_deg_per_s, whole_turns_s,
+};
+use crate::experiment::run::{
+    Progress, RecordLength, Simulation, Unfinished, axis_index, simulate,
 };
 use crate::gyro::{self, coil_temperatures_c};
 use crate::scenario::{CampaignConfig, CampaignGroup, MotionConfig, Scenario, TurntableConfig};
@@ -22,7 +19,7 @@ use crate::units::{
 };
 
 /// The campaign of a scenario; none if the table does something else.
-pub(super) fn campaign(scenario: &Scenario) -> Option<&CampaignConfig> {
+pub(crate) fn campaign(scenario: &Scenario) -> Option<&CampaignConfig> {
     match &scenario.turntable.motion {
         MotionConfig::Calibration(campaign) => Some(campaign),
         _ => None,
@@ -106,7 +103,7 @@ fn planned(scenario: &Scenario, campaign: &CampaignConfig) -> Vec<GroupDesign> {
 }
 
 /// What is wrong with a plan: the key to blame, and why.
-pub(super) type Complaint = (&'static str, String);
+pub(crate) type Complaint = (&'static str, String);
 
 /// Checks whether a campaign can determine what is asked of it, before it runs.
 ///
@@ -114,7 +111,7 @@ pub(super) type Complaint = (&'static str, String);
 ///
 /// # Errors
 /// The key to blame and the missing motion in words.
-pub(super) fn check_campaign(
+pub(crate) fn check_campaign(
     scenario: &Scenario,
     campaign: &CampaignConfig,
 ) -> Result<(String, Vec<String>), Complaint> {
@@ -222,7 +219,7 @@ fn residue(scenario: &Scenario, campaign: &CampaignConfig) -> Option<String> {
 /// Parameters of the simulated assembly at the reference temperature of its thermal model.
 ///
 /// Those that are configured; what the loop adds by imperfections of its own is not among them.
-pub(super) fn simulated_truth(scenario: &Scenario) -> Option<CalibrationTruth> {
+pub(crate) fn simulated_truth(scenario: &Scenario) -> Option<CalibrationTruth> {
     let assembly = scenario.gyro.assembly.as_ref()?;
     let thermal = &scenario.gyro.thermal;
     let common_deg_per_h = scenario.gyro.slow_noise.bias_deg_per_h;
@@ -342,7 +339,7 @@ fn without_turn(samples: Vec<f64>, turned_rad: f64) -> Vec<f64> {
 ///
 /// # Errors
 /// As [`calibration_sheet`].
-pub(super) fn calibrate_simulation(
+pub(crate) fn calibrate_simulation(
     scenario: &Scenario,
     simulation: &Simulation,
 ) -> Result<Option<(CalibrationSheet, Calibration)>, CalibrationError> {
@@ -373,7 +370,7 @@ pub fn calibrate_scenario(
 }
 
 /// As [`calibrate_scenario`], told apart from a stop.
-pub(super) fn run_campaign(
+pub(crate) fn run_campaign(
     scenario: &Scenario,
     repeat: u32,
     progress: &dyn Progress,

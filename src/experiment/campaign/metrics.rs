@@ -1,6 +1,6 @@
 //! The estimates of a campaign as metrics that gates can name, and their ranking over campaigns.
 
-use super::calibration_units::rms;
+use super::units::rms;
 use crate::metrics::catalogue::{
     BIAS_ERROR_RMS, COMPENSATED_RATE_ERROR, MISALIGNMENT_ERROR_RMS, NORMALISED_ERROR_SQUARED,
     PLAN_CONDITION_NUMBER, ROUNDING_LOSS, SCALE_FACTOR_ERROR_RMS,
@@ -14,13 +14,13 @@ fn is_campaign(scenario: &Scenario) -> bool {
 }
 
 /// Why the channels of a campaign never have a metric.
-pub(super) fn lacks(scenario: &Scenario, key: &MetricKey) -> Option<&'static str> {
+pub(crate) fn lacks(scenario: &Scenario, key: &MetricKey) -> Option<&'static str> {
     (is_campaign(scenario) && key.is_of_one_motion)
         .then_some("the record of a campaign holds many rates: see its calibration")
 }
 
 /// Takes from a channel of a campaign what says nothing there.
-pub(super) fn drop_lacking(scenario: &Scenario, metrics: &mut ChannelMetrics) {
+pub(crate) fn drop_lacking(scenario: &Scenario, metrics: &mut ChannelMetrics) {
     for key in known_metrics() {
         if let Some(reason) = lacks(scenario, key) {
             metrics.withdraw(key, reason);
@@ -29,7 +29,7 @@ pub(super) fn drop_lacking(scenario: &Scenario, metrics: &mut ChannelMetrics) {
 }
 
 /// The estimator whose estimate a gate names in place of a channel.
-pub(super) fn estimator_of(scenario: &Scenario, channel: &str) -> Option<&'static str> {
+pub(crate) fn estimator_of(scenario: &Scenario, channel: &str) -> Option<&'static str> {
     let channels = scenario.calibration_channels().into_iter();
     let mut pairs = channels.zip(scenario.calibration.kinds());
     let (_, kind) = pairs.find(|(name, _)| name == channel)?;
@@ -37,7 +37,7 @@ pub(super) fn estimator_of(scenario: &Scenario, channel: &str) -> Option<&'stati
 }
 
 /// Whether the estimate of an estimator has a metric.
-pub(super) fn supports(estimator: &str, metric: &str) -> Result<(), String> {
+pub(crate) fn supports(estimator: &str, metric: &str) -> Result<(), String> {
     let known = known_metrics().iter();
     let own: Vec<&str> = known
         .filter(|known| known.applies == Applies::Calibration)
@@ -53,7 +53,7 @@ pub(super) fn supports(estimator: &str, metric: &str) -> Result<(), String> {
 }
 
 /// The estimates of a sheet under the names of their channels.
-pub(super) fn estimate_channels(
+pub(crate) fn estimate_channels(
     sheet: &CalibrationSheet,
 ) -> impl Iterator<Item = (String, ChannelMetrics)> {
     let estimates = sheet.estimates.iter();
@@ -88,7 +88,7 @@ fn metrics(found: &CalibrationEstimate) -> ChannelMetrics {
 /// The first sheet with the ranking over all, best bias first; none without a sheet.
 ///
 /// An estimator is ranked if it worked in every campaign.
-pub(super) fn ranked(sheets: Vec<CalibrationSheet>) -> Option<CalibrationSheet> {
+pub(crate) fn ranked(sheets: Vec<CalibrationSheet>) -> Option<CalibrationSheet> {
     let mut ranking = Vec::new();
     if sheets.len() > 1 {
         let names = sheets[0].estimates.iter().map(|found| found.name.clone());
@@ -125,7 +125,7 @@ fn rank(sheets: &[CalibrationSheet], name: String) -> Option<CalibrationRank> {
 }
 
 /// Mean of at least one value.
-pub(super) fn mean(values: &[f64]) -> f64 {
+pub(crate) fn mean(values: &[f64]) -> f64 {
     let count = values.iter().fold(0.0, |count, _| count + 1.0);
     values.iter().sum::<f64>() / count
 }

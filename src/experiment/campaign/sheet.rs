@@ -1,8 +1,6 @@
 //! From group means to a sheet: every estimator side by side, against the truth where it is known.
 
-use super::calibration_units::{
-    calibration_estimate, compensation_checks, observation, plan_table,
-};
+use super::units::{calibration_estimate, compensation_checks, observation, plan_table};
 use crate::calibration::{
     Calibration, CalibrationError, Estimator, Forgetting, ForgettingForm, GroupDesign,
     GroupObservation, Reading, RecursiveSettings, TemperatureColumns, check_plan, diagnose,

@@ -2,17 +2,16 @@
 
 use std::path::Path;
 
-use super::build::VERSION;
-use super::calibration_sheet::calibration_sheet;
-use super::campaign::{calibrate_scenario, campaign};
-use super::group_findings::complaint;
-use super::plan::count;
-use super::plan::plan_suite;
-use super::progress::Progress;
+use super::findings::complaint;
+use super::groups::{calibrate_scenario, campaign};
+use super::sheet::calibration_sheet;
 use crate::calibration::{
     CalibrationError, GroupDesign, GroupObservation, TableGroup, diagnose,
     horizontal_residue_deg_per_s, reference_rate,
 };
+use crate::experiment::build::VERSION;
+use crate::experiment::plan::plan_suite;
+use crate::experiment::run::{Progress, count};
 use crate::recording::{LogError, RecordedGroup, RecordedGroups, read_groups};
 use crate::report::{CalibrateReport, CalibrationProvenance, calibration_toml, groups_csv};
 use crate::scenario::{CalibrationConfig, EstimatorKind, ScenarioError};

@@ -14,7 +14,7 @@ use crate::units::{
 };
 
 /// A group as the library takes it.
-pub(super) fn observation(group: &CalibrationGroup) -> GroupObservation {
+pub(crate) fn observation(group: &CalibrationGroup) -> GroupObservation {
     GroupObservation {
         design: GroupDesign {
             reference_rate_deg_per_s: group.reference_rate_deg_per_s,
@@ -27,7 +27,7 @@ pub(super) fn observation(group: &CalibrationGroup) -> GroupObservation {
 }
 
 /// Named parameters in the library's units.
-pub(super) fn error_parameters(parameters: &AssemblyParameters) -> ErrorParameters {
+pub(crate) fn error_parameters(parameters: &AssemblyParameters) -> ErrorParameters {
     let [xy, xz, yx, yz, zx, zy] = parameters.theta_arcsec.map(arcsec_to_rad);
     ErrorParameters {
         scale_error: parameters.scale_factor_error_ppm.map(|ppm| ppm * MICRO),
@@ -65,7 +65,7 @@ fn standard_errors(calibration: &Calibration) -> AssemblyParameters {
 }
 
 /// What a plan determines, as a table.
-pub(super) fn plan_table(plan: &PlanReport) -> CalibrationPlan {
+pub(crate) fn plan_table(plan: &PlanReport) -> CalibrationPlan {
     let axes = plan.axes.each_ref();
     CalibrationPlan {
         groups: plan.groups,
@@ -80,7 +80,7 @@ pub(super) fn plan_table(plan: &PlanReport) -> CalibrationPlan {
 }
 
 /// One estimate with its error.
-pub(super) fn calibration_estimate(
+pub(crate) fn calibration_estimate(
     name: &str,
     groups: &[CalibrationGroup],
     calibration: &Calibration,
@@ -162,7 +162,7 @@ fn compensated_error_max(
 }
 
 /// Both forms of compensation with an estimate.
-pub(super) fn compensation_checks(
+pub(crate) fn compensation_checks(
     applied: &Calibration,
     groups: &[CalibrationGroup],
     truth: Option<&CalibrationTruth>,
@@ -194,7 +194,7 @@ pub(super) fn compensation_checks(
 }
 
 /// Root mean square.
-pub(super) fn rms(values: impl IntoIterator<Item = f64>) -> f64 {
+pub(crate) fn rms(values: impl IntoIterator<Item = f64>) -> f64 {
     let (sum, count) = values.into_iter().fold((0.0, 0.0), |(sum, count), value| {
         (sum + value * value, count + 1.0)
     });

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::compensation::Parameters;
 use crate::calibration::CompensationForm;
+use crate::experiment::campaign::Parameters;
 use crate::recording::{AssemblyLog, Log};
 use crate::scenario::{CompensationRule, Location, ScenarioError, load_calibration};
 
@@ -44,11 +44,11 @@ pub fn load_log_compensation(
 #[derive(Clone, Debug)]
 pub struct CompensatedLog {
     /// The words of the gyro as they were recorded.
-    pub(super) log: Log,
+    pub(crate) log: Log,
     /// Rates about the case axis of the same name, deg/h.
-    pub(super) words: Vec<f64>,
+    pub(crate) words: Vec<f64>,
     /// What was done.
-    pub(super) notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// Takes the constant errors of an assembly out of the words of its gyros x, y, z.

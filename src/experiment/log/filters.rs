@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::line_enhancer;
-use super::pipeline_check;
-use super::pipeline_settings::PipelineSettings;
-use super::textbook::cutoff_complaint;
+use crate::experiment::line_enhancer;
+use crate::experiment::pipeline_check;
+use crate::experiment::pipeline_settings::PipelineSettings;
+use crate::experiment::textbook::cutoff_complaint;
 use crate::filters::covariance_digits_warning;
 use crate::scenario::{
     FilterConfig, FilterKind, Pipeline, Resolved, ScenarioError, load_base_or_scenario,
@@ -70,18 +70,18 @@ pub fn load_log_filters(
 
 impl LogFilters {
     /// The filters in the order of the file.
-    pub(super) fn configs(&self) -> &[FilterConfig] {
+    pub(crate) fn configs(&self) -> &[FilterConfig] {
         &self.resolved.scenario.filters
     }
 
     /// Name and digest of the scenario they are from.
-    pub(super) fn source(&self) -> (String, String) {
+    pub(crate) fn source(&self) -> (String, String) {
         (self.resolved.file.clone(), self.resolved.digest.clone())
     }
 
     /// Warns of filters that words of this size cost their digits, and says in which unit the constants
     /// of a line enhancer are meant.
-    pub(super) fn warnings(&self, words_deg_per_h: &[f64]) -> Vec<String> {
+    pub(crate) fn warnings(&self, words_deg_per_h: &[f64]) -> Vec<String> {
         let largest = words_deg_per_h
             .iter()
             .fold(0.0, |largest: f64, word| largest.max(word.abs()));

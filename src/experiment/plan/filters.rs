@@ -2,12 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use super::line_enhancer;
-use super::motion::rate_deg_per_h_max;
-use super::pipeline_check;
-use super::pipeline_settings::PipelineSettings;
-use super::plan::Checker;
-use super::textbook::cutoff_complaint;
+use super::checker::Checker;
+use crate::experiment::line_enhancer;
+use crate::experiment::pipeline_check;
+use crate::experiment::pipeline_settings::PipelineSettings;
+use crate::experiment::run::rate_deg_per_h_max;
+use crate::experiment::textbook::cutoff_complaint;
 use crate::filters::{
     constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
 };
@@ -20,7 +20,7 @@ const PEAK_SIGMAS: f64 = 4.0;
 
 impl Checker<'_> {
     /// Refuses filters that cannot be or cannot keep up, and warns of those that will not do well.
-    pub(super) fn filters(&mut self, facts: &GyroFacts) {
+    pub(crate) fn filters(&mut self, facts: &GyroFacts) {
         let resolved = self.resolved;
         let rate_max = rate_deg_per_h_max(&resolved.scenario);
         let peak = rate_max + PEAK_SIGMAS * self.noise_std_deg_per_h(facts);

@@ -1,12 +1,11 @@
 //! Metrics that gates, published figures and tables ask for: their names, and whether a record can
 //! ever have them.
 
-use super::assembly_motion;
-use super::campaign;
-use super::motion::motion;
-use super::pipeline_check;
-use super::plan::Checker;
-use super::published_check::wrong_unit;
+use super::checker::Checker;
+use super::published::wrong_unit;
+use crate::experiment::campaign;
+use crate::experiment::pipeline_check;
+use crate::experiment::run::{assembly_motion, motion};
 use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{self, MetricKey};
 use crate::scenario::{ComparisonColumn, Scenario};
@@ -22,7 +21,7 @@ struct Requested<'a> {
 
 impl Checker<'_> {
     /// Refuses metrics without a channel, and names that are no metrics, in tables as well.
-    pub(super) fn names(&mut self) {
+    pub(crate) fn names(&mut self) {
         self.columns();
         let scenario = &self.resolved.scenario;
         let gates = scenario.gates.iter().map(|gate| &gate.metric);
@@ -99,7 +98,7 @@ impl Checker<'_> {
     }
 
     /// Refuses gates and published figures that this record can never support.
-    pub(super) fn metrics(&mut self, facts: &GyroFacts) {
+    pub(crate) fn metrics(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
         let motion = motion(scenario, 1.0 / facts.output_rate_hz);
         let mut requested: Vec<Requested> = Vec::new();

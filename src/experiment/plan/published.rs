@@ -6,7 +6,7 @@ use crate::metrics::find;
 /// beside which it is shown.
 ///
 /// A metric that nobody knows is refused with its nearest known one elsewhere.
-pub(super) fn wrong_unit(index: usize, metric: &str, given: &str) -> Option<(String, String)> {
+pub(crate) fn wrong_unit(index: usize, metric: &str, given: &str) -> Option<(String, String)> {
     let known = find(metric)?;
     let is_bare = known.unit == "1" && given.is_empty();
     if given == known.unit || is_bare {

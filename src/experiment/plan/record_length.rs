@@ -1,6 +1,7 @@
 //! Whether the record of a plan holds a sample and fits into memory.
 
-use super::plan::{Checker, count};
+use super::checker::Checker;
+use crate::experiment::run::count;
 use crate::scenario::SamplesFormat;
 use crate::signal::GyroFacts;
 use crate::wording::plain;
@@ -13,7 +14,7 @@ const WORDS_MAX: f64 = 1.8e8;
 
 impl Checker<'_> {
     /// Refuses records of no sample and those too long to hold.
-    pub(super) fn record_length(&mut self, facts: &GyroFacts) {
+    pub(crate) fn record_length(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
         let rate_hz = facts.output_rate_hz;
         let (duration_s, warm_up_s) = (scenario.duration_s, scenario.warm_up_s);

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::plan::{Plan, compared, plan_suite, visit_plans};
+use super::checked::Plan;
+use super::suite::{compared, plan_suite, visit_plans};
 use crate::scenario::{ScenarioError, in_order, read_suite};
 
 /// What is worth saying about one run that has passed every check.

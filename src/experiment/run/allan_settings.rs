@@ -4,7 +4,7 @@ use crate::metrics::{AllanEstimator, AllanOptions, TauGrid};
 use crate::scenario::{AllanConfig, AllanEstimatorConfig, AveragingTimes};
 
 /// The options that the keys stand for, intervals at 95 %.
-pub(super) fn allan_options(config: AllanConfig) -> AllanOptions {
+pub(crate) fn allan_options(config: AllanConfig) -> AllanOptions {
     AllanOptions {
         estimator: match config.estimator {
             AllanEstimatorConfig::Overlapping => AllanEstimator::Overlapping,

@@ -6,7 +6,7 @@ use crate::scenario::{AssemblyConfig, CaseAxis, MotionConfig, Scenario, Turntabl
 use crate::units::{EARTH_RATE_RAD_PER_S, arcsec_to_rad};
 
 /// Index of a case axis.
-pub(super) fn axis_index(axis: CaseAxis) -> usize {
+pub(crate) fn axis_index(axis: CaseAxis) -> usize {
     match axis {
         CaseAxis::X => 0,
         CaseAxis::Y => 1,
@@ -37,7 +37,7 @@ fn indices_along(table: &TurntableConfig) -> Vec<usize> {
 ///
 /// A case axis across the table axis sees at most the whole Earth rate, which the table turns past
 /// it, and `sin mu + k sin w` of the command under misalignment `mu` and wobble `w` of harmonic k.
-pub(super) fn hardest(
+pub(crate) fn hardest(
     table: &TurntableConfig,
     assembly: &AssemblyConfig,
     command: &MotionExtremes,
@@ -83,7 +83,7 @@ pub(super) fn hardest(
 /// Why a channel can never have a metric because its gyro stands across the table axis.
 ///
 /// What raw compares with the true rate is of the turned axis too; filters compare it with raw.
-pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<&'static str> {
+pub(crate) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<&'static str> {
     scenario.gyro.assembly.as_ref()?;
     let along = scenario.axis_prefixes()[index_along(&scenario.turntable)];
     let is_concerned = key.is_of_turned_axis
@@ -93,7 +93,7 @@ pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Opti
 }
 
 /// Takes from a channel across the table axis what it can never have.
-pub(super) fn drop_lacking(scenario: &Scenario, channel: &str, metrics: &mut ChannelMetrics) {
+pub(crate) fn drop_lacking(scenario: &Scenario, channel: &str, metrics: &mut ChannelMetrics) {
     for key in known_metrics() {
         if let Some(reason) = lacks(scenario, channel, key) {
             metrics.withdraw(key, reason);

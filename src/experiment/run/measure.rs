@@ -5,24 +5,25 @@ use rayon::prelude::*;
 
 use super::allan_settings::allan_options;
 use super::assembly_motion::drop_lacking;
-use super::campaign;
-use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use super::motion::motion;
-use super::pipeline_metrics;
-use super::plan::Plan;
 use super::progress::{Progress, Unfinished, unless_stopped};
-use super::simulate::{GyroRecord, RecordLength, Simulation};
+use super::records::{RecordLength, stamp_s};
+use super::simulate::{GyroRecord, Simulation};
+use crate::experiment::campaign;
+use crate::experiment::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
+use crate::experiment::pipeline_metrics;
+use crate::experiment::plan::Plan;
 use crate::filters::Divergence;
 use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Record, Settings, measure,
 };
 
 /// Channels of one repeat with their metrics.
-pub(super) type Channels = Vec<(String, ChannelMetrics)>;
+pub(crate) type Channels = Vec<(String, ChannelMetrics)>;
 
 /// Measures every channel of a repeat, in the order of the report; the listener can stop it between
 /// two channels.
-pub(super) fn measure_repeat(
+pub(crate) fn measure_repeat(
     plan: &Plan,
     simulation: &Simulation,
     length: RecordLength,
@@ -75,20 +76,20 @@ pub(super) fn measure_repeat(
 }
 
 /// The measured part of one gyro's record and how to measure it.
-pub(super) struct Cut<'a> {
-    pub(super) record: &'a GyroRecord,
-    pub(super) encoder_rad: Option<&'a [f64]>,
-    pub(super) length: RecordLength,
-    pub(super) sample_period_s: f64,
-    pub(super) settings: &'a Settings,
+pub(crate) struct Cut<'a> {
+    pub(crate) record: &'a GyroRecord,
+    pub(crate) encoder_rad: Option<&'a [f64]>,
+    pub(crate) length: RecordLength,
+    pub(crate) sample_period_s: f64,
+    pub(crate) settings: &'a Settings,
 }
 
 impl Cut<'_> {
-    pub(super) fn measure_raw(&self) -> ChannelMetrics {
+    pub(crate) fn measure_raw(&self) -> ChannelMetrics {
         self.measure_unfiltered(&self.record.raw_deg_per_h)
     }
 
-    pub(super) fn measure_compensated(&self) -> ChannelMetrics {
+    pub(crate) fn measure_compensated(&self) -> ChannelMetrics {
         self.measure_unfiltered(self.record.filter_input_deg_per_h())
     }
 
@@ -123,7 +124,7 @@ impl Cut<'_> {
         measure(&record, self.settings, filter)
     }
 
-    pub(super) fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
+    pub(crate) fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
         let mut metrics = match &filter.words {
             Ok(words) => {
                 let facts = filter_facts(filter, words);
@@ -169,14 +170,4 @@ fn failed(kind: &str, sample: u64, message: String, sample_period_s: f64) -> Cha
         message,
     });
     channel
-}
-
-/// Stamp of sample `index`, s from the start of the warm-up.
-pub(super) fn stamp_s(index: u64, sample_period_s: f64) -> f64 {
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "sample counts are far below 2^53"
-    )]
-    let ordinal = (index + 1) as f64;
-    ordinal * sample_period_s
 }

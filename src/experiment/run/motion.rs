@@ -14,7 +14,7 @@ use crate::turntable::{
 use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 
 /// Motion as the metrics see it; a staircase's last step counts from the start of the record.
-pub(super) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
+pub(crate) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
     match scenario.measured_motion() {
         MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
         MotionConfig::Swing(swing) => {
@@ -89,7 +89,7 @@ fn index(count: u64) -> usize {
 }
 
 /// Largest rate that motion and injected signal put on the input axis, of an assembly on any, deg/h.
-pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
+pub(crate) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
     if scenario.gyro.assembly.is_some() || scenario.gyro.injection.is_some() {
         return rad_per_s_to_deg_per_h(motion_extremes(scenario).rate_rad_per_s);
     }
@@ -100,7 +100,7 @@ pub(super) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
 }
 
 /// The hardest motion on the input axis, of an assembly on any; the loop starts from zero rate.
-pub(super) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
+pub(crate) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
     let command = command_extremes_of(scenario);
     let axis = input_axis_bounds(&scenario.turntable);
     let commanded = command.rate_rad_per_s;

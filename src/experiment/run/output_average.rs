@@ -1,11 +1,11 @@
 //! Output samples that are means of several rate words.
 
-use super::simulate::count;
+use super::records::count;
 use crate::scenario::Scenario;
 
 /// Mean of the next `count` words; one word is itself, to the bit.
 #[inline]
-pub(super) fn mean(count: usize, mut next_word: impl FnMut() -> f64) -> f64 {
+pub(crate) fn mean(count: usize, mut next_word: impl FnMut() -> f64) -> f64 {
     let first = next_word();
     if count == 1 {
         return first;
@@ -14,13 +14,13 @@ pub(super) fn mean(count: usize, mut next_word: impl FnMut() -> f64) -> f64 {
     for _ in 1..count {
         sum += next_word();
     }
-    sum / super::simulate::count(count)
+    sum / super::records::count(count)
 }
 
 /// Warm-up as the table counts it, s: its record begins with the first measured output sample.
 ///
 /// Half a word less than whole words, so that the table's rounding up to whole words cannot go astray.
-pub(super) fn table_warm_up_s(
+pub(crate) fn table_warm_up_s(
     scenario: &Scenario,
     warm_up_samples: usize,
     word_period_s: f64,

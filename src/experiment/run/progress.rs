@@ -18,7 +18,7 @@ impl Progress for () {}
 
 /// Why a run has no result.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(super) enum Unfinished {
+pub(crate) enum Unfinished {
     /// The listener wants the run to stop.
     #[error("stopped before its end")]
     Stopped,
@@ -37,7 +37,7 @@ impl From<GyroError> for Unfinished {
 ///
 /// # Errors
 /// [`Unfinished::Stopped`] once the listener wants the run to stop.
-pub(super) fn unless_stopped(progress: &dyn Progress) -> Result<(), Unfinished> {
+pub(crate) fn unless_stopped(progress: &dyn Progress) -> Result<(), Unfinished> {
     if progress.should_stop() {
         Err(Unfinished::Stopped)
     } else {

@@ -3,8 +3,8 @@
 //! A filter that learns from its input may pass a fast rate and attenuate a slow one. Every twin
 //! runs on the words of the filter plus a constant rate, present from the first sample on.
 
-use super::channel_filter::Arithmetic;
-use super::simulate::RecordLength;
+use super::records::RecordLength;
+use crate::experiment::channel_filter::Arithmetic;
 use crate::metrics::RateGain;
 use crate::units::deg_per_s_to_deg_per_h;
 
@@ -25,7 +25,7 @@ struct RateTwin {
 }
 
 /// The twins of one filter.
-pub(super) struct RateTwins {
+pub(crate) struct RateTwins {
     twins: Vec<RateTwin>,
     length: RecordLength,
     counts: [u32; BLOCKS],
@@ -37,7 +37,7 @@ pub(super) struct RateTwins {
 
 impl RateTwins {
     /// A twin for each rate, made by `filter`.
-    pub(super) fn new(length: RecordLength, filter: impl Fn() -> Arithmetic) -> Self {
+    pub(crate) fn new(length: RecordLength, filter: impl Fn() -> Arithmetic) -> Self {
         let twins = RATES_DEG_PER_S.iter().map(|&rate_deg_per_s| RateTwin {
             rate_deg_per_s,
             filter: filter(),
@@ -55,7 +55,7 @@ impl RateTwins {
 
     /// Runs every twin on a word of raw, deg/h, of which the filter has made `output_deg_per_h`. A
     /// twin that fails is left out from then on.
-    pub(super) fn step(&mut self, word_deg_per_h: f64, output_deg_per_h: f64) {
+    pub(crate) fn step(&mut self, word_deg_per_h: f64, output_deg_per_h: f64) {
         let measured = self.taken.checked_sub(self.length.warm_up);
         let block = measured.map(|index| (index * BLOCKS / self.length.measured).min(BLOCKS - 1));
         self.taken += 1;
@@ -77,7 +77,7 @@ impl RateTwins {
     }
 
     /// What every twin that is left makes of its rate, block by block.
-    pub(super) fn finish(&self) -> Vec<RateGain> {
+    pub(crate) fn finish(&self) -> Vec<RateGain> {
         let blocks: Vec<usize> = (0..BLOCKS)
             .filter(|block| self.counts[*block] > 0)
             .collect();

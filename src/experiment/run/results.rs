@@ -2,41 +2,42 @@
 
 use rayon::prelude::*;
 
-use super::campaign;
-use super::compensation::Parameters;
-use super::measurement::{Channels, measure_repeat};
-use super::pipeline_metrics;
-use super::plan::Plan;
+use super::measure::{Channels, measure_repeat};
 use super::progress::{Progress, Unfinished};
-use super::simulate::{Faults, RecordLength, Simulation, count, simulate};
+use super::records::{RecordLength, count};
+use super::simulate::{Faults, Simulation, simulate};
 use super::theory::theory;
+use crate::experiment::campaign;
+use crate::experiment::campaign::Parameters;
+use crate::experiment::pipeline_metrics;
+use crate::experiment::plan::Plan;
 use crate::gate::{Verdict, judge};
 use crate::metrics::{ChannelMetrics, aggregate};
 use crate::signal::{CalibrationSheet, CompensationSheet, TheoryCurve};
 
 /// What a run comes to.
-pub(super) struct Results {
+pub(crate) struct Results {
     /// Records of the first repeat.
-    pub(super) simulation: Simulation,
+    pub(crate) simulation: Simulation,
     /// Metrics of all repeats by channel, `raw` first.
-    pub(super) channels: Channels,
+    pub(crate) channels: Channels,
     /// Judged gates, in the order of the file.
-    pub(super) verdicts: Vec<Verdict>,
+    pub(crate) verdicts: Vec<Verdict>,
     /// What the reader of the results must know.
-    pub(super) notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
     /// What came of a calibration campaign.
-    pub(super) calibration: Option<CalibrationSheet>,
+    pub(crate) calibration: Option<CalibrationSheet>,
     /// What was taken out of the outputs.
-    pub(super) compensation: Option<CompensationSheet>,
+    pub(crate) compensation: Option<CompensationSheet>,
     /// Lines of theory beside the measured points.
-    pub(super) theory: Vec<TheoryCurve>,
+    pub(crate) theory: Vec<TheoryCurve>,
 }
 
 /// Runs every repeat of `plan`, measures and judges.
 ///
 /// # Errors
 /// Why it cannot be run to its end, or that the listener has stopped it.
-pub(super) fn run_plan(plan: &Plan, progress: &dyn Progress) -> Result<Results, Unfinished> {
+pub(crate) fn run_plan(plan: &Plan, progress: &dyn Progress) -> Result<Results, Unfinished> {
     let resolved = plan.resolved();
     let scenario = &resolved.scenario;
     let theory = theory(scenario)?;

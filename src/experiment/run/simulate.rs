@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::channel_filter::{ChannelFilter, FinishedFilter, Restarts};
-use super::compensation::{Compensator, Parameters};
 use super::output_average::{mean, table_warm_up_s};
 use super::progress::{Progress, Unfinished, unless_stopped};
+use super::records::{RecordLength, count};
+use crate::experiment::campaign::{Compensator, Parameters};
+use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter, Restarts};
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
 use crate::scenario::{FilterKind, FilterState, Scenario, Stairs};
@@ -15,62 +16,32 @@ use crate::units::rad_per_s_to_deg_per_h;
 /// Samples of one block: long against the cost of handing it over, short against the caches.
 const BLOCK_SAMPLES: usize = 1 << 14;
 
-/// How many samples the warm-up and the measured record hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct RecordLength {
-    /// Samples before the record.
-    pub(super) warm_up: usize,
-    /// Samples of the record.
-    pub(super) measured: usize,
-}
-
-impl RecordLength {
-    /// `ceil(warm_up_s f)` and `floor(duration_s f)` samples.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the plan bounds both counts and the reader refuses negative times"
-    )]
-    pub(super) fn new(scenario: &Scenario, sample_period_s: f64) -> Self {
-        let rate_hz = 1.0 / sample_period_s;
-        Self {
-            warm_up: first_measured_index(scenario.warm_up_s, sample_period_s) as usize,
-            measured: (scenario.duration_s * rate_hz).floor() as usize,
-        }
-    }
-
-    /// All samples.
-    pub(super) fn total(self) -> usize {
-        self.warm_up + self.measured
-    }
-}
-
 /// The records of one repeat; index 0 is the first sample of the warm-up.
-pub(super) struct Simulation {
+pub(crate) struct Simulation {
     /// One gyro, or those of the case axes x, y, z.
-    pub(super) gyros: Vec<GyroRecord>,
+    pub(crate) gyros: Vec<GyroRecord>,
     /// The filters in the order of the file, each on every gyro in turn, with the index of the gyro.
-    pub(super) filters: Vec<(usize, FinishedFilter)>,
+    pub(in crate::experiment) filters: Vec<(usize, FinishedFilter)>,
     /// What the table's encoder shows at each stamp, rad; none if the table has none.
-    pub(super) encoder_rad: Option<Vec<f64>>,
+    pub(crate) encoder_rad: Option<Vec<f64>>,
     /// Half modulation periods in which a gyro did not work as meant.
-    pub(super) faults: Faults,
+    pub(crate) faults: Faults,
 }
 
 /// What one gyro was given and what it made of it.
-pub(super) struct GyroRecord {
+pub(crate) struct GyroRecord {
     /// Inertial rate of the input axis, or of the case axis of an assembly, at each stamp, with the
     /// rate that an injected signal equals, deg/h; empty for a recorded log.
-    pub(super) truth_deg_per_h: Vec<f64>,
+    pub(crate) truth_deg_per_h: Vec<f64>,
     /// The gyro's rate words, deg/h.
-    pub(super) raw_deg_per_h: Vec<f64>,
+    pub(crate) raw_deg_per_h: Vec<f64>,
     /// The same with the constant errors of the assembly taken out, where that is done, deg/h.
-    pub(super) compensated_deg_per_h: Option<Vec<f64>>,
+    pub(crate) compensated_deg_per_h: Option<Vec<f64>>,
 }
 
 impl GyroRecord {
     /// What the filters are given and compared with, deg/h.
-    pub(super) fn filter_input_deg_per_h(&self) -> &[f64] {
+    pub(crate) fn filter_input_deg_per_h(&self) -> &[f64] {
         let compensated = self.compensated_deg_per_h.as_ref();
         compensated.unwrap_or(&self.raw_deg_per_h)
     }
@@ -78,18 +49,18 @@ impl GyroRecord {
 
 /// Half modulation periods in which the gyro did not work as meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Faults {
+pub(crate) struct Faults {
     /// The converter was driven beyond its range.
-    pub(super) saturated: u64,
+    pub(crate) saturated: u64,
     /// The phase error was beyond +-pi/2, where the loop pushes the wrong way.
-    pub(super) unlocked: u64,
+    pub(crate) unlocked: u64,
     /// The loop's limits and the fringe it locked onto.
-    pub(super) limits: LoopFaults,
+    pub(crate) limits: LoopFaults,
 }
 
 impl Faults {
     /// Sum over repeats.
-    pub(super) fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         Self {
             saturated: self.saturated + other.saturated,
             unlocked: self.unlocked + other.unlocked,
@@ -98,7 +69,7 @@ impl Faults {
     }
 
     /// What the reader of a report must know.
-    pub(super) fn notes(self) -> Vec<String> {
+    pub(crate) fn notes(self) -> Vec<String> {
         let sentences = [
             (
                 self.saturated,
@@ -122,7 +93,7 @@ impl Faults {
 /// The gyros make the next block while the filters work on the one before, so that two threads
 /// share even a single run; every word depends on the words before it alone. The listener can stop it
 /// between two blocks.
-pub(super) fn simulate(
+pub(crate) fn simulate(
     scenario: &Scenario,
     length: RecordLength,
     repeat: u32,
@@ -245,7 +216,7 @@ fn restarts(scenario: &Scenario, kind: &FilterKind, sample_period_s: f64) -> Opt
 }
 
 /// The first rate words of the first repeat, deg/h, warm-up included; of an assembly those of x.
-pub(super) fn first_words(scenario: &Scenario, samples: usize) -> Result<Vec<f64>, GyroError> {
+pub(crate) fn first_words(scenario: &Scenario, samples: usize) -> Result<Vec<f64>, GyroError> {
     let length = RecordLength {
         warm_up: 0,
         measured: samples,
@@ -387,13 +358,4 @@ impl Source {
             }
         }
     }
-}
-
-/// A number of samples as a number.
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "sample counts are far below 2^53"
-)]
-pub(super) fn count(samples: usize) -> f64 {
-    samples as f64
 }

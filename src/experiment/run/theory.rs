@@ -16,7 +16,7 @@ const ERROR_MIN: f64 = 1e-9;
 const NAME: &str = "raw, theory";
 
 /// The lines of theory for the motion of a scenario; none where there is no closed form.
-pub(super) fn theory(scenario: &Scenario) -> Result<Vec<TheoryCurve>, GyroError> {
+pub(crate) fn theory(scenario: &Scenario) -> Result<Vec<TheoryCurve>, GyroError> {
     match scenario.measured_motion() {
         MotionConfig::MultiSine(multi_sine) => {
             let tones = &multi_sine.frequencies_hz;

@@ -1,19 +1,31 @@
 //! One run of a suite: its result or an earlier one, its files and its entry in the ledger.
 
-use super::build::VERSION;
-use super::plan::Plan;
-use super::progress::Unfinished;
-use super::results::{Results, run_plan};
+use super::files;
+use super::ledger::Ledger;
+use super::options::Resume;
+use super::outcome::{Observer, SuiteError};
+use super::output::SuiteOutput;
 use super::resume::take_over;
-use super::run_files;
-use super::suite::{Observer, Suite, SuiteError};
 use crate::comparison::Layout;
+use crate::experiment::build::VERSION;
+use crate::experiment::plan::Plan;
+use crate::experiment::run::{Results, Unfinished, run_plan};
 use crate::report::{RunOutcome, RunReport};
+
+/// What the runs of a suite share.
+pub(crate) struct Suite<'a> {
+    /// Where their folders go.
+    pub(crate) output: &'a SuiteOutput,
+    /// Whose results are taken over.
+    pub(crate) resume: Resume,
+    /// Which of them have ended.
+    pub(crate) ledger: &'a Ledger,
+}
 
 /// Runs `plan`, judges it, puts its folder in place and enters it in the ledger, or takes over the
 /// result that stands there; none if it was stopped before that. A run that fails is left to the
 /// caller to enter.
-pub(super) fn run_scenario(
+pub(crate) fn run_scenario(
     plan: &Plan,
     index: usize,
     layout: &Layout,
@@ -61,7 +73,7 @@ fn report<'a>(plan: &'a Plan, results: &'a Results) -> RunReport<'a> {
 
 /// Draws and writes a result, puts its folder in place and enters it in the ledger; none if the suite
 /// has come to its end before that.
-pub(super) fn enter_result(
+pub(crate) fn enter_result(
     (plan, index): (&Plan, usize),
     results: &Results,
     layout: &Layout,
@@ -70,13 +82,13 @@ pub(super) fn enter_result(
 ) -> Result<Option<RunOutcome>, SuiteError> {
     let output = suite.output;
     let report = report(plan, results);
-    let pictures = run_files::draw(plan, &report, &results.simulation);
+    let pictures = files::draw(plan, &report, &results.simulation);
     let notes = [report.notes, &pictures.notes].concat();
     let report = &RunReport {
         notes: &notes,
         ..report
     };
-    let written = run_files::write_folder(plan, report, &results.simulation, &pictures, output)?;
+    let written = files::write_folder(plan, report, &results.simulation, &pictures, output)?;
     let outcome = RunOutcome::from_report(report, &plan.resolved().folder());
     let pictures = pictures.drawn.into_iter().map(|(name, _)| name).collect();
     let outcome = RunOutcome {

@@ -1,9 +1,8 @@
 //! The files of one run.
 
-use super::measurement::stamp_s;
-use super::plan::Plan;
-use super::simulate::{RecordLength, Simulation};
-use super::suite_output::SuiteOutput;
+use super::output::SuiteOutput;
+use crate::experiment::plan::Plan;
+use crate::experiment::run::{RecordLength, Simulation, stamp_s};
 use crate::gyro::temperature_record;
 use crate::report::{self, CalibrationProvenance, Pictures, RunReport};
 use crate::scenario::SamplesFormat;
@@ -15,7 +14,7 @@ use crate::units::rad_to_arcsec;
 const CALIBRATION_SVG: &str = "calibration.svg";
 
 /// The pictures of one run, and what to say of those that are left out.
-pub(super) fn draw(plan: &Plan, report: &RunReport, simulation: &Simulation) -> Pictures {
+pub(crate) fn draw(plan: &Plan, report: &RunReport, simulation: &Simulation) -> Pictures {
     let mut pictures = Pictures::default();
     let names = Names::of(report);
     for signals in &signals(plan, simulation, &names) {
@@ -29,7 +28,7 @@ pub(super) fn draw(plan: &Plan, report: &RunReport, simulation: &Simulation) -> 
 }
 
 /// Writes everything of one run beside its place, to be swapped in whole.
-pub(super) fn write_folder<'a>(
+pub(crate) fn write_folder<'a>(
     plan: &Plan,
     report: &RunReport,
     simulation: &Simulation,

@@ -5,9 +5,9 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
 use std::time::{Duration, Instant};
 
-use super::plan::Plan;
-use super::progress::Progress;
-use super::suite::SuiteError;
+use super::outcome::SuiteError;
+use crate::experiment::plan::Plan;
+use crate::experiment::run::Progress;
 use crate::report::RunOutcome;
 use crate::store::StoreError;
 
@@ -23,7 +23,7 @@ const TICK: Duration = Duration::from_millis(20);
 /// A run swaps its folder in and is entered in one step ([`Ledger::commit`]), and the ledger closes
 /// between such steps: whoever reads the closed ledger knows every folder that stands, and no folder
 /// is being swapped while the program ends.
-pub(super) struct Ledger {
+pub(crate) struct Ledger {
     entries: Mutex<Entries>,
     /// Held for reading while a folder is swapped in and entered, for writing to close.
     is_closed: RwLock<bool>,
@@ -40,7 +40,7 @@ struct Entries {
 
 impl Ledger {
     /// The empty ledger of `runs` runs.
-    pub(super) fn new(runs: usize) -> Self {
+    pub(crate) fn new(runs: usize) -> Self {
         let entries = Entries {
             outcomes: vec![None; runs],
             failure: None,
@@ -58,7 +58,7 @@ impl Ledger {
     ///
     /// # Errors
     /// What `swap` says; nothing is entered then.
-    pub(super) fn commit(
+    pub(crate) fn commit(
         &self,
         index: usize,
         outcome: &RunOutcome,
@@ -77,13 +77,13 @@ impl Ledger {
     }
 
     /// Enters a run that has no folder to swap in; nothing is done if the ledger is closed.
-    pub(super) fn enter(&self, index: usize, outcome: &RunOutcome) {
+    pub(crate) fn enter(&self, index: usize, outcome: &RunOutcome) {
         // Without a swap there is nothing to fail.
         let _ = self.commit(index, outcome, || Ok(()));
     }
 
     /// Enters that run `index` could not write, which ends the suite.
-    pub(super) fn fail(&self, index: usize, error: SuiteError) {
+    pub(crate) fn fail(&self, index: usize, error: SuiteError) {
         self.is_stopped.store(true, Ordering::Relaxed);
         let failure = &mut self.entries().failure;
         let is_first = failure.as_ref().is_none_or(|(first, _)| index < *first);
@@ -93,17 +93,17 @@ impl Ledger {
     }
 
     /// Whether no further run is to begin.
-    pub(super) fn is_stopped(&self) -> bool {
+    pub(crate) fn is_stopped(&self) -> bool {
         self.is_stopped.load(Ordering::Relaxed)
     }
 
     /// Notes that an invariant was broken.
-    pub(super) fn note_broken(&self) {
+    pub(crate) fn note_broken(&self) {
         self.is_broken.store(true, Ordering::Relaxed);
     }
 
     /// Whether an invariant was broken.
-    pub(super) fn is_broken(&self) -> bool {
+    pub(crate) fn is_broken(&self) -> bool {
         self.is_broken.load(Ordering::Relaxed)
     }
 
@@ -112,7 +112,7 @@ impl Ledger {
     ///
     /// # Errors
     /// What the first run in the order of the plans could not write.
-    pub(super) fn close(&self, plans: &[Plan]) -> Result<Vec<RunOutcome>, SuiteError> {
+    pub(crate) fn close(&self, plans: &[Plan]) -> Result<Vec<RunOutcome>, SuiteError> {
         *self
             .is_closed
             .write()
@@ -141,7 +141,7 @@ impl Ledger {
 
 /// Waits for the end of all work, which drops the sender of `work`; false if some of it is still in
 /// the middle of a stage [`GRACE`] after the listener wanted the suite to stop.
-pub(super) fn wait(work: &Receiver<()>, progress: &dyn Progress) -> bool {
+pub(crate) fn wait(work: &Receiver<()>, progress: &dyn Progress) -> bool {
     let mut asked: Option<Instant> = None;
     while matches!(work.recv_timeout(TICK), Err(RecvTimeoutError::Timeout)) {
         if progress.should_stop() && asked.get_or_insert_with(Instant::now).elapsed() >= GRACE {

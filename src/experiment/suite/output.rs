@@ -6,10 +6,10 @@ use std::io;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-use super::build::{BUILD, VERSION};
-use super::plan::Plan;
-use super::suite::SuiteOptions;
+use super::options::SuiteOptions;
 use crate::comparison::Layout;
+use crate::experiment::build::{BUILD, VERSION};
+use crate::experiment::plan::Plan;
 use crate::report::{self, FailedRun};
 use crate::scenario::{manifest_toml, slug};
 use crate::store::{
@@ -17,11 +17,11 @@ use crate::store::{
 };
 
 /// Files of every suite.
-pub(super) const SUMMARY: &str = "summary.json";
-pub(super) const JUNIT: &str = "junit.xml";
+pub(crate) const SUMMARY: &str = "summary.json";
+pub(crate) const JUNIT: &str = "junit.xml";
 
 /// The output folder of a suite that runs.
-pub(super) struct SuiteOutput {
+pub(crate) struct SuiteOutput {
     folder: OutputFolder,
     scenarios: Vec<Scenario>,
     /// Folders of runs that this suite has put in place or taken over.
@@ -73,7 +73,7 @@ impl SuiteOutput {
     /// # Errors
     /// A folder or file in the way that is not the tool's; another process that writes there; whatever
     /// the file system says.
-    pub(super) fn open(
+    pub(crate) fn open(
         plans: &[Plan],
         layout: &Layout,
         options: &SuiteOptions,
@@ -101,27 +101,27 @@ impl SuiteOutput {
     }
 
     /// What to say where nothing keeps other writers out of the folder.
-    pub(super) fn caution(&self) -> Option<&str> {
+    pub(crate) fn caution(&self) -> Option<&str> {
         self.folder.caution()
     }
 
     /// The output folder.
-    pub(super) fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.folder.path()
     }
 
     /// Takes the name of this process off the lock, before the process ends.
-    pub(super) fn sign_off(&self) {
+    pub(crate) fn sign_off(&self) {
         self.folder.sign_off();
     }
 
     /// Starts the folder of a run.
-    pub(super) fn stage(&self) -> Result<Staged<'_>, StoreError> {
+    pub(crate) fn stage(&self) -> Result<Staged<'_>, StoreError> {
         self.folder.stage()
     }
 
     /// Records what the folder of a run holds, with the run's origin, and swaps it into its place.
-    pub(super) fn put_in_place(&self, staged: Staged, plan: &Plan) -> Result<(), StoreError> {
+    pub(crate) fn put_in_place(&self, staged: Staged, plan: &Plan) -> Result<(), StoreError> {
         let manifest = manifest_toml(plan.resolved(), VERSION, BUILD);
         staged.seal(MANIFEST_FILE, &manifest)?;
         let folder = plan.resolved().folder();
@@ -131,14 +131,14 @@ impl SuiteOutput {
     }
 
     /// Notes that the folder of a run holds the result of this suite.
-    pub(super) fn note_placed(&self, folder: String) {
+    pub(crate) fn note_placed(&self, folder: String) {
         let mut placed = self.placed.lock().unwrap_or_else(PoisonError::into_inner);
         placed.insert(folder);
     }
 
     /// Puts a folder that says so in the place of a run that could not finish; no earlier result of the
     /// scenario passes for it.
-    pub(super) fn record_failure(&self, plan: &Plan, reason: &str) -> Result<(), StoreError> {
+    pub(crate) fn record_failure(&self, plan: &Plan, reason: &str) -> Result<(), StoreError> {
         let resolved = plan.resolved();
         let summary = report::failed_run_json(&FailedRun {
             tool_version: VERSION,
@@ -154,7 +154,7 @@ impl SuiteOutput {
 
     /// Removes what earlier scenarios of these names left behind, each in one step, where every run of
     /// the scenario stands in its place; names what stays.
-    pub(super) fn settle(&self) -> Result<Vec<String>, StoreError> {
+    pub(crate) fn settle(&self) -> Result<Vec<String>, StoreError> {
         let placed = self.placed.lock().unwrap_or_else(PoisonError::into_inner);
         let mut stale = Vec::new();
         for scenario in &self.scenarios {
@@ -187,7 +187,7 @@ impl SuiteOutput {
     }
 
     /// Writes the suite's own files, as one.
-    pub(super) fn publish(&self, files: &[(String, String)]) -> Result<(), StoreError> {
+    pub(crate) fn publish(&self, files: &[(String, String)]) -> Result<(), StoreError> {
         let staged = self.stage()?;
         for (name, text) in files {
             staged.write(name, text.as_bytes())?;

@@ -3,34 +3,23 @@
 use std::fs;
 use std::path::Path;
 
-use super::build::{BUILD, VERSION, names_one_program};
-use super::plan::Plan;
-use super::suite::Observer;
-use super::suite_output::{SUMMARY, SuiteOutput};
+use super::options::Resume;
+use super::outcome::Observer;
+use super::output::{SUMMARY, SuiteOutput};
 use crate::comparison::Layout;
+use crate::experiment::build::{BUILD, VERSION, names_one_program};
+use crate::experiment::plan::Plan;
 use crate::gate::judge;
 use crate::report::{RestoredRun, RunOutcome, RunReport, run_summary_json};
 use crate::scenario::manifest_toml;
 use crate::store::{Head, MANIFEST_FILE, Ownership, Record, inspect};
-
-/// Which results of an earlier suite are taken over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Resume {
-    /// None: everything runs.
-    Never,
-    /// Those that this very build wrote, as far as its name tells: none if the build is unknown or was
-    /// made of changed sources.
-    SameBuild,
-    /// Those of any build of this version.
-    AnyBuild,
-}
 
 /// The outcome of a run whose folder holds its undamaged result; none if it is to be run.
 ///
 /// The same resolved scenario, seed, inputs, gates and version show in equal manifests, and that
 /// everything could be read back in an equal summary; so the end result is that of an uninterrupted
 /// suite to the byte, or the run is run again.
-pub(super) fn take_over(
+pub(crate) fn take_over(
     plan: &Plan,
     index: usize,
     layout: &Layout,

@@ -1,111 +1,21 @@
-//! Many runs at once: the thread pool, the order of results and the files of the whole suite.
+//! Many runs at once: the thread pool and the order of work.
 
 use std::any::Any;
-use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
 use std::sync::mpsc::channel;
 
 use rayon::prelude::*;
 
-use super::build::VERSION;
-use super::in_memory::Run;
+use super::conclude::{conclude, layout};
+use super::entry::{Suite, run_scenario};
 use super::ledger::{Ledger, wait};
-use super::plan::Plan;
-use super::progress::Progress;
-use super::resume::Resume;
-use super::run::{enter_result, run_scenario};
-use super::suite_output::{JUNIT, SUMMARY, SuiteOutput};
+use super::options::SuiteOptions;
+use super::outcome::{Observer, SuiteError, SuiteOutcome};
+use super::output::SuiteOutput;
 use super::threads;
-use crate::comparison::{ComparedRun, Comparison, Layout};
-use crate::report::{self, RunOutcome, RunReport};
-use crate::scenario::Resolved;
-use crate::store::StoreError;
-
-/// How a suite is run.
-#[derive(Clone, Debug)]
-pub struct SuiteOptions {
-    /// Folder that receives the results; made if absent.
-    pub output: PathBuf,
-    /// Threads, as [`thread_count`](super::thread_count) takes them.
-    pub threads: usize,
-    /// Whether to replace files and folders in `output` that are the user's.
-    pub force: bool,
-    /// Which results of an earlier suite to take over.
-    pub resume: Resume,
-}
-
-impl SuiteOptions {
-    /// Runs everything into `output`, on a thread for each core, and replaces nothing of the user's.
-    #[must_use]
-    pub fn new(output: PathBuf) -> Self {
-        Self {
-            output,
-            threads: 0,
-            force: false,
-            resume: Resume::Never,
-        }
-    }
-}
-
-/// What the caller hears of the runs of a suite besides their progress; called from many threads.
-pub trait Observer: Progress {
-    /// Run `index` of the plan is done and its files stand in their place.
-    fn finished(&self, _index: usize, _report: &RunReport) {}
-    /// Run `index` of the plan could not finish; a folder that says so stands in its place.
-    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
-    /// Hears how a suite ended that was to stop while runs are still in the middle of a long stage.
-    /// Its files stand; these runs will write nothing more. The caller may end the program here:
-    /// [`run_suite`] returns the same only once they have come to the end of their stage.
-    fn abandoned(&self, _result: &Result<SuiteOutcome, SuiteError>) {}
-    /// Run `index` of the plan is not run again: its folder holds the result. It counts as finished.
-    fn taken_over(&self, index: usize, report: &RunReport) {
-        self.finished(index, report);
-    }
-    /// Something about the suite is worth saying.
-    fn caution(&self, _message: &str) {}
-}
-
-impl Observer for () {}
-
-/// What came of a suite.
-#[derive(Clone, Debug)]
-pub struct SuiteOutcome {
-    /// Runs in the order of the plans.
-    pub runs: Vec<RunOutcome>,
-    /// What they say across scenarios.
-    pub comparison: Comparison,
-    /// Whether a run was stopped by a broken invariant, which is a defect of the program.
-    pub broken: bool,
-    /// Threads that it ran on: fewer than asked for where the system had no more.
-    pub threads: usize,
-    /// Folders that hold results of earlier scenarios of these names.
-    pub stale: Vec<String>,
-}
-
-/// Why a suite stopped before its end.
-#[derive(Debug, thiserror::Error)]
-pub enum SuiteError {
-    /// The output folder is in use or holds something of the user's, or a file could not be written.
-    #[error(transparent)]
-    Store(#[from] StoreError),
-    /// The system gave not one thread.
-    #[error("cannot start a thread: {source}")]
-    Threads {
-        /// What the system said.
-        source: io::Error,
-    },
-}
-
-/// What the runs of a suite share.
-pub(super) struct Suite<'a> {
-    /// Where their folders go.
-    pub(super) output: &'a SuiteOutput,
-    /// Whose results are taken over.
-    pub(super) resume: Resume,
-    /// Which of them have ended.
-    pub(super) ledger: &'a Ledger,
-}
+use crate::comparison::Layout;
+use crate::experiment::plan::Plan;
+use crate::report::RunOutcome;
 
 /// Runs every plan and writes `options.output`.
 ///
@@ -158,26 +68,6 @@ pub fn run_suite(
     stopped.unwrap_or_else(conclude)
 }
 
-/// Writes runs that are already in memory as [`run_suite`] writes them.
-///
-/// # Errors
-/// As [`run_suite`], threads aside.
-pub fn write_runs(runs: &[Run], options: &SuiteOptions) -> Result<SuiteOutcome, SuiteError> {
-    let plans: Vec<Plan> = runs.iter().map(|run| run.plan().clone()).collect();
-    let layout = &layout(&plans);
-    let suite = &Suite {
-        output: &SuiteOutput::open(&plans, layout, options)?,
-        resume: Resume::Never,
-        ledger: &Ledger::new(plans.len()),
-    };
-    for (index, run) in runs.iter().enumerate() {
-        enter_result((&plans[index], index), &run.results, layout, suite, &())?;
-    }
-    let outcome = conclude(&plans, layout, suite)?;
-    let threads = rayon::current_num_threads();
-    Ok(SuiteOutcome { threads, ..outcome })
-}
-
 /// Runs the plans longest first, so that the last core is not left alone with the longest run.
 fn run_all(plans: &[Plan], layout: &Layout, suite: &Suite, observer: &dyn Observer) {
     let mut order: Vec<usize> = (0..plans.len()).collect();
@@ -227,56 +117,6 @@ fn enter_failure(
         Ok(false) => {}
         Err(error) => ledger.fail(index, error.into()),
     }
-}
-
-/// What the plans ask of the runs of all.
-fn layout(plans: &[Plan]) -> Layout<'_> {
-    let suite: Vec<&Resolved> = plans.iter().map(Plan::resolved).collect();
-    Layout::of(&suite)
-}
-
-/// The tables over the runs that have ended; `runs` are those of `plans`, in their order.
-fn compare(plans: &[Plan], layout: &Layout, runs: &[RunOutcome]) -> Comparison {
-    let ended = plans.iter().zip(runs).filter(|(_, run)| !run.is_not_run);
-    let suite = ended.map(|(plan, run)| ComparedRun {
-        resolved: plan.resolved(),
-        folder: &run.folder,
-        kept: &run.kept,
-        pictures: &run.pictures,
-    });
-    layout.fill(&suite.collect::<Vec<_>>())
-}
-
-/// Closes the ledger and writes the files of the suite. What breaks an invariant is left out, and
-/// the rest is written all the same.
-fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> Result<SuiteOutcome, SuiteError> {
-    let Suite { output, ledger, .. } = *suite;
-    let runs = ledger.close(plans)?;
-    let comparison = unbroken(ledger, || compare(plans, layout, &runs)).unwrap_or_default();
-    let stale = output.settle()?;
-    let tables = unbroken(ledger, || report::comparison_files(&comparison));
-    let mut files = tables.unwrap_or_default();
-    let summary = || report::suite_summary_json(VERSION, &runs, &comparison, &stale);
-    let junit = || report::junit_xml(&runs);
-    files.extend(unbroken(ledger, summary).map(|text| (SUMMARY.to_owned(), text)));
-    files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
-    output.publish(&files)?;
-    Ok(SuiteOutcome {
-        runs,
-        comparison,
-        broken: ledger.is_broken(),
-        threads: 0,
-        stale,
-    })
-}
-
-/// What `make` makes; none, and a note in the ledger, if it breaks an invariant.
-fn unbroken<T>(ledger: &Ledger, make: impl FnOnce() -> T) -> Option<T> {
-    let made = catch_unwind(AssertUnwindSafe(make)).ok();
-    if made.is_none() {
-        ledger.note_broken();
-    }
-    made
 }
 
 /// The outcome of a run that broke an invariant, with what the panic said.

@@ -37,7 +37,7 @@ fn number(text: &str) -> Option<usize> {
 ///
 /// # Errors
 /// What the system says if it gives not one.
-pub(super) fn pool(count: usize) -> io::Result<ThreadPool> {
+pub(crate) fn pool(count: usize) -> io::Result<ThreadPool> {
     let (count, place) = Crew::muster(count, start)?.places();
     let pool = ThreadPoolBuilder::new().num_threads(count);
     pool.spawn_handler(place).build().map_err(io::Error::other)
