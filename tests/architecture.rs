@@ -1,11 +1,12 @@
-//! The import table of the README as a test: who may import whom, and a few house rules.
+//! The import table of docs/architecture.md as a test: who may import whom, and a few house rules.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Module, and the modules of the crate it may import.
-pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
+const IMPORTS: &[(&str, &[&str])] = &[
     ("units", &[]),
+    ("vocabulary", &[]),
     ("wording", &[]),
     ("linear_algebra", &[]),
     ("random", &["units"]),
@@ -59,6 +60,9 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
         ],
     ),
 ];
+
+/// Modules that every other one may import.
+pub(crate) const FOR_ALL: &[&str] = &["vocabulary"];
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<_> = fs::read_dir(folder)
@@ -158,7 +162,9 @@ fn forbidden_imports(module: &str, text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for (line, import) in imported(text) {
         let known = IMPORTS.iter().any(|(name, _)| *name == import);
-        if known && import != module && !allowed.contains(&import.as_str()) {
+        let import_name = import.as_str();
+        let is_allowed = allowed.contains(&import_name) || FOR_ALL.contains(&import_name);
+        if known && import != module && !is_allowed {
             found.push((line, format!("`{module}` may not import `{import}`")));
         }
     }
@@ -212,6 +218,40 @@ fn an_import_over_several_lines_is_seen() {
         forbidden_imports("turntable", text),
         vec![(3, "`turntable` may not import `gyro`".to_owned())]
     );
+}
+
+#[test]
+fn the_architecture_page_shows_the_import_table() {
+    let page =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md"))
+            .expect("the page is readable");
+    for (module, imports) in IMPORTS {
+        let own_row = page.lines().find(|line| {
+            let first = line
+                .trim_start_matches('|')
+                .split('|')
+                .next()
+                .unwrap_or_default();
+            line.starts_with('|')
+                && first
+                    .split_whitespace()
+                    .any(|word| word == format!("`{module}`"))
+        });
+        let row = own_row.unwrap_or_else(|| panic!("the page has no row for `{module}`"));
+        let allowed = row.split('|').nth(2).unwrap_or_default();
+        if allowed.contains("downwards") || allowed.contains("all of the above") {
+            continue;
+        }
+        for import in *imports {
+            assert!(
+                allowed
+                    .replace('`', " ")
+                    .split_whitespace()
+                    .any(|word| word == *import),
+                "the page's row for `{module}` does not allow `{import}`: {row}"
+            );
+        }
+    }
 }
 
 #[test]

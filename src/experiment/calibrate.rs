@@ -2,25 +2,27 @@
 
 use std::path::Path;
 
+use super::build::VERSION;
 use super::calibration_sheet::calibration_sheet;
 use super::campaign::{calibrate_scenario, campaign};
 use super::group_findings::complaint;
 use super::plan::count;
 use super::plan::plan_suite;
-use super::suite::{Observer, VERSION};
+use super::progress::Progress;
 use crate::calibration::{
     CalibrationError, GroupDesign, GroupObservation, TableGroup, diagnose,
     horizontal_residue_deg_per_s, reference_rate,
 };
 use crate::recording::{LogError, RecordedGroup, RecordedGroups, read_groups};
 use crate::report::{CalibrateReport, CalibrationProvenance, calibration_toml, groups_csv};
-use crate::scenario::{CalibrationConfig, EstimatorKind, ScenarioError};
+use crate::scenario::{CalibrationConfig, ScenarioError};
 use crate::signal::{CalibrationGroup, CalibrationSheet};
 use crate::store::{OutputFolder, StoreError};
 use crate::units::{
     EARTH_RATE_RAD_PER_S, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, deg_to_rad,
     rad_per_s_to_deg_per_s,
 };
+use crate::vocabulary::EstimatorKind;
 
 /// Horizontal Earth rate left in a mean that is worth saying, deg/h.
 const RESIDUE_DEG_PER_H: f64 = 0.01;
@@ -176,7 +178,7 @@ pub fn calibrate_groups(
 pub fn calibrate_campaign(
     path: &Path,
     sets: &[String],
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<CalibrationTrial, Vec<CalibrateError>> {
     let plans = plan_suite(&[path.to_owned()], sets).map_err(|errors| {
         errors
@@ -201,7 +203,7 @@ pub fn calibrate_campaign(
                 .to_owned(),
         ));
     }
-    let (sheet, _) = calibrate_scenario(&resolved.scenario, 0, observer).map_err(refuse)?;
+    let (sheet, _) = calibrate_scenario(&resolved.scenario, 0, progress).map_err(refuse)?;
     Ok(CalibrationTrial {
         file: resolved.file.clone(),
         digest: resolved.digest.clone(),
@@ -230,7 +232,7 @@ fn errors_of_residuals(sheet: &CalibrationSheet) -> ([f64; 3], String) {
     } else {
         EstimatorKind::Batch
     };
-    let judged = named(plain.as_str()).or(applied);
+    let judged = named(plain.word()).or(applied);
     let errors = judged.map_or([0.0; 3], |estimate| {
         let unknowns = if estimate.bias_deg_per_h_per_k.is_some() {
             5.0
@@ -273,7 +275,7 @@ fn sheet(
             notes.push(format!(
                 "batch is applied in place of {}: the groups do not determine a temperature \
                  coefficient of the biases",
-                asked.apply.as_str()
+                asked.apply.word()
             ));
             Ok(sheet)
         }

@@ -6,9 +6,8 @@ use super::campaign_metrics::mean;
 pub(super) use super::campaign_metrics::{
     drop_lacking, estimate_channels, estimator_of, lacks, ranked, supports,
 };
+use super::progress::{Progress, Unfinished};
 use super::simulate::{RecordLength, Simulation, simulate};
-use super::stop::Unfinished;
-use super::suite::Observer;
 use crate::calibration::{
     Averaging, Calibration, CalibrationError, GroupDesign, GroupSamples, TemperatureColumns,
     check_plan, group_means, horizontal_residue_deg_per_s, whole_turns_s,
@@ -160,7 +159,7 @@ pub(super) fn check_campaign(
             let key = "calibration.apply";
             let message = format!(
                 "{key} = \"{}\" fits a coefficient of temperature: {error}",
-                scenario.calibration.apply.as_str()
+                scenario.calibration.apply.word()
             );
             return Err((key, message));
         }
@@ -364,23 +363,23 @@ pub(super) fn calibrate_simulation(
 ///
 /// # Errors
 /// In words: the table does not turn as a campaign, the gyro cannot be simulated, the groups do not
-/// calibrate, or the observer has stopped it.
+/// calibrate, or the listener has stopped it.
 pub fn calibrate_scenario(
     scenario: &Scenario,
     repeat: u32,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<(CalibrationSheet, Calibration), String> {
-    run_campaign(scenario, repeat, observer).map_err(|error| error.to_string())
+    run_campaign(scenario, repeat, progress).map_err(|error| error.to_string())
 }
 
 /// As [`calibrate_scenario`], told apart from a stop.
 pub(super) fn run_campaign(
     scenario: &Scenario,
     repeat: u32,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<(CalibrationSheet, Calibration), Unfinished> {
     let length = RecordLength::new(scenario, gyro::sample_period_s(&scenario.gyro));
-    let simulation = simulate(scenario, length, repeat, None, observer)?;
+    let simulation = simulate(scenario, length, repeat, None, progress)?;
     let found = calibrate_simulation(scenario, &simulation)
         .map_err(|error| Unfinished::Failed(error.to_string()))?;
     let lacking = "the scenario has no [turntable.calibration]";

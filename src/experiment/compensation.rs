@@ -1,21 +1,18 @@
 //! The compensation stage: from three words of an assembly to three compensated ones.
 
 use super::campaign::run_campaign;
-use super::stop::Unfinished;
-use super::suite::Observer;
+use super::progress::{Progress, Unfinished};
 use crate::calibration::{
-    Calibration, CalibrationError, Compensation, CompensationForm, ErrorParameters, Misalignment,
+    Calibration, CalibrationError, Compensation, ErrorParameters, Misalignment,
 };
 use crate::gyro::CoilThermometer;
-use crate::report::{RunOutcome, RunReport};
-use crate::scenario::{
-    CompensationConfig, CompensationParameters, CompensationRule, GyroConfig, Resolved, Scenario,
-};
+use crate::scenario::{CompensationParameters, GyroConfig, Resolved, Scenario};
 use crate::signal::CompensationSheet;
 use crate::units::{
     MICRO, arcsec_to_rad, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, rad_to_arcsec,
     ratio_to_ppm,
 };
+use crate::vocabulary::CompensationForm;
 
 /// What is taken out of the outputs, and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,10 +89,7 @@ impl Parameters {
         };
         let angles = &self.found.misalignment_rad;
         CompensationSheet {
-            form: match self.form {
-                CompensationForm::Exact => "exact",
-                CompensationForm::FirstOrder => "first-order",
-            },
+            form: self.form.word(),
             source: self.source.clone(),
             bias_deg_per_h: self.found.bias_deg_per_h(),
             scale_factor_error_ppm: self.found.scale_error.map(ratio_to_ppm),
@@ -139,7 +133,7 @@ impl CompensationPlan {
         let Some(config) = &resolved.scenario.compensation else {
             return Ok(None);
         };
-        let form = form(config);
+        let form = config.form;
         if let Some(campaign) = &resolved.campaign {
             let scenario = Box::new(campaign.scenario.clone());
             return Ok(Some(Self::Campaign { scenario, form }));
@@ -154,8 +148,8 @@ impl CompensationPlan {
     /// The parameters; a campaign is run for them, its first repeat.
     ///
     /// # Errors
-    /// Why the campaign gives none, or that the observer has stopped it.
-    pub(super) fn parameters(&self, observer: &dyn Observer) -> Result<Parameters, Unfinished> {
+    /// Why the campaign gives none, or that the listener has stopped it.
+    pub(super) fn parameters(&self, progress: &dyn Progress) -> Result<Parameters, Unfinished> {
         let (scenario, form) = match self {
             Self::Given(known) => return Ok(Parameters::clone(known)),
             Self::Campaign { scenario, form } => (scenario, *form),
@@ -163,7 +157,7 @@ impl CompensationPlan {
         let failed =
             |error: String| Unfinished::Failed(format!("campaign {}: {error}", scenario.name));
         let (sheet, calibration) =
-            run_campaign(scenario, 0, &Unseen(observer)).map_err(|error| match error {
+            run_campaign(scenario, 0, &Unseen(progress)).map_err(|error| match error {
                 Unfinished::Failed(error) => failed(error),
                 Unfinished::Stopped => Unfinished::Stopped,
             })?;
@@ -173,22 +167,11 @@ impl CompensationPlan {
 }
 
 /// Hears nothing of a campaign, whose time is no part of the run's, but stops with the run.
-struct Unseen<'a>(&'a dyn Observer);
+struct Unseen<'a>(&'a dyn Progress);
 
-impl Observer for Unseen<'_> {
-    fn advanced(&self, _simulated_s: f64) {}
-    fn finished(&self, _index: usize, _report: &RunReport) {}
-    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
+impl Progress for Unseen<'_> {
     fn should_stop(&self) -> bool {
         self.0.should_stop()
-    }
-}
-
-/// The form that a scenario asks for.
-fn form(config: &CompensationConfig) -> CompensationForm {
-    match config.form {
-        CompensationRule::Exact => CompensationForm::Exact,
-        CompensationRule::FirstOrder => CompensationForm::FirstOrder,
     }
 }
 

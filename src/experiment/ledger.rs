@@ -6,7 +6,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
 use std::time::{Duration, Instant};
 
 use super::plan::Plan;
-use super::suite::{Observer, SuiteError};
+use super::progress::Progress;
+use super::suite::SuiteError;
 use crate::report::RunOutcome;
 use crate::store::StoreError;
 
@@ -14,7 +15,7 @@ use crate::store::StoreError;
 /// end within 2 s of a signal: what is left is for the files of the suite.
 const GRACE: Duration = Duration::from_millis(600);
 
-/// Time between two looks at the observer.
+/// Time between two looks at the listener.
 const TICK: Duration = Duration::from_millis(20);
 
 /// Outcomes of the runs that have ended.
@@ -139,11 +140,11 @@ impl Ledger {
 }
 
 /// Waits for the end of all work, which drops the sender of `work`; false if some of it is still in
-/// the middle of a stage [`GRACE`] after the observer wanted the suite to stop.
-pub(super) fn wait(work: &Receiver<()>, observer: &dyn Observer) -> bool {
+/// the middle of a stage [`GRACE`] after the listener wanted the suite to stop.
+pub(super) fn wait(work: &Receiver<()>, progress: &dyn Progress) -> bool {
     let mut asked: Option<Instant> = None;
     while matches!(work.recv_timeout(TICK), Err(RecvTimeoutError::Timeout)) {
-        if observer.should_stop() && asked.get_or_insert_with(Instant::now).elapsed() >= GRACE {
+        if progress.should_stop() && asked.get_or_insert_with(Instant::now).elapsed() >= GRACE {
             return false;
         }
     }

@@ -5,13 +5,13 @@ use std::str::FromStr;
 use rayon::prelude::*;
 
 use super::allan_settings::allan_options;
+use super::build::VERSION;
 use super::channel_filter::{ChannelFilter, FinishedFilter};
 use super::log_compensation::CompensatedLog;
 use super::log_filters::LogFilters;
 use super::measurement::Cut;
 use super::pipeline_metrics;
 use super::simulate::{GyroRecord, RecordLength};
-use super::suite::VERSION;
 use crate::metrics::{ChannelMetrics, Motion, Settings, is_sample_or_longer, record_fit_tau_min_s};
 use crate::recording::{Log, csv_text};
 use crate::report::{LogReport, log_files};

@@ -10,9 +10,8 @@ use super::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use super::motion::motion;
 use super::pipeline_metrics;
 use super::plan::Plan;
+use super::progress::{Progress, Unfinished, unless_stopped};
 use super::simulate::{GyroRecord, RecordLength, Simulation};
-use super::stop::{Unfinished, unless_stopped};
-use super::suite::Observer;
 use crate::filters::Divergence;
 use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Record, Settings, measure,
@@ -21,13 +20,13 @@ use crate::metrics::{
 /// Channels of one repeat with their metrics.
 pub(super) type Channels = Vec<(String, ChannelMetrics)>;
 
-/// Measures every channel of a repeat, in the order of the report; the observer can stop it between
+/// Measures every channel of a repeat, in the order of the report; the listener can stop it between
 /// two channels.
 pub(super) fn measure_repeat(
     plan: &Plan,
     simulation: &Simulation,
     length: RecordLength,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Channels, Unfinished> {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
@@ -48,7 +47,7 @@ pub(super) fn measure_repeat(
         })
         .collect();
     let measured = |name: String, measure: &dyn Fn() -> ChannelMetrics| {
-        unless_stopped(observer)?;
+        unless_stopped(progress)?;
         Ok((name, measure()))
     };
     let (raw, filters): (Result<Channels, Unfinished>, Result<Channels, Unfinished>) = rayon::join(

@@ -11,7 +11,7 @@ use super::compensation::CompensationPlan;
 use super::motion::motion_extremes;
 use crate::gyro;
 use crate::scenario::{
-    Fidelity, Resolved, ScenarioError, UnsoundReading, in_both, in_order, read_suite,
+    Fidelity, Reading, Resolved, ScenarioError, UnsoundReading, in_both, in_order, read_suite,
 };
 use crate::signal::GyroFacts;
 
@@ -102,8 +102,19 @@ impl Plan {
 /// # Errors
 /// Every complaint about every file; then nothing may run.
 pub fn plan_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Plan>, Vec<ScenarioError>> {
+    gather_plans(&|take| read_suite(paths, sets, take))
+}
+
+/// Hands over each run that was read, sound or not; returns the complaints of the reader.
+pub(super) type Read<'a> = dyn Fn(&mut dyn FnMut(Reading)) -> Vec<ScenarioError> + 'a;
+
+/// Checks everything that `read` reads.
+///
+/// # Errors
+/// Every complaint about every run.
+pub(super) fn gather_plans(read: &Read) -> Result<Vec<Plan>, Vec<ScenarioError>> {
     let mut plans = Vec::new();
-    let errors = visit_plans(paths, sets, &mut |plan| plans.push(plan));
+    let errors = visit_plans(read, &mut |plan| plans.push(plan));
     compared(plans, errors)
 }
 
@@ -123,17 +134,13 @@ pub(super) fn compared(
     }
 }
 
-/// Reads everything under `paths` and hands over each run that passes its own checks; returns the
-/// complaints about the others.
-pub(super) fn visit_plans(
-    paths: &[PathBuf],
-    sets: &[String],
-    visit: &mut dyn FnMut(Plan),
-) -> Vec<ScenarioError> {
+/// Hands over each run that `read` reads and that passes its own checks; returns the complaints about
+/// the others.
+pub(super) fn visit_plans(read: &Read, visit: &mut dyn FnMut(Plan)) -> Vec<ScenarioError> {
     let (mut found, mut known) = (Vec::new(), BTreeSet::new());
     let mut campaigns = SoundCampaigns::default();
     let mut unsound_count = 0;
-    let mut errors = read_suite(paths, sets, &mut |reading| {
+    let mut errors = read(&mut |reading| {
         let more = match reading {
             Ok(resolved) => match plan(resolved, &mut campaigns) {
                 Ok(plan) => return visit(plan),

@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use super::build::{BUILD, names_one_program};
+use super::build::{BUILD, VERSION, names_one_program};
 use super::comparison::Layout;
 use super::plan::Plan;
-use super::suite::{Observer, VERSION};
+use super::suite::Observer;
 use super::suite_output::{SUMMARY, SuiteOutput};
 use crate::gate::judge;
 use crate::report::{RestoredRun, RunOutcome, RunReport, run_summary_json};

@@ -5,8 +5,7 @@ use rayon::prelude::*;
 use super::channel_filter::{ChannelFilter, FinishedFilter, Restarts};
 use super::compensation::{Compensator, Parameters};
 use super::output_average::{mean, table_warm_up_s};
-use super::stop::{Unfinished, unless_stopped};
-use super::suite::Observer;
+use super::progress::{Progress, Unfinished, unless_stopped};
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
 use crate::scenario::{FilterKind, FilterState, Scenario, Stairs};
@@ -121,14 +120,14 @@ impl Faults {
 /// Runs repeat `repeat` of `scenario`.
 ///
 /// The gyros make the next block while the filters work on the one before, so that two threads
-/// share even a single run; every word depends on the words before it alone. The observer can stop it
+/// share even a single run; every word depends on the words before it alone. The listener can stop it
 /// between two blocks.
 pub(super) fn simulate(
     scenario: &Scenario,
     length: RecordLength,
     repeat: u32,
     parameters: Option<&Parameters>,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Simulation, Unfinished> {
     let mut source = Source::new(scenario, length, repeat)?;
     let sample_period_s = source.sample_period_s;
@@ -145,10 +144,10 @@ pub(super) fn simulate(
         let compensated = compensator.as_mut().map(|stage| stage.take(&raw));
         (raw, compensated)
     };
-    unless_stopped(observer)?;
+    unless_stopped(progress)?;
     let (mut raw, mut compensated) = next_block();
     while !raw[0].is_empty() {
-        unless_stopped(observer)?;
+        unless_stopped(progress)?;
         let given = compensated.as_ref().unwrap_or(&raw);
         let (next, ()) = rayon::join(&mut next_block, || {
             filters
@@ -158,7 +157,7 @@ pub(super) fn simulate(
         for (gyro, record) in records.iter_mut().enumerate() {
             record.extend(&raw[gyro], compensated.as_ref().map(|words| &words[gyro]));
         }
-        observer.advanced(sample_period_s * count(raw[0].len()));
+        progress.advanced(sample_period_s * count(raw[0].len()));
         (raw, compensated) = next;
     }
     let faults = source.gyros.faults();

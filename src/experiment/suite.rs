@@ -8,18 +8,18 @@ use std::sync::mpsc::channel;
 
 use rayon::prelude::*;
 
+use super::build::VERSION;
 use super::comparison::Layout;
+use super::in_memory::Run;
 use super::ledger::{Ledger, wait};
 use super::plan::Plan;
+use super::progress::Progress;
 use super::resume::Resume;
-use super::run::run_scenario;
+use super::run::{enter_result, run_scenario};
 use super::suite_output::{JUNIT, SUMMARY, SuiteOutput};
 use super::threads;
 use crate::report::{self, Comparison, RunOutcome, RunReport};
 use crate::store::StoreError;
-
-/// Version of the program, as every result names it.
-pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// How a suite is run.
 #[derive(Clone, Debug)]
@@ -47,19 +47,12 @@ impl SuiteOptions {
     }
 }
 
-/// What the caller wants to hear and to say while a suite runs; called from many threads.
-pub trait Observer: Sync {
-    /// `simulated_s` more seconds of gyro time are done.
-    fn advanced(&self, simulated_s: f64);
+/// What the caller hears of the runs of a suite besides their progress; called from many threads.
+pub trait Observer: Progress {
     /// Run `index` of the plan is done and its files stand in their place.
-    fn finished(&self, index: usize, report: &RunReport);
+    fn finished(&self, _index: usize, _report: &RunReport) {}
     /// Run `index` of the plan could not finish; a folder that says so stands in its place.
-    fn failed(&self, index: usize, outcome: &RunOutcome);
-    /// Whether the suite is to stop. Asked between the blocks and stages of every run; what has
-    /// ended by then stays, the rest is not run.
-    fn should_stop(&self) -> bool {
-        false
-    }
+    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
     /// Hears how a suite ended that was to stop while runs are still in the middle of a long stage.
     /// Its files stand; these runs will write nothing more. The caller may end the program here:
     /// [`run_suite`] returns the same only once they have come to the end of their stage.
@@ -71,6 +64,8 @@ pub trait Observer: Sync {
     /// Something about the suite is worth saying.
     fn caution(&self, _message: &str) {}
 }
+
+impl Observer for () {}
 
 /// What came of a suite.
 #[derive(Clone, Debug)]
@@ -160,6 +155,26 @@ pub fn run_suite(
         })
     });
     stopped.unwrap_or_else(conclude)
+}
+
+/// Writes runs that are already in memory as [`run_suite`] writes them.
+///
+/// # Errors
+/// As [`run_suite`], threads aside.
+pub fn write_runs(runs: &[Run], options: &SuiteOptions) -> Result<SuiteOutcome, SuiteError> {
+    let plans: Vec<Plan> = runs.iter().map(|run| run.plan().clone()).collect();
+    let layout = &Layout::of(&plans);
+    let suite = &Suite {
+        output: &SuiteOutput::open(&plans, layout, options)?,
+        resume: Resume::Never,
+        ledger: &Ledger::new(plans.len()),
+    };
+    for (index, run) in runs.iter().enumerate() {
+        enter_result((&plans[index], index), &run.results, layout, suite, &())?;
+    }
+    let outcome = conclude(&plans, layout, suite)?;
+    let threads = rayon::current_num_threads();
+    Ok(SuiteOutcome { threads, ..outcome })
 }
 
 /// Runs the plans longest first, so that the last core is not left alone with the longest run.

@@ -6,10 +6,10 @@ use std::io;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-use super::build::BUILD;
+use super::build::{BUILD, VERSION};
 use super::comparison::Layout;
 use super::plan::Plan;
-use super::suite::{SuiteOptions, VERSION};
+use super::suite::SuiteOptions;
 use crate::report::{self, FailedRun};
 use crate::scenario::{manifest_toml, slug};
 use crate::store::{

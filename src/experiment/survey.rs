@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::plan::{Plan, compared, plan_suite, visit_plans};
-use crate::scenario::{ScenarioError, in_order};
+use crate::scenario::{ScenarioError, in_order, read_suite};
 
 /// What is worth saying about one run that has passed every check.
 #[derive(Clone, Debug)]
@@ -43,7 +43,7 @@ pub fn check_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Sound>, Vec
     let mut sound = Vec::new();
     let mut kept = Vec::new();
     let mut has_tables = false;
-    let errors = visit_plans(paths, sets, &mut |plan| {
+    let errors = visit_plans(&|take| read_suite(paths, sets, take), &mut |plan| {
         let scenario = &plan.resolved().scenario;
         has_tables |= !scenario.comparisons.is_empty() || !scenario.comparison_rows.is_empty();
         if has_tables {

@@ -5,6 +5,7 @@ pub(crate) mod records;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+pub(crate) mod generated;
 pub(crate) mod gyro_cases;
 pub(crate) mod patent_cases;
 pub(crate) mod reference_gyro;
@@ -12,6 +13,7 @@ pub(crate) mod run;
 pub(crate) mod seeded;
 pub(crate) mod stimulus;
 pub(crate) mod tables;
+pub(crate) mod transcript;
 pub(crate) mod turntable_cases;
 pub(crate) mod waveform_gyro;
 
