@@ -17,8 +17,8 @@ use crate::store::{
 };
 
 /// Files of every suite.
-pub(super) const SUMMARY: &str = "summary.json";
-pub(super) const JUNIT: &str = "junit.xml";
+pub(super) const SUMMARY: &str = report::SUITE_SUMMARY.name;
+pub(super) const JUNIT: &str = report::JUNIT.name;
 
 /// The output folder of a suite that runs.
 pub(super) struct SuiteOutput {
