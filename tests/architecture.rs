@@ -20,10 +20,19 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("calibration", &["units", "linear_algebra", "signal"]),
     ("recording", &["units", "signal", "wording"]),
     ("gate", &["metrics", "scenario"]),
+    ("comparison", &["metrics", "gate", "scenario"]),
     ("store", &[]),
     (
         "report",
-        &["units", "metrics", "gate", "scenario", "signal", "wording"],
+        &[
+            "units",
+            "metrics",
+            "gate",
+            "comparison",
+            "scenario",
+            "signal",
+            "wording",
+        ],
     ),
     (
         "experiment",
@@ -40,6 +49,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
             "calibration",
             "recording",
             "gate",
+            "comparison",
             "report",
             "store",
             "wording",

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::pipeline_settings::{PipelineSettings, with_word};
-use super::plan::Plan;
-use super::simulate::first_words;
+use crate::experiment::plan::Plan;
+use crate::experiment::run::first_words;
 use crate::fpga::FpgaError;
 use crate::fpga::export::{
     ExportSettings, IntegerCodes, stimulus_pairs, write_rtl, write_vectors, write_waveform,
