@@ -7,9 +7,8 @@
 
 use super::pipeline_filter::{HardwareFilter, HealthSummary};
 use super::pipeline_settings::{PipelineSettings, PipelineTiming};
-use super::rate_twins::RateTwins;
-use super::simulate::RecordLength;
 use super::textbook::textbook_filter;
+use crate::experiment::run::{RateTwins, RecordLength};
 use crate::filters::{Divergence, Filter, Output};
 use crate::metrics::RateGain;
 use crate::scenario::FilterKind;

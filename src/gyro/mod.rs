@@ -28,50 +28,36 @@
 //! periods, `r` = step of the ramp per `tau` (the register), `phi_m` = modulation depth.
 
 mod assembly;
-mod budget;
-mod coil;
-mod condition;
 mod controller;
-mod detection;
-mod detector;
 mod error;
-mod full_kernel;
 mod instrument;
 mod limits;
-mod limits_optics;
-mod loop_faults;
-mod loop_kernel;
 mod loop_model;
-mod modulation;
-mod modulator;
-mod noise_budget;
+mod noise;
 mod optics;
 mod parts;
-mod rate_matrices;
 mod rate_model;
-mod rate_optics;
 mod rate_word;
-mod sampler;
-mod slow_noise;
-mod source;
 mod thermal;
 mod vibration;
 
 pub use assembly::{CaseGyro, InputAxis};
-pub use budget::{budget_at, budget_sheet, power_independent_ratio};
-pub use coil::Coil;
-pub use condition::{CoilThermometer, Condition, coil_temperatures_c, temperature_record};
 pub use controller::{Controller, gain_limit};
-pub use detector::{CurrentNoise, Detector};
 pub use error::GyroError;
 pub use instrument::{Gyro, facts, sample_period_s, word_period_s, word_response};
 pub use limits::{MotionExtremes, cautions};
-pub use loop_faults::LoopFaults;
 pub use loop_model::LoopModel;
-pub use modulator::{Modulator, optimum_depth_rad};
-pub use noise_budget::NoiseBudget;
-pub use optics::{expected_mean_rate_rad_per_s, spike_share};
+pub use loop_model::faults::LoopFaults;
+pub use noise::budget::NoiseBudget;
+pub use noise::budget_sheet::{budget_at, budget_sheet, power_independent_ratio};
+pub use noise::slow_noise::SlowNoise;
+pub use noise::{
+    Densities, Density, NoiseSource, SOURCES as NOISE_SOURCES, relative_intensity_noise_per_hz,
+};
+pub use optics::coil::Coil;
+pub use optics::detector::Detector;
+pub use optics::modulator::{Modulator, optimum_depth_rad};
+pub use optics::second_order::{expected_mean_rate_rad_per_s, spike_share};
 pub use rate_model::RateModel;
-pub use slow_noise::SlowNoise;
-pub use source::relative_intensity_noise_per_hz;
+pub use thermal::condition::{CoilThermometer, Condition, coil_temperatures_c, temperature_record};
 pub use thermal::{Chamber, Network, NetworkState, Propagator, Shupe, layer_integral, layer_order};

@@ -14,6 +14,7 @@ mod clashes;
 mod comparison_config;
 mod compensation_config;
 mod compensation_source;
+mod complaints;
 mod config;
 mod cross;
 mod cross_calibration;
@@ -51,6 +52,7 @@ mod resolved;
 mod schema;
 mod script;
 mod servo_config;
+mod setting;
 mod source;
 mod stairs;
 mod stand_in;
@@ -61,22 +63,22 @@ mod template;
 mod thermal_config;
 mod tree;
 mod turntable_config;
+mod unresolved;
 mod vibration_config;
 mod weight;
 
 pub use assembly_config::AssemblyConfig;
-pub use calibration_config::{
-    CalibrationConfig, CampaignConfig, CampaignGroup, EstimatorKind, ForgettingLaw,
-};
+pub use calibration_config::{CalibrationConfig, CampaignConfig, CampaignGroup};
 pub use comparison_config::{
     AssumptionConfig, ComparisonColumn, ComparisonConfig, ComparisonKind, ComparisonRowConfig,
     FigureConfig,
 };
-pub use compensation_config::{CompensationConfig, CompensationParameters, CompensationRule};
+pub use compensation_config::{CompensationConfig, CompensationParameters};
 pub use compensation_source::load_calibration;
+pub use complaints::ScenarioErrors;
 pub use config::{
-    AllanConfig, AllanEstimatorConfig, AveragingTimes, Fidelity, FilterState, GateConfig,
-    GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig, SamplesFormat, Scenario,
+    AllanConfig, AllanEstimatorConfig, Fidelity, FilterState, GateConfig, GateDecision,
+    InconclusivePolicy, OutputConfig, PublishedConfig, SamplesFormat, Scenario,
 };
 pub(crate) use cross_comparison::slug;
 pub use defaults::{reference_calibration, reference_toml};
@@ -85,11 +87,9 @@ pub use error::{Location, ScenarioError};
 pub(crate) use error::{in_both, in_order, portable_place};
 pub use excerpt::{bounded, excerpt};
 pub use filter_config::{
-    ButterworthFilterConfig, ConstantUnit, ConstrainedRlsFilterConfig, DesiredSignal, Division,
-    FilterConfig, FilterKind, InitialWeights, KalmanFilterConfig, LmsFilterConfig,
-    MovingAverageFilterConfig, NumberFormat, OnePoleFilterConfig, OutputRegister, Pipeline,
-    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig, SignLmsForm, UpdateOrder,
-    UpdateSign,
+    ButterworthFilterConfig, ConstrainedRlsFilterConfig, FilterConfig, FilterKind,
+    KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, OnePoleFilterConfig,
+    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig,
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,
@@ -101,8 +101,9 @@ pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
+pub use setting::Setting;
 pub use stairs::{Stairs, TEST_RATES_MIN};
-pub(crate) use suite::read_suite;
+pub(crate) use suite::{Reading, read_suite};
 pub use suite::{load_base_or_scenario, load_suite, visit_suite};
 pub use thermal_config::{
     ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig, SoakConfig,
@@ -115,6 +116,7 @@ pub use turntable_config::{
     ScriptPoints, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig, StepsConfig,
     SwingConfig, TrapezoidConfig, TurntableConfig,
 };
+pub(crate) use unresolved::Unresolved;
 pub use vibration_config::{
     RandomVibrationConfig, SineVibrationConfig, VibrationConfig, VibrationMotion,
 };
