@@ -10,8 +10,9 @@ use std::hint::black_box;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use fogbench::metrics::{AllanOptions, AllanStream, TauGrid, allan_variant, overlapping_allan_at};
+use fogbench::metrics::{AllanOptions, AllanStream, allan_variant, overlapping_allan_at};
 use fogbench::random::Streams;
+use fogbench::vocabulary::AveragingTimes;
 
 const BATCH_SAMPLES: usize = 10_000_000;
 const STREAM_SAMPLES: usize = 1_000_000_000;
@@ -53,7 +54,7 @@ fn sawtooth() -> Vec<f64> {
 
 fn beside_allantools() {
     let values = sawtooth();
-    let factors = TauGrid::Octave.averaging_factors(BATCH_SAMPLES / 4);
+    let factors = AveragingTimes::Octave.averaging_factors(BATCH_SAMPLES / 4);
     let points = overlapping_allan_at(&values, 1.0, &factors);
     let own = best_of_three(|| overlapping_allan_at(&values, 1.0, &factors)).as_secs_f64();
     println!(

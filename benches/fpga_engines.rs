@@ -15,10 +15,9 @@ use std::time::Instant;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use fogbench::fpga::export::{ExportSettings, PipelineConfig, write_rtl};
-use fogbench::fpga::front_end::{FrontEnd, Pair, UpdateSign};
-use fogbench::fpga::rls::{
-    Division, RlsConfig, RlsEngine, RlsPipeline, RlsSettings, rls_clocks_per_sample,
-};
+use fogbench::fpga::front_end::{FrontEnd, Pair};
+use fogbench::fpga::rls::{RlsConfig, RlsEngine, RlsPipeline, RlsSettings, rls_clocks_per_sample};
+use fogbench::vocabulary::{Division, UpdateSign};
 
 const SAMPLES: usize = 4096;
 

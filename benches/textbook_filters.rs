@@ -3,16 +3,14 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use fogbench::filters::{
-    Desired, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, OutputRegister, Rls, RlsConfig,
-    UpdateSign,
-};
+use fogbench::filters::{Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, Rls, RlsConfig};
 use fogbench::random::Streams;
+use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 
 /// Samples per iteration: 2.5 s of a 4 kHz gyro.
 const SAMPLES: usize = 10_000;
 
-fn front_end(desired: Desired, input_lag_samples: usize) -> FrontEndConfig {
+fn front_end(desired: DesiredSignal, input_lag_samples: usize) -> FrontEndConfig {
     FrontEndConfig {
         desired,
         input_lag_samples,
@@ -35,7 +33,7 @@ fn textbook_filters(criterion: &mut Criterion) {
         forgetting_factor: 0.999,
         initial_inverse_correlation: 1.0,
         update_sign: UpdateSign::Corrected,
-        front_end: front_end(Desired::Current, 1),
+        front_end: front_end(DesiredSignal::Current, 1),
     });
     group.bench_function("rls_4", |bencher| {
         bencher.iter(|| run(&mut rls, black_box(&input)));
@@ -47,7 +45,7 @@ fn textbook_filters(criterion: &mut Criterion) {
             regularisation_deg2_per_h2: 1.0,
         },
         update_sign: UpdateSign::Corrected,
-        front_end: front_end(Desired::TwoSampleMean, 0),
+        front_end: front_end(DesiredSignal::TwoSampleMean, 0),
     });
     group.bench_function("nlms_10", |bencher| {
         bencher.iter(|| run(&mut lms, black_box(&input)));

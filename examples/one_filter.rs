@@ -7,10 +7,9 @@
 
 use std::error::Error;
 
-use fogbench::filters::{
-    Desired, Filter, FrontEndConfig, OutputRegister, Rls, RlsConfig, UpdateSign,
-};
+use fogbench::filters::{Filter, FrontEndConfig, Rls, RlsConfig};
 use fogbench::random::Streams;
+use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 
 const RATE_DEG_PER_H: f64 = 10.0;
 const NOISE_DEG_PER_H: f64 = 20.0;
@@ -26,7 +25,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         initial_inverse_correlation: 1.0,
         update_sign: UpdateSign::Corrected,
         front_end: FrontEndConfig {
-            desired: Desired::Current,
+            desired: DesiredSignal::Current,
             input_lag_samples: 1,
             output_register: OutputRegister::Immediate,
         },

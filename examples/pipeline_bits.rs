@@ -8,8 +8,9 @@
 
 use std::error::Error;
 
-use fogbench::fpga::front_end::{Pair, UpdateSign};
-use fogbench::fpga::rls::{Division, RlsConfig, RlsEngine, RlsPipeline, RlsSettings};
+use fogbench::fpga::front_end::Pair;
+use fogbench::fpga::rls::{RlsConfig, RlsEngine, RlsPipeline, RlsSettings};
+use fogbench::vocabulary::{Division, UpdateSign};
 
 const CLOCK_MHZ: f64 = 40.0;
 

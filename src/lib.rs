@@ -59,6 +59,7 @@ mod linear_algebra;
 pub mod random;
 pub mod signal;
 pub mod units;
+pub mod vocabulary;
 mod wording;
 
 // In the order of the data flow.

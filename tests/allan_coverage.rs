@@ -1,7 +1,8 @@
 //! Whether the intervals of Allan deviations hold the truth as often as they say.
 
-use fogbench::metrics::{AllanEstimator, AllanOptions, TauGrid, allan_variant};
+use fogbench::metrics::{AllanEstimator, AllanOptions, allan_variant};
 use fogbench::random::{Stream, Streams};
+use fogbench::vocabulary::AveragingTimes;
 
 /// Rates in a record: 512 has averaging times from 500 degrees of freedom down to two.
 const COUNT: usize = 512;
@@ -113,7 +114,7 @@ struct Trial {
 fn try_intervals(noise: Noise, estimator: AllanEstimator, runs: u64) -> Vec<Trial> {
     let options = AllanOptions {
         estimator,
-        taus: TauGrid::Octave,
+        taus: AveragingTimes::Octave,
         confidence: 0.9,
     };
     let mut trials: Vec<Trial> = Vec::new();

@@ -1,10 +1,11 @@
 //! The Allan curve a scenario asks for, the autocovariance, and where the fit begins behind a filter.
 
 use fogbench::metrics::{
-    AllanEstimator, AllanOptions, ChannelMetrics, FilterFacts, Motion, Settings, TauGrid,
-    aggregate, allan_variant, autocovariance, measure, record_fit_tau_min_s,
+    AllanEstimator, AllanOptions, ChannelMetrics, FilterFacts, Motion, Settings, aggregate,
+    allan_variant, autocovariance, measure, record_fit_tau_min_s,
 };
 use fogbench::signal::{Section, WeightRule};
+use fogbench::vocabulary::AveragingTimes;
 
 use crate::support::records::{PERIOD_S, facts, raw_record, settings, shape, white};
 use crate::support::{assert_close, code, fogbench, stderr, write};
@@ -22,7 +23,7 @@ fn the_curve_is_that_of_the_settings_and_the_fit_stays_on_the_overlapping_one() 
     let values = white(3, 40_000, 1.0);
     let modified = AllanOptions {
         estimator: AllanEstimator::Modified,
-        taus: TauGrid::Decade,
+        taus: AveragingTimes::Decade,
         ..AllanOptions::default()
     };
     let usual = measured(&values, AllanOptions::default());
@@ -83,11 +84,11 @@ fn repeats_pool_the_curve_of_the_settings() {
 #[test]
 fn all_averaging_times_are_every_one_then_a_thousand_and_fewer_in_a_long_record() {
     let every: Vec<usize> = (1..=1000).collect();
-    assert_eq!(TauGrid::All.averaging_factors(1000), every);
-    assert_eq!(TauGrid::All.averaging_factors(7), every[..7]);
-    assert!(TauGrid::All.averaging_factors(0).is_empty());
+    assert_eq!(AveragingTimes::All.averaging_factors(1000), every);
+    assert_eq!(AveragingTimes::All.averaging_factors(7), every[..7]);
+    assert!(AveragingTimes::All.averaging_factors(0).is_empty());
     for (largest, count) in [(250_000, 1000), (2_500_000, 200), (1_000_000_000, 100)] {
-        let factors = TauGrid::All.averaging_factors(largest);
+        let factors = AveragingTimes::All.averaging_factors(largest);
         assert_eq!((factors.len(), factors[count - 1]), (count, largest));
         assert!(factors.windows(2).all(|two| two[0] < two[1]));
         let ratio = |at: usize| factors[at + 1] as f64 / factors[at] as f64;

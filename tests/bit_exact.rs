@@ -1,9 +1,10 @@
 //! The pipelines, their clock-less engines and the exported RTL give the same words.
 
 use fogbench::fpga::float_unit::{FlushToZero, Fp};
-use fogbench::fpga::front_end::{Pair, UpdateSign};
+use fogbench::fpga::front_end::Pair;
 use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsEngine, LmsPipeline, LmsSettings};
-use fogbench::fpga::rls::{Division, RlsConfig, RlsEngine, RlsPipeline, RlsSettings, UpdateOrder};
+use fogbench::fpga::rls::{RlsConfig, RlsEngine, RlsPipeline, RlsSettings};
+use fogbench::vocabulary::{Division, UpdateOrder, UpdateSign};
 use proptest::prelude::*;
 
 use crate::support::stimulus::{SETUPS, Setup, predictor_pairs, words};
@@ -45,7 +46,7 @@ fn golden_self_check_words_are_reproduced() {
             0x0000_0000_0000_0000, 0x4013_6869_a7a2_1b69, 0x4033_eeb3_00e9_57f9,
             0x4019_22f5_0fd4_3fbd, 0xc007_e8b1_0bd3_4b26, 0xbfe4_17db_7b84_2d0e,
             0xbfbf_4d07_6b68_eae0, 0x3fe2_1147_bdd8_67d4, 0x3ff4_5d05_5fae_595d]),
-        (0.99, Division::Element, [
+        (0.99, Division::Elementwise, [
             0x0000_0000_0000_0000, 0x4013_6869_a7a2_1b69, 0x4033_eeb3_00e9_582c,
             0x4019_22f5_0fd4_38fa, 0xc007_e8b1_0bd3_6e54, 0xbfe4_17db_7b84_26cd,
             0xbfbf_4d07_6b69_a0a0, 0x3fe2_1147_bdd8_6a67, 0x3ff4_5d05_5fae_58bb]),
@@ -175,7 +176,7 @@ proptest! {
         samples in prop::collection::vec((-1e3_f64..1e3, -1e3_f64..1e3), 1..60),
     ) {
         let mut settings = settings(
-            tap_count, alpha, if element { Division::Element } else { Division::Reciprocal });
+            tap_count, alpha, if element { Division::Elementwise } else { Division::Reciprocal });
         settings.initial_inverse_correlation = 10_f64.powf(delta_exponent);
         if printed_sign {
             settings.update_sign = UpdateSign::AsPrinted;

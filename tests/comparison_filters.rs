@@ -3,12 +3,12 @@
 use std::f64::consts::{PI, TAU};
 
 use fogbench::filters::{
-    ConstrainedRls, Desired, Filter, FixedFilter, FrontEndConfig, Kalman, OutputRegister,
-    RecursiveFilter, Rls, RlsConfig, UpdateSign, butterworth, kalman_gain, moving_average,
-    one_pole, savitzky_golay,
+    ConstrainedRls, Filter, FixedFilter, FrontEndConfig, Kalman, RecursiveFilter, Rls, RlsConfig,
+    butterworth, kalman_gain, moving_average, one_pole, savitzky_golay,
 };
 use fogbench::metrics::predict;
 use fogbench::random::Streams;
+use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 
 use crate::support::{assert_close, code, field, fogbench, stderr, stdout, summary, write};
 
@@ -141,7 +141,7 @@ fn constrained(taps: usize, forgetting_factor: f64) -> RlsConfig {
         initial_inverse_correlation: 1e3,
         update_sign: UpdateSign::Corrected,
         front_end: FrontEndConfig {
-            desired: Desired::Current,
+            desired: DesiredSignal::Current,
             input_lag_samples: 1,
             output_register: OutputRegister::Immediate,
         },

@@ -1,13 +1,14 @@
 //! Clocks are counted, never computed: periods, latencies, time per state, port use.
 
 use fogbench::fpga::FpgaError;
-use fogbench::fpga::front_end::{Pair, UpdateSign};
+use fogbench::fpga::front_end::Pair;
 use fogbench::fpga::lms::{
     DesiredSource, LmsConfig, LmsPipeline, LmsSettings, lms_clocks_per_sample, lms_latency_clocks,
 };
 use fogbench::fpga::rls::{
-    Division, RlsConfig, RlsPipeline, RlsSettings, rls_clocks_per_sample, rls_latency_clocks,
+    RlsConfig, RlsPipeline, RlsSettings, rls_clocks_per_sample, rls_latency_clocks,
 };
+use fogbench::vocabulary::{Division, UpdateSign};
 
 use crate::support::assert_close;
 

@@ -3,11 +3,12 @@
 use std::f64::consts::TAU;
 
 use fogbench::filters::{
-    Core, Desired, DivergenceKind, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation,
-    OutputRegister, Rls, RlsConfig, RlsCore, UpdateSign, constant_eigenvalue_max,
-    covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
+    Core, DivergenceKind, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, Rls, RlsConfig,
+    RlsCore, adaptive_rule, constant_eigenvalue_max, covariance_digits_warning, lms_step_bound,
+    sine_eigenvalue_max,
 };
 use fogbench::random::Streams;
+use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::{ProptestConfig, prop_assert, proptest};
 
@@ -46,7 +47,7 @@ fn predictor(forgetting_factor: f64, initial_inverse_correlation: f64) -> RlsCon
         initial_inverse_correlation,
         update_sign: UpdateSign::Corrected,
         front_end: FrontEndConfig {
-            desired: Desired::Current,
+            desired: DesiredSignal::Current,
             input_lag_samples: 1,
             output_register: OutputRegister::NextSample,
         },
@@ -61,7 +62,7 @@ fn lms(step_size: f64, normalisation: Normalisation) -> LmsConfig {
         normalisation,
         update_sign: UpdateSign::Corrected,
         front_end: FrontEndConfig {
-            desired: Desired::TwoSampleMean,
+            desired: DesiredSignal::TwoSampleMean,
             input_lag_samples: 0,
             output_register: OutputRegister::NextSample,
         },
@@ -282,7 +283,7 @@ fn published_identity_channel_is_learned() {
     let mut rls = predictor(1.0, 1e6);
     rls.front_end.input_lag_samples = 0;
     let mut lms = lms(0.8, ENERGY);
-    lms.front_end.desired = Desired::Current;
+    lms.front_end.desired = DesiredSignal::Current;
     lms.taps = 4;
     let input = constant(0.0, 20.0, 2000);
     let mut filters: [Box<dyn Filter>; 2] = [Box::new(Rls::new(&rls)), Box::new(Lms::new(&lms))];
@@ -462,13 +463,13 @@ fn shapes_tell_the_age_of_the_newest_weighed_sample() {
         (shape.taps, shape.newest_age_samples, shape.register_samples),
         (Some(4), 2, 1)
     );
-    assert_eq!(shape.rule, Desired::Current.rule());
+    assert_eq!(shape.rule, adaptive_rule(DesiredSignal::Current));
     let shape = Lms::new(&lms(0.8, ENERGY)).shape();
     assert_eq!(
         (shape.taps, shape.newest_age_samples, shape.register_samples),
         (Some(10), 1, 1)
     );
-    assert_eq!(shape.rule, Desired::TwoSampleMean.rule());
+    assert_eq!(shape.rule, adaptive_rule(DesiredSignal::TwoSampleMean));
     // The filter does as its shape says: a sample first shows in the output at its age.
     let mut filter = Lms::new(&lms(0.8, ENERGY));
     let mut input = constant(0.0, 20.0, 500);

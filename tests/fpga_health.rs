@@ -1,9 +1,10 @@
 //! The two ways a covariance-form RLS dies, shown and timed: gain-first order and wind-up.
 
 use fogbench::fpga::float_unit::Fp;
-use fogbench::fpga::front_end::{FrontEnd, UpdateSign};
+use fogbench::fpga::front_end::FrontEnd;
 use fogbench::fpga::health::{HealthMonitor, gain_first_failure_samples, wind_up_warning};
-use fogbench::fpga::rls::{Division, RlsConfig, RlsEngine, RlsSettings, UpdateOrder};
+use fogbench::fpga::rls::{RlsConfig, RlsEngine, RlsSettings};
+use fogbench::vocabulary::{Division, UpdateOrder, UpdateSign};
 
 use crate::support::stimulus::samples;
 

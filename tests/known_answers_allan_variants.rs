@@ -1,9 +1,9 @@
 //! Published and cross-checked answers for the whole family of Allan deviations.
 
 use fogbench::metrics::{
-    AllanEstimator, AllanOptions, AllanVariantPoint, PowerLaw, TauGrid, allan_variant,
-    allan_variant_at,
+    AllanEstimator, AllanOptions, AllanVariantPoint, PowerLaw, allan_variant, allan_variant_at,
 };
+use fogbench::vocabulary::AveragingTimes;
 
 use crate::support::assert_close;
 use crate::support::records::white;
@@ -216,12 +216,21 @@ fn grids_end_where_the_record_stops_supporting_them() {
         (points.len(), last)
     };
     assert_eq!(
-        longest(AllanEstimator::Overlapping, TauGrid::Octave),
+        longest(AllanEstimator::Overlapping, AveragingTimes::Octave),
         (8, 128)
     );
-    assert_eq!(longest(AllanEstimator::Plain, TauGrid::Decade), (8, 200));
-    assert_eq!(longest(AllanEstimator::Modified, TauGrid::All), (200, 200));
-    assert_eq!(TauGrid::Decade.averaging_factors(60), [1, 2, 5, 10, 20, 50]);
+    assert_eq!(
+        longest(AllanEstimator::Plain, AveragingTimes::Decade),
+        (8, 200)
+    );
+    assert_eq!(
+        longest(AllanEstimator::Modified, AveragingTimes::All),
+        (200, 200)
+    );
+    assert_eq!(
+        AveragingTimes::Decade.averaging_factors(60),
+        [1, 2, 5, 10, 20, 50]
+    );
 }
 
 /// Every difference from its definition, block means compared one by one.

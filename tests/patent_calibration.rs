@@ -1,13 +1,14 @@
 //! Calibration campaigns: how estimators rank, what one sense of rotation hides, mistakes in the data.
 
 use fogbench::calibration::{
-    Averaging, CalibrationError, Compensation, CompensationForm, ErrorParameters, Estimator,
-    Finding, Forgetting, ForgettingForm, GroupDesign, GroupObservation, GroupSamples, Misalignment,
-    OUTLIER_THRESHOLD, Reading, RecursiveSettings, Scope, TemperatureColumns, diagnose, estimate,
-    group_means, normalised_error_squared, unmodelled_rms,
+    Averaging, CalibrationError, Compensation, ErrorParameters, Estimator, Finding, Forgetting,
+    GroupDesign, GroupObservation, GroupSamples, Misalignment, OUTLIER_THRESHOLD, Reading,
+    RecursiveSettings, Scope, TemperatureColumns, diagnose, estimate, group_means,
+    normalised_error_squared, unmodelled_rms,
 };
 use fogbench::random::{Stream, Streams};
 use fogbench::units::{deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h};
+use fogbench::vocabulary::{CompensationForm, ForgettingForm};
 
 use crate::support::assert_close;
 use crate::support::patent_cases::{NINE, WARM_UP_C, observed, plan, truth, warm_plan};

@@ -2,10 +2,11 @@
 //! and the laws it obeys.
 
 use fogbench::filters::{
-    Core, Filter, FixedFilter, OutputRegister, SignLms, SignLmsConfig, SignLmsCore, SignLmsForm,
-    moving_average, sign_lms_slew_samples,
+    Core, Filter, FixedFilter, SignLms, SignLmsConfig, SignLmsCore, moving_average,
+    sign_lms_slew_samples,
 };
 use fogbench::metrics::predict;
+use fogbench::vocabulary::{OutputRegister, SignLmsForm};
 
 use crate::support::{assert_close, code, field, fogbench, stderr, stdout, summary, write};
 
@@ -199,18 +200,8 @@ fn patent_known_answers_of_the_norm_and_of_the_normalised_forms() {
         assert_close(core.norm(), want, 2e-10, 0.0);
     }
     for (words, form, initial_weight, want) in [
-        (
-            &k1,
-            SignLmsForm::Normalised,
-            0.0,
-            [49.633_659_47, 50.004_238_52],
-        ),
-        (
-            &k2,
-            SignLmsForm::Normalised,
-            0.0,
-            [3.293_937_85, 9.267_784_801],
-        ),
+        (&k1, SignLmsForm::Nlms, 0.0, [49.633_659_47, 50.004_238_52]),
+        (&k2, SignLmsForm::Nlms, 0.0, [3.293_937_85, 9.267_784_801]),
         (
             &k2,
             SignLmsForm::UnityGain,

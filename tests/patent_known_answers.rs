@@ -1,11 +1,11 @@
 //! Known answers of the patent's calibration: plans, recursion, weights, compensation.
 
 use fogbench::calibration::{
-    Calibration, CalibrationError, Compensation, CompensationForm, Estimator, Forgetting,
-    ForgettingForm, GroupDesign, GroupObservation, Reading, RecursiveSettings, TemperatureColumns,
-    check_plan, estimate,
+    Calibration, CalibrationError, Compensation, Estimator, Forgetting, GroupDesign,
+    GroupObservation, Reading, RecursiveSettings, TemperatureColumns, check_plan, estimate,
 };
 use fogbench::units::{deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h};
+use fogbench::vocabulary::{CompensationForm, ForgettingForm};
 
 use crate::support::assert_close;
 use crate::support::patent_cases::{NINE, WARM_UP_C, observed, plan, truth, warm_plan};

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use fogbench::experiment::{HardwareFilter, PipelineSettings, plan_suite};
 use fogbench::filters::{
-    Desired, DivergenceKind, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, OutputRegister,
-    Rls, RlsConfig, UpdateSign,
+    DivergenceKind, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, Rls, RlsConfig,
 };
 use fogbench::fpga::front_end::{FrontEnd, Pair};
 use fogbench::fpga::lms::{self, DesiredSource, LmsPipeline, LmsSettings};
-use fogbench::fpga::rls::{self, Division, RlsPipeline, RlsSettings};
+use fogbench::fpga::rls::{self, RlsPipeline, RlsSettings};
 use fogbench::scenario::FilterConfig;
+use fogbench::vocabulary::{DesiredSignal, Division, OutputRegister, UpdateSign};
 
 use crate::support::{code, fogbench, stderr, stdout, summary, write};
 
@@ -70,7 +70,7 @@ fn the_bench_has_the_bits_of_the_clocked_rls_pipeline() {
         forgetting_factor: 0.99,
         initial_inverse_correlation: 7.716e-4,
         division: Division::Reciprocal,
-        update_sign: fogbench::fpga::front_end::UpdateSign::Corrected,
+        update_sign: fogbench::vocabulary::UpdateSign::Corrected,
     };
     let mut front_end = FrontEnd::one_step_predictor();
     let pairs: Vec<Pair<f64>> = words.iter().map(|word| front_end.pair(*word)).collect();
@@ -89,7 +89,7 @@ fn the_bench_has_the_bits_of_the_clocked_lms_pipeline() {
         step_size: 0.8,
         regularisation: Some(1.0),
         desired: DesiredSource::MeanOfTwoNewest,
-        update_sign: fogbench::fpga::front_end::UpdateSign::Corrected,
+        update_sign: fogbench::vocabulary::UpdateSign::Corrected,
     };
     let pairs: Vec<Pair<f64>> = words
         .iter()
@@ -120,7 +120,7 @@ fn hardware_and_textbook_agree_to_rounding() {
         forgetting_factor: 0.99,
         initial_inverse_correlation: 7.716e-4,
         update_sign: UpdateSign::Corrected,
-        front_end: front_end(Desired::Current, 1),
+        front_end: front_end(DesiredSignal::Current, 1),
     });
     let mut lms = Lms::new(&LmsConfig {
         taps: 10,
@@ -129,7 +129,7 @@ fn hardware_and_textbook_agree_to_rounding() {
             regularisation_deg2_per_h2: 1.0,
         },
         update_sign: UpdateSign::Corrected,
-        front_end: front_end(Desired::TwoSampleMean, 0),
+        front_end: front_end(DesiredSignal::TwoSampleMean, 0),
     });
     let pairs: [(&mut dyn Filter, Box<dyn HardwareFilter>); 2] =
         [(&mut rls, filter(RLS)), (&mut lms, filter(LMS))];

@@ -11,16 +11,15 @@ use fogbench::fpga::export::{
     ExportSettings, IntegerCodes, PipelineConfig, stimulus_pairs, write_rtl,
 };
 use fogbench::fpga::float_unit::{FlushToZero, Fp};
-use fogbench::fpga::front_end::{FrontEnd, Pair, UpdateSign};
+use fogbench::fpga::front_end::{FrontEnd, Pair};
 use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsEngine, LmsSettings, lms_stalled_clocks};
-use fogbench::fpga::rls::{
-    Division, RlsConfig, RlsEngine, RlsLoad, RlsSettings, rls_stalled_clocks,
-};
+use fogbench::fpga::rls::{RlsConfig, RlsEngine, RlsLoad, RlsSettings, rls_stalled_clocks};
 use fogbench::fpga::sign_lms::{
     SignLmsConfig, SignLmsEngine, SignLmsSettings, sign_lms_stalled_clocks,
 };
 use fogbench::fpga::timing::{UnitTiming, Units};
 use fogbench::fpga::trace::hex;
+use fogbench::vocabulary::{Division, UpdateSign};
 
 use crate::support::stimulus::{SETUPS, Setup, predictor_pairs, samples};
 
@@ -211,7 +210,7 @@ fn rtl_of_every_number_format_has_the_words_of_the_model() {
             pair.desired = F::from_f64(pair.desired.to_f64() * scale);
         }
         pairs[50].input = F::from_f64(1.0 / scale);
-        export_and_run(rls(3, 1.0, Division::Element), &pairs, 60);
+        export_and_run(rls(3, 1.0, Division::Elementwise), &pairs, 60);
     }
     if !available(&["iverilog", "vvp"]) {
         return;
@@ -272,8 +271,8 @@ fn a_slow_divider_keeps_every_word_and_takes_the_clocks_of_the_timing_model() {
     for (division, alpha) in [
         (Division::Reciprocal, 1.0),
         (Division::Reciprocal, 0.99),
-        (Division::Element, 1.0),
-        (Division::Element, 0.99),
+        (Division::Elementwise, 1.0),
+        (Division::Elementwise, 0.99),
     ] {
         write_rtl(dir.path(), &settings(rls(4, alpha, division), 6), &pairs).unwrap();
         for latency in [10, 56] {
@@ -453,7 +452,7 @@ const LINE_ENHANCER: SignLmsSettings = SignLmsSettings {
 
 /// Pairs of the samples behind the delay, with a step of rate in the middle.
 fn delayed_pairs<F: Fp>(count: usize, delay: usize, step: f64) -> Vec<Pair<F>> {
-    let mut front_end = FrontEnd::new(fogbench::fpga::front_end::Desired::Current, delay);
+    let mut front_end = FrontEnd::new(fogbench::vocabulary::DesiredSignal::Current, delay);
     samples("white", count)
         .iter()
         .enumerate()

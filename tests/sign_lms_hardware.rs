@@ -1,15 +1,16 @@
 //! The line enhancer as a pipeline: words, clocks, formats.
 
 use fogbench::experiment::PipelineSettings;
-use fogbench::filters::{Filter, OutputRegister, SignLms, SignLmsConfig as Textbook, SignLmsForm};
+use fogbench::filters::{Filter, SignLms, SignLmsConfig as Textbook};
 use fogbench::fpga::float_unit::{FlushToZero, Fp};
-use fogbench::fpga::front_end::{Desired, FrontEnd, Pair};
+use fogbench::fpga::front_end::{FrontEnd, Pair};
 use fogbench::fpga::sign_lms::{
     SignLmsConfig, SignLmsEngine, SignLmsPipeline, SignLmsSettings, sign_lms_clocks_per_sample,
     sign_lms_latency_clocks, sign_lms_stalled_clocks,
 };
 use fogbench::fpga::timing::{Units, measure};
 use fogbench::scenario::FilterConfig;
+use fogbench::vocabulary::{DesiredSignal, OutputRegister, SignLmsForm};
 use proptest::prelude::*;
 
 use crate::support::stimulus::{samples, words};
@@ -27,7 +28,7 @@ const PATENT: SignLmsSettings = SignLmsSettings {
 };
 
 fn pairs<F: Fp>(words: &[f64], delay: usize) -> Vec<Pair<F>> {
-    let mut front_end = FrontEnd::new(Desired::Current, delay);
+    let mut front_end = FrontEnd::new(DesiredSignal::Current, delay);
     let pair = |word: &f64| front_end.pair(F::from_f64(*word));
     words.iter().map(pair).collect()
 }
@@ -120,7 +121,7 @@ fn by_textbook(settings: SignLmsSettings, stimulus: &[f64]) -> Vec<u64> {
         taps: settings.tap_count,
         delay_samples: settings.delay_samples,
         form: if settings.normalised {
-            SignLmsForm::Normalised
+            SignLmsForm::Nlms
         } else {
             SignLmsForm::Sign
         },

@@ -1,12 +1,12 @@
 //! Table 1, the latency model and the use counted on the model.
 
-use fogbench::fpga::front_end::UpdateSign;
 use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsPipeline, LmsSettings, lms_stalled_clocks};
 use fogbench::fpga::rls::{
-    Basis, Bound, Design, Division, RlsConfig, RlsLoad, RlsPipeline, RlsSettings, ScheduleSettings,
+    Basis, Bound, Design, RlsConfig, RlsLoad, RlsPipeline, RlsSettings, ScheduleSettings,
     rls_stalled_clocks, schedule_clocks, table,
 };
 use fogbench::fpga::timing::{PRESETS, UnitTiming, Units, Usage, measure, sample_rate_max_khz};
+use fogbench::vocabulary::{Division, UpdateSign};
 
 use crate::support::assert_close;
 
@@ -84,7 +84,7 @@ fn published_table_1_is_reproduced_at_four_taps_and_forty_megahertz() {
 #[test]
 fn counted_operations_are_those_the_model_performs() {
     for p in [1, 2, 4, 7] {
-        for division in [Division::Reciprocal, Division::Element] {
+        for division in [Division::Reciprocal, Division::Elementwise] {
             let counted = table(p, division, true, 40.0).unwrap()[3];
             let used = usage(p, division);
             assert_eq!(used.multiplies, counted.multipliers);
@@ -141,7 +141,7 @@ fn stalled_clocks_match_the_rtl_and_the_worked_table() {
     for (name, reciprocal, element) in worked {
         let clocks = |division| rls_stalled_clocks(load(division, false), units(name)).unwrap();
         assert_eq!(clocks(Division::Reciprocal), reciprocal, "{name}");
-        assert_eq!(clocks(Division::Element), element, "{name}");
+        assert_eq!(clocks(Division::Elementwise), element, "{name}");
     }
     let slow = rls_stalled_clocks(
         load(Division::Reciprocal, false),
@@ -156,11 +156,11 @@ fn stalled_clocks_match_the_rtl_and_the_worked_table() {
     };
     let clocks = |division| rls_stalled_clocks(load(division, false), divider_58).unwrap();
     assert_eq!(
-        (clocks(Division::Reciprocal), clocks(Division::Element)),
+        (clocks(Division::Reciprocal), clocks(Division::Elementwise)),
         (165, 1020)
     );
     // Forgetting costs a slow divider's owner nothing: the product with 1/alpha stays chained.
-    for division in [Division::Reciprocal, Division::Element] {
+    for division in [Division::Reciprocal, Division::Elementwise] {
         let clocks = |forgets| rls_stalled_clocks(load(division, forgets), units("divider-10"));
         assert_eq!(clocks(true).unwrap(), clocks(false).unwrap());
     }
@@ -215,7 +215,7 @@ fn interleaved_schedules_have_the_worked_lengths() {
 #[test]
 fn no_schedule_is_shorter_than_its_busiest_resource_or_longer_than_stalling() {
     for preset in PRESETS {
-        for division in [Division::Reciprocal, Division::Element] {
+        for division in [Division::Reciprocal, Division::Elementwise] {
             for forgets in [false, true] {
                 let load = load(division, forgets);
                 let one_port = ScheduleSettings {
@@ -254,5 +254,5 @@ fn the_bound_is_the_port_then_the_multiplier_then_the_chain() {
         ram_ports: 3,
         symmetric_half: false,
     };
-    assert!(schedule_clocks(load(Division::Element, true), Units::ONE_CLOCK, refused).is_err());
+    assert!(schedule_clocks(load(Division::Elementwise, true), Units::ONE_CLOCK, refused).is_err());
 }

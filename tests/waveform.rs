@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use fogbench::fpga::export::{ExportSettings, PipelineConfig, write_waveform};
-use fogbench::fpga::front_end::{Pair, UpdateSign};
+use fogbench::fpga::front_end::Pair;
 use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsSettings};
-use fogbench::fpga::rls::{Division, RlsConfig, RlsPipeline, RlsSettings};
+use fogbench::fpga::rls::{RlsConfig, RlsPipeline, RlsSettings};
 use fogbench::fpga::trace::{ClockRecord, Recorder, Window};
+use fogbench::vocabulary::{Division, UpdateSign};
 
 use crate::support::stimulus::predictor_pairs;
 

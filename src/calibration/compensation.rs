@@ -5,16 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::error::CalibrationError;
 use super::error_model::{ErrorParameters, matrix};
 use super::result::Calibration;
-
-/// How outputs are turned back into rates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CompensationForm {
-    /// `XA^-1 (Wm - XB)`.
-    Exact,
-    /// The patent's `Wm - (K_G Wm + theta_G Wm + B_G)`, equations (23) and (24): the true rate is
-    /// replaced by the output, so that errors of second order remain.
-    FirstOrder,
-}
+use crate::vocabulary::CompensationForm;
 
 /// Compensation of an assembly's outputs with given parameters.
 ///

@@ -2,7 +2,8 @@
 
 use super::design::TemperatureColumns;
 use super::error::CalibrationError;
-use super::forgetting::{Forgetting, ForgettingForm, Reading};
+use super::forgetting::{Forgetting, Reading};
+use crate::vocabulary::ForgettingForm;
 
 /// Settings of the recursive estimators.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,28 +1,12 @@
 //! Forgetting factors from temperature steps, and the weights they leave to the groups.
 
 use super::error::CalibrationError;
+use crate::vocabulary::ForgettingForm;
 
 /// Least forgetting factor: what a group behind a large temperature step keeps.
 ///
 /// F1 would become negative beyond `c dT = 1`, and factors near zero leave too few groups of weight.
 pub const FORGETTING_FACTOR_MIN: f64 = 1e-3;
-
-/// How the forgetting factor falls with the temperature step `dT = |T_{j+1} - T_j|`.
-///
-/// The patent's equation (17) is an image that is lost. Its symbol list names no constant beside
-/// the temperatures; the forms agree but for the fourth to first order in `c dT`, and results
-/// depend on the resulting weights, hardly on the form.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ForgettingForm {
-    /// F1: `1 - c dT`.
-    Linear,
-    /// F2: `exp(-c dT)`.
-    Exponential,
-    /// F3: `1 / (1 + c dT)`.
-    Rational,
-    /// F4: `exp(-(c dT)^2)`.
-    Gaussian,
-}
 
 /// The forgetting factor of each group.
 #[derive(Clone, Copy, Debug, PartialEq)]

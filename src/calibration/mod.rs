@@ -44,9 +44,9 @@
 //! | (1) to (8), (19) | error model, names of the parameters | [`ErrorParameters`] |
 //! | (9) to (13) | group means, regressors | [`GroupObservation`], [`GroupDesign`] |
 //! | (14) to (16), (18) | recursion, its start | [`Estimator`], [`Reading`] |
-//! | (17) | forgetting factor from temperature; lost, four forms assumed | [`ForgettingForm`] |
+//! | (17) | forgetting factor from temperature; lost, four forms assumed | [`ForgettingForm`](crate::vocabulary::ForgettingForm) |
 //! | (20) to (22) | reference rates | [`reference_rate`] |
-//! | (23), (24) | compensation | [`CompensationForm`] |
+//! | (23), (24) | compensation | [`CompensationForm`](crate::vocabulary::CompensationForm) |
 //!
 //! Invariant: pure mathematics; never sees a scenario or a simulated gyro. Rates and biases are in
 //! deg/s, as in the patent: the prior `P_0 = xi I` and condition numbers depend on the unit.
@@ -68,7 +68,7 @@ mod reference;
 mod result;
 mod solver;
 
-pub use compensation::{Compensation, CompensationForm};
+pub use compensation::Compensation;
 pub use consistency::{normalised_error_squared, unmodelled_rms};
 pub use design::{Column, GroupDesign, TemperatureColumns};
 pub use diagnose::{Finding, SCALE_ERROR_MAX, Scope, diagnose};
@@ -76,7 +76,7 @@ pub use error::CalibrationError;
 pub use error_model::{ErrorParameters, Misalignment, PARAMETER_NAMES};
 pub use estimate::estimate;
 pub use estimator::{Estimator, RecursiveSettings};
-pub use forgetting::{FORGETTING_FACTOR_MIN, Forgetting, ForgettingForm, Reading};
+pub use forgetting::{FORGETTING_FACTOR_MIN, Forgetting, Reading};
 pub use inseparable::Inseparable;
 pub use observations::{
     Averaging, GroupMeans, GroupObservation, GroupSamples, OUTLIER_THRESHOLD, group_means,

@@ -6,24 +6,8 @@ use clap::Args;
 
 use super::arguments::Format;
 use crate::experiment::GroupsSettings;
-use crate::scenario::{EstimatorKind, ForgettingLaw, reference_calibration};
-
-/// Estimators by name.
-const ESTIMATORS: [EstimatorKind; 5] = [
-    EstimatorKind::Batch,
-    EstimatorKind::BatchTemperature,
-    EstimatorKind::Arls,
-    EstimatorKind::ArlsCovariance,
-    EstimatorKind::ArlsTemperature,
-];
-
-/// Laws of forgetting by name.
-const LAWS: [(&str, ForgettingLaw); 4] = [
-    ("linear", ForgettingLaw::Linear),
-    ("exponential", ForgettingLaw::Exponential),
-    ("rational", ForgettingLaw::Rational),
-    ("gaussian", ForgettingLaw::Gaussian),
-];
+use crate::scenario::reference_calibration;
+use crate::vocabulary::{EstimatorKind, ForgettingForm};
 
 /// Options of `calibrate`.
 #[derive(Args, Debug)]
@@ -39,12 +23,12 @@ pub(super) struct CalibrateOptions {
     pub(super) latitude_deg: Option<f64>,
     /// Estimator to apply: batch, batch-temperature, arls, arls-covariance, arls-temperature
     /// [default: calibration.apply; batch where the groups determine no temperature coefficient]
-    #[arg(long, value_name = "NAME", value_parser = estimator)]
+    #[arg(long, value_name = "NAME")]
     pub(super) estimator: Option<EstimatorKind>,
     /// How the forgetting factor falls with the step of temperature: linear, exponential, rational,
     /// gaussian [default: calibration.forgetting_form]
-    #[arg(long, value_name = "FORM", value_parser = law)]
-    pub(super) forgetting_form: Option<ForgettingLaw>,
+    #[arg(long, value_name = "FORM")]
+    pub(super) forgetting_form: Option<ForgettingForm>,
     /// Its constant without a temperature coefficient, 1/K
     /// [default: calibration.forgetting_constant_per_k]
     #[arg(long, value_name = "C", value_parser = constant)]
@@ -110,21 +94,17 @@ impl CalibrateOptions {
 
     /// Options, the keys that they stand for and their values.
     fn keys(&self) -> [(&'static str, String, Option<String>); 4] {
-        let law = |wanted: ForgettingLaw| {
-            let named = LAWS.iter().find(|(_, law)| *law == wanted);
-            named.map(|(name, _)| (*name).to_owned())
-        };
         let number = |value: Option<f64>| value.map(|it| format!("{it:?}"));
         [
             (
                 "--estimator",
                 "apply",
-                self.estimator.map(|it| it.as_str().to_owned()),
+                self.estimator.map(|it| it.word().to_owned()),
             ),
             (
                 "--forgetting-form",
                 "forgetting_form",
-                self.forgetting_form.and_then(law),
+                self.forgetting_form.map(|it| it.word().to_owned()),
             ),
             (
                 "--forgetting-constant-per-k",
@@ -139,22 +119,6 @@ impl CalibrateOptions {
         ]
         .map(|(option, key, value)| (option, format!("calibration.{key}"), value))
     }
-}
-
-fn estimator(text: &str) -> Result<EstimatorKind, String> {
-    let found = ESTIMATORS.into_iter().find(|kind| kind.as_str() == text);
-    found.ok_or_else(|| {
-        let names = ESTIMATORS.map(EstimatorKind::as_str);
-        format!("expected one of {}", names.join(", "))
-    })
-}
-
-fn law(text: &str) -> Result<ForgettingLaw, String> {
-    let found = LAWS.iter().find(|(name, _)| *name == text);
-    found.map(|(_, law)| *law).ok_or_else(|| {
-        let names = LAWS.map(|(name, _)| name);
-        format!("expected one of {}", names.join(", "))
-    })
 }
 
 fn latitude(text: &str) -> Result<f64, String> {

@@ -5,15 +5,16 @@ use std::path::Path;
 
 use super::complaint;
 use super::exit::Exit;
-use super::hardware_arguments::{ExportKind, ExportOptions};
+use super::hardware_arguments::ExportOptions;
 use super::log::unreadable;
 use super::{output, place};
 use crate::experiment::{
-    ExportForm, PipelineSettings, Stimulus, export_pipeline, plan_suite, scenario_stimulus,
+    PipelineSettings, Stimulus, export_pipeline, plan_suite, scenario_stimulus,
 };
 use crate::fpga::FpgaError;
 use crate::recording::read_stimulus;
 use crate::scenario::{FilterConfig, FilterKind};
+use crate::vocabulary::ExportForm;
 use crate::wording::{counted, is_misspelling};
 
 /// Writes the folder and says what stands in it.
@@ -25,11 +26,7 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
     if let Err(exit) = place::check(Some(&options.folder), options.force) {
         return Ok(exit);
     }
-    let form = match options.what {
-        ExportKind::Vectors => ExportForm::Vectors,
-        ExportKind::Waveform => ExportForm::Waveform,
-        ExportKind::Rtl => ExportForm::Rtl,
-    };
+    let form = options.what;
     let trace_samples = options.trace_samples;
     let samples = match form {
         ExportForm::Waveform => stimulus.words.len().min(trace_samples),

@@ -7,13 +7,14 @@ use clap::{Args, ValueEnum};
 use super::arguments::Format;
 use super::numbers::{count_within, within};
 use crate::experiment::PipelineSettings;
-use crate::fpga::front_end::{Desired, UpdateSign};
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
-use crate::fpga::rls::{Division, RlsCore, RlsSettings, UpdateOrder};
+use crate::fpga::rls::{RlsCore, RlsSettings};
 use crate::fpga::sign_lms::SignLmsSettings;
 use crate::fpga::timing::{UnitTiming, Units};
-use crate::scenario::{NumberFormat, OutputRegister};
+use crate::vocabulary::{
+    DesiredSignal, Division, ExportForm, NumberFormat, OutputRegister, UpdateOrder, UpdateSign,
+};
 
 /// Delay of a line enhancer described on the command line, samples; the default of scenarios.
 const LINE_ENHANCER_DELAY: usize = 15;
@@ -41,28 +42,6 @@ pub(super) enum Kind {
     SignLms,
 }
 
-/// Where recursive least squares divides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum DivisionOption {
-    /// Once per sample
-    Reciprocal,
-    /// Once for each element of the matrix
-    Elementwise,
-}
-
-/// Words of the hardware.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum FormatOption {
-    /// IEEE 754 binary64
-    Binary64,
-    /// IEEE 754 binary32
-    Binary32,
-    /// binary64, subnormal numbers flushed to zero
-    Binary64Ftz,
-    /// binary32, subnormal numbers flushed to zero
-    Binary32Ftz,
-}
-
 /// The filter and its constants.
 #[derive(Args, Debug)]
 pub(super) struct FilterOptions {
@@ -82,8 +61,8 @@ pub(super) struct FilterOptions {
     )]
     pub(super) clock_mhz: f64,
     /// Where recursive least squares divides
-    #[arg(long, value_enum, default_value_t = DivisionOption::Reciprocal)]
-    division: DivisionOption,
+    #[arg(long, value_enum, default_value_t = Division::Reciprocal)]
+    division: Division,
     /// Forgetting factor alpha, 0.001 to 1
     #[arg(
         long,
@@ -121,8 +100,8 @@ pub(super) struct FilterOptions {
     )]
     pub(super) regularisation: f64,
     /// Words of the hardware
-    #[arg(long, value_enum, default_value_t = FormatOption::Binary64)]
-    pub(super) number_format: FormatOption,
+    #[arg(long, value_enum, default_value_t = NumberFormat::Binary64)]
+    pub(super) number_format: NumberFormat,
 }
 
 impl FilterOptions {
@@ -135,12 +114,12 @@ impl FilterOptions {
                     tap_count: self.taps,
                     forgetting_factor: self.forgetting_factor,
                     initial_inverse_correlation: self.initial_inverse_correlation,
-                    division: self.division(),
+                    division: self.division,
                     update_sign,
                 };
                 let order = UpdateOrder::Schedule;
                 let core = CoreSettings::Rls(RlsCore { settings, order });
-                (core, Desired::Current, 1)
+                (core, DesiredSignal::Current, 1)
             }
             Kind::Lms | Kind::Nlms => {
                 let core = CoreSettings::Lms(LmsSettings {
@@ -150,7 +129,7 @@ impl FilterOptions {
                     desired: DesiredSource::MeanOfTwoNewest,
                     update_sign,
                 });
-                (core, Desired::MeanOfTwoNewest, 0)
+                (core, DesiredSignal::TwoSampleMean, 0)
             }
             Kind::SignLms => {
                 let core = CoreSettings::SignLms(SignLmsSettings {
@@ -163,7 +142,7 @@ impl FilterOptions {
                     guard: None,
                     norm_recompute_samples: LINE_ENHANCER_RECOMPUTE,
                 });
-                (core, Desired::Current, LINE_ENHANCER_DELAY)
+                (core, DesiredSignal::Current, LINE_ENHANCER_DELAY)
             }
         };
         PipelineSettings {
@@ -171,12 +150,7 @@ impl FilterOptions {
             desired,
             input_lag_samples,
             output_register: OutputRegister::NextSample,
-            format: match self.number_format {
-                FormatOption::Binary64 => NumberFormat::Binary64,
-                FormatOption::Binary32 => NumberFormat::Binary32,
-                FormatOption::Binary64Ftz => NumberFormat::Binary64FlushToZero,
-                FormatOption::Binary32Ftz => NumberFormat::Binary32FlushToZero,
-            },
+            format: self.number_format,
             clock_mhz: self.clock_mhz,
         }
     }
@@ -191,14 +165,6 @@ impl FilterOptions {
     #[expect(clippy::cast_precision_loss, reason = "a handful of taps")]
     fn mean_weight(&self) -> f64 {
         1.0 / self.taps.max(1) as f64
-    }
-
-    /// Division mode in the terms of the hardware.
-    fn division(&self) -> Division {
-        match self.division {
-            DivisionOption::Reciprocal => Division::Reciprocal,
-            DivisionOption::Elementwise => Division::Element,
-        }
     }
 }
 
@@ -242,23 +208,12 @@ impl TimingOptions {
     }
 }
 
-/// What `export` writes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum ExportKind {
-    /// Stimulus, response, memories, parameters and per-clock trace
-    Vectors,
-    /// VCD and FST of the first samples
-    Waveform,
-    /// Verilog with a self-checking testbench, its vectors and a script
-    Rtl,
-}
-
 /// Options of `export`.
 #[derive(Args, Debug)]
 pub(super) struct ExportOptions {
     /// What to write
     #[arg(value_enum)]
-    pub(super) what: ExportKind,
+    pub(super) what: ExportForm,
     /// Folder to write into
     #[arg(value_name = "DIR")]
     pub(super) folder: PathBuf,

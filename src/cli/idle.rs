@@ -11,9 +11,10 @@ use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
 
 use super::arguments::{Arguments, Command};
 use super::calibrate_arguments::CalibrateOptions;
-use super::hardware_arguments::{ExportKind, ExportOptions, FilterOptions, Kind, TimingOptions};
+use super::hardware_arguments::{ExportOptions, FilterOptions, Kind, TimingOptions};
 use super::log_arguments::LogOptions;
 use crate::experiment::LogMotion;
+use crate::vocabulary::ExportForm;
 
 /// Reads the command line.
 ///
@@ -158,7 +159,7 @@ fn of_export(options: &ExportOptions, given: &ArgMatches) -> Vec<String> {
         None => of_filter(&options.filter, given),
     };
     let is_counted = !typed(given, &["samples"]).is_empty();
-    if options.what == ExportKind::Waveform && is_counted && options.samples > options.trace_samples
+    if options.what == ExportForm::Waveform && is_counted && options.samples > options.trace_samples
     {
         complaints.push(format!(
             "--samples {} has no effect on a waveform of {} samples: give --trace-samples {0} to draw \

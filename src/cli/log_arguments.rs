@@ -8,8 +8,8 @@ use super::arguments::Format;
 use super::numbers::within;
 use crate::experiment::LogMotion;
 use crate::recording::{RateUnit, SAMPLE_RATE_HZ, TimeUnit};
-use crate::scenario::CompensationRule;
-use crate::scenario::{AllanEstimatorConfig, AveragingTimes};
+use crate::scenario::AllanEstimatorConfig;
+use crate::vocabulary::{AveragingTimes, CompensationForm};
 
 /// Shortest time that an option names, s: a sample at the fastest rate that is analysed in blocks.
 const TIME_MIN_S: f64 = 1e-9;
@@ -65,9 +65,13 @@ pub(super) struct LogOptions {
     #[arg(long, value_name = "COLUMN", requires = "calibration")]
     pub(super) temperature_column: Option<String>,
     /// How rates follow from the outputs: `exact`, or `first-order` as in the patent
-    #[arg(long, value_name = "FORM", default_value = "exact", requires = "calibration",
-          value_parser = rule)]
-    pub(super) compensation_form: Rule,
+    #[arg(
+        long,
+        value_name = "FORM",
+        default_value = "exact",
+        requires = "calibration"
+    )]
+    pub(super) compensation_form: CompensationForm,
     /// Column of the time; its stamps must be equally spaced
     #[arg(long, value_name = "COLUMN")]
     pub(super) time: Option<String>,
@@ -129,17 +133,6 @@ pub(super) struct FilterLogOptions {
     /// Write the filtered samples as CSV as well
     #[arg(long, requires = "output")]
     pub(super) csv: bool,
-}
-
-/// How rates follow from outputs.
-pub(super) type Rule = CompensationRule;
-
-fn rule(text: &str) -> Result<Rule, String> {
-    match text {
-        "exact" => Ok(Rule::Exact),
-        "first-order" => Ok(Rule::FirstOrder),
-        _ => Err("expected exact or first-order".to_owned()),
-    }
 }
 
 fn axis(text: &str) -> Result<usize, String> {

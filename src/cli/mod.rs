@@ -25,6 +25,7 @@ mod schema;
 mod select;
 mod signals;
 mod timing;
+mod words;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;

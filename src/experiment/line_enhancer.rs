@@ -1,10 +1,9 @@
 //! Line enhancers from their configuration, and what must be said of them before they run.
 
-use crate::filters::{
-    SignLmsConfig, SignLmsForm as Form, sign_lms_slew_per_sample, sign_lms_slew_samples,
-};
-use crate::scenario::{ConstantUnit, InitialWeights, SignLmsFilterConfig, SignLmsForm};
+use crate::filters::{SignLmsConfig, sign_lms_slew_per_sample, sign_lms_slew_samples};
+use crate::scenario::SignLmsFilterConfig;
 use crate::units::{deg_per_s_to_deg_per_h, rad_per_s_to_deg_per_h};
+use crate::vocabulary::{ConstantUnit, InitialWeights, SignLmsForm};
 
 /// A step above this multiple of the noise of a word makes the output of the sign form noisier than
 /// the filter makes it quieter: its excess noise is 0.627 mu' sigma.
@@ -41,11 +40,7 @@ pub(super) fn sign_lms(config: &SignLmsFilterConfig) -> SignLmsConfig {
     SignLmsConfig {
         taps,
         delay_samples: config.delay_samples as usize,
-        form: match config.form {
-            SignLmsForm::Sign => Form::Sign,
-            SignLmsForm::Nlms => Form::Normalised,
-            SignLmsForm::UnityGain => Form::UnityGain,
-        },
+        form: config.form,
         step: match config.form {
             SignLmsForm::Sign => config.step * unit,
             SignLmsForm::Nlms | SignLmsForm::UnityGain => config.step,
@@ -57,7 +52,7 @@ pub(super) fn sign_lms(config: &SignLmsFilterConfig) -> SignLmsConfig {
         },
         guard: config.guard_deg_per_h,
         norm_recompute_samples: u64::from(config.norm_recompute_samples),
-        output_register: super::textbook::register(config.output_register),
+        output_register: config.output_register,
     }
 }
 
@@ -100,11 +95,7 @@ pub(super) fn notes(name: &str, config: &SignLmsFilterConfig, met: Situation) ->
 
 /// The constants with the unit in which they are meant, and in that of the words; the delay.
 pub(super) fn unit_note(name: &str, config: &SignLmsFilterConfig) -> String {
-    let unit = match config.unit {
-        ConstantUnit::DegPerH => "deg/h",
-        ConstantUnit::DegPerS => "deg/s",
-        ConstantUnit::RadPerS => "rad/s",
-    };
+    let unit = config.unit;
     let filter = sign_lms(config);
     let (step, converted) = match config.form {
         SignLmsForm::Sign => (

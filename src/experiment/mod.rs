@@ -30,7 +30,7 @@ pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogInput, LogMotion, LogSettings, LogTrial,
     LogTrialError, compensate_log, load_log_compensation, load_log_filters, try_log,
 };
-pub use pipeline_export::{ExportForm, Stimulus, export_pipeline, scenario_stimulus};
+pub use pipeline_export::{Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{PipelineSettings, PipelineTiming};
 pub use plan::{Plan, Sound, check_suite, plan_suite};

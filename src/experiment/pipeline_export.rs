@@ -10,22 +10,11 @@ use crate::fpga::export::{
     ExportSettings, IntegerCodes, stimulus_pairs, write_rtl, write_vectors, write_waveform,
 };
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::Desired;
 use crate::fpga::trace::Window;
 use crate::gyro::{self, GyroError};
 use crate::scenario::OutputQuantisation;
 use crate::units::{arcsec_per_s_to_deg_per_h, deg_per_h_to_deg_per_s};
-
-/// What is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ExportForm {
-    /// Stimulus, response, memories, parameters, trace.
-    Vectors,
-    /// VCD and FST of the traced samples.
-    Waveform,
-    /// Verilog with a self-checking testbench and its vectors.
-    Rtl,
-}
+use crate::vocabulary::{DesiredSignal, ExportForm};
 
 /// A sample stream in front of the front end.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,8 +106,8 @@ fn export<F: Fp>(
 
 fn front_end_words(settings: &PipelineSettings) -> String {
     let desired = match settings.desired {
-        Desired::Current => "the newest sample",
-        Desired::MeanOfTwoNewest => "the mean of the two newest samples",
+        DesiredSignal::Current => "the newest sample",
+        DesiredSignal::TwoSampleMean => "the mean of the two newest samples",
     };
     format!(
         "x: the sample {} samples ago; d: {desired}",

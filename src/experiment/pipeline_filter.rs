@@ -60,7 +60,7 @@ impl<F: Fp, E: Engine<F>> PipelineFilter<F, E> {
             front_end: settings.front_end(),
             weights: engine.weights().iter().map(|word| word.to_f64()).collect(),
             engine,
-            register: Register::new(settings.register()),
+            register: Register::new(settings.output_register),
             watch: Watch::new(),
             shape: settings.shape(),
             monitor: Monitor::new(settings.tap_count(), warm_up_samples),

@@ -6,8 +6,8 @@ use crate::metrics::catalogue::{
     SAMPLE_RATE_MAX, SMALLEST_PIVOT,
 };
 use crate::metrics::{ChannelMetrics, Estimate, MetricKey};
-use crate::scenario::OutputRegister;
 use crate::units::us_to_s;
+use crate::vocabulary::OutputRegister;
 use crate::wording::counted;
 
 /// Metrics of the matrix of recursive least squares.

@@ -1,27 +1,21 @@
 //! From a filter of a scenario to the constants of its hardware pipeline.
-//!
-//! The scenario says `elementwise`, the hardware [`Division::Element`]: this is the only place
-//! that knows both vocabularies.
 
 use super::line_enhancer;
 use super::pipeline_filter::{HardwareFilter, PipelineFilter};
-use crate::filters::{Desired as BenchDesired, FrontEndConfig, OutputRegister as BenchRegister};
+use crate::filters::{FrontEndConfig, adaptive_rule};
 use crate::fpga::FpgaError;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::{Desired, FrontEnd, UpdateSign};
+use crate::fpga::front_end::FrontEnd;
 use crate::fpga::health::Warning;
 use crate::fpga::kinds::{CoreSettings, CoreVisitor, PipelineConfig};
 use crate::fpga::lms::{DesiredSource, LmsSettings};
 use crate::fpga::pipeline::Core;
-use crate::fpga::rls::{Division, RlsCore, RlsSettings, UpdateOrder};
+use crate::fpga::rls::{RlsCore, RlsSettings};
 use crate::fpga::sign_lms::SignLmsSettings;
 use crate::fpga::timing::{Usage, sample_period_us, sample_rate_max_khz};
-use crate::scenario::{
-    DesiredSignal, Division as DivisionKey, FilterKind, LmsFilterConfig, NumberFormat,
-    OutputRegister, Pipeline, RlsFilterConfig, SignLmsFilterConfig, UpdateOrder as OrderKey,
-    UpdateSign as SignKey,
-};
+use crate::scenario::{FilterKind, LmsFilterConfig, RlsFilterConfig, SignLmsFilterConfig};
 use crate::signal::FilterShape;
+use crate::vocabulary::{DesiredSignal, NumberFormat, OutputRegister, Pipeline, SignLmsForm};
 
 /// A hardware pipeline with its front end, before any check.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +23,7 @@ pub struct PipelineSettings {
     /// The filter.
     pub core: CoreSettings,
     /// What the filter is asked to reproduce.
-    pub desired: Desired,
+    pub desired: DesiredSignal,
     /// Samples by which the regressors lag the newest sample.
     pub input_lag_samples: usize,
     /// When the result appears.
@@ -57,19 +51,19 @@ pub struct PipelineTiming {
 macro_rules! with_word {
     ($format:expr, $word:ident => $body:expr) => {
         match $format {
-            $crate::scenario::NumberFormat::Binary64 => {
+            $crate::vocabulary::NumberFormat::Binary64 => {
                 type $word = f64;
                 $body
             }
-            $crate::scenario::NumberFormat::Binary32 => {
+            $crate::vocabulary::NumberFormat::Binary32 => {
                 type $word = f32;
                 $body
             }
-            $crate::scenario::NumberFormat::Binary64FlushToZero => {
+            $crate::vocabulary::NumberFormat::Binary64FlushToZero => {
                 type $word = $crate::fpga::float_unit::FlushToZero<f64>;
                 $body
             }
-            $crate::scenario::NumberFormat::Binary32FlushToZero => {
+            $crate::vocabulary::NumberFormat::Binary32FlushToZero => {
                 type $word = $crate::fpga::float_unit::FlushToZero<f32>;
                 $body
             }
@@ -151,25 +145,14 @@ impl PipelineSettings {
         FrontEnd::new(self.desired, self.input_lag_samples)
     }
 
-    /// The output register in the terms of the bench.
-    pub(super) fn register(&self) -> BenchRegister {
-        match self.output_register {
-            OutputRegister::NextSample => BenchRegister::NextSample,
-            OutputRegister::Immediate => BenchRegister::Immediate,
-        }
-    }
-
     /// Regressors, aim and register in the terms of the bench.
     pub(super) fn shape(&self) -> FilterShape {
         let front_end = FrontEndConfig {
-            desired: match self.desired {
-                Desired::Current => BenchDesired::Current,
-                Desired::MeanOfTwoNewest => BenchDesired::TwoSampleMean,
-            },
+            desired: self.desired,
             input_lag_samples: self.input_lag_samples,
-            output_register: self.register(),
+            output_register: self.output_register,
         };
-        front_end.shape(Some(self.tap_count()), front_end.desired.rule())
+        front_end.shape(Some(self.tap_count()), adaptive_rule(self.desired))
     }
 }
 
@@ -195,19 +178,15 @@ fn rls(config: &RlsFilterConfig) -> PipelineSettings {
         tap_count: config.taps as usize,
         forgetting_factor: config.forgetting_factor,
         initial_inverse_correlation: config.initial_inverse_correlation,
-        division: match config.division {
-            DivisionKey::Reciprocal => Division::Reciprocal,
-            DivisionKey::Elementwise => Division::Element,
-        },
-        update_sign: sign(config.update_sign),
-    };
-    let order = match config.update_order {
-        OrderKey::Schedule => UpdateOrder::Schedule,
-        OrderKey::GainFirst => UpdateOrder::GainFirst,
+        division: config.division,
+        update_sign: config.update_sign,
     };
     PipelineSettings {
-        core: CoreSettings::Rls(RlsCore { settings, order }),
-        desired: desired(config.desired),
+        core: CoreSettings::Rls(RlsCore {
+            settings,
+            order: config.update_order,
+        }),
+        desired: config.desired,
         input_lag_samples: config.input_lag_samples as usize,
         output_register: config.output_register,
         format: config.number_format,
@@ -216,7 +195,7 @@ fn rls(config: &RlsFilterConfig) -> PipelineSettings {
 }
 
 fn lms(config: &LmsFilterConfig) -> PipelineSettings {
-    let desired = desired(config.desired);
+    let desired = config.desired;
     let input_lag_samples = config.input_lag_samples as usize;
     let settings = LmsSettings {
         tap_count: config.taps as usize,
@@ -229,7 +208,7 @@ fn lms(config: &LmsFilterConfig) -> PipelineSettings {
             0 => DesiredSource::of(desired),
             _ => DesiredSource::Port,
         },
-        update_sign: sign(config.update_sign),
+        update_sign: config.update_sign,
     };
     PipelineSettings {
         core: CoreSettings::Lms(settings),
@@ -248,31 +227,17 @@ fn sign_lms(config: &SignLmsFilterConfig) -> PipelineSettings {
             tap_count: textbook.taps,
             delay_samples: textbook.delay_samples,
             // The reader has refused the unity-gain form, which is no hardware's.
-            normalised: textbook.form != crate::filters::SignLmsForm::Sign,
+            normalised: textbook.form != SignLmsForm::Sign,
             step: textbook.step,
             regularisation: textbook.regularisation,
             initial_weight: textbook.initial_weight,
             guard: textbook.guard,
             norm_recompute_samples: config.norm_recompute_samples,
         }),
-        desired: Desired::Current,
+        desired: DesiredSignal::Current,
         input_lag_samples: textbook.delay_samples,
         output_register: config.output_register,
         format: config.number_format,
         clock_mhz: config.clock_mhz,
-    }
-}
-
-fn desired(desired: DesiredSignal) -> Desired {
-    match desired {
-        DesiredSignal::Current => Desired::Current,
-        DesiredSignal::TwoSampleMean => Desired::MeanOfTwoNewest,
-    }
-}
-
-fn sign(sign: SignKey) -> UpdateSign {
-    match sign {
-        SignKey::Corrected => UpdateSign::Corrected,
-        SignKey::AsPrinted => UpdateSign::AsPrinted,
     }
 }

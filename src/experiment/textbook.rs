@@ -2,14 +2,12 @@
 
 use super::line_enhancer::sign_lms;
 use crate::filters::{
-    ConstrainedRls, Desired, Filter, FixedFilter, FrontEndConfig, Kalman, Lms, LmsConfig,
-    Normalisation, OutputRegister as Register, RecursiveFilter, Rls, RlsConfig, SignLms,
-    UpdateSign as Sign, butterworth, moving_average, one_pole, savitzky_golay,
+    ConstrainedRls, Filter, FixedFilter, FrontEndConfig, Kalman, Lms, LmsConfig, Normalisation,
+    RecursiveFilter, Rls, RlsConfig, SignLms, butterworth, moving_average, one_pole,
+    savitzky_golay,
 };
-use crate::scenario::{
-    ConstrainedRlsFilterConfig, DesiredSignal, FilterKind, LmsFilterConfig, OutputRegister,
-    RlsFilterConfig, UpdateSign,
-};
+use crate::scenario::{ConstrainedRlsFilterConfig, FilterKind, LmsFilterConfig, RlsFilterConfig};
+use crate::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 
 /// The filter of a kind for words that come every `sample_period_s`.
 ///
@@ -26,24 +24,24 @@ pub(super) fn textbook_filter(kind: &FilterKind, sample_period_s: f64) -> Box<dy
         FilterKind::MovingAverage(config) => Box::new(FixedFilter::delayed(
             moving_average(config.taps as usize),
             config.delay_samples as usize,
-            register(config.output_register),
+            config.output_register,
         )),
         FilterKind::SavitzkyGolay(config) => Box::new(FixedFilter::new(
             savitzky_golay(config.taps as usize, config.polynomial_order as usize),
-            register(config.output_register),
+            config.output_register,
         )),
         FilterKind::OnePole(config) => Box::new(RecursiveFilter::new(
             one_pole(config.cutoff_hz * sample_period_s),
-            register(config.output_register),
+            config.output_register,
         )),
         FilterKind::Butterworth(config) => Box::new(RecursiveFilter::new(
             butterworth(config.order as usize, config.cutoff_hz * sample_period_s),
-            register(config.output_register),
+            config.output_register,
         )),
         FilterKind::Kalman(config) => Box::new(Kalman::new(
             config.measurement_noise_deg_per_h,
             config.rate_random_walk_deg_per_h_per_sqrt_s * sample_period_s.sqrt(),
-            register(config.output_register),
+            config.output_register,
         )),
     }
 }
@@ -87,7 +85,7 @@ fn constrained_rls(config: &ConstrainedRlsFilterConfig) -> RlsConfig {
         taps: config.taps as usize,
         forgetting_factor: config.forgetting_factor,
         initial_inverse_correlation: config.initial_inverse_correlation,
-        update_sign: Sign::Corrected,
+        update_sign: UpdateSign::Corrected,
         front_end: front_end(
             config.desired,
             config.input_lag_samples,
@@ -101,7 +99,7 @@ fn rls(config: &RlsFilterConfig) -> RlsConfig {
         taps: config.taps as usize,
         forgetting_factor: config.forgetting_factor,
         initial_inverse_correlation: config.initial_inverse_correlation,
-        update_sign: sign(config.update_sign),
+        update_sign: config.update_sign,
         front_end: front_end(
             config.desired,
             config.input_lag_samples,
@@ -122,7 +120,7 @@ fn lms(config: &LmsFilterConfig) -> LmsConfig {
         } else {
             Normalisation::None
         },
-        update_sign: sign(config.update_sign),
+        update_sign: config.update_sign,
         front_end: front_end(
             config.desired,
             config.input_lag_samples,
@@ -132,35 +130,13 @@ fn lms(config: &LmsFilterConfig) -> LmsConfig {
 }
 
 fn front_end(
-    aim: DesiredSignal,
+    desired: DesiredSignal,
     input_lag_samples: u32,
     output_register: OutputRegister,
 ) -> FrontEndConfig {
     FrontEndConfig {
-        desired: desired(aim),
+        desired,
         input_lag_samples: input_lag_samples as usize,
-        output_register: register(output_register),
-    }
-}
-
-fn desired(desired: DesiredSignal) -> Desired {
-    match desired {
-        DesiredSignal::Current => Desired::Current,
-        DesiredSignal::TwoSampleMean => Desired::TwoSampleMean,
-    }
-}
-
-/// The output register in the terms of the filters.
-pub(super) fn register(register: OutputRegister) -> Register {
-    match register {
-        OutputRegister::NextSample => Register::NextSample,
-        OutputRegister::Immediate => Register::Immediate,
-    }
-}
-
-fn sign(sign: UpdateSign) -> Sign {
-    match sign {
-        UpdateSign::Corrected => Sign::Corrected,
-        UpdateSign::AsPrinted => Sign::AsPrinted,
+        output_register,
     }
 }

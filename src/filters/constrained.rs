@@ -3,9 +3,9 @@
 use super::core_filter::{Core, CoreFilter, dot};
 use super::divergence::Fault;
 use super::filter::Output;
-use super::front_end::Desired;
 use super::rls::{RlsConfig, RlsCore};
 use crate::signal::WeightRule;
+use crate::vocabulary::DesiredSignal;
 
 /// Weights `w = 1/p + B v`, v found by recursive least squares.
 ///
@@ -76,7 +76,7 @@ impl Core for ConstrainedRlsCore {
         &self.weights
     }
 
-    fn rule(&self, desired: Desired) -> WeightRule {
+    fn rule(&self, desired: DesiredSignal) -> WeightRule {
         WeightRule::Adaptive {
             desired_weights: desired.weights().to_vec(),
             is_dc_gain_one: true,

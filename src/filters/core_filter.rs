@@ -2,8 +2,9 @@
 
 use super::divergence::{Divergence, Fault, Watch};
 use super::filter::{Filter, Output};
-use super::front_end::{Desired, FrontEnd, FrontEndConfig, Register};
+use super::front_end::{FrontEnd, FrontEndConfig, Register, adaptive_rule};
 use crate::signal::{FilterShape, WeightRule};
+use crate::vocabulary::DesiredSignal;
 
 /// Weights and the rule that updates them, on regressors and desired values given directly.
 pub trait Core: Send {
@@ -26,8 +27,8 @@ pub trait Core: Send {
     }
 
     /// How the weights come about.
-    fn rule(&self, desired: Desired) -> WeightRule {
-        desired.rule()
+    fn rule(&self, desired: DesiredSignal) -> WeightRule {
+        adaptive_rule(desired)
     }
 }
 

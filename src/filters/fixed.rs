@@ -5,8 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use super::core_filter::{Core, CoreFilter, dot};
 use super::divergence::Fault;
 use super::filter::Output;
-use super::front_end::{Desired, FrontEndConfig, OutputRegister};
+use super::front_end::FrontEndConfig;
 use crate::signal::WeightRule;
+use crate::vocabulary::{DesiredSignal, OutputRegister};
 
 /// Weights of the mean of the newest `taps` samples.
 ///
@@ -117,7 +118,7 @@ impl Core for FixedCore {
         &self.weights
     }
 
-    fn rule(&self, _desired: Desired) -> WeightRule {
+    fn rule(&self, _desired: DesiredSignal) -> WeightRule {
         WeightRule::Fixed(self.weights.clone())
     }
 }

@@ -2,53 +2,14 @@
 
 use super::filter::Output;
 use crate::signal::{FilterShape, WeightRule};
+use crate::vocabulary::{DesiredSignal, OutputRegister};
 
-/// What an adaptive filter aims at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Desired {
-    /// The current sample, `d = x[k]`.
-    Current,
-    /// The mean of the newest two samples, `d = (x[k] + x[k-1]) / 2`.
-    TwoSampleMean,
-}
-
-impl Desired {
-    /// How the weights of a filter that is free to reach this aim come about.
-    #[must_use]
-    pub fn rule(self) -> WeightRule {
-        WeightRule::Adaptive {
-            desired_weights: self.weights().to_vec(),
-            is_dc_gain_one: false,
-        }
-    }
-
-    /// Weights on the samples of age 0, 1, ...
-    #[must_use]
-    pub fn weights(self) -> &'static [f64] {
-        match self {
-            Self::Current => &[1.0],
-            Self::TwoSampleMean => &[0.5, 0.5],
-        }
-    }
-}
-
-/// When a filter's result appears.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OutputRegister {
-    /// At the next sample tick: the output at sample k is `y[k-1]`, the first output is 0.
-    NextSample,
-    /// At the tick of the sample it was computed from.
-    Immediate,
-}
-
-impl OutputRegister {
-    /// Samples the register adds to the age of an output.
-    #[must_use]
-    pub fn samples(self) -> usize {
-        match self {
-            Self::NextSample => 1,
-            Self::Immediate => 0,
-        }
+/// How the weights of a filter that is free to reach its desired signal come about.
+#[must_use]
+pub fn adaptive_rule(desired: DesiredSignal) -> WeightRule {
+    WeightRule::Adaptive {
+        desired_weights: desired.weights().to_vec(),
+        is_dc_gain_one: false,
     }
 }
 
@@ -56,7 +17,7 @@ impl OutputRegister {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrontEndConfig {
     /// Desired signal.
-    pub desired: Desired,
+    pub desired: DesiredSignal,
     /// Samples by which the newest regressor lags the newest sample: 1 makes a one-step predictor
     /// of `x[k]`, 0 lets the filter see the sample it aims at.
     pub input_lag_samples: usize,
@@ -69,7 +30,7 @@ impl FrontEndConfig {
     #[must_use]
     pub fn direct(output_register: OutputRegister) -> Self {
         Self {
-            desired: Desired::Current,
+            desired: DesiredSignal::Current,
             input_lag_samples: 0,
             output_register,
         }
@@ -122,7 +83,7 @@ impl DelayLine {
 #[derive(Clone, Debug)]
 pub(super) struct FrontEnd {
     line: DelayLine,
-    desired: Desired,
+    desired: DesiredSignal,
     lag: usize,
     taps: usize,
 }
@@ -143,8 +104,8 @@ impl FrontEnd {
         self.line.push(sample);
         let history = self.line.newest_first();
         let desired = match self.desired {
-            Desired::Current => history[0],
-            Desired::TwoSampleMean => 0.5 * (history[0] + history[1]),
+            DesiredSignal::Current => history[0],
+            DesiredSignal::TwoSampleMean => 0.5 * (history[0] + history[1]),
         };
         (&history[self.lag..self.lag + self.taps], desired)
     }

@@ -4,7 +4,7 @@ use super::core_filter::{Core, CoreFilter, dot};
 use super::divergence::Fault;
 use super::filter::Output;
 use super::front_end::FrontEndConfig;
-use super::update_sign::UpdateSign;
+use crate::vocabulary::UpdateSign;
 
 /// What the step of a least-mean-squares filter is divided by.
 #[derive(Clone, Copy, Debug, PartialEq)]

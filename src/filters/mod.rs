@@ -32,24 +32,21 @@ mod recursive;
 mod rls;
 mod sign_lms;
 mod stability;
-mod update_sign;
 
 pub use constrained::{ConstrainedRls, ConstrainedRlsCore};
 pub use core_filter::{Core, CoreFilter};
 pub use divergence::{Divergence, DivergenceKind, Fault, Watch};
 pub use filter::{Filter, Output};
 pub use fixed::{FixedCore, FixedFilter, moving_average, savitzky_golay};
-pub use front_end::{Desired, FrontEndConfig, OutputRegister, Register};
+pub use front_end::{FrontEndConfig, Register, adaptive_rule};
 pub use lms::{Lms, LmsConfig, LmsCore, Normalisation};
 pub use recursive::{
     Kalman, KalmanCore, RecursiveFilter, SectionsCore, butterworth, kalman_gain, one_pole,
 };
 pub use rls::{Rls, RlsConfig, RlsCore};
 pub use sign_lms::{
-    SignLms, SignLmsConfig, SignLmsCore, SignLmsForm, sign_lms_slew_per_sample,
-    sign_lms_slew_samples,
+    SignLms, SignLmsConfig, SignLmsCore, sign_lms_slew_per_sample, sign_lms_slew_samples,
 };
 pub use stability::{
     constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
 };
-pub use update_sign::UpdateSign;

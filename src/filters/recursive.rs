@@ -5,8 +5,9 @@ use std::f64::consts::PI;
 use super::core_filter::{Core, CoreFilter};
 use super::divergence::Fault;
 use super::filter::Output;
-use super::front_end::{Desired, FrontEndConfig, OutputRegister};
+use super::front_end::FrontEndConfig;
 use crate::signal::{Section, WeightRule};
+use crate::vocabulary::{DesiredSignal, OutputRegister};
 
 /// One-pole low pass `y += k (x - y)` with half power at a frequency.
 ///
@@ -153,7 +154,7 @@ impl Core for SectionsCore {
         1
     }
 
-    fn rule(&self, _desired: Desired) -> WeightRule {
+    fn rule(&self, _desired: DesiredSignal) -> WeightRule {
         WeightRule::Sections(self.sections.clone())
     }
 }
@@ -218,7 +219,7 @@ impl Core for KalmanCore {
         1
     }
 
-    fn rule(&self, _desired: Desired) -> WeightRule {
+    fn rule(&self, _desired: DesiredSignal) -> WeightRule {
         WeightRule::Sections(one_pole_of_gain(kalman_gain(self.step_to_noise_variance)))
     }
 }

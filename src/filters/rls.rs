@@ -4,7 +4,7 @@ use super::core_filter::{Core, CoreFilter, dot};
 use super::divergence::{DivergenceKind, Fault};
 use super::filter::Output;
 use super::front_end::FrontEndConfig;
-use super::update_sign::UpdateSign;
+use crate::vocabulary::UpdateSign;
 
 /// Settings of a recursive-least-squares filter.
 #[derive(Clone, Debug, PartialEq)]

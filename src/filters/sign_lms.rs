@@ -11,22 +11,9 @@ use std::cmp::Ordering;
 use super::core_filter::{Core, CoreFilter};
 use super::divergence::Fault;
 use super::filter::Output;
-use super::front_end::{Desired, FrontEndConfig, OutputRegister};
+use super::front_end::FrontEndConfig;
 use crate::signal::WeightRule;
-
-/// How the weights of a line enhancer are corrected.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SignLmsForm {
-    /// Equation (34): `w + mu x sgn(e) / (alpha + |x|^2)` with `sgn(0) = 0`. The step mu has the
-    /// unit of the words: the output moves by at most mu per sample, whatever the error.
-    Sign,
-    /// Equation (33), normalised least mean squares: `w + mu x e / (alpha + |x|^2)`, mu without
-    /// unit, stable for `0 < mu < 2`.
-    Normalised,
-    /// The same along the part of x that leaves the sum of the weights alone, `x - mean(x)`: from
-    /// weights of sum 1 the DC gain stays 1.
-    UnityGain,
-}
+use crate::vocabulary::{DesiredSignal, OutputRegister, SignLmsForm};
 
 /// Settings of a line enhancer, in the unit of its words.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +45,7 @@ impl SignLmsConfig {
     #[must_use]
     pub fn front_end(&self) -> FrontEndConfig {
         FrontEndConfig {
-            desired: Desired::Current,
+            desired: DesiredSignal::Current,
             input_lag_samples: self.delay_samples,
             output_register: self.output_register,
         }
@@ -160,7 +147,7 @@ impl SignLmsCore {
             SignLmsForm::Sign if error > 0.0 => step,
             SignLmsForm::Sign if error < 0.0 => -step,
             SignLmsForm::Sign => 0.0,
-            SignLmsForm::Normalised | SignLmsForm::UnityGain => error * step,
+            SignLmsForm::Nlms | SignLmsForm::UnityGain => error * step,
         }
     }
 }
@@ -180,7 +167,7 @@ impl Core for SignLmsCore {
         let gain = self.gain(desired - value);
         let mean = match self.config.form {
             SignLmsForm::UnityGain => taps.iter().sum::<f64>() / taps.len() as f64,
-            SignLmsForm::Sign | SignLmsForm::Normalised => 0.0,
+            SignLmsForm::Sign | SignLmsForm::Nlms => 0.0,
         };
         for (weight, tap) in self.weights.iter_mut().zip(taps) {
             *weight += (tap - mean) * gain;
@@ -197,7 +184,7 @@ impl Core for SignLmsCore {
         self.config.taps + 1
     }
 
-    fn rule(&self, desired: Desired) -> WeightRule {
+    fn rule(&self, desired: DesiredSignal) -> WeightRule {
         WeightRule::Adaptive {
             desired_weights: desired.weights().to_vec(),
             is_dc_gain_one: self.config.form == SignLmsForm::UnityGain,

@@ -32,10 +32,14 @@
 
 use std::fmt::Debug;
 
+use crate::vocabulary::NumberFormat;
+
 /// A floating-point word with the four operations the pipelines own a unit for.
 pub trait Fp: Copy + Debug + PartialEq + PartialOrd + Send + Sync + 'static {
-    /// Name of the format, as written into exports.
-    const NAME: &'static str;
+    /// The format.
+    const FORMAT: NumberFormat;
+    /// Its name, as written into exports.
+    const NAME: &'static str = Self::FORMAT.word();
     /// Bits of a word.
     const WIDTH: u32;
     /// Spacing of the numbers just above one.
@@ -79,7 +83,7 @@ pub trait Fp: Copy + Debug + PartialEq + PartialOrd + Send + Sync + 'static {
 }
 
 impl Fp for f64 {
-    const NAME: &'static str = "binary64";
+    const FORMAT: NumberFormat = NumberFormat::Binary64;
     const WIDTH: u32 = 64;
     const EPSILON: f64 = f64::EPSILON;
     const FLUSHES_SUBNORMALS: bool = false;
@@ -125,7 +129,7 @@ impl Fp for f64 {
 }
 
 impl Fp for f32 {
-    const NAME: &'static str = "binary32";
+    const FORMAT: NumberFormat = NumberFormat::Binary32;
     const WIDTH: u32 = 32;
     const EPSILON: f64 = 1.192_092_895_507_812_5e-7; // 2^-23
     const FLUSHES_SUBNORMALS: bool = false;
@@ -214,9 +218,9 @@ impl Flush for f32 {
 }
 
 macro_rules! flush_to_zero {
-    ($word:ty, $name:literal) => {
+    ($word:ty, $format:expr) => {
         impl Fp for FlushToZero<$word> {
-            const NAME: &'static str = $name;
+            const FORMAT: NumberFormat = $format;
             const WIDTH: u32 = <$word as Fp>::WIDTH;
             const EPSILON: f64 = <$word as Fp>::EPSILON;
             const FLUSHES_SUBNORMALS: bool = true;
@@ -261,8 +265,8 @@ macro_rules! flush_to_zero {
     };
 }
 
-flush_to_zero!(f64, "binary64-ftz");
-flush_to_zero!(f32, "binary32-ftz");
+flush_to_zero!(f64, NumberFormat::Binary64FlushToZero);
+flush_to_zero!(f32, NumberFormat::Binary32FlushToZero);
 
 #[cfg(test)]
 mod tests {

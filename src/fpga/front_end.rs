@@ -17,6 +17,7 @@
 //! Reset: all registers `+0`.
 
 use super::float_unit::Fp;
+use crate::vocabulary::DesiredSignal;
 
 /// One word pair for a filter core.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,28 +39,10 @@ impl<F: Fp> Pair<F> {
     }
 }
 
-/// Sign before the error term of the weight update, with `e = d - y`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UpdateSign {
-    /// Plus: the form that converges.
-    Corrected,
-    /// Minus: eqs. (6) and (9) as the paper prints them. Diverges; kept to show it.
-    AsPrinted,
-}
-
-/// What the filter is asked to reproduce.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Desired {
-    /// The newest sample.
-    Current,
-    /// `(x_k + x_{k-1}) * 0.5`: one sum, one product, each rounded.
-    MeanOfTwoNewest,
-}
-
 /// The hold registers in front of a core.
 #[derive(Clone, Debug)]
 pub struct FrontEnd<F> {
-    desired: Desired,
+    desired: DesiredSignal,
     half: F,
     /// Newest first: `held[0]` is XP, the previous sample.
     held: Vec<F>,
@@ -69,7 +52,7 @@ pub struct FrontEnd<F> {
 impl<F: Fp> FrontEnd<F> {
     /// A front end whose regressor is `lag` samples older than the newest one.
     #[must_use]
-    pub fn new(desired: Desired, lag: usize) -> Self {
+    pub fn new(desired: DesiredSignal, lag: usize) -> Self {
         Self {
             desired,
             half: F::from_f64(0.5),
@@ -81,7 +64,7 @@ impl<F: Fp> FrontEnd<F> {
     /// The default of the RLS filter: `L` gets `x_{k-1}`, `d = x_k`.
     #[must_use]
     pub fn one_step_predictor() -> Self {
-        Self::new(Desired::Current, 1)
+        Self::new(DesiredSignal::Current, 1)
     }
 
     /// The pair for the next sample of the stream.
@@ -93,8 +76,8 @@ impl<F: Fp> FrontEnd<F> {
             self.held[self.lag - 1]
         };
         let desired = match self.desired {
-            Desired::Current => sample,
-            Desired::MeanOfTwoNewest => sample.add(self.held[0]).mul(self.half),
+            DesiredSignal::Current => sample,
+            DesiredSignal::TwoSampleMean => sample.add(self.held[0]).mul(self.half),
         };
         self.held.rotate_right(1);
         self.held[0] = sample;
@@ -116,11 +99,11 @@ mod tests {
 
     #[test]
     fn lag_and_mean_follow_their_definition() {
-        let mut front_end = FrontEnd::<f64>::new(Desired::MeanOfTwoNewest, 2);
+        let mut front_end = FrontEnd::<f64>::new(DesiredSignal::TwoSampleMean, 2);
         let pairs: Vec<_> = [1.0, 2.0, 4.0].map(|x| front_end.pair(x)).into();
         let want = [(0.0, 0.5), (0.0, 1.5), (1.0, 3.0)].map(|(x, d)| Pair::from_f64(x, d));
         assert_eq!(pairs, want);
-        let mut direct = FrontEnd::<f64>::new(Desired::Current, 0);
+        let mut direct = FrontEnd::<f64>::new(DesiredSignal::Current, 0);
         assert_eq!(direct.pair(3.0), Pair::from_f64(3.0, 3.0));
     }
 }

@@ -131,10 +131,11 @@ kinds! {
 mod tests {
     use super::*;
     use crate::fpga::engine::Engine;
-    use crate::fpga::front_end::{Pair, UpdateSign};
+    use crate::fpga::front_end::Pair;
     use crate::fpga::lms::DesiredSource;
-    use crate::fpga::rls::{Division, RlsSettings, UpdateOrder};
+    use crate::fpga::rls::RlsSettings;
     use crate::fpga::trace::Window;
+    use crate::vocabulary::{Division, UpdateOrder, UpdateSign};
 
     /// Settings of every kind, in the order of the list.
     fn examples() -> [CoreSettings; KINDS.len()] {

@@ -6,11 +6,12 @@
 use super::engine::Engine;
 use super::error::FpgaError;
 use super::float_unit::Fp;
-use super::front_end::{Pair, UpdateSign};
+use super::front_end::Pair;
 use super::health::Warning;
 use super::machine::{Machine, Sequencer};
 use super::timing::{Units, Usage, measure};
 use super::trace::{ClockRecord, Recorder, Window};
+use crate::vocabulary::UpdateSign;
 
 /// What is the same for all pipelines of a kind.
 #[derive(Debug, PartialEq)]

@@ -2,6 +2,8 @@
 
 use serde::Deserialize;
 
+use crate::vocabulary::{EstimatorKind, ForgettingForm};
+
 use super::turntable_config::CaseAxis;
 
 /// A calibration campaign: groups of constant rate, the case re-mounted between some of them.
@@ -89,7 +91,7 @@ pub struct CalibrationConfig {
     /// The one whose parameters are applied.
     pub apply: EstimatorKind,
     /// How the forgetting factor falls with the step of temperature between groups.
-    pub forgetting_form: ForgettingLaw,
+    pub forgetting_form: ForgettingForm,
     /// Its constant where no temperature coefficient is fitted, 1/K.
     pub forgetting_constant_per_k: f64,
     /// Its constant beside a fitted temperature coefficient, 1/K.
@@ -112,54 +114,4 @@ impl CalibrationConfig {
         }
         kinds
     }
-}
-
-/// An estimator of the twelve parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum EstimatorKind {
-    /// Least squares over all groups.
-    Batch,
-    /// The same with a temperature coefficient of each bias.
-    BatchTemperature,
-    /// The patent's recursion with temperature-driven forgetting, in square-root form.
-    Arls,
-    /// The same recursion of covariances, to the letter.
-    ArlsCovariance,
-    /// Least squares with the weights of the recursion and a temperature coefficient of each bias.
-    ArlsTemperature,
-}
-
-impl EstimatorKind {
-    /// The word in files.
-    #[must_use]
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Batch => "batch",
-            Self::BatchTemperature => "batch-temperature",
-            Self::Arls => "arls",
-            Self::ArlsCovariance => "arls-covariance",
-            Self::ArlsTemperature => "arls-temperature",
-        }
-    }
-
-    /// Whether it fits a temperature coefficient of each bias.
-    #[must_use]
-    pub fn fits_temperature(self) -> bool {
-        matches!(self, Self::BatchTemperature | Self::ArlsTemperature)
-    }
-}
-
-/// How the forgetting factor falls with the step of temperature.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ForgettingLaw {
-    /// `1 - c dT`.
-    Linear,
-    /// `exp(-c dT)`.
-    Exponential,
-    /// `1 / (1 + c dT)`.
-    Rational,
-    /// `exp(-(c dT)^2)`.
-    Gaussian,
 }

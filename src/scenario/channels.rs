@@ -77,7 +77,7 @@ impl Scenario {
             return Vec::new();
         }
         let kinds = self.calibration.kinds();
-        let names = kinds.iter().map(|kind| kind.as_str());
+        let names = kinds.iter().map(|kind| kind.word());
         names.map(|name| format!("{CALIBRATION}{name}")).collect()
     }
 

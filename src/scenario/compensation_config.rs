@@ -2,26 +2,18 @@
 
 use serde::Deserialize;
 
+use crate::vocabulary::CompensationForm;
+
 /// How the constant errors of an assembly are taken out of its outputs.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CompensationConfig {
     /// How rates follow from the outputs.
-    pub form: CompensationRule,
+    pub form: CompensationForm,
     /// The parameters; those of a file have been read into their place. `None`: a campaign finds them.
     pub parameters: Option<CompensationParameters>,
     /// The calibration scenario that finds them, in its canonical spelling.
     pub campaign_scenario: Option<String>,
-}
-
-/// How rates follow from the outputs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CompensationRule {
-    /// `XA^-1 (Wm - XB)`.
-    Exact,
-    /// `Wm - (K_G Wm + theta_G Wm + B_G)`, the patent's equations (23) and (24).
-    FirstOrder,
 }
 
 /// Errors of an assembly as a calibration found them; names, signs and units are those of

@@ -16,6 +16,7 @@ use super::compensation_config::CompensationConfig;
 use super::filter_config::FilterConfig;
 use super::gyro_config::GyroConfig;
 use super::turntable_config::TurntableConfig;
+use crate::vocabulary::AveragingTimes;
 
 /// One resolved run.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -110,18 +111,6 @@ pub enum AllanEstimatorConfig {
     Hadamard,
 }
 
-/// Averaging times of an Allan curve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum AveragingTimes {
-    /// 1, 2, 4, 8, ... samples.
-    Octave,
-    /// 1, 2, 5, 10, ... samples.
-    Decade,
-    /// Every number of samples, up to 1000 of them.
-    All,
-}
-
 impl FromStr for AllanEstimatorConfig {
     type Err = String;
 
@@ -132,19 +121,6 @@ impl FromStr for AllanEstimatorConfig {
             "modified" => Ok(Self::Modified),
             "hadamard" => Ok(Self::Hadamard),
             _ => Err("expected overlapping, plain, modified or hadamard".to_owned()),
-        }
-    }
-}
-
-impl FromStr for AveragingTimes {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match text {
-            "octave" => Ok(Self::Octave),
-            "decade" => Ok(Self::Decade),
-            "all" => Ok(Self::All),
-            _ => Err("expected octave, decade or all".to_owned()),
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Checks across the keys of a line enhancer.
 
-use super::filter_config::{
-    FilterConfig, FilterKind, InitialWeights, Pipeline, SignLmsFilterConfig, SignLmsForm,
-};
+use super::filter_config::{FilterConfig, FilterKind, SignLmsFilterConfig};
+use crate::vocabulary::{InitialWeights, Pipeline, SignLmsForm};
 
 /// Step at and beyond which the normalised forms are unstable in any input.
 const NORMALISED_STEP_BOUND: f64 = 2.0;

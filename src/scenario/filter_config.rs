@@ -2,6 +2,11 @@
 
 use serde::Deserialize;
 
+use crate::vocabulary::{
+    ConstantUnit, DesiredSignal, Division, InitialWeights, NumberFormat, OutputRegister, Pipeline,
+    SignLmsForm, UpdateOrder, UpdateSign,
+};
+
 /// One filter channel.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct FilterConfig {
@@ -202,117 +207,4 @@ pub struct KalmanFilterConfig {
     pub rate_random_walk_deg_per_h_per_sqrt_s: f64,
     /// When the result appears.
     pub output_register: OutputRegister,
-}
-
-/// What an adaptive filter aims at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DesiredSignal {
-    /// The current sample.
-    Current,
-    /// The mean of the newest two samples.
-    TwoSampleMean,
-}
-
-/// How the weights of a line enhancer are corrected.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SignLmsForm {
-    /// By the sign of the error, over the energy: the patent's.
-    Sign,
-    /// By the error, over the energy.
-    Nlms,
-    /// By the error, over the energy, the sum of the weights left alone.
-    UnityGain,
-}
-
-/// Unit in which the constants of a line enhancer are meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-pub enum ConstantUnit {
-    /// Degrees per hour, the unit of the words.
-    #[serde(rename = "deg/h")]
-    DegPerH,
-    /// Degrees per second.
-    #[serde(rename = "deg/s")]
-    DegPerS,
-    /// Radians per second.
-    #[serde(rename = "rad/s")]
-    RadPerS,
-}
-
-/// Weights of a line enhancer at the start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum InitialWeights {
-    /// 1/M in every tap: the mean of the taps.
-    Mean,
-    /// Zero.
-    Zero,
-}
-
-/// When a filter's result appears.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum OutputRegister {
-    /// At the next sample tick.
-    NextSample,
-    /// As soon as it is computed.
-    Immediate,
-}
-
-/// Sign before the error term of the weight update.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum UpdateSign {
-    /// Plus: the form that converges.
-    Corrected,
-    /// Minus, as the paper's equations (6) and (9) print it: diverges.
-    AsPrinted,
-}
-
-/// Arithmetic of a filter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Pipeline {
-    /// The textbook recursion.
-    Textbook,
-    /// The pipeline of the hardware: every bit and every clock.
-    Fpga,
-}
-
-/// Words of a hardware pipeline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-pub enum NumberFormat {
-    /// IEEE 754 binary64.
-    #[serde(rename = "binary64")]
-    Binary64,
-    /// IEEE 754 binary32.
-    #[serde(rename = "binary32")]
-    Binary32,
-    /// binary64 whose subnormal numbers count as zero.
-    #[serde(rename = "binary64-ftz")]
-    Binary64FlushToZero,
-    /// binary32 whose subnormal numbers count as zero.
-    #[serde(rename = "binary32-ftz")]
-    Binary32FlushToZero,
-}
-
-/// Where a hardware pipeline divides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Division {
-    /// Once per sample; the products are multiplied by the reciprocal.
-    Reciprocal,
-    /// Once for each element of the matrix.
-    Elementwise,
-}
-
-/// Order of the products in the update of the inverse correlation matrix.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum UpdateOrder {
-    /// `(t_i t_j) r`, the hardware's: the matrix stays symmetric to the last bit.
-    Schedule,
-    /// `(t_i r) t_j`, the gain vector first: fails below a forgetting factor of 1.
-    GainFirst,
 }

@@ -3,14 +3,14 @@
 //! A key that is not here acts in every run. A condition that only a run could find out, such as a
 //! limit that the motion never reaches, is none.
 
-use super::calibration_config::EstimatorKind;
 use super::config::{Fidelity, GateConfig, GateDecision, Scenario};
-use super::filter_config::{FilterConfig, FilterKind, Pipeline};
+use super::filter_config::{FilterConfig, FilterKind};
 use super::gyro_config::{NoiseDraw, OutputQuantisation};
 use super::stairs::Stairs;
 use super::thermal_config::{PowerConfig, TemperatureConfig, ThermalWarmUp};
 use super::turntable_config::{MotionConfig, ServoConfig};
 use super::vibration_config::VibrationMotion;
+use crate::vocabulary::{EstimatorKind, Pipeline};
 
 /// The condition under which a key acts.
 #[derive(Clone, Copy)]

@@ -68,19 +68,17 @@ mod vibration_config;
 mod weight;
 
 pub use assembly_config::AssemblyConfig;
-pub use calibration_config::{
-    CalibrationConfig, CampaignConfig, CampaignGroup, EstimatorKind, ForgettingLaw,
-};
+pub use calibration_config::{CalibrationConfig, CampaignConfig, CampaignGroup};
 pub use comparison_config::{
     AssumptionConfig, ComparisonColumn, ComparisonConfig, ComparisonKind, ComparisonRowConfig,
     FigureConfig,
 };
-pub use compensation_config::{CompensationConfig, CompensationParameters, CompensationRule};
+pub use compensation_config::{CompensationConfig, CompensationParameters};
 pub use compensation_source::load_calibration;
 pub use complaints::ScenarioErrors;
 pub use config::{
-    AllanConfig, AllanEstimatorConfig, AveragingTimes, Fidelity, FilterState, GateConfig,
-    GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig, SamplesFormat, Scenario,
+    AllanConfig, AllanEstimatorConfig, Fidelity, FilterState, GateConfig, GateDecision,
+    InconclusivePolicy, OutputConfig, PublishedConfig, SamplesFormat, Scenario,
 };
 pub(crate) use cross_comparison::slug;
 pub use defaults::{reference_calibration, reference_toml};
@@ -89,11 +87,9 @@ pub use error::{Location, ScenarioError};
 pub(crate) use error::{in_both, in_order, portable_place};
 pub use excerpt::{bounded, excerpt};
 pub use filter_config::{
-    ButterworthFilterConfig, ConstantUnit, ConstrainedRlsFilterConfig, DesiredSignal, Division,
-    FilterConfig, FilterKind, InitialWeights, KalmanFilterConfig, LmsFilterConfig,
-    MovingAverageFilterConfig, NumberFormat, OnePoleFilterConfig, OutputRegister, Pipeline,
-    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig, SignLmsForm, UpdateOrder,
-    UpdateSign,
+    ButterworthFilterConfig, ConstrainedRlsFilterConfig, FilterConfig, FilterKind,
+    KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, OnePoleFilterConfig,
+    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig,
 };
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,

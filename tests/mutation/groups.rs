@@ -6,8 +6,9 @@ use std::sync::LazyLock;
 use fogbench::experiment::{GroupsSettings, calibrate_groups};
 use fogbench::recording::read_groups;
 use fogbench::report::{calibrate_json, calibrate_text};
-use fogbench::scenario::{CalibrationConfig, EstimatorKind, reference_calibration};
+use fogbench::scenario::{CalibrationConfig, reference_calibration};
 use fogbench::units::{deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h};
+use fogbench::vocabulary::EstimatorKind;
 
 use super::values::{Spelling, mutate_bytes, mutate_table};
 use super::{Outcome, assert_complaint, assert_document, campaign, result_folder};

@@ -8,7 +8,8 @@ use fogbench::recording::{
     AssemblyColumns, Log, LogFormat, RateUnit, TimeUnit, read_assembly_log, read_log, read_stimulus,
 };
 use fogbench::report::{log_json, log_text};
-use fogbench::scenario::{AllanConfig, AllanEstimatorConfig, AveragingTimes};
+use fogbench::scenario::{AllanConfig, AllanEstimatorConfig};
+use fogbench::vocabulary::AveragingTimes;
 
 use super::values::{Spelling, mutate_bytes, mutate_table, record};
 use super::{Outcome, assert_complaint, assert_document, campaign, result_folder};

@@ -3,9 +3,10 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use fogbench::experiment::{ExportForm, PipelineSettings, Stimulus, export_pipeline};
+use fogbench::experiment::{PipelineSettings, Stimulus, export_pipeline};
 use fogbench::recording::read_stimulus;
 use fogbench::scenario::load_suite;
+use fogbench::vocabulary::ExportForm;
 
 use super::values::{Spelling, mutate_bytes, mutate_table, record};
 use super::{Outcome, assert_complaint, campaign};

@@ -2,7 +2,7 @@
 
 use fogbench::fpga::float_unit::Fp;
 use fogbench::fpga::front_end::{FrontEnd, Pair};
-use fogbench::fpga::rls::Division;
+use fogbench::vocabulary::Division;
 
 /// One set-up of the bit comparisons.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ pub(crate) const SETUPS: [Setup; 4] = [
     Setup {
         name: "static",
         alpha: 1.0,
-        division: Division::Element,
+        division: Division::Elementwise,
     },
     Setup {
         name: "rocking",
@@ -32,7 +32,7 @@ pub(crate) const SETUPS: [Setup; 4] = [
     Setup {
         name: "white-forgetting",
         alpha: 0.98,
-        division: Division::Element,
+        division: Division::Elementwise,
     },
 ];
 

@@ -1,7 +1,7 @@
 //! The compensation stage: from three words of an assembly to three compensated ones.
 
 use crate::calibration::{
-    Calibration, CalibrationError, Compensation, CompensationForm, ErrorParameters, Misalignment,
+    Calibration, CalibrationError, Compensation, ErrorParameters, Misalignment,
 };
 use crate::gyro::CoilThermometer;
 use crate::scenario::{CompensationParameters, GyroConfig};
@@ -10,6 +10,7 @@ use crate::units::{
     MICRO, arcsec_to_rad, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, rad_to_arcsec,
     ratio_to_ppm,
 };
+use crate::vocabulary::CompensationForm;
 
 /// What is taken out of the outputs, and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,10 +87,7 @@ impl Parameters {
         };
         let angles = &self.found.misalignment_rad;
         CompensationSheet {
-            form: match self.form {
-                CompensationForm::Exact => "exact",
-                CompensationForm::FirstOrder => "first-order",
-            },
+            form: self.form.word(),
             source: self.source.clone(),
             bias_deg_per_h: self.found.bias_deg_per_h(),
             scale_factor_error_ppm: self.found.scale_error.map(ratio_to_ppm),

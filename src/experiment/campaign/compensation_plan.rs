@@ -2,9 +2,10 @@
 
 use super::compensation::Parameters;
 use super::groups::run_campaign;
-use crate::calibration::{CalibrationError, CompensationForm};
+use crate::calibration::CalibrationError;
 use crate::experiment::run::{Progress, Unfinished};
-use crate::scenario::{CompensationConfig, CompensationRule, Resolved, Scenario};
+use crate::scenario::{Resolved, Scenario};
+use crate::vocabulary::CompensationForm;
 
 /// How a run comes by its parameters.
 #[derive(Clone, Debug)]
@@ -29,7 +30,7 @@ impl CompensationPlan {
         let Some(config) = &resolved.scenario.compensation else {
             return Ok(None);
         };
-        let form = form(config);
+        let form = config.form;
         if let Some(campaign) = &resolved.campaign {
             let scenario = Box::new(campaign.scenario.clone());
             return Ok(Some(Self::Campaign { scenario, form }));
@@ -68,13 +69,5 @@ struct Unseen<'a>(&'a dyn Progress);
 impl Progress for Unseen<'_> {
     fn should_stop(&self) -> bool {
         self.0.should_stop()
-    }
-}
-
-/// The form that a scenario asks for.
-fn form(config: &CompensationConfig) -> CompensationForm {
-    match config.form {
-        CompensationRule::Exact => CompensationForm::Exact,
-        CompensationRule::FirstOrder => CompensationForm::FirstOrder,
     }
 }

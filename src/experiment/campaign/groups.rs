@@ -156,7 +156,7 @@ pub(crate) fn check_campaign(
             let key = "calibration.apply";
             let message = format!(
                 "{key} = \"{}\" fits a coefficient of temperature: {error}",
-                scenario.calibration.apply.as_str()
+                scenario.calibration.apply.word()
             );
             return Err((key, message));
         }

@@ -33,7 +33,7 @@ pub(crate) fn estimator_of(scenario: &Scenario, channel: &str) -> Option<&'stati
     let channels = scenario.calibration_channels().into_iter();
     let mut pairs = channels.zip(scenario.calibration.kinds());
     let (_, kind) = pairs.find(|(name, _)| name == channel)?;
-    Some(kind.as_str())
+    Some(kind.word())
 }
 
 /// Whether the estimate of an estimator has a metric.

@@ -2,12 +2,12 @@
 
 use super::units::{calibration_estimate, compensation_checks, observation, plan_table};
 use crate::calibration::{
-    Calibration, CalibrationError, Estimator, Forgetting, ForgettingForm, GroupDesign,
-    GroupObservation, Reading, RecursiveSettings, TemperatureColumns, check_plan, diagnose,
-    estimate,
+    Calibration, CalibrationError, Estimator, Forgetting, GroupDesign, GroupObservation, Reading,
+    RecursiveSettings, TemperatureColumns, check_plan, diagnose, estimate,
 };
-use crate::scenario::{CalibrationConfig, EstimatorKind, ForgettingLaw};
+use crate::scenario::CalibrationConfig;
 use crate::signal::{CalibrationGroup, CalibrationSheet, CalibrationTruth};
+use crate::vocabulary::EstimatorKind;
 
 /// Reduced chi-square beyond which the model lacks something: with five groups to spare noise alone
 /// gets there once in 50 000 campaigns.
@@ -50,7 +50,7 @@ pub fn calibration_sheet(
         match estimate(&observations, &estimator(kind, settings), reference) {
             Ok(calibration) => {
                 estimates.push(calibration_estimate(
-                    kind.as_str(),
+                    kind.word(),
                     groups,
                     &calibration,
                     truth,
@@ -60,7 +60,7 @@ pub fn calibration_sheet(
                 }
             }
             Err(error) if kind == settings.apply => return Err(error),
-            Err(error) => warnings.push(format!("no estimate by {}: {error}", kind.as_str())),
+            Err(error) => warnings.push(format!("no estimate by {}: {error}", kind.word())),
         }
     }
     let applied = applied.expect("the applied estimator runs or its error is returned above");
@@ -72,7 +72,7 @@ pub fn calibration_sheet(
             .map(|plan| plan_table(&plan)),
         groups: groups.to_vec(),
         estimates,
-        applied: settings.apply.as_str().to_owned(),
+        applied: settings.apply.word().to_owned(),
         compensation: compensation_checks(&applied, groups, truth)?,
         truth: truth.copied(),
         ranking: Vec::new(),
@@ -85,12 +85,7 @@ pub fn calibration_sheet(
 
 /// The estimator of a kind with its settings.
 fn estimator(kind: EstimatorKind, settings: &CalibrationConfig) -> Estimator {
-    let form = match settings.forgetting_form {
-        ForgettingLaw::Linear => ForgettingForm::Linear,
-        ForgettingLaw::Exponential => ForgettingForm::Exponential,
-        ForgettingLaw::Rational => ForgettingForm::Rational,
-        ForgettingLaw::Gaussian => ForgettingForm::Gaussian,
-    };
+    let form = settings.forgetting_form;
     let forgetting = |constant_per_k| Forgetting::Temperature {
         form,
         constant_per_k,

@@ -14,13 +14,14 @@ use crate::experiment::plan::plan_suite;
 use crate::experiment::run::{Progress, count};
 use crate::recording::{LogError, RecordedGroup, RecordedGroups, read_groups};
 use crate::report::{CalibrateReport, CalibrationProvenance, calibration_toml, groups_csv};
-use crate::scenario::{CalibrationConfig, EstimatorKind, ScenarioError};
+use crate::scenario::{CalibrationConfig, ScenarioError};
 use crate::signal::{CalibrationGroup, CalibrationSheet};
 use crate::store::{OutputFolder, StoreError};
 use crate::units::{
     EARTH_RATE_RAD_PER_S, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, deg_to_rad,
     rad_per_s_to_deg_per_s,
 };
+use crate::vocabulary::EstimatorKind;
 
 /// Horizontal Earth rate left in a mean that is worth saying, deg/h.
 const RESIDUE_DEG_PER_H: f64 = 0.01;
@@ -230,7 +231,7 @@ fn errors_of_residuals(sheet: &CalibrationSheet) -> ([f64; 3], String) {
     } else {
         EstimatorKind::Batch
     };
-    let judged = named(plain.as_str()).or(applied);
+    let judged = named(plain.word()).or(applied);
     let errors = judged.map_or([0.0; 3], |estimate| {
         let unknowns = if estimate.bias_deg_per_h_per_k.is_some() {
             5.0
@@ -273,7 +274,7 @@ fn sheet(
             notes.push(format!(
                 "batch is applied in place of {}: the groups do not determine a temperature \
                  coefficient of the biases",
-                asked.apply.as_str()
+                asked.apply.word()
             ));
             Ok(sheet)
         }

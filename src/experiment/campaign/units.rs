@@ -1,8 +1,8 @@
 //! Between the units of the calibration library (deg/s, rad, ratios) and those of its tables.
 
 use crate::calibration::{
-    Calibration, CalibrationError, Compensation, CompensationForm, ErrorParameters, GroupDesign,
-    GroupObservation, Misalignment, PlanReport, normalised_error_squared,
+    Calibration, CalibrationError, Compensation, ErrorParameters, GroupDesign, GroupObservation,
+    Misalignment, PlanReport, normalised_error_squared,
 };
 use crate::signal::{
     AssemblyParameters, AxisCoefficient, CalibrationEstimate, CalibrationGroup, CalibrationPlan,
@@ -12,6 +12,7 @@ use crate::units::{
     MICRO, arcsec_to_rad, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, rad_to_arcsec,
     ratio_to_ppm,
 };
+use crate::vocabulary::{CompensationForm, Word};
 
 /// A group as the library takes it.
 pub(crate) fn observation(group: &CalibrationGroup) -> GroupObservation {
@@ -168,11 +169,7 @@ pub(crate) fn compensation_checks(
     truth: Option<&CalibrationTruth>,
 ) -> Result<Vec<CompensationCheck>, CalibrationError> {
     let compensation = Compensation::of(applied)?;
-    let forms = [
-        ("exact", CompensationForm::Exact),
-        ("first-order", CompensationForm::FirstOrder),
-    ];
-    let checks = forms.map(|(name, form)| {
+    let checks = CompensationForm::ALL.iter().map(|&form| {
         let rates = groups.iter().map(|group| group.reference_rate_deg_per_s);
         let residual_deg_per_h: Vec<[f64; 3]> = rates
             .map(|rate| {
@@ -183,14 +180,14 @@ pub(crate) fn compensation_checks(
             .collect();
         let all = residual_deg_per_h.iter().flatten();
         CompensationCheck {
-            form: name,
+            form: form.word(),
             residual_max_deg_per_h: all.fold(0.0, |max, value| value.abs().max(max)),
             residual_deg_per_h,
             error_max_deg_per_h: truth
                 .map(|truth| compensated_error_max(&compensation, form, groups, truth)),
         }
     });
-    Ok(checks.into())
+    Ok(checks.collect())
 }
 
 /// Root mean square.

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::calibration::CompensationForm;
 use crate::experiment::campaign::Parameters;
 use crate::recording::{AssemblyLog, Log};
-use crate::scenario::{CompensationRule, Location, ScenarioError, load_calibration};
+use crate::scenario::{Location, ScenarioError, load_calibration};
+use crate::vocabulary::CompensationForm;
 
 /// The parameters of a calibration file, to be taken out of a log.
 #[derive(Clone, Debug)]
@@ -21,12 +21,12 @@ pub struct LogCompensation {
 /// Every complaint about the file; parameters whose matrix has no inverse.
 pub fn load_log_compensation(
     path: &Path,
-    rule: CompensationRule,
+    form: CompensationForm,
 ) -> Result<LogCompensation, Vec<ScenarioError>> {
     let (parameters, digest) = load_calibration(path)?;
-    let (form, words) = match rule {
-        CompensationRule::Exact => (CompensationForm::Exact, "exact inverse"),
-        CompensationRule::FirstOrder => (CompensationForm::FirstOrder, "first-order form"),
+    let words = match form {
+        CompensationForm::Exact => "exact inverse",
+        CompensationForm::FirstOrder => "first-order form",
     };
     let parameters = Parameters::given(form, &parameters).map_err(|error| {
         let location = Location::of_file(path.display().to_string());

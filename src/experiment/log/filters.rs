@@ -7,9 +7,8 @@ use crate::experiment::pipeline_check;
 use crate::experiment::pipeline_settings::PipelineSettings;
 use crate::experiment::textbook::cutoff_complaint;
 use crate::filters::covariance_digits_warning;
-use crate::scenario::{
-    FilterConfig, FilterKind, Pipeline, Resolved, ScenarioError, load_base_or_scenario,
-};
+use crate::scenario::{FilterConfig, FilterKind, Resolved, ScenarioError, load_base_or_scenario};
+use crate::vocabulary::Pipeline;
 
 /// The filters of one scenario or base, checked against the sample rate of a log.
 #[derive(Clone, Debug)]

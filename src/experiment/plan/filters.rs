@@ -12,8 +12,9 @@ use crate::filters::{
     constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
 };
 use crate::gyro;
-use crate::scenario::{FilterKind, LmsFilterConfig, MotionConfig, Pipeline};
+use crate::scenario::{FilterKind, LmsFilterConfig, MotionConfig};
 use crate::signal::GyroFacts;
+use crate::vocabulary::Pipeline;
 
 /// Peak of the noise that the digits warning reckons with, standard deviations.
 const PEAK_SIGMAS: f64 = 4.0;

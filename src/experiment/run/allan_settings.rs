@@ -1,7 +1,7 @@
 //! From the keys of the Allan curve to the options of the metrics.
 
-use crate::metrics::{AllanEstimator, AllanOptions, TauGrid};
-use crate::scenario::{AllanConfig, AllanEstimatorConfig, AveragingTimes};
+use crate::metrics::{AllanEstimator, AllanOptions};
+use crate::scenario::{AllanConfig, AllanEstimatorConfig};
 
 /// The options that the keys stand for, intervals at 95 %.
 pub(crate) fn allan_options(config: AllanConfig) -> AllanOptions {
@@ -12,11 +12,7 @@ pub(crate) fn allan_options(config: AllanConfig) -> AllanOptions {
             AllanEstimatorConfig::Modified => AllanEstimator::Modified,
             AllanEstimatorConfig::Hadamard => AllanEstimator::Hadamard,
         },
-        taus: match config.averaging_times {
-            AveragingTimes::Octave => TauGrid::Octave,
-            AveragingTimes::Decade => TauGrid::Decade,
-            AveragingTimes::All => TauGrid::All,
-        },
+        taus: config.averaging_times,
         ..AllanOptions::default()
     }
 }

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use super::vectors::ExportSettings;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::UpdateSign;
 use crate::fpga::pipeline::Macro;
 use crate::fpga::trace::hex;
+use crate::vocabulary::UpdateSign;
 
 /// Half a clock period in whole picoseconds, at least one.
 #[expect(

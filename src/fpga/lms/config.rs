@@ -3,7 +3,7 @@
 use crate::fpga::check::{check_positive, check_tap_count};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::{Desired, UpdateSign};
+use crate::vocabulary::{DesiredSignal, UpdateSign};
 
 /// Where the core takes its desired word from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,10 +17,10 @@ pub enum DesiredSource {
 impl DesiredSource {
     /// The source that needs no front end for this desired signal, at lag 0.
     #[must_use]
-    pub fn of(desired: Desired) -> Self {
+    pub fn of(desired: DesiredSignal) -> Self {
         match desired {
-            Desired::Current => Self::Port,
-            Desired::MeanOfTwoNewest => Self::MeanOfTwoNewest,
+            DesiredSignal::Current => Self::Port,
+            DesiredSignal::TwoSampleMean => Self::MeanOfTwoNewest,
         }
     }
 }

@@ -8,10 +8,11 @@ use super::state::LmsState;
 use crate::fpga::engine::Engine;
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::{Pair, UpdateSign};
+use crate::fpga::front_end::Pair;
 use crate::fpga::pipeline::{Clocked, Core, Kind, Macro, Parameters, Pipeline};
 use crate::fpga::registers::ControlState;
 use crate::fpga::timing::Units;
+use crate::vocabulary::UpdateSign;
 
 const LMS: Kind = Kind {
     name: "lms",

@@ -10,7 +10,8 @@
 
 use super::config::{DesiredSource, LmsConfig};
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::{Pair, UpdateSign};
+use crate::fpga::front_end::Pair;
+use crate::vocabulary::UpdateSign;
 
 /// Clock-less LMS and NLMS engine.
 #[derive(Clone, Debug)]

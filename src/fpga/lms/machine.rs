@@ -4,11 +4,12 @@ use super::config::{DesiredSource, LmsConfig};
 use super::state::LmsState;
 use crate::fpga::datapath::Datapath;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::{Pair, UpdateSign};
+use crate::fpga::front_end::Pair;
 use crate::fpga::machine::{Machine, Sequencer};
 use crate::fpga::memory::SinglePortRam;
 use crate::fpga::probe::Probe;
 use crate::fpga::registers::Registers;
+use crate::vocabulary::UpdateSign;
 
 /// The clocked LMS and NLMS pipeline. RAMA: ring of L. RAMB: W, tap 0 first.
 pub type LmsPipeline<F> = Sequencer<LmsMachine<F>>;

@@ -1,10 +1,10 @@
 //! Clocks of the RLS pipeline: per sample, to the result, and with units that take more
 //! than one.
 
-use super::config::Division;
 use crate::fpga::check::check_tap_count;
 use crate::fpga::error::FpgaError;
 use crate::fpga::timing::Units;
+use crate::vocabulary::Division;
 
 /// Clocks from one accepted sample to the next, back to back: `4 + 6p + 5p^2`.
 #[must_use]
@@ -56,7 +56,7 @@ pub fn rls_stalled_clocks(load: RlsLoad, units: Units) -> Result<u64, FpgaError>
     let mac = lm + p * la;
     let correction = match load.division {
         Division::Reciprocal => p * p * (2 * lm + la + s) + ld.saturating_sub(lm),
-        Division::Element => p * p * (lm + ld + la + s),
+        Division::Elementwise => p * p * (lm + ld + la + s),
     };
     Ok(1 + 2 * (p + 1) * mac + correction + la + p * (lm + la))
 }

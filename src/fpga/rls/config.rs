@@ -3,16 +3,7 @@
 use crate::fpga::check::{check_positive, check_tap_count};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::UpdateSign;
-
-/// Where the divider sits in the update of the inverse correlation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Division {
-    /// One division per sample, `rcp = 1 / den`, then `(t_i * t_j) * rcp`.
-    Reciprocal,
-    /// One division per element, `(t_i * t_j) / den`: eq. (8) of the paper to the letter.
-    Element,
-}
+use crate::vocabulary::{Division, UpdateSign};
 
 /// Settings of an RLS pipeline in plain numbers, before any check.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,18 +1,19 @@
 //! What exports, timing and the bench must know of the RLS pipeline.
 
 use super::clocks::{RlsLoad, rls_clocks_per_sample, rls_latency_clocks, rls_stalled_clocks};
-use super::config::{Division, RlsConfig, RlsSettings};
-use super::engine::{RlsEngine, UpdateOrder};
+use super::config::{RlsConfig, RlsSettings};
+use super::engine::RlsEngine;
 use super::machine::RlsPipeline;
 use super::state::RlsState;
 use crate::fpga::engine::{Engine, InverseCorrelation};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::{Pair, UpdateSign};
+use crate::fpga::front_end::Pair;
 use crate::fpga::health::{Warning, gain_first_failure_samples, initial_digits_warning};
 use crate::fpga::pipeline::{Clocked, Core, Kind, Macro, Parameters, Pipeline};
 use crate::fpga::registers::ControlState;
 use crate::fpga::timing::Units;
+use crate::vocabulary::{Division, UpdateOrder, UpdateSign};
 
 const RLS: Kind = Kind {
     name: "rls",
@@ -115,7 +116,7 @@ impl<F: Fp> Pipeline<F> for RlsConfig<F> {
     }
 
     fn parameters(&self) -> Parameters<F> {
-        let divides_elements = self.division == Division::Element;
+        let divides_elements = self.division == Division::Elementwise;
         Parameters {
             macros: vec![
                 ("ALPHA", Macro::Word(self.alpha)),

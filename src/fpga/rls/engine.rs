@@ -11,20 +11,10 @@
 //! W[i]    = W[i] + M[i]*e
 //! ```
 
-use super::config::{Division, RlsConfig};
+use super::config::RlsConfig;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::{Pair, UpdateSign};
-
-/// Order of the two products in the correction of R.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UpdateOrder {
-    /// `(t_i * t_j) * rcp`: the pipeline's order. R stays symmetric to the last bit, because
-    /// both products commute.
-    Schedule,
-    /// `(t_i * rcp) * t_j`: the common textbook order (gain vector first). The rounding errors
-    /// of `R[i][j]` and `R[j][i]` differ, and their difference grows as `alpha^-k`.
-    GainFirst,
-}
+use crate::fpga::front_end::Pair;
+use crate::vocabulary::{Division, UpdateOrder, UpdateSign};
 
 /// Clock-less RLS engine.
 #[derive(Clone, Debug)]
@@ -197,9 +187,11 @@ impl<F: Fp> AnyCore<F> {
                 let t_j = self.intermediate[j];
                 let correction = match (order, config.division) {
                     (UpdateOrder::Schedule, Division::Reciprocal) => t_i.mul(t_j).mul(reciprocal),
-                    (UpdateOrder::Schedule, Division::Element) => t_i.mul(t_j).div(denominator),
+                    (UpdateOrder::Schedule, Division::Elementwise) => t_i.mul(t_j).div(denominator),
                     (UpdateOrder::GainFirst, Division::Reciprocal) => t_i.mul(reciprocal).mul(t_j),
-                    (UpdateOrder::GainFirst, Division::Element) => t_i.div(denominator).mul(t_j),
+                    (UpdateOrder::GainFirst, Division::Elementwise) => {
+                        t_i.div(denominator).mul(t_j)
+                    }
                 };
                 let element = &mut self.inverse[i * p + j];
                 *element = element.sub(correction).mul(config.inverse_alpha);
@@ -290,7 +282,7 @@ impl<F: Fp, const P: usize> FixedCore<F, P> {
                 let reciprocal = F::ONE.div(denominator);
                 self.correct(config, &t, |product| product.mul(reciprocal));
             }
-            Division::Element => self.correct(config, &t, |product| product.div(denominator)),
+            Division::Elementwise => self.correct(config, &t, |product| product.div(denominator)),
         }
         let mut output = F::ZERO;
         for j in 0..P {

@@ -1,14 +1,15 @@
 //! The control machine of the RLS pipeline: what each state does in its clock.
 
-use super::config::{Division, RlsConfig};
+use super::config::RlsConfig;
 use super::state::RlsState;
 use crate::fpga::datapath::Datapath;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::{Pair, UpdateSign};
+use crate::fpga::front_end::Pair;
 use crate::fpga::machine::{Machine, Sequencer};
 use crate::fpga::memory::SinglePortRam;
 use crate::fpga::probe::Probe;
 use crate::fpga::registers::Registers;
+use crate::vocabulary::{Division, UpdateSign};
 
 /// The clocked RLS pipeline. RAMA: `0..p` ring of L, `p..2p` t, then M. RAMB: `0..p` W, `p..2p` t,
 /// `2p + i*p + j` R, row by row.
@@ -216,7 +217,7 @@ impl<F: Fp> RlsMachine<F> {
             self.registers.read_latch = datapath.read_b(self.element());
             self.registers.product = match self.config.division {
                 Division::Reciprocal => datapath.multiply(product, self.registers.reciprocal),
-                Division::Element => datapath.divide(product, denominator),
+                Division::Elementwise => datapath.divide(product, denominator),
             };
             self.registers.phase = 2;
             self.registers.state = RlsState::RfrWriting;

@@ -47,9 +47,9 @@ mod state;
 mod table;
 
 pub use clocks::{RlsLoad, rls_clocks_per_sample, rls_latency_clocks, rls_stalled_clocks};
-pub use config::{Division, RlsConfig, RlsSettings};
+pub use config::{RlsConfig, RlsSettings};
 pub use declaration::RlsCore;
-pub use engine::{RlsEngine, UpdateOrder};
+pub use engine::RlsEngine;
 pub use machine::{RlsMachine, RlsPipeline};
 pub use schedule::{Bound, ScheduleReport, ScheduleSettings, schedule_clocks};
 pub use state::RlsState;

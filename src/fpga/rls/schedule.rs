@@ -10,10 +10,10 @@
 //! of them.
 
 use super::clocks::RlsLoad;
-use super::config::Division;
 use crate::fpga::check::check_tap_count;
 use crate::fpga::error::FpgaError;
 use crate::fpga::timing::Units;
+use crate::vocabulary::Division;
 
 /// How the operations may be interleaved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -190,7 +190,7 @@ impl Graph {
             Division::Reciprocal => {
                 Some(graph.push(Unit::Divider, [Some(denominator), None], REGISTER))
             }
-            Division::Element => None,
+            Division::Elementwise => None,
         };
         let output = graph.dot(&after_load, REGISTER);
         let mut corrected = vec![0; p * p];

@@ -1,9 +1,9 @@
 //! Table 1 of the paper: three ways to build the filter.
 
-use super::config::Division;
 use crate::fpga::check::{check_clock, check_tap_count};
 use crate::fpga::error::FpgaError;
 use crate::fpga::timing::{sample_period_us, sample_rate_max_khz};
+use crate::vocabulary::Division;
 
 /// Way of building the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +96,7 @@ pub fn table(
     let squared = p * p;
     let (mut multiplies, divides) = match division {
         Division::Reciprocal => (4 * squared + 3 * p, 1),
-        Division::Element => (3 * squared + 3 * p, squared),
+        Division::Elementwise => (3 * squared + 3 * p, squared),
     };
     if forgets {
         multiplies += squared;

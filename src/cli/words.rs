@@ -1,0 +1,22 @@
+//! Words of the vocabulary as values of options: spelling and help stand in their declaration.
+
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
+
+use crate::vocabulary::{Division, ExportForm, NumberFormat, Word as _};
+
+macro_rules! option_values {
+    ($($word:ty),+) => {$(
+        impl ValueEnum for $word {
+            fn value_variants<'a>() -> &'a [Self] {
+                Self::ALL
+            }
+
+            fn to_possible_value(&self) -> Option<PossibleValue> {
+                Some(PossibleValue::new(self.word()).help(self.about()))
+            }
+        }
+    )+};
+}
+
+option_values!(Division, ExportForm, NumberFormat);

@@ -1,0 +1,3 @@
+//! What theory says a filter will do, before anything is measured.
+
+pub(super) mod prediction;
