@@ -1,10 +1,10 @@
-//! The import table of the README as a test: who may import whom, and a few house rules.
+//! The import table of docs/architecture.md as a test: who may import whom, and a few house rules.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Module, and the modules of the crate it may import.
-pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
+const IMPORTS: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("vocabulary", &[]),
     ("wording", &[]),
@@ -62,7 +62,7 @@ pub(crate) const IMPORTS: &[(&str, &[&str])] = &[
 ];
 
 /// Modules that every other one may import.
-pub(crate) const FOR_ALL: &[&str] = &["vocabulary"];
+const FOR_ALL: &[&str] = &["vocabulary"];
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<_> = fs::read_dir(folder)
@@ -105,24 +105,54 @@ fn module_of(path: &Path) -> String {
         .into_owned()
 }
 
-/// Modules of the crate that a line of code names: `crate::a::b` and `crate::{a::b, c}`.
-fn imported(line: &str) -> Vec<String> {
-    let code = line.split("//").next().unwrap_or_default();
-    let name = |text: &str| -> String {
-        text.chars()
-            .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
-            .collect()
-    };
+/// Modules of the crate that a source text names, each with the number of its line.
+///
+/// `crate::a::b` and groups, `crate::{a::b, c}`, however many lines they take; comments are left out.
+fn imported(text: &str) -> Vec<(usize, String)> {
+    let code: Vec<&str> = text
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or_default())
+        .collect();
+    let code = code.join("\n");
     let mut modules = Vec::new();
-    for rest in code.split("crate::").skip(1) {
-        if let Some(group) = rest.strip_prefix('{') {
-            modules.extend(group.split(',').map(|item| name(item.trim())));
-        } else {
-            modules.push(name(rest));
+    for (at, root) in code.match_indices("crate::") {
+        for item in items(&code, at + root.len()) {
+            let name: String = code[item..]
+                .chars()
+                .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
+                .collect();
+            if !name.is_empty() {
+                modules.push((code[..item].matches('\n').count() + 1, name));
+            }
         }
     }
-    modules.retain(|module| !module.is_empty());
     modules
+}
+
+/// Where the items of a path begin that goes on at `start`: there, or one each in its outer braces.
+fn items(code: &str, start: usize) -> Vec<usize> {
+    let blank = |at: usize| code[at..].len() - code[at..].trim_start().len();
+    let start = start + blank(start);
+    if !code[start..].starts_with('{') {
+        return vec![start];
+    }
+    let mut depth = 0_usize;
+    let mut found = Vec::new();
+    for (offset, sign) in code[start..].char_indices() {
+        match sign {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            break;
+        }
+        if depth == 1 && matches!(sign, '{' | ',') {
+            let after = start + offset + 1;
+            found.push(after + blank(after));
+        }
+    }
+    found
 }
 
 fn forbidden_imports(module: &str, text: &str) -> Vec<(usize, String)> {
@@ -130,14 +160,11 @@ fn forbidden_imports(module: &str, text: &str) -> Vec<(usize, String)> {
         return vec![(0, format!("module `{module}` is not in the import table"))];
     };
     let mut found = Vec::new();
-    for (index, line) in text.lines().enumerate() {
-        for import in imported(line) {
-            let known = IMPORTS.iter().any(|(name, _)| *name == import);
-            let import_name = import.as_str();
-            let is_allowed = allowed.contains(&import_name) || FOR_ALL.contains(&import_name);
-            if known && import != module && !is_allowed {
-                found.push((index + 1, format!("`{module}` may not import `{import}`")));
-            }
+    for (line, import) in imported(text) {
+        let known = IMPORTS.iter().any(|(name, _)| *name == import);
+        let is_allowed = [allowed, FOR_ALL].concat().contains(&import.as_str());
+        if known && import != module && !is_allowed {
+            found.push((line, format!("`{module}` may not import `{import}`")));
         }
     }
     found
@@ -175,6 +202,55 @@ fn a_forbidden_import_is_found() {
         1
     );
     assert!(forbidden_imports("gate", "// use crate::gyro::Gyro;").is_empty());
+}
+
+#[test]
+fn an_import_over_several_lines_is_seen() {
+    let text = "use crate::{\n    // fpga is not named here\n    gyro::{Gyro, scenario},\n    \
+                signal,\n    units::{\n        NANO,\n    },\n};\nfn f(x: crate::random::Stream) {}\n";
+    let names = [(3, "gyro"), (4, "signal"), (5, "units"), (9, "random")];
+    assert_eq!(
+        imported(text),
+        names.map(|(line, name)| (line, name.to_owned()))
+    );
+    assert_eq!(
+        forbidden_imports("turntable", text),
+        vec![(3, "`turntable` may not import `gyro`".to_owned())]
+    );
+}
+
+#[test]
+fn the_architecture_page_shows_the_import_table() {
+    let page =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md"))
+            .expect("the page is readable");
+    for (module, imports) in IMPORTS {
+        let own_row = page.lines().find(|line| {
+            let first = line
+                .trim_start_matches('|')
+                .split('|')
+                .next()
+                .unwrap_or_default();
+            line.starts_with('|')
+                && first
+                    .split_whitespace()
+                    .any(|word| word == format!("`{module}`"))
+        });
+        let row = own_row.unwrap_or_else(|| panic!("the page has no row for `{module}`"));
+        let allowed = row.split('|').nth(2).unwrap_or_default();
+        if allowed.contains("downwards") || allowed.contains("all of the above") {
+            continue;
+        }
+        for import in *imports {
+            assert!(
+                allowed
+                    .replace('`', " ")
+                    .split_whitespace()
+                    .any(|word| word == *import),
+                "the page's row for `{module}` does not allow `{import}`: {row}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -27,6 +27,7 @@ mod extremes;
 mod filters;
 mod fpga_health;
 mod frequency_response;
+mod generated;
 mod growth;
 mod gyro_effects;
 mod injection;

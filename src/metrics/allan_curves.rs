@@ -120,7 +120,12 @@ pub(crate) fn enter_fit(
         };
         if let Some(metric) = metrics.get(key) {
             let (high, unit) = (metric.estimate.high, metric.unit);
-            metrics.withdraw(key, format!("{reason}; it is {high:.2e} {unit} at most"));
+            let bound = if high.is_finite() {
+                format!("; it is {high:.2e} {unit} at most")
+            } else {
+                String::new()
+            };
+            metrics.withdraw(key, reason + &bound);
         }
     }
     put_fit_curve(points, Some(fit), metrics);

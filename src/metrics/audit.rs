@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::linear_algebra::singular_value_decomposition;
 use crate::signal::{FilterShape, Section, WeightRule};
+use crate::wording::{counted, decimals};
 
 /// Singular values below this part of the largest count as zero: input directions the record does
 /// not contain, in which an adaptive filter keeps its initial zero weights.
@@ -99,6 +100,10 @@ pub fn noise_delay_bound_coloured(
 /// Most taps for which the bound and the autocovariance it needs are computed.
 const BOUND_TAPS_MAX: usize = 256;
 
+/// Why a filter has no delay at DC.
+pub(crate) const NO_DELAY_AT_DC: &str =
+    "the delay at DC is not defined: the weights do not sum to a finite number other than zero";
+
 /// [`noise_delay_bound_coloured`] for the taps and ages of a filter.
 ///
 /// # Errors
@@ -121,10 +126,18 @@ pub(crate) fn filter_bound(
             "{taps} taps: it is computed for up to {BOUND_TAPS_MAX}"
         ));
     }
+    if !delay_samples.is_finite() {
+        return Err(NO_DELAY_AT_DC.to_owned());
+    }
+    if autocovariance.first().is_none_or(|power| *power <= 0.0) {
+        return Err("the raw channel has no noise".to_owned());
+    }
     let newest = shape.newest_age_samples;
     noise_delay_bound_coloured(taps, newest, delay_samples, autocovariance).ok_or_else(|| {
         format!(
-            "no filter of {taps} taps and unit DC gain has a delay of {delay_samples:.3} samples"
+            "no filter of {} and unit DC gain has a delay of {} samples",
+            counted(taps, "tap"),
+            decimals(delay_samples, 3)
         )
     })
 }
@@ -327,5 +340,31 @@ impl Prediction {
     pub fn amplitude(&self, frequency_hz: f64, sample_period_s: f64) -> f64 {
         let (real, imaginary) = self.at(frequency_hz * sample_period_s);
         real.hypot(imaginary)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bound_that_is_none_says_what_is_the_matter() {
+        let mut shape = FilterShape {
+            rule: WeightRule::Fixed(vec![1.0, -1.0]),
+            taps: Some(2),
+            newest_age_samples: 1,
+            register_samples: 0,
+        };
+        let of_zero_sum = Prediction::of_weights(vec![1.0, -1.0], 1).delay_at_dc_samples();
+        for delay in [of_zero_sum, f64::NAN] {
+            let reason = filter_bound(&shape, delay, &[1.0, 0.0]).unwrap_err();
+            assert_eq!(reason, NO_DELAY_AT_DC);
+        }
+        let reason = filter_bound(&shape, 1.5, &[0.0, 0.0]).unwrap_err();
+        assert_eq!(reason, "the raw channel has no noise");
+        shape.taps = Some(1);
+        let reason = filter_bound(&shape, 7.25, &[1.0]).unwrap_err();
+        let said = "no filter of 1 tap and unit DC gain has a delay of 7.250 samples";
+        assert_eq!(reason, said);
     }
 }

@@ -9,7 +9,7 @@ use super::autocovariance::LaggedProducts;
 use super::estimate::{ChannelMetrics, Estimate};
 use super::interval;
 use super::key::{Applies, Headline, MetricKey, Needs, Table};
-use super::noise_level::{put_noise_gain, put_noise_std};
+use super::noise_level::{put_noise_gain, put_noise_std, ratio_of_means_lack};
 use super::record::{FilterFacts, Record};
 use super::response::{ToneClock, ToneFits, ToneResponse, fit_tones};
 use super::steady::{LAGS_MIN, RATIO_BLOCKS, equal_block_means, put_mean};
@@ -205,11 +205,7 @@ fn measure_noise(
         let level = raw.iter().fold(0.0_f64, |max, rate| max.max(rate.abs()));
         put_noise_gain(&channel, &products(RAW, raw, None), level, metrics);
         let offset = fits.offset(RAW);
-        if offset.low <= 0.0 && offset.high >= 0.0 {
-            let reason = format!(
-                "the raw mean, {:.4} deg/h, cannot be told from zero",
-                offset.value
-            );
+        if let Some(reason) = ratio_of_means_lack(&offset) {
             metrics.miss(&MEAN_RATIO, reason);
         } else {
             metrics.put(&MEAN_RATIO, fits.offset_ratio(CHANNEL, RAW));

@@ -7,6 +7,7 @@ use super::key::{Applies, Headline, MetricKey, Needs, Table};
 use super::record::Record;
 use super::steady::{RATIO_BLOCKS, equal_block_means};
 use super::table::DEGREES_OF_FREEDOM;
+use crate::wording::decimals;
 
 /// Mean over that of raw.
 pub static MEAN_RATIO: MetricKey = MetricKey::of_filters(
@@ -100,6 +101,16 @@ pub(crate) fn measure_mean_ratio(record: &Record, metrics: &mut ChannelMetrics) 
     put_ratio_of_means(&MEAN_RATIO, &channel, &raw, metrics);
 }
 
+/// Why nothing can be divided by raw's mean; nothing if it can be told from zero.
+pub(crate) fn ratio_of_means_lack(raw_mean: &Estimate) -> Option<String> {
+    (raw_mean.low <= 0.0 && raw_mean.high >= 0.0).then(|| {
+        format!(
+            "the raw mean, {} deg/h, cannot be told from zero",
+            decimals(raw_mean.value, 4)
+        )
+    })
+}
+
 /// Enters the ratio of the means of equally long blocks.
 pub(crate) fn put_ratio_of_means(
     key: &MetricKey,
@@ -108,15 +119,8 @@ pub(crate) fn put_ratio_of_means(
     metrics: &mut ChannelMetrics,
 ) {
     let raw_mean = interval::from_parts(interval::mean(raw), raw);
-    if raw_mean.low <= 0.0 && raw_mean.high >= 0.0 {
-        metrics.miss(
-            key,
-            format!(
-                "the raw mean, {:.4} deg/h, cannot be told from zero",
-                raw_mean.value
-            ),
-        );
-        return;
+    if let Some(reason) = ratio_of_means_lack(&raw_mean) {
+        return metrics.miss(key, reason);
     }
     let (channel_sum, raw_sum): (f64, f64) = (channel.iter().sum(), raw.iter().sum());
     let left_out: Vec<f64> = channel

@@ -13,6 +13,7 @@ use super::key::{Applies, MetricKey, Needs, Table};
 use super::record::{FilterFacts, Record};
 use super::settling::tail_start;
 use super::steady::RATIO_BLOCKS;
+use crate::wording::decimals;
 
 /// Readaptation.
 pub static READAPTATION_TIME: MetricKey = MetricKey::of_filters(
@@ -136,6 +137,9 @@ impl GainUnits {
                 self.unit_s
             ));
         }
+        if !final_gain.is_finite() {
+            return Err("the gain that the new motion teaches is not a finite number".to_owned());
+        }
         let mut count = 1;
         let (gains, scatter) = loop {
             let gains = self.gains(count);
@@ -145,6 +149,9 @@ impl GainUnits {
             }
             count *= 2;
             if self.units.len() / count < WINDOWS_MIN {
+                if scatter.is_nan() {
+                    return Err("there are windows without a motion of raw's".to_owned());
+                }
                 return Err(format!(
                     "the gain scatters by more than {} % over an eighth of the record",
                     100.0 * SCATTER_MAX
@@ -162,9 +169,10 @@ impl GainUnits {
         // One window inside may be chance.
         if windows + 2 > gains.len() {
             return Err(format!(
-                "{NOT_WITHIN} of {end_s:.4} s after the motion began: the gain is {:.4} at its end, \
-                 1 % about {final_gain:.4} is asked for",
-                gains[gains.len() - 1]
+                "{NOT_WITHIN} of {end_s:.4} s after the motion began: the gain is {} at its end, \
+                 1 % about {} is asked for",
+                decimals(gains[gains.len() - 1], 4),
+                decimals(final_gain, 4)
             ));
         }
         let doubt = NORMAL_QUANTILE * scatter;

@@ -9,6 +9,7 @@ use super::interval;
 use super::key::{Applies, MetricKey, Table};
 use super::record::Staircase;
 use super::scale_factor::RatePoint;
+use crate::wording::decimals;
 
 /// Threshold.
 pub static THRESHOLD: MetricKey = MetricKey::new(
@@ -88,7 +89,8 @@ pub fn smallest_answered(
     let count = bases.len() as f64;
     if bases.is_empty() {
         return Err(format!(
-            "no dwell has an input of {base_deg_per_h:.4} deg/h"
+            "no dwell has an input of {} deg/h",
+            decimals(base_deg_per_h, 4)
         ));
     }
     let output = bases
@@ -146,14 +148,17 @@ fn decide(answers: &[Answer]) -> Result<Estimate, String> {
     let sure = answers.iter().rev().take_while(is_answered).last();
     let Some(sure) = sure else {
         let last = answers[answers.len() - 1];
-        let change = last.change_deg_per_h;
+        let change = decimals(last.change_deg_per_h, 4);
+        let percent = 100.0 * last.half_width;
         return Err(if is_not(&&last) {
-            format!("not even {change:.4} deg/h gives half of itself")
-        } else {
+            format!("not even {change} deg/h gives half of itself")
+        } else if percent.is_finite() {
             format!(
-                "noise forbids: the mean output at {change:.4} deg/h is known to +-{:.0} % of it",
-                100.0 * last.half_width
+                "noise forbids: the mean output at {change} deg/h is known to +-{} % of it",
+                decimals(percent, 0)
             )
+        } else {
+            format!("noise forbids: the mean output at {change} deg/h is not known at all")
         });
     };
     let below = answers.iter().rfind(is_not);

@@ -3,7 +3,7 @@
 use super::allan::overlapping_allan;
 use super::allan_curves::{enter_fit, put_curve, put_fit_curve};
 use super::allan_variants::allan_variant;
-use super::audit::{filter_bound, lags_needed, predict};
+use super::audit::{NO_DELAY_AT_DC, filter_bound, lags_needed, predict};
 use super::autocovariance::{CURVE_LAGS, LaggedProducts};
 use super::bias;
 use super::catalogue::{
@@ -355,9 +355,13 @@ fn measure_predictions(
         let delay_s = samples * record.sample_period_s + facts.latency_s;
         units::s_to_ms(delay_s)
     };
-    let delays_ms: Vec<f64> = parts.iter().map(|part| delay_ms(part.1)).collect();
-    let at_dc = interval::jackknife(delay_ms(delay_samples), &delays_ms);
-    metrics.put(&DELAY_AT_DC, at_dc);
+    if delay_samples.is_finite() {
+        let delays_ms: Vec<f64> = parts.iter().map(|part| delay_ms(part.1)).collect();
+        let at_dc = interval::jackknife(delay_ms(delay_samples), &delays_ms);
+        metrics.put(&DELAY_AT_DC, at_dc);
+    } else {
+        metrics.miss(&DELAY_AT_DC, NO_DELAY_AT_DC);
+    }
     let without: Vec<_> = parts.into_iter().map(|part| part.2).collect();
     put_over_bound(channel, raw, &bound, &without, metrics);
     put_bound_curve(
@@ -379,6 +383,15 @@ fn measure_predictions(
     );
 }
 
+/// Why nothing can be divided by a DC gain that is not above zero.
+pub(crate) fn dc_gain_lack(dc_gain: f64) -> String {
+    if dc_gain.is_finite() {
+        format!("the DC gain, {dc_gain}, is not positive")
+    } else {
+        "the DC gain of this filter is not a finite number".to_owned()
+    }
+}
+
 /// Enters one metric divided by the DC gain: what is left of the improvement once the scale factor
 /// is restored.
 pub(crate) fn put_over_dc_gain(
@@ -388,7 +401,7 @@ pub(crate) fn put_over_dc_gain(
     metrics: &mut ChannelMetrics,
 ) {
     match (metrics.get(key).cloned(), dc_gain) {
-        (Some(metric), Some(gain)) if gain > 1e-6 => {
+        (Some(metric), Some(gain)) if gain > 1e-6 && gain.is_finite() => {
             let mut fields = metric.fields;
             fields.insert("dc_gain", gain);
             if let Some(expected) = fields.get_mut(EXPECTED) {
@@ -396,10 +409,31 @@ pub(crate) fn put_over_dc_gain(
             }
             metrics.put(over, metric.estimate.scaled(1.0 / gain)).fields = fields;
         }
-        (Some(_), Some(gain)) => {
-            metrics.miss(over, format!("the DC gain, {gain}, is not positive"));
-        }
+        (Some(_), Some(gain)) => metrics.miss(over, dc_gain_lack(gain)),
         (Some(_), None) => metrics.miss(over, "the DC gain of this filter is not known"),
         (None, _) => metrics.miss(over, format!("the record does not give `{}`", key.name)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dc_gain_that_is_no_number_is_called_that() {
+        for gain in [f64::NAN, f64::INFINITY] {
+            let mut metrics = ChannelMetrics::default();
+            metrics.put(&ANGLE_RANDOM_WALK, Estimate::exact(1.0));
+            put_over_dc_gain(
+                &ANGLE_RANDOM_WALK,
+                &ANGLE_RANDOM_WALK_OVER_DC_GAIN,
+                Some(gain),
+                &mut metrics,
+            );
+            let reason = metrics.why_unavailable(&ANGLE_RANDOM_WALK_OVER_DC_GAIN);
+            let said = "the DC gain of this filter is not a finite number";
+            assert_eq!(reason, Some(said));
+        }
+        assert_eq!(dc_gain_lack(-0.5), "the DC gain, -0.5, is not positive");
     }
 }

@@ -4,6 +4,7 @@ use super::estimate::{ChannelMetrics, Estimate};
 use super::interval::NORMAL_QUANTILE;
 use super::key::{Applies, MetricKey, Needs, Table};
 use super::settling::Settling;
+use crate::wording::decimals;
 
 /// Rise time.
 pub static RISE_TIME: MetricKey = MetricKey::new(
@@ -35,6 +36,9 @@ const RISE: (f64, f64) = (0.1, 0.9);
 /// Noise beyond which a crossing of these parts says nothing, as a part of the step.
 const NOISE_MAX: f64 = 0.025;
 
+/// Reason of a step without a height.
+const NO_HEIGHT: &str = "the last step has no height";
+
 /// A step with what the rate settles at.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
@@ -55,6 +59,15 @@ impl Step<'_> {
     fn response(&self, index: usize) -> f64 {
         let from_final = self.rate_deg_per_h[index] - self.settling.final_deg_per_h;
         1.0 + from_final / self.height_deg_per_h
+    }
+
+    /// Whether there is a height to divide by; next to nothing is none.
+    fn has_height(&self) -> bool {
+        let settling = &self.settling;
+        let largest = settling
+            .noise_reach_deg_per_h
+            .max(settling.final_deg_per_h.abs());
+        (100.0 * largest / self.height_deg_per_h).is_finite()
     }
 
     /// Standard deviation of the noise as a part of the step.
@@ -85,13 +98,16 @@ impl Step<'_> {
     /// between two samples.
     ///
     /// # Errors
-    /// The reason, in words, where the noise is large or no sample precedes the step.
+    /// The reason, in words, where the step has no height, the noise is large or no sample precedes the step.
     pub fn rise_time_s(&self) -> Result<Estimate, String> {
+        if !self.has_height() {
+            return Err(NO_HEIGHT.to_owned());
+        }
         let noise = self.noise();
         if noise > NOISE_MAX {
             return Err(format!(
-                "the noise is {:.1} % of the step: allowed up to {:.1} %",
-                100.0 * noise,
+                "the noise is {} % of the step: allowed up to {:.1} %",
+                decimals(100.0 * noise, 1),
                 100.0 * NOISE_MAX
             ));
         }
@@ -128,9 +144,9 @@ impl Step<'_> {
 
 /// Enters overshoot and rise time.
 pub(crate) fn put_step_shape(step: &Step, metrics: &mut ChannelMetrics) {
-    if step.height_deg_per_h.abs() <= 0.0 {
+    if !step.has_height() {
         for key in [&OVERSHOOT, &RISE_TIME] {
-            metrics.miss(key, "the last step has no height");
+            metrics.miss(key, NO_HEIGHT);
         }
         return;
     }
@@ -141,5 +157,34 @@ pub(crate) fn put_step_shape(step: &Step, metrics: &mut ChannelMetrics) {
             metrics.put(&RISE_TIME, rise);
         }
         Err(reason) => metrics.miss(&RISE_TIME, reason),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_of_next_to_nothing_has_no_height_and_no_noise_in_percent_of_it() {
+        for height_deg_per_h in [0.0, 1e-307] {
+            let step = Step {
+                rate_deg_per_h: &[100.0; 32],
+                index: 16,
+                height_deg_per_h,
+                settling: Settling {
+                    settling_time_s: 0.1,
+                    band_deg_per_h: 50.0,
+                    final_deg_per_h: 100.0,
+                    noise_std_deg_per_h: 10.0,
+                    noise_reach_deg_per_h: 40.0,
+                },
+                sample_period_s: 0.1,
+            };
+            let mut metrics = ChannelMetrics::default();
+            put_step_shape(&step, &mut metrics);
+            for key in [&OVERSHOOT, &RISE_TIME] {
+                assert_eq!(metrics.why_unavailable(key), Some(NO_HEIGHT));
+            }
+        }
     }
 }

@@ -11,7 +11,7 @@ use super::estimate::{ChannelMetrics, Estimate, Metric};
 use super::interval;
 use super::key::{Against, Applies, Headline, MetricKey, Table};
 use super::noise_delay::{put_bound, put_bound_curve, put_over_bound};
-use super::noise_level::{put_noise_gain, put_noise_std};
+use super::noise_level::{put_noise_gain, put_noise_std, ratio_of_means_lack};
 use super::readaptation::{self, GainUnits};
 use super::record::{FilterFacts, Record};
 use super::steady::{LAGS_MIN, put_mean};
@@ -285,12 +285,7 @@ fn measure_tracking(
 
 /// Ratio of the offsets, if raw's offset can be told from zero.
 fn measure_mean_ratio(fits: &Fits, metrics: &mut ChannelMetrics) {
-    let raw = fits.raw.offset();
-    if raw.low <= 0.0 && raw.high >= 0.0 {
-        let reason = format!(
-            "the raw mean, {:.4} deg/h, cannot be told from zero",
-            raw.value
-        );
+    if let Some(reason) = ratio_of_means_lack(&fits.raw.offset()) {
         metrics.miss(&MEAN_RATIO, reason);
     } else {
         metrics.put(&MEAN_RATIO, fits.channel.offset_ratio(&fits.raw));

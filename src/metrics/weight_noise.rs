@@ -7,6 +7,7 @@ use super::interval;
 use super::key::{Applies, MetricKey, Table};
 use super::memory::memory_samples;
 use super::record::{FilterFacts, Record};
+use super::steady::dc_gain_lack;
 
 /// Weight noise.
 pub static WEIGHT_NOISE_RATIO: MetricKey = MetricKey::of_filters(
@@ -56,12 +57,8 @@ pub(crate) fn measure_weight_noise(
         );
         return;
     };
-    if dc_gain <= 1e-6 {
-        metrics.miss(
-            &WEIGHT_NOISE_RATIO,
-            format!("the DC gain, {dc_gain}, is not positive"),
-        );
-        return;
+    if dc_gain <= 1e-6 || !dc_gain.is_finite() {
+        return metrics.miss(&WEIGHT_NOISE_RATIO, dc_gain_lack(dc_gain));
     }
     let count = record.raw_deg_per_h.len();
     let reach = memory_samples(&facts.shape) + facts.shape.newest_age_samples;

@@ -303,12 +303,24 @@ fn published_row(figure: &PublishedConfig, channels: &[(String, ChannelMetrics)]
     [
         figure.metric.clone(),
         figure.unit.clone(),
-        figure.value.to_string(),
+        written(figure.value),
         value,
         interval,
         difference,
         figure.source.clone(),
     ]
+}
+
+/// Relative differences from which on the published figure is as good as zero, %.
+const PERCENT_MAX: f64 = 1e6;
+
+/// A published figure as its source prints it, a tiny or huge one with its power of ten.
+fn written(value: f64) -> String {
+    if value == 0.0 || (1e-9..1e15).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
 }
 
 /// Simulated value, its interval, and simulated minus published, absolute and relative.
@@ -327,8 +339,8 @@ fn beside(figure: &PublishedConfig, metric: &Metric) -> (String, String, String)
     let difference = estimate.value - figure.value;
     let sign = if difference < 0.0 { "" } else { "+" };
     let mut text = format!("{sign}{}", plain(difference));
-    if figure.value != 0.0 {
-        let percent = 100.0 * difference / figure.value.abs();
+    let percent = 100.0 * difference / figure.value.abs();
+    if percent.abs() < PERCENT_MAX {
         text.push_str(&format!(" ({percent:+.1} %)"));
     }
     (value, interval, text)
@@ -368,4 +380,40 @@ pub(crate) fn gate_line(verdict: &Verdict, colour: bool) -> String {
         _ => String::new(),
     };
     format!("{word} {}: {}{place}", verdict.metric, verdict.reason)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::Estimate;
+
+    fn published(value: f64) -> PublishedConfig {
+        PublishedConfig {
+            metric: "raw.mean_deg_per_h".to_owned(),
+            value,
+            unit: "deg/h".to_owned(),
+            source: "a paper".to_owned(),
+        }
+    }
+
+    fn difference_from(value: f64) -> String {
+        let metric = Metric::new(Estimate::exact(9.0), "deg/h");
+        beside(&published(value), &metric).2
+    }
+
+    #[test]
+    fn a_difference_is_relative_to_a_figure_that_is_not_as_good_as_zero() {
+        assert_eq!(difference_from(8.0), "+1 (+12.5 %)");
+        assert_eq!(difference_from(0.0), "+9");
+        assert_eq!(difference_from(5e-324), "+9");
+    }
+
+    #[test]
+    fn a_figure_is_shown_as_its_source_prints_it() {
+        assert_eq!(written(0.0603), "0.0603");
+        assert_eq!(written(0.0), "0");
+        assert_eq!(written(370_370.4), "370370.4");
+        assert_eq!(written(5e-324), "5e-324");
+        assert_eq!(written(-2.5e300), "-2.5e300");
+    }
 }

@@ -34,6 +34,20 @@ pub(crate) fn plain(value: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
+/// Sizes beyond which a number in fixed decimals would be a row of digits that nobody reads.
+const FIXED_MAX: f64 = 1e9;
+
+/// A number in fixed decimals, a huge one with its power of ten. What is no number has no place in a
+/// message: whoever could meet one says what is the matter instead.
+pub(crate) fn decimals(value: f64, count: usize) -> String {
+    debug_assert!(value.is_finite(), "{value} in a message");
+    if value.abs() < FIXED_MAX {
+        format!("{value:.count$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -43,6 +57,13 @@ mod tests {
         assert_eq!(counted(1_usize, "gate"), "1 gate");
         assert_eq!(counted(0_usize, "gate"), "0 gates");
         assert_eq!(counted(2_u64, "sample"), "2 samples");
+    }
+
+    #[test]
+    fn fixed_decimals_stop_where_digits_say_nothing() {
+        assert_eq!(decimals(107.84, 1), "107.8");
+        assert_eq!(decimals(-0.00004, 4), "-0.0000");
+        assert_eq!(decimals(4.2e300, 4), "4.200e300");
     }
 
     #[test]

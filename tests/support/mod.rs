@@ -5,6 +5,7 @@ pub(crate) mod records;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+pub(crate) mod generated;
 pub(crate) mod gyro_cases;
 pub(crate) mod patent_cases;
 pub(crate) mod reference_gyro;
