@@ -5,14 +5,11 @@
 //! the unperturbed run. *Adapted*: a twin filter runs on the same words plus a small rate from the
 //! first sample on and is free to adapt; its mean output differs by that rate times the gain.
 
-use super::pipeline_filter::{HardwareFilter, HealthSummary};
-use super::pipeline_settings::{PipelineSettings, PipelineTiming};
 use super::rate_twins::RateTwins;
 use super::simulate::RecordLength;
-use super::textbook::textbook_filter;
-use crate::filters::{Divergence, Filter, Output};
+use crate::filters::hardware::{HardwareFilter, HealthSummary, PipelineSettings, PipelineTiming};
+use crate::filters::{Divergence, Filter, FilterKind, Output};
 use crate::metrics::RateGain;
-use crate::scenario::FilterKind;
 use crate::signal::{FilterShape, WeightRule};
 
 /// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
@@ -122,11 +119,11 @@ pub(super) enum Arithmetic {
 
 impl Arithmetic {
     fn new(kind: &FilterKind, length: RecordLength, sample_period_s: f64) -> Self {
-        if let Some(settings) = PipelineSettings::of(kind) {
+        if let Some(settings) = kind.settings().hardware() {
             let filter = settings.filter(length.warm_up as u64);
             return Self::Hardware(filter.expect(CHECKED));
         }
-        Self::Textbook(textbook_filter(kind, sample_period_s))
+        Self::Textbook(kind.settings().build(sample_period_s))
     }
 
     fn as_filter(&self) -> &dyn Filter {
@@ -165,7 +162,7 @@ impl ChannelFilter {
         let filter = arithmetic();
         Self {
             name,
-            settings: PipelineSettings::of(kind),
+            settings: kind.settings().hardware(),
             shape: filter.as_filter().shape(),
             weight_totals: std::array::from_fn(|_| vec![0.0; filter.as_filter().weights().len()]),
             weight_counts: [0; WEIGHT_BLOCKS],

@@ -4,7 +4,7 @@
 use super::assembly_motion;
 use super::campaign;
 use super::motion::motion;
-use super::pipeline_check;
+use super::pipeline_metrics;
 use super::plan::Checker;
 use super::published_check::wrong_unit;
 use crate::metrics::catalogue::DIVERGED_AT;
@@ -175,7 +175,7 @@ impl Checker<'_> {
 fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<String> {
     let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
     let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
-    pipeline_check::lacks(scenario, channel, key)
+    pipeline_metrics::lacks(scenario, channel, key)
         .or_else(|| assembly_motion::lacks(scenario, channel, key))
         .or_else(|| campaign::lacks(scenario, key))
         .or_else(|| metrics::encoder_lack(key, has_encoder))

@@ -7,9 +7,10 @@ use super::compensation::{Compensator, Parameters};
 use super::output_average::{mean, table_warm_up_s};
 use super::stop::{Unfinished, unless_stopped};
 use super::suite::Observer;
+use crate::filters::FilterKind;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
-use crate::scenario::{FilterKind, FilterState, Scenario, Stairs};
+use crate::scenario::{FilterState, Scenario, Stairs};
 use crate::turntable::{InjectedSignal, Turntable, first_measured_index, step_indices};
 use crate::units::rad_per_s_to_deg_per_h;
 

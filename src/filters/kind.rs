@@ -1,13 +1,124 @@
-//! The configuration of the filters: names are the keys of the scenario file, units included.
+//! The kinds of filters: what each says of itself, and the one list of them.
 
 use serde::Deserialize;
 
-use crate::vocabulary::{
-    ConstantUnit, DesiredSignal, Division, InitialWeights, NumberFormat, OutputRegister, Pipeline,
-    SignLmsForm, UpdateOrder, UpdateSign,
-};
+use super::butterworth::ButterworthFilterConfig;
+use super::common::{Complaint, Complaints, Filter};
+use super::constrained_rls::ConstrainedRlsFilterConfig;
+use super::hardware::PipelineSettings;
+use super::kalman::KalmanFilterConfig;
+use super::lms::LmsFilterConfig;
+use super::moving_average::MovingAverageFilterConfig;
+use super::one_pole::OnePoleFilterConfig;
+use super::rls::RlsFilterConfig;
+use super::savitzky_golay::SavitzkyGolayFilterConfig;
+use super::sign_lms::SignLmsFilterConfig;
 
-/// One filter channel.
+/// Settings of a filter of one kind, and all that follows from them.
+pub trait FilterSettings {
+    /// Refuses settings that contradict each other.
+    fn check(&self, _complaints: &mut Complaints) {}
+
+    /// Refuses settings that do not suit the words to be filtered.
+    fn check_on(&self, _words: &ExpectedWords, _complaints: &mut Complaints) {}
+
+    /// What a user must know of the settings before such words are filtered, in sentences.
+    fn notes(&self, _words: &ExpectedWords) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The textbook filter for words that come every `sample_period_s`.
+    ///
+    /// # Panics
+    /// If a setting is one that the reader or [`Self::check_on`] refuses.
+    fn build(&self, sample_period_s: f64) -> Box<dyn Filter>;
+
+    /// The hardware that filters in its place; none for the arithmetic of the textbook.
+    fn hardware(&self) -> Option<PipelineSettings> {
+        None
+    }
+}
+
+/// What is known beforehand of the words to be filtered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedWords {
+    /// Words per second, Hz.
+    pub sample_rate_hz: f64,
+    /// Largest word, deg/h; 0 where none is known yet.
+    pub peak_deg_per_h: f64,
+    /// What a simulation knows besides; none of a recorded log.
+    pub run: Option<ExpectedRun>,
+}
+
+/// What a simulation knows of its run beforehand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedRun {
+    /// Largest rate on the axis, deg/h.
+    pub rate_max_deg_per_h: f64,
+    /// Phase step of a swing from sample to sample, rad; none of any other motion.
+    pub swing_step_rad: Option<f64>,
+    /// Standard deviation of the white noise of a word, deg/h.
+    pub noise_std_deg_per_h: f64,
+    /// Time before the record, s.
+    pub warm_up_s: f64,
+    /// Length of the record, s.
+    pub duration_s: f64,
+}
+
+/// Declares the kinds: the settings of each and the name of its table in a scenario.
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $kind:ident($settings:ty) = $name:literal,)+) => {
+        /// Kind of a filter and its settings.
+        #[derive(Clone, Debug, PartialEq, Deserialize)]
+        pub enum FilterKind {
+            $($(#[$doc])* #[serde(rename = $name)] $kind($settings),)+
+        }
+
+        /// Names of the kinds, in the order of the list.
+        pub const KINDS: &[&str] = &[$($name),+];
+
+        impl FilterKind {
+            /// Name of the kind, that of its table in a scenario.
+            #[must_use]
+            pub fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$kind(_) => $name,)+
+                }
+            }
+
+            /// The settings, whatever the kind.
+            #[must_use]
+            pub fn settings(&self) -> &dyn FilterSettings {
+                match self {
+                    $(Self::$kind(settings) => settings,)+
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// Recursive least squares.
+    Rls(RlsFilterConfig) = "rls",
+    /// Least mean squares, normalised or not.
+    Lms(LmsFilterConfig) = "lms",
+    /// Line enhancer with the sign of the error, and its normalised forms.
+    SignLms(SignLmsFilterConfig) = "sign_lms",
+    /// Recursive least squares held to unit DC gain.
+    ConstrainedRls(ConstrainedRlsFilterConfig) = "constrained_rls",
+    /// Mean of the newest samples.
+    MovingAverage(MovingAverageFilterConfig) = "moving_average",
+    /// Savitzky-Golay filter at the newest sample.
+    SavitzkyGolay(SavitzkyGolayFilterConfig) = "savitzky_golay",
+    /// One-pole low pass.
+    OnePole(OnePoleFilterConfig) = "one_pole",
+    /// Butterworth low pass.
+    Butterworth(ButterworthFilterConfig) = "butterworth",
+    /// Kalman filter for a rate that walks.
+    Kalman(KalmanFilterConfig) = "kalman",
+}
+
+/// One filter channel of a scenario.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct FilterConfig {
     /// Channel name.
@@ -17,194 +128,47 @@ pub struct FilterConfig {
     pub kind: FilterKind,
 }
 
-/// Kind of a filter and its settings.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FilterKind {
-    /// Recursive least squares.
-    Rls(RlsFilterConfig),
-    /// Least mean squares, normalised or not.
-    Lms(LmsFilterConfig),
-    /// Line enhancer with the sign of the error, and its normalised forms.
-    SignLms(SignLmsFilterConfig),
-    /// Recursive least squares held to unit DC gain.
-    ConstrainedRls(ConstrainedRlsFilterConfig),
-    /// Mean of the newest samples.
-    MovingAverage(MovingAverageFilterConfig),
-    /// Savitzky-Golay filter at the newest sample.
-    SavitzkyGolay(SavitzkyGolayFilterConfig),
-    /// One-pole low pass.
-    OnePole(OnePoleFilterConfig),
-    /// Butterworth low pass.
-    Butterworth(ButterworthFilterConfig),
-    /// Kalman filter for a constant rate.
-    Kalman(KalmanFilterConfig),
-}
+impl FilterConfig {
+    /// Contradictions among the settings.
+    ///
+    /// * `index`: of the filter in its scenario, for the paths.
+    #[must_use]
+    pub fn check(&self, index: usize) -> Vec<Complaint> {
+        let mut complaints = self.complaints(index);
+        self.kind.settings().check(&mut complaints);
+        complaints.found()
+    }
 
-/// Recursive least squares.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RlsFilterConfig {
-    /// Number of weights p.
-    pub taps: u32,
-    /// Forgetting factor alpha, (0, 1].
-    pub forgetting_factor: f64,
-    /// Initial inverse correlation delta, (deg/h)^-2.
-    pub initial_inverse_correlation: f64,
-    /// Desired signal.
-    pub desired: DesiredSignal,
-    /// Samples by which the regressors lag the desired signal's newest sample.
-    pub input_lag_samples: u32,
-    /// When the result appears.
-    pub output_register: OutputRegister,
-    /// Sign of the weight update.
-    pub update_sign: UpdateSign,
-    /// Arithmetic.
-    pub pipeline: Pipeline,
-    /// Words of the hardware.
-    pub number_format: NumberFormat,
-    /// Clock of the hardware, MHz.
-    pub clock_mhz: f64,
-    /// Where the hardware divides.
-    pub division: Division,
-    /// Order of the products in the update of the inverse correlation matrix.
-    pub update_order: UpdateOrder,
-}
+    /// Settings that do not suit the words to be filtered, and hardware that cannot be or cannot keep
+    /// up with them.
+    ///
+    /// * `index`: of the filter in its scenario, for the paths.
+    #[must_use]
+    pub fn check_on(&self, index: usize, words: &ExpectedWords) -> Vec<Complaint> {
+        let mut complaints = self.complaints(index);
+        if let Some(hardware) = self.kind.settings().hardware() {
+            hardware.check(words.sample_rate_hz, &mut complaints);
+        }
+        self.kind.settings().check_on(words, &mut complaints);
+        complaints.found()
+    }
 
-/// Least mean squares.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LmsFilterConfig {
-    /// Number of weights N.
-    pub taps: u32,
-    /// Step size mu.
-    pub step_size: f64,
-    /// Whether the step is divided by the input's energy (NLMS).
-    pub normalised: bool,
-    /// Added to the energy (normalised form), (deg/h)^2.
-    pub regularisation_deg2_per_h2: f64,
-    /// Run an un-normalised step beyond its stability bound.
-    pub allow_unstable: bool,
-    /// Desired signal.
-    pub desired: DesiredSignal,
-    /// Samples by which the regressors lag the desired signal's newest sample.
-    pub input_lag_samples: u32,
-    /// When the result appears.
-    pub output_register: OutputRegister,
-    /// Sign of the weight update.
-    pub update_sign: UpdateSign,
-    /// Arithmetic.
-    pub pipeline: Pipeline,
-    /// Words of the hardware.
-    pub number_format: NumberFormat,
-    /// Clock of the hardware, MHz.
-    pub clock_mhz: f64,
-}
+    /// What a user must know of the filter before such words are filtered, in sentences that name it.
+    #[must_use]
+    pub fn notes(&self, words: &ExpectedWords) -> Vec<String> {
+        let hardware = self.kind.settings().hardware();
+        let digits = hardware.and_then(|hardware| hardware.digits_warning(words.peak_deg_per_h));
+        let notes = self.kind.settings().notes(words);
+        let notes = digits
+            .map(|warning| warning.to_string())
+            .into_iter()
+            .chain(notes);
+        notes
+            .map(|note| format!("filter `{}`: {note}", self.name))
+            .collect()
+    }
 
-/// Line enhancer of patent CN101221046.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SignLmsFilterConfig {
-    /// Number of weights M.
-    pub taps: u32,
-    /// Age of the newest weighed sample, samples.
-    pub delay_samples: u32,
-    /// How the weights are corrected.
-    pub form: SignLmsForm,
-    /// Step mu: in `unit` in the sign form, else without unit.
-    pub step: f64,
-    /// Regularisation alpha, in the square of `unit`.
-    pub regularisation: f64,
-    /// Unit of the words in which step and regularisation are meant.
-    pub unit: ConstantUnit,
-    /// Weights at the start.
-    pub initial_weights: InitialWeights,
-    /// Errors beyond this leave the weights alone for at most a delay and a filter length, deg/h.
-    pub guard_deg_per_h: Option<f64>,
-    /// Samples between two fresh sums of the norm; 0 = never.
-    pub norm_recompute_samples: u32,
-    /// When the result appears.
-    pub output_register: OutputRegister,
-    /// Arithmetic.
-    pub pipeline: Pipeline,
-    /// Words of the hardware.
-    pub number_format: NumberFormat,
-    /// Clock of the hardware, MHz.
-    pub clock_mhz: f64,
-}
-
-/// Recursive least squares held to unit DC gain.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ConstrainedRlsFilterConfig {
-    /// Number of weights p, one more than are free.
-    pub taps: u32,
-    /// Forgetting factor, (0, 1].
-    pub forgetting_factor: f64,
-    /// Initial inverse correlation delta, (deg/h)^-2.
-    pub initial_inverse_correlation: f64,
-    /// Desired signal.
-    pub desired: DesiredSignal,
-    /// Samples by which the regressors lag the desired signal's newest sample.
-    pub input_lag_samples: u32,
-    /// When the result appears.
-    pub output_register: OutputRegister,
-}
-
-/// Mean of the newest samples.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MovingAverageFilterConfig {
-    /// Number of samples.
-    pub taps: u32,
-    /// Age of the newest sample of the mean, samples.
-    pub delay_samples: u32,
-    /// When the result appears.
-    pub output_register: OutputRegister,
-}
-
-/// Savitzky-Golay filter at the newest sample.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SavitzkyGolayFilterConfig {
-    /// Number of samples the polynomial is fitted to.
-    pub taps: u32,
-    /// Degree of the polynomial.
-    pub polynomial_order: u32,
-    /// When the result appears.
-    pub output_register: OutputRegister,
-}
-
-/// One-pole low pass.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct OnePoleFilterConfig {
-    /// Half-power frequency, Hz.
-    pub cutoff_hz: f64,
-    /// When the result appears.
-    pub output_register: OutputRegister,
-}
-
-/// Butterworth low pass.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ButterworthFilterConfig {
-    /// Number of poles.
-    pub order: u32,
-    /// Half-power frequency, Hz.
-    pub cutoff_hz: f64,
-    /// When the result appears.
-    pub output_register: OutputRegister,
-}
-
-/// Kalman filter for a rate that walks slowly, in white noise.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct KalmanFilterConfig {
-    /// Standard deviation of the white noise of one word, deg/h.
-    pub measurement_noise_deg_per_h: f64,
-    /// Random walk of the rate that the filter reckons with, deg/h/sqrt(s).
-    pub rate_random_walk_deg_per_h_per_sqrt_s: f64,
-    /// When the result appears.
-    pub output_register: OutputRegister,
+    fn complaints(&self, index: usize) -> Complaints {
+        Complaints::about(format!("filter[{index}].{}", self.kind.name()))
+    }
 }

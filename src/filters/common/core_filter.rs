@@ -101,6 +101,6 @@ impl<C: Core> Filter for CoreFilter<C> {
 
 /// Inner product in index order.
 #[inline]
-pub(super) fn dot(left: &[f64], right: &[f64]) -> f64 {
+pub(in crate::filters) fn dot(left: &[f64], right: &[f64]) -> f64 {
     left.iter().zip(right).map(|(l, r)| l * r).sum()
 }

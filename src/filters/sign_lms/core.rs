@@ -8,10 +8,7 @@
 
 use std::cmp::Ordering;
 
-use super::core_filter::{Core, CoreFilter};
-use super::divergence::Fault;
-use super::filter::Output;
-use super::front_end::FrontEndConfig;
+use crate::filters::common::{Core, CoreFilter, Fault, FrontEndConfig, Output};
 use crate::signal::WeightRule;
 use crate::vocabulary::{DesiredSignal, OutputRegister, SignLmsForm};
 
