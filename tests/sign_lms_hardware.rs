@@ -2,6 +2,7 @@
 
 use fogbench::filters::FilterConfig;
 use fogbench::filters::{Filter, SignLms, SignLmsConfig as Textbook};
+use fogbench::fpga::engine::Engine as _;
 use fogbench::fpga::float_unit::{FlushToZero, Fp};
 use fogbench::fpga::front_end::{FrontEnd, Pair};
 use fogbench::fpga::sign_lms::{

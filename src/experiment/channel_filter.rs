@@ -18,7 +18,7 @@ pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
 /// Blocks of the record whose mean weights are kept.
 const WEIGHT_BLOCKS: usize = 10;
 
-/// A filter channel while it runs.
+/// Filter channel state during a run.
 pub(super) struct ChannelFilter {
     name: String,
     settings: Option<PipelineSettings>,
@@ -39,16 +39,18 @@ pub(super) struct ChannelFilter {
     measured: u64,
 }
 
-/// How a filter starts afresh at samples that are told.
+/// Reset schedule of a filter.
 pub(super) struct Restarts {
-    /// Indices of these samples, warm-up included, the next one last.
+    /// Indices of the samples at which it starts afresh, warm-up included, the next one last.
     samples: Vec<usize>,
     kind: FilterKind,
     sample_period_s: f64,
 }
 
 impl Restarts {
-    /// * `samples`: indices, warm-up included, ascending.
+    /// The schedule of the filter of a kind.
+    ///
+    /// * `samples`: indices of the samples at which it starts afresh, warm-up included, ascending.
     pub(super) fn new(mut samples: Vec<usize>, kind: &FilterKind, sample_period_s: f64) -> Self {
         samples.reverse();
         Self {
@@ -58,7 +60,7 @@ impl Restarts {
         }
     }
 
-    /// The filter as it begins, if sample `index` is one of those.
+    /// Constructor of a fresh filter, if sample `index` is one of those.
     fn at(&mut self, index: usize) -> Option<impl Fn() -> Arithmetic> {
         self.samples.pop_if(|next| *next == index)?;
         // Nothing of what follows is left out of the health of a matrix.
@@ -70,11 +72,11 @@ impl Restarts {
     }
 }
 
-/// A filter channel after its run.
+/// Filter channel results.
 pub(super) struct FinishedFilter {
     /// Channel name.
     pub(super) name: String,
-    /// What the filter weighs and aims at.
+    /// Input samples that the filter weighs, and the rule of its weights.
     pub(super) shape: FilterShape,
     /// The words, or why there are none.
     pub(super) words: Result<FilterWords, Divergence>,
@@ -82,7 +84,7 @@ pub(super) struct FinishedFilter {
     pub(super) pipeline: Option<FinishedPipeline>,
 }
 
-/// What is known of a hardware pipeline after its run.
+/// Hardware pipeline results.
 pub(super) struct FinishedPipeline {
     /// Its constants.
     pub(super) settings: PipelineSettings,
@@ -94,7 +96,7 @@ pub(super) struct FinishedPipeline {
     pub(super) wind_up: Option<String>,
 }
 
-/// What a filter that did not fail has made.
+/// Output words of a filter that did not fail, and its gains.
 pub(super) struct FilterWords {
     /// Output words, deg/h, warm-up included.
     pub(super) output_deg_per_h: Vec<f64>,
@@ -111,7 +113,7 @@ pub(super) struct FilterWords {
     pub(super) block_weights: Vec<Vec<f64>>,
 }
 
-/// Whose arithmetic makes the words.
+/// Arithmetic that makes the words.
 pub(super) enum Arithmetic {
     Textbook(Box<dyn Filter>),
     Hardware(Box<dyn HardwareFilter>),
@@ -186,7 +188,7 @@ impl ChannelFilter {
     }
 
     /// Filters the next words of the record.
-    pub(super) fn take(&mut self, words_deg_per_h: &[f64]) {
+    pub(super) fn process(&mut self, words_deg_per_h: &[f64]) {
         for &word in words_deg_per_h {
             if self.failure.is_some() {
                 return;

@@ -154,7 +154,7 @@ pub(super) fn simulate(
         let (next, ()) = rayon::join(&mut next_block, || {
             filters
                 .par_iter_mut()
-                .for_each(|(gyro, filter)| filter.take(&given[*gyro]));
+                .for_each(|(gyro, filter)| filter.process(&given[*gyro]));
         });
         for (gyro, record) in records.iter_mut().enumerate() {
             record.extend(&raw[gyro], compensated.as_ref().map(|words| &words[gyro]));

@@ -159,7 +159,7 @@ impl PipelineSettings {
         FrontEnd::new(self.desired, self.input_lag_samples)
     }
 
-    /// Regressors, aim and register in the terms of the bench.
+    /// Regressors, desired signal and register in the terms of the bench.
     pub(super) fn shape(&self) -> FilterShape {
         let front_end = FrontEndConfig {
             desired: self.desired,

@@ -38,7 +38,7 @@ pub struct SignLmsConfig {
 }
 
 impl SignLmsConfig {
-    /// Delay line, aim and register.
+    /// Delay line, desired signal and register.
     #[must_use]
     pub fn front_end(&self) -> FrontEndConfig {
         FrontEndConfig {
