@@ -8,19 +8,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use fogbench::experiment::{Observer, Plan, SuiteOptions, plan_suite, run_suite};
-use fogbench::report::{RunOutcome, RunReport};
+use fogbench::experiment::{Plan, SuiteOptions, plan_suite, run_suite};
 
 /// Runs of each thread count.
 const ROUNDS: usize = 5;
-
-struct Silent;
-
-impl Observer for Silent {
-    fn advanced(&self, _simulated_s: f64) {}
-    fn finished(&self, _index: usize, _report: &RunReport) {}
-    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
-}
 
 fn plans(files: &[&str], sets: &[&str]) -> Vec<Plan> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper");
@@ -36,7 +27,7 @@ fn wall_s(plans: &[Plan], threads: usize) -> f64 {
         ..SuiteOptions::new(output)
     };
     let start = Instant::now();
-    run_suite(plans, &options, &Silent).expect("the scratch folder is writable");
+    run_suite(plans, &options, &()).expect("the scratch folder is writable");
     let elapsed = start.elapsed().as_secs_f64();
     drop(std::fs::remove_dir_all(&options.output));
     elapsed

@@ -1,4 +1,59 @@
-#![doc = include_str!("../README.md")]
+//! Closed-loop fibre-optic gyros on a rate table, and the filters behind them on trial.
+//!
+//! The crate simulates a gyro from the optics up on a turntable, feeds its rate words to filters, and
+//! measures what they did to them: noise, bias stability, scale factor, bandwidth, delay and DC gain,
+//! each with an interval. A filter can also be a model of FPGA hardware, exact to the bit and the clock.
+//!
+//! ```text
+//!  scenario ──> turntable ──truth──> gyro ──rate words──> filters ──> metrics ──> gate ──> report
+//!  recording ──your own log──────────┘
+//! ```
+//!
+//! # A scenario in memory
+//!
+//! A [`Scenario`] is read from TOML, changed key by key and run; a [`Run`] holds channels by name,
+//! metrics by typed key, samples as slices and the verdicts of gates. No file is written before
+//! [`Run::write`]. Every key has a default, which stands in [`scenario::reference_toml`].
+//!
+//! ```
+//! use fogbench::Scenario;
+//! use fogbench::metrics::catalogue::{DC_GAIN, NOISE_STD};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let run = Scenario::from_toml(
+//!     r#"
+//!     schema = 1
+//!     name = "at-rest"
+//!     duration_s = 5.0
+//!     filter = [{ name = "rls", rls = {} }]
+//!     "#,
+//! )?
+//! .set("filter[0].rls.taps", 8)?
+//! .run()?;
+//!
+//! let (raw, filtered) = (run["raw"].metric(&NOISE_STD)?, run["rls"].metric(&NOISE_STD)?);
+//! println!("noise {raw} deg/h, behind the filter {filtered} deg/h");
+//! // What looks like a quieter gyro is a filter that shrinks the rate itself.
+//! assert!(filtered.value < raw.value);
+//! assert!(run["rls"].metric(&DC_GAIN)?.value < 0.9);
+//!
+//! let words = run.samples("rls")?;
+//! assert_eq!(words.unit, "deg/h");
+//! assert!((words.measured().len() as f64 * words.period_s - 5.0).abs() < 0.01);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Stages alone
+//!
+//! * a filter on your own words: [`filters`], such as [`filters::Rls`];
+//! * estimators on a slice: [`metrics::overlapping_allan`], [`metrics::fit_noise`],
+//!   [`metrics::measure`];
+//! * a gyro, word by word: [`gyro::Gyro`];
+//! * a hardware pipeline, clock by clock: [`fpga::rls::RlsPipeline`];
+//! * logs from files: [`recording::read_log`]; calibration of three axes: [`calibration`].
+//!
+//! The folder `examples` has a program for each.
 
 mod linear_algebra;
 pub mod random;
@@ -26,6 +81,8 @@ pub mod recording;
 
 pub mod gate;
 
+pub mod comparison;
+
 pub mod report;
 
 pub mod store;
@@ -33,3 +90,5 @@ pub mod store;
 pub mod experiment;
 
 pub mod cli;
+
+pub use experiment::{Plan, Run, Scenario};

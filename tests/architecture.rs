@@ -21,10 +21,19 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("calibration", &["units", "linear_algebra", "signal"]),
     ("recording", &["units", "signal", "wording"]),
     ("gate", &["metrics", "scenario"]),
+    ("comparison", &["metrics", "gate", "scenario"]),
     ("store", &[]),
     (
         "report",
-        &["units", "metrics", "gate", "scenario", "signal", "wording"],
+        &[
+            "units",
+            "metrics",
+            "gate",
+            "comparison",
+            "scenario",
+            "signal",
+            "wording",
+        ],
     ),
     (
         "experiment",
@@ -41,6 +50,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
             "calibration",
             "recording",
             "gate",
+            "comparison",
             "report",
             "store",
             "wording",

@@ -7,7 +7,11 @@ use std::process::Command;
 
 use fogbench::scenario::{load_suite, manifest_toml};
 
+use crate::support::transcript::Transcript;
 use crate::support::{code, fogbench, stderr, stdout, write};
+
+/// The transcript of bounds.
+const BOUNDS: &str = "bounds";
 
 /// A sound scenario.
 const SOUND: &str = "schema = 1\nname = \"x\"\nduration_s = 20.0\n";
@@ -41,25 +45,21 @@ fn devices_and_pipes_are_refused_wherever_a_file_is_named() {
     let pipe = folder.path().join("pipe.toml");
     let made = Command::new("mkfifo").arg(&pipe).status();
     assert!(made.expect("mkfifo is there").success());
-    for (name, kind) in [("/dev/zero", "a device"), ("pipe.toml", "a pipe")] {
-        let said = format!("it is {kind}, not a regular file");
+    let mut transcript = Transcript::of(BOUNDS, "Devices and pipes are refused");
+    for name in ["/dev/zero", "pipe.toml"] {
         let output = fogbench(folder.path(), &["check", name]);
         assert_eq!(code(&output), 2);
-        assert!(stderr(&output).contains(&said), "{}", stderr(&output));
+        transcript.case(format!("check {name}"), stderr(&output));
         for text in [
             format!("extends = \"{name}\"\n{SOUND}"),
             format!("{SOUND}[turntable.script]\nfile = \"{name}\"\n"),
             format!("{SOUND}[gyro.assembly]\n[compensation]\nfile = \"{name}\"\n"),
             format!("{SOUND}[gyro.assembly]\n[compensation]\ncampaign = \"{name}\"\n"),
         ] {
-            let refusal = refusal(folder.path(), &text);
-            assert!(refusal.contains(&said), "{text}: {refusal}");
-            assert!(
-                refusal.contains(name) && refusal.contains("x.toml:"),
-                "{refusal}"
-            );
+            transcript.case(&text, refusal(folder.path(), &text));
         }
     }
+    transcript.check();
 }
 
 #[cfg(unix)]
@@ -76,13 +76,9 @@ fn a_text_may_hold_16_megabytes_and_not_a_byte_more() {
     let folder = scratch();
     write(folder.path(), "x.toml", &padded(BYTES_MAX));
     assert_eq!(code(&fogbench(folder.path(), &["check", "x.toml"])), 0);
-    let said = "the file holds 16000001 bytes: allowed up to 16000000 (16 MB)";
+    let mut transcript = Transcript::of(BOUNDS, "Texts hold up to 16 MB");
     let long = padded(BYTES_MAX + 1);
-    let refused = refusal(folder.path(), &long);
-    assert!(
-        refused.contains("x.toml: ") && refused.contains(said),
-        "{refused}"
-    );
+    transcript.case("a scenario of a byte more", refusal(folder.path(), &long));
     for (name, key) in [
         ("long.csv", "[turntable.script]\nfile = \"long.csv\"\n"),
         (
@@ -92,18 +88,13 @@ fn a_text_may_hold_16_megabytes_and_not_a_byte_more() {
     ] {
         write(folder.path(), name, &long);
         let refused = refusal(folder.path(), &format!("{SOUND}{key}"));
-        assert!(
-            refused.contains(name) && refused.contains(said),
-            "{refused}"
-        );
+        transcript.case(format!("{name} of a byte more\n{key}"), refused);
     }
     write(folder.path(), "base.toml", &padded(BYTES_MAX / 2 + 1));
     let both = format!("extends = \"base.toml\"\n{}", padded(BYTES_MAX / 2));
     let refused = refusal(folder.path(), &both);
-    assert!(
-        refused.contains("more than 16000000 bytes together"),
-        "{refused}"
-    );
+    transcript.case("a base and a scenario of a byte more together", refused);
+    transcript.check();
 }
 
 #[test]
@@ -117,9 +108,9 @@ fn bases_stand_64_below_one_another_and_no_more() {
     let last = folder.path().join("b64.toml");
     let scenario = "extends = \"b1.toml\"\nschema = 1\nname = \"x\"\n";
     let refused = refusal(folder.path(), scenario);
-    let said =
-        "b64.toml:1:1: extends = \"b65.toml\" is base 65 below one another: allowed up to 64";
-    assert!(refused.contains(said), "{refused}");
+    let mut transcript = Transcript::of(BOUNDS, "Bases stand 64 below one another");
+    transcript.case("2000 bases, each below the one before", refused);
+    transcript.check();
     fs::write(last, "duration_s = 20.0\n").expect("writable");
     assert_eq!(code(&fogbench(folder.path(), &["check", "x.toml"])), 0);
 }
@@ -129,11 +120,8 @@ fn arrays_have_a_length_and_documents_a_size() {
     let folder = scratch();
     let rates = "0.0, ".repeat(100_001);
     let text = format!("{SOUND}[turntable.steps]\nrates_deg_per_s = [{rates}]\ndwell_s = 1.0\n");
-    let refused = refusal(folder.path(), &text);
-    assert!(
-        refused.contains("rates_deg_per_s holds 100001 values: allowed up to 100000"),
-        "{refused}"
-    );
+    let mut transcript = Transcript::of(BOUNDS, "Arrays have a length and documents a size");
+    transcript.case("100001 rates", refusal(folder.path(), &text));
     for (part, count) in [("1,", 7_900_000), ("[],", 5_200_000), ("{},", 5_200_000)] {
         let text = format!("{SOUND}x = [{}]\n", part.repeat(count));
         assert!(
@@ -141,18 +129,11 @@ fn arrays_have_a_length_and_documents_a_size() {
             "the size of the text is not the point"
         );
         let refused = refusal(folder.path(), &text);
-        assert!(refused.contains("x.toml:4:"), "{refused}");
-        assert!(
-            refused.contains("too many values") && refused.contains("200 MB"),
-            "{refused}"
-        );
+        transcript.case(format!("x = [{part} and so on, {count} of them]"), refused);
     }
     let tables = format!("{SOUND}{}", "[[gate]]\n".repeat(10_001));
-    let refused = refusal(folder.path(), &tables);
-    assert!(
-        refused.contains("gate holds 10001 tables: allowed up to 10000"),
-        "{refused}"
-    );
+    transcript.case("10001 gates", refusal(folder.path(), &tables));
+    transcript.check();
 }
 
 #[test]
@@ -176,6 +157,33 @@ fn long_values_and_keys_are_shortened_with_their_length() {
     let long = "y".repeat(100_000);
     write(folder.path(), "x.toml", SOUND);
     let brackets = format!("gyro.coil.length_m={}", "[".repeat(100_000));
+    let mut transcript = Transcript::of(BOUNDS, "Long values and keys are shortened");
+    // Runs of one character are shown by three of them.
+    let shown = |text: &str| {
+        let mut shown = String::new();
+        let mut run = 0;
+        for character in text.chars() {
+            run = if shown.ends_with(character) {
+                run + 1
+            } else {
+                1
+            };
+            if !"y[^".contains(character) || run <= 3 {
+                shown.push(character);
+            }
+        }
+        shown
+    };
+    let mut heard = |given: &str, said: &str, bytes_max: usize| {
+        assert!(
+            said.len() < bytes_max,
+            "{} bytes: {}",
+            said.len(),
+            &said[..500]
+        );
+        assert!(said.contains("characters)"), "{said}");
+        transcript.case(shown(given), shown(said));
+    };
     for argument in [
         brackets.as_str(),
         &format!("fidelity={long}"),
@@ -185,9 +193,7 @@ fn long_values_and_keys_are_shortened_with_their_length() {
     ] {
         let output = fogbench(folder.path(), &["check", "x.toml", "--set", argument]);
         assert_eq!(code(&output), 2);
-        let said = stderr(&output);
-        assert!(said.len() < 1500, "{} bytes: {}", said.len(), &said[..500]);
-        assert!(said.contains("characters)"), "{said}");
+        heard(&format!("--set {argument}"), &stderr(&output), 1500);
     }
     for text in [
         format!("{SOUND}fidelity = \"{long}\"\n"),
@@ -197,15 +203,9 @@ fn long_values_and_keys_are_shortened_with_their_length() {
         format!("extends = \"{long}\"\n{SOUND}"),
         format!("{SOUND}[[gate]]\nmetric = \"{long}.mean\"\nmax = 1.0\n"),
     ] {
-        let said = refusal(folder.path(), &text);
-        assert!(
-            said.len() < 10_000,
-            "{} bytes: {}",
-            said.len(),
-            &said[..500]
-        );
-        assert!(said.contains("characters)"), "{said}");
+        heard(&text, &refusal(folder.path(), &text), 10_000);
     }
+    transcript.check();
     let output = fogbench(folder.path(), &["timing", "--taps", &long]);
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).len() < 10_000);
@@ -228,55 +228,34 @@ fn said_about_manifest(from: &str, to: &str) -> (i32, String) {
 #[test]
 fn a_changed_manifest_says_so_and_what_was_changed() {
     assert_eq!(said_about_manifest("name", "name"), (0, String::new()));
-    for (from, to, what) in [
-        ("seed = 6", "seed = 7", "[scenario] has the digest"),
-        ("digest = \"", "digest = \"0", "[scenario] has the digest"),
-        (
-            "value = \"6\"",
-            "value = \"5\"",
-            "origin.sweep says seed = 5, but [scenario] has 6",
-        ),
-        (
-            "[origin]\nfile = \"x.toml\"",
-            "[origin]\nfile = \"y.toml\"",
-            "origin.file = \"y.toml\"",
-        ),
+    let mut transcript = Transcript::of(BOUNDS, "Changed manifests say what was changed");
+    for (from, to) in [
+        ("seed = 6", "seed = 7"),
+        ("digest = \"", "digest = \"0"),
+        ("value = \"6\"", "value = \"5\""),
+        ("[origin]\nfile = \"x.toml\"", "[origin]\nfile = \"y.toml\""),
     ] {
         let (code, said) = said_about_manifest(from, to);
         assert_eq!(code, 0, "{said}");
-        assert!(
-            said.contains("warning: m.toml: this manifest was changed: "),
-            "{said}"
-        );
-        assert!(said.contains(what), "{said}");
-        assert_eq!(said.lines().count(), 1, "{said}");
+        transcript.case(format!("{to}, where {from} stood"), said);
     }
+    transcript.check();
 }
 
 #[test]
 fn a_manifest_holds_a_point_that_a_sweep_can_have() {
-    for (from, to, what) in [
-        (
-            "\nindex = 1",
-            "\nindex = 99999999999",
-            ":1: origin.sweep.index = 99999999999 is out",
-        ),
-        (
-            "\nindex = 1",
-            "\nindex = 2",
-            "origin.sweep.index = 2 is out of range: allowed 0..=1",
-        ),
-        ("\nindex = 1", "\nindex = -1", "origin.sweep.index = -1"),
-        (
-            "count = 2",
-            "count = 10001",
-            "origin.sweep.count = 10001 is out of range: allowed 1..=",
-        ),
+    let mut transcript = Transcript::of(BOUNDS, "Manifests hold a point that a sweep can have");
+    for (from, to) in [
+        ("\nindex = 1", "\nindex = 99999999999"),
+        ("\nindex = 1", "\nindex = 2"),
+        ("\nindex = 1", "\nindex = -1"),
+        ("count = 2", "count = 10001"),
     ] {
         let (code, said) = said_about_manifest(from, to);
         assert_eq!(code, 2, "{said}");
-        assert!(said.contains(what), "{said}");
+        transcript.case(to.trim_start(), said);
     }
+    transcript.check();
 }
 
 #[test]
@@ -323,11 +302,9 @@ fn an_input_beside_a_manifest_that_is_another_file_now_is_named() {
     let check = || stderr(&fogbench(folder.path(), &["check", "m.toml"]));
     assert_eq!(check(), "");
     write(folder.path(), "x.toml", &format!("{SOUND}seed = 3\n"));
-    let said = check();
-    assert!(
-        said.contains("warning: m.toml: x.toml is not the file that this manifest"),
-        "{said}"
-    );
+    let mut transcript = Transcript::of(BOUNDS, "An input that is another file now is named");
+    transcript.case("x.toml with another seed", check());
+    transcript.check();
 }
 
 #[test]
@@ -344,9 +321,7 @@ fn a_sweep_over_a_long_script_has_a_size() {
     let script = "[turntable.script]\nfile = \"t.csv\"\n";
     let text = format!("{SOUND}{script}[matrix]\nseed = [{}]\n", seeds.join(", "));
     let refused = refusal(folder.path(), &text);
-    let said = "numbers in arrays each: allowed up to 10000000 in all";
-    assert!(
-        refused.contains("1000 points") && refused.contains(said),
-        "{refused}"
-    );
+    let mut transcript = Transcript::of(BOUNDS, "A sweep over a long script has a size");
+    transcript.case("1000 points of 20001 rows", refused);
+    transcript.check();
 }

@@ -7,7 +7,11 @@ use fogbench::units::{deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h};
 use serde_json::Value;
 
 use crate::support::patent_cases::{rates, truth};
+use crate::support::transcript::{Transcript, said_to_each};
 use crate::support::{assert_close, code, field, fogbench, npy, stderr, stdout, write};
+
+/// The transcript of calibrations.
+const CALIBRATE: &str = "calibrate";
 
 const HEADING: &str = "mounting,rate_deg_per_s,temperature_c,output_x_deg_per_h,\
                        output_y_deg_per_h,output_z_deg_per_h";
@@ -26,103 +30,62 @@ fn refused(heading: &str, line: &str) -> String {
 
 #[test]
 fn columns_unknown_repeated_missing_or_without_a_unit_are_all_named_at_once() {
-    let units = "(or _deg_per_s, _mdeg_per_s, _arcsec_per_s, _rad_per_s, _rad_per_h)";
-    let heading = HEADING.replace("mounting", "mountng");
-    let heading = heading.replace("output_z_deg_per_h", "output_z");
-    assert_eq!(
-        refused(&heading, LINE),
-        format!(
-            "error: groups.csv:1: unknown column `mountng`: the nearest known is `mounting`; column \
-             `output_z` has no unit: expected `output_z_deg_per_h` {units}; missing: `mounting`, \
-             `output_z_deg_per_h` {units}\n"
-        )
-    );
-    let heading = HEADING.replace("temperature_c", "output_x_deg_per_s");
-    assert_eq!(
-        refused(&heading, LINE),
-        "error: groups.csv:1: columns `output_x_deg_per_s` and `output_x_deg_per_h` hold the same; \
-         missing: `temperature_c`\n"
-    );
-    let heading = HEADING.replace("temperature_c", "temperature_y_c");
-    assert_eq!(
-        refused(&heading, LINE),
-        "error: groups.csv:1: missing: `temperature_x_c`, `temperature_z_c`\n"
-    );
-    let heading = format!("{HEADING},reference_x_deg_per_s");
-    assert_eq!(
-        refused(&heading, LINE),
-        "error: groups.csv:1: missing: `reference_y_deg_per_s`, `reference_z_deg_per_s`\n"
+    let no_unit = HEADING.replace("mounting", "mountng");
+    let headings = [
+        no_unit.replace("output_z_deg_per_h", "output_z"),
+        HEADING.replace("temperature_c", "output_x_deg_per_s"),
+        HEADING.replace("temperature_c", "temperature_y_c"),
+        format!("{HEADING},reference_x_deg_per_s"),
+    ];
+    said_to_each(
+        CALIBRATE,
+        "Headings of a groups file that are refused",
+        headings,
+        |heading| refused(heading, LINE),
     );
 }
 
 #[test]
 fn cells_that_are_no_number_out_of_range_or_empty_are_named_with_line_and_column() {
-    for (line, complaint) in [
-        (
-            "x,10,warm,1,2,3",
-            "column temperature_c: `warm` is not a number: expected deg C",
-        ),
-        (
-            "x,10,,1,2,3",
-            "column temperature_c: the cell is empty: expected deg C",
-        ),
-        (
-            "x,10,inf,1,2,3",
-            "column temperature_c: inf is not a finite number: expected deg C",
-        ),
-        (
-            "x,10,2299,1,2,3",
-            "column temperature_c: 2299 deg C is out of range: expected -100 to 150 deg C",
-        ),
-        (
-            "a,10,25,1,2,3",
-            "column mounting: `a` is no mounting: expected the case axis along the table axis, x, y \
-             or z, as `-x` or `x down` where it points down",
-        ),
-        ("x,10,25,1,2", "5 cells where the heading has 6"),
-    ] {
-        assert_eq!(
-            refused(HEADING, line),
-            format!("error: groups.csv:2: {complaint}\n")
-        );
-    }
+    let lines = [
+        "x,10,warm,1,2,3",
+        "x,10,,1,2,3",
+        "x,10,inf,1,2,3",
+        "x,10,2299,1,2,3",
+        "a,10,25,1,2,3",
+        "x,10,25,1,2",
+    ];
+    said_to_each(
+        CALIBRATE,
+        "Lines of a groups file that are refused",
+        lines,
+        |line| refused(HEADING, line),
+    );
     let folder = tempfile::tempdir().expect("a scratch folder");
     let run = |arguments: &[&str]| {
         let output = fogbench(folder.path(), &[&["calibrate"], arguments].concat());
         (code(&output), stderr(&output))
     };
     std::fs::write(folder.path().join("latin.csv"), b"mounting,\xb0C\n").expect("a file");
-    assert_eq!(
-        run(&["latin.csv"]),
-        (2, "error: latin.csv:1: no text in UTF-8\n".to_owned())
-    );
     write(
         folder.path(),
         "empty.csv",
         &format!("# nothing yet\n{HEADING}\n"),
     );
-    assert_eq!(
-        run(&["empty.csv"]),
-        (2, "error: empty.csv: holds no group\n".to_owned())
-    );
-    let (exit, words) = run(&["nowhere.csv"]);
-    assert!(
-        exit == 74 && words.starts_with("error: cannot read nowhere.csv: "),
-        "{words}"
-    );
     write(folder.path(), "groups.csv", &format!("{HEADING}\n{LINE}\n"));
-    let (exit, words) = run(&["groups.csv"]);
-    assert_eq!(exit, 2);
-    assert!(
-        words.contains("line 2: the Earth rate about the table axis is not known"),
-        "{words}"
-    );
-    assert!(words.contains("give --latitude-deg"), "{words}");
-    let (exit, words) = run(&["groups.csv", "--latitude-deg", "91"]);
-    assert!(
-        exit == 2 && words.contains("expected a latitude from -90 to 90 deg"),
-        "{words}"
-    );
+    let mut transcript = Transcript::of(CALIBRATE, "Groups files that cannot be used");
+    for (arguments, want) in [
+        (&["latin.csv"][..], 2),
+        (&["empty.csv"], 2),
+        (&["nowhere.csv"], 74),
+        (&["groups.csv"], 2),
+        (&["groups.csv", "--latitude-deg", "91"], 2),
+    ] {
+        let (exit, words) = run(arguments);
+        assert_eq!(exit, want, "{words}");
+        transcript.case(format!("calibrate {}", arguments.join(" ")), words);
+    }
+    transcript.check();
 }
 
 /// A campaign of 36 s at each rate without noise.
@@ -188,28 +151,25 @@ fn a_scenario_without_a_campaign_and_misplaced_options_exit_2() {
     let still = "schema = 1\nname = \"still\"\nduration_s = 1.0\n[turntable.static]\n";
     write(folder.path(), "still.toml", still);
     write(folder.path(), "groups.csv", &format!("{HEADING}\n{LINE}\n"));
-    for (arguments, complaint) in [
-        (
-            vec!["still.toml"],
-            "still.toml: the scenario has no [turntable.calibration]: there is no campaign",
-        ),
-        (
-            vec!["still.toml", "--latitude-deg", "30"],
-            "--latitude-deg belongs to a groups file: a scenario has turntable.site.latitude_deg",
-        ),
-        (
-            vec!["groups.csv", "--set", "seed=2"],
-            "--set changes keys of a scenario: a groups file has none",
-        ),
-        (
-            vec!["groups.csv", "--estimator", "kalman"],
-            "expected one of batch, batch-temperature, arls, arls-covariance, arls-temperature",
-        ),
+    let mut transcript = Transcript::of(
+        CALIBRATE,
+        "Scenarios without a campaign and misplaced options",
+    );
+    for arguments in [
+        "still.toml",
+        "still.toml --latitude-deg 30",
+        "groups.csv --set seed=2",
+        "groups.csv --estimator kalman",
     ] {
-        let output = fogbench(folder.path(), &[vec!["calibrate"], arguments].concat());
+        let words: Vec<&str> = ["calibrate"]
+            .into_iter()
+            .chain(arguments.split(' '))
+            .collect();
+        let output = fogbench(folder.path(), &words);
         assert_eq!(code(&output), 2);
-        assert!(stderr(&output).contains(complaint), "{}", stderr(&output));
+        transcript.case(words.join(" "), stderr(&output));
     }
+    transcript.check();
 }
 
 /// Three columns of an assembly that turns about x at 50 deg/s, and its temperature.
@@ -310,30 +270,22 @@ fn a_calibration_that_is_none_is_refused_at_its_line() {
     };
     let wrong = CALIBRATION.replace("206.26480624709636", "3e6");
     write(folder.path(), "wrong.toml", &wrong);
-    let (exit, words) = analyze("wrong.toml", "gx,gy,gz");
-    assert_eq!(exit, 2);
-    assert!(words.starts_with("error: wrong.toml:5:"), "{words}");
-    assert!(
-        words.contains("theta_xy_arcsec") && words.contains("arcsec"),
-        "{words}"
-    );
     write(folder.path(), "none.toml", "schema = 1\n");
-    let (exit, words) = analyze("none.toml", "gx,gy,gz");
-    assert!(
-        exit == 2 && words.contains("this is no calibration file"),
-        "{words}"
-    );
     write(folder.path(), "calibration.toml", CALIBRATION);
-    let (exit, words) = analyze("calibration.toml", "gx,gy");
-    assert!(
-        exit == 2 && words.contains("--columns names 2 columns"),
-        "{words}"
-    );
-    let (exit, words) = analyze("calibration.toml", "gx,gy,gw");
-    assert!(
-        exit == 2 && words.contains("there is no column `gw`"),
-        "{words}"
-    );
-    let (exit, words) = analyze("nowhere.toml", "gx,gy,gz");
-    assert!(exit == 74 && words.contains("no such file"), "{words}");
+    let mut transcript = Transcript::of(CALIBRATE, "Calibrations that are none");
+    for (calibration, columns, want) in [
+        ("wrong.toml", "gx,gy,gz", 2),
+        ("none.toml", "gx,gy,gz", 2),
+        ("calibration.toml", "gx,gy", 2),
+        ("calibration.toml", "gx,gy,gw", 2),
+        ("nowhere.toml", "gx,gy,gz", 74),
+    ] {
+        let (exit, words) = analyze(calibration, columns);
+        assert_eq!(exit, want, "{words}");
+        transcript.case(
+            format!("analyze --columns {columns} --calibration {calibration}"),
+            words,
+        );
+    }
+    transcript.check();
 }

@@ -8,6 +8,7 @@ use fogbench::signal::MotionSegment;
 use fogbench::turntable::{Turntable, campaign_angles_rad};
 use serde_json::Value;
 
+use crate::support::transcript::{Transcript, said_to_each};
 use crate::support::{
     assert_close, code, field, fogbench, npy, repository, stderr, stdout, summary, tree, write,
 };
@@ -296,51 +297,29 @@ const FOUR: &str = "[\"x\", \"x\", \"y\", \"z\"]";
 const SIX: &str = "[\"x\", \"x\", \"y\", \"y\", \"z\", \"z\"]";
 const SIX_RATES: &str = "[10.0, 50.0, 10.0, 50.0, 10.0, 50.0]";
 
-/// Every plan must be refused at its file, all messages said.
-fn assert_refused(cases: &[(String, &[&str])]) {
+/// Holds what is said to each plan, which must be refused.
+#[track_caller]
+fn assert_refused(title: &'static str, plans: impl IntoIterator<Item = String>) {
     let folder = tempfile::tempdir().expect("a scratch folder");
-    for (text, messages) in cases {
-        let text = format!("{}{text}", base("plan", 6480.0));
+    said_to_each("calibrate", title, plans, |plan| {
+        let text = format!("{}{plan}", base("plan", 6480.0));
         write(folder.path(), "plan.toml", &text);
         let output = fogbench(folder.path(), &["check", "plan.toml"]);
         assert_eq!(code(&output), 2, "{text}");
-        let said = stderr(&output);
-        assert!(said.contains("plan.toml:"), "{said}");
-        for message in *messages {
-            assert!(said.contains(message), "{message}\n{said}");
-        }
-    }
+        stderr(&output)
+    });
 }
 
 #[test]
 fn plans_that_leave_parameters_open_are_refused_with_the_missing_motion() {
     let two = "[\"x\", \"x\", \"y\", \"y\"]";
     let one_rate = "[\"x\", \"y\", \"z\"]";
-    assert_refused(&[
-        (
-            plan(two, "[10.0, 50.0, 10.0, 50.0]", ""),
-            &[
-                "turntable.calibration.axes",
-                "no motion about z",
-                "a mounting with z along the table axis",
-            ],
-        ),
-        (
-            plan(one_rate, "[50.0, 50.0, 50.0]", ""),
-            &[
-                "turntable.calibration.rates_deg_per_s",
-                "rank 3 for 4 unknowns",
-                "a second rate",
-            ],
-        ),
-        (
-            plan(SIX, SIX_RATES, WARM),
-            &[
-                "calibration.apply = \"arls-temperature\"",
-                "the temperature, or its rate, is the same",
-            ],
-        ),
-    ]);
+    let plans = [
+        plan(two, "[10.0, 50.0, 10.0, 50.0]", ""),
+        plan(one_rate, "[50.0, 50.0, 50.0]", ""),
+        plan(SIX, SIX_RATES, WARM),
+    ];
+    assert_refused("Plans that leave parameters open", plans);
 }
 
 #[test]
@@ -351,45 +330,17 @@ fn contradictions_of_a_campaign_are_refused_where_they_stand() {
         plan(SIX, SIX_RATES, &gate)
     };
     let along = "[turntable.mounting]\naxis_along_table = \"x\"\n";
-    assert_refused(&[
-        (
-            plan(FOUR, "[10.0, 50.0, 50.0]", ""),
-            &["has 3 values, but turntable.calibration.axes has 4"],
-        ),
-        (
-            plan(FOUR, rates, "record_s = 6000.0\n"),
-            &["duration_s = 6480.0 s is too short", "take 24780.0 s"],
-        ),
-        (
-            plan(FOUR, "[0.5, 50.0, 50.0, 50.0]", ""),
-            &[
-                "rates_deg_per_s[0] = 0.5 deg/s makes no whole turn",
-                "whole_turns = false",
-            ],
-        ),
-        (
-            plan(FOUR, rates, "change_s = 1.0\n"),
-            &["turntable.calibration.change_s = 1.0 s is too short"],
-        ),
-        (
-            plan(FOUR, rates, along),
-            &["turntable.mounting.axis_along_table = \"x\" has no effect"],
-        ),
-        (
-            plan("[\"x\", \"x\", \"y\", \"w\"]", rates, ""),
-            &[
-                "turntable.calibration.axes[3] = \"w\" is unknown: expected one of \"x\", \"y\", \"z\"",
-            ],
-        ),
-        (
-            gate("calibration_arls.mean_deg_per_h"),
-            &["an estimate has bias_error_rms_deg_per_h, "],
-        ),
-        (
-            gate("x_raw.mean_deg_per_h"),
-            &["x_raw.mean_deg_per_h: the record of a campaign holds many rates"],
-        ),
-    ]);
+    let plans = [
+        plan(FOUR, "[10.0, 50.0, 50.0]", ""),
+        plan(FOUR, rates, "record_s = 6000.0\n"),
+        plan(FOUR, "[0.5, 50.0, 50.0, 50.0]", ""),
+        plan(FOUR, rates, "change_s = 1.0\n"),
+        plan(FOUR, rates, along),
+        plan("[\"x\", \"x\", \"y\", \"w\"]", rates, ""),
+        gate("calibration_arls.mean_deg_per_h"),
+        gate("x_raw.mean_deg_per_h"),
+    ];
+    assert_refused("Contradictions of a campaign", plans);
 }
 
 #[test]
@@ -435,30 +386,20 @@ fn a_campaign_needs_an_assembly() {
     write(folder.path(), "alone.toml", &text);
     let output = fogbench(folder.path(), &["check", "alone.toml"]);
     assert_eq!(code(&output), 2);
-    assert!(
-        stderr(&output).contains("give [gyro.assembly]"),
-        "{}",
-        stderr(&output)
-    );
+    let mut transcript = Transcript::of("calibrate", "A campaign needs an assembly");
+    transcript.case(GROUPS, stderr(&output));
+    transcript.check();
 }
 
 #[test]
 fn a_check_tells_what_a_sound_plan_determines_and_what_it_hides() {
+    let plans = ["calibration", "calibration-both-senses"];
     let folder = tempfile::tempdir().expect("a scratch folder");
-    let file = repository("scenarios/patent/calibration.toml");
-    let output = fogbench(folder.path(), &["check", &file.to_string_lossy()]);
-    assert_eq!(code(&output), 0, "{}", stderr(&output));
-    let said = stderr(&output);
-    assert!(
-        said.contains("9 groups, rank 4 of 4 for each gyro, condition number 63.1"),
-        "{said}"
-    );
-    assert!(said.contains("every group turns in one sense"), "{said}");
-    let file = repository("scenarios/patent/calibration-both-senses.toml");
-    let output = fogbench(folder.path(), &["check", &file.to_string_lossy()]);
-    assert!(
-        !stderr(&output).contains("one sense"),
-        "{}",
-        stderr(&output)
-    );
+    let title = "A check tells what a sound plan determines and what it hides";
+    said_to_each("calibrate", title, plans, |plan| {
+        let file = repository(&format!("scenarios/patent/{plan}.toml"));
+        let output = fogbench(folder.path(), &["check", &file.to_string_lossy()]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        format!("{}{}", stdout(&output), stderr(&output))
+    });
 }

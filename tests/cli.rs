@@ -181,6 +181,73 @@ fn a_gyro_of_nothing_but_noise_exits_2_at_the_key_to_blame() {
     }
 }
 
+/// Parts of the gyro whose least value is one of the physics: key, unit, a value just below the
+/// least one and the range as printed.
+const LEAST_PARTS: [(&str, &str, &str, &str); 8] = [
+    ("gyro.coil.length_m", "m", "0.999", "[1, 50000]"),
+    ("gyro.coil.diameter_mm", "mm", "0.999", "[1, 2000]"),
+    ("gyro.coil.group_index", "", "0.999", "[1, 4]"),
+    ("gyro.source.wavelength_nm", "nm", "199.9", "[200, 5000]"),
+    ("gyro.source.power_uw", "uW", "0.000999", "[0.001, 100000]"),
+    ("gyro.source.linewidth_nm", "nm", "9.99e-7", "[1e-6, 500]"),
+    ("gyro.source.visibility", "", "0.000999", "[0.001, 1]"),
+    (
+        "gyro.detector.transimpedance_kohm",
+        "kOhm",
+        "0.000999",
+        "[0.001, 1000000]",
+    ),
+];
+
+#[test]
+fn a_part_below_its_least_value_exits_2_with_line_unit_and_range() {
+    let folder = scratch();
+    for (key, unit, below, range) in LEAST_PARTS {
+        let (table, name) = key.rsplit_once('.').expect("a key in a table");
+        let line = format!("{name} = {below}");
+        write(
+            folder.path(),
+            "a.toml",
+            &format!("{SHORT}[{table}]\n{line}\n"),
+        );
+        let unit = if unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {unit}")
+        };
+        for command in ["check", "run", "budget"] {
+            let output = fogbench(folder.path(), &[command, "a.toml"]);
+            assert_eq!(code(&output), 2, "{command} {key}: {}", stderr(&output));
+            let underline = "^".repeat(line.len());
+            assert_eq!(
+                stderr(&output),
+                format!(
+                    "error: a.toml:7:1: {key} = {below}{unit} is out of range: allowed {range}{unit}\n  \
+                     |\n7 | {line}\n  | {underline}\n"
+                ),
+                "{command}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_least_value_itself_is_in_range() {
+    let folder = scratch();
+    // An ideal converter, as the noise of so little transimpedance is far below a step of the real one.
+    let adc = "[gyro.adc]\nbits = 0\n";
+    write(folder.path(), "a.toml", &format!("{SHORT}{adc}"));
+    for (key, _, _, range) in LEAST_PARTS {
+        let (least, _) = range
+            .trim_start_matches('[')
+            .split_once(',')
+            .expect("a range");
+        let set = format!("{key}={least}");
+        let output = fogbench(folder.path(), &["check", "a.toml", "--set", &set]);
+        assert_eq!(code(&output), 0, "{set}: {}", stderr(&output));
+    }
+}
+
 #[test]
 fn an_unknown_metric_in_a_gate_names_the_nearest_one() {
     let folder = scratch();

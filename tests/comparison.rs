@@ -3,10 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use fogbench::metrics::{Estimate, Finding, Metric};
-use fogbench::report::{
-    Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison, comparison_text,
+use fogbench::comparison::{
+    Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
 };
+use fogbench::metrics::{Estimate, Finding, Metric};
+use fogbench::report::comparison_text;
 use fogbench::scenario::{ComparisonColumn, ComparisonKind, Resolved, load_suite};
 use serde_json::Value;
 

@@ -3,9 +3,13 @@
 
 use std::path::Path;
 
+use crate::support::transcript::{Transcript, said_to_each};
 use crate::support::{
     assert_close, code, field, fogbench, npy, stderr, stdout, summary, tree, write,
 };
+
+/// The transcript of compensations.
+const COMPENSATION: &str = "compensation";
 
 /// Errors of the worked example, in the units of the keys: 1e-3 rad is 206.26 arcsec.
 const ERRORS: &str = "bias_deg_per_h = [1.0, -2.0, 1.5]\n\
@@ -216,35 +220,16 @@ fn refused(folder: &Path, compensation: &str, more: &str) -> String {
 fn a_compensation_that_cannot_be_is_refused_where_it_is_wrong() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let at = folder.path();
-    let cases = [
-        (
-            "[compensation]\nform = \"exact\"\n",
-            "needs exactly one source of parameters",
-        ),
-        (
-            "[compensation]\nfile = \"none.toml\"\n",
-            "x.toml:6:1: compensation.file = none.toml: no such file",
-        ),
-        (
-            "[compensation]\nfile = \"a.toml\"\ncampaign = \"b.toml\"\n",
-            "contradicts",
-        ),
-        (
-            "[compensation.parameters]\nscale_factor_error_ppm = [-1e6, 0.0, 0.0]\n",
-            "x.toml:5:15: compensation.parameters: the sensitivity matrix",
-        ),
-        (
-            "[compensation.parameters]\n[[filter]]\nname = \"compensated\"\n[filter.lms]\n",
-            "x.toml:7:1: filter[0].name = \"compensated\" is the name of the compensated outputs",
-        ),
-        (
-            "[compensation]\nform = \"second-order\"\n[compensation.parameters]\n",
-            "is unknown: expected one of \"exact\", \"first-order\"",
-        ),
-    ];
-    for (compensation, complaint) in cases {
-        let told = refused(at, compensation, "");
-        assert!(told.contains(complaint), "{compensation}\n{told}");
+    let mut transcript = Transcript::of(COMPENSATION, "Compensations that cannot be");
+    for compensation in [
+        "[compensation]\nform = \"exact\"\n",
+        "[compensation]\nfile = \"none.toml\"\n",
+        "[compensation]\nfile = \"a.toml\"\ncampaign = \"b.toml\"\n",
+        "[compensation.parameters]\nscale_factor_error_ppm = [-1e6, 0.0, 0.0]\n",
+        "[compensation.parameters]\n[[filter]]\nname = \"compensated\"\n[filter.lms]\n",
+        "[compensation]\nform = \"second-order\"\n[compensation.parameters]\n",
+    ] {
+        transcript.case(compensation, refused(at, compensation, ""));
     }
     write(
         at,
@@ -253,8 +238,11 @@ fn a_compensation_that_cannot_be_is_refused_where_it_is_wrong() {
     );
     let output = fogbench(at, &["check", "alone.toml"]);
     assert_eq!(code(&output), 2);
-    let told = stderr(&output);
-    assert!(told.contains("there is no [gyro.assembly]"), "{told}");
+    transcript.case(
+        "[compensation.parameters] of a single gyro",
+        stderr(&output),
+    );
+    transcript.check();
 }
 
 #[test]
@@ -262,31 +250,23 @@ fn errors_in_a_calibration_file_point_into_that_file() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let at = folder.path();
     let named = "[compensation]\nfile = \"found.toml\"\n";
-    let cases = [
-        (
-            "schema = 1\n[compensation]\nbias_deg_h = [0.0, 0.0, 0.0]\n",
-            "found.toml:3:1: unknown key compensation.parameters.bias_deg_h: did you mean compensation.parameters.bias_deg_per_h?",
-        ),
-        (
-            "schema = 1\n[compensation]\nbias_deg_per_h = [0.0, 0.0]\n",
-            "found.toml:3:1: compensation.parameters.bias_deg_per_h holds 2 values",
-        ),
-        (
-            "schema = 1\n[compensation]\n\ntheta_xy_arcsec = 1e9\n",
-            "found.toml:4:1: compensation.parameters.theta_xy_arcsec = ",
-        ),
-        ("schema = 2\n[compensation]\n", "found.toml:1:1: schema"),
-        (
-            "schema = 1\n",
-            "found.toml:1:1: this is no calibration file",
-        ),
-        ("schema = = 1\n", "found.toml:1:10: syntax error"),
+    let files = [
+        "schema = 1\n[compensation]\nbias_deg_h = [0.0, 0.0, 0.0]\n",
+        "schema = 1\n[compensation]\nbias_deg_per_h = [0.0, 0.0]\n",
+        "schema = 1\n[compensation]\n\ntheta_xy_arcsec = 1e9\n",
+        "schema = 2\n[compensation]\n",
+        "schema = 1\n",
+        "schema = = 1\n",
     ];
-    for (text, complaint) in cases {
-        write(at, "found.toml", text);
-        let told = refused(at, named, "");
-        assert!(told.contains(complaint), "{text}\n{told}");
-    }
+    said_to_each(
+        COMPENSATION,
+        "Calibration files that are wrong",
+        files,
+        |text| {
+            write(at, "found.toml", text);
+            refused(at, named, "")
+        },
+    );
 }
 
 #[test]
@@ -432,24 +412,21 @@ fn a_campaign_that_cannot_be_is_refused_where_it_is_wrong() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let at = folder.path();
     let named = "[compensation]\ncampaign = \"campaign.toml\"\n";
-    let cases = [
+    let mut transcript = Transcript::of(COMPENSATION, "Campaigns that cannot be run");
+    for (what, text) in [
+        ("a misspelt key", campaign().replace("record_s", "recird_s")),
+        ("a compensation of its own", turning("exact")),
         (
-            campaign().replace("record_s", "recird_s"),
-            "campaign.toml:9:1: unknown key",
-        ),
-        (turning("exact"), "campaign.toml:"),
-        (
+            "a table at rest",
             "name = \"rest\"\nduration_s = 1.0\n".to_owned(),
-            "x.toml:6:1: compensation.campaign: the scenario rest is no calibration",
         ),
         (
+            "no motion about z",
             campaign().replace("\"z\", \"z\", \"z\"", "\"x\", \"x\", \"x\""),
-            "campaign.toml:7:1: turntable.calibration.axes: the plan cannot be calibrated",
         ),
-    ];
-    for (text, complaint) in cases {
+    ] {
         write(at, "campaign.toml", &text);
-        let told = refused(at, named, "");
-        assert!(told.contains(complaint), "{text}\n{told}");
+        transcript.case(format!("a campaign with {what}"), refused(at, named, ""));
     }
+    transcript.check();
 }

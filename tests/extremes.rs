@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use fogbench::experiment::{Observer, Plan, SuiteOptions, plan_suite, run_suite};
+use fogbench::experiment::{Plan, SuiteOptions, plan_suite, run_suite};
 use fogbench::metrics::{AllanOptions, Motion, Record, Settings, measure, predict};
-use fogbench::report::{RunOutcome, RunReport, SVG_BYTES_MAX};
+use fogbench::report::SVG_BYTES_MAX;
 use fogbench::signal::{FilterShape, WeightRule};
 use serde_json::Value;
 
@@ -174,14 +174,6 @@ fn ends(end: &str) -> Vec<(String, String)> {
     found
 }
 
-struct Silent;
-
-impl Observer for Silent {
-    fn advanced(&self, _: f64) {}
-    fn finished(&self, _: usize, _: &RunReport) {}
-    fn failed(&self, _: usize, _: &RunOutcome) {}
-}
-
 /// Whether a text holds a word for what is no number.
 fn has_no_number(text: &str) -> bool {
     let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
@@ -216,7 +208,7 @@ fn run_all(folder: &Path, end: &str) -> (usize, usize) {
         threads: 0,
         ..SuiteOptions::new(output.clone())
     };
-    let done = run_suite(&plans, &options, &Silent).expect("a writable folder");
+    let done = run_suite(&plans, &options, &()).expect("a writable folder");
     for run in &done.runs {
         let index: usize = run.name[1..].parse().expect("a number");
         let what = &ends[index];

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use fogbench::experiment::{
-    Observer, SuiteError, SuiteOptions, SuiteOutcome, plan_suite, run_suite,
+    Observer, Progress, SuiteError, SuiteOptions, SuiteOutcome, plan_suite, run_suite,
 };
 use fogbench::report::{RunOutcome, RunReport, RunStatus};
 use serde_json::Value;
@@ -60,7 +60,7 @@ struct Breaks {
     blocks: AtomicU32,
 }
 
-impl Observer for Breaks {
+impl Progress for Breaks {
     fn advanced(&self, _simulated_s: f64) {
         let block = self.blocks.fetch_add(1, Ordering::SeqCst);
         assert!(
@@ -68,7 +68,9 @@ impl Observer for Breaks {
             "planted fault"
         );
     }
+}
 
+impl Observer for Breaks {
     fn finished(&self, _index: usize, report: &RunReport) {
         let breaks = self.place != Place::LaterRepeat && report.scenario.name == "broken";
         assert!(!breaks, "planted fault");
@@ -127,7 +129,7 @@ impl Stops {
     }
 }
 
-impl Observer for Stops {
+impl Progress for Stops {
     fn advanced(&self, simulated_s: f64) {
         let mut advanced_s = self.advanced_s.lock().expect("nothing panics here");
         *advanced_s += simulated_s;
@@ -135,6 +137,12 @@ impl Observer for Stops {
             .fetch_or(*advanced_s >= self.stop_s, Ordering::SeqCst);
     }
 
+    fn should_stop(&self) -> bool {
+        self.stopped.load(Ordering::SeqCst)
+    }
+}
+
+impl Observer for Stops {
     fn finished(&self, _index: usize, _report: &RunReport) {
         self.finished.fetch_add(1, Ordering::SeqCst);
         self.stopped.store(true, Ordering::SeqCst);
@@ -142,10 +150,6 @@ impl Observer for Stops {
 
     fn failed(&self, _index: usize, outcome: &RunOutcome) {
         panic!("a stopped run has not failed: {:?}", outcome.error);
-    }
-
-    fn should_stop(&self) -> bool {
-        self.stopped.load(Ordering::SeqCst)
     }
 }
 
@@ -226,7 +230,7 @@ struct Stuck {
     is_abandoned: AtomicBool,
 }
 
-impl Observer for Stuck {
+impl Progress for Stuck {
     fn advanced(&self, _simulated_s: f64) {
         self.is_stopped.store(true, Ordering::SeqCst);
         while !self.is_abandoned.load(Ordering::SeqCst) {
@@ -234,14 +238,13 @@ impl Observer for Stuck {
         }
     }
 
-    fn finished(&self, _index: usize, _report: &RunReport) {}
-    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
-
     fn should_stop(&self) -> bool {
         // Once given up, the run would like to go on: the ledger must not take it.
         self.is_stopped.load(Ordering::SeqCst) && !self.is_abandoned.load(Ordering::SeqCst)
     }
+}
 
+impl Observer for Stuck {
     fn abandoned(&self, result: &Result<SuiteOutcome, SuiteError>) {
         let outcome = result.as_ref().expect("a writable folder");
         assert_eq!(outcome.runs[0].status(), RunStatus::NotRun);

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use fogbench::experiment::{Observer, SuiteOptions, plan_suite, run_suite};
-use fogbench::report::{RunOutcome, RunReport};
+use fogbench::experiment::{Observer, Progress, SuiteOptions, plan_suite, run_suite};
+use fogbench::report::RunReport;
 use fogbench::store::{OutputFolder, StoreOptions, SuiteFileNames};
 
 use crate::support::{code, fogbench, repository, stderr, summary, tree, write};
@@ -393,14 +393,12 @@ fn one_point_touches_only_its_own_and_the_summary_names_what_is_stale() {
 /// Breaks every run while it is reported.
 struct Breaks;
 
-impl Observer for Breaks {
-    fn advanced(&self, _: f64) {}
+impl Progress for Breaks {}
 
+impl Observer for Breaks {
     fn finished(&self, _: usize, _: &RunReport) {
         panic!("planted fault");
     }
-
-    fn failed(&self, _: usize, _: &RunOutcome) {}
 }
 
 #[test]

@@ -9,7 +9,11 @@ use fogbench::recording::{
 use fogbench::scenario::{MotionConfig, load_suite};
 use proptest::prelude::*;
 
+use crate::support::transcript::{Transcript, said_to_each};
 use crate::support::{code, fogbench, npy, stderr, stdout, write};
+
+/// The transcript of what the readers refuse.
+const READERS: &str = "readers";
 
 fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("a scratch folder")
@@ -258,7 +262,7 @@ fn npy_of(version: u8, dictionary: &str, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The complaints of each reader about the bytes of `name`, the file named in each.
+/// The complaints of each reader, of logs, stimuli, assemblies, groups and scripts, about bytes.
 fn complaints(bytes: &[u8]) -> Vec<String> {
     let folder = scratch();
     let path = folder.path().join("f.x");
@@ -284,16 +288,10 @@ fn complaints(bytes: &[u8]) -> Vec<String> {
             .err()
             .map(|it| it[0].to_string()),
     ];
-    let named = found.into_iter().map(|message| {
-        let message =
-            message.unwrap_or_else(|| panic!("{:?} is read", bytes.escape_ascii().to_string()));
-        let at = message
-            .rfind("f.x:")
-            .or(message.rfind("f.x"))
-            .unwrap_or_else(|| panic!("{message}"));
-        message[at..].to_owned()
+    let refused = found.into_iter().map(|message| {
+        message.unwrap_or_else(|| panic!("{:?} is read", bytes.escape_ascii().to_string()))
     });
-    named.collect()
+    refused.collect()
 }
 
 #[test]
@@ -303,24 +301,26 @@ fn what_is_no_text_is_refused_alike_by_every_reader() {
         marked.encode_utf16().flat_map(order).collect()
     };
     let table = "time_s,rate_deg_per_s\n0,1\n";
-    for (bytes, part) in [
-        (b"a\x00,b\n1,2\n".to_vec(), "a NUL byte"),
-        (utf16(table, u16::to_le_bytes), "UTF-"),
-        (utf16(table, u16::to_be_bytes), "UTF-"),
-        (b"a,b,\xb5\n1,2,3\n".to_vec(), "UTF-8"),
+    let mut transcript = Transcript::of(READERS, "What is no text is refused by every reader");
+    for (what, bytes) in [
+        ("a\\x00,b\n1,2", b"a\x00,b\n1,2\n".to_vec()),
         (
+            "a table in UTF-16, little end first",
+            utf16(table, u16::to_le_bytes),
+        ),
+        (
+            "a table in UTF-16, big end first",
+            utf16(table, u16::to_be_bytes),
+        ),
+        ("a,b,\\xb5\n1,2,3", b"a,b,\xb5\n1,2,3\n".to_vec()),
+        (
+            "a comment of a megabyte",
             [b"# ".to_vec(), vec![b'x'; 1 << 20]].concat(),
-            "more than 1048576 bytes",
         ),
     ] {
-        for message in complaints(&bytes) {
-            assert!(message.contains(part), "{message}");
-            assert!(
-                message.starts_with("f.x:1") || message.starts_with("f.x: "),
-                "{message}"
-            );
-        }
+        transcript.case(what, complaints(&bytes).join("\n"));
     }
+    transcript.check();
     // Nothing is repeated in full.
     for message in &complaints(&vec![b'1'; 1 << 20])[..4] {
         assert!(message.len() < 400, "{message}");
@@ -330,7 +330,7 @@ fn what_is_no_text_is_refused_alike_by_every_reader() {
 #[test]
 fn a_first_line_that_begins_like_a_number_is_never_passed_over() {
     let folder = scratch();
-    for first in [
+    let first_lines = [
         "1.0x",
         "-1.5.2",
         "+3 deg",
@@ -346,28 +346,18 @@ fn a_first_line_that_begins_like_a_number_is_never_passed_over() {
         "*",
         "12:30:00",
         "\u{feff}\u{feff}1.0",
-    ] {
+    ];
+    let title = "First lines that begin like a number are never passed over";
+    said_to_each(READERS, title, first_lines, |first| {
         let path = write(folder.path(), "log.csv", &format!("{first}\n1.0\n2.0\n"));
-        for (reader, found) in [
-            (
-                "log",
-                read_log(&path, &format(None)).map(|log| log.rate_deg_per_h),
-            ),
-            ("stimulus", read_stimulus(&path, None, 9)),
-        ] {
-            let message = found.expect_err(first).to_string();
-            assert!(message.contains("log.csv:1: "), "{reader}: {message}");
-            let shown = first
-                .trim_matches(['"', '\u{feff}'])
-                .split(';')
-                .next()
-                .unwrap_or_default();
-            assert!(
-                message.contains(shown) || message.contains("name one column"),
-                "{message}"
-            );
+        let of_log = read_log(&path, &format(None)).expect_err(first);
+        let of_stimulus = read_stimulus(&path, None, 9).expect_err(first);
+        let (of_log, of_stimulus) = (of_log.to_string(), of_stimulus.to_string());
+        match of_log == of_stimulus {
+            true => of_log,
+            false => format!("{of_log}\n{of_stimulus}"),
         }
-    }
+    });
     for heading in [
         "x1.0",
         "rate (deg/h)",
@@ -388,13 +378,10 @@ fn a_heading_of_numbers_is_not_taken_for_a_sample() {
     // What pandas writes for a table whose columns have no names.
     let folder = scratch();
     let path = write(folder.path(), "log.csv", ",0\n0,1.5\n1,2.5\n");
-    let message = read_log(&path, &format(Some("2")))
-        .expect_err("a heading")
-        .to_string();
-    assert!(
-        message.contains("log.csv:2: column 1 has a number where the first row has ``"),
-        "{message}"
-    );
+    let message = read_log(&path, &format(Some("2"))).expect_err("a heading");
+    let mut transcript = Transcript::of(READERS, "A heading of numbers is not taken for a sample");
+    transcript.case(",0\n0,1.5\n1,2.5", message);
+    transcript.check();
     // Words that stand in every row are no heading.
     let path = write(folder.path(), "log.csv", "ok,1.5\nbad,2.5\n");
     let log = read_log(&path, &format(Some("2"))).expect("a state beside the rate");
@@ -419,73 +406,55 @@ fn columns_of_an_assembly_are_four_different_ones() {
     };
     let xyz = ["gx", "gy", "gz"];
     assert!(read(xyz, None, Some("t")).is_ok());
-    for (found, part) in [
-        (
-            read(["gx", "gx", "gz"], None, None),
-            ":1: column gx is named for two quantities",
-        ),
-        (
-            read(["gx", "gy", "2"], None, None),
-            ":1: column gx is named for two quantities",
-        ),
-        (
-            read(xyz, Some("gz"), None),
-            ":1: column gz is named for two quantities",
-        ),
-        (
-            read(xyz, Some("t"), Some("t")),
-            ":1: the column of the data is that of the time",
-        ),
-        (
-            read(["gx", "gy", "g"], None, None),
-            ":1: there is no column `g`",
-        ),
-        (
-            read(xyz, Some("c"), None),
-            ":3: a temperature of 251.0 deg C is out of range",
-        ),
+    let mut transcript = Transcript::of(READERS, "Columns of an assembly are different ones");
+    for (gyros, temperature, time) in [
+        (["gx", "gx", "gz"], None, None),
+        (["gx", "gy", "2"], None, None),
+        (xyz, Some("gz"), None),
+        (xyz, Some("t"), Some("t")),
+        (["gx", "gy", "g"], None, None),
+        (xyz, Some("c"), None),
     ] {
-        let message = found.expect_err(part);
-        assert!(message.contains(part), "{message}");
+        let given = format!("{gyros:?}, temperature {temperature:?}, time {time:?}");
+        let message = read(gyros, temperature, time)
+            .map(|_| ())
+            .expect_err(&given);
+        transcript.case(&given, message);
     }
+    transcript.check();
 }
 
-/// Asserts that bytes are refused by both readers of arrays, in the same words.
+/// What both readers of arrays say about bytes, in the same words.
 #[track_caller]
-fn assert_no_array(bytes: &[u8], part: &str) {
+fn refused_array(bytes: &[u8]) -> String {
     let folder = scratch();
     let path = folder.path().join("log.npy");
     std::fs::write(&path, bytes).expect("writable");
-    let of_log = read_log(&path, &format(None)).expect_err(part).to_string();
-    let of_stimulus = read_stimulus(&path, None, 2).expect_err(part).to_string();
-    assert_eq!(of_log, of_stimulus);
-    assert!(of_log.contains(part), "{of_log}");
+    let of_log = read_log(&path, &format(None)).expect_err("no array");
+    let of_stimulus = read_stimulus(&path, None, 2).expect_err("no array");
+    assert_eq!(of_log.to_string(), of_stimulus.to_string());
+    of_log.to_string()
 }
 
 #[test]
 fn npy_files_with_a_wrong_heading_are_refused_and_nothing_is_set_aside_for_them() {
     let data = [0_u8; 32];
-    for (bytes, part) in [
-        (
-            npy_bytes(1, "<f8", 3, &data),
-            "and 8 more bytes follow them",
-        ),
-        (
-            npy_bytes(1, "<f8", 5, &data),
-            "not a whole NPY file: its heading names 5 numbers",
-        ),
-        (npy_bytes(4, "<f8", 4, &data), "version 4"),
-        (
-            npy_bytes(1, "<f8", usize::MAX, &data),
-            "not a whole NPY file",
-        ),
-        (npy_bytes(1, "|f8", 4, &data), "type '|f8'"),
-        (npy_bytes(1, "<U8", 1, &data), "type '<U8'"),
-        (npy_bytes(1, "|b1", 32, &data), "type '|b1'"),
-        (npy_bytes(1, "é8", 4, &data), "type 'é8'"),
+    let mut transcript = Transcript::of(READERS, "NPY files with a wrong heading");
+    for (version, descr, count) in [
+        (1, "<f8", 3),
+        (1, "<f8", 5),
+        (4, "<f8", 4),
+        (1, "<f8", usize::MAX),
+        (1, "|f8", 4),
+        (1, "<U8", 1),
+        (1, "|b1", 32),
+        (1, "é8", 4),
     ] {
-        assert_no_array(&bytes, part);
+        let said = refused_array(&npy_bytes(version, descr, count, &data));
+        let given = format!("version {version}, {descr}, {count} numbers in 32 bytes");
+        transcript.case(given, said);
     }
+    transcript.check();
 }
 
 #[test]
@@ -493,58 +462,42 @@ fn npy_files_of_another_shape_are_refused_and_no_heading_is_followed_deeply() {
     let data = [0_u8; 32];
     let plain = |rest: &str| format!("{{'descr': '<f8', 'fortran_order': False, {rest}}}");
     let nested = "(".repeat(60_000);
-    for (bytes, part) in [
-        (npy_of(1, &plain("'shape': ()"), &data), "shape []"),
-        (
-            npy_of(
-                1,
-                &plain("'shape': (18446744073709551615, 18446744073709551615)"),
-                &data,
-            ),
-            "shape [18",
-        ),
-        (
-            npy_of(1, &plain("'shape': (99999999999999999999,)"), &data),
-            "its NPY heading is not",
-        ),
-        (
-            npy_of(1, &plain("'shape': (-4,)"), &data),
-            "its NPY heading is not",
-        ),
-        (
-            npy_of(1, &plain("'shape': (4,), 'shape': (4,)"), &data),
-            "its NPY heading is not",
-        ),
-        (
-            npy_of(
-                1,
-                "{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (4,)}",
-                &data,
-            ),
-            "plain numbers",
-        ),
-        (
-            npy_of(1, &plain(&format!("'shape': {nested}")), &data),
-            "its NPY heading is not",
-        ),
-        (npy_of(2, &" ".repeat(70_000), &data), "allowed up to 65536"),
-        (
-            b"\x93NUMPY\x02\x00\xff\xff\xff\xff{".to_vec(),
-            "4294967295 bytes: allowed",
-        ),
-        (b"\x93NUMPY\x01".to_vec(), "its heading is cut short"),
-        (npy_bytes(1, "<f8", 0, &[]), "holds no sample"),
-        (
-            npy_bytes(1, "<f4", 2, &[0, 0, 128, 63, 0, 0, 128, 127]),
-            "index 1: inf is not a finite number",
-        ),
-        (
-            npy_bytes(1, ">u8", 1, &[255; 8]),
-            "index 0: 18446744073709551615 lies beyond 2^53",
-        ),
+    let mut transcript = Transcript::of(READERS, "NPY files of another shape");
+    for rest in [
+        "'shape': ()",
+        "'shape': (18446744073709551615, 18446744073709551615)",
+        "'shape': (99999999999999999999,)",
+        "'shape': (-4,)",
+        "'shape': (4,), 'shape': (4,)",
     ] {
-        assert_no_array(&bytes, part);
+        transcript.case(rest, refused_array(&npy_of(1, &plain(rest), &data)));
     }
+    let fields = "{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (4,)}";
+    for (what, bytes) in [
+        (fields, npy_of(1, fields, &data)),
+        (
+            "'shape': ((((((...",
+            npy_of(1, &plain(&format!("'shape': {nested}")), &data),
+        ),
+        (
+            "a heading of 70000 spaces",
+            npy_of(2, &" ".repeat(70_000), &data),
+        ),
+        (
+            "\\x93NUMPY\\x02\\x00\\xff\\xff\\xff\\xff{",
+            b"\x93NUMPY\x02\x00\xff\xff\xff\xff{".to_vec(),
+        ),
+        ("\\x93NUMPY\\x01", b"\x93NUMPY\x01".to_vec()),
+        ("no number", npy_bytes(1, "<f8", 0, &[])),
+        (
+            "1 and infinity",
+            npy_bytes(1, "<f4", 2, &[0, 0, 128, 63, 0, 0, 128, 127]),
+        ),
+        ("2^64 - 1", npy_bytes(1, ">u8", 1, &[255; 8])),
+    ] {
+        transcript.case(what, refused_array(&bytes));
+    }
+    transcript.check();
 }
 
 /// 300 numbers, a line each.
@@ -591,20 +544,13 @@ fn a_stimulus_is_read_as_a_log_is() {
     assert_eq!(plain.len(), 300);
     assert_eq!(exported(folder.path(), "bom.csv"), plain);
     let mut arguments = vec!["export", "vectors", "out", "--stimulus", "table.csv"];
+    let mut transcript = Transcript::of(READERS, "A stimulus is read as a log is");
     let output = fogbench(folder.path(), &arguments);
-    assert!(
-        stderr(&output).contains("name one column with --column"),
-        "{}",
-        stderr(&output)
-    );
+    transcript.case("a stimulus of two columns", stderr(&output));
     arguments.extend(["--column", "rate", "--taps", "2"]);
     let output = fogbench(folder.path(), &arguments);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
-    assert!(
-        stderr(&output).contains("300 samples"),
-        "{}",
-        stderr(&output)
-    );
+    transcript.case("--column rate", stderr(&output));
 
     write(
         folder.path(),
@@ -624,15 +570,10 @@ fn a_stimulus_is_read_as_a_log_is() {
         ] {
             let output = fogbench(folder.path(), command);
             assert_eq!(code(&output), 2, "{command:?}: {}", stdout(&output));
-            let text = stderr(&output);
-            let part = if file == "fewer.npy" {
-                "12000 more bytes"
-            } else {
-                ":1: `1.0x` begins"
-            };
-            assert!(text.contains(file) && text.contains(part), "{text}");
+            transcript.case(command.join(" "), stderr(&output));
         }
     }
+    transcript.check();
 }
 
 #[test]
@@ -682,38 +623,22 @@ fn pipes_are_read_and_endless_devices_are_refused() {
         .collect();
     let output = piped(&npy_bytes(1, "<f8", 300, &data), &log);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
-    let output = piped(&npy_bytes(1, "<f8", 299, &data), &log);
-    assert!(
-        stderr(&output).contains("more bytes follow them"),
-        "{}",
-        stderr(&output)
-    );
-    let output = piped(&npy_bytes(1, "<f8", 301, &data), &log);
-    assert!(
-        stderr(&output).contains("it ends before them"),
-        "{}",
-        stderr(&output)
-    );
-
-    for (arguments, part) in [
-        (
-            &["analyze", "/dev/zero", "--unit", "deg/h", "--rate-hz", "1"][..],
-            "more than 1048576 bytes",
-        ),
-        (
-            &["export", "vectors", "o", "--stimulus", "/dev/zero"],
-            "more than 1048576 bytes",
-        ),
-        (
-            &["calibrate", "/dev/zero", "--latitude-deg", "30"],
-            "more than 16000000 bytes",
-        ),
+    let mut transcript = Transcript::of(READERS, "Pipes and endless devices");
+    for count in [299, 301] {
+        let output = piped(&npy_bytes(1, "<f8", count, &data), &log);
+        let given = format!("a pipe of 300 numbers whose heading names {count}");
+        transcript.case(given, stderr(&output));
+    }
+    for arguments in [
+        &["analyze", "/dev/zero", "--unit", "deg/h", "--rate-hz", "1"][..],
+        &["export", "vectors", "o", "--stimulus", "/dev/zero"],
+        &["calibrate", "/dev/zero", "--latitude-deg", "30"],
     ] {
         let output = fogbench(folder.path(), arguments);
         assert_eq!(code(&output), 2, "{}", stderr(&output));
-        let text = stderr(&output);
-        assert!(text.contains("/dev/zero") && text.contains(part), "{text}");
+        transcript.case(arguments.join(" "), stderr(&output));
     }
+    transcript.check();
 }
 
 /// Groups of a small assembly at both senses of each mounting.

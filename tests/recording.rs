@@ -5,7 +5,11 @@ use std::path::{Path, PathBuf};
 use fogbench::recording::{Log, LogError, LogFormat, RateUnit, TimeUnit, csv_text, read_log};
 use fogbench::store::write_npy;
 
+use crate::support::transcript::Transcript;
 use crate::support::{assert_close, write};
+
+/// The transcript of complaints about logs.
+const LOGS: &str = "logs";
 
 fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("a scratch folder")
@@ -39,9 +43,7 @@ fn words(text: &str, format: &LogFormat) -> Vec<f64> {
 #[track_caller]
 fn complaint(text: &str, format: &LogFormat) -> String {
     let error = read_text(text, format).expect_err("it must be refused");
-    let message = error.to_string();
-    let (_, behind) = message.split_once("log.csv").expect("the file is named");
-    behind.to_owned()
+    error.to_string()
 }
 
 /// An NPY file, version 1.0, of any number type and shape.
@@ -104,45 +106,32 @@ fn every_number_type_and_byte_order_of_npy_is_read() {
 #[test]
 fn npy_files_that_hold_something_else_are_refused() {
     let folder = scratch();
-    let refused = |descr: &str, shape: &str, data: &[u8], what: &str| {
+    let mut transcript = Transcript::of(LOGS, "NPY files that hold something else");
+    let beyond = (1_i64 << 53) + 1;
+    let beyond = [7_i64.to_le_bytes(), beyond.to_le_bytes()].concat();
+    let no_number = [1.0_f64.to_le_bytes(), f64::NAN.to_le_bytes()].concat();
+    for (descr, shape, data) in [
+        ("<f8", "(1, 2)", &[0; 16][..]),
+        ("<f2", "(2,)", &[0; 4]),
+        ("<c16", "(1,)", &[0; 16]),
+        ("<f8", "(3,)", &[0; 16]),
+        ("<f8", "(900000000000000,)", &[0; 16]),
+        ("<f8", "(0,)", &[]),
+        ("<i8", "(2,)", &beyond),
+        ("<f8", "(2,)", &no_number),
+    ] {
         let error = read_log(&npy(folder.path(), descr, shape, data), &format());
         let message = error.expect_err("it must be refused").to_string();
-        assert!(message.contains("log.npy"), "{message}");
-        assert!(message.contains(what), "{message}");
-    };
-    refused(
-        "<f8",
-        "(1, 2)",
-        &[0; 16],
-        "shape [1, 2]: expected one dimension",
-    );
-    refused("<f2", "(2,)", &[0; 4], "type '<f2': expected binary64");
-    refused("<c16", "(1,)", &[0; 16], "expected binary64");
-    refused("<f8", "(3,)", &[0; 16], "not a whole NPY file");
-    refused(
-        "<f8",
-        "(900000000000000,)",
-        &[0; 16],
-        "its heading names 900000000000000",
-    );
-    refused("<f8", "(0,)", &[], "holds no sample");
-    let beyond = (1_i64 << 53) + 1;
-    let data = [7_i64.to_le_bytes(), beyond.to_le_bytes()].concat();
-    refused(
-        "<i8",
-        "(2,)",
-        &data,
-        "index 1: 9007199254740993 lies beyond 2^53",
-    );
-    let data = [1.0_f64.to_le_bytes(), f64::NAN.to_le_bytes()].concat();
-    refused("<f8", "(2,)", &data, "index 1: NaN is not a finite number");
+        transcript.case(format!("{descr} {shape}, {} bytes", data.len()), message);
+    }
     let path = npy(folder.path(), "<f8", "(1,)", &1.0_f64.to_le_bytes());
     let named = LogFormat {
         column: Some("rate".to_owned()),
         ..format()
     };
-    let message = read_log(&path, &named).expect_err("no columns").to_string();
-    assert!(message.contains("an NPY file has no columns"), "{message}");
+    let message = read_log(&path, &named).expect_err("no columns");
+    transcript.case("column rate of an array", message);
+    transcript.check();
 }
 
 #[test]
@@ -180,69 +169,50 @@ fn complaints_about_text_name_line_column_and_way_out() {
         ..format()
     };
     let table = "t,rate\n0,1\n1,2\n";
-    for (text, format, want) in [
-        (
-            "t,rate\n0,1\n1,x\n",
-            by("rate"),
-            ":3: column rate: `x` is not a number",
-        ),
-        (
-            "t,rate\n0,1\n1,\n",
-            by("rate"),
-            ":3: column rate: `` is not a number",
-        ),
-        (
-            "t;rate\n0;1,5\n",
-            by("rate"),
-            ":2: column rate: `1,5` is not a number: expected a decimal point",
-        ),
-        (
-            "1\n# two\ninf\n",
-            format(),
-            ":3: inf is not a finite number",
-        ),
-        (
-            "t,rate\n0,1\n1,2,3\n",
-            by("rate"),
-            ":3: 3 cells where the first line has 2",
-        ),
-        (
-            table,
-            format(),
-            ":1: name one column with --column: expected one of t, rate, or a number from 1 to 2",
-        ),
-        (
-            table,
-            by("speed"),
-            ":1: there is no column `speed`: expected one of t, rate",
-        ),
-        (table, by("3"), ":1: there is no column `3`"),
-        (
-            "0,1\n",
-            by("rate"),
-            ":1: there is no column `rate`: expected a number from 1 to 2, as there is no heading",
-        ),
-        ("a,a\n0,1\n", by("a"), ":1: 2 columns are named `a`"),
-        ("# nothing\n", format(), ": holds no sample"),
-        ("rate\n", format(), ": holds no sample"),
+    let mut transcript = Transcript::of(LOGS, "Tables that cannot be read");
+    for (text, column) in [
+        ("t,rate\n0,1\n1,x\n", Some("rate")),
+        ("t,rate\n0,1\n1,\n", Some("rate")),
+        ("t;rate\n0;1,5\n", Some("rate")),
+        ("1\n# two\ninf\n", None),
+        ("t,rate\n0,1\n1,2,3\n", Some("rate")),
+        (table, None),
+        (table, Some("speed")),
+        (table, Some("3")),
+        ("0,1\n", Some("rate")),
+        ("a,a\n0,1\n", Some("a")),
+        ("# nothing\n", None),
+        ("rate\n", None),
     ] {
-        let found = complaint(text, &format);
-        assert!(found.starts_with(want), "{text:?}: {found}");
+        let (format, of) = match column {
+            Some(column) => (by(column), format!(" column {column}")),
+            None => (format(), String::new()),
+        };
+        transcript.case(format!("log.csv{of}:\n{text}"), complaint(text, &format));
     }
     let silent = LogFormat {
         sample_rate_hz: None,
         ..format()
     };
-    assert!(complaint("1\n2\n", &silent).contains("give --rate-hz, or a time column"));
+    transcript.case(
+        "log.csv without a rate:\n1\n2\n",
+        complaint("1\n2\n", &silent),
+    );
 
     let folder = scratch();
     let path = folder.path().join("log.csv");
     std::fs::write(&path, b"1\n2\n\xff\xfe\n").expect("writable");
-    let message = read_log(&path, &format()).expect_err("no text").to_string();
-    assert!(
-        message.ends_with("log.csv:3: neither NPY nor text in UTF-8"),
-        "{message}"
+    let message = read_log(&path, &format()).expect_err("no text");
+    transcript.case("log.csv:\n1\n2\n\\xff\\xfe\n", message);
+    let beyond = complaint(
+        "1\n1e308\n",
+        &LogFormat {
+            unit: RateUnit::RadPerS,
+            ..format()
+        },
     );
+    transcript.case("log.csv in rad/s:\n1\n1e308\n", beyond);
+    transcript.check();
     let missing = read_log(&folder.path().join("none.csv"), &format());
     assert!(matches!(missing, Err(LogError::Read { .. })));
 }
@@ -271,11 +241,6 @@ fn units_and_counts_become_deg_per_h() {
     assert_eq!(
         words(&format!("{odd:?}\n"), &format())[0].to_bits(),
         odd.to_bits()
-    );
-    let found = complaint("1\n1e308\n", &in_unit(RateUnit::RadPerS, 1.0));
-    assert!(
-        found.starts_with(":2: 1e308 rad/s is not a finite rate"),
-        "{found}"
     );
 }
 
@@ -329,45 +294,27 @@ fn a_time_column_gives_the_rate_and_its_jitter() {
 
 #[test]
 fn gaps_repeats_and_contradictions_of_a_time_column_are_refused_with_place_and_size() {
-    let found = complaint("time,rate\n0,1\n0.1,2\n0.2,3\n0.5,4\n0.6,5\n", &by_time());
-    assert!(
-        found.starts_with(":5: column time: gap of 0.300000000 s"),
-        "{found}"
-    );
-    assert!(found.contains("0.100000000 s apart (2 missing)"), "{found}");
-    let found = complaint("time,rate\n0,1\n0.1,2\n0.1,3\n0.2,4\n0.3,5\n", &by_time());
-    assert!(
-        found.starts_with(":4: ") && found.contains("stamps must ascend"),
-        "{found}"
-    );
-    let found = complaint(
+    let mut transcript = Transcript::of(LOGS, "Gaps, repeats and contradictions of a time column");
+    for text in [
+        "time,rate\n0,1\n0.1,2\n0.2,3\n0.5,4\n0.6,5\n",
+        "time,rate\n0,1\n0.1,2\n0.1,3\n0.2,4\n0.3,5\n",
         "time,rate\n0,1\n0.1,2\n0.13,3\n0.2,4\n0.3,5\n0.4,6\n",
-        &by_time(),
-    );
-    assert!(
-        found.starts_with(":4: ") && found.contains("0.030000000 s after"),
-        "{found}"
-    );
+        "time,rate\n0,1\n",
+    ] {
+        transcript.case(text, complaint(text, &by_time()));
+    }
+    let text = "time,rate\n0,1\n0.1,2\n0.2,3\n";
     let given = LogFormat {
         sample_rate_hz: Some(9.9),
         ..by_time()
     };
-    let found = complaint("time,rate\n0,1\n0.1,2\n0.2,3\n", &given);
-    assert!(
-        found.contains("--rate-hz 9.9 contradicts the time column time"),
-        "{found}"
-    );
-    let found = complaint("time,rate\n0,1\n", &by_time());
-    assert!(found.contains("fewer than two stamps"), "{found}");
+    transcript.case(format!("--rate-hz 9.9\n{text}"), complaint(text, &given));
     let itself = LogFormat {
         column: Some("1".to_owned()),
         ..by_time()
     };
-    let found = complaint("time,rate\n0,1\n", &itself);
-    assert!(
-        found.contains("the column of the data is that of the time"),
-        "{found}"
-    );
+    transcript.case(format!("--column 1\n{text}"), complaint(text, &itself));
+    transcript.check();
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! Gates and reports, on a small run with every kind of record.
 
 use crate::support::run;
+use fogbench::comparison::Comparison;
 use fogbench::gate::{Verdict, VerdictKind, judge};
 use fogbench::metrics::ChannelMetrics;
 use fogbench::report::{
-    Comparison, RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, allan_csv, junit_xml, plots,
-    psd_csv, run_summary_json, suite_summary_json, suite_text, table_text,
+    RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, allan_csv, junit_xml, plots, psd_csv,
+    run_summary_json, suite_summary_json, suite_text, table_text,
 };
 use fogbench::scenario::{GateConfig, GateDecision, InconclusivePolicy, Scenario};
 use fogbench::signal::{GyroFacts, RunSignals, TheoryCurve, TheoryQuantity};

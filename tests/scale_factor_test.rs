@@ -9,6 +9,7 @@ use serde_json::Value;
 use crate::support::records::{
     PERIOD_S, every_metric_is_answered, raw_record, settings, value, white,
 };
+use crate::support::transcript::{Transcript, said_to_each};
 use crate::support::{assert_close, code, field, fogbench, repository, stderr, stdout, summary};
 
 fn test() -> ScaleFactorTestConfig {
@@ -89,12 +90,17 @@ fn what_a_test_cannot_be_is_refused() {
     };
     let keys = check("");
     assert_eq!(keys("from_deg_per_s = 1.0\ndwell_s = 1.0\n").0, 0);
-    let few = keys("from_deg_per_s = 1.6\ndwell_s = 1.0\n").1;
-    assert!(few.contains("leaves 10 rates of each sense"), "{few}");
-    let long = keys("from_deg_per_s = 1.0\ndwell_s = 3.0\n").1;
-    assert!(long.contains("takes 70.4"), "{long}");
-    let short = keys("from_deg_per_s = 1.0\ndwell_s = 1.0\ndwell_max_s = 0.5\n").1;
-    assert!(short.contains("allowed from dwell_s = 1.0 s"), "{short}");
+    let wrong = [
+        "from_deg_per_s = 1.6\ndwell_s = 1.0\n",
+        "from_deg_per_s = 1.0\ndwell_s = 3.0\n",
+        "from_deg_per_s = 1.0\ndwell_s = 1.0\ndwell_max_s = 0.5\n",
+    ];
+    said_to_each(
+        "motion",
+        "Scale-factor tests that cannot be",
+        wrong,
+        |given| keys(given).1,
+    );
 }
 
 #[test]
@@ -104,7 +110,9 @@ fn filters_are_reset_only_between_rates() {
                 [trial]\nfilter_state = \"reset\"\n";
     crate::support::write(folder.path(), "x.toml", text);
     let output = fogbench(folder.path(), &["check", "x.toml"]);
-    assert!(stderr(&output).contains("needs dwells to begin afresh at"));
+    let mut transcript = Transcript::of("motion", "Filters are reset only between rates");
+    transcript.case("filter_state = \"reset\" at rest", stderr(&output));
+    transcript.check();
 }
 
 #[test]

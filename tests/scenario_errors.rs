@@ -3,9 +3,14 @@
 use std::fs;
 use std::path::PathBuf;
 
-use fogbench::filters::{FilterKind, KINDS};
+use fogbench::filters::FilterKind;
 use fogbench::scenario::{MotionConfig, Resolved, ScenarioError, load_suite, manifest_toml};
 use tempfile::TempDir;
+
+use crate::support::transcript::{Transcript, said_to_each};
+
+/// The transcript of complaints about scenarios.
+const SCENARIO: &str = "scenario";
 
 /// A folder of scenario files.
 struct Suite {
@@ -60,6 +65,30 @@ fn complaints_of_set(more: &str, sets: &[&str]) -> Vec<String> {
     Suite::new(&[("x.toml", &scenario(more))]).complaints(&["x.toml"], sets)
 }
 
+/// Holds the complaints about a sound head with each of some endings.
+#[track_caller]
+fn complaints_of_each<I: std::fmt::Display>(
+    title: &'static str,
+    given: impl IntoIterator<Item = I>,
+) {
+    said_to_each(SCENARIO, title, given, |more| complaints(more).join("\n"));
+}
+
+/// Files of a suite as a transcript shows them, and the complaints about some of them.
+fn suite_case(files: &[(&str, &str)], names: &[&str]) -> (String, String) {
+    let shown = files.iter().map(|(name, text)| format!("{name}:\n{text}"));
+    let given = shown.collect::<Vec<_>>().join("\n");
+    let complaints = Suite::new(files).complaints(names, &[]);
+    (given, complaints.join("\n"))
+}
+
+/// Adds what is said about a sound file, with `more`, under `--set` arguments.
+fn set_case(transcript: &mut Transcript, more: &str, sets: &[&str]) {
+    let arguments = sets.iter().map(|set| format!("--set {set}\n"));
+    let given = format!("{more}{}", arguments.collect::<String>());
+    transcript.case(given, complaints_of_set(more, sets).join("\n"));
+}
+
 fn run(more: &str, sets: &[&str]) -> Resolved {
     let mut runs = Suite::new(&[("x.toml", &scenario(more))])
         .load(&["x.toml"], sets)
@@ -78,219 +107,100 @@ fn a_sound_scenario_gives_no_complaint() {
 
 #[test]
 fn syntax_error_points_at_its_column() {
-    let got = complaints("[gyro.coil\nlength_m = 1.0\n");
-    assert_eq!(got.len(), 1);
-    assert!(got[0].starts_with("x.toml:4:11: syntax error: "), "{got:?}");
-}
-
-#[test]
-fn duplicate_key_is_a_syntax_error() {
-    let got = complaints("seed = 1\nseed = 2\n");
-    assert!(
-        got[0].starts_with("x.toml:5:1: syntax error: duplicate key seed"),
-        "{got:?}"
+    complaints_of_each(
+        "Syntax errors point at their column",
+        ["[gyro.coil\nlength_m = 1.0\n", "seed = 1\nseed = 2\n"],
     );
 }
 
 #[test]
 fn unknown_key_names_the_nearest_known_one() {
-    assert_eq!(
-        complaints("[gyro.coil]\n  lenght_m = 800.0\n"),
-        ["x.toml:5:3: unknown key gyro.coil.lenght_m: did you mean gyro.coil.length_m?"]
-    );
-    assert_eq!(
-        complaints("[turntables]\nx = 1\n"),
-        ["x.toml:4:2: unknown key turntables: did you mean turntable?"]
-    );
-    assert_eq!(
-        complaints("[[filter]]\nname = \"a\"\n[filter.rls]\ntap = 4\n"),
-        ["x.toml:7:1: unknown key filter[0].rls.tap: did you mean filter[0].rls.taps?"]
-    );
-    assert_eq!(
-        complaints("[turntable.static]\nfast = true\n"),
+    complaints_of_each(
+        "Unknown keys name the nearest known one",
         [
-            "x.toml:4:12: unknown key turntable.static.fast: turntable.static is a table without keys"
-        ]
+            "[gyro.coil]\n  lenght_m = 800.0\n",
+            "[turntables]\nx = 1\n",
+            "[[filter]]\nname = \"a\"\n[filter.rls]\ntap = 4\n",
+            "[turntable.static]\nfast = true\n",
+        ],
     );
 }
 
 #[test]
 fn wrong_type_says_what_is_expected() {
-    assert_eq!(
-        complaints("[gyro.coil]\nlength_m = \"long\"\n"),
-        ["x.toml:5:1: gyro.coil.length_m has the wrong type: \
-          expected a number, [1, 50000] m, got a string \"long\""]
-    );
-    assert_eq!(
-        complaints("repeats = 1.5\n"),
-        ["x.toml:4:1: repeats has the wrong type: \
-          expected a whole number, 1..=100000, got a number with a fraction 1.5"]
-    );
-    assert_eq!(
-        complaints("gyro = 3\n"),
+    complaints_of_each(
+        "Wrong types say what is expected",
         [
-            "x.toml:4:1: gyro has the wrong type: expected a table, written [gyro], got a whole number"
-        ]
-    );
-    assert_eq!(
-        complaints("[filter]\nname = \"a\"\n"),
-        [
-            "x.toml:4:2: filter has the wrong type: expected a table, written [[filter]], got a table"
-        ]
-    );
-    assert_eq!(
-        complaints("[gyro]\nnoise.shot = 1\n"),
-        [
-            "x.toml:5:7: gyro.noise.shot has the wrong type: expected true or false, got a whole number 1"
-        ]
+            "[gyro.coil]\nlength_m = \"long\"\n",
+            "repeats = 1.5\n",
+            "gyro = 3\n",
+            "[filter]\nname = \"a\"\n",
+            "[gyro]\nnoise.shot = 1\n",
+        ],
     );
 }
 
 #[test]
 fn unknown_choice_lists_the_choices() {
-    assert_eq!(
-        complaints("fidelity = \"lop\"\n"),
-        ["x.toml:4:1: fidelity = \"lop\" is unknown: \
-          expected one of \"loop\", \"rate\" (did you mean \"loop\"?)"]
+    complaints_of_each(
+        "Unknown choices list the choices",
+        ["fidelity = \"lop\"\n", "fidelity = \"fast\"\n"],
     );
 }
 
 #[test]
 fn value_out_of_range_gives_unit_and_range() {
-    assert_eq!(
-        complaints("[gyro.coil]\nlength_m = -5\n"),
-        ["x.toml:5:1: gyro.coil.length_m = -5 m is out of range: allowed [1, 50000] m"]
-    );
-    assert_eq!(
-        complaints("[gyro.output]\nhalf_periods_per_sample = 63\n"),
+    complaints_of_each(
+        "Values out of range give unit and range",
         [
-            "x.toml:5:1: gyro.output.half_periods_per_sample = 63 is out of range: \
-          allowed even 2..=1048576"
-        ]
-    );
-    assert_eq!(
-        complaints("seed = -1\n"),
-        ["x.toml:4:1: seed = -1 is out of range: allowed 0..=9223372036854775807"]
-    );
-}
-
-#[test]
-fn numbers_that_are_not_finite_are_refused() {
-    assert_eq!(
-        complaints("[gyro.source]\npower_uw = nan\nlinewidth_nm = inf\n"),
-        [
-            "x.toml:5:1: gyro.source.power_uw = nan is not a finite number: allowed [0.001, 100000] uW",
-            "x.toml:6:1: gyro.source.linewidth_nm = inf is not a finite number: allowed [1e-6, 500] nm",
-        ]
-    );
-}
-
-#[test]
-fn numbers_that_do_not_fit_are_told_from_infinity() {
-    assert_eq!(
-        complaints("[gyro.source]\npower_uw = 1e400\n"),
-        [
-            "x.toml:5:1: gyro.source.power_uw = 1e400 is beyond the range of binary64: \
-          allowed [0.001, 100000] uW"
-        ]
-    );
-    assert_eq!(
-        complaints("seed = 18446744073709551616\n"),
-        [
-            "x.toml:4:1: seed = 18446744073709551616 is beyond 64 bits with sign: \
-          allowed 0..=9223372036854775807"
-        ]
-    );
-}
-
-#[test]
-fn wrong_elements_of_an_array_are_blamed_where_they_stand() {
-    let steps = |rates: &str| {
-        complaints(&format!(
-            "[turntable.steps]\nrates_deg_per_s = {rates}\ndwell_s = 1\n"
-        ))
-    };
-    assert_eq!(
-        steps("[0.0,\n  \"fast\"]"),
-        [
-            "x.toml:6:3: turntable.steps.rates_deg_per_s[1] has the wrong type: \
-          expected a number, [-2000, 2000] deg/s, got a string \"fast\""
-        ]
-    );
-    assert_eq!(
-        steps("[0.0, 1, 3e3]"),
-        [
-            "x.toml:5:28: turntable.steps.rates_deg_per_s[2] = 3000.0 deg/s is out of range: \
-          allowed [-2000, 2000] deg/s"
-        ]
-    );
-}
-
-#[test]
-fn zero_duration_is_out_of_range() {
-    let text = "name = \"x\"\nduration_s = 0.0\n";
-    let got = Suite::new(&[("x.toml", text)]).complaints(&["x.toml"], &[]);
-    assert_eq!(
-        got,
-        ["x.toml:2:1: duration_s = 0.0 s is out of range: allowed [1e-6, 10000000] s"]
+            "[gyro.coil]\nlength_m = -5\n",
+            "[gyro.output]\nhalf_periods_per_sample = 63\n",
+            "seed = -1\n",
+            "[gyro.source]\npower_uw = nan\nlinewidth_nm = inf\n",
+            "[gyro.source]\npower_uw = 1e400\n",
+            "seed = 18446744073709551616\n",
+            "[turntable.steps]\nrates_deg_per_s = [0.0, 1, 3e3]\ndwell_s = 1\n",
+            "[turntable.steps]\nrates_deg_per_s = [0.0,\n  \"fast\"]\ndwell_s = 1\n",
+        ],
     );
 }
 
 #[test]
 fn inherited_values_are_blamed_on_the_base() {
     let base = "# a base\n[gyro.coil]\nlength_m = 90000.0\n";
-    let suite = Suite::new(&[
-        ("base/b.toml", base),
-        (
-            "x.toml",
-            &scenario("extends = \"base/b.toml\"\n[gyro.coil]\ndiameter_mm = 60.0\n"),
-        ),
-    ]);
-    assert_eq!(
-        suite.complaints(&["x.toml"], &[]),
-        ["base/b.toml:3:1: gyro.coil.length_m = 90000.0 m is out of range: allowed [1, 50000] m"]
-    );
+    let text = scenario("extends = \"base/b.toml\"\n[gyro.coil]\ndiameter_mm = 60.0\n");
+    let files = [("base/b.toml", base), ("x.toml", &text)];
+    let mut transcript = Transcript::of(SCENARIO, "Inherited values are blamed on the base");
+    let (given, said) = suite_case(&files, &["x.toml"]);
+    transcript.case(given, said);
+    transcript.check();
     // A value that the scenario replaces does no harm.
+    let suite = Suite::new(&files);
     assert!(suite.load(&["x.toml"], &["gyro.coil.length_m=800"]).is_ok());
 }
 
 #[test]
 fn set_values_are_blamed_on_the_argument() {
-    assert_eq!(
-        complaints_of_set("", &["gyro.coil.length_m=-5"]),
-        ["--set gyro.coil.length_m=-5: \
-          gyro.coil.length_m = -5 m is out of range: allowed [1, 50000] m"]
+    let mut transcript = Transcript::of(SCENARIO, "Set values are blamed on the argument");
+    set_case(&mut transcript, "", &["gyro.coil.length_m=-5"]);
+    let four = [
+        "gyro.coil.lenght_m=5",
+        "duration_s",
+        "seed=[1",
+        "fidelity=fast",
+    ];
+    set_case(&mut transcript, "", &four);
+    // Sweeps and bases cannot be set.
+    set_case(
+        &mut transcript,
+        "",
+        &["matrix.seed=[1,2]", "extends=y.toml"],
     );
-    assert_eq!(
-        complaints_of_set(
-            "",
-            &[
-                "gyro.coil.lenght_m=5",
-                "duration_s",
-                "seed=[1",
-                "fidelity=fast"
-            ]
-        ),
-        [
-            "--set gyro.coil.lenght_m=5: \
-             unknown key gyro.coil.lenght_m: did you mean gyro.coil.length_m?",
-            "--set duration_s: expected key=value, as in gyro.coil.length_m=800",
-            "--set seed=[1: syntax error: unclosed array, expected `]` in the value",
-            "--set fidelity=fast: fidelity = \"fast\" is unknown: expected one of \"loop\", \"rate\"",
-        ]
-    );
-}
-
-#[test]
-fn sweeps_and_bases_cannot_be_set() {
-    assert_eq!(
-        complaints_of_set("", &["matrix.seed=[1,2]", "extends=y.toml"]),
-        [
-            "--set matrix.seed=[1,2]: matrix.seed cannot be set: \
-             write the sweep into a file, or give one value, as in seed=2",
-            "--set extends=y.toml: extends cannot be set: write it into a file",
-        ]
-    );
+    let filter = "[[filter]]\nname = \"rls\"\n[filter.rls]\n";
+    set_case(&mut transcript, filter, &["filter[].rls.taps=4"]);
+    set_case(&mut transcript, filter, &["filter.other.taps=8"]);
+    set_case(&mut transcript, filter, &["filter[2].rls.taps=1"]);
+    transcript.check();
 }
 
 #[test]
@@ -314,138 +224,75 @@ fn set_addresses_a_filter_by_name_and_by_index() {
     };
     assert_eq!(fast.taps, 8);
     assert_eq!(slow.step_size.to_bits(), 1.0_f64.to_bits());
-    assert_eq!(
-        complaints_of_set(filters, &["filter.other.taps=8", "filter[2].rls.taps=1"]),
-        [
-            "--set filter.other.taps=8: there is no filter named other: expected one of fast, slow",
-            "--set filter[2].rls.taps=1: there is no filter[2]: the scenario has 2 of them, counted from 0",
-        ]
-    );
 }
 
 #[test]
-fn cycle_in_extends_is_refused_where_it_closes() {
-    let suite = Suite::new(&[
-        ("x.toml", &scenario("extends = \"y.toml\"\n")),
+fn bases_that_cannot_be_read_are_named_where_they_are_asked_for() {
+    let files = [
+        ("x.toml", &*scenario("extends = \"y.toml\"\n")),
         ("y.toml", "seed = 2\nextends = \"./x.toml\"\n"),
-    ]);
-    let got = suite.complaints(&["x.toml"], &[]);
-    assert_eq!(
-        got,
-        ["y.toml:2:1: extends = \"./x.toml\" closes a cycle: x.toml is being extended already"]
+    ];
+    let mut transcript = Transcript::of(SCENARIO, "Bases that cannot be read");
+    let (given, said) = suite_case(&files, &["x.toml"]);
+    transcript.case(given, said);
+    let nowhere = "extends = \"nowhere.toml\"\n";
+    transcript.case(nowhere, complaints(nowhere).join("\n"));
+    let (given, said) = suite_case(
+        &[("s/x.toml", &scenario("extends = \".\"\n"))],
+        &["s/x.toml"],
     );
-}
-
-#[test]
-fn missing_files_are_named() {
-    let got = complaints("extends = \"nowhere.toml\"\n");
-    assert_eq!(got, ["x.toml:4:1: extends nowhere.toml: no such file"]);
-    let suite = Suite::new(&[("s/x.toml", &scenario("extends = \".\"\n"))]);
-    let got = suite.complaints(&["s/x.toml"], &[]);
-    assert_eq!(got, ["s/x.toml:4:1: extends s: it is a folder, not a file"]);
-    let suite = Suite::new(&[]);
-    assert_eq!(
-        suite.complaints(&["none.toml"], &[]),
-        ["none.toml: no such file or folder"]
-    );
+    transcript.case(given, said);
+    transcript.case("check none.toml", suite_case(&[], &["none.toml"]).1);
+    // A missing base does not hide what is wrong here.
+    let both = "extends = \"nowhere.toml\"\n[gyro.coil]\nlenght_m = 1\n";
+    transcript.case(both, complaints(both).join("\n"));
+    transcript.check();
 }
 
 #[test]
 fn missing_required_keys_are_named() {
-    let suite = Suite::new(&[("x.toml", "seed = 3\n")]);
-    let got = suite.complaints(&["x.toml"], &[]);
-    assert_eq!(got.len(), 2, "{got:?}");
-    assert!(
-        got[0].starts_with("x.toml:1:1: name is required: expected a name "),
-        "{got:?}"
-    );
-    assert!(
-        got[1].starts_with("x.toml:1:1: duration_s is required: expected a number, [1e-6, "),
-        "{got:?}"
-    );
-    let kinds: Vec<String> = KINDS
-        .iter()
-        .map(|kind| format!("filter[0].{kind}"))
-        .collect();
-    assert_eq!(
-        complaints("[[filter]]\nname = \"a\"\n"),
-        [format!(
-            "x.toml:4:1: filter[0] needs exactly one filter kind: {}",
-            kinds.join(", ")
-        )]
-    );
-}
-
-#[test]
-fn names_are_not_inherited() {
-    let suite = Suite::new(&[
-        ("x.toml", &scenario("")),
+    let mut transcript = Transcript::of(SCENARIO, "Missing keys are named");
+    let (given, said) = suite_case(&[("x.toml", "seed = 3\n")], &["x.toml"]);
+    transcript.case(given, said);
+    // Names are not inherited.
+    let files = [
+        ("x.toml", &*scenario("")),
         ("y.toml", "extends = \"x.toml\"\n"),
-    ]);
-    let got = suite.complaints(&["y.toml"], &[]);
-    assert!(
-        got[0].starts_with("y.toml:1:1: name is required"),
-        "{got:?}"
-    );
+    ];
+    let (given, said) = suite_case(&files, &["y.toml"]);
+    transcript.case(given, said);
+    let filter = "[[filter]]\nname = \"a\"\n";
+    transcript.case(filter, complaints(filter).join("\n"));
+    transcript.check();
 }
 
 #[test]
 fn bad_reserved_and_repeated_names_are_refused() {
-    let suite = Suite::new(&[("x.toml", "name = \"Swing 5\"\nduration_s = 1\n")]);
-    assert_eq!(
-        suite.complaints(&["x.toml"], &[]),
-        ["x.toml:1:1: name = \"Swing 5\" is not a valid name: allowed [a-z0-9][a-z0-9_-]{0,63}"]
+    let mut transcript = Transcript::of(SCENARIO, "Bad, reserved and repeated names are refused");
+    let (given, said) = suite_case(
+        &[("x.toml", "name = \"Swing 5\"\nduration_s = 1\n")],
+        &["x.toml"],
     );
-    assert_eq!(
-        complaints("[[filter]]\nname = \"truth\"\n[filter.rls]\n"),
-        [
-            "x.toml:5:1: filter[0].name = \"truth\" is a reserved name: \
-          raw, truth, time_s, encoder_arcsec have a meaning of their own"
-        ]
-    );
-    assert_eq!(
-        complaints(
-            "[[filter]]\nname = \"a\"\n[filter.rls]\n[[filter]]\nname = \"a\"\n[filter.lms]\n"
-        ),
-        [
-            "x.toml:8:1: filter[1].name = \"a\" is the name of filter[0] already: \
-          give each channel its own"
-        ]
-    );
-    assert_eq!(
-        complaints_of_set("", &["name=time_s"]),
-        ["--set name=time_s: name = \"time_s\" is a reserved name: \
-          raw, truth, time_s, encoder_arcsec have a meaning of their own"]
-    );
+    transcript.case(given, said);
+    for more in [
+        "[[filter]]\nname = \"truth\"\n[filter.rls]\n",
+        "[[filter]]\nname = \"a\"\n[filter.rls]\n[[filter]]\nname = \"a\"\n[filter.lms]\n",
+    ] {
+        transcript.case(more, complaints(more).join("\n"));
+    }
     let long = format!("name={}", "a".repeat(65));
-    assert!(complaints_of_set("", &[&long])[0].contains("is not a valid name"));
+    set_case(&mut transcript, "", &["name=time_s"]);
+    set_case(&mut transcript, "", &[&long]);
+    let files = [("s/a.toml", &*scenario("")), ("s/b.toml", &*scenario(""))];
+    let (given, said) = suite_case(&files, &["s"]);
+    transcript.case(given, said);
+    transcript.check();
     let fits = format!("name={}", "a".repeat(64));
     assert_eq!(run("", &[&fits]).scenario.name.len(), 64);
 }
 
 #[test]
-fn two_scenarios_of_one_name_are_refused() {
-    let suite = Suite::new(&[("s/a.toml", &scenario("")), ("s/b.toml", &scenario(""))]);
-    assert_eq!(
-        suite.complaints(&["s"], &[]),
-        [
-            "s/b.toml:2:1: name = \"x\" is the name of the scenario at s/a.toml:2:1 already: \
-          give each scenario its own"
-        ]
-    );
-}
-
-#[test]
-fn two_motions_in_one_file_are_refused_but_a_later_file_replaces_the_motion() {
-    assert_eq!(
-        complaints("[turntable.static]\n[turntable.rotation]\nrate_deg_per_s = 1.0\n"),
-        [
-            "x.toml:5:12: turntable.rotation contradicts turntable.static: give exactly one motion: \
-          turntable.static, turntable.swing, turntable.multi_sine, turntable.steps, \
-             turntable.scale_factor_test, turntable.rotation, turntable.trapezoid, turntable.chirp, \
-             turntable.script, turntable.calibration"
-        ]
-    );
+fn a_later_file_replaces_the_motion() {
     let suite = Suite::new(&[
         ("b.toml", "[turntable.rotation]\nrate_deg_per_s = 1.0\n"),
         (
@@ -463,20 +310,8 @@ fn two_motions_in_one_file_are_refused_but_a_later_file_replaces_the_motion() {
 }
 
 #[test]
-fn a_swing_has_exactly_one_amplitude() {
+fn a_set_amplitude_of_a_swing_replaces_the_other() {
     let swing = "[turntable.swing]\nfrequency_hz = 5.0\n";
-    assert_eq!(
-        complaints(swing),
-        ["x.toml:4:12: turntable.swing needs exactly one amplitude: \
-          turntable.swing.rate_amplitude_deg_per_s, turntable.swing.angle_amplitude_deg"]
-    );
-    let both = format!("{swing}rate_amplitude_deg_per_s = 1.0\nangle_amplitude_deg = 1.0\n");
-    let got = complaints(&both);
-    assert_eq!(got.len(), 1);
-    assert!(
-        got[0].starts_with("x.toml:7:1: turntable.swing.angle_amplitude_deg contradicts "),
-        "{got:?}"
-    );
     let one = format!("{swing}rate_amplitude_deg_per_s = 1.0\n");
     let MotionConfig::Swing(swing) = run(&one, &["turntable.swing.angle_amplitude_deg=2"])
         .scenario
@@ -490,90 +325,80 @@ fn a_swing_has_exactly_one_amplitude() {
 
 #[test]
 fn times_that_do_not_fit_are_refused() {
-    assert_eq!(
-        complaints("[turntable.steps]\nrates_deg_per_s = [0.0, 1.0, 2.0]\ndwell_s = 7.0\n"),
-        ["x.toml:6:1: turntable.steps.dwell_s = 7.0 s is too long: \
-          3 rates take 21.0 s, but duration_s = 20.0 s"]
-    );
-    assert_eq!(
-        complaints("warm_up_s = 0.5\n[turntable.rotation]\nrate_deg_per_s = 1.0\n"),
+    complaints_of_each(
+        "Times that do not fit are refused",
         [
-            "x.toml:4:1: turntable.rotation.soft_start_s = 1.0 s is longer than the warm-up: \
-          allowed [0, warm_up_s = 0.5] s"
-        ]
-    );
-    let got = complaints("[turntable.swing]\nfrequency_hz = 500.0\nangle_amplitude_deg = 1e-3\n");
-    // 3989.45 Hz / 8.
-    assert!(
-        got[0].starts_with(
-            "x.toml:5:1: turntable.swing.frequency_hz = 500.0 Hz is too fast: allowed up to 498.68"
-        ),
-        "{got:?}"
+            "[turntable.steps]\nrates_deg_per_s = [0.0, 1.0, 2.0]\ndwell_s = 7.0\n",
+            "warm_up_s = 0.5\n[turntable.rotation]\nrate_deg_per_s = 1.0\n",
+            "[turntable.swing]\nfrequency_hz = 500.0\nangle_amplitude_deg = 1e-3\n",
+        ],
     );
 }
 
 #[test]
 fn gates_need_limits_and_channels() {
-    let gate = |body: &str| complaints(&format!("[[gate]]\n{body}"));
-    assert_eq!(
-        gate("metric = \"raw.noise_gain\"\n"),
-        ["x.toml:4:1: gate[0] has no limit: give min, max or both"]
-    );
-    assert_eq!(
-        gate("metric = \"raw.noise_gain\"\nmin = 2\nmax = 1\n"),
-        ["x.toml:6:1: gate[0].min = 2.0 is greater than gate[0].max = 1.0"]
-    );
-    let text = scenario("[[gate]]\nmetric = \"noise_gain\"\nmin = 2\n");
-    let suite = Suite::new(&[("x.toml", &text)]);
-    let errors = fogbench::experiment::plan_suite(&[suite.path("x.toml")], &[]).unwrap_err();
-    assert!(
-        errors[0]
-            .message
-            .starts_with("gate[0].metric = \"noise_gain\" names no channel"),
-        "{errors:?}"
-    );
-    assert_eq!(
-        gate("metric = \"rls.noise_gain\"\nmin = 2\nrelative_to = \"lms\"\n"),
+    complaints_of_each(
+        "Gates need limits and channels",
         [
-            "x.toml:5:1: gate[0].metric = \"rls.noise_gain\": \
-             there is no channel rls: expected one of raw",
-            "x.toml:7:1: gate[0].relative_to = \"lms\": there is no channel lms: expected one of raw",
-        ]
+            "[[gate]]\nmetric = \"raw.noise_gain\"\n",
+            "[[gate]]\nmetric = \"raw.noise_gain\"\nmin = 2\nmax = 1\n",
+            "[[gate]]\nmetric = \"rls.noise_gain\"\nmin = 2\nrelative_to = \"lms\"\n",
+            "[[published]]\nmetric = \"lms.noise_gain\"\nvalue = 1\nunit = \"1\"\nsource = \"s\"\n",
+        ],
     );
-    let published =
-        "[[published]]\nmetric = \"lms.noise_gain\"\nvalue = 1\nunit = \"1\"\nsource = \"s\"\n";
-    assert_eq!(
-        complaints(published),
-        ["x.toml:5:1: published[0].metric = \"lms.noise_gain\": \
-          there is no channel lms: expected one of raw"]
+    said_to_each(
+        SCENARIO,
+        "Metrics that do not exist are found when the suite is planned",
+        [
+            "[[gate]]\nmetric = \"noise_gain\"\nmin = 2\n",
+            "[[gate]]\nmetric = \"raw.arw\"\nmax = 1\n",
+            // Beside an unknown key and beside a contradiction.
+            "sed = 1\n[[gate]]\nmetric = \"raw.arw\"\nmax = 1\n\
+             [[gate]]\nmetric = \"mean_deg_per_h\"\nmax = 1\n",
+            "[turntable.trapezoid]\nrate_deg_per_s = 0\nacceleration_deg_per_s2 = 1\nhold_s = 1\n\
+             [[gate]]\nmetric = \"raw.arw\"\nmax = 1\n[[gate]]\nmetric = \"mean_deg_per_h\"\nmax = 1\n",
+        ],
+        |more| {
+            let suite = Suite::new(&[("x.toml", &scenario(more))]);
+            let planned = fogbench::experiment::plan_suite(&[suite.path("x.toml")], &[]);
+            let errors = planned.expect_err("there is no such metric");
+            let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
+            texts.join("\n")
+        },
     );
 }
 
 #[test]
 fn other_versions_are_refused_alone() {
-    let text = "schema = 2\nname = \"x\"\nnew_key = 1\n";
-    let got = Suite::new(&[("x.toml", text)]).complaints(&["x.toml"], &[]);
-    assert_eq!(
-        got,
-        ["x.toml:1:1: schema = 2 is not supported: this build reads schema 1"]
-    );
+    let mut transcript = Transcript::of(SCENARIO, "Other versions are refused alone");
+    for (name, text) in [
+        ("x.toml", "schema = 2\nname = \"x\"\nnew_key = 1\n"),
+        ("m.toml", "manifest = 2\n"),
+        ("n.toml", "manifest = 1\n"),
+    ] {
+        let (given, said) = suite_case(&[(name, text)], &[name]);
+        transcript.case(given, said);
+    }
+    transcript.check();
 }
 
 #[test]
 fn all_complaints_of_all_files_come_at_once() {
-    let suite = Suite::new(&[
-        ("s/a.toml", &scenario("sed = 1\nrepeats = 0\n")),
+    let files = [
+        ("s/a.toml", &*scenario("sed = 1\nrepeats = 0\n")),
         ("s/b.toml", "name = \"b\"\nduration_s = -1\n"),
         ("s/c.toml", "name = \n"),
-    ]);
-    let got = suite.complaints(&["s"], &[]);
-    assert_eq!(got.len(), 4, "{got:?}");
-    assert!(
-        got.iter()
-            .filter(|line| line.starts_with("s/a.toml"))
-            .count()
-            == 2
-    );
+    ];
+    let mut transcript = Transcript::of(SCENARIO, "All complaints of all files come at once");
+    let (given, said) = suite_case(&files, &["s"]);
+    transcript.case(given, said);
+    // Later layers are checked though an earlier one complains: an unknown key, a value out of
+    // range, an inert key and a gate of no channel.
+    let four = "sed = 2\n[gyro.coil]\nlength_m = -5\n[gyro.slow_noise]\n\
+                gauss_markov_correlation_time_s = 7.0\n\
+                [[gate]]\nmetric = \"rls.noise_gain\"\nmax = 1\n";
+    transcript.case(four, complaints(four).join("\n"));
+    transcript.check();
 }
 
 #[test]
@@ -623,27 +448,17 @@ fn a_matrix_is_the_product_of_its_keys_in_the_order_of_the_file() {
 
 #[test]
 fn wrong_matrices_are_refused_where_they_are_wrong() {
-    assert_eq!(
-        complaints(
-            "[matrix]\n\"gyro.source.powr_uw\" = [1]\nseed = []\nrepeats = 2\nname = [\"a\"]\n"
-        ),
-        [
-            "x.toml:5:1: matrix: unknown key gyro.source.powr_uw: did you mean gyro.source.power_uw?",
-            "x.toml:6:1: matrix: seed has no values: expected a non-empty array",
-            "x.toml:7:1: matrix: repeats has the wrong type: \
-             expected an array of values, got a whole number",
-            "x.toml:8:1: matrix: name cannot be swept",
-        ]
-    );
-    assert_eq!(
-        complaints("[matrix]\n\"gyro.source.power_uw\" = [0.5, -2.0]\nseed = [1, 2]\n"),
-        ["x.toml:5:32: gyro.source.power_uw = -2.0 uW is out of range: allowed [0.001, 100000] uW"]
-    );
-    assert!(complaints("[matrix]\n")[0].starts_with("x.toml:4:2: matrix is empty"));
-    assert_eq!(
-        complaints_of_set("[matrix]\nseed = [1, 2]\n", &["seed=3"]),
-        ["x.toml:5:1: matrix: seed is swept here and given by --set: leave one of them out"]
-    );
+    let mut transcript =
+        Transcript::of(SCENARIO, "Wrong matrices are refused where they are wrong");
+    for more in [
+        "[matrix]\n\"gyro.source.powr_uw\" = [1]\nseed = []\nrepeats = 2\nname = [\"a\"]\n",
+        "[matrix]\n\"gyro.source.power_uw\" = [0.5, -2.0]\nseed = [1, 2]\n",
+        "[matrix]\n",
+    ] {
+        transcript.case(more, complaints(more).join("\n"));
+    }
+    set_case(&mut transcript, "[matrix]\nseed = [1, 2]\n", &["seed=3"]);
+    transcript.check();
 }
 
 #[test]
@@ -725,18 +540,6 @@ fn a_manifest_of_another_version_of_the_tool_warns() {
         &manifest_toml(&run, env!("CARGO_PKG_VERSION"), "b"),
     )]);
     assert!(suite.load(&["m.toml"], &[]).unwrap()[0].warnings.is_empty());
-}
-
-#[test]
-fn manifests_of_other_versions_or_damaged_ones_are_refused() {
-    let suite = Suite::new(&[("m.toml", "manifest = 2\n"), ("n.toml", "manifest = 1\n")]);
-    assert_eq!(
-        suite.complaints(&["m.toml"], &[]),
-        ["m.toml:1:1: manifest = 2 is not supported: this build reads manifest 1"]
-    );
-    assert!(
-        suite.complaints(&["n.toml"], &[])[0].starts_with("n.toml:1:1: the manifest is damaged")
-    );
 }
 
 #[test]
@@ -869,50 +672,19 @@ fn the_worked_example_loads() {
 }
 
 #[test]
-fn contradictory_bias_waves_are_refused_with_the_reason() {
-    for (more, reason) in [
-        (
+fn contradictions_are_refused_with_the_reason() {
+    complaints_of_each(
+        "Contradictions are refused with the reason",
+        [
             "[gyro.detector]\ngate_spikes = false\n",
-            "averages the whole half period, but gyro.detector.gate_duty = 0.7",
-        ),
-        (
-            "[gyro.detector]\ngate_spikes = false\ngate_duty = 1.0\n\
-             [gyro.modulator]\nscheme = \"four-state\"\n",
-            "averages the spikes of a square wave",
-        ),
-        (
+            "[gyro.detector]\ngate_spikes = false\ngate_duty = 1.0\n[gyro.modulator]\nscheme = \"four-state\"\n",
             "[gyro.modulator]\nscheme = \"four-state\"\nintensity_modulation = 1e-3\n",
-            "goes with the two states of a square wave",
-        ),
-        (
-            "[gyro.modulator]\nscheme = \"four-state-half\"\n\
-             [gyro.adc]\nsamples_per_half_period = 7\n",
-            "samples_per_half_period = 7 is odd",
-        ),
-    ] {
-        let found = complaints(more);
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].contains(reason), "{found:?}");
-    }
-}
-
-#[test]
-fn later_layers_are_checked_though_an_earlier_one_complains() {
-    // An unknown key, a value out of range, a contradiction and an inert key.
-    let got = complaints(
-        "sed = 2\n[gyro.coil]\nlength_m = -5\n[gyro.slow_noise]\n\
-         gauss_markov_correlation_time_s = 7.0\n[[gate]]\nmetric = \"rls.noise_gain\"\nmax = 1\n",
+            "[gyro.modulator]\nscheme = \"four-state-half\"\n[gyro.adc]\nsamples_per_half_period = 7\n",
+            "[turntable.static]\n[turntable.rotation]\nrate_deg_per_s = 1.0\n",
+            "[turntable.swing]\nfrequency_hz = 5.0\n",
+            "[turntable.swing]\nfrequency_hz = 5.0\nrate_amplitude_deg_per_s = 1.0\nangle_amplitude_deg = 1.0\n",
+        ],
     );
-    let starts = [
-        "x.toml:4:1: unknown key sed: did you mean seed?",
-        "x.toml:6:1: gyro.coil.length_m = -5 m is out of range",
-        "x.toml:8:1: gyro.slow_noise.gauss_markov_correlation_time_s = 7.0 has no effect",
-        "x.toml:10:1: gate[0].metric = \"rls.noise_gain\": there is no channel rls",
-    ];
-    assert_eq!(got.len(), starts.len(), "{got:#?}");
-    for (line, start) in got.iter().zip(starts) {
-        assert!(line.starts_with(start), "{line}");
-    }
 }
 
 #[test]
@@ -943,38 +715,6 @@ fn complaints_that_only_follow_from_a_fault_are_not_made() {
 }
 
 #[test]
-fn a_missing_base_does_not_hide_what_is_wrong_here() {
-    let got = complaints("extends = \"nowhere.toml\"\n[gyro.coil]\nlenght_m = 1\n");
-    assert_eq!(
-        got,
-        [
-            "x.toml:4:1: extends nowhere.toml: no such file",
-            "x.toml:6:1: unknown key gyro.coil.lenght_m: did you mean gyro.coil.length_m?",
-        ]
-    );
-}
-
-#[test]
-fn a_bad_metric_is_found_beside_an_unknown_key_and_a_contradiction() {
-    let gates =
-        "[[gate]]\nmetric = \"raw.arw\"\nmax = 1\n[[gate]]\nmetric = \"mean_deg_per_h\"\nmax = 1\n";
-    for more in [
-        "sed = 1\n",
-        "[turntable.trapezoid]\nrate_deg_per_s = 0\nacceleration_deg_per_s2 = 1\nhold_s = 1\n",
-    ] {
-        let suite = Suite::new(&[("x.toml", &scenario(&format!("{more}{gates}")))]);
-        let errors = fogbench::experiment::plan_suite(&[suite.path("x.toml")], &[]).unwrap_err();
-        let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
-        assert_eq!(texts.len(), 3, "{texts:#?}");
-        assert!(
-            texts[1].contains("did you mean `angle_random_walk_deg_per_sqrt_h`?"),
-            "{texts:#?}"
-        );
-        assert!(texts[2].contains("as in raw.mean_deg_per_h"), "{texts:#?}");
-    }
-}
-
-#[test]
 fn complaints_show_the_text_that_they_are_about() {
     let shown = |more: &str, sets: &[&str]| {
         let suite = Suite::new(&[("x.toml", &scenario(more))]);
@@ -998,20 +738,5 @@ fn complaints_show_the_text_that_they_are_about() {
     assert!(
         errors.iter().all(|error| error.source().is_none()),
         "{errors:?}"
-    );
-}
-
-#[test]
-fn array_brackets_without_an_index_are_explained() {
-    let got = complaints_of_set(
-        "[[filter]]\nname = \"rls\"\n[filter.rls]\n",
-        &["filter[].rls.taps=4"],
-    );
-    assert_eq!(
-        got,
-        [
-            "--set filter[].rls.taps=4: `filter[].rls.taps` does not say which filter: give its index, \
-          as in filter[0].rls.taps, or the name of a filter, as in filter.rls.taps"
-        ]
     );
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use fogbench::experiment::{Observer, SuiteOptions, plan_suite, run_suite};
+use fogbench::experiment::{Observer, Progress, SuiteOptions, plan_suite, run_suite};
 use fogbench::report::{RunOutcome, RunReport, RunStatus};
 
 use crate::support::{code, fogbench, tree, write};
@@ -20,9 +20,9 @@ fn named(folder: &std::path::Path, name: &str) -> PathBuf {
 /// Breaks while the run called `broken` is being reported.
 struct Breaks;
 
-impl Observer for Breaks {
-    fn advanced(&self, _simulated_s: f64) {}
+impl Progress for Breaks {}
 
+impl Observer for Breaks {
     fn finished(&self, _index: usize, report: &RunReport) {
         assert!(report.scenario.name != "broken", "planted fault");
     }
@@ -70,16 +70,14 @@ fn the_order_of_the_arguments_leaves_no_trace() {
 /// Puts a file of the user's in the way of the run called `two` once `one` is done.
 struct GetsInTheWay(PathBuf);
 
-impl Observer for GetsInTheWay {
-    fn advanced(&self, _simulated_s: f64) {}
+impl Progress for GetsInTheWay {}
 
+impl Observer for GetsInTheWay {
     fn finished(&self, _index: usize, report: &RunReport) {
         if report.scenario.name == "one" {
             write(&self.0, "two/thesis.txt", "in the way");
         }
     }
-
-    fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
 }
 
 #[test]

@@ -6,11 +6,9 @@ use super::arguments::Format;
 use super::calibrate_arguments::CalibrateOptions;
 use super::exit::Exit;
 use super::{complaint, output, place};
-use crate::experiment::{
-    CalibrateError, CalibrationTrial, Observer, calibrate_campaign, calibrate_groups,
-};
+use crate::experiment::{CalibrateError, CalibrationTrial, calibrate_campaign, calibrate_groups};
 use crate::recording::LogError;
-use crate::report::{RunOutcome, RunReport, calibrate_json, calibrate_text};
+use crate::report::{calibrate_json, calibrate_text};
 
 /// Prints the calibration; with a folder, writes `calibration.toml` and `groups.csv` into it.
 pub(super) fn calibrate(options: &CalibrateOptions) -> io::Result<Exit> {
@@ -70,7 +68,7 @@ fn of_scenario(options: &CalibrateOptions) -> Result<CalibrationTrial, Exit> {
             "--latitude-deg belongs to a groups file: a scenario has turntable.site.latitude_deg",
         ));
     }
-    calibrate_campaign(&options.path, &options.scenario_sets(), &Silent).map_err(|errors| {
+    calibrate_campaign(&options.path, &options.scenario_sets(), &()).map_err(|errors| {
         complaint::print(&errors);
         Exit::Usage
     })
@@ -79,13 +77,4 @@ fn of_scenario(options: &CalibrateOptions) -> Result<CalibrationTrial, Exit> {
 fn misused(message: &str) -> Exit {
     complaint::print(&[message.to_owned()]);
     Exit::Usage
-}
-
-/// One campaign takes seconds: nothing is said while it runs.
-struct Silent;
-
-impl Observer for Silent {
-    fn advanced(&self, _: f64) {}
-    fn finished(&self, _: usize, _: &RunReport) {}
-    fn failed(&self, _: usize, _: &RunOutcome) {}
 }

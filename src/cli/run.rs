@@ -11,7 +11,7 @@ use super::exit::{Exit, io_failure};
 use super::signals::Interrupt;
 use super::{output, place, select};
 use crate::experiment::{
-    Observer, Plan, Resume, SuiteError, SuiteOptions, SuiteOutcome, run_suite, thread_count,
+    self, Observer, Plan, Resume, SuiteError, SuiteOptions, SuiteOutcome, run_suite, thread_count,
 };
 use crate::report::{self, RunOutcome, RunReport, RunStatus};
 
@@ -226,11 +226,17 @@ impl<'a> Progress<'a> {
     }
 }
 
-impl Observer for Progress<'_> {
+impl experiment::Progress for Progress<'_> {
     fn advanced(&self, simulated_s: f64) {
         self.bar.inc(whole(simulated_s));
     }
 
+    fn should_stop(&self) -> bool {
+        self.interrupt.exit().is_some()
+    }
+}
+
+impl Observer for Progress<'_> {
     fn finished(&self, index: usize, report: &RunReport) {
         self.print_in_turn(index, self.text(report));
     }
@@ -239,10 +245,6 @@ impl Observer for Progress<'_> {
         let reason = outcome.error.as_deref().unwrap_or_default();
         self.talk(&format!("error: {}: {reason}", outcome.folder));
         self.print_in_turn(index, String::new());
-    }
-
-    fn should_stop(&self) -> bool {
-        self.interrupt.exit().is_some()
     }
 
     /// Ends the program: what is still being computed is not waited for.

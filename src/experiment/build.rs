@@ -1,4 +1,7 @@
-//! Which build of the program this is.
+//! Which version and which build of the program this is.
+
+/// Version of the program, as every result names it.
+pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// What `git describe` said of the sources, `-dirty` behind it where they were changed; `unknown` where
 /// they were in no repository.

@@ -5,8 +5,7 @@
 //! the unperturbed run. *Adapted*: a twin filter runs on the same words plus a small rate from the
 //! first sample on and is free to adapt; its mean output differs by that rate times the gain.
 
-use super::rate_twins::RateTwins;
-use super::simulate::RecordLength;
+use crate::experiment::run::{RateTwins, RecordLength};
 use crate::filters::hardware::{HardwareFilter, HealthSummary, PipelineSettings, PipelineTiming};
 use crate::filters::{Divergence, Filter, FilterKind, Output};
 use crate::metrics::RateGain;

@@ -1,7 +1,7 @@
 //! Stimulus of an export from the gyro of a scenario.
 
 use super::plan::Plan;
-use super::simulate::first_words;
+use super::run::first_words;
 use crate::filters::hardware::Stimulus;
 use crate::fpga::export::IntegerCodes;
 use crate::gyro::{self, GyroError};

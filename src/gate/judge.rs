@@ -1,9 +1,9 @@
 //! The rule: an interval against limits.
 
-use crate::gate::number::{estimate_text, is_exact, limits_text, plain};
+use crate::gate::number::limits_text;
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::catalogue::DIVERGED_AT;
-use crate::metrics::{ChannelMetrics, Estimate, Metric};
+use crate::metrics::{ChannelMetrics, Estimate, Metric, estimate_text, is_exact, plain};
 use crate::scenario::{GateConfig, GateDecision, InconclusivePolicy};
 
 /// Digits of the half width shown in reasons: one more than in tables, so that a near miss shows.
@@ -47,6 +47,13 @@ pub fn judge(
         VerdictKind::Inconclusive => gate.inconclusive == InconclusivePolicy::Allow,
     };
     verdict
+}
+
+/// Whether a gate on `<channel>.diverged_at_s` expects the channel to fail.
+#[must_use]
+pub fn expects_failure(verdicts: &[Verdict], channel: &str) -> bool {
+    let metric = format!("{channel}.{}", DIVERGED_AT.name);
+    verdicts.iter().any(|verdict| verdict.metric == metric)
 }
 
 /// What is judged: a value, and its interval unless that is unbounded.

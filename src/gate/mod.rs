@@ -7,6 +7,7 @@ mod judge;
 mod number;
 mod verdict;
 
-pub use judge::{judge, quotient};
-pub(crate) use number::{estimate_text, limits_text, plain};
+pub(crate) use crate::metrics::{estimate_text, plain};
+pub use judge::{expects_failure, judge, quotient};
+pub(crate) use number::limits_text;
 pub use verdict::{Verdict, VerdictKind};

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use crate::gyro::error::GyroError;
-use crate::gyro::loop_faults::LoopFaults;
 use crate::gyro::loop_model::LoopModel;
-use crate::gyro::noise_budget::NoiseBudget;
+use crate::gyro::loop_model::faults::LoopFaults;
+use crate::gyro::noise::budget::NoiseBudget;
 use crate::gyro::parts::{Parts, half_period_s};
 use crate::gyro::rate_model::RateModel;
 use crate::random::Streams;

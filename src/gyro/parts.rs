@@ -1,10 +1,10 @@
 //! The parts every model of the gyro is built from, checked once.
 
-use crate::gyro::condition::{Condition, power_range};
 use crate::gyro::controller::gain_limit;
-use crate::gyro::modulation::Timing;
-use crate::gyro::noise_budget::NoiseBudget;
-use crate::gyro::optics::{Optics, spike_share};
+use crate::gyro::noise::budget::NoiseBudget;
+use crate::gyro::optics::modulation::Timing;
+use crate::gyro::optics::second_order::{Optics, spike_share};
+use crate::gyro::thermal::condition::{Condition, power_range};
 use crate::gyro::{Coil, Controller, Detector, GyroError, Modulator};
 use crate::scenario::GyroConfig;
 use crate::units::{deg_per_sqrt_h_to_rad_per_sqrt_s, rad_per_s_to_deg_per_s};

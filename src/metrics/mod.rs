@@ -7,105 +7,92 @@
 //! independent repeats. The estimators stand alone as well: [`overlapping_allan`], [`fit_noise`],
 //! [`block_means`], [`welch`], [`fit_swing`], [`noise_delay_bound`], [`predict`],
 //! [`settling`](fn@settling), [`fit_scale_factor`], [`fit_tones`].
+//!
+//! The rooms, each of which uses those before it alone:
+//!
+//! | room | subject |
+//! |---|---|
+//! | `key` | what a metric and a curve declare of themselves |
+//! | `theory` | what a filter will do to a record, and the least noise at a delay |
+//! | `estimate` | numbers with intervals, reasons, the table of one channel |
+//! | `allan` | Allan variances and the noise terms fitted to them: random walk, bias instability, ramp |
+//! | `record` | what a measurement is given |
+//! | `steps` | settling, overshoot, scale factor, threshold, dead band |
+//! | `sine` | fits of sines: one frequency, a free one, many |
+//! | `noise` | noise about the signal: level, colour, spectrum, bias stability |
+//! | `trial` | what a filter does: DC gain, delay, noise-delay bound, readaptation |
+//! | `motion` | the metrics of each kind of motion: steady, swing, several sines, steps, any other |
+//! | `verdict` | what the metrics say a filter did |
+//! | `catalogue` | the list of metrics, their names, and which records support them |
+//! | `pool` | independent repeats, and conditions compared |
+//! | `measure` | all of it for one channel |
 
-mod aggregate;
 mod allan;
-mod allan_covariance;
-mod allan_curves;
-mod allan_least_squares;
-mod allan_sampling;
-mod allan_stream;
-mod allan_sums;
-mod allan_variants;
-mod angle;
-mod audit;
-mod autocovariance;
-mod bias;
+mod calibration;
 pub mod catalogue;
-mod channel;
-mod combined_freedom;
-mod correlation;
-mod delay;
 mod estimate;
-mod estimates;
-mod frozen_response;
-mod interval;
 mod key;
-mod memory;
-mod multi_sine;
-mod names;
-mod noise_delay;
-mod noise_fit;
-mod noise_identification;
-mod noise_level;
-mod nonlinearity;
+mod measure;
+mod motion;
+mod noise;
 mod pipeline;
-mod psd;
-mod readaptation;
+mod pool;
 mod record;
-mod repeat_statistics;
-mod response;
-mod scale_factor;
-mod sensitivity;
-mod settling;
-mod sine_frequency;
-mod small_input;
-mod staircase;
-mod steady;
-mod step_shape;
-mod support;
-mod swing;
-mod table;
-mod truth_response;
+mod sine;
+mod steps;
+mod theory;
+mod trial;
 mod verdict;
-mod weight_noise;
 
-pub use aggregate::aggregate;
-pub use allan::{
+pub use allan::covariance::FLICKER_ALLAN_VARIANCE;
+pub use allan::noise_fit::{
+    FIT_TAU_PER_RECORD_MAX, FitRange, NoiseCoefficients, NoiseFit, Term, fit_noise,
+    fit_pooled_noise, mixed_degrees_of_freedom,
+};
+pub use allan::noise_identification::PowerLaw;
+pub use allan::overlapping::{
     AllanPoint, NoiseType, degrees_of_freedom, overlapping_allan, overlapping_allan_at,
 };
-pub use allan_stream::AllanStream;
-pub use allan_variants::{
+pub use allan::stream::AllanStream;
+pub use allan::variants::{
     AllanEstimator, AllanOptions, AllanVariantPoint, allan_variant, allan_variant_at,
 };
-pub use audit::{
-    Prediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
-    predict,
-};
-pub use autocovariance::autocovariance;
-pub use bias::{
-    block_label_s, block_means, effective_degrees_of_freedom, expected_bias_stability,
-    is_sample_or_longer, paired_ratio, samples_in,
-};
+pub(crate) use catalogue::names::{meant, unknown};
+pub use catalogue::support::{encoder_lack, support, truth_lack};
 pub use catalogue::{find, known_metrics, repeated_metrics};
-pub use channel::measure;
-pub use correlation::correlation_delay_s;
-pub use delay::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
-pub use estimate::{ChannelFailure, ChannelMetrics, Estimate, Metric};
-pub(crate) use key::{Against, Headline, Table};
-pub use key::{Applies, MetricKey};
-pub use memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
-pub(crate) use names::{meant, unknown};
-pub use noise_fit::{
-    FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
-    fit_noise, fit_pooled_noise, mixed_degrees_of_freedom,
+pub use estimate::blocks::{block_label_s, block_means, is_sample_or_longer, samples_in};
+pub use estimate::missing::MissingMetric;
+pub use estimate::repeat_statistics::RepeatStatistics;
+pub use estimate::table::{ChannelFailure, ChannelMetrics};
+pub(crate) use estimate::text::{estimate_text, is_exact, plain, wants_exponent};
+pub use estimate::value::{Estimate, Metric};
+pub(crate) use key::metric::{Against, Headline, Table};
+pub use key::metric::{Applies, MetricKey};
+pub use measure::measure;
+pub use noise::autocovariance::autocovariance;
+pub use noise::bias_stability::{
+    effective_degrees_of_freedom, expected_bias_stability, paired_ratio,
 };
-pub use noise_identification::PowerLaw;
-pub use nonlinearity::{Nonlinearity, Residual, expected_largest};
-pub use psd::{Spectrum, log_binned, segment_samples, welch};
-pub use readaptation::{GainUnits, Readaptation};
+pub use noise::memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
+pub use noise::spectrum::{Spectrum, log_binned, segment_samples, welch};
+pub use pool::aggregate::aggregate;
+pub use pool::repeatability::repeats_lack;
+pub use pool::sensitivity::{ConditionPoint, change_divisor, largest_change_per_unit};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
-pub use repeat_statistics::RepeatStatistics;
-pub use response::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
-pub use scale_factor::{
+pub use sine::correlation::correlation_delay_s;
+pub use sine::fit::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
+pub use sine::free_frequency::{FreeSineFit, fit_sine_free_frequency};
+pub use sine::tones::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
+pub use steps::nonlinearity::{Nonlinearity, Residual, expected_largest};
+pub use steps::scale_factor::{
     Asymmetry, RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero,
     distinct_rates, distinct_rates_by_sense, fit_scale_factor, scale_factor_repeatability,
     scale_factor_temperature_sensitivity,
 };
-pub use sensitivity::{ConditionPoint, change_divisor, largest_change_per_unit};
-pub use settling::{Settling, settling};
-pub use sine_frequency::{FreeSineFit, fit_sine_free_frequency};
-pub use small_input::smallest_answered;
-pub use step_shape::Step;
-pub use support::{encoder_lack, repeats_lack, support, truth_lack};
+pub use steps::settling::{Settling, settling};
+pub use steps::shape::Step;
+pub use steps::small_input::smallest_answered;
+pub use theory::bound::{noise_delay_bound, noise_delay_bound_coloured, noise_power_gain};
+pub use theory::prediction::{Prediction, lags_needed, predict};
+pub use trial::readaptation::{GainUnits, Readaptation};
 pub use verdict::{AgainstOne, Deed, FilterVerdict, Finding, filter_verdict};

@@ -1,6 +1,6 @@
 //! Figures of a hardware pipeline, which its simulation gives.
 
-use super::key::MetricKey;
+use super::key::metric::MetricKey;
 
 /// Why other channels lack the figures of pipelines.
 pub(crate) const PIPELINE_ONLY: &str = "only a filter with pipeline = \"fpga\" has it";

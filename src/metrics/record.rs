@@ -2,9 +2,12 @@
 
 use std::ops::Range;
 
-use super::allan_variants::AllanOptions;
-use super::audit::Prediction;
+use super::allan::variants::AllanOptions;
+use super::theory::prediction::Prediction;
 use crate::signal::{FilterShape, WeightRule};
+
+/// Fewest samples worth measuring.
+pub(crate) const SAMPLES_MIN: usize = 64;
 
 /// The samples of one channel with the two references it is compared to.
 ///
@@ -164,7 +167,7 @@ pub struct Settings {
     pub bias_averaging_time_s: f64,
     /// Shortest averaging time the noise fit uses, s: longer than the correlation of the channel's
     /// noise (ten samples or some twenty time constants of the loop). What a filter remembers is seen
-    /// to by [`measure`](super::measure).
+    /// to by [`measure`](fn@super::measure::measure).
     pub fit_tau_min_s: f64,
     /// Estimator and averaging times of the curve `allan`; the noise is fitted to the overlapping
     /// Allan variance whatever they are.

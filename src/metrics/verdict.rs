@@ -1,12 +1,17 @@
 //! The verdict on a filter: what the intervals of its metrics say it does to signal and noise.
 
-use super::catalogue::{
-    AMPLITUDE_RATIO, ANGLE_RANDOM_WALK_OVER_DC_GAIN, DC_GAIN, DELAY_AT_DC, DELAY_VS_RAW,
-    NOISE_GAIN, NOISE_GAIN_OVER_BOUND, READAPTATION_TIME, SCALE_FACTOR_ERROR, SETTLED_GAIN,
-    WEIGHT_NOISE_RATIO,
-};
-use super::estimate::{ChannelMetrics, Estimate};
-use super::key::MetricKey;
+use super::estimate::table::ChannelMetrics;
+use super::estimate::value::Estimate;
+use super::key::metric::MetricKey;
+use super::motion::steps::SETTLED_GAIN;
+use super::motion::swing::{AMPLITUDE_RATIO, DELAY_VS_RAW};
+use super::noise::level::NOISE_GAIN;
+use super::steps::staircase::SCALE_FACTOR_ERROR;
+use super::trial::dc_gain::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, DC_GAIN};
+use super::trial::noise_delay::NOISE_GAIN_OVER_BOUND;
+use super::trial::predicted::DELAY_AT_DC;
+use super::trial::readaptation::READAPTATION_TIME;
+use super::trial::weight_noise::WEIGHT_NOISE_RATIO;
 use crate::units::MICRO;
 
 /// Distance of a gain from 1 that counts as none.
@@ -207,8 +212,9 @@ fn one_plus_ppm(error_ppm: Estimate) -> Estimate {
 
 #[cfg(test)]
 mod tests {
-    use super::super::estimate::{ChannelFailure, Metric};
     use super::*;
+    use crate::metrics::estimate::table::ChannelFailure;
+    use crate::metrics::estimate::value::Metric;
 
     fn channel(entries: &[(&str, f64, f64)]) -> ChannelMetrics {
         let metrics = entries.iter().map(|(name, low, high)| {

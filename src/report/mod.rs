@@ -8,7 +8,6 @@ mod calibrate;
 mod calibration;
 mod calibration_text;
 mod columns;
-mod comparison;
 mod comparison_files;
 mod comparison_json;
 mod comparison_text;
@@ -35,10 +34,6 @@ pub use budget::{budget_csv, budget_json, budget_text};
 pub use calibrate::{CalibrateReport, calibrate_json, calibrate_text};
 pub use calibration::{CalibrationProvenance, calibration_json, calibration_toml, groups_csv};
 pub use calibration_text::calibration_text;
-pub use comparison::{
-    Assumed, Cause, ChangePerUnit, ColumnChange, ComparedCell, ComparedColumn, ComparedRow,
-    ComparedTable, Comparison, DrawnFigure,
-};
 pub use comparison_files::{comparison_file_names, comparison_files};
 pub use comparison_text::comparison_text;
 pub use csv::{allan_csv, autocovariance_csv, psd_csv};

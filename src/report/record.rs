@@ -1,6 +1,6 @@
 //! What a report is made of, and how one run ended.
 
-use crate::gate::{Verdict, VerdictKind};
+use crate::gate::{Verdict, VerdictKind, expects_failure};
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::metrics::{ChannelFailure, ChannelMetrics, Metric};
@@ -106,13 +106,7 @@ impl RunOutcome {
     /// The outcome of a run that finished.
     #[must_use]
     pub fn from_report(report: &RunReport, folder: &str) -> Self {
-        let expects = |channel: &str| {
-            let metric = format!("{channel}.diverged_at_s");
-            report
-                .verdicts
-                .iter()
-                .any(|verdict| verdict.metric == metric)
-        };
+        let expects = |channel: &str| expects_failure(report.verdicts, channel);
         let channels = report
             .channels
             .iter()

@@ -17,6 +17,8 @@ use super::weight;
 
 /// Most bases below one another.
 const BASES_MAX: usize = 64;
+/// Name of a text that was read from no file.
+const TEXT: &str = "<text>";
 
 /// Reads a file and its bases, or a manifest, with the complaints that do not hinder more checks,
 /// whether it has a name or not; inputs are labelled as seen from another file.
@@ -51,25 +53,26 @@ pub(super) fn load_labelled(
     if passes_bases && !root.contains_key("name") {
         return Ok(None);
     }
-    if manifest::is_manifest(&root) {
-        let draft = manifest::read(root, source, chain.sources, chain.inputs)?;
-        return Ok(Some((draft, Vec::new())));
-    }
-    let root = chain.merge_bases(file, label, root, source);
-    chain.inputs.reverse();
-    let draft = Draft {
-        root,
-        root_mark: Mark { source, start: 0 },
-        sources: Arc::new(chain.sources),
-        file: label.text(),
-        inputs: chain.inputs,
-        recorded: None,
-        warnings: Vec::new(),
-        remarks: Vec::new(),
-        is_record: false,
-        is_partial: chain.is_partial,
+    chain.draft(file, label, root, source).map(Some)
+}
+
+/// Reads a text and the bases it extends, or the text of a manifest, with the complaints that do not
+/// hinder more checks. What it names is relative to the working directory.
+///
+/// # Errors
+/// Every complaint about the text.
+pub(super) fn read_text(text: &str) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
+    let file = Path::new(TEXT);
+    let label = Label::of_scenario(file);
+    let mut chain = Chain::new();
+    let (root, source) = match input::of_text(text) {
+        Ok(input) => chain.parse(TEXT.to_owned(), input, file, &label)?,
+        Err(error) => {
+            let location = Location::of_file(TEXT);
+            return Err(vec![ScenarioError::at(location, error.to_string())]);
+        }
     };
-    Ok(Some((draft, chain.errors)))
+    chain.draft(file, &label, root, source)
 }
 
 /// A file and its bases, as far as they have been read.
@@ -117,7 +120,7 @@ impl Chain {
         extends: Option<Mark>,
     ) -> Result<(Table, usize), Vec<ScenarioError>> {
         let shown = shown_path(file);
-        let Input { text, digest } = self.input(file).map_err(|error| {
+        let input = self.input(file).map_err(|error| {
             let location = Location::of_file(shown.clone());
             vec![match extends {
                 // The text itself is at fault, not the key that names it.
@@ -127,6 +130,17 @@ impl Chain {
                 _ => ScenarioError::at(location, error.to_string()),
             }]
         })?;
+        self.parse(shown, input, file, label)
+    }
+
+    /// Parses what was read of one file.
+    fn parse(
+        &mut self,
+        shown: String,
+        Input { text, digest }: Input,
+        file: &Path,
+        label: &Label,
+    ) -> Result<(Table, usize), Vec<ScenarioError>> {
         self.inputs.push(InputFile {
             file: label.text(),
             digest,
@@ -141,6 +155,35 @@ impl Chain {
             vec![self.sources.error(mark, error.message)]
         })?;
         Ok((root, source))
+    }
+
+    /// The draft of a document that was parsed first, merged onto its bases.
+    fn draft(
+        mut self,
+        file: &Path,
+        label: &Label,
+        root: Table,
+        source: usize,
+    ) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
+        if manifest::is_manifest(&root) {
+            let draft = manifest::read(root, source, self.sources, self.inputs)?;
+            return Ok((draft, Vec::new()));
+        }
+        let root = self.merge_bases(file, label, root, source);
+        self.inputs.reverse();
+        let draft = Draft {
+            root,
+            root_mark: Mark { source, start: 0 },
+            sources: Arc::new(self.sources),
+            file: label.text(),
+            inputs: self.inputs,
+            recorded: None,
+            warnings: Vec::new(),
+            remarks: Vec::new(),
+            is_record: false,
+            is_partial: self.is_partial,
+        };
+        Ok((draft, self.errors))
     }
 
     /// Merges a file onto the bases it extends, as far as they can be read.

@@ -53,6 +53,17 @@ pub(crate) struct Input {
     pub(crate) digest: String,
 }
 
+/// A text that stands in no file, as if it had been read.
+pub(crate) fn of_text(text: &str) -> Result<Input, InputError> {
+    if text.len() as u64 > BYTES_MAX {
+        return Err(too_long(text.len().to_string()));
+    }
+    Ok(Input {
+        text: text.to_owned(),
+        digest: blake3::hash(text.as_bytes()).to_hex().to_string(),
+    })
+}
+
 /// Reads a regular file of up to [`BYTES_MAX`] bytes; a symbolic link to one will do.
 pub(crate) fn read(path: &Path) -> Result<Input, InputError> {
     let bytes = read_bytes(path)?;

@@ -14,6 +14,7 @@ mod clashes;
 mod comparison_config;
 mod compensation_config;
 mod compensation_source;
+mod complaints;
 mod config;
 mod cross;
 mod cross_calibration;
@@ -49,6 +50,7 @@ mod resolved;
 mod schema;
 mod script;
 mod servo_config;
+mod setting;
 mod source;
 mod stairs;
 mod stand_in;
@@ -59,6 +61,7 @@ mod template;
 mod thermal_config;
 mod tree;
 mod turntable_config;
+mod unresolved;
 mod vibration_config;
 mod weight;
 
@@ -70,6 +73,7 @@ pub use comparison_config::{
 };
 pub use compensation_config::{CompensationConfig, CompensationParameters};
 pub use compensation_source::load_calibration;
+pub use complaints::ScenarioErrors;
 pub use config::{
     AllanConfig, AllanEstimatorConfig, Fidelity, FilterState, GateConfig, GateDecision,
     InconclusivePolicy, OutputConfig, PublishedConfig, SamplesFormat, Scenario,
@@ -90,8 +94,9 @@ pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use servo_config::{DirectDriveServoConfig, EncoderConfig};
+pub use setting::Setting;
 pub use stairs::{Stairs, TEST_RATES_MIN};
-pub(crate) use suite::read_suite;
+pub(crate) use suite::{Reading, read_suite};
 pub use suite::{load_base_or_scenario, load_suite, visit_suite};
 pub use thermal_config::{
     ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig, SoakConfig,
@@ -104,6 +109,7 @@ pub use turntable_config::{
     ScriptPoints, SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig, StepsConfig,
     SwingConfig, TrapezoidConfig, TurntableConfig,
 };
+pub(crate) use unresolved::Unresolved;
 pub use vibration_config::{
     RandomVibrationConfig, SineVibrationConfig, VibrationConfig, VibrationMotion,
 };

@@ -93,10 +93,10 @@ pub(crate) fn read_suite(
 
 /// What is wrong with one file.
 #[derive(Default)]
-struct Findings {
-    errors: Vec<ScenarioError>,
+pub(super) struct Findings {
+    pub(super) errors: Vec<ScenarioError>,
     /// Wishes by `--set` that act in no point of it.
-    idle_sets: Vec<IdleSet>,
+    pub(super) idle_sets: Vec<IdleSet>,
 }
 
 impl From<Vec<ScenarioError>> for Findings {
@@ -153,7 +153,7 @@ fn completed((mut draft, errors): (Draft, Vec<ScenarioError>)) -> (Draft, Vec<Sc
 }
 
 /// Applies `--set` to what was read and resolves it, all points of a sweep.
-fn load_drafted(
+pub(super) fn load_drafted(
     (mut draft, errors): (Draft, Vec<ScenarioError>),
     sets: &[String],
     visit: &mut dyn FnMut(Reading),
@@ -211,7 +211,7 @@ fn idle_in_all(reading: &UnsoundReading, said: &[ScenarioError]) -> Vec<Scenario
 }
 
 /// Applies the `--set` arguments in order; returns the paths they set.
-fn apply_sets(
+pub(super) fn apply_sets(
     draft: &mut Draft,
     sets: &[String],
     errors: &mut Vec<ScenarioError>,

@@ -6,7 +6,7 @@ use std::panic;
 use std::path::Path;
 use std::sync::{Mutex, Once, PoisonError};
 
-use fogbench::experiment::{Observer, SuiteOutcome};
+use fogbench::experiment::{Observer, Progress, SuiteOutcome};
 use fogbench::report::{self, RunOutcome, RunReport};
 use serde_json::Value;
 
@@ -19,11 +19,13 @@ pub(crate) struct Listener {
     texts: Mutex<BTreeMap<usize, String>>,
 }
 
-impl Observer for Listener {
+impl Progress for Listener {
     fn advanced(&self, simulated_s: f64) {
         assert!(simulated_s.is_finite() && simulated_s >= 0.0);
     }
+}
 
+impl Observer for Listener {
     fn finished(&self, index: usize, run: &RunReport) {
         let text = report::table_text(run, 100, false) + &report::run_summary_json(run);
         let mut texts = self.texts.lock().unwrap_or_else(PoisonError::into_inner);

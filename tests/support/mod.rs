@@ -13,6 +13,7 @@ pub(crate) mod run;
 pub(crate) mod seeded;
 pub(crate) mod stimulus;
 pub(crate) mod tables;
+pub(crate) mod transcript;
 pub(crate) mod turntable_cases;
 pub(crate) mod waveform_gyro;
 

@@ -9,11 +9,12 @@
 //! Invariant: no random numbers; everything follows from the configuration and the time.
 
 mod chamber;
+pub(in crate::gyro) mod condition;
 mod network;
 mod sensitivities;
 mod winding;
 
 pub use chamber::Chamber;
 pub use network::{Network, NetworkState, Propagator};
-pub(super) use sensitivities::Sensitivities;
+use sensitivities::Sensitivities;
 pub use winding::{Shupe, layer_integral, layer_order};

@@ -1,7 +1,7 @@
 //! What temperature does to scale factor, bias and power.
 
-use crate::gyro::condition::Condition;
 use crate::gyro::error::GyroError;
+use crate::gyro::thermal::condition::Condition;
 use crate::gyro::thermal::{NetworkState, Shupe};
 use crate::scenario::{GyroConfig, PowerConfig};
 use crate::units::{MICRO, deg_per_h_to_rad_per_s, k_per_s_to_k_per_min};

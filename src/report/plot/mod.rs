@@ -29,8 +29,8 @@ pub use calibration::calibration_svg;
 
 use picture::Picture;
 
+use crate::comparison::ComparedTable;
 use crate::report::RunReport;
-use crate::report::comparison::ComparedTable;
 use crate::report::measured::Measured;
 use crate::scenario::MotionConfig;
 use crate::signal::RunSignals;

@@ -1,0 +1,303 @@
+//! Generalised least squares on an Allan variance curve, and the intervals of its coefficients.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::covariance::{FLICKER, FLICKER_ALLAN_VARIANCE, RAMP, Structure, TERMS, WALK, WHITE};
+use super::overlapping::AllanPoint;
+use super::sampling::{Sampling, THIRD_AT};
+use crate::metrics::estimate::interval::NORMAL_QUANTILE;
+use crate::metrics::estimate::value::Estimate;
+
+/// Rounds of reweighting with the fitted curve.
+const REWEIGHTINGS: usize = 4;
+
+/// Share of each point's variance that is taken as its own: neighbours repeat each other so nearly
+/// that without it rounding and the model's finest errors would decide between them.
+const NUGGET: f64 = 0.02;
+
+/// Rounds in which the other squares follow the end of an interval.
+const PROFILE_ROUNDS: usize = 2;
+
+/// Allan variance of a unit coefficient of a term.
+pub(crate) fn basis(term: usize, tau_s: f64) -> f64 {
+    match term {
+        WHITE => 1.0 / tau_s,
+        FLICKER => FLICKER_ALLAN_VARIANCE,
+        WALK => tau_s / 3.0,
+        RAMP => tau_s * tau_s / 2.0,
+        _ => 1.0 / (tau_s * tau_s),
+    }
+}
+
+/// Allan variance of the fitted terms.
+pub(crate) fn fitted_variance(squares: &[f64; TERMS], tau_s: f64) -> f64 {
+    (0..TERMS)
+        .map(|term| squares[term] * basis(term, tau_s))
+        .sum()
+}
+
+/// The least-squares problem of one curve, in units of one sample period.
+pub(crate) struct Problem {
+    sample_period_s: f64,
+    tau: Vec<f64>,
+    variance: Vec<f64>,
+    structure: Structure,
+    /// Independent records the curve is the mean of.
+    records: f64,
+}
+
+/// An optimum, how it was reached from the points, and what the points scatter like.
+#[derive(Clone)]
+pub(crate) struct Solution {
+    /// Coefficients of the columns as least squares has them, 0 where a term is not in the model.
+    squares: [f64; TERMS],
+    /// For each term in the model the weights of the points that give its coefficient.
+    weights: [Option<Vec<f64>>; TERMS],
+    /// Covariance of the coefficients under the fitted mix, 0 for terms not in the model.
+    covariance: [[f64; TERMS]; TERMS],
+}
+
+impl Problem {
+    /// The problem of fitting these points of a curve, the mean of so many independent records.
+    pub(crate) fn new(points: &[AllanPoint], records: f64) -> Self {
+        let factors: Vec<usize> = points.iter().map(|point| point.averaged_samples).collect();
+        let counts: Vec<usize> = points.iter().map(|point| point.count).collect();
+        Self {
+            sample_period_s: points
+                .first()
+                .map_or(1.0, |point| point.tau_s / point.averaged_samples as f64),
+            tau: factors.iter().map(|&factor| factor as f64).collect(),
+            variance: points.iter().map(AllanPoint::variance).collect(),
+            structure: Structure::new(&factors, &counts),
+            records,
+        }
+    }
+
+    /// Number of points.
+    pub(crate) fn points(&self) -> usize {
+        self.tau.len()
+    }
+
+    /// Squares in SI units from those in units of the sample period.
+    pub(crate) fn in_seconds(&self, term: usize, square: f64) -> f64 {
+        square * basis(term, 1.0) / basis(term, self.sample_period_s)
+    }
+
+    /// The optimum among the terms allowed, reweighted to its own curve.
+    ///
+    /// No square is bound to be positive: a bound would pull the others. Covariances are those of
+    /// the positive terms.
+    pub(crate) fn solve(&self, allowed: &[bool; TERMS]) -> Solution {
+        let columns: Vec<usize> = (0..TERMS).filter(|&term| allowed[term]).collect();
+        let design = DMatrix::from_fn(self.points(), columns.len(), |row, column| {
+            basis(columns[column], self.tau[row])
+        });
+        let measured = DVector::from_column_slice(&self.variance);
+        // A first guess of the mix: every point has its own variance and is independent.
+        let mut covariance = DMatrix::from_diagonal(&DVector::from_fn(self.points(), |row, _| {
+            self.variance[row].powi(2) * self.tau[row]
+        }));
+        let mut squares = [0.0; TERMS];
+        let mut inverse = None;
+        for round in 0..=REWEIGHTINGS {
+            let Some(found) = estimator(&design, covariance) else {
+                break;
+            };
+            let solved = &found * &measured;
+            squares = [0.0; TERMS];
+            for (&term, &value) in columns.iter().zip(solved.iter()) {
+                squares[term] = value;
+            }
+            inverse = Some(found);
+            if round == REWEIGHTINGS {
+                break;
+            }
+            covariance = self.covariance(&self.positive(&squares));
+        }
+        let mut weights: [Option<Vec<f64>>; TERMS] = Default::default();
+        if let Some(inverse) = inverse {
+            for (row, &term) in columns.iter().enumerate() {
+                weights[term] = Some(inverse.row(row).iter().copied().collect());
+            }
+        }
+        let points = self.covariance(&self.positive(&squares));
+        let pair = |a: usize, b: usize| match (&weights[a], &weights[b]) {
+            (Some(a), Some(b)) => {
+                let along = &points * DVector::from_column_slice(b);
+                along.dot(&DVector::from_column_slice(a))
+            }
+            _ => 0.0,
+        };
+        let covariance = std::array::from_fn(|a| std::array::from_fn(|b| pair(a, b)));
+        Solution {
+            squares,
+            weights,
+            covariance,
+        }
+    }
+}
+
+impl Problem {
+    /// Squares that a noise can have; never all zero.
+    fn positive(&self, squares: &[f64; TERMS]) -> [f64; TERMS] {
+        let mut positive = squares.map(|square| square.max(0.0));
+        let least = 1e-3 * self.variance[0] * self.tau[0];
+        positive[WHITE] = positive[WHITE].max(least);
+        positive
+    }
+
+    fn covariance(&self, squares: &[f64; TERMS]) -> DMatrix<f64> {
+        DMatrix::from_fn(self.points(), self.points(), |row, column| {
+            let nugget = if row == column { 1.0 + NUGGET } else { 1.0 };
+            nugget * self.point_covariance(row, column, squares)
+        })
+    }
+
+    fn point_covariance(&self, row: usize, column: usize, squares: &[f64; TERMS]) -> f64 {
+        self.structure.covariance(row, column, squares)
+    }
+
+    /// What the other squares are if one term's true square is this: those the fit would have with
+    /// it given, none negative. Where one term was fitted too high, another was fitted too low.
+    fn given(&self, solution: &Solution, term: usize, truth: f64) -> [f64; TERMS] {
+        let own = solution.covariance[term][term];
+        let excess = solution.squares[term] - truth;
+        let squares = std::array::from_fn(|other| {
+            let slope = solution.covariance[other][term] / own.max(f64::MIN_POSITIVE);
+            solution.squares[other] - slope * excess
+        });
+        let mut squares = self.positive(&squares);
+        squares[term] = truth;
+        squares
+    }
+
+    /// Variance of a coefficient as a quadratic in its true square, the other squares given.
+    fn powers(&self, solution: &Solution, term: usize, others: &[f64; TERMS]) -> Option<[f64; 3]> {
+        let weights = solution.weights[term].as_ref()?;
+        let powers = self.structure.combined(weights, others, term);
+        Some(powers.map(|power| power / self.records))
+    }
+
+    /// Coefficient over the standard error it would have if the term did not exist and the others
+    /// were as fitted.
+    pub(crate) fn significance(&self, solution: &Solution, term: usize) -> f64 {
+        let square = solution.squares[term];
+        let others = self.given(solution, term, square);
+        match self.powers(solution, term, &others) {
+            Some(powers) if powers[0] > 0.0 => square / powers[0].sqrt(),
+            // Nothing but the term itself scatters.
+            Some(_) if square > 0.0 => f64::INFINITY,
+            _ => 0.0,
+        }
+    }
+
+    /// Standard error of a coefficient as fitted, in units of the sample period.
+    pub(crate) fn standard_error(&self, solution: &Solution, term: usize) -> f64 {
+        (solution.covariance[term][term] / self.records)
+            .max(0.0)
+            .sqrt()
+    }
+
+    /// Square of a term with its 95 % interval: all true squares, none negative, under which the
+    /// fitted one lies between its quantiles 0.025 and 0.975, the other squares being what they
+    /// would be fitted as beside that true one.
+    pub(crate) fn interval(&self, solution: &Solution, term: usize) -> Option<Estimate> {
+        let found = solution.squares[term];
+        let end = |normal: f64| -> Option<f64> {
+            let mut truth = found.max(0.0);
+            for _ in 0..=PROFILE_ROUNDS {
+                let others = self.given(solution, term, truth);
+                truth = self.sampling(solution, term, &others)?.end(found, normal);
+            }
+            Some(truth)
+        };
+        Some(Estimate::with_interval(
+            found.max(0.0),
+            end(NORMAL_QUANTILE)?,
+            end(-NORMAL_QUANTILE)?,
+        ))
+    }
+
+    /// How a coefficient scatters beside the other squares.
+    fn sampling(
+        &self,
+        solution: &Solution,
+        term: usize,
+        others: &[f64; TERMS],
+    ) -> Option<Sampling> {
+        let powers = self.powers(solution, term, others)?;
+        let found = solution.squares[term];
+        let scale = found.abs().max(powers[0].max(0.0).sqrt());
+        let third = |at: f64| {
+            let mut squares = *others;
+            squares[term] = at * scale;
+            self.third_cumulant(solution, term, &squares)
+        };
+        Some(Sampling {
+            powers,
+            thirds: THIRD_AT.map(third),
+            scale,
+        })
+    }
+
+    /// Third cumulant of a coefficient under these true squares.
+    ///
+    /// Chi-square variables that share so many degrees of freedom as their covariances say:
+    /// `k3(i,j,k) = 2 (k_ij k_jk k_ki)^(2/3) / (mu_i mu_j mu_k)^(1/3)`, exact where they are one.
+    fn third_cumulant(&self, solution: &Solution, term: usize, squares: &[f64; TERMS]) -> f64 {
+        let Some(weights) = solution.weights[term].as_ref() else {
+            return 0.0;
+        };
+        let points = self.points();
+        let factors: Vec<f64> = (0..points)
+            .map(|row| weights[row] / fitted_variance(squares, self.tau[row]).cbrt())
+            .collect();
+        let shared = DMatrix::from_fn(points, points, |row, column| {
+            let covariance = self.point_covariance(row, column, squares).max(0.0);
+            factors[row] * covariance.cbrt().powi(2)
+        });
+        let twice = &shared * &shared;
+        2.0 * twice.component_mul(&shared.transpose()).sum() / (self.records * self.records)
+    }
+}
+
+impl Solution {
+    /// Coefficient of a term in units of the sample period.
+    pub(crate) fn square(&self, term: usize) -> f64 {
+        self.squares[term]
+    }
+}
+
+/// `(X^T V^-1 X)^-1 X^T V^-1`, points and columns scaled; nothing where V or the normal matrix is
+/// not positive definite.
+fn estimator(design: &DMatrix<f64>, mut covariance: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.sqrt()).collect();
+    let points = deviations.len();
+    for row in 0..points {
+        for column in 0..points {
+            covariance[(row, column)] /= deviations[row] * deviations[column];
+        }
+    }
+    let mut scaled = design.clone();
+    for (mut row, deviation) in scaled.row_iter_mut().zip(&deviations) {
+        row /= *deviation;
+    }
+    let factor = covariance.cholesky()?;
+    let whitened = factor.l_dirty().solve_lower_triangular(&scaled)?;
+    let scales: Vec<f64> = whitened.column_iter().map(|c| c.norm()).collect();
+    let unit = DMatrix::from_fn(points, scales.len(), |row, column| {
+        whitened[(row, column)] / scales[column]
+    });
+    let inverse = unit.pseudo_inverse(1e-13).ok()?;
+    // Back through the whitening: weights of the points as they are.
+    let mut weights = factor
+        .l_dirty()
+        .tr_solve_lower_triangular(&inverse.transpose())?
+        .transpose();
+    for row in 0..weights.nrows() {
+        for column in 0..points {
+            weights[(row, column)] /= scales[row] * deviations[column];
+        }
+    }
+    Some(weights)
+}

@@ -1,0 +1,15 @@
+//! Allan variance and its relatives, and the noise terms fitted to it (bias instability among them).
+
+pub(super) mod angle;
+pub(super) mod combined_freedom;
+pub(super) mod covariance;
+pub(super) mod curves;
+pub(super) mod entry;
+pub(super) mod least_squares;
+pub(super) mod noise_fit;
+pub(super) mod noise_identification;
+pub(super) mod overlapping;
+pub(super) mod sampling;
+pub(super) mod stream;
+pub(super) mod sums;
+pub(super) mod variants;

@@ -1,0 +1,182 @@
+//! Overlapping Allan deviation of a rate record.
+
+use super::sums::second_difference_sums_of_record;
+use crate::metrics::estimate::interval;
+use crate::metrics::estimate::interval::round_to_count;
+use crate::metrics::estimate::value::Estimate;
+
+/// Averaging factors per decade of tau.
+const POINTS_PER_DECADE: f64 = 12.0;
+
+/// One point of an Allan deviation curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AllanPoint {
+    /// Averaging time, s.
+    pub tau_s: f64,
+    /// Samples averaged, m.
+    pub averaged_samples: usize,
+    /// Overlapping Allan deviation with its chi-square interval, deg/h.
+    pub deviation_deg_per_h: Estimate,
+    /// Equivalent degrees of freedom behind the interval.
+    pub degrees_of_freedom: f64,
+    /// Second differences averaged.
+    pub count: usize,
+}
+
+impl AllanPoint {
+    /// The point with another number of degrees of freedom and the interval that follows.
+    #[must_use]
+    pub fn with_degrees_of_freedom(self, degrees_of_freedom: f64) -> Self {
+        Self {
+            deviation_deg_per_h: interval::deviation(
+                self.deviation_deg_per_h.value,
+                degrees_of_freedom,
+            ),
+            degrees_of_freedom,
+            ..self
+        }
+    }
+
+    /// Allan variance, (deg/h)^2.
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        self.deviation_deg_per_h.value * self.deviation_deg_per_h.value
+    }
+}
+
+/// Noise type that sets the degrees of freedom of an Allan variance of rate.
+///
+/// Rate takes the place of frequency in the clock literature, angle that of phase.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoiseType {
+    /// Angle quantisation: white phase modulation.
+    Quantisation,
+    /// Angle random walk: white frequency modulation.
+    White,
+    /// Bias instability: flicker frequency modulation.
+    Flicker,
+    /// Rate random walk, and the formal stand-in for a rate ramp: random walk frequency modulation.
+    RandomWalk,
+}
+
+/// Equivalent degrees of freedom of the overlapping Allan variance.
+///
+/// * `angle_count`: number of angle points, one more than the rate samples.
+/// * `averaged_samples`: m, at least 1; `angle_count > 2 m`.
+///
+/// White rate noise: `(3(N-1)/2m - 2(N-2)/N) 4m^2/(4m^2+5)`, about `1.5 T/tau - 2`; flicker:
+/// `2(N-2)^2/(2.3N-4.9)` for m = 1, else `5N^2/4m(N+3m)`; random walk:
+/// `((N-2)/m) ((N-1)^2-3m(N-1)+4m^2)/(N-3)^2`; quantisation: `(N+1)(N-2m)/2(N-m)`. Never below 1.
+///
+/// Source: NIST SP 1065 (Riley 2008), section 5.4.1, table 4; Howe, Allan, Barnes 1981.
+#[must_use]
+pub fn degrees_of_freedom(noise: NoiseType, angle_count: usize, averaged_samples: usize) -> f64 {
+    let n = angle_count as f64;
+    let m = averaged_samples as f64;
+    let freedom = match noise {
+        NoiseType::Quantisation => (n + 1.0) * (n - 2.0 * m) / (2.0 * (n - m)),
+        NoiseType::White => {
+            let four_m_squared = 4.0 * m * m;
+            (3.0 * (n - 1.0) / (2.0 * m) - 2.0 * (n - 2.0) / n) * four_m_squared
+                / (four_m_squared + 5.0)
+        }
+        NoiseType::Flicker if averaged_samples == 1 => {
+            2.0 * (n - 2.0) * (n - 2.0) / (2.3 * n - 4.9)
+        }
+        NoiseType::Flicker => 5.0 * n * n / (4.0 * m * (n + 3.0 * m)),
+        NoiseType::RandomWalk => {
+            let span = n - 1.0;
+            (n - 2.0) / m * (span * span - 3.0 * m * span + 4.0 * m * m)
+                / ((n - 3.0) * (n - 3.0)).max(1.0)
+        }
+    };
+    freedom.max(1.0)
+}
+
+/// Overlapping Allan deviation at about twelve averaging times per decade.
+///
+/// `AVAR(mT) = sum (theta[k+2m] - 2 theta[k+m] + theta[k])^2 / (2 (mT)^2 (N - 2m))` over the angle
+/// `theta` integrated from the rate, for every distinct m on a logarithmic grid from 1 to a quarter
+/// of the record. Degrees of freedom are those of white noise; a fit may refine them
+/// ([`AllanPoint::with_degrees_of_freedom`]).
+///
+/// * `rate_deg_per_h`: `[n]`, deg/h, uniformly spaced.
+/// * `sample_period_s`: s, > 0.
+///
+/// Fewer than four samples give no point. One angle array (8 bytes a sample) is the only large
+/// memory; octave averaging times ([`overlapping_allan_at`]) do without.
+///
+/// Source: IEEE Std 952-1997 annex C; NIST SP 1065 section 5.2.4.
+#[must_use]
+pub fn overlapping_allan(rate_deg_per_h: &[f64], sample_period_s: f64) -> Vec<AllanPoint> {
+    let factors = averaging_factors(rate_deg_per_h.len() / 4);
+    overlapping_allan_at(rate_deg_per_h, sample_period_s, &factors)
+}
+
+/// Overlapping Allan deviation at given averaging factors (each at most half the samples).
+///
+/// As [`overlapping_allan`]; factors for which no second difference exists are left out.
+#[must_use]
+pub fn overlapping_allan_at(
+    rate_deg_per_h: &[f64],
+    sample_period_s: f64,
+    averaging_factors: &[usize],
+) -> Vec<AllanPoint> {
+    let angle_count = rate_deg_per_h.len() + 1;
+    let factors: Vec<usize> = averaging_factors
+        .iter()
+        .copied()
+        .filter(|&m| m > 0 && 2 * m < angle_count)
+        .collect();
+    let sums = second_difference_sums_of_record(rate_deg_per_h, &factors);
+    factors
+        .iter()
+        .zip(sums)
+        .map(|(&m, sum)| {
+            let count = angle_count - 2 * m;
+            let m_f = m as f64;
+            // The angle is in units of one sample period, which cancels against tau.
+            let deviation = (sum / (2.0 * m_f * m_f * count as f64)).sqrt();
+            let freedom = degrees_of_freedom(NoiseType::White, angle_count, m);
+            AllanPoint {
+                tau_s: m_f * sample_period_s,
+                averaged_samples: m,
+                deviation_deg_per_h: interval::deviation(deviation, freedom),
+                degrees_of_freedom: freedom,
+                count,
+            }
+        })
+        .collect()
+}
+
+/// Distinct averaging factors on a logarithmic grid from 1 to `largest`.
+fn averaging_factors(largest: usize) -> Vec<usize> {
+    let mut factors: Vec<usize> = (0_i32..)
+        .map(|step| round_to_count(10.0_f64.powf(f64::from(step) / POINTS_PER_DECADE)))
+        .take_while(|&factor| factor <= largest)
+        .collect();
+    factors.dedup();
+    factors
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_are_distinct_and_reach_a_quarter_of_the_record() {
+        let factors = averaging_factors(1000);
+        assert!(factors.windows(2).all(|pair| pair[0] < pair[1]));
+        assert_eq!((factors[0], *factors.last().unwrap()), (1, 1000));
+    }
+
+    #[test]
+    fn a_constant_rate_has_no_allan_deviation() {
+        let points = overlapping_allan(&[1.25; 64], 0.1);
+        assert!(
+            points
+                .iter()
+                .all(|point| point.deviation_deg_per_h.value < 1e-12)
+        );
+    }
+}

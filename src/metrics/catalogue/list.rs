@@ -1,0 +1,145 @@
+//! List of the metrics, in the order of the columns of tables.
+
+use crate::metrics::key::metric::MetricKey;
+
+/// Names the metrics and lists them: each row is a module and the metric that it declares.
+macro_rules! catalogue {
+    ($($($segment:ident)::+),* $(,)?) => {
+        $(pub use crate::metrics::$($segment)::+;)*
+
+        const CATALOGUE: &[&MetricKey] = &[$(&crate::metrics::$($segment)::+),*];
+    };
+}
+
+catalogue! {
+    allan::noise_fit::ANGLE_RANDOM_WALK,
+    trial::dc_gain::ANGLE_RANDOM_WALK_OVER_DC_GAIN,
+    trial::weight_noise::WEIGHT_NOISE_RATIO,
+    noise::bias_stability::BIAS_STABILITY_1S,
+    noise::bias_stability::BIAS_STABILITY_10S,
+    noise::bias_stability::BIAS_STABILITY_100S,
+    noise::bias_stability::BIAS_STABILITY,
+    trial::dc_gain::BIAS_STABILITY_OVER_DC_GAIN,
+    allan::noise_fit::BIAS_INSTABILITY,
+    allan::noise_fit::RATE_RANDOM_WALK,
+    allan::noise_fit::RATE_RAMP,
+    allan::noise_fit::QUANTISATION,
+    pool::repeatability::BIAS_REPEATABILITY,
+    steps::settling::SETTLING_TIME,
+    steps::shape::RISE_TIME,
+    steps::shape::OVERSHOOT,
+    motion::swing::DELAY_VS_RAW,
+    motion::swing::DELAY_PREDICTED,
+    motion::swing::DELAY_VS_TRUTH,
+    motion::swing::DELAY_VS_ENCODER,
+    motion::swing::DELAY_BY_CORRELATION,
+    motion::swing::AMPLITUDE_RATIO,
+    motion::multi_sine::BANDWIDTH,
+    motion::swing::HARMONIC_DISTORTION,
+    motion::mean::MEAN,
+    motion::mean::MEAN_ERROR,
+    motion::mean::MEAN_RATIO,
+    motion::mean::MINIMUM,
+    motion::mean::MAXIMUM,
+    steps::staircase::SCALE_FACTOR_ERROR,
+    steps::staircase::SCALE_FACTOR_NONLINEARITY,
+    steps::staircase::SCALE_FACTOR_NONLINEARITY_OF_READING,
+    steps::staircase::SCALE_FACTOR_ASYMMETRY,
+    pool::repeatability::SCALE_FACTOR_REPEATABILITY,
+    steps::small_input::THRESHOLD,
+    steps::small_input::DEAD_BAND,
+    steps::small_input::RESOLUTION,
+    motion::tracking::TRACKING_ERROR_RMS,
+    noise::level::NOISE_STD,
+    noise::autocovariance::LAG1_CORRELATION,
+    noise::level::NOISE_GAIN,
+    trial::noise_delay::NOISE_DELAY_BOUND_NOISE_GAIN,
+    trial::noise_delay::NOISE_GAIN_OVER_BOUND,
+    trial::dc_gain::DC_GAIN,
+    trial::predicted::DC_GAIN_PREDICTED,
+    trial::dc_gain::DC_GAIN_ADAPTED,
+    trial::predicted::DELAY_AT_DC,
+    motion::steps::SETTLED_GAIN,
+    trial::readaptation::READAPTATION_TIME,
+    pipeline::PREDICTED_FAILURE,
+    measure::DIVERGED_AT,
+    pipeline::LATENCY,
+    pipeline::SAMPLE_PERIOD,
+    pipeline::CLOCKS_PER_SAMPLE,
+    pipeline::SAMPLE_RATE_MAX,
+    pipeline::ASYMMETRY_MAX,
+    pipeline::SMALLEST_PIVOT,
+    pipeline::CONDITION_NUMBER,
+    calibration::BIAS_ERROR_RMS,
+    calibration::SCALE_FACTOR_ERROR_RMS,
+    calibration::MISALIGNMENT_ERROR_RMS,
+    calibration::NORMALISED_ERROR_SQUARED,
+    calibration::COMPENSATED_RATE_ERROR,
+    calibration::PLAN_CONDITION_NUMBER,
+    calibration::ROUNDING_LOSS,
+}
+
+/// Every metric a channel can have, in the order tables print them.
+#[must_use]
+pub fn known_metrics() -> &'static [&'static MetricKey] {
+    CATALOGUE
+}
+
+/// Metrics whose values of every repeat are kept, in the order of the columns of `runs.csv`.
+#[must_use]
+pub fn repeated_metrics() -> Vec<&'static MetricKey> {
+    let mut kept: Vec<_> = CATALOGUE
+        .iter()
+        .copied()
+        .filter(|key| key.run_column.is_some())
+        .collect();
+    kept.sort_by_key(|key| key.run_column);
+    kept
+}
+
+/// The metric of a name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static MetricKey> {
+    CATALOGUE.iter().copied().find(|known| known.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::metrics::allan::entry::FITTED;
+    use crate::metrics::key::metric::Pool;
+
+    #[test]
+    fn every_metric_has_a_name_of_its_own_and_a_heading_where_a_table_shows_it() {
+        let names: BTreeSet<&str> = CATALOGUE.iter().map(|key| key.name).collect();
+        assert_eq!(names.len(), CATALOGUE.len());
+        for key in CATALOGUE {
+            assert_eq!(find(key.name), Some(*key));
+            let is_shown = !key.tables.is_empty() || key.closes_tables;
+            assert!(!is_shown || key.heading.is_some(), "{}", key.name);
+            let is_headline_only = key.tables.is_empty() && !key.headlines.is_empty();
+            assert!(!is_headline_only, "{} heads a line of no table", key.name);
+        }
+    }
+
+    #[test]
+    fn the_fit_to_the_pooled_allan_variance_gives_what_is_declared_so() {
+        let declared = CATALOGUE.iter().copied();
+        let declared: Vec<_> = declared
+            .filter(|key| matches!(key.pool, Pool::AllanFit))
+            .collect();
+        assert_eq!(declared, FITTED);
+    }
+
+    #[test]
+    fn columns_of_repeats_stand_in_places_of_their_own() {
+        let places: Vec<Option<u8>> = repeated_metrics()
+            .iter()
+            .map(|key| key.run_column)
+            .collect();
+        let expected: Vec<Option<u8>> = (1..).map(Some).take(places.len()).collect();
+        assert_eq!(places, expected);
+    }
+}

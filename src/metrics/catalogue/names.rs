@@ -1,0 +1,200 @@
+//! What was meant by a metric that nobody knows.
+
+use std::sync::OnceLock;
+
+use super::list::{find, known_metrics};
+use crate::metrics::key::metric::MetricKey;
+use crate::wording::{Likeness, Name, Vocabulary, likeness, words_of};
+
+/// Most metrics that are named at once.
+const NAMED_MAX: usize = 8;
+
+/// Names that people give to metrics, by their words without a unit.
+const SYNONYMS: &[(&[&str], &str)] = &[
+    (
+        &[
+            "n",
+            "angle_random_walk",
+            "angular_random_walk",
+            "random_walk",
+        ],
+        "angle_random_walk_deg_per_sqrt_h",
+    ),
+    (
+        &["b", "flicker", "flicker_floor", "bias_instability"],
+        "bias_instability_deg_per_h",
+    ),
+    (
+        &["k", "rate_random_walk"],
+        "rate_random_walk_deg_per_h_per_sqrt_h",
+    ),
+    (
+        &["r", "rate_ramp", "drift", "drift_rate"],
+        "rate_ramp_deg_per_h_per_h",
+    ),
+    (
+        &["q", "quantisation", "quantisation_noise"],
+        "quantisation_arcsec",
+    ),
+    (&["bias", "average", "offset"], "mean_deg_per_h"),
+    (
+        &["std", "noise", "rms", "noise_rms", "standard_deviation"],
+        "noise_std_deg_per_h",
+    ),
+    (&["rise_time"], "rise_time_s"),
+    (&["settle_time", "settling"], "settling_time_s"),
+    (&["thd", "distortion"], "harmonic_distortion_percent"),
+    (&["gain"], "dc_gain"),
+    (&["noise_power_gain", "noise_reduction"], "noise_gain"),
+    (
+        &["tracking_error", "rms_error"],
+        "tracking_error_rms_deg_per_h",
+    ),
+];
+
+/// The words of each synonym and its metric.
+static SYNONYM_WORDS: OnceLock<Vec<(Vec<String>, &str)>> = OnceLock::new();
+
+/// The metric that a name must have been meant for, if there is one such.
+pub(crate) fn meant(name: &str) -> Option<&'static MetricKey> {
+    match suggestions(name)[..] {
+        [only] => find(only),
+        _ => None,
+    }
+}
+
+/// The complaint about a name, if it is no metric.
+pub(crate) fn unknown(name: &str) -> Option<String> {
+    if find(name).is_some() {
+        return None;
+    }
+    let mut names = suggestions(name);
+    if names.is_empty() {
+        names = related(name);
+        return Some(if names.is_empty() {
+            format!("`{name}` is not a metric; a run's summary.json lists those of its channels")
+        } else {
+            format!(
+                "`{name}` is not a metric; of its words there are `{}`",
+                names.join("`, `")
+            )
+        });
+    }
+    Some(format!(
+        "`{name}` is not a metric; did you mean `{}`?",
+        names.join("` or `")
+    ))
+}
+
+fn vocabulary() -> &'static Vocabulary {
+    static VOCABULARY: OnceLock<Vocabulary> = OnceLock::new();
+    VOCABULARY.get_or_init(|| known_metrics().iter().map(|known| known.name).collect())
+}
+
+/// Every metric and its name, taken apart.
+fn names() -> &'static [(Name, &'static MetricKey)] {
+    static NAMES: OnceLock<Vec<(Name, &'static MetricKey)>> = OnceLock::new();
+    NAMES.get_or_init(|| {
+        let metrics = known_metrics().iter().copied();
+        metrics.map(|known| (Name::of(known.name), known)).collect()
+    })
+}
+
+/// The likest metrics of the same quantity.
+fn suggestions(name: &str) -> Vec<&'static str> {
+    let words = words_of(name);
+    let synonyms = SYNONYM_WORDS.get_or_init(|| {
+        let names = SYNONYMS.iter().flat_map(|(names, metric)| {
+            let words = names.iter().map(|name| words_of(name));
+            words.map(|words| (words, *metric))
+        });
+        names.collect()
+    });
+    if let Some((_, metric)) = synonyms.iter().find(|(synonym, _)| *synonym == words) {
+        return vec![*metric];
+    }
+    let written = Name::of(name);
+    let alike = names().iter();
+    let alike =
+        alike.filter_map(|(name, known)| Some((likeness(&written, name, vocabulary())?, *known)));
+    let mut alike: Vec<(Likeness, &MetricKey)> = alike.collect();
+    alike.sort_by_key(|(likeness, _)| *likeness);
+    let best = alike.first().map(|(likeness, _)| *likeness);
+    let best = alike.iter().filter(|(likeness, _)| Some(*likeness) == best);
+    best.map(|(_, known)| known.name).take(NAMED_MAX).collect()
+}
+
+/// The metrics whose names hold every word of a name, if they are few.
+fn related(name: &str) -> Vec<&'static str> {
+    let words = words_of(name);
+    let holds = |known: &&MetricKey| {
+        let own = words_of(known.name);
+        words.iter().all(|word| own.contains(word))
+    };
+    let names: Vec<&str> = known_metrics()
+        .iter()
+        .copied()
+        .filter(holds)
+        .map(|known| known.name)
+        .collect();
+    if names.len() > NAMED_MAX || words.is_empty() {
+        return Vec::new();
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_synonym_stands_for_a_metric() {
+        for (names, metric) in SYNONYMS {
+            assert!(find(metric).is_some(), "{metric}");
+            for name in *names {
+                assert_eq!(suggestions(name), [*metric], "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_metric_with_one_slip_suggests_itself() {
+        for known in known_metrics() {
+            let longest = known
+                .name
+                .split('_')
+                .max_by_key(|word| word.len())
+                .unwrap_or("");
+            let at = known.name.find(longest).unwrap_or(0) + longest.len() / 2;
+            let slip = format!("{}{}", &known.name[..at], &known.name[at + 1..]);
+            assert_eq!(suggestions(&slip), [known.name], "{slip}");
+        }
+    }
+
+    #[test]
+    fn no_metric_is_taken_for_another_quantity() {
+        for (own, one) in names() {
+            for (known, other) in names() {
+                let found = likeness(own, known, vocabulary());
+                assert!(
+                    found.is_none() || one.name == other.name,
+                    "{} {}",
+                    one.name,
+                    other.name
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn names_of_the_field_lead_to_their_metrics() {
+        let said = |name| unknown(name).unwrap();
+        assert!(said("arw").ends_with("did you mean `angle_random_walk_deg_per_sqrt_h`?"));
+        assert!(said("BI").contains("`bias_instability_deg_per_h`"));
+        assert!(said("rrw_deg_per_h_per_rt_hr").contains("rate_random_walk"));
+        assert!(said("noise_std_dph").contains("`noise_std_deg_per_h`"));
+        assert!(said("delay_ms").contains("`delay_vs_raw_ms`"));
+        assert!(said("zebra").contains("summary.json"));
+        assert_eq!(unknown("noise_gain"), None);
+    }
+}

@@ -1,0 +1,146 @@
+//! The table of one channel: its metrics, its curves, and the reasons for what is missing.
+
+use std::collections::BTreeMap;
+
+use super::repeat_statistics::RepeatStatistics;
+use super::value::{Estimate, Metric};
+use crate::metrics::key::metric::MetricKey;
+
+/// Field of a bias stability: correlation of its means with those of raw.
+pub(crate) const RAW_CORRELATION: &str = "raw_correlation";
+/// Field of every metric whose interval is a chi-square one.
+pub(crate) const DEGREES_OF_FREEDOM: &str = "degrees_of_freedom";
+
+/// Field of a bias stability: what the fitted noise makes one expect.
+pub(crate) const EXPECTED: &str = "expected_deg_per_h";
+
+/// Reason of a metric or curve that came out as no finite number.
+const NOT_FINITE: &str = "the record gives no finite number";
+/// Width of an interval, as a part of its value, that rounding makes.
+const ROUNDING: f64 = 1e-12;
+
+/// Why a channel has no numbers: it failed while running.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelFailure {
+    /// Kind, e.g. `diverged`.
+    pub kind: String,
+    /// Index of the sample (warm-up included) at which it failed.
+    pub sample: u64,
+    /// What happened, for people.
+    pub message: String,
+}
+
+/// Everything measured on one channel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ChannelMetrics {
+    /// Metrics by key (`angle_random_walk_deg_per_sqrt_h`, ...).
+    pub metrics: BTreeMap<String, Metric>,
+    /// Metrics the record cannot support, with the reason.
+    pub unavailable: BTreeMap<String, String>,
+    /// Curves: name, then column name and values.
+    pub curves: BTreeMap<String, BTreeMap<String, Vec<f64>>>,
+    /// The main metrics over the repeats by key; empty for a single record.
+    pub repeats: BTreeMap<String, RepeatStatistics>,
+    /// Columns of words of a curve, by curve and column; a single word holds for all its points.
+    pub curve_labels: BTreeMap<String, BTreeMap<String, Vec<&'static str>>>,
+    /// Set when the channel failed; its metrics are then empty but for `diverged_at_s`.
+    pub error: Option<ChannelFailure>,
+}
+
+impl ChannelMetrics {
+    /// Enters a metric under its catalogue unit, and returns it for its defining fields.
+    pub(crate) fn put(&mut self, key: &MetricKey, estimate: Estimate) -> &mut Metric {
+        self.unavailable.remove(key.name);
+        self.metrics.remove(key.name);
+        self.metrics
+            .entry(key.name.to_owned())
+            .or_insert_with(|| Metric::new(estimate, key.unit))
+    }
+
+    /// Says why a metric is missing.
+    pub(crate) fn miss(&mut self, key: &MetricKey, reason: impl Into<String>) {
+        self.unavailable.insert(key.name.to_owned(), reason.into());
+    }
+
+    /// Takes a metric out and says why, if it is there.
+    pub(crate) fn withdraw(&mut self, key: &MetricKey, reason: impl Into<String>) {
+        if self.metrics.remove(key.name).is_some() {
+            self.miss(key, reason);
+        }
+    }
+
+    /// A metric of the channel; none if the record does not support it.
+    #[must_use]
+    pub fn get(&self, key: &MetricKey) -> Option<&Metric> {
+        self.metrics.get(key.name)
+    }
+
+    pub(crate) fn get_mut(&mut self, key: &MetricKey) -> Option<&mut Metric> {
+        self.metrics.get_mut(key.name)
+    }
+
+    /// Why a metric is missing; none if it is there.
+    #[must_use]
+    pub fn why_unavailable(&self, key: &MetricKey) -> Option<&str> {
+        self.unavailable.get(key.name).map(String::as_str)
+    }
+
+    /// Leaves only finite numbers in the table: the one gate between measuring and reporting.
+    ///
+    /// A metric whose value or interval came out as no number (a ratio to nothing, a sum beyond
+    /// binary64) becomes unavailable with the reason, a curve with such a point is left out whole and
+    /// stands among the unavailable ones as `curves.<name>`. A defining field that is no number says
+    /// nothing and is dropped from its metric, as are statistics over repeats.
+    pub fn keep_finite(&mut self) {
+        let is_finite = |estimate: &Estimate| {
+            let Estimate {
+                value,
+                low,
+                high,
+                confidence,
+            } = *estimate;
+            [value, low, high, confidence]
+                .iter()
+                .all(|it| it.is_finite())
+        };
+        let mut lost: Vec<(String, String)> = Vec::new();
+        self.metrics.retain(|name, metric| {
+            metric.fields.retain(|_, value| value.is_finite());
+            let is_kept = is_finite(&metric.estimate);
+            if !is_kept {
+                lost.push((name.clone(), NOT_FINITE.to_owned()));
+            }
+            is_kept
+        });
+        self.curves.retain(|name, columns| {
+            let mut columns = columns.iter();
+            let broken = columns.find(|(_, values)| !values.iter().all(|it| it.is_finite()));
+            if let Some((column, _)) = broken {
+                let reason = format!("{NOT_FINITE} for a point of {column}");
+                lost.push((format!("curves.{name}"), reason));
+            }
+            broken.is_none()
+        });
+        let curves = &self.curves;
+        self.curve_labels
+            .retain(|name, _| curves.contains_key(name));
+        self.repeats.retain(|_, of| {
+            let own = [of.mean, of.standard_deviation, of.minimum, of.maximum];
+            own.iter().chain(&of.values).all(|it| it.is_finite())
+        });
+        self.unavailable.extend(lost);
+    }
+
+    /// Gives metrics without width the field `exact_to_word`: words that never change determine their
+    /// mean exactly, and leave open where within its rounding the rate lies.
+    pub(crate) fn mark_exact(&mut self, keys: &[&MetricKey]) {
+        for key in keys {
+            if let Some(metric) = self.get_mut(key)
+                && metric.estimate.high - metric.estimate.low
+                    <= ROUNDING * metric.estimate.value.abs()
+            {
+                metric.fields.insert("exact_to_word", 1.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! Declaration of a metric: key, unit, heading, definition, and where and how it is measured.
+//!
+//! A metric is one [`MetricKey`], declared beside its computation and listed in
+//! [`catalogue`](super::catalogue). Tables, gates, pooling over repeats, the reasons for what is
+//! missing and the documentation read that row.
+
+/// Records that a metric belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Applies {
+    /// Every record.
+    Always,
+    /// Steady motion: at rest or turning at a constant rate.
+    Steady,
+    /// Swing.
+    Swing,
+    /// Swing or several sines at once.
+    Tones,
+    /// Several sines at once.
+    MultiSine,
+    /// Steps.
+    Steps,
+    /// A motion that begins within the record: steps, a swing from rest, a script.
+    Onset,
+    /// Steady motion or swing.
+    SteadyOrSwing,
+    /// Every motion but rest and constant rate.
+    Moving,
+    /// Steady motion, swing or steps: a signal that can be told from noise.
+    Separable,
+    /// Every record of a filter that is a hardware pipeline.
+    Pipeline,
+    /// The estimates of a calibration campaign, which are no records.
+    Calibration,
+}
+
+/// What a record must offer beyond its motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Needs {
+    /// Nothing: the metric does not rest on the samples of the record.
+    Nothing,
+    /// A few samples, of whatever motion.
+    Samples,
+    /// A few samples, and whole cycles where the motion has some.
+    Record,
+    /// Samples enough for the white noise of the Allan fit.
+    AllanFit,
+    /// A record long enough for the slow noise of the Allan fit.
+    SlowNoiseFit,
+    /// Blocks of this averaging time, s.
+    Blocks(f64),
+    /// Blocks of the scenario's averaging time.
+    ScenarioBlocks,
+    /// Two sines.
+    TwoSines,
+    /// Samples after the last step.
+    Step,
+    /// Samples in the last quarter after the last step, where there is one.
+    SettledStep,
+    /// Settled dwells at several rates.
+    Dwells,
+    /// Settled dwells at several rates of each sense.
+    DwellsOfBothSenses,
+}
+
+/// What the metric compares the channel with, beside raw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Against {
+    /// Nothing else.
+    Nothing,
+    /// The true rate.
+    Truth,
+    /// The true rate for raw itself; a filter is compared with raw.
+    TruthForRaw,
+    /// The angle of the table's encoder.
+    Encoder,
+}
+
+/// How independent repeats are pooled.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Pool {
+    /// Mean; standard deviations with degrees of freedom as root of the mean variance.
+    Mean,
+    /// Root of the mean square.
+    RootMeanSquare,
+    /// Fit to the pooled Allan variance.
+    AllanFit,
+    /// Standard deviation of another metric over the repeats.
+    ScatterOf(&'static MetricKey),
+    /// Standard deviation of another metric, an error in ppm, over the mean of one plus that error.
+    RelativeScatterOf(&'static MetricKey),
+}
+
+/// Tables that have a column for the metric, by the kind of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Table {
+    /// At rest or turning at a constant rate.
+    Rest,
+    /// Swing.
+    Swing,
+    /// Several sines at once.
+    MultiSine,
+    /// Steps, and every other motion that is not periodic.
+    Steps,
+    /// Calibration campaign: a record of many rates.
+    Campaign,
+}
+
+/// Lines of the suite's table, by the kind of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Headline {
+    /// At rest or turning at a constant rate.
+    Rest,
+    /// Swing.
+    Swing,
+    /// Several sines at once.
+    MultiSine,
+    /// Steps.
+    Steps,
+    /// Scale factor test.
+    ScaleFactor,
+    /// Every other motion.
+    General,
+}
+
+/// Declaration of a metric.
+#[derive(Clone, Copy, Debug)]
+pub struct MetricKey {
+    /// Key in results and scenario files.
+    pub name: &'static str,
+    /// Unit as printed; `1` for a ratio.
+    pub unit: &'static str,
+    /// Definition in one line.
+    pub definition: &'static str,
+    /// Records it is defined for.
+    pub applies: Applies,
+    /// Whether only filters have it.
+    pub filters_only: bool,
+    pub(crate) heading: Option<&'static str>,
+    pub(crate) needs: Needs,
+    pub(crate) against: Against,
+    pub(crate) pool: Pool,
+    /// Place among the columns of `runs.csv`; none if the values of the repeats are not kept.
+    pub(crate) run_column: Option<u8>,
+    /// Whether only the axis about which the table turns has it, of an assembly of three.
+    pub(crate) is_of_turned_axis: bool,
+    /// Whether it says nothing of a record that holds many rates.
+    pub(crate) is_of_one_motion: bool,
+    /// Whether nobody misses it who did not ask for it.
+    pub(crate) is_by_choice: bool,
+    /// Whether it is slow noise, which the DC gain scales and no short filter of unit gain can lower.
+    pub(crate) is_slow_noise: bool,
+    pub(crate) tables: &'static [Table],
+    pub(crate) headlines: &'static [Headline],
+    /// Whether it closes the table of every motion, where a channel has it.
+    pub(crate) closes_tables: bool,
+}
+
+impl PartialEq for MetricKey {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl MetricKey {
+    /// A metric of raw and filters alike.
+    pub(crate) const fn new(
+        name: &'static str,
+        unit: &'static str,
+        applies: Applies,
+        definition: &'static str,
+    ) -> Self {
+        Self {
+            name,
+            unit,
+            definition,
+            applies,
+            filters_only: false,
+            heading: None,
+            needs: Needs::Record,
+            against: Against::Nothing,
+            pool: Pool::Mean,
+            run_column: None,
+            is_of_turned_axis: false,
+            is_of_one_motion: false,
+            is_by_choice: false,
+            is_slow_noise: false,
+            tables: &[],
+            headlines: &[],
+            closes_tables: false,
+        }
+    }
+
+    /// A metric that only filters have.
+    pub(crate) const fn of_filters(
+        name: &'static str,
+        unit: &'static str,
+        applies: Applies,
+        definition: &'static str,
+    ) -> Self {
+        Self {
+            filters_only: true,
+            ..Self::new(name, unit, applies, definition)
+        }
+    }
+
+    /// A figure of a hardware pipeline.
+    pub(crate) const fn of_pipelines(
+        name: &'static str,
+        unit: &'static str,
+        definition: &'static str,
+    ) -> Self {
+        Self::of_filters(name, unit, Applies::Pipeline, definition).needs(Needs::Nothing)
+    }
+
+    /// A figure of an estimate of a calibration campaign.
+    pub(crate) const fn of_estimates(
+        name: &'static str,
+        unit: &'static str,
+        definition: &'static str,
+    ) -> Self {
+        Self::new(name, unit, Applies::Calibration, definition)
+    }
+
+    /// The same under a heading of its own; without one the key stands for it.
+    pub(crate) const fn heading(self, heading: &'static str) -> Self {
+        Self {
+            heading: Some(heading),
+            ..self
+        }
+    }
+
+    /// The same with what a record must offer.
+    pub(crate) const fn needs(self, needs: Needs) -> Self {
+        Self { needs, ..self }
+    }
+
+    /// The same compared with more than raw.
+    pub(crate) const fn against(self, against: Against) -> Self {
+        Self { against, ..self }
+    }
+
+    /// The same pooled otherwise than by its mean.
+    pub(crate) const fn pooled(self, pool: Pool) -> Self {
+        Self { pool, ..self }
+    }
+
+    /// The same as column `place` of `runs.csv`, from 1.
+    pub(crate) const fn run_column(self, place: u8) -> Self {
+        Self {
+            run_column: Some(place),
+            ..self
+        }
+    }
+
+    /// The same of the axis alone about which the table turns.
+    pub(crate) const fn of_turned_axis(self) -> Self {
+        Self {
+            is_of_turned_axis: true,
+            ..self
+        }
+    }
+
+    /// The same of records of one motion alone.
+    pub(crate) const fn of_one_motion(self) -> Self {
+        Self {
+            is_of_one_motion: true,
+            ..self
+        }
+    }
+
+    /// The same, missed by nobody who did not ask for it.
+    pub(crate) const fn by_choice(self) -> Self {
+        Self {
+            is_by_choice: true,
+            ..self
+        }
+    }
+
+    /// The same as slow noise.
+    pub(crate) const fn slow_noise(self) -> Self {
+        Self {
+            is_slow_noise: true,
+            ..self
+        }
+    }
+
+    /// The same with a column in the tables of these motions.
+    pub(crate) const fn tables(self, tables: &'static [Table]) -> Self {
+        Self { tables, ..self }
+    }
+
+    /// The same in the suite's lines of these motions.
+    pub(crate) const fn headlines(self, headlines: &'static [Headline]) -> Self {
+        Self { headlines, ..self }
+    }
+
+    /// The same as a last column of every table, where a channel has it.
+    pub(crate) const fn closing_tables(self) -> Self {
+        Self {
+            closes_tables: true,
+            ..self
+        }
+    }
+
+    /// Heading of its column: its own, or the key without underscores.
+    #[must_use]
+    pub fn title(&self) -> String {
+        self.heading
+            .map_or_else(|| self.name.replace('_', " "), str::to_owned)
+    }
+
+    /// Whether the scatter of repeats gives it, which a single record cannot.
+    pub(crate) fn is_repeatability(&self) -> bool {
+        matches!(self.pool, Pool::ScatterOf(_) | Pool::RelativeScatterOf(_))
+    }
+}

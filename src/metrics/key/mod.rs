@@ -1,0 +1,3 @@
+//! Declarations of metrics: one row each, read by all that shows, pools, checks or documents one.
+
+pub(super) mod metric;

@@ -1,0 +1,192 @@
+//! From a record to the table of everything it supports.
+
+use super::catalogue::support::{encoder_lack, support, truth_lack};
+use super::estimate::reason::NO_TRUTH;
+use super::estimate::table::ChannelMetrics;
+use super::key::metric::{Applies, MetricKey, Needs};
+use super::motion::mean::measure_mean_ratio;
+use super::motion::mean::put_extremes;
+use super::motion::multi_sine::measure_multi_sine;
+use super::motion::steady::measure_steady;
+use super::motion::steps::measure_steps;
+use super::motion::swing::measure_swing;
+use super::motion::tracking::measure_tracking;
+use super::noise::spectrum::{log_binned, put_spectrum, segment_samples, welch};
+use super::pipeline::PIPELINE_ONLY;
+use super::pool::repeatability::repeats_lack;
+use super::record::{FilterFacts, Motion, Record, SAMPLES_MIN, Settings};
+use super::steps::staircase::measure_scale_factor;
+use super::trial::dc_gain::put_dc_gains;
+use super::trial::frozen_response::put_frozen_response;
+use super::trial::rate_gain::put_rate_gains;
+use super::trial::readaptation::{READAPTATION_TIME, measure_after_step, onset};
+use crate::metrics::catalogue::known_metrics;
+use crate::wording::counted;
+
+/// Time of divergence.
+pub static DIVERGED_AT: MetricKey = MetricKey::new(
+    "diverged_at_s",
+    "s",
+    Applies::Always,
+    "time at which the channel failed, from the start of the warm-up; absent if it did not",
+)
+.heading("diverged at")
+.needs(Needs::Nothing)
+.closing_tables();
+
+/// Points of the spectrum in the report.
+const SPECTRUM_POINTS_MAX: usize = 400;
+
+/// Measures one channel.
+///
+/// `filter` is `None` for raw, whose `record.channel_deg_per_h` is `record.raw_deg_per_h`. Every
+/// metric of the catalogue ends up in the table or, with the reason, among the unavailable ones;
+/// `diverged_at_s` and the metrics of pipelines are left to the caller, who saw the failure and
+/// knows the hardware. Intervals are 95 %.
+///
+/// # Panics
+/// If the slices of the record differ in length, an empty truth excepted.
+#[must_use]
+pub fn measure(
+    record: &Record,
+    settings: &Settings,
+    filter: Option<&FilterFacts>,
+) -> ChannelMetrics {
+    let samples = record.channel_deg_per_h.len();
+    let truths = record.truth().map_or(samples, <[f64]>::len);
+    assert!(
+        record.raw_deg_per_h.len() == samples && truths == samples,
+        "channel, raw and truth hold {samples}, {} and {truths} samples",
+        record.raw_deg_per_h.len()
+    );
+    let readings = record.encoder_rad.map_or(samples, <[f64]>::len);
+    assert!(
+        readings == samples,
+        "channel and encoder hold {samples} and {readings} samples"
+    );
+    let mut metrics = ChannelMetrics::default();
+    if let Err(reason) = measure_motion(record, settings, filter, &mut metrics) {
+        refuse_rest(&reason, &mut metrics);
+    }
+    if let Some(facts) = filter {
+        put_dc_gains(facts, &mut metrics);
+        put_rate_gains(facts, &mut metrics);
+        put_frozen_response(facts, record.sample_period_s, &mut metrics);
+    }
+    metrics.keep_finite();
+    explain_missing(record, settings, filter.is_some(), &mut metrics);
+    metrics
+}
+
+fn measure_motion(
+    record: &Record,
+    settings: &Settings,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) -> Result<(), String> {
+    let values = record.channel_deg_per_h;
+    if values.len() < SAMPLES_MIN {
+        return Err(format!(
+            "the record holds {}; metrics need {SAMPLES_MIN}",
+            counted(values.len(), "sample")
+        ));
+    }
+    if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+        return Err(format!("sample {index} of the record is not finite"));
+    }
+    let spectrum = welch(
+        values,
+        record.sample_period_s,
+        segment_samples(values.len()),
+    );
+    put_spectrum(log_binned(&spectrum, SPECTRUM_POINTS_MAX), metrics);
+    put_extremes(values, metrics);
+    match &settings.motion {
+        Motion::MultiSine { .. } | Motion::General | Motion::Steps { .. }
+            if record.truth().is_none() =>
+        {
+            Err(NO_TRUTH.to_owned())
+        }
+        Motion::Steady => {
+            measure_steady(record, settings, filter, metrics);
+            Ok(())
+        }
+        Motion::Swing { frequency_hz } => {
+            measure_swing(record, *frequency_hz, false, filter, metrics)
+        }
+        Motion::SwingFromRest { frequency_hz } => {
+            measure_swing(record, *frequency_hz, true, filter, metrics)
+        }
+        Motion::MultiSine { frequencies_hz } => {
+            measure_multi_sine(record, frequencies_hz, filter, metrics)
+        }
+        Motion::General => {
+            measure_tracking(record, metrics);
+            if let Some(facts) = filter {
+                measure_mean_ratio(record, metrics);
+                match onset(record.truth_deg_per_h) {
+                    Some(start) => measure_after_step(record, start, facts, metrics),
+                    None => {
+                        metrics.miss(&READAPTATION_TIME, "the motion does not end at a new rate")
+                    }
+                }
+            }
+            Ok(())
+        }
+        Motion::Steps {
+            last_step_index,
+            step_deg_per_h,
+            staircase,
+        } => {
+            measure_steps(record, *last_step_index, *step_deg_per_h, filter, metrics);
+            measure_scale_factor(record, staircase, metrics);
+            Ok(())
+        }
+    }
+}
+
+/// Gives one reason to everything that is still missing.
+fn refuse_rest(reason: &str, metrics: &mut ChannelMetrics) {
+    for known in known_metrics() {
+        let is_own = **known == DIVERGED_AT || known.applies == Applies::Pipeline;
+        if !is_own && metrics.get(known).is_none() {
+            metrics.miss(known, reason);
+        }
+    }
+}
+
+/// Gives a reason to every metric of the catalogue that has neither a value nor a reason yet.
+fn explain_missing(
+    record: &Record,
+    settings: &Settings,
+    is_filter: bool,
+    metrics: &mut ChannelMetrics,
+) {
+    let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
+    for known in known_metrics() {
+        if **known == DIVERGED_AT
+            || known.applies == Applies::Calibration
+            || metrics.get(known).is_some()
+            || metrics.why_unavailable(known).is_some()
+        {
+            continue;
+        }
+        let reason = support(
+            known.name,
+            duration_s,
+            record.sample_period_s,
+            &settings.motion,
+            is_filter,
+            settings.bias_averaging_time_s,
+        )
+        .err()
+        .or_else(|| truth_lack(known, record.truth().is_some(), is_filter).map(str::to_owned))
+        .or_else(|| repeats_lack(known, 1))
+        .or_else(|| encoder_lack(known, record.encoder_rad.is_some()).map(str::to_owned))
+        .unwrap_or_else(|| match known.applies {
+            Applies::Pipeline => PIPELINE_ONLY.to_owned(),
+            _ => "the record is too short for it".to_owned(),
+        });
+        metrics.miss(known, reason);
+    }
+}

@@ -1,0 +1,171 @@
+//! Metrics of a record of several sines at once.
+
+use super::mean::{MEAN_RATIO, put_mean, ratio_of_means_lack};
+use super::steady::LAGS_MIN;
+use super::swing::{AMPLITUDE_RATIO, DELAY_VS_RAW, DELAY_VS_TRUTH};
+use super::tracking::TRACKING_ERROR_RMS;
+use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
+use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
+use crate::metrics::noise::autocovariance::LaggedProducts;
+use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
+use crate::metrics::noise::truth_response::{reach, remove_response};
+use crate::metrics::record::{FilterFacts, Record};
+use crate::metrics::sine::tones::{ToneClock, ToneFits, ToneResponse, fit_tones, put_responses};
+use crate::units;
+
+/// Bandwidth.
+pub static BANDWIDTH: MetricKey = MetricKey::new(
+    "bandwidth_hz",
+    "Hz",
+    Applies::MultiSine,
+    "where the gain against the true rate first falls through 1/sqrt(2) of that of the lowest sine",
+)
+.heading("bandwidth")
+.needs(Needs::TwoSines)
+.of_turned_axis()
+.tables(&[Table::MultiSine])
+.headlines(&[Headline::MultiSine]);
+
+/// Order of the series in the joint fit.
+const CHANNEL: usize = 0;
+const TRUTH: usize = 1;
+const RAW: usize = 2;
+
+/// Measures everything a record of several sines supports.
+///
+/// # Errors
+/// The reason, in words, if the record does not determine the sines.
+pub(crate) fn measure_multi_sine(
+    record: &Record,
+    frequencies_hz: &[f64],
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) -> Result<(), String> {
+    let clock = ToneClock {
+        frequencies_hz,
+        sample_period_s: record.sample_period_s,
+        first_stamp_s: record.first_stamp_s,
+    };
+    let mut series = vec![record.channel_deg_per_h, record.truth_deg_per_h];
+    if filter.is_some() {
+        series.push(record.raw_deg_per_h);
+    }
+    let fits = fit_tones(&series, &clock)?;
+    let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
+    let truth_offset = fits.offset(TRUTH).value;
+    put_mean(
+        fits.offset(CHANNEL),
+        Some(truth_offset),
+        duration_s,
+        metrics,
+    );
+    let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
+    let behind_truth = later(fits.response(CHANNEL, TRUTH), latency_s);
+    put_lowest(&DELAY_VS_TRUTH, &behind_truth, metrics);
+    let reference = if filter.is_some() {
+        let behind_raw = later(fits.response(CHANNEL, RAW), latency_s);
+        put_lowest(&DELAY_VS_RAW, &behind_raw, metrics);
+        put_responses("frequency_response_vs_raw", &behind_raw, metrics);
+        behind_raw
+    } else {
+        behind_truth.clone()
+    };
+    put_responses("frequency_response", &behind_truth, metrics);
+    if let Some(lowest) = reference.first() {
+        let metric = metrics.put(&AMPLITUDE_RATIO, lowest.gain);
+        metric.fields.insert("frequency_hz", lowest.frequency_hz);
+    }
+    match fits.bandwidth_hz(CHANNEL, TRUTH) {
+        Ok(bandwidth) => {
+            metrics.put(&BANDWIDTH, bandwidth);
+        }
+        Err(reason) => metrics.miss(&BANDWIDTH, reason),
+    }
+    measure_tracking(record, metrics);
+    measure_noise(record, &fits, filter, metrics);
+    Ok(())
+}
+
+/// Responses with a pipeline's latency, which is part of its delays.
+fn later(responses: Vec<ToneResponse>, latency_s: f64) -> Vec<ToneResponse> {
+    let shifted = |estimate: Estimate, shift: f64| {
+        let Estimate {
+            value, low, high, ..
+        } = estimate;
+        Estimate::with_interval(value + shift, low + shift, high + shift)
+    };
+    responses
+        .into_iter()
+        .map(|response| ToneResponse {
+            phase_rad: shifted(
+                response.phase_rad,
+                -std::f64::consts::TAU * response.frequency_hz * latency_s,
+            ),
+            delay_s: shifted(response.delay_s, latency_s),
+            ..response
+        })
+        .collect()
+}
+
+/// Enters the delay at the lowest tone.
+fn put_lowest(key: &MetricKey, responses: &[ToneResponse], metrics: &mut ChannelMetrics) {
+    if let Some(lowest) = responses.first() {
+        let delay_ms = lowest.delay_s.scaled(units::s_to_ms(1.0));
+        let metric = metrics.put(key, delay_ms);
+        metric.fields.insert("frequency_hz", lowest.frequency_hz);
+    }
+}
+
+/// Root mean square difference from the truth, with Student's t on the blocks' squares.
+fn measure_tracking(record: &Record, metrics: &mut ChannelMetrics) {
+    let squares: Vec<f64> = record
+        .channel_deg_per_h
+        .iter()
+        .zip(record.truth_deg_per_h)
+        .map(|(rate, truth)| (rate - truth) * (rate - truth))
+        .collect();
+    let parts = equal_block_means(&squares, RATIO_BLOCKS);
+    let square = interval::from_parts(interval::mean(&squares), &parts);
+    let estimate = Estimate::with_interval(
+        square.value.sqrt(),
+        square.low.max(0.0).sqrt(),
+        square.high.sqrt(),
+    );
+    metrics.put(&TRACKING_ERROR_RMS, estimate);
+}
+
+/// Noise about the tones; against raw's for a filter.
+fn measure_noise(
+    record: &Record,
+    fits: &ToneFits,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
+    let motion = fits.residuals(TRUTH, record.truth_deg_per_h);
+    let products = |series: usize, values: &[f64], of: Option<&FilterFacts>| {
+        let mut residuals = fits.residuals(series, values);
+        remove_response(&mut residuals, &motion, reach(of));
+        LaggedProducts::new(&residuals, 0.0, LAGS_MIN, RATIO_BLOCKS)
+    };
+    let channel = products(CHANNEL, record.channel_deg_per_h, filter);
+    put_noise_std(
+        &channel,
+        record.channel_deg_per_h.len(),
+        record.sample_period_s,
+        metrics,
+    );
+    if filter.is_some() {
+        let raw = record.raw_deg_per_h;
+        let level = raw.iter().fold(0.0_f64, |max, rate| max.max(rate.abs()));
+        put_noise_gain(&channel, &products(RAW, raw, None), level, metrics);
+        let offset = fits.offset(RAW);
+        if let Some(reason) = ratio_of_means_lack(&offset) {
+            metrics.miss(&MEAN_RATIO, reason);
+        } else {
+            metrics.put(&MEAN_RATIO, fits.offset_ratio(CHANNEL, RAW));
+        }
+    }
+}

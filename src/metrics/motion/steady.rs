@@ -1,0 +1,217 @@
+//! Metrics of a record at rest or at constant rate.
+
+use super::mean::{MEAN, MEAN_ERROR, measure_mean_ratio, put_mean};
+use crate::metrics::allan::curves::{put_curve, put_fit_curve};
+use crate::metrics::allan::entry::{FITTED, enter_fit};
+use crate::metrics::allan::noise_fit::{
+    ANGLE_RANDOM_WALK, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise,
+    mixed_degrees_of_freedom,
+};
+use crate::metrics::allan::overlapping::overlapping_allan;
+use crate::metrics::allan::variants::allan_variant;
+use crate::metrics::estimate::blocks;
+use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
+use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::{
+    ChannelMetrics, DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION,
+};
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::noise::autocovariance::{CURVE_LAGS, LaggedProducts};
+use crate::metrics::noise::bias_stability;
+use crate::metrics::noise::bias_stability::{
+    BIAS_STABILITY, BIAS_STABILITY_1S, BIAS_STABILITY_10S, BIAS_STABILITY_100S, BLOCKS_MIN,
+    averaging_lack,
+};
+use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
+use crate::metrics::noise::memory::fit_tau_min_s;
+use crate::metrics::noise::truth_response::without_motion;
+use crate::metrics::record::{FilterFacts, Record, Settings};
+use crate::metrics::theory::prediction::lags_needed;
+use crate::metrics::trial::dc_gain::{
+    ANGLE_RANDOM_WALK_OVER_DC_GAIN, BIAS_STABILITY_OVER_DC_GAIN, put_over_dc_gain,
+};
+use crate::metrics::trial::predicted::measure_predictions;
+use crate::metrics::trial::weight_noise::measure_weight_noise;
+use crate::wording::{counted, plain};
+
+/// Lags of the autocovariance, at least; correlation beyond counts as slow noise.
+pub(crate) const LAGS_MIN: usize = CURVE_LAGS;
+
+/// Measures everything a steady record supports.
+///
+/// Where the true rate varies, as the Earth's on a cross axis that turns or that of an unsteady
+/// table, what the channel shows of it is taken out first, its mean excepted.
+pub(crate) fn measure_steady(
+    record: &Record,
+    settings: &Settings,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
+    let still = without_motion(record, filter);
+    let record = &still.as_ref().map_or(*record, |(channel, raw)| Record {
+        channel_deg_per_h: channel,
+        raw_deg_per_h: raw,
+        ..*record
+    });
+    let fit = measure_allan(record, settings, filter, metrics);
+    measure_bias(record, settings, fit.as_ref(), metrics);
+    measure_mean(record, fit.as_ref(), metrics);
+    let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
+    let products = products_about_mean(record.channel_deg_per_h, lags);
+    let samples = record.channel_deg_per_h.len();
+    put_noise_std(&products, samples, record.sample_period_s, metrics);
+    if let Some(facts) = filter {
+        let raw = products_about_mean(record.raw_deg_per_h, lags);
+        let level = interval::mean(record.raw_deg_per_h).abs();
+        put_noise_gain(&products, &raw, level, metrics);
+        measure_mean_ratio(record, metrics);
+        measure_weight_noise(record, facts, metrics);
+        measure_predictions(record, facts, (&products, &raw), metrics);
+        for (key, over) in [
+            (&ANGLE_RANDOM_WALK, &ANGLE_RANDOM_WALK_OVER_DC_GAIN),
+            (&BIAS_STABILITY, &BIAS_STABILITY_OVER_DC_GAIN),
+        ] {
+            put_over_dc_gain(key, over, facts.dc_gain, metrics);
+        }
+    }
+}
+
+/// Allan curve and noise coefficients.
+///
+/// The curve `allan` is that of the settings. The noise is fitted to the overlapping Allan deviation,
+/// the curve `allan_fit`, whose points take the degrees of freedom of the noise mix that the fit found.
+fn measure_allan(
+    record: &Record,
+    settings: &Settings,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) -> Option<NoiseFit> {
+    let points = overlapping_allan(record.channel_deg_per_h, record.sample_period_s);
+    let samples = record.channel_deg_per_h.len();
+    let range = FitRange {
+        tau_min_s: filter.map_or(settings.fit_tau_min_s, |facts| {
+            fit_tau_min_s(&facts.shape, record.sample_period_s, settings.fit_tau_min_s)
+        }),
+        tau_max_s: FIT_TAU_PER_RECORD_MAX * samples as f64 * record.sample_period_s,
+    };
+    let varies = record
+        .channel_deg_per_h
+        .windows(2)
+        .any(|two| two[0] < two[1] || two[1] < two[0]);
+    let constant = || Err("the output does not vary over the record".to_owned());
+    let fitted = if varies {
+        fit_noise(&points, range)
+    } else {
+        constant()
+    };
+    let variant = allan_variant(
+        record.channel_deg_per_h,
+        record.sample_period_s,
+        &settings.allan,
+    );
+    let estimator = settings.allan.estimator;
+    put_curve(&variant, estimator, fitted.as_ref().ok(), metrics);
+    match fitted {
+        Ok(fit) => {
+            let points = mixed_degrees_of_freedom(&points, &fit.coefficients(), samples + 1);
+            let duration_s = samples as f64 * record.sample_period_s;
+            enter_fit(&points, &fit, duration_s, metrics);
+            Some(fit)
+        }
+        Err(reason) => {
+            put_fit_curve(&points, None, metrics);
+            for key in FITTED {
+                metrics.miss(key, reason.as_str());
+            }
+            None
+        }
+    }
+}
+
+/// Bias stability at the fixed averaging times and at the scenario's.
+fn measure_bias(
+    record: &Record,
+    settings: &Settings,
+    fit: Option<&NoiseFit>,
+    metrics: &mut ChannelMetrics,
+) {
+    for (name, averaging_time_s) in [
+        (&BIAS_STABILITY_1S, 1.0),
+        (&BIAS_STABILITY_10S, 10.0),
+        (&BIAS_STABILITY_100S, 100.0),
+        (&BIAS_STABILITY, settings.bias_averaging_time_s),
+    ] {
+        if let Some(reason) = averaging_lack(averaging_time_s, record.sample_period_s) {
+            metrics.miss(name, reason);
+            continue;
+        }
+        let block = blocks::samples_in(averaging_time_s, record.sample_period_s);
+        let averaging_time_s = blocks::block_label_s(averaging_time_s, record.sample_period_s);
+        let means = blocks::block_means(record.channel_deg_per_h, block);
+        if means.len() < BLOCKS_MIN {
+            let reason = format!(
+                "the record holds {} of {} s; a standard deviation with an interval needs \
+                 {BLOCKS_MIN}",
+                counted(means.len(), "block"),
+                plain(averaging_time_s)
+            );
+            metrics.miss(name, reason);
+            continue;
+        }
+        let freedom = fit.map_or(means.len() as f64 - 1.0, |fit| {
+            bias_stability::effective_degrees_of_freedom(
+                &fit.coefficients(),
+                averaging_time_s,
+                means.len(),
+            )
+        });
+        let deviation = interval::sample_variance(&means).sqrt();
+        let metric = metrics.put(name, interval::deviation(deviation, freedom));
+        metric.fields.insert("averaging_time_s", averaging_time_s);
+        metric.fields.insert("block_samples", block as f64);
+        metric.fields.insert("count", means.len() as f64);
+        metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
+        let raw_means = blocks::block_means(record.raw_deg_per_h, block);
+        if let Some(correlation) = bias_stability::correlation(&means, &raw_means) {
+            metric.fields.insert(RAW_CORRELATION, correlation);
+        }
+        if let Some(fit) = fit.filter(|fit| fit.shows_white_noise()) {
+            let coefficients = fit.coefficients();
+            let expected = bias_stability::expected_bias_stability(
+                &coefficients,
+                averaging_time_s,
+                means.len(),
+            );
+            metric.fields.insert(EXPECTED, expected);
+        }
+    }
+}
+
+/// Mean and its error.
+///
+/// With a fit, the variance of the mean over T is the fitted Allan variance at T (half the mean
+/// square difference between the means of two such records in a row): `N^2/T` for white noise, and
+/// it does not vanish with T for slow noise. Without one, Student's t on ten block means.
+fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMetrics) {
+    let values = record.channel_deg_per_h;
+    let mean = interval::mean(values);
+    let duration_s = values.len() as f64 * record.sample_period_s;
+    let estimate = match fit {
+        Some(fit) if matches!(fit.angle_random_walk_deg_per_h_sqrt_s, Term::Found(_)) => {
+            let variance = fit.mean_variance(duration_s);
+            Estimate::symmetric(mean, interval::NORMAL_QUANTILE * variance.sqrt())
+        }
+        _ => interval::from_parts(mean, &equal_block_means(values, 10)),
+    };
+    put_mean(
+        estimate,
+        record.truth().map(interval::mean),
+        duration_s,
+        metrics,
+    );
+    metrics.mark_exact(&[&MEAN, &MEAN_ERROR]);
+}
+
+fn products_about_mean(values: &[f64], lags: usize) -> LaggedProducts {
+    LaggedProducts::new(values, interval::mean(values), lags, RATIO_BLOCKS)
+}

@@ -1,0 +1,412 @@
+//! Metrics of a swing record.
+
+use std::f64::consts::TAU;
+
+use super::mean::{MEAN_RATIO, put_mean, ratio_of_means_lack};
+use super::steady::LAGS_MIN;
+use super::tracking::TRACKING_ERROR_RMS;
+use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::{Estimate, Metric};
+use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Table};
+use crate::metrics::noise::autocovariance::LaggedProducts;
+use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
+use crate::metrics::noise::truth_response::{reach, remove_response};
+use crate::metrics::record::{FilterFacts, Record};
+use crate::metrics::sine::correlation::correlation_delay_s;
+use crate::metrics::sine::fit::{SwingClock, SwingFit, fit_swing};
+use crate::metrics::theory::bound::filter_bound;
+use crate::metrics::theory::prediction::{lags_needed, predict};
+use crate::metrics::trial::noise_delay::{
+    NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve, put_over_bound,
+};
+use crate::metrics::trial::predicted::DC_GAIN_PREDICTED;
+use crate::metrics::trial::readaptation;
+use crate::metrics::trial::readaptation::GainUnits;
+use crate::units;
+
+/// Delay vs raw.
+pub static DELAY_VS_RAW: MetricKey = MetricKey::of_filters(
+    "delay_vs_raw_ms",
+    "ms",
+    Applies::Tones,
+    "phase delay behind the raw channel at the swing frequency; of several sines the lowest",
+)
+.heading("delay vs raw")
+.run_column(9)
+.tables(&[Table::Swing, Table::MultiSine])
+.headlines(&[Headline::Swing]);
+
+/// Predicted delay.
+pub static DELAY_PREDICTED: MetricKey = MetricKey::of_filters(
+    "delay_predicted_ms",
+    "ms",
+    Applies::Swing,
+    "phase delay of the Wiener weights behind raw at the swing frequency, register included",
+)
+.heading("predicted")
+.tables(&[Table::Swing]);
+
+/// Delay vs truth.
+pub static DELAY_VS_TRUTH: MetricKey = MetricKey::new(
+    "delay_vs_truth_ms",
+    "ms",
+    Applies::Tones,
+    "phase delay behind the true rate at the swing frequency; of several sines the lowest",
+)
+.heading("delay vs truth")
+.against(Against::Truth)
+.of_turned_axis()
+.tables(&[Table::Swing, Table::MultiSine])
+.headlines(&[Headline::MultiSine]);
+
+/// Delay vs encoder.
+pub static DELAY_VS_ENCODER: MetricKey = MetricKey::new(
+    "delay_vs_encoder_ms",
+    "ms",
+    Applies::Swing,
+    "phase delay behind the rate implied by a sine fit of the encoder's angle",
+)
+.heading("delay vs encoder")
+.against(Against::Encoder)
+.of_turned_axis()
+.by_choice()
+.tables(&[Table::Swing]);
+
+/// Delay by correlation.
+pub static DELAY_BY_CORRELATION: MetricKey = MetricKey::new(
+    "delay_by_correlation_ms",
+    "ms",
+    Applies::Swing,
+    "delay behind the true rate again, by the peak of their correlation: a check of the sine fit",
+)
+.against(Against::Truth)
+.of_turned_axis();
+
+/// Amplitude ratio.
+pub static AMPLITUDE_RATIO: MetricKey = MetricKey::new(
+    "amplitude_ratio",
+    "1",
+    Applies::Tones,
+    "fitted amplitude over raw's, for raw itself over the true rate's; of several sines the lowest",
+)
+.heading("amplitude ratio")
+.against(Against::TruthForRaw)
+.run_column(10)
+.tables(&[Table::Swing, Table::MultiSine])
+.headlines(&[Headline::Swing]);
+
+/// Harmonic distortion.
+pub static HARMONIC_DISTORTION: MetricKey = MetricKey::new(
+    "harmonic_distortion_percent",
+    "%",
+    Applies::Swing,
+    "root sum of squares of harmonics 2 to 5 over the fundamental, noise power subtracted",
+)
+.heading("harmonic distortion")
+.tables(&[Table::Swing]);
+
+/// The sine fits of one swing record.
+struct Fits {
+    channel: SwingFit,
+    raw: SwingFit,
+    /// The true rate, if it is known.
+    truth: Option<SwingFit>,
+    /// Rate implied by the encoder's angle, if there is an encoder.
+    encoder: Option<SwingFit>,
+}
+
+/// Measures everything a swing record supports.
+///
+/// With `is_from_rest` the swing begins with the record, and filters must adapt to it.
+///
+/// # Errors
+/// The reason, in words, if the record holds no three whole cycles.
+pub(crate) fn measure_swing(
+    record: &Record,
+    frequency_hz: f64,
+    is_from_rest: bool,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) -> Result<(), String> {
+    let clock = SwingClock {
+        frequency_hz,
+        sample_period_s: record.sample_period_s,
+        first_stamp_s: record.first_stamp_s,
+    };
+    let fits = Fits {
+        channel: fit_swing(record.channel_deg_per_h, &clock)?,
+        raw: fit_swing(record.raw_deg_per_h, &clock)?,
+        truth: match record.truth() {
+            Some(truth) => Some(fit_swing(truth, &clock)?),
+            None => None,
+        },
+        encoder: match record.encoder_rad {
+            Some(angles) => Some(fit_swing(angles, &clock)?.derivative()),
+            None => None,
+        },
+    };
+    let duration_s = fits.channel.samples() as f64 * record.sample_period_s;
+    put_mean(
+        fits.channel.offset(),
+        fits.truth.as_ref().map(|truth| truth.whole.offset),
+        duration_s,
+        metrics,
+    );
+    measure_sines(&fits, &clock, filter, metrics);
+    if let Some(truth) = record.truth() {
+        measure_correlation(truth, record, &clock, filter, metrics);
+        measure_tracking(truth, record, &fits, metrics);
+    }
+    let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
+    let residuals = fits.channel.residuals(record.channel_deg_per_h);
+    metrics.put(
+        &HARMONIC_DISTORTION,
+        fits.channel.harmonic_distortion_percent(&residuals),
+    );
+    let blocks = fits.channel.block_count();
+    let motion = fits.truth.as_ref().zip(record.truth());
+    let motion = motion.map_or_else(Vec::new, |(fit, truth)| fit.residuals(truth));
+    // The table's own harmonics are known, and no noise.
+    let noise = |mut residuals: Vec<f64>, of: Option<&FilterFacts>| {
+        remove_response(&mut residuals, &motion, reach(of));
+        LaggedProducts::new(&residuals, 0.0, lags, blocks)
+    };
+    let channel = noise(residuals, filter);
+    put_noise_std(
+        &channel,
+        fits.channel.samples(),
+        record.sample_period_s,
+        metrics,
+    );
+    if let Some(facts) = filter {
+        let raw = noise(fits.raw.residuals(record.raw_deg_per_h), None);
+        let level = fits.raw.whole.amplitude + fits.raw.whole.offset.abs();
+        put_noise_gain(&channel, &raw, level, metrics);
+        measure_mean_ratio(&fits, metrics);
+        measure_predictions(&fits, &clock, facts, &raw, metrics);
+        measure_bound(&fits, &clock, facts, (&channel, &raw), metrics);
+        let predicted = metrics.get(&DELAY_PREDICTED);
+        let final_gain = predicted.and_then(|metric| metric.fields.get("amplitude_ratio"));
+        if let Some(&final_gain) = final_gain.filter(|_| is_from_rest) {
+            let (own, other) = (record.channel_deg_per_h, record.raw_deg_per_h);
+            let units = GainUnits::of_swing(own, other, &clock);
+            readaptation::put(&units, final_gain, metrics);
+        }
+    }
+    Ok(())
+}
+
+/// Delays and amplitude ratio. A pipeline's latency is part of its delays.
+fn measure_sines(
+    fits: &Fits,
+    clock: &SwingClock,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
+    let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
+    let describe = |metric: &mut Metric| {
+        metric.fields.insert("frequency_hz", clock.frequency_hz);
+        metric.fields.insert("cycles", fits.channel.cycles as f64);
+        // The start-up before the record, and the part of a cycle at its end.
+        let start_s = (clock.first_stamp_s - clock.sample_period_s).max(0.0);
+        metric.fields.insert("excluded_s", start_s);
+    };
+    let mut put_delay = |key: &MetricKey, reference| {
+        let delay_s = later(fits.channel.delay_behind_s(reference), latency_s);
+        let metric = metrics.put(key, delay_s.scaled(units::s_to_ms(1.0)));
+        describe(metric);
+        if latency_s > 0.0 {
+            let latency_us = units::s_to_us(latency_s);
+            metric.fields.insert("latency_us", latency_us);
+        }
+    };
+    if let Some(truth) = &fits.truth {
+        put_delay(&DELAY_VS_TRUTH, truth);
+    }
+    if let Some(encoder) = &fits.encoder {
+        put_delay(&DELAY_VS_ENCODER, encoder);
+    }
+    if filter.is_some() {
+        put_delay(&DELAY_VS_RAW, &fits.raw);
+    }
+    let reference = filter.map_or(fits.truth.as_ref(), |_| Some(&fits.raw));
+    if let Some(reference) = reference {
+        describe(metrics.put(&AMPLITUDE_RATIO, fits.channel.amplitude_over(reference)));
+    }
+}
+
+/// The delay behind the truth that [`measure_sines`] finds, by another estimator.
+///
+/// Not behind raw: raw's noise is in the filter's output too and correlates with it at small lags.
+/// Near the peak a swing's own correlation is so flat that this would move it by some 50 us.
+fn measure_correlation(
+    truth_deg_per_h: &[f64],
+    record: &Record,
+    clock: &SwingClock,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
+    let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
+    match correlation_delay_s(truth_deg_per_h, record.channel_deg_per_h, clock) {
+        Ok(delay_s) => {
+            let delay_ms = later(delay_s, latency_s).scaled(units::s_to_ms(1.0));
+            let metric = metrics.put(&DELAY_BY_CORRELATION, delay_ms);
+            metric.fields.insert("frequency_hz", clock.frequency_hz);
+        }
+        Err(reason) => metrics.miss(&DELAY_BY_CORRELATION, reason),
+    }
+}
+
+/// A delay and the known time after it at which the value appears.
+fn later(delay_s: Estimate, latency_s: f64) -> Estimate {
+    Estimate {
+        value: delay_s.value + latency_s,
+        low: delay_s.low + latency_s,
+        high: delay_s.high + latency_s,
+        confidence: delay_s.confidence,
+    }
+}
+
+/// Root mean square difference from the truth, with Student's t on the sub-blocks' squares.
+fn measure_tracking(
+    truth_deg_per_h: &[f64],
+    record: &Record,
+    fits: &Fits,
+    metrics: &mut ChannelMetrics,
+) {
+    let errors: Vec<f64> = record.channel_deg_per_h[..fits.channel.samples()]
+        .iter()
+        .zip(truth_deg_per_h)
+        .map(|(rate, truth)| rate - truth)
+        .collect();
+    let mean_squares = fits.channel.block_mean_squares(&errors);
+    let square = interval::from_parts(interval::mean(&mean_squares), &mean_squares);
+    let estimate = Estimate::with_interval(
+        square.value.sqrt(),
+        square.low.max(0.0).sqrt(),
+        square.high.sqrt(),
+    );
+    metrics.put(&TRACKING_ERROR_RMS, estimate);
+}
+
+/// Ratio of the offsets, if raw's offset can be told from zero.
+fn measure_mean_ratio(fits: &Fits, metrics: &mut ChannelMetrics) {
+    if let Some(reason) = ratio_of_means_lack(&fits.raw.offset()) {
+        metrics.miss(&MEAN_RATIO, reason);
+    } else {
+        metrics.put(&MEAN_RATIO, fits.channel.offset_ratio(&fits.raw));
+    }
+}
+
+/// Wiener prediction for the fitted sine plus the measured noise: delay behind raw and DC gain.
+///
+/// Second moment by lag: `A^2/2 cos(w l T) + c^2 + R(l)`, A and c from the sine fit of raw, R the
+/// autocovariance of its residuals; the intervals are jackknifed over sub-blocks of R.
+fn measure_predictions(
+    fits: &Fits,
+    clock: &SwingClock,
+    facts: &FilterFacts,
+    raw: &LaggedProducts,
+    metrics: &mut ChannelMetrics,
+) {
+    let turns_per_sample = clock.frequency_hz * clock.sample_period_s;
+    let sine = &fits.raw.whole;
+    let under = |autocovariance: &[f64]| {
+        let second_moment: Vec<f64> = autocovariance
+            .iter()
+            .enumerate()
+            .map(|(lag, noise)| {
+                let swing = sine.amplitude * sine.amplitude / 2.0
+                    * (TAU * turns_per_sample * lag as f64).cos();
+                swing + sine.offset * sine.offset + noise
+            })
+            .collect();
+        let prediction = predict(&facts.shape, &second_moment)?;
+        let delay_s =
+            prediction.delay_s(clock.frequency_hz, clock.sample_period_s) + facts.latency_s;
+        let amplitude = prediction.amplitude(clock.frequency_hz, clock.sample_period_s);
+        Some((units::s_to_ms(delay_s), prediction.dc_gain(), amplitude))
+    };
+    let Some((delay_ms, dc_gain, amplitude)) = under(&raw.autocovariance()) else {
+        metrics.miss(&DELAY_PREDICTED, "the raw channel has no power");
+        metrics.miss(&DC_GAIN_PREDICTED, "the raw channel has no power");
+        return;
+    };
+    let parts: Vec<_> = (0..raw.blocks())
+        .filter_map(|block| under(&raw.autocovariance_without(block)))
+        .collect();
+    let delays: Vec<f64> = parts.iter().map(|part| part.0).collect();
+    let gains: Vec<f64> = parts.iter().map(|part| part.1).collect();
+    let metric = metrics.put(&DELAY_PREDICTED, interval::jackknife(delay_ms, &delays));
+    metric.fields.insert("frequency_hz", clock.frequency_hz);
+    metric.fields.insert("amplitude_ratio", amplitude);
+    metrics.put(&DC_GAIN_PREDICTED, interval::jackknife(dc_gain, &gains));
+}
+
+/// Noise-delay bound at the measured delay behind raw, for the measured colour of raw's noise.
+///
+/// A pipeline's latency makes the samples as much older as it delays the output, so the bound takes
+/// neither into account.
+fn measure_bound(
+    fits: &Fits,
+    clock: &SwingClock,
+    facts: &FilterFacts,
+    (channel, raw): (&LaggedProducts, &LaggedProducts),
+    metrics: &mut ChannelMetrics,
+) {
+    let delay = fits
+        .channel
+        .delay_behind_s(&fits.raw)
+        .scaled(1.0 / clock.sample_period_s);
+    let at = |delay_samples: f64, autocovariance: &[f64]| {
+        filter_bound(&facts.shape, delay_samples, autocovariance)
+    };
+    let autocovariance = raw.autocovariance();
+    let without: Vec<Result<f64, String>> = (0..raw.blocks())
+        .map(|block| at(delay.value, &raw.autocovariance_without(block)))
+        .collect();
+    let left_out: Vec<f64> = without.iter().flatten().copied().collect();
+    // The bound is a parabola in the delay: its extremes over the interval are at the ends unless
+    // the lowest point lies inside, which the value in the middle stands for. The scatter of the
+    // autocovariance adds in quadrature; the two are nearly independent.
+    let bound = at(delay.value, &autocovariance);
+    put_over_bound(channel, raw, &bound, &without, metrics);
+    let bound = bound.map(|value| {
+        let ends = [delay.low, delay.high].map(|end| at(end, &autocovariance).unwrap_or(value));
+        let colour = interval::jackknife(value, &left_out).high - value;
+        let below = (value - ends[0].min(ends[1])).max(0.0).hypot(colour);
+        let above = (ends[0].max(ends[1]) - value).max(0.0).hypot(colour);
+        Estimate::with_interval(value, (value - below).max(0.0), value + above)
+    });
+    if let Ok(bound) = &bound {
+        widen_over_bound(bound, &left_out, metrics);
+    }
+    put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
+    put_bound_curve(facts, &autocovariance, clock.sample_period_s, metrics);
+}
+
+/// Adds what the uncertain delay does to the bound to the interval of the noise gain over it.
+///
+/// The scatter of the noise is in that interval already, where numerator and bound share it; of the
+/// bound's own interval only what exceeds it comes on top, in quadrature.
+fn widen_over_bound(bound: &Estimate, left_out: &[f64], metrics: &mut ChannelMetrics) {
+    let Some(metric) = metrics.get_mut(&NOISE_GAIN_OVER_BOUND) else {
+        return;
+    };
+    let colour = interval::jackknife(bound.value, left_out).high - bound.value;
+    let by_delay = |half_width: f64| {
+        let rest = (half_width * half_width - colour * colour).max(0.0).sqrt();
+        rest / bound.value * metric.estimate.value
+    };
+    let below = by_delay(bound.high - bound.value);
+    let above = by_delay(bound.value - bound.low);
+    let Estimate {
+        value, low, high, ..
+    } = metric.estimate;
+    metric.estimate = Estimate::with_interval(
+        value,
+        (value - below.hypot(value - low)).max(0.0),
+        value + above.hypot(high - value),
+    );
+}

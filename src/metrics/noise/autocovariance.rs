@@ -1,0 +1,258 @@
+//! Autocovariance of a record, kept per block of time for the jackknife.
+
+use crate::metrics::estimate::interval;
+use crate::metrics::estimate::interval::NORMAL_QUANTILE;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::metric::{Applies, MetricKey, Needs};
+
+/// Correlation at lag one.
+pub static LAG1_CORRELATION: MetricKey = MetricKey::new(
+    "lag1_correlation",
+    "1",
+    Applies::Separable,
+    "correlation of neighbouring samples about the signal, autocovariance at lag 1 over lag 0",
+)
+.needs(Needs::SettledStep);
+
+/// Fewest blocks whose scatter says how sure a variance is.
+const FREEDOM_BLOCKS_MIN: usize = 10;
+
+/// Samples per pass over the cache.
+const CHUNK: usize = 8192;
+
+/// Largest lag of the curve `autocovariance`, samples.
+pub(crate) const CURVE_LAGS: usize = 50;
+
+/// Autocovariance of a record about its mean at lags `0 ..= largest_lag`, in its unit squared.
+///
+/// The mean lagged product of all pairs, `sum x(k) x(k + l) / (n - l)`: unbiased but for the mean that
+/// is taken from the record; 0 at lags without a pair.
+#[must_use]
+pub fn autocovariance(values: &[f64], largest_lag: usize) -> Vec<f64> {
+    LaggedProducts::new(values, interval::mean(values), largest_lag, 1).autocovariance()
+}
+
+/// Correlation of neighbours, `R(1)/R(0)`, with its jackknife interval; `None` without noise.
+pub(crate) fn lag_one_correlation(products: &LaggedProducts) -> Option<Estimate> {
+    let of = |autocovariance: &[f64]| autocovariance[1] / autocovariance[0];
+    let whole = products.autocovariance();
+    let left_out: Vec<f64> = (0..products.blocks())
+        .map(|block| of(&products.autocovariance_without(block)))
+        .collect();
+    (whole[0] > 0.0).then(|| {
+        let estimate = interval::jackknife(of(&whole), &left_out);
+        let [low, high] = [estimate.low, estimate.high].map(|end| end.clamp(-1.0, 1.0));
+        Estimate::with_interval(
+            estimate.value,
+            low.min(estimate.value),
+            high.max(estimate.value),
+        )
+    })
+}
+
+/// Enters the correlation of neighbours and the first lags of the autocovariance of the noise.
+pub(crate) fn put_autocovariance(
+    products: &LaggedProducts,
+    sample_period_s: f64,
+    metrics: &mut ChannelMetrics,
+) {
+    match lag_one_correlation(products) {
+        Some(correlation) => {
+            metrics.put(&LAG1_CORRELATION, correlation);
+        }
+        None => metrics.miss(&LAG1_CORRELATION, "the channel has no noise"),
+    }
+    let mut autocovariance = products.autocovariance();
+    autocovariance.truncate(CURVE_LAGS + 1);
+    let lags = (0..autocovariance.len()).map(|lag| lag as f64 * sample_period_s);
+    let curve = [
+        ("lag_s".to_owned(), lags.collect()),
+        ("autocovariance_deg2_per_h2".to_owned(), autocovariance),
+    ];
+    metrics
+        .curves
+        .insert("autocovariance".to_owned(), curve.into());
+}
+
+/// Sums of lagged products, block by block.
+///
+/// A pair of samples belongs to the block that holds its earlier sample.
+#[derive(Clone, Debug)]
+pub(crate) struct LaggedProducts {
+    /// `sums[block][lag]`.
+    sums: Vec<Vec<f64>>,
+    /// `counts[block][lag]`.
+    counts: Vec<Vec<usize>>,
+}
+
+impl LaggedProducts {
+    /// Products of `values - centre` at lags `0 ..= largest_lag` in `blocks` blocks of equal length.
+    pub(crate) fn new(values: &[f64], centre: f64, largest_lag: usize, blocks: usize) -> Self {
+        let blocks = blocks.clamp(1, values.len().max(1));
+        let mut sums = vec![vec![0.0; largest_lag + 1]; blocks];
+        let mut counts = vec![vec![0; largest_lag + 1]; blocks];
+        let mut deviations = Vec::with_capacity(CHUNK + largest_lag);
+        for block in 0..blocks {
+            let block_end = values.len() * (block + 1) / blocks;
+            let mut start = values.len() * block / blocks;
+            while start < block_end {
+                let end = (start + CHUNK).min(block_end);
+                let reach = (end + largest_lag).min(values.len());
+                deviations.clear();
+                deviations.extend(values[start..reach].iter().map(|value| value - centre));
+                for lag in 0..=largest_lag {
+                    // The last block of a short record may hold fewer samples than the lag.
+                    let later = deviations.get(lag..).unwrap_or_default();
+                    let pairs = (end - start).min(later.len());
+                    sums[block][lag] += dot(&deviations[..pairs], &later[..pairs]);
+                    counts[block][lag] += pairs;
+                }
+                start = end;
+            }
+        }
+        Self { sums, counts }
+    }
+
+    /// Number of blocks.
+    pub(crate) fn blocks(&self) -> usize {
+        self.sums.len()
+    }
+
+    /// Autocovariance at every lag: mean lagged product of all pairs.
+    pub(crate) fn autocovariance(&self) -> Vec<f64> {
+        self.mean_products(None)
+    }
+
+    /// Autocovariance without the pairs of one block.
+    pub(crate) fn autocovariance_without(&self, block: usize) -> Vec<f64> {
+        self.mean_products(Some(block))
+    }
+
+    /// Degrees of freedom of the variance from its scatter over the blocks; `None` for fewer than
+    /// [`FREEDOM_BLOCKS_MIN`] blocks or ones that do not scatter.
+    ///
+    /// `2 s^4 / var(s^2)`, where the variance of the mean of n blocks is their sample variance over
+    /// n. As that is uncertain itself, the degrees are cut by the square of the normal quantile over
+    /// Student's t for n - 1.
+    pub(crate) fn variance_freedom(&self) -> Option<f64> {
+        let pairs = self.sums.iter().zip(&self.counts);
+        let variances: Vec<f64> = pairs
+            .filter(|(_, counts)| counts[0] > 0)
+            .map(|(sums, counts)| sums[0] / counts[0] as f64)
+            .collect();
+        let blocks = variances.len() as f64;
+        let of_mean = interval::sample_variance(&variances) / blocks;
+        let power = interval::mean(&variances);
+        let quantiles = NORMAL_QUANTILE / interval::student_quantile(blocks - 1.0);
+        let freedom = 2.0 * power * power / of_mean * quantiles * quantiles;
+        (variances.len() >= FREEDOM_BLOCKS_MIN && freedom.is_finite()).then_some(freedom.max(1.0))
+    }
+
+    fn mean_products(&self, left_out: Option<usize>) -> Vec<f64> {
+        (0..self.sums[0].len())
+            .map(|lag| {
+                let kept = (0..self.blocks()).filter(|&block| Some(block) != left_out);
+                let (sum, count) = kept.fold((0.0, 0), |(sum, count), block| {
+                    (sum + self.sums[block][lag], count + self.counts[block][lag])
+                });
+                sum / count.max(1) as f64
+            })
+            .collect()
+    }
+}
+
+/// Number of independent samples that say as much about the variance as the record does.
+///
+/// `n R0^2 / sum R(k)^2` over positive and negative lags: the variance of a Gaussian sample
+/// variance is `2 sum R(k)^2 / n` (Bartlett). Lags beyond those given count as uncorrelated.
+pub(crate) fn independent_samples(autocovariance: &[f64], count: usize) -> f64 {
+    let variance_squared = autocovariance[0] * autocovariance[0];
+    let lagged: f64 = autocovariance[1..].iter().map(|value| value * value).sum();
+    if variance_squared > 0.0 {
+        count as f64 * variance_squared / (variance_squared + 2.0 * lagged)
+    } else {
+        count as f64
+    }
+}
+
+/// Dot product in eight interleaved sums, which the compiler turns into vectors.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut lanes = [0.0; LANES];
+    let (a_lanes, a_rest) = a.as_chunks::<LANES>();
+    let (b_lanes, b_rest) = b.as_chunks::<LANES>();
+    for (a, b) in a_lanes.iter().zip(b_lanes) {
+        for lane in 0..LANES {
+            lanes[lane] += a[lane] * b[lane];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    lanes.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_agree_with_the_plain_sum_over_chunk_and_block_borders() {
+        let values: Vec<f64> = (0..2 * CHUNK + 100)
+            .map(|k| ((k * k) % 101) as f64)
+            .collect();
+        let covariance = LaggedProducts::new(&values, 50.0, 3, 5).autocovariance();
+        for (lag, got) in covariance.into_iter().enumerate() {
+            let plain: f64 = (0..values.len() - lag)
+                .map(|k| (values[k] - 50.0) * (values[k + lag] - 50.0))
+                .sum::<f64>()
+                / (values.len() - lag) as f64;
+            assert!((got - plain).abs() < 1e-9 * plain.abs().max(1.0));
+        }
+    }
+
+    #[test]
+    fn a_record_shorter_than_its_blocks_and_lags_has_products_where_pairs_exist() {
+        for count in 1..60_u8 {
+            let values: Vec<f64> = (0..count).map(f64::from).collect();
+            let covariance = LaggedProducts::new(&values, 0.0, 24, 20).autocovariance();
+            for (lag, got) in covariance.into_iter().enumerate() {
+                let pairs: Vec<f64> = (lag..values.len())
+                    .map(|later| values[later] * values[later - lag])
+                    .collect();
+                let plain = pairs.iter().sum::<f64>() / pairs.len().max(1) as f64;
+                assert!((got - plain).abs() < 1e-9 * plain.max(1.0), "{count} {lag}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_correlation_of_neighbours_is_that_of_a_moving_average() {
+        // The sum of two neighbours of a full-period generator: correlation 1/2.
+        let mut state = 1_u64;
+        let mut uniform = || -> f64 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let white: Vec<f64> = (0..20_001).map(|_| uniform()).collect();
+        let sums: Vec<f64> = white.windows(2).map(|two| two[0] + two[1]).collect();
+        let products = LaggedProducts::new(&sums, interval::mean(&sums), 1, 20);
+        let found = lag_one_correlation(&products).unwrap();
+        // Standard error by Bartlett: sqrt((1 - 3/4 + 1/4) / n) = 0.005.
+        assert!(found.low < 0.5 && 0.5 < found.high, "{found:?}");
+        assert!(
+            (0.01..0.05).contains(&(found.high - found.low)),
+            "{found:?}"
+        );
+        assert!(lag_one_correlation(&LaggedProducts::new(&[1.0; 9], 1.0, 1, 3)).is_none());
+        let twelfth = autocovariance(&white, 2);
+        assert!((twelfth[0] * 12.0 - 1.0).abs() < 0.05 && twelfth[2].abs() < 0.003);
+    }
+
+    #[test]
+    fn correlated_samples_count_for_less() {
+        assert!((independent_samples(&[2.0, 0.0], 100) - 100.0).abs() < 1e-12);
+        assert!((independent_samples(&[1.0, 0.5], 150) - 100.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,8 @@
+//! Noise about the signal, whatever the motion: level, colour, spectrum, bias stability.
+
+pub(super) mod autocovariance;
+pub(super) mod bias_stability;
+pub(super) mod level;
+pub(super) mod memory;
+pub(super) mod spectrum;
+pub(super) mod truth_response;

@@ -1,0 +1,343 @@
+//! Scale factor metrics of a staircase of rates.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::scale_factor::{
+    RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero, distinct_rates,
+    distinct_rates_by_sense, fit_scale_factor, too_few_rates,
+};
+use super::small_input::measure_small_inputs;
+use crate::metrics::estimate::blocks::equal_block_means;
+use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
+use crate::metrics::record::{Dwell, Record, Staircase};
+use crate::units::{deg_per_h_to_deg_per_s, ratio_to_ppm};
+use crate::wording::plain;
+
+/// Scale factor error.
+pub static SCALE_FACTOR_ERROR: MetricKey = MetricKey::new(
+    "scale_factor_error_ppm",
+    "ppm",
+    Applies::Steps,
+    "slope of the line through mean output against mean true rate of the settled dwells, minus 1",
+)
+.heading("scale factor error")
+.needs(Needs::Dwells)
+.of_turned_axis()
+.tables(&[Table::Steps])
+.headlines(&[Headline::Steps, Headline::ScaleFactor]);
+
+/// Nonlinearity of full scale.
+pub static SCALE_FACTOR_NONLINEARITY: MetricKey = MetricKey::new(
+    "scale_factor_nonlinearity_ppm",
+    "ppm",
+    Applies::Steps,
+    "largest distance of a dwell from that line over the largest output (of full scale)",
+)
+.heading("nonlinearity")
+.needs(Needs::Dwells)
+.of_turned_axis()
+.tables(&[Table::Steps])
+.headlines(&[Headline::ScaleFactor]);
+
+/// Nonlinearity of reading.
+pub static SCALE_FACTOR_NONLINEARITY_OF_READING: MetricKey = MetricKey::new(
+    "scale_factor_nonlinearity_of_reading_ppm",
+    "ppm",
+    Applies::Steps,
+    "largest distance of a dwell from that line over the line there (of reading)",
+)
+.heading("nonlinearity of reading")
+.needs(Needs::Dwells)
+.of_turned_axis()
+.tables(&[Table::Steps])
+.headlines(&[Headline::ScaleFactor]);
+
+/// Asymmetry of the scale factor.
+pub static SCALE_FACTOR_ASYMMETRY: MetricKey = MetricKey::new(
+    "scale_factor_asymmetry_ppm",
+    "ppm",
+    Applies::Steps,
+    "difference of the slopes of separate lines for the two senses over their mean",
+)
+.heading("asymmetry")
+.needs(Needs::DwellsOfBothSenses)
+.of_turned_axis()
+.tables(&[Table::Steps])
+.headlines(&[Headline::ScaleFactor]);
+
+/// Blocks of a dwell whose scatter gives the error of its mean.
+const DWELL_BLOCKS: usize = 10;
+
+/// Fewest settled samples of a dwell that counts.
+const DWELL_SAMPLES_MIN: usize = 2 * DWELL_BLOCKS;
+
+/// Samples by which a dwell may miss its whole turns: both ends and the settling are rounded.
+const DWELL_SLACK_SAMPLES: f64 = 1.5;
+
+/// Metrics of the line through the dwells.
+static OF_FIT: [&MetricKey; 4] = [
+    &SCALE_FACTOR_ERROR,
+    &SCALE_FACTOR_NONLINEARITY,
+    &SCALE_FACTOR_NONLINEARITY_OF_READING,
+    &SCALE_FACTOR_ASYMMETRY,
+];
+
+/// The samples of a dwell inside a record of `samples`; `None` where too few of them have settled.
+fn counted(dwell: &Dwell, samples: usize) -> Option<Range<usize>> {
+    let end = dwell.samples.end.min(samples);
+    let start = dwell.samples.start;
+    (end >= start.saturating_add(DWELL_SAMPLES_MIN)).then_some(start..end)
+}
+
+/// Why a staircase cannot support one of the scale factor metrics, if it cannot.
+pub(crate) fn lack(key: &MetricKey, staircase: &Staircase, samples: usize) -> Option<String> {
+    if !matches!(key.needs, Needs::Dwells | Needs::DwellsOfBothSenses) {
+        return None;
+    }
+    let rates: Vec<f64> = staircase
+        .dwells
+        .iter()
+        .filter(|dwell| counted(dwell, samples).is_some())
+        .map(|dwell| dwell.rate_deg_per_h)
+        .collect();
+    let distinct = distinct_rates(rates.iter().copied());
+    let settle_s = staircase.settle_s;
+    if distinct < RATES_MIN {
+        return Some(format!(
+            "{} among the dwells that hold {DWELL_SAMPLES_MIN} samples after {} s of \
+             settling",
+            too_few_rates(distinct),
+            plain(settle_s)
+        ));
+    }
+    let senses = distinct_rates_by_sense(&rates, staircase.rest_deg_per_h);
+    let is_one_sided = senses.iter().any(|&rates| rates < RATES_PER_SENSE_MIN);
+    (key.needs == Needs::DwellsOfBothSenses && is_one_sided).then(|| {
+        let [positive, negative] = senses;
+        format!(
+            "asymmetry needs {RATES_PER_SENSE_MIN} distinct rates of each sense; there are \
+             {positive} positive and {negative} negative"
+        )
+    })
+}
+
+/// Enters the scale factor, its errors and the curves.
+///
+/// Input and output of a dwell are the means of truth and channel over its settled samples. What is
+/// there at rest is subtracted from both: the means of the static zeros where there are some,
+/// otherwise the Earth's rate, which the axis sees at rest.
+pub(crate) fn measure_scale_factor(
+    record: &Record,
+    staircase: &Staircase,
+    metrics: &mut ChannelMetrics,
+) {
+    let samples = record.channel_deg_per_h.len();
+    let mut dwells: Vec<(&Dwell, RatePoint)> = staircase
+        .dwells
+        .iter()
+        .filter_map(|dwell| Some((dwell, rate_point(record, counted(dwell, samples)?))))
+        .collect();
+    let every: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
+    put_response(&every, metrics);
+    measure_small_inputs(&every, staircase, metrics);
+    let rest = match static_zero(staircase, &mut dwells) {
+        Ok(rest) => rest,
+        Err(reason) => {
+            for key in OF_FIT {
+                metrics.miss(key, reason.clone());
+            }
+            return;
+        }
+    };
+    let points: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
+    match fit_scale_factor(&points, rest) {
+        Ok(fit) => {
+            put_fit(&fit, staircase, points.len(), metrics);
+            put_rates(
+                record.sample_period_s,
+                staircase,
+                (&dwells, rest),
+                &fit,
+                metrics,
+            );
+        }
+        // The truth may hold fewer rates than were told, under a servo that has not settled.
+        Err(reason) => {
+            for key in OF_FIT {
+                let told = lack(key, staircase, samples);
+                metrics.miss(key, told.unwrap_or_else(|| reason.clone()));
+            }
+        }
+    }
+}
+
+/// Input and output at rest; takes the static zeros out of the dwells.
+fn static_zero(
+    staircase: &Staircase,
+    dwells: &mut Vec<(&Dwell, RatePoint)>,
+) -> Result<StaticZero, String> {
+    if !staircase.has_static_zeros {
+        return Ok(StaticZero {
+            input_deg_per_h: staircase.rest_deg_per_h,
+            output_deg_per_h: staircase.rest_deg_per_h,
+        });
+    }
+    let is_whole = dwells.len() == staircase.dwells.len() && dwells.len() > 1;
+    if !is_whole {
+        return Err(format!(
+            "the test is not whole: {} of {} dwells hold {DWELL_SAMPLES_MIN} settled samples",
+            dwells.len(),
+            staircase.dwells.len()
+        ));
+    }
+    let (before, after) = (dwells.remove(0).1, dwells.pop().map(|last| last.1));
+    let after = after.unwrap_or(before);
+    Ok(StaticZero {
+        input_deg_per_h: 0.5 * (before.input_deg_per_h + after.input_deg_per_h),
+        output_deg_per_h: 0.5 * (before.output_deg_per_h + after.output_deg_per_h),
+    })
+}
+
+fn rate_point(record: &Record, range: Range<usize>) -> RatePoint {
+    let output = &record.channel_deg_per_h[range.clone()];
+    let blocks = equal_block_means(output, DWELL_BLOCKS);
+    RatePoint {
+        input_deg_per_h: interval::mean(&record.truth_deg_per_h[range]),
+        output_deg_per_h: interval::mean(output),
+        deviation_deg_per_h: (interval::sample_variance(&blocks) / blocks.len() as f64).sqrt(),
+        degrees_of_freedom: blocks.len() as f64 - 1.0,
+    }
+}
+
+fn put_fit(
+    fit: &ScaleFactorFit,
+    staircase: &Staircase,
+    dwells: usize,
+    metrics: &mut ChannelMetrics,
+) {
+    let in_ppm = |estimate: Estimate| estimate.scaled(ratio_to_ppm(1.0));
+    let Estimate {
+        value, low, high, ..
+    } = fit.factor;
+    let error = in_ppm(Estimate::with_interval(value - 1.0, low - 1.0, high - 1.0));
+    let mut put = |key: &MetricKey, estimate, extra: &[(&'static str, f64)]| {
+        let fields = &mut metrics.put(key, estimate).fields;
+        fields.insert("settle_s", staircase.settle_s);
+        fields.insert("count", dwells as f64);
+        let finite = extra.iter().filter(|(_, value)| value.is_finite());
+        fields.extend(finite.copied());
+    };
+    put(
+        &SCALE_FACTOR_ERROR,
+        error,
+        &[("offset_deg_per_h", fit.offset_deg_per_h)],
+    );
+    for (key, found) in [
+        (&SCALE_FACTOR_NONLINEARITY, &fit.nonlinearity),
+        (
+            &SCALE_FACTOR_NONLINEARITY_OF_READING,
+            &fit.nonlinearity_of_reading,
+        ),
+    ] {
+        let floor = ratio_to_ppm(found.noise_floor);
+        put(key, in_ppm(found.value), &[("noise_floor_ppm", floor)]);
+    }
+    if let Some(asymmetry) = &fit.asymmetry {
+        let error_ppm = |factor: f64| ratio_to_ppm(factor - 1.0);
+        let senses = [
+            ("positive_error_ppm", error_ppm(asymmetry.positive)),
+            ("negative_error_ppm", error_ppm(asymmetry.negative)),
+        ];
+        put(&SCALE_FACTOR_ASYMMETRY, in_ppm(asymmetry.value), &senses);
+    }
+}
+
+/// Enters the table of the rates: input and output over rest, distance from the line with its own
+/// interval of 95 %, and how the table turned. Points at rest have no reading and are left out.
+fn put_rates(
+    sample_period_s: f64,
+    staircase: &Staircase,
+    (dwells, rest): (&[(&Dwell, RatePoint)], StaticZero),
+    fit: &ScaleFactorFit,
+    metrics: &mut ChannelMetrics,
+) {
+    let mut curve: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for ((dwell, point), residual) in dwells.iter().zip(&fit.residuals) {
+        if !residual.is_moved {
+            continue;
+        }
+        let table_deg_per_h = dwell.rate_deg_per_h - staircase.rest_deg_per_h;
+        let counted = dwell.samples.end - dwell.samples.start;
+        let measured_s = counted as f64 * sample_period_s;
+        let turns = deg_per_h_to_turns_per_s(table_deg_per_h) * measured_s;
+        let slack =
+            DWELL_SLACK_SAMPLES * deg_per_h_to_turns_per_s(table_deg_per_h.abs()) * sample_period_s;
+        let is_whole = turns.round().abs() >= 1.0 && (turns - turns.round()).abs() <= slack;
+        let quantile = interval::student_quantile(residual.degrees_of_freedom);
+        let half_width = quantile * residual.deviation_deg_per_h;
+        let of_full_scale = ratio_to_ppm(1.0 / fit.full_scale_deg_per_h);
+        let of_reading = ratio_to_ppm(1.0 / residual.reading_deg_per_h.abs());
+        let mut put = |name: &str, value| curve.entry(name.to_owned()).or_default().push(value);
+        put(
+            "input_deg_per_h",
+            point.input_deg_per_h - rest.input_deg_per_h,
+        );
+        put("mean_output_deg_per_h", point.output_deg_per_h);
+        put(
+            "output_deg_per_h",
+            point.output_deg_per_h - rest.output_deg_per_h,
+        );
+        put("measured_s", measured_s);
+        put("turns", turns);
+        put("whole_turns", f64::from(u8::from(is_whole)));
+        for (of, factor) in [("full_scale", of_full_scale), ("reading", of_reading)] {
+            for (end, shift) in [("", 0.0), ("_low", -half_width), ("_high", half_width)] {
+                let value = factor * (residual.value_deg_per_h + shift);
+                put(&format!("residual{end}_ppm_of_{of}"), value);
+            }
+        }
+    }
+    let mut values = curve.values().flatten();
+    if !curve.is_empty() && values.all(|value| value.is_finite()) {
+        metrics.curves.insert("scale_factor".to_owned(), curve);
+    }
+}
+
+/// Turns of the table per second.
+fn deg_per_h_to_turns_per_s(rate_deg_per_h: f64) -> f64 {
+    deg_per_h_to_deg_per_s(rate_deg_per_h) / 360.0
+}
+
+/// Enters output and error of each dwell, with the interval of the error.
+fn put_response(points: &[RatePoint], metrics: &mut ChannelMetrics) {
+    if points.is_empty() {
+        return;
+    }
+    let error = |point: &RatePoint| point.output_deg_per_h - point.input_deg_per_h;
+    let half_width = |point: &RatePoint| {
+        interval::student_quantile(point.degrees_of_freedom) * point.deviation_deg_per_h
+    };
+    let column = |pick: &dyn Fn(&RatePoint) -> f64| points.iter().map(pick).collect();
+    let columns: [(&str, Vec<f64>); 5] = [
+        ("input_deg_per_h", column(&|point| point.input_deg_per_h)),
+        ("output_deg_per_h", column(&|point| point.output_deg_per_h)),
+        ("error_deg_per_h", column(&error)),
+        (
+            "error_low_deg_per_h",
+            column(&|point| error(point) - half_width(point)),
+        ),
+        (
+            "error_high_deg_per_h",
+            column(&|point| error(point) + half_width(point)),
+        ),
+    ];
+    let curve: BTreeMap<String, Vec<f64>> = columns
+        .into_iter()
+        .map(|(name, values)| (name.to_owned(), values))
+        .collect();
+    metrics.curves.insert("response".to_owned(), curve);
+}

@@ -1,0 +1,157 @@
+//! How much noise the wandering of a filter's weights adds.
+
+use super::dc_gain::dc_gain_lack;
+use crate::metrics::allan::overlapping::{NoiseType, degrees_of_freedom};
+use crate::metrics::estimate::blocks::samples_in;
+use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::metric::{Applies, MetricKey, Table};
+use crate::metrics::noise::memory::memory_samples;
+use crate::metrics::record::{FilterFacts, Record};
+
+/// Weight noise.
+pub static WEIGHT_NOISE_RATIO: MetricKey = MetricKey::of_filters(
+    "weight_noise_ratio",
+    "1",
+    Applies::Steady,
+    "Allan deviation at averaging_time_s over DC gain times raw's: 1 when the weights stand still",
+)
+.heading("weight noise")
+.tables(&[Table::Rest]);
+
+/// Averaging time at which the ratio is taken, s, if the record supports it.
+const AVERAGING_TIME_S: f64 = 1.0;
+
+/// Fewest degrees of freedom of the Allan variance of white noise at the averaging time.
+const FREEDOM_MIN: f64 = 20.0;
+
+/// Averaging times asked for, and needed, over the samples that a filter reaches back: an average of p
+/// samples lowers the ratio by p over three averaging times.
+const REACHES: usize = 10;
+const REACHES_MIN: usize = 5;
+
+/// Most and fewest blocks of the jackknife; second differences reach two averaging times, so that
+/// blocks of four are nearly independent.
+const BLOCKS_MAX: usize = 20;
+const BLOCKS_MIN: usize = 3;
+const AVERAGING_TIMES_PER_BLOCK: usize = 4;
+
+/// Enters `weight_noise_ratio`: `ADEV(output) / (DC gain ADEV(raw))` at 1 s or ten reaches of the
+/// filter, or at the longest averaging time below at which the record has 20 degrees of freedom.
+///
+/// A filter whose weights stand still passes what is slower than its taps with its DC gain, and the
+/// ratio is 1. Weights that wander multiply the mean rate by a noise of their own, which no DC gain
+/// restores. The averaging time must be long against the taps: at a few samples the ratio shows the
+/// filter's smoothing instead.
+///
+/// Interval: jackknife over blocks of time, output and raw leaving together. Source: derived.
+pub(crate) fn measure_weight_noise(
+    record: &Record,
+    facts: &FilterFacts,
+    metrics: &mut ChannelMetrics,
+) {
+    let Some(dc_gain) = facts.dc_gain else {
+        metrics.miss(
+            &WEIGHT_NOISE_RATIO,
+            "the DC gain of this filter is not known",
+        );
+        return;
+    };
+    if dc_gain <= 1e-6 || !dc_gain.is_finite() {
+        return metrics.miss(&WEIGHT_NOISE_RATIO, dc_gain_lack(dc_gain));
+    }
+    let count = record.raw_deg_per_h.len();
+    let reach = memory_samples(&facts.shape) + facts.shape.newest_age_samples;
+    let asked = samples_in(AVERAGING_TIME_S, record.sample_period_s).max(REACHES * reach);
+    let longest = asked.min(count / 4);
+    let supported = |m: &usize| degrees_of_freedom(NoiseType::White, count + 1, *m) >= FREEDOM_MIN;
+    let Some(m) = (1..=longest).rev().find(supported) else {
+        metrics.miss(
+            &WEIGHT_NOISE_RATIO,
+            format!("no averaging time has {FREEDOM_MIN} degrees of freedom"),
+        );
+        return;
+    };
+    if m < REACHES_MIN * reach {
+        metrics.miss(
+            &WEIGHT_NOISE_RATIO,
+            format!(
+                "no averaging time long against the {reach} samples that the filter reaches back"
+            ),
+        );
+        return;
+    }
+    let blocks = (count / (AVERAGING_TIMES_PER_BLOCK * m)).clamp(BLOCKS_MIN, BLOCKS_MAX);
+    let own = second_difference_squares(record.channel_deg_per_h, m, blocks);
+    let raw = second_difference_squares(record.raw_deg_per_h, m, blocks);
+    let (own_sum, raw_sum): (f64, f64) = (own.iter().sum(), raw.iter().sum());
+    let scatter = (raw_sum / count as f64).sqrt() / m as f64;
+    if scatter <= 1e-12 * interval::mean(record.raw_deg_per_h).abs() || raw_sum <= 0.0 {
+        metrics.miss(&WEIGHT_NOISE_RATIO, "the raw channel has no noise");
+        return;
+    }
+    let ratio = |own: f64, raw: f64| (own / raw).max(0.0).sqrt() / dc_gain;
+    let left_out: Vec<f64> = own
+        .iter()
+        .zip(&raw)
+        .map(|(own, raw)| ratio(own_sum - own, raw_sum - raw))
+        .collect();
+    let estimate = interval::jackknife(ratio(own_sum, raw_sum), &left_out);
+    let metric = metrics.put(
+        &WEIGHT_NOISE_RATIO,
+        Estimate::with_interval(estimate.value, estimate.low.max(0.0), estimate.high),
+    );
+    // The time asked for where it is the nearest whole number of samples.
+    let averaging_time_s = if m == samples_in(AVERAGING_TIME_S, record.sample_period_s) {
+        AVERAGING_TIME_S
+    } else {
+        m as f64 * record.sample_period_s
+    };
+    metric.fields.insert("averaging_time_s", averaging_time_s);
+    metric.fields.insert("dc_gain", dc_gain);
+}
+
+/// Sums, block by block of their first sample, of the squared differences between the sums of `m`
+/// samples and of the `m` before: the terms of the overlapping Allan variance.
+///
+/// The difference slides by `x[k+2m] - 2x[k+m] + x[k]` and starts afresh in every block, so that
+/// rounding does not pile up and no angle has to be stored.
+fn second_difference_squares(values: &[f64], m: usize, blocks: usize) -> Vec<f64> {
+    let differences = (values.len() + 1).saturating_sub(2 * m);
+    (0..blocks)
+        .map(|block| {
+            let start = differences * block / blocks;
+            let end = differences * (block + 1) / blocks;
+            if start == end {
+                return 0.0;
+            }
+            let sum = |from: usize| values[from..from + m].iter().sum::<f64>();
+            let mut difference = sum(start + m) - sum(start);
+            let mut squares = difference * difference;
+            for k in start..end - 1 {
+                difference += (values[k + 2 * m] - values[k + m]) - (values[k + m] - values[k]);
+                squares += difference * difference;
+            }
+            squares
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::overlapping_allan_at;
+
+    #[test]
+    fn sliding_differences_are_those_of_the_allan_variance() {
+        let values: Vec<f64> = (0..5000).map(|k| f64::from((k * k) % 1013)).collect();
+        for (m, blocks) in [(1, 3), (7, 20), (300, 4)] {
+            let sum: f64 = second_difference_squares(&values, m, blocks).iter().sum();
+            let point = overlapping_allan_at(&values, 1.0, &[m])[0];
+            let m_f = m as f64;
+            let variance = sum / (2.0 * m_f * m_f * point.count as f64);
+            assert!((variance / point.variance() - 1.0).abs() < 1e-10);
+        }
+    }
+}
