@@ -174,6 +174,14 @@ macro_rules! alternatives {
                 beside: "",
             };
 
+            /// Name of the alternative in a file.
+            #[must_use]
+            pub const fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$variant(_) => $word,)+
+                }
+            }
+
             /// The first alternative as the reference shows it.
             #[must_use]
             pub fn reference() -> Self {

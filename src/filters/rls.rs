@@ -1,10 +1,79 @@
 //! Recursive least squares in its textbook gain form.
 
-use super::core_filter::{Core, CoreFilter, dot};
-use super::divergence::{DivergenceKind, Fault};
-use super::filter::Output;
-use super::front_end::FrontEndConfig;
-use crate::vocabulary::UpdateSign;
+use super::common::{Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, dot};
+use super::hardware::{self, PipelineSettings};
+use super::kind::{ExpectedWords, FilterSettings};
+use crate::declare::table;
+use crate::vocabulary::{
+    DesiredSignal, Division, NumberFormat, OutputRegister, Pipeline, UpdateOrder, UpdateSign,
+};
+
+table! {
+    /// Recursive least squares.
+    pub struct RlsFilterConfig {
+        /// Number of weights p. Source of the default: the paper.
+        taps: u32 = 4, in 1..=64;
+        /// Forgetting factor alpha; 1 forgets nothing. Source of the default: the paper, section 4.1.
+        forgetting_factor: f64 = 1.0, in 1e-3..=1.0;
+        /// Initial inverse correlation. Source of the default: 1e4 (deg/s)^-2, assumed.
+        initial_inverse_correlation: f64 = 7.716e-4, in 1e-18..=1e12, "(deg/h)^-2";
+        /// What the filter aims at. Source of the default: one-step prediction; the paper does not say.
+        desired: DesiredSignal = "current";
+        /// Samples by which the regressors lag the newest sample of the desired signal.
+        input_lag_samples: u32 = 1, in 0..=64;
+        /// When the result appears: at the next sample tick, or as soon as it is computed. Source of the
+        /// default: the sample-and-hold of the paper.
+        output_register: OutputRegister = "next-sample";
+        /// Sign before the error term of the weight update: the one that converges, or the minus that the
+        /// paper's equations (6) and (9) print, which diverges.
+        update_sign: UpdateSign = "corrected";
+        /// Arithmetic: the recursion of the books, or the pipeline of the hardware with its bits and clocks.
+        pipeline: Pipeline = "textbook";
+        /// Words of the hardware; -ftz flushes subnormal numbers to zero. This key and those below only
+        /// matter with pipeline = "fpga". Source of the default: the paper's double precision.
+        number_format: NumberFormat = "binary64";
+        /// Clock of the hardware. Source of the default: the paper.
+        clock_mhz: f64 = 40.0, in 1e-3..=10000.0, "MHz";
+        /// One division per sample, or one for each element of the matrix. Source of the default: derived,
+        /// the paper counts one divider even where everything is done at once.
+        division: Division = "reciprocal";
+        /// Order of the products in the update of the matrix: (t_i t_j) r, which keeps it symmetric to the
+        /// bit, or (t_i r) t_j, which fails below a forgetting factor of 1. Source of the default: derived
+        /// from the clocks of the paper's states.
+        update_order: UpdateOrder = "schedule";
+    }
+}
+
+impl FilterSettings for RlsFilterConfig {
+    fn notes(&self, words: &ExpectedWords) -> Vec<String> {
+        // The hardware warns by itself.
+        if self.pipeline == Pipeline::Fpga {
+            return Vec::new();
+        }
+        let delta = self.initial_inverse_correlation;
+        covariance_digits_warning(delta, self.taps as usize, words.peak_deg_per_h)
+            .into_iter()
+            .collect()
+    }
+
+    fn build(&self, _sample_period_s: f64) -> Box<dyn Filter> {
+        Box::new(Rls::new(&RlsConfig {
+            taps: self.taps as usize,
+            forgetting_factor: self.forgetting_factor,
+            initial_inverse_correlation: self.initial_inverse_correlation,
+            update_sign: self.update_sign,
+            front_end: FrontEndConfig {
+                desired: self.desired,
+                input_lag_samples: self.input_lag_samples as usize,
+                output_register: self.output_register,
+            },
+        }))
+    }
+
+    fn hardware(&self) -> Option<PipelineSettings> {
+        (self.pipeline == Pipeline::Fpga).then(|| hardware::rls(self))
+    }
+}
 
 /// Settings of a recursive-least-squares filter.
 #[derive(Clone, Debug, PartialEq)]
@@ -181,4 +250,35 @@ impl Core for RlsCore {
     fn weights(&self) -> &[f64] {
         &self.weights
     }
+}
+
+/// Digits of binary64 that may be spent on the initial inverse correlation: beyond
+/// `delta p x^2 = 1e10` fewer than six significant digits of P are left after the first updates.
+const COVARIANCE_RATIO_MAX: f64 = 1e10;
+
+/// Warns where recursive least squares in binary64 loses its digits to the initial condition.
+///
+/// The first updates subtract nearly all of `P = delta I`; what is left carries a relative error of
+/// about `2e-16 delta p x^2`.
+///
+/// * `initial_inverse_correlation`: delta, (deg/h)^-2.
+/// * `rate_max_deg_per_h`: largest input word to be expected, deg/h.
+///
+/// Returns a sentence if `delta p x^2` exceeds 1e10.
+#[must_use]
+pub fn covariance_digits_warning(
+    initial_inverse_correlation: f64,
+    taps: usize,
+    rate_max_deg_per_h: f64,
+) -> Option<String> {
+    let ratio = initial_inverse_correlation * taps as f64 * rate_max_deg_per_h * rate_max_deg_per_h;
+    (ratio > COVARIANCE_RATIO_MAX).then(|| {
+        let wanted = initial_inverse_correlation * COVARIANCE_RATIO_MAX / ratio;
+        format!(
+            "initial_inverse_correlation = {initial_inverse_correlation:e} (deg/h)^-2 with {taps} \
+             taps and rates up to {rate_max_deg_per_h} deg/h makes delta p x^2 = {ratio:.1e}, \
+             above {COVARIANCE_RATIO_MAX:e}: the covariance form loses its digits in binary64; \
+             use {wanted:.1e} or less"
+        )
+    })
 }

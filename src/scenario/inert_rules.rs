@@ -4,6 +4,7 @@
 //! limit that the motion never reaches, is none.
 
 use super::config::{GateConfig, GateDecision, Scenario};
+use crate::filters::hardware::has_hardware;
 use crate::filters::{FilterConfig, FilterKind};
 use crate::gyro::Fidelity;
 use crate::gyro::VibrationMotion;
@@ -12,7 +13,6 @@ use crate::gyro::{PowerConfig, TemperatureConfig, ThermalWarmUp};
 use crate::turntable::Stairs;
 use crate::turntable::{MotionConfig, ServoConfig};
 use crate::vocabulary::EstimatorKind;
-use crate::vocabulary::Pipeline;
 
 /// The condition under which a key acts.
 #[derive(Clone, Copy)]
@@ -364,11 +364,5 @@ fn runs_any(scenario: &Scenario, kinds: &[EstimatorKind]) -> bool {
 }
 
 fn is_hardware(filter: &FilterConfig) -> bool {
-    let pipeline = match &filter.kind {
-        FilterKind::Rls(config) => config.pipeline,
-        FilterKind::Lms(config) => config.pipeline,
-        FilterKind::SignLms(config) => config.pipeline,
-        _ => return true,
-    };
-    pipeline == Pipeline::Fpga
+    filter.kind.settings().hardware().is_some() || !has_hardware(filter.kind.name())
 }

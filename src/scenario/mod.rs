@@ -16,7 +16,6 @@ mod cross;
 mod cross_calibration;
 mod cross_comparison;
 mod cross_compensation;
-mod cross_filter;
 mod cross_gyro;
 mod cross_multi_sine;
 mod cross_optics;
