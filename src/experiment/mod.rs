@@ -8,8 +8,10 @@ mod build;
 mod campaign;
 mod channel_filter;
 mod line_enhancer;
+#[cfg(feature = "report")]
 mod log;
 mod pipeline_check;
+#[cfg(feature = "hdl")]
 mod pipeline_export;
 mod pipeline_filter;
 mod pipeline_metrics;
@@ -17,25 +19,30 @@ mod pipeline_settings;
 mod plan;
 mod run;
 mod scenario;
+#[cfg(feature = "report")]
 mod suite;
 mod textbook;
 
 pub use budget::{GyroBudget, gyro_budget};
 pub use build::BUILD;
+#[cfg(feature = "report")]
 pub use campaign::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
-    calibrate_scenario, calibration_sheet,
 };
+pub use campaign::{calibrate_scenario, calibration_sheet};
+#[cfg(feature = "report")]
 pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogInput, LogMotion, LogSettings, LogTrial,
     LogTrialError, compensate_log, load_log_compensation, load_log_filters, try_log,
 };
+#[cfg(feature = "hdl")]
 pub use pipeline_export::{Stimulus, export_pipeline, scenario_stimulus};
 pub use pipeline_filter::{HardwareFilter, HealthSummary};
 pub use pipeline_settings::{PipelineSettings, PipelineTiming};
 pub use plan::{Plan, Sound, check_suite, plan_suite};
 pub use run::{Progress, Run, RunError, Samples, UnknownName};
 pub use scenario::Scenario;
+#[cfg(feature = "report")]
 pub use suite::{
     Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX, run_suite,
     start_threads, thread_count, write_runs,
