@@ -4,8 +4,9 @@ use crate::support::run;
 use fogbench::comparison::Comparison;
 use fogbench::gate::{Verdict, VerdictKind, judge};
 use fogbench::metrics::ChannelMetrics;
+use fogbench::metrics::catalogue::{ALLAN, PSD};
 use fogbench::report::{
-    RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, allan_csv, junit_xml, plots, psd_csv,
+    RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, curve_csv, junit_xml, plots,
     run_summary_json, suite_summary_json, suite_text, table_text,
 };
 use fogbench::scenario::{GateConfig, GateDecision, InconclusivePolicy, Scenario};
@@ -349,11 +350,11 @@ fn a_table_shows_published_figures_beside_the_simulated_ones() {
 #[test]
 fn curves_become_one_row_per_channel_and_point() {
     let fixture = Fixture::usual();
-    let csv = allan_csv(&fixture.report()).unwrap();
+    let csv = curve_csv(&ALLAN, &fixture.channels).unwrap();
     let head = "channel,tau_s,deviation_deg_per_h,high_deg_per_h,low_deg_per_h";
     assert_eq!(csv.lines().next().unwrap(), head);
     assert_eq!(csv.lines().nth(2).unwrap(), "raw,1.0,0.36,0.37,0.35");
-    assert!(psd_csv(&fixture.report()).is_none());
+    assert!(curve_csv(&PSD, &fixture.channels).is_none());
 }
 
 #[test]

@@ -1,15 +1,17 @@
 //! The verdict on a filter: what the intervals of its metrics say it does to signal and noise.
 
-use super::noise_delay::NOISE_GAIN_OVER_BOUND;
-use super::readaptation::READAPTATION_TIME;
-use super::weight_noise::WEIGHT_NOISE_RATIO;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
-use crate::metrics::key::metric::MetricKey;
-use crate::metrics::measure::{DC_GAIN, SETTLED_GAIN};
-use crate::metrics::motion::steady::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, DELAY_AT_DC};
-use crate::metrics::motion::swing::{AMPLITUDE_RATIO, DELAY_VS_RAW};
-use crate::metrics::noise::level::NOISE_GAIN;
-use crate::metrics::steps::staircase::SCALE_FACTOR_ERROR;
+use super::estimate::table::ChannelMetrics;
+use super::estimate::value::Estimate;
+use super::key::metric::MetricKey;
+use super::motion::steps::SETTLED_GAIN;
+use super::motion::swing::{AMPLITUDE_RATIO, DELAY_VS_RAW};
+use super::noise::level::NOISE_GAIN;
+use super::steps::staircase::SCALE_FACTOR_ERROR;
+use super::trial::dc_gain::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, DC_GAIN};
+use super::trial::noise_delay::NOISE_GAIN_OVER_BOUND;
+use super::trial::predicted::DELAY_AT_DC;
+use super::trial::readaptation::READAPTATION_TIME;
+use super::trial::weight_noise::WEIGHT_NOISE_RATIO;
 use crate::units::MICRO;
 
 /// Distance of a gain from 1 that counts as none.
@@ -211,7 +213,8 @@ fn one_plus_ppm(error_ppm: Estimate) -> Estimate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::estimate::value::{ChannelFailure, Metric};
+    use crate::metrics::estimate::table::ChannelFailure;
+    use crate::metrics::estimate::value::Metric;
 
     fn channel(entries: &[(&str, f64, f64)]) -> ChannelMetrics {
         let metrics = entries.iter().map(|(name, low, high)| {
