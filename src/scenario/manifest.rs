@@ -7,7 +7,6 @@ use super::draft::{Draft, Recorded};
 use super::error::{ScenarioError, portable_place};
 use super::excerpt::excerpt;
 use super::input;
-use super::matrix::POINTS_MAX;
 use super::resolved::{InputFile, Resolved, SweepPoint};
 use super::source::{Mark, Sources, shown_path};
 use super::tree::{Node, Table, Value};
@@ -203,9 +202,9 @@ fn absurd_sweep(root: &Table) -> Option<(Option<Mark>, String)> {
         _ => None,
     };
     let ((index, index_mark), (count, count_mark)) = (whole("index")?, whole("count")?);
-    if !usize::try_from(count).is_ok_and(|count| (1..=POINTS_MAX).contains(&count)) {
-        let message =
-            format!("origin.sweep.count = {count} is out of range: allowed 1..={POINTS_MAX}");
+    if !usize::try_from(count).is_ok_and(|count| (1..=SweepPoint::COUNT_MAX).contains(&count)) {
+        let max = SweepPoint::COUNT_MAX;
+        let message = format!("origin.sweep.count = {count} is out of range: allowed 1..={max}");
         return Some((count_mark, message));
     }
     if !(0..count).contains(&index) {

@@ -4,17 +4,15 @@ use std::cmp::Reverse;
 use std::sync::Arc;
 
 use super::address::{self, Step};
-use super::draft::{Draft, Unsound};
+use super::draft::Draft;
 use super::error::ScenarioError;
+use super::resolve::Unsound;
 use super::resolved::{Resolved, SweepPoint};
 use super::schema::Key;
 use super::script;
 use super::source::{Mark, Sources};
 use super::template::Template;
 use super::tree::{Node, Table, Value};
-
-/// Most points of one sweep: folders are numbered with four digits.
-pub(super) const POINTS_MAX: usize = 10_000;
 
 /// Points tried, if none of them is sound: what they share is said by then.
 const TRIALS_MAX: usize = 100;
@@ -65,9 +63,10 @@ pub(super) fn expand(
     let count = axes
         .iter()
         .try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len()))
-        .filter(|count| *count <= POINTS_MAX);
+        .filter(|count| *count <= SweepPoint::COUNT_MAX);
     let Some(count) = count else {
-        let message = format!("matrix has too many points: allowed 1..={POINTS_MAX}");
+        let max = SweepPoint::COUNT_MAX;
+        let message = format!("matrix has too many points: allowed 1..={max}");
         let mark = matrix.mark.unwrap_or(draft.root_mark);
         return Err(vec![draft.sources.error(mark, message)].into());
     };

@@ -40,6 +40,7 @@ mod matrix;
 mod numbers;
 mod presence;
 mod reference;
+mod resolve;
 mod resolved;
 mod schema;
 mod script;
@@ -84,13 +85,13 @@ pub use config::{
     InconclusivePolicy, OutputConfig, PublishedConfig, SamplesFormat, Scenario, TrialConfig,
 };
 pub(crate) use cross_comparison::slug;
-pub(crate) use draft::UnsoundReading;
 pub use error::{Location, ScenarioError};
 pub(crate) use error::{in_both, in_order, portable_place};
 pub use excerpt::{bounded, excerpt};
 pub use json_schema::json_schema;
 pub use manifest::manifest_toml;
 pub use reference::reference_toml;
+pub(crate) use resolve::UnsoundReading;
 pub use resolved::{InputFile, Resolved, SweepPoint};
 pub use setting::Setting;
 pub(crate) use suite::{Reading, read_suite};

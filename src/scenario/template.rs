@@ -4,12 +4,15 @@
 //! been checked, filled in and spelled for one of them therefore holds for all: a further point
 //! costs its own values and the checks across values.
 
+use std::sync::Arc;
+
 use super::address::{self, Step};
+use super::cross;
 use super::emit::to_toml_around;
 use super::error::ScenarioError;
 use super::leaf::check_leaf;
 use super::numbers::settled_value;
-use super::resolved::Resolved;
+use super::resolved::{Resolved, configuration, digest};
 use super::schema::Key;
 use super::tree::{Node, Table};
 
@@ -104,6 +107,35 @@ impl Template {
             text.push_str(&spelled[*index]);
             text.push_str(piece);
         }
-        self.run.with_tree(tree, &text)
+        with_tree(&self.run, tree, &text)
+    }
+}
+
+/// The run with other values, all of them checked one by one, and their canonical text.
+///
+/// # Errors
+/// Every contradiction between the values.
+fn with_tree(run: &Resolved, tree: Table, text: &str) -> Result<Resolved, Vec<ScenarioError>> {
+    let other = Resolved {
+        scenario: configuration(&tree, run.root_mark, &run.sources)?,
+        digest: digest(text),
+        tree,
+        file: run.file.clone(),
+        inputs: run.inputs.clone(),
+        sweep: None,
+        warnings: run.warnings.clone(),
+        remarks: run.remarks.clone(),
+        is_base_point: false,
+        campaign: run.campaign.clone(),
+        gate_places: run.gate_places.clone(),
+        sources: Arc::clone(&run.sources),
+        root_mark: run.root_mark,
+        is_record: run.is_record,
+    };
+    let errors = cross::check(&other);
+    if errors.is_empty() {
+        Ok(other)
+    } else {
+        Err(errors)
     }
 }
