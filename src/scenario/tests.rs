@@ -233,7 +233,7 @@ fn suggestions_prefer_the_same_table_and_are_none_when_nothing_is_near() {
 
 #[test]
 fn json_schema_follows_the_key_table() {
-    let document = crate::scenario::generate::json_schema();
+    let document = crate::scenario::json_schema();
     let length = &document["properties"]["gyro"]["properties"]["coil"]["properties"]["length_m"];
     assert_eq!(length["minimum"], 1.0);
     assert_eq!(length["maximum"], 50_000.0);
@@ -259,7 +259,7 @@ fn json_schema_follows_the_key_table() {
 
 #[test]
 fn json_schema_asks_for_what_the_reader_asks_for() {
-    let document = crate::scenario::generate::json_schema();
+    let document = crate::scenario::json_schema();
     let items = |name: &str| &document["properties"][name]["items"];
     let required = |name: &str| serde_json::json!({"required": [name]});
     assert_eq!(
