@@ -7,21 +7,16 @@ mod budget;
 mod build;
 mod campaign;
 mod channel_filter;
-mod line_enhancer;
 #[cfg(feature = "report")]
 mod log;
-mod pipeline_check;
-#[cfg(feature = "hdl")]
-mod pipeline_export;
-mod pipeline_filter;
 mod pipeline_metrics;
-mod pipeline_settings;
 mod plan;
 mod run;
 mod scenario;
+#[cfg(feature = "hdl")]
+mod stimulus;
 #[cfg(feature = "report")]
 mod suite;
-mod textbook;
 
 pub use budget::{GyroBudget, gyro_budget};
 pub use build::BUILD;
@@ -35,13 +30,11 @@ pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogInput, LogMotion, LogSettings, LogTrial,
     LogTrialError, compensate_log, load_log_compensation, load_log_filters, try_log,
 };
-#[cfg(feature = "hdl")]
-pub use pipeline_export::{Stimulus, export_pipeline, scenario_stimulus};
-pub use pipeline_filter::{HardwareFilter, HealthSummary};
-pub use pipeline_settings::{PipelineSettings, PipelineTiming};
 pub use plan::{Plan, Sound, check_suite, plan_suite};
 pub use run::{Progress, Run, RunError, Samples, UnknownName};
 pub use scenario::Scenario;
+#[cfg(feature = "hdl")]
+pub use stimulus::scenario_stimulus;
 #[cfg(feature = "report")]
 pub use suite::{
     Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX, run_suite,

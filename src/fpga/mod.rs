@@ -33,6 +33,7 @@ pub mod probe;
 pub mod registers;
 pub mod rls;
 pub mod sign_lms;
+mod steps;
 pub mod timing;
 #[doc(hidden)]
 pub mod trace;
