@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::arguments::Format;
+use super::format::Format;
 use crate::experiment::GroupsSettings;
 use crate::scenario::CalibrationConfig;
 use crate::vocabulary::{EstimatorKind, ForgettingForm};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::arguments::Format;
+use super::format::Format;
 use super::numbers::within;
 use crate::experiment::LogMotion;
 use crate::recording::{RateUnit, SAMPLE_RATE_HZ, TimeUnit};

@@ -45,6 +45,7 @@ pub struct StaticZero {
 
 /// What the outputs at constant rates say.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ScaleFactorFit {
     /// Slope K.
     pub factor: Estimate,
@@ -65,6 +66,7 @@ pub struct ScaleFactorFit {
 
 /// Difference between the senses of rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Asymmetry {
     /// `|K+ - K-| / ((K+ + K-) / 2)`, a ratio.
     pub value: Estimate,

@@ -10,6 +10,7 @@ use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
 
 /// What a trapezoid, chirp or script asks of the table at most; see [`command_extremes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CommandExtremes {
     /// Largest jump of the rate, the one from rest at the start included, rad/s.
     pub jump_rad_per_s: f64,
