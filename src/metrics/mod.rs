@@ -59,13 +59,14 @@ pub use allan::variants::{
 };
 pub(crate) use catalogue::names::{meant, unknown};
 pub use catalogue::support::{encoder_lack, support, truth_lack};
-pub use catalogue::{find, known_metrics, repeated_metrics};
+pub use catalogue::{columns, find, known_curves, known_metrics, repeated_metrics};
 pub use estimate::blocks::{block_label_s, block_means, is_sample_or_longer, samples_in};
 pub use estimate::missing::MissingMetric;
 pub use estimate::repeat_statistics::RepeatStatistics;
 pub use estimate::table::{ChannelFailure, ChannelMetrics};
 pub(crate) use estimate::text::{estimate_text, is_exact, plain, wants_exponent};
 pub use estimate::value::{Estimate, Metric};
+pub use key::curve::{Column, Curve, CurveKey};
 pub(crate) use key::metric::{Against, Headline, Table};
 pub use key::metric::{Applies, MetricKey};
 pub use measure::measure;

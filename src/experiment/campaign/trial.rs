@@ -13,7 +13,7 @@ use crate::experiment::build::VERSION;
 use crate::experiment::plan::plan_suite;
 use crate::experiment::run::{Progress, count};
 use crate::recording::{LogError, RecordedGroup, RecordedGroups, read_groups};
-use crate::report::{CalibrateReport, CalibrationProvenance, calibration_toml, groups_csv};
+use crate::report::{CalibrateReport, CalibrationProvenance, calibration_files};
 use crate::scenario::{CalibrationConfig, ScenarioError};
 use crate::signal::{CalibrationGroup, CalibrationSheet};
 use crate::store::{OutputFolder, StoreError};
@@ -67,9 +67,9 @@ impl CalibrationTrial {
             digest: &self.digest,
         };
         let staged = folder.stage()?;
-        let parameters = calibration_toml(&self.sheet, &provenance);
-        staged.write("calibration.toml", parameters.as_bytes())?;
-        staged.write("groups.csv", groups_csv(&self.sheet.groups).as_bytes())?;
+        for (name, text) in calibration_files(&self.sheet, &provenance) {
+            staged.write(&name, text.as_bytes())?;
+        }
         staged.seal_plainly("calibration")?;
         staged.put_files_in_place()
     }

@@ -12,7 +12,7 @@ use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
 use crate::metrics::{ChannelMetrics, Motion, Settings, is_sample_or_longer, record_fit_tau_min_s};
 use crate::recording::{Log, csv_text};
-use crate::report::{LogReport, log_files};
+use crate::report::{LogReport, SAMPLES, SAMPLES_CSV, log_files};
 use crate::scenario::{AllanConfig, MotionConfig, StaticConfig, SwingConfig};
 use crate::signal::RunSignals;
 use crate::store::{OutputFolder, StoreError};
@@ -324,10 +324,10 @@ impl LogTrial {
             .into_iter()
             .chain(self.filter_words())
         {
-            staged.write_npy(&format!("samples/{name}.npy"), words)?;
+            staged.write_npy(&SAMPLES.named(name), words)?;
             if as_csv {
                 let text = csv_text(words, self.log.sample_period_s());
-                staged.write(&format!("samples/{name}.csv"), text.as_bytes())?;
+                staged.write(&SAMPLES_CSV.named(name), text.as_bytes())?;
             }
         }
         staged.seal_plainly("log")?;

@@ -4,27 +4,16 @@ use super::output::SuiteOutput;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{RecordLength, Simulation, stamp_s};
 use crate::gyro::temperature_record;
-use crate::report::{self, CalibrationProvenance, Pictures, RunReport};
+use crate::report::{self, Pictures, RunReport};
 use crate::scenario::SamplesFormat;
-use crate::signal::{CalibrationSheet, RunSignals};
+use crate::signal::RunSignals;
 use crate::store::{Staged, StoreError};
 use crate::units::rad_to_arcsec;
 
-/// Picture of a calibration.
-const CALIBRATION_SVG: &str = "calibration.svg";
-
 /// The pictures of one run, and what to say of those that are left out.
 pub(crate) fn draw(plan: &Plan, report: &RunReport, simulation: &Simulation) -> Pictures {
-    let mut pictures = Pictures::default();
     let names = Names::of(report);
-    for signals in &signals(plan, simulation, &names) {
-        pictures.extend(report::plots(report, signals));
-    }
-    if let Some(sheet) = report.calibration {
-        let svg = report::calibration_svg(&report.scenario.name, sheet);
-        pictures.add_svg(CALIBRATION_SVG.to_owned(), svg);
-    }
-    pictures
+    report::run_pictures(report, &signals(plan, simulation, &names))
 }
 
 /// Writes everything of one run beside its place, to be swapped in whole.
@@ -36,24 +25,8 @@ pub(crate) fn write_folder<'a>(
     output: &'a SuiteOutput,
 ) -> Result<Staged<'a>, StoreError> {
     let folder = output.stage()?;
-    folder.write("summary.json", report::run_summary_json(report).as_bytes())?;
-    if let Some(csv) = report::allan_csv(report) {
-        folder.write("allan.csv", csv.as_bytes())?;
-    }
-    if let Some(csv) = report::runs_csv(report) {
-        folder.write("runs.csv", csv.as_bytes())?;
-    }
-    if let Some(csv) = report::autocovariance_csv(report) {
-        folder.write("autocovariance.csv", csv.as_bytes())?;
-    }
-    if let Some(csv) = report::psd_csv(report) {
-        folder.write("psd.csv", csv.as_bytes())?;
-    }
-    if let Some(csv) = report::scale_factor_csv(report) {
-        folder.write("scale-factor.csv", csv.as_bytes())?;
-    }
-    if let Some(sheet) = report.calibration {
-        write_calibration(&folder, report, sheet)?;
+    for (name, text) in report::run_files(report) {
+        folder.write(&name, text.as_bytes())?;
     }
     for (name, svg) in &pictures.drawn {
         folder.write(name, svg.as_bytes())?;
@@ -63,22 +36,6 @@ pub(crate) fn write_folder<'a>(
         write_samples(&folder, &signals(plan, simulation, &names))?;
     }
     Ok(folder)
-}
-
-/// The groups of a campaign and the parameters to apply.
-fn write_calibration(
-    folder: &Staged,
-    report: &RunReport,
-    sheet: &CalibrationSheet,
-) -> Result<(), StoreError> {
-    let provenance = CalibrationProvenance {
-        tool_version: report.tool_version,
-        file: report.file,
-        digest: report.digest,
-    };
-    let toml = report::calibration_toml(sheet, &provenance);
-    folder.write("calibration.toml", toml.as_bytes())?;
-    folder.write("groups.csv", report::groups_csv(&sheet.groups).as_bytes())
 }
 
 /// Names of the channels of the gyros.
@@ -132,9 +89,9 @@ fn signals<'a>(plan: &Plan, simulation: &'a Simulation, names: &'a Names) -> Vec
 fn write_samples(folder: &Staged, gyros: &[RunSignals]) -> Result<(), StoreError> {
     for signals in gyros {
         for (name, words) in &signals.channels {
-            folder.write_npy(&format!("samples/{name}.npy"), words)?;
+            folder.write_npy(&report::SAMPLES.named(name), words)?;
         }
-        let truth = format!("samples/{}truth.npy", signals.prefix);
+        let truth = report::TRUTH_SAMPLES.named(signals.prefix);
         folder.write_npy(&truth, signals.truth_deg_per_h)?;
     }
     let Some(first) = gyros.first() else {
@@ -142,11 +99,11 @@ fn write_samples(folder: &Staged, gyros: &[RunSignals]) -> Result<(), StoreError
     };
     if let Some(readings) = first.encoder_rad {
         let angles: Vec<f64> = readings.iter().copied().map(rad_to_arcsec).collect();
-        folder.write_npy("samples/encoder_arcsec.npy", &angles)?;
+        folder.write_npy(report::ENCODER_SAMPLES.name, &angles)?;
     }
     let samples = first.truth_deg_per_h.len() as u64;
     let time_s: Vec<f64> = (0..samples)
         .map(|index| stamp_s(index, first.sample_period_s))
         .collect();
-    folder.write_npy("samples/time_s.npy", &time_s)
+    folder.write_npy(report::TIME_SAMPLES.name, &time_s)
 }

@@ -17,8 +17,8 @@ use crate::store::{
 };
 
 /// Files of every suite.
-pub(crate) const SUMMARY: &str = "summary.json";
-pub(crate) const JUNIT: &str = "junit.xml";
+pub(crate) const SUMMARY: &str = report::SUITE_SUMMARY.name;
+pub(crate) const JUNIT: &str = report::JUNIT.name;
 
 /// The output folder of a suite that runs.
 pub(crate) struct SuiteOutput {

@@ -3,44 +3,109 @@
 //! `allan` is the curve of the settings' estimator and averaging times, `allan_fit` the overlapping
 //! Allan deviation that the noise terms are fitted to.
 
-use std::collections::BTreeMap;
-
 use super::noise_fit::NoiseFit;
 use super::overlapping::AllanPoint;
 use super::variants::{AllanEstimator, AllanVariantPoint};
 use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::key::curve::{Column, CurveKey, CurvePool};
 
-/// The curve of the settings.
-pub(crate) const CURVE: &str = "allan";
+/// Averaging time.
+pub static TAU: Column = Column::new("tau_s", "s", "averaging time");
+
+/// Deviation.
+pub static DEVIATION: Column = Column::new("deviation_deg_per_h", "deg/h", "deviation at it");
+
+/// Lower end of the deviation.
+pub static LOW: Column = Column::low("low_deg_per_h", &DEVIATION);
+
+/// Upper end of the deviation.
+pub static HIGH: Column = Column::high("high_deg_per_h", &DEVIATION);
+
+/// Degrees of freedom.
+pub static FREEDOM: Column = Column::new("edf", "1", "equivalent degrees of freedom of its square");
+
+/// Number of differences.
+pub static COUNT: Column = Column::new("count", "1", "differences that it rests on, of one record");
+
+/// Fitted deviation.
+pub static FITTED: Column = Column::new(
+    "fitted_deg_per_h",
+    "deg/h",
+    "Allan deviation of the fitted noise terms; absent without a fit",
+);
+
+/// Exponent of the identified noise.
+pub static NOISE_ALPHA: Column = Column::new(
+    "noise_alpha",
+    "1",
+    "exponent of the rate's spectrum that the noise was identified by",
+);
+
+/// Whether the noise was identified at this time.
+pub static NOISE_IDENTIFIED: Column = Column::new(
+    "noise_identified",
+    "1",
+    "0 where there are too few averages and the noise is that of the last time with enough",
+);
+
+/// Estimator.
+pub static ESTIMATOR: Column = Column::words("estimator", "estimator of the scenario");
+
+/// Identified noise.
+pub static NOISE: Column = Column::words("noise", "name of the identified noise");
+
+/// The curve of the settings' estimator and averaging times.
+pub static ALLAN: CurveKey = CurveKey::new(
+    "allan",
+    &[
+        &TAU,
+        &DEVIATION,
+        &LOW,
+        &HIGH,
+        &FREEDOM,
+        &COUNT,
+        &NOISE_ALPHA,
+        &NOISE_IDENTIFIED,
+        &FITTED,
+    ],
+    "Allan deviation, or the one of its family that the scenario names, over its averaging times",
+)
+.with_words(&[&ESTIMATOR, &NOISE])
+.csv("allan.csv")
+.picture("allan.svg")
+.pooled(CurvePool::AllanVariance);
+
 /// The curve that is fitted.
-pub(crate) const FIT_CURVE: &str = "allan_fit";
+pub static ALLAN_FIT: CurveKey = CurveKey::new(
+    "allan_fit",
+    &[&TAU, &DEVIATION, &LOW, &HIGH, &FREEDOM, &COUNT, &FITTED],
+    "overlapping Allan deviation that the noise terms are fitted to",
+)
+.pooled(CurvePool::AllanVariance);
+
+/// Columns of a curve that is being made.
+pub(crate) type Columns = Vec<(&'static Column, Vec<f64>)>;
 
 /// Columns both curves have.
-pub(crate) fn columns_of(points: &[AllanPoint]) -> BTreeMap<String, Vec<f64>> {
-    type Pick = fn(&AllanPoint) -> f64;
-    let picks: [(&str, Pick); 6] = [
-        ("tau_s", |point| point.tau_s),
-        ("deviation_deg_per_h", |point| {
-            point.deviation_deg_per_h.value
-        }),
-        ("low_deg_per_h", |point| point.deviation_deg_per_h.low),
-        ("high_deg_per_h", |point| point.deviation_deg_per_h.high),
-        ("edf", |point| point.degrees_of_freedom),
+pub(crate) fn columns_of(points: &[AllanPoint]) -> Columns {
+    let column = |pick: fn(&AllanPoint) -> f64| points.iter().map(pick).collect();
+    vec![
+        (&TAU, column(|point| point.tau_s)),
+        (&DEVIATION, column(|point| point.deviation_deg_per_h.value)),
+        (&LOW, column(|point| point.deviation_deg_per_h.low)),
+        (&HIGH, column(|point| point.deviation_deg_per_h.high)),
+        (&FREEDOM, column(|point| point.degrees_of_freedom)),
         // Differences of one record.
-        ("count", |point| point.count as f64),
-    ];
-    picks
-        .into_iter()
-        .map(|(name, pick)| (name.to_owned(), points.iter().map(pick).collect()))
-        .collect()
+        (&COUNT, column(|point| point.count as f64)),
+    ]
 }
 
 /// The fitted overlapping Allan deviation at the times of a curve.
-pub(crate) fn fitted_column(points: &[AllanPoint], fit: &NoiseFit) -> (String, Vec<f64>) {
+pub(crate) fn fitted_column(points: &[AllanPoint], fit: &NoiseFit) -> (&'static Column, Vec<f64>) {
     let fitted = points
         .iter()
         .map(|point| fit.deviation_deg_per_h(point.tau_s));
-    ("fitted_deg_per_h".to_owned(), fitted.collect())
+    (&FITTED, fitted.collect())
 }
 
 /// Enters the curve of the settings with the noise identified at every averaging time.
@@ -49,7 +114,7 @@ pub(crate) fn fitted_column(points: &[AllanPoint], fit: &NoiseFit) -> (String, V
 /// `estimator` that of the curve. `noise_identified` is 0 where there are too few averaging times and
 /// the noise is that of the last one that has enough. The fitted deviation stands beside the Allan
 /// deviations only; that of the others is another function of the same terms.
-pub(crate) fn put_curve(
+pub(crate) fn put_allan_curve(
     variants: &[AllanVariantPoint],
     estimator: AllanEstimator,
     fit: Option<&NoiseFit>,
@@ -58,10 +123,10 @@ pub(crate) fn put_curve(
     let points: Vec<AllanPoint> = variants.iter().map(|variant| variant.point).collect();
     let mut curve = columns_of(&points);
     let alpha = variants.iter().map(|variant| variant.noise.alpha().into());
-    curve.insert("noise_alpha".to_owned(), alpha.collect());
+    curve.push((&NOISE_ALPHA, alpha.collect()));
     let identified = variants.iter().map(|variant| variant.noise_identified);
     let identified = identified.map(|known| f64::from(u8::from(known)));
-    curve.insert("noise_identified".to_owned(), identified.collect());
+    curve.push((&NOISE_IDENTIFIED, identified.collect()));
     let is_allan = matches!(
         estimator,
         AllanEstimator::Overlapping | AllanEstimator::Plain
@@ -70,21 +135,17 @@ pub(crate) fn put_curve(
         fit.filter(|_| is_allan)
             .map(|fit| fitted_column(&points, fit)),
     );
-    metrics.curves.insert(CURVE.to_owned(), curve);
+    metrics.put_curve(&ALLAN, curve);
     let noise = variants.iter().map(|variant| variant.noise.name());
-    put_labels(noise.collect(), estimator.name(), metrics);
+    put_allan_words(noise.collect(), estimator.name(), metrics);
 }
 
-pub(crate) fn put_labels(
+pub(crate) fn put_allan_words(
     noise: Vec<&'static str>,
     estimator: &'static str,
     metrics: &mut ChannelMetrics,
 ) {
-    let labels = BTreeMap::from([
-        ("estimator".to_owned(), vec![estimator]),
-        ("noise".to_owned(), noise),
-    ]);
-    metrics.curve_labels.insert(CURVE.to_owned(), labels);
+    metrics.put_words(&ALLAN, [(&ESTIMATOR, vec![estimator]), (&NOISE, noise)]);
 }
 
 /// Enters the curve that the noise is fitted to; its column of the fit is absent without one.
@@ -95,5 +156,5 @@ pub(crate) fn put_fit_curve(
 ) {
     let mut curve = columns_of(points);
     curve.extend(fit.map(|fit| fitted_column(points, fit)));
-    metrics.curves.insert(FIT_CURVE.to_owned(), curve);
+    metrics.put_curve(&ALLAN_FIT, curve);
 }

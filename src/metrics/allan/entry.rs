@@ -12,7 +12,7 @@ use crate::metrics::key::metric::{MetricKey, Needs};
 use crate::units;
 
 /// Metrics that the fit gives.
-pub(crate) const FITTED: [&MetricKey; 5] = [
+pub(crate) const FIT_METRICS: [&MetricKey; 5] = [
     &ANGLE_RANDOM_WALK,
     &BIAS_INSTABILITY,
     &RATE_RANDOM_WALK,
@@ -52,7 +52,7 @@ pub(crate) fn enter_fit(
     metrics: &mut ChannelMetrics,
 ) {
     put_noise_fit(fit, metrics);
-    for key in FITTED {
+    for key in FIT_METRICS {
         let Some(reason) = slow_noise_lack(key, duration_s) else {
             continue;
         };

@@ -1,17 +1,19 @@
-//! List of the metrics, in the order of the columns of tables.
+//! List of the metrics, in the order of the columns of tables, and of the curves.
 
+use crate::metrics::key::curve::CurveKey;
 use crate::metrics::key::metric::MetricKey;
 
-/// Names the metrics and lists them: each row is a module and the metric that it declares.
-macro_rules! catalogue {
-    ($($($segment:ident)::+),* $(,)?) => {
+/// Names rows and lists them: each is a module and the row that it declares.
+macro_rules! rows {
+    ($list:ident: $row:ty; $($($segment:ident)::+),* $(,)?) => {
         $(pub use crate::metrics::$($segment)::+;)*
 
-        const CATALOGUE: &[&MetricKey] = &[$(&crate::metrics::$($segment)::+),*];
+        const $list: &[&$row] = &[$(&crate::metrics::$($segment)::+),*];
     };
 }
 
-catalogue! {
+rows! {
+    CATALOGUE: MetricKey;
     allan::noise_fit::ANGLE_RANDOM_WALK,
     trial::dc_gain::ANGLE_RANDOM_WALK_OVER_DC_GAIN,
     trial::weight_noise::WEIGHT_NOISE_RATIO,
@@ -79,10 +81,31 @@ catalogue! {
     calibration::ROUNDING_LOSS,
 }
 
+rows! {
+    CURVES: CurveKey;
+    allan::curves::ALLAN,
+    allan::curves::ALLAN_FIT,
+    noise::spectrum::PSD,
+    noise::autocovariance::AUTOCOVARIANCE,
+    steps::staircase::RESPONSE,
+    steps::staircase::SCALE_FACTOR,
+    motion::multi_sine::FREQUENCY_RESPONSE,
+    motion::multi_sine::FREQUENCY_RESPONSE_VS_RAW,
+    trial::frozen_response::FROZEN_RESPONSE,
+    trial::noise_delay::NOISE_DELAY_BOUND,
+    trial::rate_gain::RATE_GAIN,
+}
+
 /// Every metric a channel can have, in the order tables print them.
 #[must_use]
 pub fn known_metrics() -> &'static [&'static MetricKey] {
     CATALOGUE
+}
+
+/// Every curve a channel can have.
+#[must_use]
+pub fn known_curves() -> &'static [&'static CurveKey] {
+    CURVES
 }
 
 /// Metrics whose values of every repeat are kept, in the order of the columns of `runs.csv`.
@@ -108,7 +131,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::metrics::allan::entry::FITTED;
+    use crate::metrics::allan::entry::FIT_METRICS;
     use crate::metrics::key::metric::Pool;
 
     #[test]
@@ -130,7 +153,7 @@ mod tests {
         let declared: Vec<_> = declared
             .filter(|key| matches!(key.pool, Pool::AllanFit))
             .collect();
-        assert_eq!(declared, FITTED);
+        assert_eq!(declared, FIT_METRICS);
     }
 
     #[test]

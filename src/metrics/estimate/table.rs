@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::repeat_statistics::RepeatStatistics;
 use super::value::{Estimate, Metric};
+use crate::metrics::key::curve::{Column, Curve, CurveKey};
 use crate::metrics::key::metric::MetricKey;
 
 /// Field of a bias stability: correlation of its means with those of raw.
@@ -38,7 +39,7 @@ pub struct ChannelMetrics {
     /// Metrics the record cannot support, with the reason.
     pub unavailable: BTreeMap<String, String>,
     /// Curves: name, then column name and values.
-    pub curves: BTreeMap<String, BTreeMap<String, Vec<f64>>>,
+    pub curves: BTreeMap<String, Curve>,
     /// The main metrics over the repeats by key; empty for a single record.
     pub repeats: BTreeMap<String, RepeatStatistics>,
     /// Columns of words of a curve, by curve and column; a single word holds for all its points.
@@ -55,6 +56,57 @@ impl ChannelMetrics {
         self.metrics
             .entry(key.name.to_owned())
             .or_insert_with(|| Metric::new(estimate, key.unit))
+    }
+
+    /// Enters a curve, in place of an earlier one.
+    pub(crate) fn put_curve(
+        &mut self,
+        key: &CurveKey,
+        columns: impl IntoIterator<Item = (&'static Column, Vec<f64>)>,
+    ) {
+        let columns = columns.into_iter().map(|(column, values)| {
+            debug_assert!(
+                key.has(column),
+                "{} has no column {}",
+                key.name,
+                column.name
+            );
+            (column.name.to_owned(), values)
+        });
+        self.curves.insert(key.name.to_owned(), columns.collect());
+    }
+
+    /// Enters the columns of words of a curve.
+    pub(crate) fn put_words(
+        &mut self,
+        key: &CurveKey,
+        columns: impl IntoIterator<Item = (&'static Column, Vec<&'static str>)>,
+    ) {
+        let columns = columns.into_iter().map(|(column, words)| {
+            debug_assert!(
+                key.has(column),
+                "{} has no column {}",
+                key.name,
+                column.name
+            );
+            (column.name.to_owned(), words)
+        });
+        let columns = columns.collect();
+        self.curve_labels.insert(key.name.to_owned(), columns);
+    }
+
+    /// A curve of the channel; none if the record does not support it.
+    #[must_use]
+    pub fn curve(&self, key: &CurveKey) -> Option<&Curve> {
+        self.curves.get(key.name)
+    }
+
+    /// Words of a column of a curve, empty where there are none.
+    #[must_use]
+    pub fn words(&self, key: &CurveKey, column: &Column) -> &[&'static str] {
+        let labels = self.curve_labels.get(key.name);
+        let words = labels.and_then(|labels| labels.get(column.name));
+        words.map_or(&[], Vec::as_slice)
     }
 
     /// Says why a metric is missing.

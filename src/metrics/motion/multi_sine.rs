@@ -8,13 +8,32 @@ use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::curve::CurveKey;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::truth_response::{reach, remove_response};
 use crate::metrics::record::{FilterFacts, Record};
-use crate::metrics::sine::tones::{ToneClock, ToneFits, ToneResponse, fit_tones, put_responses};
+use crate::metrics::sine::tones::{
+    RESPONSE_COLUMNS, ToneClock, ToneFits, ToneResponse, fit_tones, put_responses,
+};
 use crate::units;
+
+/// Frequency response to the true rate.
+pub static FREQUENCY_RESPONSE: CurveKey = CurveKey::new(
+    "frequency_response",
+    RESPONSE_COLUMNS,
+    "response of the channel to the true rate at every tone",
+)
+.picture("bode.svg");
+
+/// Frequency response of a filter to raw.
+pub static FREQUENCY_RESPONSE_VS_RAW: CurveKey = CurveKey::new(
+    "frequency_response_vs_raw",
+    RESPONSE_COLUMNS,
+    "response of a filter to raw at every tone, while it adapts",
+)
+.picture("filter-response.svg");
 
 /// Bandwidth.
 pub static BANDWIDTH: MetricKey = MetricKey::new(
@@ -68,12 +87,12 @@ pub(crate) fn measure_multi_sine(
     let reference = if filter.is_some() {
         let behind_raw = later(fits.response(CHANNEL, RAW), latency_s);
         put_lowest(&DELAY_VS_RAW, &behind_raw, metrics);
-        put_responses("frequency_response_vs_raw", &behind_raw, metrics);
+        put_responses(&FREQUENCY_RESPONSE_VS_RAW, &behind_raw, metrics);
         behind_raw
     } else {
         behind_truth.clone()
     };
-    put_responses("frequency_response", &behind_truth, metrics);
+    put_responses(&FREQUENCY_RESPONSE, &behind_truth, metrics);
     if let Some(lowest) = reference.first() {
         let metric = metrics.put(&AMPLITUDE_RATIO, lowest.gain);
         metric.fields.insert("frequency_hz", lowest.frequency_hz);

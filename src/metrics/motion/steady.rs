@@ -1,21 +1,20 @@
 //! Metrics of a record at rest or at constant rate.
 
 use super::mean::{MEAN, MEAN_ERROR, measure_mean_ratio, put_mean};
-use crate::metrics::allan::curves::{put_curve, put_fit_curve};
-use crate::metrics::allan::entry::{FITTED, enter_fit};
+use crate::metrics::allan::curves::{put_allan_curve, put_fit_curve};
+use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
 use crate::metrics::allan::noise_fit::{
     ANGLE_RANDOM_WALK, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise,
     mixed_degrees_of_freedom,
 };
 use crate::metrics::allan::overlapping::overlapping_allan;
 use crate::metrics::allan::variants::allan_variant;
-use crate::metrics::estimate::blocks;
 use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
-use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::{
     ChannelMetrics, DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION,
 };
 use crate::metrics::estimate::value::Estimate;
+use crate::metrics::estimate::{blocks, interval};
 use crate::metrics::noise::autocovariance::{CURVE_LAGS, LaggedProducts};
 use crate::metrics::noise::bias_stability;
 use crate::metrics::noise::bias_stability::{
@@ -110,7 +109,7 @@ fn measure_allan(
         &settings.allan,
     );
     let estimator = settings.allan.estimator;
-    put_curve(&variant, estimator, fitted.as_ref().ok(), metrics);
+    put_allan_curve(&variant, estimator, fitted.as_ref().ok(), metrics);
     match fitted {
         Ok(fit) => {
             let points = mixed_degrees_of_freedom(&points, &fit.coefficients(), samples + 1);
@@ -120,7 +119,7 @@ fn measure_allan(
         }
         Err(reason) => {
             put_fit_curve(&points, None, metrics);
-            for key in FITTED {
+            for key in FIT_METRICS {
                 metrics.miss(key, reason.as_str());
             }
             None

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::allan::pool_allan;
-use super::curves::{pool_points, pool_spectra};
+use super::curves::pool_curves;
 use super::repeatability::put_repeatability;
 use crate::metrics::catalogue::{find, repeated_metrics};
 use crate::metrics::estimate::interval;
@@ -58,8 +58,7 @@ pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
         }
     }
     put_repeatability(repeats, &mut pooled);
-    pool_spectra(repeats, &mut pooled);
-    pool_points(repeats, &mut pooled);
+    pool_curves(repeats, &mut pooled);
     pool_allan(repeats, &mut pooled);
     pooled.repeats = repeated_metrics()
         .into_iter()

@@ -2,14 +2,16 @@
 
 use super::curves::{columns, mean_of};
 use crate::metrics::allan::curves::{
-    CURVE, FIT_CURVE, columns_of, fitted_column, put_fit_curve, put_labels,
+    ALLAN, ALLAN_FIT, COUNT, DEVIATION, ESTIMATOR, FITTED, FREEDOM, NOISE_ALPHA, NOISE_IDENTIFIED,
+    TAU, columns_of, fitted_column, put_allan_words, put_fit_curve,
 };
-use crate::metrics::allan::entry::{FITTED, enter_fit};
+use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
 use crate::metrics::allan::noise_fit::{ANGLE_RANDOM_WALK, FitRange, NoiseFit, fit_pooled_noise};
 use crate::metrics::allan::noise_identification::PowerLaw;
 use crate::metrics::allan::overlapping::AllanPoint;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::{ChannelMetrics, EXPECTED};
+use crate::metrics::key::curve::{Column, CurveKey};
 use crate::metrics::motion::mean::MEAN;
 use crate::metrics::noise::bias_stability::expected_bias_stability;
 use crate::metrics::trial::dc_gain::{
@@ -17,17 +19,15 @@ use crate::metrics::trial::dc_gain::{
 };
 
 /// Columns of the curve that pooling takes the mean of.
-const MEANS: [&str; 2] = ["count", "noise_identified"];
+const MEANS: [&Column; 2] = [&COUNT, &NOISE_IDENTIFIED];
 
 /// The points of a curve with the mean variance of the repeats and the sum of their degrees of
 /// freedom; nothing unless all repeats have the curve with the same number of points.
-fn pooled_points(repeats: &[ChannelMetrics], curve: &str) -> Option<Vec<AllanPoint>> {
-    let tau = columns(repeats, curve, "tau_s")?;
-    let variance = mean_of(&columns(repeats, curve, "deviation_deg_per_h")?, |value| {
-        value * value
-    });
-    let freedom = mean_of(&columns(repeats, curve, "edf")?, std::convert::identity);
-    let differences = columns(repeats, curve, "count")?;
+fn pooled_points(repeats: &[ChannelMetrics], curve: &CurveKey) -> Option<Vec<AllanPoint>> {
+    let tau = columns(repeats, curve, &TAU)?;
+    let variance = mean_of(&columns(repeats, curve, &DEVIATION)?, |value| value * value);
+    let freedom = mean_of(&columns(repeats, curve, &FREEDOM)?, std::convert::identity);
+    let differences = columns(repeats, curve, &COUNT)?;
     // The shortest averaging time is one sample.
     let sample_period_s = tau[0].first().copied().unwrap_or(1.0);
     let count = repeats.len() as f64;
@@ -52,9 +52,9 @@ pub(crate) fn pool_allan(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics
 }
 
 fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<NoiseFit> {
-    let points = pooled_points(repeats, FIT_CURVE)?;
+    let points = pooled_points(repeats, &ALLAN_FIT)?;
     let count = repeats.len() as f64;
-    let range = FITTED.into_iter().find_map(|key| {
+    let range = FIT_METRICS.into_iter().find_map(|key| {
         let fields = &pooled.get(key)?.fields;
         Some(FitRange {
             tau_min_s: *fields.get("tau_min_s")?,
@@ -68,7 +68,7 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
     let mean = pooled.get(&MEAN);
     let duration_s = mean.and_then(|mean| mean.fields.get("averaging_time_s").copied());
     enter_fit(&points, &fit, duration_s.unwrap_or(f64::INFINITY), pooled);
-    for key in FITTED {
+    for key in FIT_METRICS {
         if let Some(metric) = pooled.get_mut(key) {
             metric.fields.insert("repeats", count);
         }
@@ -119,15 +119,15 @@ fn expect_of_fit(fit: &NoiseFit, pooled: &mut ChannelMetrics) {
 /// Pools the curve of the settings; the noise is the law nearest to the mean exponent.
 fn pool_curve(repeats: &[ChannelMetrics], fit: Option<&NoiseFit>, pooled: &mut ChannelMetrics) {
     let (Some(points), Some(alpha)) = (
-        pooled_points(repeats, CURVE),
-        columns(repeats, CURVE, "noise_alpha"),
+        pooled_points(repeats, &ALLAN),
+        columns(repeats, &ALLAN, &NOISE_ALPHA),
     ) else {
         return;
     };
     let mut curve = columns_of(&points);
     for name in MEANS {
-        if let Some(found) = columns(repeats, CURVE, name) {
-            curve.insert(name.to_owned(), mean_of(&found, std::convert::identity));
+        if let Some(found) = columns(repeats, &ALLAN, name) {
+            curve.push((name, mean_of(&found, std::convert::identity)));
         }
     }
     let laws: Vec<PowerLaw> = mean_of(&alpha, std::convert::identity)
@@ -135,15 +135,15 @@ fn pool_curve(repeats: &[ChannelMetrics], fit: Option<&NoiseFit>, pooled: &mut C
         .map(PowerLaw::nearest_of_all)
         .collect();
     let exponents = laws.iter().map(|law| law.alpha().into());
-    curve.insert("noise_alpha".to_owned(), exponents.collect());
-    let had_fit = columns(repeats, CURVE, "fitted_deg_per_h").is_some();
+    curve.push((&NOISE_ALPHA, exponents.collect()));
+    let had_fit = columns(repeats, &ALLAN, &FITTED).is_some();
     curve.extend(
         fit.filter(|_| had_fit)
             .map(|fit| fitted_column(&points, fit)),
     );
-    pooled.curves.insert(CURVE.to_owned(), curve);
-    let labels = repeats.first().and_then(|one| one.curve_labels.get(CURVE));
-    let estimator = labels.and_then(|labels| labels.get("estimator")?.first().copied());
+    pooled.put_curve(&ALLAN, curve);
+    let words = repeats.first().map(|one| one.words(&ALLAN, &ESTIMATOR));
+    let estimator = words.and_then(|words| words.first().copied());
     let names = laws.into_iter().map(PowerLaw::name).collect();
-    put_labels(names, estimator.unwrap_or_default(), pooled);
+    put_allan_words(names, estimator.unwrap_or_default(), pooled);
 }

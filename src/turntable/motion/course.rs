@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use super::campaign::Campaign;
 use super::chirp::Chirp;
-use super::extremes::swing_rate_amplitude_rad_per_s;
+use super::kind::swing_rate_amplitude_rad_per_s;
+use super::multi_sine::{Tone, sum_at, tones};
+use super::samples::{first_measured_index, step_indices};
 use super::script::Script;
 use super::soft_start::SoftStart;
-use super::steps::{first_measured_index, step_indices};
-use super::tones::{Tone, sum_at, tones};
 use super::trapezoid::Trapezoids;
 use crate::scenario::{MotionConfig, Stairs};
 use crate::units::deg_per_s_to_rad_per_s;

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::shape::Instant;
+use super::course::Instant;
+use super::samples::first_measured_index;
 use super::soft_start::SoftStart;
-use super::steps::first_measured_index;
 use crate::scenario::{ChirpConfig, Progression};
 use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
 

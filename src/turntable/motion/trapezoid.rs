@@ -1,7 +1,7 @@
 //! Trapezoids of rate: accelerate, hold, decelerate, rest.
 
-use super::shape::Instant;
-use super::steps::first_measured_index;
+use super::course::Instant;
+use super::samples::first_measured_index;
 use crate::scenario::TrapezoidConfig;
 use crate::units::deg_per_s_to_rad_per_s;
 

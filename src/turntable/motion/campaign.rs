@@ -1,8 +1,8 @@
 //! A calibration campaign: constant rates, smooth changes between them, stops to mount anew.
 
-use super::shape::Instant;
+use super::course::Instant;
+use super::samples::first_measured_index;
 use super::soft_start::SoftStart;
-use super::steps::first_measured_index;
 use crate::scenario::{CampaignConfig, CaseAxis};
 use crate::units::deg_per_s_to_rad_per_s;
 

@@ -1,7 +1,7 @@
 //! A motion that the user tabulates.
 
-use super::shape::Instant;
-use super::steps::first_measured_index;
+use super::course::Instant;
+use super::samples::first_measured_index;
 use crate::scenario::ScriptPoints;
 use crate::units::deg_to_rad;
 

@@ -1,6 +1,6 @@
 //! The command, delivered sample by sample.
 
-use super::shape::{Instant, Shape};
+use super::course::{Instant, Shape};
 use crate::scenario::MotionConfig;
 use crate::signal::MotionSegment;
 
