@@ -8,13 +8,14 @@ use fogbench::metrics::{
 };
 use fogbench::random::Streams;
 use fogbench::scenario::{
-    Fidelity, GyroConfig, MotionConfig, MultiSineConfig, PhaseRule, ServoConfig, SiteConfig,
-    StaticConfig, TurntableConfig,
+    Fidelity, GyroConfig, MotionConfig, MultiSineConfig, ServoConfig, SiteConfig, StaticConfig,
+    TurntableConfig,
 };
 use fogbench::turntable::{
     Turntable, command_rate_max_rad_per_s, multi_sine_acceleration_max_rad_per_s2,
 };
 use fogbench::units::{deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
+use fogbench::vocabulary::PhaseRule;
 
 use crate::support::assert_close;
 use crate::support::records::{PERIOD_S, every_metric_is_answered, facts, settings, value, white};

@@ -11,9 +11,8 @@ use super::cross_optics;
 use super::cross_servo;
 use super::cross_vibration;
 use super::error::ScenarioError;
-use super::injection_config::InjectionConfig;
 use super::resolved::Resolved;
-use super::turntable_config::{MotionConfig, MultiSineConfig};
+use crate::turntable::{MotionConfig, MultiSineConfig};
 
 /// Channel names that mean something else.
 pub(crate) const RESERVED: [&str; 4] = ["raw", "truth", "time_s", "encoder_arcsec"];
@@ -160,11 +159,8 @@ impl Checks<'_> {
         for (key, message) in cross_multi_sine::injection_complaints(scenario) {
             self.complain(key, message);
         }
-        let injection = scenario.gyro.injection.as_ref();
-        if let Some(MotionConfig::MultiSine(sines)) =
-            injection.map(InjectionConfig::equivalent_motion)
-        {
-            self.multi_sine(cross_multi_sine::INJECTION, sines);
+        if let Some(sines) = scenario.injected_sines() {
+            self.multi_sine(cross_multi_sine::INJECTION, &sines);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Checks across the values of a calibration campaign.
 
-use super::calibration_config::CampaignConfig;
 use super::cross::{Checks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
+use crate::turntable::CampaignConfig;
 use crate::wording::number;
 
 /// Fewest output samples of a group: twenty blocks of two.

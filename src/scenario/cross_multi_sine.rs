@@ -1,7 +1,7 @@
 //! Checks of several sines: can they be sampled, and told apart in the record?
 
 use super::config::Scenario;
-use super::turntable_config::{MotionConfig, MultiSineConfig};
+use crate::turntable::{MotionConfig, MultiSineConfig};
 
 /// Most sines: the fit grows with the square of their number.
 const TONES_MAX: usize = 64;

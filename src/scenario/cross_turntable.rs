@@ -2,10 +2,10 @@
 
 use super::config::FilterState;
 use super::cross::{Checks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
-use super::stairs::{Stairs, TEST_RATES_MIN};
-use super::turntable_config::{
+use crate::turntable::{
     ChirpConfig, ScaleFactorTestConfig, ScriptPoints, SwingConfig, TrapezoidConfig,
 };
+use crate::turntable::{Stairs, TEST_RATES_MIN};
 use crate::wording::number;
 
 impl Checks<'_> {

@@ -3,14 +3,15 @@
 //! A key that is not here acts in every run. A condition that only a run could find out, such as a
 //! limit that the motion never reaches, is none.
 
-use super::config::{Fidelity, GateConfig, GateDecision, Scenario};
-use super::gyro_config::{NoiseDraw, OutputQuantisation};
-use super::stairs::Stairs;
-use super::thermal_config::{PowerConfig, TemperatureConfig, ThermalWarmUp};
-use super::turntable_config::{MotionConfig, ServoConfig};
-use super::vibration_config::VibrationMotion;
+use super::config::{GateConfig, GateDecision, Scenario};
 use crate::filters::hardware::has_hardware;
 use crate::filters::{FilterConfig, FilterKind};
+use crate::gyro::Fidelity;
+use crate::gyro::VibrationMotion;
+use crate::gyro::{NoiseDraw, OutputQuantisation};
+use crate::gyro::{PowerConfig, TemperatureConfig, ThermalWarmUp};
+use crate::turntable::Stairs;
+use crate::turntable::{MotionConfig, ServoConfig};
 use crate::vocabulary::EstimatorKind;
 
 /// The condition under which a key acts.
@@ -270,7 +271,7 @@ fn is_zero(value: f64) -> bool {
 }
 
 fn is_steady(scenario: &Scenario) -> bool {
-    let motion = scenario.measured_motion();
+    let motion = &*scenario.measured_motion();
     matches!(motion, MotionConfig::Static(_) | MotionConfig::Rotation(_))
 }
 

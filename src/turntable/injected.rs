@@ -1,7 +1,7 @@
 //! The signal that is added inside the loop while the table is at rest.
 
 use super::motion::Profile;
-use crate::scenario::InjectionConfig;
+use super::settings::MultiSineConfig;
 use crate::signal::MotionSegment;
 
 /// Generator of an injected signal, in the place of a rate table.
@@ -23,9 +23,9 @@ impl InjectedSignal {
     /// # Panics
     /// If there is neither one amplitude nor one for each sine; the scenario reader refuses that.
     #[must_use]
-    pub fn new(config: &InjectionConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
+    pub fn new(sines: &MultiSineConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         Self {
-            profile: Profile::new(config.equivalent_motion(), warm_up_s, sample_period_s),
+            profile: Profile::of_sines(sines, warm_up_s, sample_period_s),
         }
     }
 

@@ -22,6 +22,8 @@ mod injected;
 mod motion;
 mod platform;
 mod servo;
+mod settings;
+mod stairs;
 mod table;
 
 pub use axis::{InputAxisBounds, earth_rate_rad_per_s, input_axis_bounds};
@@ -31,4 +33,11 @@ pub use motion::{
     command_rate_max_rad_per_s, dwell_ends, first_measured_index,
     multi_sine_acceleration_max_rad_per_s2, step_indices, swing_rate_amplitude_rad_per_s,
 };
+pub use settings::{
+    AxisConfig, CampaignConfig, CampaignGroup, ChirpConfig, DirectDriveServoConfig, EncoderConfig,
+    MotionConfig, MountingConfig, MultiSineConfig, PreferredSeries, Progression, RotationConfig,
+    ScaleFactorTestConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig,
+    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TrapezoidConfig, TurntableConfig,
+};
+pub use stairs::{Stairs, TEST_RATES_MIN};
 pub use table::Turntable;

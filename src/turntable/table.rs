@@ -5,9 +5,10 @@ use super::encoder::Encoder;
 use super::motion::{Profile, remountings};
 use super::platform::Platform;
 use super::servo::Servo;
-use crate::scenario::{CaseAxis, MotionConfig, TurntableConfig};
 use crate::signal::MotionSegment;
+use crate::turntable::{MotionConfig, TurntableConfig};
 use crate::units::deg_to_rad;
+use crate::vocabulary::CaseAxis;
 
 /// A rate table that carries one gyro, or the case of a three-axis assembly.
 ///

@@ -15,7 +15,7 @@ use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_
 
 /// Motion as the metrics see it; a staircase's last step counts from the start of the record.
 pub(crate) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
-    match scenario.measured_motion() {
+    match &*scenario.measured_motion() {
         MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
         MotionConfig::Swing(swing) => {
             let frequency_hz = swing.frequency_hz;
@@ -127,7 +127,7 @@ pub(crate) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
 /// The hardest motion about the table axis but for the Earth's, or the hardest of an injected signal;
 /// the servo starts settled.
 fn command_extremes_of(scenario: &Scenario) -> MotionExtremes {
-    let motion = scenario.measured_motion();
+    let motion = &*scenario.measured_motion();
     let commanded = command_rate_max_rad_per_s(motion);
     let own = command_extremes(motion);
     let (jump, acceleration) = match motion {

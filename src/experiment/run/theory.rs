@@ -17,7 +17,7 @@ const NAME: &str = "raw, theory";
 
 /// The lines of theory for the motion of a scenario; none where there is no closed form.
 pub(crate) fn theory(scenario: &Scenario) -> Result<Vec<TheoryCurve>, GyroError> {
-    match scenario.measured_motion() {
+    match &*scenario.measured_motion() {
         MotionConfig::MultiSine(multi_sine) => {
             let tones = &multi_sine.frequencies_hz;
             let (Some(&low), Some(&high)) = (tones.first(), tones.last()) else {

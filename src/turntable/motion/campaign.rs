@@ -3,8 +3,9 @@
 use super::course::Instant;
 use super::samples::first_measured_index;
 use super::soft_start::SoftStart;
-use crate::scenario::{CampaignConfig, CaseAxis};
+use crate::turntable::CampaignConfig;
 use crate::units::deg_per_s_to_rad_per_s;
+use crate::vocabulary::CaseAxis;
 
 /// The command of a campaign.
 ///

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::course::Instant;
 use super::samples::first_measured_index;
 use super::soft_start::SoftStart;
-use crate::scenario::{ChirpConfig, Progression};
+use crate::turntable::{ChirpConfig, Progression};
 use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
 
 /// Swing at the first frequency, sweep from the start of the record, end at the last frequency.

@@ -1,8 +1,8 @@
 //! The command, delivered sample by sample.
 
 use super::course::{Instant, Shape};
-use crate::scenario::MotionConfig;
 use crate::signal::MotionSegment;
+use crate::turntable::{MotionConfig, MultiSineConfig};
 
 /// Command, delivered sample by sample.
 #[derive(Clone, Debug)]
@@ -22,7 +22,19 @@ impl Profile {
         warm_up_s: f64,
         sample_period_s: f64,
     ) -> Self {
-        let shape = Shape::new(motion, warm_up_s, sample_period_s);
+        Self::of(Shape::new(motion, warm_up_s, sample_period_s))
+    }
+
+    /// Several sines of rate, without a motion of the table.
+    pub(in crate::turntable) fn of_sines(
+        sines: &MultiSineConfig,
+        warm_up_s: f64,
+        sample_period_s: f64,
+    ) -> Self {
+        Self::of(Shape::sines(sines, warm_up_s, sample_period_s))
+    }
+
+    fn of(shape: Shape) -> Self {
         Self {
             start: shape.at(0.0),
             index: 0,

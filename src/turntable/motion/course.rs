@@ -10,7 +10,7 @@ use super::samples::{first_measured_index, step_indices};
 use super::script::Script;
 use super::soft_start::SoftStart;
 use super::trapezoid::Trapezoids;
-use crate::scenario::{MotionConfig, Stairs};
+use crate::turntable::{MotionConfig, MultiSineConfig, Stairs};
 use crate::units::deg_per_s_to_rad_per_s;
 
 /// Commanded rate at one instant and its slope per sample.
@@ -82,10 +82,7 @@ impl Shape {
                     0.0
                 },
             },
-            MotionConfig::MultiSine(multi_sine) => Self::MultiSine {
-                tones: tones(multi_sine, sample_period_s),
-                soft_start: soft_start(multi_sine.soft_start_s),
-            },
+            MotionConfig::MultiSine(sines) => Self::sines(sines, warm_up_s, sample_period_s),
             MotionConfig::Trapezoid(config) => {
                 Self::Trapezoids(Trapezoids::new(config, warm_up_s, sample_period_s))
             }
@@ -102,6 +99,13 @@ impl Shape {
             MotionConfig::ScaleFactorTest(test) => {
                 Self::stairs(&test.into(), warm_up_s, sample_period_s)
             }
+        }
+    }
+
+    pub(super) fn sines(sines: &MultiSineConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
+        Self::MultiSine {
+            tones: tones(sines, sample_period_s),
+            soft_start: SoftStart::new(sines.soft_start_s, warm_up_s, sample_period_s),
         }
     }
 

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::campaign::campaign_extremes;
 use super::chirp::{chirp_frequency_max, chirp_rate_max, chirp_widening_max};
 use super::script::script_extremes;
-use crate::scenario::{CampaignConfig, MotionConfig, MultiSineConfig, SwingConfig};
+use crate::turntable::{CampaignConfig, MotionConfig, MultiSineConfig, SwingConfig};
 use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
 
 /// What a trapezoid, chirp or script asks of the table at most; see [`command_extremes`].

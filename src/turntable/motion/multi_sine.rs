@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::scenario::{MultiSineConfig, PhaseRule};
+use crate::turntable::MultiSineConfig;
 use crate::units::deg_per_s_to_rad_per_s;
+use crate::vocabulary::PhaseRule;
 
 /// Turns by which a cosine is ahead of a sine.
 const COSINE: f64 = 0.25;

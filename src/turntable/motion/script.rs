@@ -2,7 +2,7 @@
 
 use super::course::Instant;
 use super::samples::first_measured_index;
-use crate::scenario::ScriptPoints;
+use crate::turntable::ScriptPoints;
 use crate::units::deg_to_rad;
 
 /// Tabulated rates or angles, their time counted from the start of the record.

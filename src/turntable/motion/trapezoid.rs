@@ -2,7 +2,7 @@
 
 use super::course::Instant;
 use super::samples::first_measured_index;
-use crate::scenario::TrapezoidConfig;
+use crate::turntable::TrapezoidConfig;
 use crate::units::deg_per_s_to_rad_per_s;
 
 /// Trapezoids in a row, the first of which begins with the record; at rest before and after.

@@ -5,8 +5,8 @@ mod direct_drive;
 mod plant;
 mod second_order;
 
-use crate::scenario::{EncoderConfig, ServoConfig};
 use crate::signal::MotionSegment;
+use crate::turntable::{EncoderConfig, ServoConfig};
 use direct_drive::DirectDrive;
 use second_order::SecondOrder;
 
