@@ -338,7 +338,7 @@ const TABLE: &[Artefact] = &[
     drawn(
         "rate-gain.svg",
         "gain of every filter over the rate",
-        "trial.rate_gains",
+        "trial.rate_gain = true",
         RUN,
         |scene| plot::rate_gain::picture(scene.run?),
     ),
