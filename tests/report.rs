@@ -7,8 +7,8 @@ use fogbench::gate::{Verdict, VerdictKind, judge};
 use fogbench::metrics::ChannelMetrics;
 use fogbench::metrics::catalogue::{ALLAN, PSD};
 use fogbench::report::{
-    RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, curve_csv, junit_xml, plots,
-    run_summary_json, suite_summary_json, suite_text, table_text,
+    RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, curve_csv, junit_xml, plots, run_summary_json,
+    suite_summary_json, suite_text, table_text,
 };
 use fogbench::scenario::{GateConfig, GateDecision, InconclusivePolicy, Scenario};
 use fogbench::signal::{GyroFacts, RunSignals, TheoryCurve, TheoryQuantity};
