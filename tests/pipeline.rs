@@ -2,14 +2,15 @@
 
 use std::path::PathBuf;
 
-use fogbench::experiment::{HardwareFilter, PipelineSettings, plan_suite};
+use fogbench::experiment::plan_suite;
+use fogbench::filters::FilterConfig;
+use fogbench::filters::hardware::HardwareFilter;
 use fogbench::filters::{
     DivergenceKind, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, Rls, RlsConfig,
 };
 use fogbench::fpga::front_end::{FrontEnd, Pair};
 use fogbench::fpga::lms::{self, DesiredSource, LmsPipeline, LmsSettings};
 use fogbench::fpga::rls::{self, RlsPipeline, RlsSettings};
-use fogbench::scenario::FilterConfig;
 use fogbench::vocabulary::{DesiredSignal, Division, OutputRegister, UpdateSign};
 
 use crate::support::transcript::said_to_each;
@@ -27,7 +28,7 @@ const LMS: &str = "name = \"lms\"\n[lms]\ntaps = 10\nstep_size = 0.8\nnormalised
 
 fn filter(text: &str) -> Box<dyn HardwareFilter> {
     let config: FilterConfig = toml::from_str(text).expect("a filter");
-    let settings = PipelineSettings::of(&config.kind).expect("a pipeline");
+    let settings = config.kind.settings().hardware().expect("a pipeline");
     settings.filter(0).expect("sound constants")
 }
 

@@ -7,18 +7,13 @@ mod budget;
 mod build;
 mod campaign;
 mod channel_filter;
-mod line_enhancer;
 mod log;
-mod pipeline_check;
-mod pipeline_export;
-mod pipeline_filter;
 mod pipeline_metrics;
-mod pipeline_settings;
 mod plan;
 mod run;
 mod scenario;
+mod stimulus;
 mod suite;
-mod textbook;
 
 pub use budget::{GyroBudget, gyro_budget};
 pub use build::BUILD;
@@ -30,12 +25,10 @@ pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogInput, LogMotion, LogSettings, LogTrial,
     LogTrialError, compensate_log, load_log_compensation, load_log_filters, try_log,
 };
-pub use pipeline_export::{Stimulus, export_pipeline, scenario_stimulus};
-pub use pipeline_filter::{HardwareFilter, HealthSummary};
-pub use pipeline_settings::{PipelineSettings, PipelineTiming};
 pub use plan::{Plan, Sound, check_suite, plan_suite};
 pub use run::{Progress, Run, RunError, Samples, UnknownName};
 pub use scenario::Scenario;
+pub use stimulus::scenario_stimulus;
 pub use suite::{
     Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX, run_suite,
     start_threads, thread_count, write_runs,

@@ -2,18 +2,14 @@
 
 use std::path::Path;
 
-use crate::experiment::line_enhancer;
-use crate::experiment::pipeline_check;
-use crate::experiment::pipeline_settings::PipelineSettings;
-use crate::experiment::textbook::cutoff_complaint;
-use crate::filters::covariance_digits_warning;
-use crate::scenario::{FilterConfig, FilterKind, Resolved, ScenarioError, load_base_or_scenario};
-use crate::vocabulary::Pipeline;
+use crate::filters::{ExpectedWords, FilterConfig};
+use crate::scenario::{Resolved, ScenarioError, load_base_or_scenario};
 
 /// The filters of one scenario or base, checked against the sample rate of a log.
 #[derive(Clone, Debug)]
 pub struct LogFilters {
     resolved: Resolved,
+    sample_rate_hz: f64,
 }
 
 /// Reads the filters of a scenario or base file, `--set` overrides applied.
@@ -44,23 +40,20 @@ pub fn load_log_filters(
     if filters.is_empty() {
         return refuse("it has no [[filter]]: there is nothing to put the log through".to_owned());
     }
-    let complaints: Vec<ScenarioError> = filters
-        .iter()
-        .enumerate()
-        .filter_map(|(index, filter)| {
-            let hardware = || {
-                let settings = PipelineSettings::of(&filter.kind)?;
-                let path = format!("filter[{index}].{}", pipeline_check::kind(&settings));
-                pipeline_check::check(&settings, &path, sample_rate_hz).err()
-            };
-            let (key, message) =
-                cutoff_complaint(index, &filter.kind, sample_rate_hz).or_else(hardware)?;
-            Some(ScenarioError::at(first.locate(&key), message))
-        })
+    let words = ExpectedWords {
+        sample_rate_hz,
+        peak_deg_per_h: 0.0,
+        run: None,
+    };
+    let complaints = filters.iter().enumerate();
+    let complaints: Vec<ScenarioError> = complaints
+        .flat_map(|(index, filter)| filter.check_on(index, &words))
+        .map(|complaint| ScenarioError::at(first.locate(&complaint.key), complaint.message))
         .collect();
     if complaints.is_empty() {
         Ok(LogFilters {
             resolved: first.clone(),
+            sample_rate_hz,
         })
     } else {
         Err(complaints)
@@ -81,23 +74,18 @@ impl LogFilters {
     /// Warns of filters that words of this size cost their digits, and says in which unit the constants
     /// of a line enhancer are meant.
     pub(crate) fn warnings(&self, words_deg_per_h: &[f64]) -> Vec<String> {
-        let largest = words_deg_per_h
+        let peak_deg_per_h = words_deg_per_h
             .iter()
             .fold(0.0, |largest: f64, word| largest.max(word.abs()));
-        let warnings = self.configs().iter().filter_map(|filter| {
-            let warning = match (PipelineSettings::of(&filter.kind), &filter.kind) {
-                (_, FilterKind::SignLms(config)) => {
-                    return Some(line_enhancer::unit_note(&filter.name, config));
-                }
-                (Some(settings), _) => settings.digits_warning(largest)?.to_string(),
-                (None, FilterKind::Rls(config)) if config.pipeline == Pipeline::Textbook => {
-                    let delta = config.initial_inverse_correlation;
-                    covariance_digits_warning(delta, config.taps as usize, largest)?
-                }
-                _ => return None,
-            };
-            Some(format!("filter `{}`: {warning}", filter.name))
-        });
-        warnings.collect()
+        let words = ExpectedWords {
+            sample_rate_hz: self.sample_rate_hz,
+            peak_deg_per_h,
+            run: None,
+        };
+        let notes = self
+            .configs()
+            .iter()
+            .flat_map(|filter| filter.notes(&words));
+        notes.collect()
     }
 }

@@ -209,7 +209,7 @@ fn run(
         .map(|config| {
             let name = config.name.clone();
             let mut filter = ChannelFilter::new(name, &config.kind, length, sample_period_s, false);
-            filter.take(words);
+            filter.process(words);
             filter.finish()
         })
         .collect()

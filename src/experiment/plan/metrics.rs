@@ -4,7 +4,7 @@
 use super::checker::Checker;
 use super::published::wrong_unit;
 use crate::experiment::campaign;
-use crate::experiment::pipeline_check;
+use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{assembly_motion, motion};
 use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{self, MetricKey};
@@ -174,7 +174,7 @@ impl Checker<'_> {
 fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<String> {
     let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
     let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
-    pipeline_check::lacks(scenario, channel, key)
+    pipeline_metrics::lacks(scenario, channel, key)
         .or_else(|| assembly_motion::lacks(scenario, channel, key))
         .or_else(|| campaign::lacks(scenario, key))
         .or_else(|| metrics::encoder_lack(key, has_encoder))

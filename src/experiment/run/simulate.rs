@@ -7,9 +7,10 @@ use super::progress::{Progress, Unfinished, unless_stopped};
 use super::records::{RecordLength, count};
 use crate::experiment::campaign::{Compensator, Parameters};
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter, Restarts};
+use crate::filters::FilterKind;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
-use crate::scenario::{FilterKind, FilterState, Scenario, Stairs};
+use crate::scenario::{FilterState, Scenario, Stairs};
 use crate::turntable::{InjectedSignal, Turntable, first_measured_index, step_indices};
 use crate::units::rad_per_s_to_deg_per_h;
 
@@ -123,7 +124,7 @@ pub(crate) fn simulate(
         let (next, ()) = rayon::join(&mut next_block, || {
             filters
                 .par_iter_mut()
-                .for_each(|(gyro, filter)| filter.take(&given[*gyro]));
+                .for_each(|(gyro, filter)| filter.process(&given[*gyro]));
         });
         for (gyro, record) in records.iter_mut().enumerate() {
             record.extend(&raw[gyro], compensated.as_ref().map(|words| &words[gyro]));

@@ -1,11 +1,46 @@
 //! Recursive least squares held to unit DC gain.
 
-use super::core_filter::{Core, CoreFilter, dot};
-use super::divergence::Fault;
-use super::filter::Output;
+use serde::Deserialize;
+
+use super::common::{Core, CoreFilter, Fault, Filter, FrontEndConfig, Output, dot};
+use super::kind::FilterSettings;
 use super::rls::{RlsConfig, RlsCore};
 use crate::signal::WeightRule;
-use crate::vocabulary::DesiredSignal;
+use crate::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
+
+/// Recursive least squares held to unit DC gain.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConstrainedRlsFilterConfig {
+    /// Number of weights p, one more than are free.
+    pub taps: u32,
+    /// Forgetting factor, (0, 1].
+    pub forgetting_factor: f64,
+    /// Initial inverse correlation delta, (deg/h)^-2.
+    pub initial_inverse_correlation: f64,
+    /// Desired signal.
+    pub desired: DesiredSignal,
+    /// Samples by which the regressors lag the desired signal's newest sample.
+    pub input_lag_samples: u32,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+}
+
+impl FilterSettings for ConstrainedRlsFilterConfig {
+    fn build(&self, _sample_period_s: f64) -> Box<dyn Filter> {
+        Box::new(ConstrainedRls::new(&RlsConfig {
+            taps: self.taps as usize,
+            forgetting_factor: self.forgetting_factor,
+            initial_inverse_correlation: self.initial_inverse_correlation,
+            update_sign: UpdateSign::Corrected,
+            front_end: FrontEndConfig {
+                desired: self.desired,
+                input_lag_samples: self.input_lag_samples as usize,
+                output_register: self.output_register,
+            },
+        }))
+    }
+}
 
 /// Weights `w = 1/p + B v`, v found by recursive least squares.
 ///

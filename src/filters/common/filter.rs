@@ -33,6 +33,6 @@ pub trait Filter: Send {
     /// Weights after the newest update, the one on the newest regressor first.
     fn weights(&self) -> &[f64];
 
-    /// Which input samples the outputs weigh and what they aim at.
+    /// Input samples that the outputs weigh, and the rule of the weights.
     fn shape(&self) -> FilterShape;
 }

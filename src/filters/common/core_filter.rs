@@ -11,7 +11,7 @@ pub trait Core: Send {
     /// Predicts with the weights as they are, then updates them: the prediction is *a priori*.
     ///
     /// * `regressors`: `[p]`, newest first.
-    /// * `desired`: what the prediction aims at, in the same unit.
+    /// * `desired`: desired signal of the prediction, in the same unit.
     ///
     /// # Errors
     /// What is wrong with the state of the core, in words; the state is then of no use.
@@ -101,6 +101,6 @@ impl<C: Core> Filter for CoreFilter<C> {
 
 /// Inner product in index order.
 #[inline]
-pub(super) fn dot(left: &[f64], right: &[f64]) -> f64 {
+pub(in crate::filters) fn dot(left: &[f64], right: &[f64]) -> f64 {
     left.iter().zip(right).map(|(l, r)| l * r).sum()
 }

@@ -8,10 +8,7 @@
 
 use std::cmp::Ordering;
 
-use super::core_filter::{Core, CoreFilter};
-use super::divergence::Fault;
-use super::filter::Output;
-use super::front_end::FrontEndConfig;
+use crate::filters::common::{Core, CoreFilter, Fault, FrontEndConfig, Output};
 use crate::signal::WeightRule;
 use crate::vocabulary::{DesiredSignal, OutputRegister, SignLmsForm};
 
@@ -41,7 +38,7 @@ pub struct SignLmsConfig {
 }
 
 impl SignLmsConfig {
-    /// Delay line, aim and register.
+    /// Delay line, desired signal and register.
     #[must_use]
     pub fn front_end(&self) -> FrontEndConfig {
         FrontEndConfig {

@@ -1,21 +1,17 @@
-//! From a filter of a scenario to the constants of its hardware pipeline.
+//! A hardware pipeline with its front end: constants, checks, timing and the filter they stand for.
 
-use super::line_enhancer;
-use super::pipeline_filter::{HardwareFilter, PipelineFilter};
-use crate::filters::{FrontEndConfig, adaptive_rule};
+use super::filter::{HardwareFilter, PipelineFilter};
+use crate::filters::common::{Complaints, FrontEndConfig, adaptive_rule};
 use crate::fpga::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::FrontEnd;
 use crate::fpga::health::Warning;
-use crate::fpga::kinds::{CoreSettings, CoreVisitor, PipelineConfig};
-use crate::fpga::lms::{DesiredSource, LmsSettings};
+use crate::fpga::kinds::{CoreSettings, CoreVisitor, KINDS, PipelineConfig};
 use crate::fpga::pipeline::Core;
-use crate::fpga::rls::{RlsCore, RlsSettings};
-use crate::fpga::sign_lms::SignLmsSettings;
 use crate::fpga::timing::{Usage, sample_period_us, sample_rate_max_khz};
-use crate::scenario::{FilterKind, LmsFilterConfig, RlsFilterConfig, SignLmsFilterConfig};
 use crate::signal::FilterShape;
-use crate::vocabulary::{DesiredSignal, NumberFormat, OutputRegister, Pipeline, SignLmsForm};
+use crate::units::s_to_us;
+use crate::vocabulary::{DesiredSignal, NumberFormat, OutputRegister};
 
 /// A hardware pipeline with its front end, before any check.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,20 +68,18 @@ macro_rules! with_word {
 }
 pub(super) use with_word;
 
-impl PipelineSettings {
-    /// The hardware of a filter of a scenario; none if its arithmetic is the textbook's.
-    #[must_use]
-    pub fn of(kind: &FilterKind) -> Option<Self> {
-        match kind {
-            FilterKind::Rls(config) if config.pipeline == Pipeline::Fpga => Some(rls(config)),
-            FilterKind::Lms(config) if config.pipeline == Pipeline::Fpga => Some(lms(config)),
-            FilterKind::SignLms(config) if config.pipeline == Pipeline::Fpga => {
-                Some(sign_lms(config))
-            }
-            _ => None,
-        }
-    }
+/// Names of the kinds of filters that have a hardware pipeline.
+pub fn kind_names() -> impl Iterator<Item = &'static str> {
+    KINDS.iter().map(|kind| kind.name)
+}
 
+/// Whether filters of a kind have a hardware pipeline.
+#[must_use]
+pub fn has_hardware(kind: &str) -> bool {
+    kind_names().any(|name| name == kind)
+}
+
+impl PipelineSettings {
     /// Number of weights.
     #[must_use]
     pub fn tap_count(&self) -> usize {
@@ -108,6 +102,26 @@ impl PipelineSettings {
             sample_rate_max_khz: sample_rate_max_khz(usage.clocks_per_sample, clock_mhz),
             usage,
         })
+    }
+
+    /// Checks the constants in their word format, and that a sample is done before the next arrives.
+    pub(in crate::filters) fn check(&self, sample_rate_hz: f64, complaints: &mut Complaints) {
+        let timing = match self.timing() {
+            Ok(timing) => timing,
+            Err(error) => return complaints.table(&error.to_string()),
+        };
+        let period_us = s_to_us(1.0 / sample_rate_hz);
+        if timing.sample_period_us > period_us {
+            let message = format!(
+                "= {} is too slow: {} clocks a sample take {:.3} us, the gyro gives one every \
+                 {period_us:.3} us; use {:.3} MHz or more, or fewer taps",
+                self.clock_mhz,
+                timing.usage.clocks_per_sample,
+                timing.sample_period_us,
+                self.clock_mhz * timing.sample_period_us / period_us
+            );
+            complaints.key("clock_mhz", &message);
+        }
     }
 
     /// Warns if the first updates cost the words their digits, for inputs up to `input_max`.
@@ -145,7 +159,7 @@ impl PipelineSettings {
         FrontEnd::new(self.desired, self.input_lag_samples)
     }
 
-    /// Regressors, aim and register in the terms of the bench.
+    /// Regressors, desired signal and register in the terms of the bench.
     pub(super) fn shape(&self) -> FilterShape {
         let front_end = FrontEndConfig {
             desired: self.desired,
@@ -170,74 +184,5 @@ impl CoreVisitor for FilterBuilder<'_> {
             let engine = core.engine::<F>()?;
             Ok(Box::new(PipelineFilter::new(self.settings, engine, self.warm_up_samples)))
         })
-    }
-}
-
-fn rls(config: &RlsFilterConfig) -> PipelineSettings {
-    let settings = RlsSettings {
-        tap_count: config.taps as usize,
-        forgetting_factor: config.forgetting_factor,
-        initial_inverse_correlation: config.initial_inverse_correlation,
-        division: config.division,
-        update_sign: config.update_sign,
-    };
-    PipelineSettings {
-        core: CoreSettings::Rls(RlsCore {
-            settings,
-            order: config.update_order,
-        }),
-        desired: config.desired,
-        input_lag_samples: config.input_lag_samples as usize,
-        output_register: config.output_register,
-        format: config.number_format,
-        clock_mhz: config.clock_mhz,
-    }
-}
-
-fn lms(config: &LmsFilterConfig) -> PipelineSettings {
-    let desired = config.desired;
-    let input_lag_samples = config.input_lag_samples as usize;
-    let settings = LmsSettings {
-        tap_count: config.taps as usize,
-        step_size: config.step_size,
-        regularisation: config
-            .normalised
-            .then_some(config.regularisation_deg2_per_h2),
-        // The core forms the mean of the two words it holds; behind a lag they are not the newest.
-        desired: match input_lag_samples {
-            0 => DesiredSource::of(desired),
-            _ => DesiredSource::Port,
-        },
-        update_sign: config.update_sign,
-    };
-    PipelineSettings {
-        core: CoreSettings::Lms(settings),
-        desired,
-        input_lag_samples,
-        output_register: config.output_register,
-        format: config.number_format,
-        clock_mhz: config.clock_mhz,
-    }
-}
-
-fn sign_lms(config: &SignLmsFilterConfig) -> PipelineSettings {
-    let textbook = line_enhancer::sign_lms(config);
-    PipelineSettings {
-        core: CoreSettings::SignLms(SignLmsSettings {
-            tap_count: textbook.taps,
-            delay_samples: textbook.delay_samples,
-            // The reader has refused the unity-gain form, which is no hardware's.
-            normalised: textbook.form != SignLmsForm::Sign,
-            step: textbook.step,
-            regularisation: textbook.regularisation,
-            initial_weight: textbook.initial_weight,
-            guard: textbook.guard,
-            norm_recompute_samples: config.norm_recompute_samples,
-        }),
-        desired: DesiredSignal::Current,
-        input_lag_samples: textbook.delay_samples,
-        output_register: config.output_register,
-        format: config.number_format,
-        clock_mhz: config.clock_mhz,
     }
 }

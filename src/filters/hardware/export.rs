@@ -1,19 +1,14 @@
-//! Exports of hardware pipelines with a stimulus from a scenario or a recorded file.
+//! Exports of hardware pipelines with a stimulus.
 
 use std::path::{Path, PathBuf};
 
-use super::pipeline_settings::{PipelineSettings, with_word};
-use crate::experiment::plan::Plan;
-use crate::experiment::run::first_words;
+use super::settings::{PipelineSettings, with_word};
 use crate::fpga::FpgaError;
 use crate::fpga::export::{
     ExportSettings, IntegerCodes, stimulus_pairs, write_rtl, write_vectors, write_waveform,
 };
 use crate::fpga::float_unit::Fp;
 use crate::fpga::trace::Window;
-use crate::gyro::{self, GyroError};
-use crate::scenario::OutputQuantisation;
-use crate::units::{arcsec_per_s_to_deg_per_h, deg_per_h_to_deg_per_s};
 use crate::vocabulary::{DesiredSignal, ExportForm};
 
 /// A sample stream in front of the front end.
@@ -23,40 +18,6 @@ pub struct Stimulus {
     pub words: Vec<f64>,
     /// The gyro's integer codes behind them, if they have any.
     pub codes: Option<IntegerCodes>,
-}
-
-/// The first rate words of a scenario's gyro, warm-up included, deg/h, and their integer codes.
-///
-/// # Errors
-/// What the gyro refuses.
-pub fn scenario_stimulus(plan: &Plan, samples: usize) -> Result<Stimulus, GyroError> {
-    let scenario = &plan.resolved().scenario;
-    let words = first_words(scenario, samples)?;
-    let output = &scenario.gyro.output;
-    let lsb = match output.quantisation {
-        OutputQuantisation::RateWord => output.rate_lsb_deg_per_s,
-        // One pulse in a word.
-        OutputQuantisation::AngleCarry => deg_per_h_to_deg_per_s(arcsec_per_s_to_deg_per_h(
-            output.angle_lsb_arcsec / gyro::word_period_s(&scenario.gyro),
-        )),
-    };
-    // The mean of rounded words is a multiple of the step over their number.
-    let lsb = lsb / f64::from(output.average_samples);
-    let codes = (lsb > 0.0).then(|| IntegerCodes {
-        codes: words.iter().map(|word| code(*word, lsb)).collect(),
-        lsb,
-        unit: "deg/s".to_owned(),
-    });
-    Ok(Stimulus { words, codes })
-}
-
-/// The integer that a rate word is a multiple of the least significant bit by.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the cast saturates; the reader keeps rates within 2000 deg/s"
-)]
-fn code(word_deg_per_h: f64, lsb_deg_per_s: f64) -> i32 {
-    (deg_per_h_to_deg_per_s(word_deg_per_h) / lsb_deg_per_s).round() as i32
 }
 
 /// Writes the folder; returns its files. The update is in the schedule's order, the hardware's.
