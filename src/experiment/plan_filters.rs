@@ -12,7 +12,7 @@ use crate::filters::{
     constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
 };
 use crate::gyro;
-use crate::scenario::{FilterKind, LmsFilterConfig, MotionConfig};
+use crate::scenario::{FilterKind, LmsFilterConfig, MotionClass};
 use crate::signal::GyroFacts;
 use crate::vocabulary::Pipeline;
 
@@ -97,10 +97,9 @@ impl Checker<'_> {
         }
         let taps = config.taps as usize;
         let scenario = &self.resolved.scenario;
-        let eigenvalue_max = match &scenario.turntable.motion {
-            MotionConfig::Swing(swing) => {
-                let phase_step_rad =
-                    TAU * swing.frequency_hz * gyro::sample_period_s(&scenario.gyro);
+        let eigenvalue_max = match scenario.turntable.motion.class() {
+            MotionClass::Swing { frequency_hz, .. } => {
+                let phase_step_rad = TAU * frequency_hz * gyro::sample_period_s(&scenario.gyro);
                 sine_eigenvalue_max(taps, rate_max, phase_step_rad, 0.0)
             }
             _ => constant_eigenvalue_max(taps, rate_max, 0.0),

@@ -16,6 +16,18 @@ pub struct InjectionConfig {
 }
 
 impl InjectionConfig {
+    /// The sines.
+    ///
+    /// # Panics
+    /// Never: the motion is made of them.
+    #[must_use]
+    pub fn sines(&self) -> &MultiSineConfig {
+        match &self.motion {
+            MotionConfig::MultiSine(sines) => sines,
+            _ => unreachable!("the motion is made of sines"),
+        }
+    }
+
     /// The equivalent motion: several sines.
     #[must_use]
     pub fn equivalent_motion(&self) -> &MotionConfig {

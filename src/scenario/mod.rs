@@ -17,15 +17,12 @@ mod compensation_source;
 mod complaints;
 mod config;
 mod cross;
-mod cross_calibration;
 mod cross_comparison;
 mod cross_compensation;
 mod cross_filter;
 mod cross_gyro;
-mod cross_multi_sine;
 mod cross_optics;
 mod cross_servo;
-mod cross_turntable;
 mod cross_vibration;
 mod defaults;
 mod deserialize;
@@ -67,6 +64,7 @@ mod unresolved;
 mod vibration_config;
 mod weight;
 
+pub use crate::turntable::MotionClass;
 pub use assembly_config::AssemblyConfig;
 pub use calibration_config::{CalibrationConfig, CampaignConfig, CampaignGroup};
 pub use comparison_config::{

@@ -32,7 +32,7 @@ use picture::Picture;
 use crate::report::RunReport;
 use crate::report::comparison::ComparedTable;
 use crate::report::measured::Measured;
-use crate::scenario::MotionConfig;
+use crate::scenario::MotionClass;
 use crate::signal::RunSignals;
 
 /// Largest size of a picture, bytes: long records are drawn as an envelope per pixel column.
@@ -94,8 +94,8 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Pictures {
         ..report.clone()
     };
     let axis = signals.prefix.replace('_', "-");
-    let swing = match &report.scenario.turntable.motion {
-        MotionConfig::Swing(swing) => swing::picture(report, signals, swing.frequency_hz),
+    let swing = match report.scenario.turntable.motion.class() {
+        MotionClass::Swing { frequency_hz, .. } => swing::picture(report, signals, frequency_hz),
         _ => None,
     };
     let pictures = [
