@@ -81,6 +81,8 @@ pub mod recording;
 
 pub mod gate;
 
+pub mod comparison;
+
 pub mod report;
 
 pub mod store;

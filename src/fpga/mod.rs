@@ -30,6 +30,7 @@ pub mod probe;
 pub mod registers;
 pub mod rls;
 pub mod sign_lms;
+mod steps;
 pub mod timing;
 pub mod trace;
 

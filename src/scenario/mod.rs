@@ -19,7 +19,6 @@ mod config;
 mod cross;
 mod cross_comparison;
 mod cross_compensation;
-mod cross_filter;
 mod cross_gyro;
 mod cross_optics;
 mod cross_servo;
@@ -32,7 +31,6 @@ mod emit;
 mod error;
 mod excerpt;
 mod faults;
-mod filter_config;
 mod gyro_config;
 mod inert;
 mod inert_rules;
@@ -84,11 +82,6 @@ pub(crate) use draft::UnsoundReading;
 pub use error::{Location, ScenarioError};
 pub(crate) use error::{in_both, in_order, portable_place};
 pub use excerpt::{bounded, excerpt};
-pub use filter_config::{
-    ButterworthFilterConfig, ConstrainedRlsFilterConfig, FilterConfig, FilterKind,
-    KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, OnePoleFilterConfig,
-    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig,
-};
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,
     ModulatorConfig, NoiseConfig, NoiseDraw, OutputQuantisation, RateOutputConfig, ResetSample,
