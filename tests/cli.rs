@@ -29,20 +29,15 @@ fn lists_and_checks_print_what_the_transcript_holds() {
         "check scenarios/quick/swing.toml --set gyro.coil.length_m=-5",
         "check scenarios/quick/swing.toml --set gyro.coil.lenght_m=5",
     ];
-    said_to_each(
-        COMMANDS,
-        "Lists and checks",
-        commands,
-        |arguments| {
-            let words: Vec<&str> = arguments.split(' ').collect();
-            let output = fogbench(&repository(""), &words);
-            let ended = match code(&output) {
-                0 => String::new(),
-                code => format!("exit code {code}\n"),
-            };
-            format!("{ended}{}{}", stdout(&output), stderr(&output))
-        },
-    );
+    said_to_each(COMMANDS, "Lists and checks", commands, |arguments| {
+        let words: Vec<&str> = arguments.split(' ').collect();
+        let output = fogbench(&repository(""), &words);
+        let ended = match code(&output) {
+            0 => String::new(),
+            code => format!("exit code {code}\n"),
+        };
+        format!("{ended}{}{}", stdout(&output), stderr(&output))
+    });
 }
 
 #[test]
