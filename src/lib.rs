@@ -55,6 +55,7 @@
 //!
 //! The folder `examples` has a program for each.
 
+pub mod declare;
 mod linear_algebra;
 pub mod random;
 pub mod signal;

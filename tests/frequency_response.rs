@@ -8,11 +8,12 @@ use fogbench::metrics::{
 };
 use fogbench::random::Streams;
 use fogbench::scenario::{
-    Fidelity, GyroConfig, MotionConfig, MultiSineConfig, PhaseRule, ServoConfig, SiteConfig,
-    StaticConfig, TurntableConfig,
+    Fidelity, GyroConfig, MotionConfig, MultiSineConfig, ServoConfig, SiteConfig, StaticConfig,
+    TurntableConfig,
 };
 use fogbench::turntable::Turntable;
 use fogbench::units::{deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
+use fogbench::vocabulary::PhaseRule;
 
 use crate::support::assert_close;
 use crate::support::records::{PERIOD_S, every_metric_is_answered, facts, settings, value, white};

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::arguments::Format;
 use crate::experiment::GroupsSettings;
-use crate::scenario::reference_calibration;
+use crate::scenario::CalibrationConfig;
 use crate::vocabulary::{EstimatorKind, ForgettingForm};
 
 /// Options of `calibrate`.
@@ -59,7 +59,7 @@ impl CalibrateOptions {
 
     /// Settings for a groups file.
     pub(super) fn groups_settings(&self) -> GroupsSettings {
-        let mut calibration = reference_calibration();
+        let mut calibration = CalibrationConfig::reference();
         let settings = &mut calibration;
         settings.apply = self.estimator.unwrap_or(settings.apply);
         settings.forgetting_form = self.forgetting_form.unwrap_or(settings.forgetting_form);

@@ -1,7 +1,5 @@
 //! The kinds of filters: what each says of itself, and the one list of them.
 
-use serde::Deserialize;
-
 use super::butterworth::ButterworthFilterConfig;
 use super::common::{Complaint, Complaints, Filter};
 use super::constrained_rls::ConstrainedRlsFilterConfig;
@@ -13,6 +11,7 @@ use super::one_pole::OnePoleFilterConfig;
 use super::rls::RlsFilterConfig;
 use super::savitzky_golay::SavitzkyGolayFilterConfig;
 use super::sign_lms::SignLmsFilterConfig;
+use crate::declare::{alternatives, table};
 
 /// Settings of a filter of one kind, and all that follows from them.
 pub trait FilterSettings {
@@ -67,25 +66,15 @@ pub struct ExpectedRun {
 
 /// Declares the kinds: the settings of each and the name of its table in a scenario.
 macro_rules! kinds {
-    ($($(#[$doc:meta])* $kind:ident($settings:ty) = $name:literal,)+) => {
-        /// Kind of a filter and its settings.
-        #[derive(Clone, Debug, PartialEq, Deserialize)]
-        pub enum FilterKind {
-            $($(#[$doc])* #[serde(rename = $name)] $kind($settings),)+
+    ($($kind:ident($settings:ty) = $name:literal,)+) => {
+        alternatives! {
+            /// Kind of a filter and its settings.
+            pub enum FilterKind, one "filter kind" {
+                $($kind($settings) = $name,)+
+            }
         }
 
-        /// Names of the kinds, in the order of the list.
-        pub const KINDS: &[&str] = &[$($name),+];
-
         impl FilterKind {
-            /// Name of the kind, that of its table in a scenario.
-            #[must_use]
-            pub fn name(&self) -> &'static str {
-                match self {
-                    $(Self::$kind(_) => $name,)+
-                }
-            }
-
             /// The settings, whatever the kind.
             #[must_use]
             pub fn settings(&self) -> &dyn FilterSettings {
@@ -98,34 +87,25 @@ macro_rules! kinds {
 }
 
 kinds! {
-    /// Recursive least squares.
     Rls(RlsFilterConfig) = "rls",
-    /// Least mean squares, normalised or not.
     Lms(LmsFilterConfig) = "lms",
-    /// Line enhancer with the sign of the error, and its normalised forms.
     SignLms(SignLmsFilterConfig) = "sign_lms",
-    /// Recursive least squares held to unit DC gain.
     ConstrainedRls(ConstrainedRlsFilterConfig) = "constrained_rls",
-    /// Mean of the newest samples.
     MovingAverage(MovingAverageFilterConfig) = "moving_average",
-    /// Savitzky-Golay filter at the newest sample.
     SavitzkyGolay(SavitzkyGolayFilterConfig) = "savitzky_golay",
-    /// One-pole low pass.
     OnePole(OnePoleFilterConfig) = "one_pole",
-    /// Butterworth low pass.
     Butterworth(ButterworthFilterConfig) = "butterworth",
-    /// Kalman filter for a rate that walks.
     Kalman(KalmanFilterConfig) = "kalman",
 }
 
-/// One filter channel of a scenario.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct FilterConfig {
-    /// Channel name.
-    pub name: String,
-    /// Kind and settings (`[filter.rls]` or `[filter.lms]`).
-    #[serde(flatten)]
-    pub kind: FilterKind,
+table! {
+    /// Filters: one `[[filter]]` per channel, with one kind. None by default.
+    pub struct FilterConfig {
+        /// Channel name; raw, truth, time_s and encoder_arcsec are reserved.
+        name: String, example "rls", kind Name;
+        #[serde(flatten)]
+        kind: FilterKind;
+    }
 }
 
 impl FilterConfig {

@@ -46,7 +46,7 @@ pub use common::{
 };
 pub use constrained_rls::{ConstrainedRls, ConstrainedRlsCore, ConstrainedRlsFilterConfig};
 pub use kalman::{Kalman, KalmanConfig, KalmanCore, KalmanFilterConfig, kalman_gain};
-pub use kind::{ExpectedRun, ExpectedWords, FilterConfig, FilterKind, FilterSettings, KINDS};
+pub use kind::{ExpectedRun, ExpectedWords, FilterConfig, FilterKind, FilterSettings};
 pub use lms::{
     Lms, LmsConfig, LmsCore, LmsFilterConfig, Normalisation, constant_eigenvalue_max,
     lms_step_bound, sine_eigenvalue_max,

@@ -1,5 +1,7 @@
 //! What is said of a recorded log: text, JSON, and the files of its folder.
 
+use std::borrow::Cow;
+
 use serde_json::{Map, Value};
 
 use crate::gate::plain;
@@ -43,7 +45,7 @@ impl<'a> LogReport<'a> {
     pub(super) fn measured(&self) -> Measured<'a> {
         Measured {
             name: self.file,
-            motion: self.motion,
+            motion: Cow::Borrowed(self.motion),
             channels: self.channels,
         }
     }

@@ -115,7 +115,7 @@ impl Checks<'_> {
 
     fn injection(&mut self) {
         let scenario = &self.resolved.scenario;
-        let Some(injection) = &scenario.gyro.injection else {
+        let Some(sines) = scenario.injected_sines() else {
             return;
         };
         if !scenario.turntable.motion.is_at_rest() {
@@ -128,7 +128,7 @@ impl Checks<'_> {
             let text = format!("{INJECTION} is for one gyro: leave out gyro.assembly");
             self.complain(INJECTION, text);
         }
-        self.motion(|_, checks| injection.sines().check_at(INJECTION, checks));
+        self.motion(|_, checks| sines.check_at(INJECTION, checks));
     }
 
     /// Refuses to reset filters where twins would go on.

@@ -3,14 +3,14 @@
 //! A key that is not here acts in every run. A condition that only a run could find out, such as a
 //! limit that the motion never reaches, is none.
 
-use super::config::{Fidelity, GateConfig, GateDecision, Scenario};
-use super::gyro_config::{NoiseDraw, OutputQuantisation};
-use super::thermal_config::{PowerConfig, TemperatureConfig, ThermalWarmUp};
-use super::turntable_config::ServoConfig;
-use super::vibration_config::VibrationMotion;
+use super::config::{GateConfig, GateDecision, Scenario};
 use crate::filters::hardware::has_hardware;
 use crate::filters::{FilterConfig, FilterKind};
-use crate::turntable::MotionClass;
+use crate::gyro::Fidelity;
+use crate::gyro::VibrationMotion;
+use crate::gyro::{NoiseDraw, OutputQuantisation};
+use crate::gyro::{PowerConfig, TemperatureConfig, ThermalWarmUp};
+use crate::turntable::{MotionClass, ServoConfig};
 use crate::vocabulary::EstimatorKind;
 
 /// The condition under which a key acts.
@@ -272,8 +272,8 @@ fn is_zero(value: f64) -> bool {
 }
 
 fn is_steady(scenario: &Scenario) -> bool {
-    let class = scenario.measured_motion().class();
-    matches!(class, MotionClass::Rest | MotionClass::Rotation)
+    let motion = scenario.measured_motion();
+    matches!(motion.class(), MotionClass::Rest | MotionClass::Rotation)
 }
 
 fn is_turning(scenario: &Scenario) -> bool {

@@ -1,8 +1,8 @@
 //! The signal that is added inside the loop while the table is at rest.
 
-use super::motion::Command;
-use crate::scenario::InjectionConfig;
+use super::motion::{Command, Motion};
 use crate::signal::MotionSegment;
+use crate::turntable::MultiSineConfig;
 
 /// Generator of an injected signal, in the place of a rate table.
 ///
@@ -23,8 +23,7 @@ impl InjectedSignal {
     /// # Panics
     /// If there is neither one amplitude nor one for each sine; the scenario reader refuses that.
     #[must_use]
-    pub fn new(config: &InjectionConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
-        let sines = config.equivalent_motion().kind();
+    pub fn new(sines: &MultiSineConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         Self {
             command: Command::new(sines.course(warm_up_s, sample_period_s)),
         }

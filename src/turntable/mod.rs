@@ -22,6 +22,8 @@ mod injected;
 mod motion;
 mod platform;
 mod servo;
+mod settings;
+mod stairs;
 mod table;
 
 pub use axis::{InputAxisBounds, earth_rate_rad_per_s, input_axis_bounds};
@@ -30,4 +32,11 @@ pub use motion::{
     CommandExtremes, MotionChecks, MotionClass, Surroundings, campaign_angles_rad, dwell_ends,
     first_measured_index, step_indices,
 };
+pub use settings::{
+    AxisConfig, CampaignConfig, CampaignGroup, ChirpConfig, DirectDriveServoConfig, EncoderConfig,
+    MotionConfig, MountingConfig, MultiSineConfig, PreferredSeries, Progression, RotationConfig,
+    ScaleFactorTestConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig,
+    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TrapezoidConfig, TurntableConfig,
+};
+pub use stairs::{Stairs, TEST_RATES_MIN};
 pub use table::Turntable;

@@ -1,9 +1,10 @@
 //! The inertial rate of axes fixed in the platform: exact kinematics of an imperfect table.
 
 use super::axis::{Vector, cross, dot, earth_in_table_frame};
-use crate::scenario::{CaseAxis, MountingConfig, TurntableConfig};
 use crate::signal::MotionSegment;
+use crate::turntable::{MountingConfig, TurntableConfig};
 use crate::units::{arcsec_to_rad, deg_to_rad};
+use crate::vocabulary::CaseAxis;
 
 /// The platform and what is mounted on it.
 ///

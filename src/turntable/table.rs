@@ -5,9 +5,10 @@ use super::encoder::Encoder;
 use super::motion::{Command, remountings};
 use super::platform::Platform;
 use super::servo::Servo;
-use crate::scenario::{CaseAxis, TurntableConfig};
 use crate::signal::MotionSegment;
+use crate::turntable::TurntableConfig;
 use crate::units::deg_to_rad;
+use crate::vocabulary::CaseAxis;
 
 /// A rate table that carries one gyro, or the case of a three-axis assembly.
 ///

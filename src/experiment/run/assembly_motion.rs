@@ -2,8 +2,9 @@
 
 use crate::gyro::{InputAxis, MotionExtremes};
 use crate::metrics::{Against, ChannelMetrics, MetricKey, known_metrics};
-use crate::scenario::{AssemblyConfig, CaseAxis, Scenario, TurntableConfig};
+use crate::scenario::{AssemblyConfig, Scenario, TurntableConfig};
 use crate::units::{EARTH_RATE_RAD_PER_S, arcsec_to_rad};
+use crate::vocabulary::CaseAxis;
 
 /// Index of a case axis.
 pub(crate) fn axis_index(axis: CaseAxis) -> usize {

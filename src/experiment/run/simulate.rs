@@ -292,10 +292,8 @@ impl Source {
         Ok(Self {
             table: Turntable::new(&scenario.turntable, warm_up_s, word_period_s),
             injected: scenario
-                .gyro
-                .injection
-                .as_ref()
-                .map(|signal| InjectedSignal::new(signal, warm_up_s, word_period_s)),
+                .injected_sines()
+                .map(|sines| InjectedSignal::new(&sines, warm_up_s, word_period_s)),
             encoder_rad: has_encoder.then(|| Vec::with_capacity(length.total())),
             gyros: Gyros::new(scenario, repeat)?,
             sample_period_s,

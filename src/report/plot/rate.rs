@@ -56,7 +56,7 @@ pub(in crate::report) fn picture(report: &Measured, signals: &RunSignals) -> Opt
     drawing.envelope(&mut picture, (56.0, 400.0), &mut legend);
     let mut legend = Legend::new(476.0);
     let lower = (476.0, 800.0);
-    match window(report.motion, truth, samples, signals.sample_period_s) {
+    match window(&report.motion, truth, samples, signals.sample_period_s) {
         Some((range, name)) => drawing.window(&mut picture, lower, range, (&mut legend, &name)),
         None => drawing.means(&mut picture, lower, &mut legend),
     }

@@ -7,8 +7,9 @@ use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::samples::first_measured_index;
 use super::soft_start::SoftStart;
-use crate::scenario::{CampaignConfig, CaseAxis};
+use crate::turntable::CampaignConfig;
 use crate::units::deg_per_s_to_rad_per_s;
+use crate::vocabulary::CaseAxis;
 use crate::wording::number;
 
 /// Fewest output samples of a group: twenty blocks of two.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::checks::MotionChecks;
 use super::course::Course;
-use crate::scenario::{CampaignConfig, ServoConfig, Stairs};
+use crate::turntable::{CampaignConfig, ServoConfig, Stairs};
 
 /// Kind of motion: implemented by the settings of each.
 pub(in crate::turntable) trait Motion {

@@ -29,7 +29,7 @@ pub(in crate::turntable) use kind::Motion;
 pub use kind::{CommandExtremes, MotionClass, Surroundings};
 pub use samples::{dwell_ends, first_measured_index, step_indices};
 
-use crate::scenario::{CampaignConfig, MotionConfig, Stairs, StaticConfig};
+use crate::turntable::{CampaignConfig, MotionConfig, Stairs, StaticConfig};
 
 impl MotionConfig {
     /// The motion whatever its kind.

@@ -7,8 +7,9 @@ use super::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN};
 use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::soft_start::SoftStart;
-use crate::scenario::{MultiSineConfig, PhaseRule};
+use crate::turntable::MultiSineConfig;
 use crate::units::deg_per_s_to_rad_per_s;
+use crate::vocabulary::PhaseRule;
 
 /// Most sines: the fit grows with the square of their number.
 const TONES_MAX: usize = 64;

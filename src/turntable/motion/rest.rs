@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::checks::MotionChecks;
 use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
-use crate::scenario::StaticConfig;
+use crate::turntable::StaticConfig;
 
 impl Motion for StaticConfig {
     fn class(&self) -> MotionClass<'_> {

@@ -6,7 +6,7 @@ use super::checks::MotionChecks;
 use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::soft_start::SoftStart;
-use crate::scenario::RotationConfig;
+use crate::turntable::RotationConfig;
 use crate::units::deg_per_s_to_rad_per_s;
 
 impl Motion for RotationConfig {

@@ -6,7 +6,7 @@ use super::checks::MotionChecks;
 use super::course::Course;
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::staircase::{Held, extremes};
-use crate::scenario::{ScaleFactorTestConfig, Stairs, TEST_RATES_MIN};
+use crate::turntable::{ScaleFactorTestConfig, Stairs, TEST_RATES_MIN};
 use crate::units::deg_per_s_to_rad_per_s;
 
 impl Motion for ScaleFactorTestConfig {

@@ -6,7 +6,7 @@ use super::checks::{MotionChecks, TIME_SLACK};
 use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::samples::first_measured_index;
-use crate::scenario::{ScriptConfig, ScriptPoints};
+use crate::turntable::{ScriptConfig, ScriptPoints};
 use crate::units::deg_to_rad;
 use crate::wording::number;
 

@@ -3,8 +3,8 @@
 use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Surroundings};
 use super::samples::step_indices;
-use crate::scenario::Stairs;
 use crate::signal::MotionSegment;
+use crate::turntable::Stairs;
 use crate::turntable::servo::step_response_extremes;
 use crate::units::deg_per_s_to_rad_per_s;
 

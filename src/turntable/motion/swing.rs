@@ -8,7 +8,7 @@ use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::samples::first_measured_index;
 use super::soft_start::SoftStart;
-use crate::scenario::SwingConfig;
+use crate::turntable::SwingConfig;
 use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
 
 impl SwingConfig {

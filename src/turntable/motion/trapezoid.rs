@@ -6,7 +6,7 @@ use super::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN};
 use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::samples::first_measured_index;
-use crate::scenario::TrapezoidConfig;
+use crate::turntable::TrapezoidConfig;
 use crate::units::deg_per_s_to_rad_per_s;
 use crate::wording::number;
 

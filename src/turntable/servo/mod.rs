@@ -7,8 +7,8 @@ mod second_order;
 
 use std::f64::consts::TAU;
 
-use crate::scenario::{EncoderConfig, ServoConfig};
 use crate::signal::MotionSegment;
+use crate::turntable::{EncoderConfig, ServoConfig};
 use direct_drive::DirectDrive;
 use second_order::SecondOrder;
 
