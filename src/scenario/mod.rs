@@ -36,10 +36,10 @@ pub use crate::gyro::{
 };
 pub use crate::turntable::{
     AxisConfig, CampaignConfig, CampaignGroup, ChirpConfig, DirectDriveServoConfig, EncoderConfig,
-    MotionConfig, MountingConfig, MultiSineConfig, PreferredSeries, Progression, RotationConfig,
-    ScaleFactorTestConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig,
-    SiteConfig, Stairs, StaticConfig, StepsConfig, SwingConfig, TEST_RATES_MIN, TrapezoidConfig,
-    TurntableConfig,
+    MotionClass, MotionConfig, MountingConfig, MultiSineConfig, PreferredSeries, Progression,
+    RotationConfig, ScaleFactorTestConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig,
+    ServoConfig, SiteConfig, Stairs, StaticConfig, StepsConfig, SwingConfig, TEST_RATES_MIN,
+    TrapezoidConfig, TurntableConfig,
 };
 pub(crate) use check::cross::comparison::slug;
 pub use config::{
