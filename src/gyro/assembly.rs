@@ -165,16 +165,13 @@ mod tests {
             let mut angles = [0.0; 6];
             angles[index] = 200.0;
             let config = AssemblyConfig {
-                bias_deg_per_h: [0.0; 3],
-                scale_factor_error_ppm: [0.0; 3],
-                bias_deg_per_h_per_k: [0.0; 3],
-                scale_factor_ppm_per_k: [0.0; 3],
                 theta_xy_arcsec: angles[0],
                 theta_xz_arcsec: angles[1],
                 theta_yx_arcsec: angles[2],
                 theta_yz_arcsec: angles[3],
                 theta_zx_arcsec: angles[4],
                 theta_zy_arcsec: angles[5],
+                ..AssemblyConfig::reference()
             };
             let tilt = cross(unit(about), unit(gyro)).map(|side| side * arcsec_to_rad(200.0));
             for (axis, seen) in InputAxis::of_assembly(&config).iter().enumerate() {
