@@ -1,8 +1,8 @@
 //! Kalman filter for a rate that walks, in white noise.
 
 use super::common::{Core, CoreFilter, Fault, Filter, FrontEndConfig, Output};
-use super::kind::FilterSettings;
 use super::one_pole::one_pole_of_gain;
+use super::settings::FilterSettings;
 use crate::declare::table;
 use crate::signal::WeightRule;
 use crate::vocabulary::{DesiredSignal, OutputRegister};

@@ -2,7 +2,7 @@
 
 use super::common::{Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, dot};
 use super::hardware::{self, PipelineSettings};
-use super::kind::{ExpectedWords, FilterSettings};
+use super::settings::{ExpectedWords, FilterSettings};
 use crate::declare::table;
 use crate::vocabulary::{
     DesiredSignal, Division, NumberFormat, OutputRegister, Pipeline, UpdateOrder, UpdateSign,

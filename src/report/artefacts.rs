@@ -337,7 +337,7 @@ const TABLE: &[Artefact] = &[
     drawn(
         "rate-gain.svg",
         "gain of every filter over the rate",
-        "trial.rate_gains",
+        "trial.rate_gain = true",
         RUN,
         |scene| plot::rate_gain::picture(scene.run?),
     ),

@@ -263,7 +263,10 @@ fn missing<'a>(report: &Measured<'a>) -> BTreeMap<(&'a str, &'a str), Vec<&'a st
                 matters(&report.motion, known) && !known.filters_only && !known.is_by_choice
             });
             if is_missed {
-                missing.entry((key, reason)).or_default().push(name);
+                missing
+                    .entry((key, reason.as_str()))
+                    .or_default()
+                    .push(name);
             }
         }
     }

@@ -37,6 +37,7 @@ mod matrix;
 mod numbers;
 mod presence;
 mod reference;
+mod resolve;
 mod resolved;
 mod schema;
 mod script;

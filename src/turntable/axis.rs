@@ -77,6 +77,7 @@ pub(super) fn fixed_earth_rate(config: &TurntableConfig) -> Option<f64> {
 
 /// What the geometry makes of the table's motion at most; see [`input_axis_bounds`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct InputAxisBounds {
     /// Rate on the input axis over table rate, in magnitude.
     pub rate_ratio: f64,

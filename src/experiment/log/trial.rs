@@ -93,6 +93,7 @@ pub struct LogSettings {
 /// Why a log was not measured.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {message}")]
+#[non_exhaustive]
 pub struct LogTrialError {
     /// Name of the log.
     pub file: String,

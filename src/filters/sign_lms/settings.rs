@@ -5,7 +5,7 @@ use super::notes;
 use crate::declare::table;
 use crate::filters::common::{Complaints, Filter};
 use crate::filters::hardware::{self, PipelineSettings};
-use crate::filters::kind::{ExpectedWords, FilterSettings};
+use crate::filters::settings::{ExpectedWords, FilterSettings};
 use crate::units::{deg_per_s_to_deg_per_h, rad_per_s_to_deg_per_h};
 use crate::vocabulary::{
     ConstantUnit, InitialWeights, NumberFormat, OutputRegister, Pipeline, SignLmsForm,
