@@ -6,7 +6,7 @@ use super::motion::{Command, remountings};
 use super::platform::Platform;
 use super::servo::Servo;
 use crate::signal::MotionSegment;
-use crate::turntable::TurntableConfig;
+use crate::turntable::config::TurntableConfig;
 use crate::units::deg_to_rad;
 use crate::vocabulary::CaseAxis;
 
@@ -42,7 +42,7 @@ impl Turntable {
     /// reader refuses all of these.
     #[must_use]
     pub fn new(config: &TurntableConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
-        let course = config.motion.kind().course(warm_up_s, sample_period_s);
+        let course = config.motion.course(warm_up_s, sample_period_s);
         let command = Command::new(course);
         let initial_rate = command.initial_rate();
         let start_angle = deg_to_rad(config.mounting.start_angle_deg);

@@ -7,6 +7,8 @@
 //! The case moves on the table: truth stays the rate of the table's axis, as an encoder has it, so
 //! that a vibration in band is seen as noise and one beyond the output's Nyquist as an alias.
 
+pub(in crate::gyro) mod settings;
+
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::Complex;
@@ -23,12 +25,12 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// One tone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Tone {
-    pub(super) frequency_hz: f64,
+pub(in crate::gyro) struct Tone {
+    pub(in crate::gyro) frequency_hz: f64,
     /// Relative change of the detected power.
     power: Complex<f64>,
     /// Rate on the input axis, rad/s.
-    pub(super) rate_rad_per_s: Complex<f64>,
+    pub(in crate::gyro) rate_rad_per_s: Complex<f64>,
 }
 
 impl Tone {
@@ -64,7 +66,7 @@ impl Tone {
 /// # Source
 /// Shinozuka, Deodatis, Simulation of stochastic processes by spectral representation, Applied
 /// Mechanics Reviews 44 (1991) 191.
-pub(super) fn tones(config: &VibrationConfig, streams: &Streams) -> Vec<Tone> {
+pub(in crate::gyro) fn tones(config: &VibrationConfig, streams: &Streams) -> Vec<Tone> {
     match &config.motion {
         VibrationMotion::Off(_) => Vec::new(),
         VibrationMotion::Sine(sine) => vec![sine_tone(config, sine)],
@@ -127,7 +129,7 @@ fn random_tones(
 
 /// Vibration as the loop meets it, half period after half period.
 #[derive(Clone, Debug)]
-pub(super) struct Vibration {
+pub(in crate::gyro) struct Vibration {
     tones: Vec<Tone>,
     /// Unit vector of each tone at each half period of a block.
     turns: Vec<[Complex<f64>; BLOCK]>,
@@ -138,7 +140,7 @@ pub(super) struct Vibration {
 
 impl Vibration {
     /// The vibration of a configuration at half periods of `half_period_s`, `None` if it is off.
-    pub(super) fn new(
+    pub(in crate::gyro) fn new(
         config: &VibrationConfig,
         half_period_s: f64,
         streams: &Streams,
@@ -155,7 +157,7 @@ impl Vibration {
 
     /// Adds the rate of the next half periods times `phase_per_rate` to `phases` and sets `powers`
     /// to the detected power over its mean, both at the start of each half period.
-    pub(super) fn next_half_periods(
+    pub(in crate::gyro) fn next_half_periods(
         &mut self,
         phase_per_rate: f64,
         phases: &mut [f64],
@@ -206,7 +208,7 @@ impl Vibration {
 /// # Source
 /// Derived from the loop model's equations.
 #[derive(Clone, Debug)]
-pub(super) struct VibrationResponse {
+pub(in crate::gyro) struct VibrationResponse {
     /// Tones and the complex amplitude of the mean register of a word, rad, at the word's start.
     tones: Vec<(Tone, Complex<f64>)>,
     mean_rad: f64,
@@ -217,7 +219,7 @@ pub(super) struct VibrationResponse {
 
 impl VibrationResponse {
     /// The settled answer of a gyro to `tones`, `None` if there are none.
-    pub(super) fn new(tones: Vec<Tone>, parts: &Parts) -> Option<Self> {
+    pub(in crate::gyro) fn new(tones: Vec<Tone>, parts: &Parts) -> Option<Self> {
         let (coil, detector) = (&parts.coil, &parts.detector);
         let periods = 0.5 * f64::from(parts.half_periods);
         if tones.is_empty() {
@@ -263,12 +265,12 @@ impl VibrationResponse {
     }
 
     /// Mean of the register beyond the motion, rad.
-    pub(super) fn mean_rad(&self) -> f64 {
+    pub(in crate::gyro) fn mean_rad(&self) -> f64 {
         self.mean_rad
     }
 
     /// Mean register of the next word beyond the motion, rad.
-    pub(super) fn next_rad(&mut self) -> f64 {
+    pub(in crate::gyro) fn next_rad(&mut self) -> f64 {
         let start_s = self.index as f64 * self.sample_period_s;
         self.index += 1;
         let tones = self.tones.iter();

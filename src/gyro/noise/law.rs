@@ -1,17 +1,26 @@
-//! Declaration of a noise source: where it enters the detection chain, and with what density.
+//! Law of a noise source: where it enters the detection chain, and with what density.
 
-use crate::gyro::GyroConfig;
-use crate::gyro::thermal::condition::Condition;
+use crate::gyro::optics::converter::AdcConfig;
+use crate::gyro::optics::receiver::DetectorConfig;
+use crate::gyro::optics::source::SourceConfig;
 
-/// Declaration of a detector noise source.
+/// Law of a detector noise source.
 #[derive(Clone, Copy, Debug)]
-pub struct NoiseSource {
+pub(in crate::gyro) struct NoiseLaw {
     /// Name in budgets, and of the stream it is drawn from on its own.
-    pub name: &'static str,
-    /// Scenario key that switches it off, by `false` or 0.
-    pub key: &'static str,
-    /// Where it enters and with what density; a source that is switched off has density 0.
-    pub(in crate::gyro) density: fn(&GyroConfig, &Condition) -> Density,
+    pub(in crate::gyro) name: &'static str,
+    /// Density of an amount: 1 or 0 of a source that is switched, else what its key says.
+    pub(in crate::gyro) density: fn(f64, &WorkingPoint) -> Density,
+}
+
+/// Working point of the detection chain: what a density may depend on besides the amount.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::gyro) struct WorkingPoint<'a> {
+    pub(in crate::gyro) source: &'a SourceConfig,
+    pub(in crate::gyro) detector: &'a DetectorConfig,
+    pub(in crate::gyro) adc: &'a AdcConfig,
+    /// Temperature of case and electronics, deg C.
+    pub(in crate::gyro) case_c: f64,
 }
 
 /// One-sided noise density of a source at the place where it enters; 0 where it is switched off.
@@ -58,9 +67,4 @@ impl Density {
             Self::Phase { .. } | Self::Rounding { .. } => 0.0,
         }
     }
-}
-
-/// A density that a switch turns off.
-pub(super) fn when(is_on: bool, density: f64) -> f64 {
-    if is_on { density } else { 0.0 }
 }

@@ -1,6 +1,7 @@
-//! Settings of photodetector, amplifier, gate and converter.
+//! Photodetector and transimpedance amplifier in SI units.
 
 use crate::declare::table;
+use crate::units::{KILO, NANO};
 
 table! {
     /// Photodetector, transimpedance amplifier and gate.
@@ -25,14 +26,19 @@ table! {
     }
 }
 
-table! {
-    /// Analogue-to-digital converter.
-    pub struct AdcConfig {
-        /// Bits; 0 is ideal, without quantisation or saturation. Source of the default: assumed.
-        bits: u32 = 12, in 0..=32;
-        /// Range: the codes cover 0 to this. Source of the default: assumed.
-        range_v: f64 = 2.0, in 1e-3..=1000.0, "V";
-        /// Samples averaged per half period. Source of the default: assumed.
-        samples_per_half_period: u32 = 8, in 1..=1024;
+impl DetectorConfig {
+    /// Feedback resistance of the transimpedance, ohm.
+    pub(in crate::gyro) fn feedback_ohm(&self) -> f64 {
+        self.transimpedance_kohm * KILO
+    }
+
+    /// Converter volts per ampere of photocurrent, `G = R_f G_v`.
+    pub(in crate::gyro) fn transimpedance_v_per_a(&self) -> f64 {
+        self.transimpedance_kohm * KILO * self.post_gain
+    }
+
+    /// Dark current, A.
+    pub(in crate::gyro) fn dark_current_a(&self) -> f64 {
+        self.dark_current_na * NANO
     }
 }

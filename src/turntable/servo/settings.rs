@@ -1,15 +1,28 @@
 //! Settings of the servo.
 
-use super::rest::StaticConfig;
 use crate::declare::{alternatives, table};
 
 alternatives! {
     /// How the table follows its command.
     pub enum ServoConfig, one "servo", first by default {
         /// The axis is the command.
-        Ideal(StaticConfig) = "ideal",
+        Ideal(IdealServoConfig) = "ideal",
         SecondOrder(SecondOrderServoConfig) = "second_order",
         DirectDrive(DirectDriveServoConfig) = "direct_drive",
+    }
+}
+
+impl ServoConfig {
+    /// A table whose axis is the command.
+    #[must_use]
+    pub fn ideal() -> Self {
+        Self::Ideal(IdealServoConfig {})
+    }
+}
+
+table! {
+    /// Nothing to set.
+    pub struct IdealServoConfig {
     }
 }
 

@@ -1,7 +1,7 @@
 //! Settings of how temperature reaches the gyro and what it does there.
 
-use super::power::PowerConfig;
 use crate::declare::table;
+use crate::gyro::thermal::power::PowerConfig;
 use crate::vocabulary::words;
 
 table! {
