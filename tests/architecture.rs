@@ -12,7 +12,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("linear_algebra", &[]),
     ("random", &["units"]),
     ("signal", &["units"]),
-    ("turntable", &["units", "signal", "random"]),
+    ("turntable", &["units", "signal", "random", "wording"]),
     ("gyro", &["units", "signal", "random"]),
     ("fpga", &[]),
     ("filters", &["units", "signal"]),

@@ -13,7 +13,7 @@ use super::record::RunReport;
 use super::repeats::runs_csv;
 use super::summary::run_summary_json;
 use crate::metrics::{CurveKey, known_curves};
-use crate::scenario::MotionConfig;
+use crate::scenario::MotionClass;
 use crate::signal::{BudgetSheet, CalibrationSheet, RunSignals};
 
 /// Folder that a file is written into.
@@ -285,9 +285,9 @@ const TABLE: &[Artefact] = &[
         "mean cycle of a swing and the delay of every channel",
         "swing",
         RUN,
-        |scene| match &scene.run?.scenario.turntable.motion {
-            MotionConfig::Swing(swing) => {
-                plot::swing::picture(scene.run?, scene.signals, swing.frequency_hz)
+        |scene| match scene.run?.scenario.turntable.motion.class() {
+            MotionClass::Swing { frequency_hz, .. } => {
+                plot::swing::picture(scene.run?, scene.signals, frequency_hz)
             }
             _ => None,
         },
@@ -337,7 +337,7 @@ const TABLE: &[Artefact] = &[
     drawn(
         "rate-gain.svg",
         "gain of every filter over the rate",
-        "trial.rate_gains",
+        "trial.rate_gain = true",
         RUN,
         |scene| plot::rate_gain::picture(scene.run?),
     ),

@@ -90,7 +90,7 @@ impl Scenario {
     /// none with another motion.
     #[must_use]
     pub fn calibration_channels(&self) -> Vec<String> {
-        if !matches!(self.turntable.motion, MotionConfig::Calibration(_)) {
+        if self.turntable.motion.campaign().is_none() {
             return Vec::new();
         }
         let kinds = self.calibration.kinds();

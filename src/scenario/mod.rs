@@ -13,14 +13,11 @@ mod compensation_source;
 mod complaints;
 mod config;
 mod cross;
-mod cross_calibration;
 mod cross_comparison;
 mod cross_compensation;
 mod cross_gyro;
-mod cross_multi_sine;
 mod cross_optics;
 mod cross_servo;
-mod cross_turntable;
 mod cross_vibration;
 mod defaults;
 mod deserialize;
@@ -72,10 +69,10 @@ pub use crate::gyro::{
 };
 pub use crate::turntable::{
     AxisConfig, CampaignConfig, CampaignGroup, ChirpConfig, DirectDriveServoConfig, EncoderConfig,
-    MotionConfig, MountingConfig, MultiSineConfig, PreferredSeries, Progression, RotationConfig,
-    ScaleFactorTestConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig,
-    SiteConfig, Stairs, StaticConfig, StepsConfig, SwingConfig, TEST_RATES_MIN, TrapezoidConfig,
-    TurntableConfig,
+    MotionClass, MotionConfig, MountingConfig, MultiSineConfig, PreferredSeries, Progression,
+    RotationConfig, ScaleFactorTestConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig,
+    ServoConfig, SiteConfig, Stairs, StaticConfig, StepsConfig, SwingConfig, TEST_RATES_MIN,
+    TrapezoidConfig, TurntableConfig,
 };
 pub use compensation_source::load_calibration;
 pub use complaints::ScenarioErrors;

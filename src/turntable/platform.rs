@@ -2,7 +2,7 @@
 
 use super::axis::{Vector, cross, dot, earth_in_table_frame};
 use crate::signal::MotionSegment;
-use crate::turntable::{MotionConfig, MountingConfig, TurntableConfig};
+use crate::turntable::{MountingConfig, TurntableConfig};
 use crate::units::{arcsec_to_rad, deg_to_rad};
 use crate::vocabulary::CaseAxis;
 
@@ -69,7 +69,7 @@ impl Platform {
     pub(super) fn new(config: &TurntableConfig, angle: f64, sample_period_s: f64) -> Self {
         let (wobble_sine, wobble_cosine) = arcsec_to_rad(config.axis.wobble_arcsec).sin_cos();
         let mut mounting = config.mounting.clone();
-        if let MotionConfig::Calibration(campaign) = &config.motion {
+        if let Some(campaign) = config.motion.campaign() {
             let first = campaign.axes.first().copied();
             mounting.axis_along_table = first.unwrap_or(mounting.axis_along_table);
         }

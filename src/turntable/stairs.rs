@@ -1,6 +1,6 @@
 //! Rates held one after the other: a staircase, or the rates of a scale factor test.
 
-use crate::turntable::{MotionConfig, PreferredSeries, ScaleFactorTestConfig, StepsConfig};
+use crate::turntable::{PreferredSeries, ScaleFactorTestConfig, StepsConfig};
 
 /// Degrees of a turn.
 const TURN_DEG: f64 = 360.0;
@@ -27,16 +27,6 @@ pub struct Stairs {
 }
 
 impl Stairs {
-    /// The rates of a motion that holds one after the other; `None` for other motions.
-    #[must_use]
-    pub fn of(motion: &MotionConfig) -> Option<Self> {
-        match motion {
-            MotionConfig::Steps(steps) => Some(steps.into()),
-            MotionConfig::ScaleFactorTest(test) => Some(test.into()),
-            _ => None,
-        }
-    }
-
     /// Time from the start of the record to the end of the last dwell, s.
     #[must_use]
     pub fn length_s(&self) -> f64 {
