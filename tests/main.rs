@@ -16,6 +16,7 @@ mod calibrate;
 mod calibrate_files;
 mod calibration_campaign;
 mod campaign;
+mod circles;
 mod cli;
 mod cli_analyze;
 mod cli_budget;
