@@ -4,7 +4,7 @@ use crate::gate::{Verdict, VerdictKind, expects_failure};
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::metrics::{ChannelFailure, ChannelMetrics, Metric};
-use crate::report::columns::headline;
+use crate::report::record::columns::headline;
 use crate::scenario::Scenario;
 use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
 
