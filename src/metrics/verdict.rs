@@ -35,6 +35,7 @@ pub enum AgainstOne {
 
 /// A ratio and where it lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Finding {
     /// The ratio.
     pub estimate: Estimate,
@@ -92,6 +93,7 @@ pub enum Deed {
 
 /// The verdict on one filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FilterVerdict {
     /// What it does to fast noise.
     pub deed: Deed,

@@ -32,6 +32,15 @@ pub enum Place {
 }
 
 impl Place {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Suite,
+        Self::Run,
+        Self::Log,
+        Self::Calibration,
+        Self::Budget,
+    ];
+
     /// Commands that write there.
     #[must_use]
     pub fn commands(self) -> &'static [&'static str] {
@@ -47,11 +56,11 @@ impl Place {
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
-            Self::Suite => "output folder",
-            Self::Run => "folder of a run",
-            Self::Log => "folder of a log",
-            Self::Calibration => "folder of a calibration",
-            Self::Budget => "folder of a budget",
+            Self::Suite => "Output folder",
+            Self::Run => "Folder of a run",
+            Self::Log => "Folder of a log",
+            Self::Calibration => "Folder of a calibration",
+            Self::Budget => "Folder of a budget",
         }
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use fogbench::metrics::{MetricKey, known_metrics};
+use fogbench::metrics::{CurveKey, MetricKey, known_curves, known_metrics, requirement};
 
 use crate::support::repository;
 
@@ -117,17 +117,52 @@ pub(crate) fn page() -> String {
         let module = sources.get(&folder).or_else(|| sources.get(&file));
         let doc = subject(module.expect("a module has a file"));
         write!(page, "\n## {name}\n\n{doc}\n\n").expect("a string takes it");
-        page.push_str("| key | unit | definition | source |\n|---|---|---|---|\n");
+        page.push_str(
+            "| key | unit | definition | defined for | needs | repeats | source |\n\
+             |---|---|---|---|---|---|---|\n",
+        );
         for (key, file) in keys {
             let only = if key.filters_only { "filters: " } else { "" };
             let source = file.rsplit('/').next().unwrap_or_default();
             let (name, unit, definition) = (key.name, key.unit, key.definition);
+            let (records, needs) = (key.applies.words(), requirement(key));
+            let pooling = key.pooling();
             writeln!(
                 page,
-                "| `{name}` | {unit} | {only}{definition} | [{source}](../{file}) |"
+                "| `{name}` | {unit} | {only}{definition} | {records} | {needs} | {pooling} | \
+                 [{source}](../{file}) |"
             )
             .expect("a string takes it");
         }
     }
+    page.push_str(CURVES);
+    for key in known_curves() {
+        curve(&mut page, key);
+    }
     page
+}
+
+const CURVES: &str = "
+## Curves
+
+A curve stands under `channels.<name>.curves.<curve>` of `summary.json`, and in the files named here.
+
+| curve | definition | files | repeats |
+|---|---|---|---|
+";
+
+/// Row of a curve, and one of each of its columns.
+fn curve(page: &mut String, key: &CurveKey) {
+    let files: Vec<String> = [key.csv, key.picture]
+        .into_iter()
+        .flatten()
+        .map(|file| format!("`{file}`"))
+        .collect();
+    let (name, definition, pooling) = (key.name, key.definition, key.pooling());
+    let files = files.join(", ");
+    writeln!(page, "| `{name}` | {definition} | {files} | {pooling} |").expect("a string takes it");
+    for column in key.columns.iter().chain(key.words) {
+        let (name, unit, definition) = (column.name, column.unit(), column.definition());
+        writeln!(page, "| . `{name}` | {unit}: {definition} | | |").expect("a string takes it");
+    }
 }

@@ -68,6 +68,7 @@ impl RunStatus {
 
 /// One channel, as the suite sees it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ChannelOutcome {
     /// Name.
     pub name: String,
@@ -81,6 +82,7 @@ pub struct ChannelOutcome {
 
 /// One run, as the suite sees it: small enough to keep for every run of a large sweep.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RunOutcome {
     /// Scenario name.
     pub name: String,

@@ -15,6 +15,7 @@ use crate::signal::{CalibrationSheet, CompensationSheet};
 
 /// What a summary tells that does not follow from the scenario.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct RestoredRun {
     /// Channels with their metrics, in order.
     pub channels: Vec<(String, ChannelMetrics)>,
