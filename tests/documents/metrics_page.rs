@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use fogbench::metrics::{CurveKey, MetricKey, known_curves, known_metrics, requirement};
+use fogbench::metrics::{MetricKey, known_metrics};
 
 use crate::support::repository;
 
@@ -29,8 +29,9 @@ what a filter is given: the output of the gyro, or with a `[compensation]` the c
 - A gate passes when the whole interval lies inside its limits, fails when it lies outside, and is
   *inconclusive*, which fails too unless the gate allows it, when the interval reaches over a limit.
 
-In `summary.json` a metric stands under `channels.<name>.<key>`; see [results](output.md). The source file
-of a metric declares it beside its computation.
+The column *of* says which channels and motions have a metric: *filters* where raw has none. In
+`summary.json` a metric stands under `channels.<name>.<key>`; see [results](output.md). The source
+file of a metric declares it beside its computation.
 ";
 
 /// Path of the file that declares a metric, from the root of the repository.
@@ -117,52 +118,18 @@ pub(crate) fn page() -> String {
         let module = sources.get(&folder).or_else(|| sources.get(&file));
         let doc = subject(module.expect("a module has a file"));
         write!(page, "\n## {name}\n\n{doc}\n\n").expect("a string takes it");
-        page.push_str(
-            "| key | unit | definition | defined for | needs | repeats | source |\n\
-             |---|---|---|---|---|---|---|\n",
-        );
+        page.push_str("| key | unit | definition | of | source |\n|---|---|---|---|---|\n");
         for (key, file) in keys {
-            let only = if key.filters_only { "filters: " } else { "" };
+            let only = if key.filters_only { "filters; " } else { "" };
+            let records = key.applies.words();
             let source = file.rsplit('/').next().unwrap_or_default();
             let (name, unit, definition) = (key.name, key.unit, key.definition);
-            let (records, needs) = (key.applies.words(), requirement(key));
-            let pooling = key.pooling();
             writeln!(
                 page,
-                "| `{name}` | {unit} | {only}{definition} | {records} | {needs} | {pooling} | \
-                 [{source}](../{file}) |"
+                "| `{name}` | {unit} | {definition} | {only}{records} | [{source}](../{file}) |"
             )
             .expect("a string takes it");
         }
     }
-    page.push_str(CURVES);
-    for key in known_curves() {
-        curve(&mut page, key);
-    }
     page
-}
-
-const CURVES: &str = "
-## Curves
-
-A curve stands under `channels.<name>.curves.<curve>` of `summary.json`, and in the files named here.
-
-| curve | definition | files | repeats |
-|---|---|---|---|
-";
-
-/// Row of a curve, and one of each of its columns.
-fn curve(page: &mut String, key: &CurveKey) {
-    let files: Vec<String> = [key.csv, key.picture]
-        .into_iter()
-        .flatten()
-        .map(|file| format!("`{file}`"))
-        .collect();
-    let (name, definition, pooling) = (key.name, key.definition, key.pooling());
-    let files = files.join(", ");
-    writeln!(page, "| `{name}` | {definition} | {files} | {pooling} |").expect("a string takes it");
-    for column in key.columns.iter().chain(key.words) {
-        let (name, unit, definition) = (column.name, column.unit(), column.definition());
-        writeln!(page, "| . `{name}` | {unit}: {definition} | | |").expect("a string takes it");
-    }
 }

@@ -70,13 +70,13 @@ fn scenario_texts(folder: &Path, text: &mut String) {
 }
 
 #[test]
-fn generated_page_of_the_files() {
-    generated("docs/files.md", &files_page::page());
+fn generated_page_of_the_metrics() {
+    generated("docs/metrics.md", &metrics_page::page());
 }
 
 #[test]
-fn generated_page_of_the_metrics() {
-    generated("docs/metrics.md", &metrics_page::page());
+fn generated_page_of_the_files() {
+    generated("docs/files.md", &files_page::page());
 }
 
 #[test]

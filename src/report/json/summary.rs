@@ -10,7 +10,7 @@ use crate::report::layout::json::{SCHEMA, tool};
 use crate::report::layout::json::{numbers, object, pretty, put};
 use crate::report::text::scale_factor::filter_state_word;
 use crate::report::{RunOutcome, RunReport, RunStatus};
-use crate::scenario::{Fidelity, PublishedConfig, Stairs, portable_place};
+use crate::scenario::{Fidelity, PublishedConfig, portable_place};
 use crate::signal::GyroFacts;
 use serde_json::{Map, Value};
 
@@ -141,7 +141,7 @@ fn scenario(report: &RunReport) -> Value {
     ]);
     put(&mut record, "duration_s", scenario.duration_s);
     put(&mut record, "warm_up_s", scenario.warm_up_s);
-    if let Some(stairs) = Stairs::of(&scenario.turntable.motion) {
+    if let Some(stairs) = scenario.turntable.motion.stairs() {
         let state = filter_state_word(scenario.trial.filter_state);
         record.insert("filter_state".to_owned(), state.into());
         put(&mut record, "settle_s", stairs.settle_s);
