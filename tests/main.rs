@@ -70,6 +70,7 @@ mod readers;
 mod recording;
 mod report;
 mod resume;
+mod rows;
 mod rtl;
 mod scale_factor_test;
 mod scenario_errors;

@@ -3,18 +3,19 @@
 //! Whoever restores a report must compare the summary that it makes with the one it came from; only
 //! equal bytes show that nothing was lost on the way.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Mutex, PoisonError};
+use crate::report::restore::values::{interned, numbers, real, reals, texts};
+use std::collections::BTreeMap;
 
 use serde_json::{Map, Value};
 
 use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric, RepeatStatistics};
-use crate::report::calibration::THETAS;
-use crate::report::restore_calibration::calibration_sheet;
+use crate::report::calibration::documents::THETAS;
+use crate::report::restore::calibration::calibration_sheet;
 use crate::signal::{CalibrationSheet, CompensationSheet};
 
 /// What a summary tells that does not follow from the scenario.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct RestoredRun {
     /// Channels with their metrics, in order.
     pub channels: Vec<(String, ChannelMetrics)>,
@@ -151,40 +152,4 @@ fn compensation(record: &Value) -> Option<CompensationSheet> {
         exact_residual_deg_per_h: reals(record, "exact_residual_deg_per_h")?,
         first_order_residual_deg_per_h: reals(record, "first_order_residual_deg_per_h")?,
     })
-}
-
-/// A number of a record.
-pub(super) fn real(record: &Value, key: &str) -> Option<f64> {
-    record.get(key)?.as_f64()
-}
-
-/// An array of numbers of a record.
-pub(super) fn reals<const N: usize>(record: &Value, key: &str) -> Option<[f64; N]> {
-    numbers(record.get(key)?)?.try_into().ok()
-}
-
-/// An array of numbers.
-pub(super) fn numbers(values: &Value) -> Option<Vec<f64>> {
-    values.as_array()?.iter().map(Value::as_f64).collect()
-}
-
-/// An array of texts.
-pub(super) fn texts(values: &Value) -> Option<Vec<String>> {
-    let values = values.as_array()?.iter();
-    values
-        .map(|text| text.as_str().map(str::to_owned))
-        .collect()
-}
-
-/// A word as the constants of the program spell theirs: units, fields and labels, a few dozen in all,
-/// each kept once for as long as the program runs.
-pub(super) fn interned(word: &str) -> &'static str {
-    static WORDS: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
-    let mut words = WORDS.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = words.get(word) {
-        return known;
-    }
-    let kept: &'static str = Box::leak(word.to_owned().into_boxed_str());
-    words.insert(kept);
-    kept
 }

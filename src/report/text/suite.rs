@@ -1,7 +1,7 @@
 //! The last table of a suite: every scenario, channel and gate.
 
 use crate::gate::{VerdictKind, limits_text, plain};
-use crate::report::text::{Grid, Tone, toned, wrapped};
+use crate::report::layout::text::{Grid, Tone, toned, wrapped};
 use crate::report::{RunOutcome, RunStatus};
 use crate::wording::counted;
 

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value};
 
-use crate::report::json::{array as numbers_of, numbers, object, put, put_array};
-use crate::report::summary::SCHEMA;
+use crate::report::layout::json::SCHEMA;
+use crate::report::layout::json::{array as numbers_of, numbers, object, put, put_array};
 use crate::signal::{
     AssemblyParameters, CalibrationEstimate, CalibrationGroup, CalibrationPlan, CalibrationSheet,
 };
@@ -29,7 +29,7 @@ pub struct CalibrationProvenance<'a> {
 /// The text of `calibration.toml`: `[compensation]` with the applied parameters under the keys that
 /// a scenario applies them by, their covariance, and where they come from.
 #[must_use]
-pub(super) fn calibration_toml(
+pub(in crate::report) fn calibration_toml(
     sheet: &CalibrationSheet,
     provenance: &CalibrationProvenance,
 ) -> String {
@@ -92,7 +92,7 @@ fn array(values: &[f64]) -> String {
 
 /// The groups as CSV, in the form that `fogbench calibrate` reads; names hold the units.
 #[must_use]
-pub(super) fn groups_csv(groups: &[CalibrationGroup]) -> String {
+pub(in crate::report) fn groups_csv(groups: &[CalibrationGroup]) -> String {
     let has_start = groups.iter().all(|group| group.start_s.is_some());
     let mut heads = vec![
         "group".to_owned(),

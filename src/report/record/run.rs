@@ -4,7 +4,7 @@ use crate::gate::{Verdict, VerdictKind, expects_failure};
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::metrics::{ChannelFailure, ChannelMetrics, Metric};
-use crate::report::columns::headline;
+use crate::report::record::columns::headline;
 use crate::scenario::Scenario;
 use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
 
@@ -68,6 +68,7 @@ impl RunStatus {
 
 /// One channel, as the suite sees it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ChannelOutcome {
     /// Name.
     pub name: String,
@@ -81,6 +82,7 @@ pub struct ChannelOutcome {
 
 /// One run, as the suite sees it: small enough to keep for every run of a large sweep.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RunOutcome {
     /// Scenario name.
     pub name: String,

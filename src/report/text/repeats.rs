@@ -1,15 +1,10 @@
-//! What every repeat of a run measured: the tables behind the channels, and `runs.csv`.
-
-use std::fmt::Write as _;
-
-use serde_json::{Map, Value};
+//! What every repeat of a run measured: the tables behind the channels.
 
 use crate::gate::plain;
 use crate::metrics::catalogue::{BIAS_STABILITY, MAXIMUM, MEAN, MINIMUM, NOISE_STD};
-use crate::metrics::{ChannelMetrics, MetricKey, RepeatStatistics, repeated_metrics};
+use crate::metrics::{ChannelMetrics, MetricKey, RepeatStatistics};
 use crate::report::RunReport;
-use crate::report::json::{numbers, object, put_array};
-use crate::report::text::{Grid, Tone, toned, wrapped};
+use crate::report::layout::text::{Grid, Tone, toned, wrapped};
 
 const INDENT: &str = "  ";
 /// Most repeats whose values are printed one by one; all of them stand in `runs.csv`.
@@ -174,63 +169,7 @@ fn digits(value: f64, scatter: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-fn repeats_of(metrics: &ChannelMetrics) -> usize {
+pub(in crate::report) fn repeats_of(metrics: &ChannelMetrics) -> usize {
     let mut all = metrics.repeats.values();
     all.next().map_or(0, |of| of.values.len())
-}
-
-/// `channels.<name>.repeats` of the summary.
-pub(crate) fn repeats_json(metrics: &ChannelMetrics) -> Value {
-    let of = |(key, statistics): (&String, &RepeatStatistics)| {
-        let mut record = object([("unit", statistics.unit.into())]);
-        put_array(&mut record, "values", &statistics.values);
-        record.extend(numbers([
-            ("mean", statistics.mean),
-            ("standard_deviation", statistics.standard_deviation),
-            ("minimum", statistics.minimum),
-            ("maximum", statistics.maximum),
-        ]));
-        (key.clone(), Value::Object(record))
-    };
-    let records: Map<String, Value> = metrics.repeats.iter().map(of).collect();
-    records.into()
-}
-
-/// Every repeat of every channel, one row each; nothing for a single record.
-#[must_use]
-pub(super) fn runs_csv(report: &RunReport) -> Option<String> {
-    let has = |key: &MetricKey| {
-        let mut channels = report.channels.iter();
-        channels.any(|(_, metrics)| metrics.repeats.contains_key(key.name))
-    };
-    let columns: Vec<_> = repeated_metrics()
-        .into_iter()
-        .filter(|key| has(key))
-        .collect();
-    if columns.is_empty() {
-        return None;
-    }
-    let mut text = format!(
-        "channel,run,{}\n",
-        columns
-            .iter()
-            .map(|key| key.name)
-            .collect::<Vec<_>>()
-            .join(",")
-    );
-    for (name, metrics) in report.channels {
-        for run in 0..repeats_of(metrics) {
-            // Writing to a String cannot fail.
-            let _ = write!(text, "{name},{}", run + 1);
-            for key in &columns {
-                text.push(',');
-                let of = metrics.repeats.get(key.name);
-                if let Some(value) = of.and_then(|of| of.values.get(run)) {
-                    let _ = write!(text, "{value:?}");
-                }
-            }
-            text.push('\n');
-        }
-    }
-    Some(text)
 }

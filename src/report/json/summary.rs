@@ -2,21 +2,17 @@
 
 use crate::comparison::Comparison;
 use crate::gate::{Verdict, VerdictKind};
-use crate::metrics::{ChannelMetrics, Estimate, Metric};
-use crate::report::calibration::calibration_json;
-use crate::report::comparison_json::comparison;
-use crate::report::compensation::compensation_json;
-use crate::report::json::{array, numbers, object, pretty, put};
-use crate::report::repeats::repeats_json;
-use crate::report::scale_factor::filter_state_word;
-use crate::report::verdict_text::verdict_text;
+use crate::report::calibration::documents::calibration_json;
+use crate::report::comparison::json::comparison;
+use crate::report::json::channel::channel;
+use crate::report::json::compensation::compensation_json;
+use crate::report::layout::json::{SCHEMA, tool};
+use crate::report::layout::json::{numbers, object, pretty, put};
+use crate::report::text::scale_factor::filter_state_word;
 use crate::report::{RunOutcome, RunReport, RunStatus};
 use crate::scenario::{Fidelity, PublishedConfig, portable_place};
 use crate::signal::GyroFacts;
 use serde_json::{Map, Value};
-
-/// Version of the layout of both files.
-pub(crate) const SCHEMA: u32 = 1;
 
 /// The text of `<scenario>/summary.json`.
 ///
@@ -129,11 +125,6 @@ fn run_entry(run: &RunOutcome) -> Value {
     entry.into()
 }
 
-/// Who wrote it.
-pub(crate) fn tool(version: &str) -> Value {
-    object([("name", "fogbench".into()), ("version", version.into())]).into()
-}
-
 fn scenario(report: &RunReport) -> Value {
     let scenario = report.scenario;
     let fidelity = match scenario.fidelity {
@@ -188,83 +179,6 @@ fn gyro(facts: &GyroFacts) -> Value {
         budget.into(),
     );
     record.into()
-}
-
-/// One channel of `channels`.
-pub(crate) fn channel(metrics: &ChannelMetrics) -> Value {
-    let mut record: Map<String, Value> = metrics
-        .metrics
-        .iter()
-        .map(|(key, metric)| (key.clone(), estimate(metric).into()))
-        .collect();
-    if let Some(verdict) = verdict_text(metrics) {
-        record.insert("verdict".to_owned(), verdict.into());
-    }
-    if !metrics.repeats.is_empty() {
-        record.insert("repeats".to_owned(), repeats_json(metrics));
-    }
-    if !metrics.curves.is_empty() {
-        let curves: Map<String, Value> = metrics
-            .curves
-            .iter()
-            .map(|(curve, columns)| {
-                let labels = metrics.curve_labels.get(curve).into_iter().flatten();
-                let words = labels.map(|(column, words)| (column.clone(), words_of(words)));
-                let columns: Map<String, Value> = columns
-                    .iter()
-                    .filter_map(|(column, values)| Some((column.clone(), array(values)?)))
-                    .chain(words)
-                    .collect();
-                (curve.clone(), columns.into())
-            })
-            .collect();
-        record.insert("curves".to_owned(), curves.into());
-    }
-    if !metrics.unavailable.is_empty() {
-        let reasons: Map<String, Value> = metrics
-            .unavailable
-            .iter()
-            .map(|(key, reason)| (key.clone(), reason.as_str().into()))
-            .collect();
-        record.insert("unavailable".to_owned(), reasons.into());
-    }
-    if let Some(failure) = &metrics.error {
-        let error = object([
-            ("kind", failure.kind.as_str().into()),
-            ("sample", failure.sample.into()),
-            ("message", failure.message.as_str().into()),
-        ]);
-        record.insert("error".to_owned(), error.into());
-    }
-    record.into()
-}
-
-/// A column of words; one that holds for all points stands alone.
-fn words_of(words: &[&str]) -> Value {
-    match words {
-        [one] => (*one).into(),
-        all => all.iter().copied().collect(),
-    }
-}
-
-/// A metric with its interval, unit and fields.
-pub(crate) fn estimate(metric: &Metric) -> Map<String, Value> {
-    let mut record = interval(&metric.estimate);
-    record.insert("unit".to_owned(), metric.unit.into());
-    for (field, value) in &metric.fields {
-        put(&mut record, field, *value);
-    }
-    record
-}
-
-/// A value with its interval.
-pub(crate) fn interval(estimate: &Estimate) -> Map<String, Value> {
-    numbers([
-        ("value", estimate.value),
-        ("low", estimate.low),
-        ("high", estimate.high),
-        ("confidence", estimate.confidence),
-    ])
 }
 
 fn published(figure: &PublishedConfig) -> Value {

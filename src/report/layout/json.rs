@@ -1,5 +1,6 @@
 //! JSON that people can read: one record or one curve a line.
 
+use crate::metrics::{Estimate, Metric};
 use serde_json::{Map, Number, Value};
 use std::fmt::Write as _;
 
@@ -119,6 +120,34 @@ fn new_line(text: &mut String, depth: usize) {
     for _ in 0..depth {
         text.push_str("  ");
     }
+}
+
+/// Version of the layout of both files.
+pub(crate) const SCHEMA: u32 = 1;
+
+/// Who wrote it.
+pub(crate) fn tool(version: &str) -> Value {
+    object([("name", "fogbench".into()), ("version", version.into())]).into()
+}
+
+/// A metric with its interval, unit and fields.
+pub(crate) fn estimate(metric: &Metric) -> Map<String, Value> {
+    let mut record = interval(&metric.estimate);
+    record.insert("unit".to_owned(), metric.unit.into());
+    for (field, value) in &metric.fields {
+        put(&mut record, field, *value);
+    }
+    record
+}
+
+/// A value with its interval.
+pub(crate) fn interval(estimate: &Estimate) -> Map<String, Value> {
+    numbers([
+        ("value", estimate.value),
+        ("low", estimate.low),
+        ("high", estimate.high),
+        ("confidence", estimate.confidence),
+    ])
 }
 
 #[cfg(test)]

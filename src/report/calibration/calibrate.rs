@@ -1,11 +1,11 @@
 //! What `calibrate` prints: the tables of a calibration, and its estimators in full side by side.
 
 use crate::gate::plain;
-use crate::report::calibration::{AXES, THETAS, calibration_json};
-use crate::report::calibration_text::calibration_text;
-use crate::report::json::{object, pretty, put};
-use crate::report::summary::{SCHEMA, tool};
-use crate::report::text::{Grid, Tone, toned, wrapped};
+use crate::report::calibration::documents::{AXES, THETAS, calibration_json};
+use crate::report::calibration::text::calibration_text;
+use crate::report::layout::json::{SCHEMA, tool};
+use crate::report::layout::json::{object, pretty, put};
+use crate::report::layout::text::{Grid, Tone, toned, wrapped};
 use crate::signal::{AssemblyParameters, CalibrationEstimate, CalibrationSheet};
 use crate::wording::counted;
 

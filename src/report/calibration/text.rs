@@ -1,7 +1,7 @@
 //! A calibration for people.
 
-use crate::report::calibration::{AXES, THETAS};
-use crate::report::text::{Grid, Tone, toned, wrapped};
+use crate::report::calibration::documents::{AXES, THETAS};
+use crate::report::layout::text::{Grid, Tone, toned, wrapped};
 use crate::signal::{
     AssemblyParameters, CalibrationEstimate, CalibrationGroup, CalibrationPlan, CalibrationSheet,
 };

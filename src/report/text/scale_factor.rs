@@ -1,6 +1,5 @@
 //! The table of a scale factor test: what every rate became in every channel.
 
-use super::text::{Grid, Tone, toned, wrapped};
 use crate::gate::plain;
 use crate::metrics::catalogue::{
     SCALE_FACTOR, SCALE_FACTOR_NONLINEARITY, SCALE_FACTOR_NONLINEARITY_OF_READING,
@@ -11,6 +10,7 @@ use crate::metrics::columns::staircase::{
 };
 use crate::metrics::{Column, Curve, MetricKey};
 use crate::report::RunReport;
+use crate::report::layout::text::{Grid, Tone, toned, wrapped};
 use crate::scenario::FilterState;
 use crate::units::deg_per_h_to_deg_per_s;
 

@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 use crate::gate::{Verdict, VerdictKind, estimate_text, plain};
 use crate::metrics::{ChannelMetrics, Metric, find};
 use crate::report::RunReport;
-use crate::report::calibration_text::calibration_text;
-use crate::report::columns::{Column, DIGITS, columns, matters, unit_text, value_text};
-use crate::report::compensation::compensation_text;
-use crate::report::measured::Measured;
-use crate::report::repeats::repeats_text;
-use crate::report::scale_factor::scale_factor_text;
-use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
-use crate::report::verdict_text::verdict_text;
+use crate::report::calibration::text::calibration_text;
+use crate::report::layout::text::{Grid, Tone, toned, visible_width, wrapped};
+use crate::report::record::columns::{Column, DIGITS, columns, matters, unit_text, value_text};
+use crate::report::record::measured::Measured;
+use crate::report::text::compensation::compensation_text;
+use crate::report::text::repeats::repeats_text;
+use crate::report::text::scale_factor::scale_factor_text;
+use crate::report::text::verdict::verdict_text;
 use crate::scenario::{Fidelity, PublishedConfig};
 
 /// What stands where there is no number.

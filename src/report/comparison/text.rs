@@ -5,8 +5,8 @@ use crate::gate::{estimate_text, plain};
 use crate::metrics::MetricKey;
 use crate::metrics::catalogue::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, MEAN_RATIO, NOISE_GAIN};
 use crate::metrics::{AgainstOne, Estimate, Finding, Metric};
-use crate::report::columns::{heading_of, unit_text};
-use crate::report::text::{Grid, Tone, toned, wrapped};
+use crate::report::layout::text::{Grid, Tone, toned, wrapped};
+use crate::report::record::columns::{heading_of, unit_text};
 
 const INDENT: &str = "  ";
 const DEEP: &str = "    ";

@@ -4,8 +4,8 @@ use serde_json::{Map, Value};
 
 use crate::comparison::{Assumed, Cause, ColumnChange, ComparedColumn, ComparedTable, Comparison};
 use crate::metrics::{AgainstOne, Estimate};
-use crate::report::json::{object, put, put_array};
-use crate::report::summary::{estimate, interval};
+use crate::report::layout::json::{estimate, interval};
+use crate::report::layout::json::{object, put, put_array};
 use crate::scenario::ComparisonKind;
 
 /// `published_tables`, `sensitivities`, `assumptions` and `figures`, those that there are.

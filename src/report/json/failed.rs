@@ -1,7 +1,7 @@
 //! `summary.json` of a run that could not finish.
 
-use crate::report::json::{object, pretty};
-use crate::report::summary::{SCHEMA, tool};
+use crate::report::layout::json::{SCHEMA, tool};
+use crate::report::layout::json::{object, pretty};
 use crate::scenario::Scenario;
 
 /// A run that could not finish.

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::report::calibration::{AXES, THETAS};
-use crate::report::restore::{interned, numbers, real, reals, texts};
+use crate::report::calibration::documents::{AXES, THETAS};
+use crate::report::restore::values::{interned, numbers, real, reals, texts};
 use crate::signal::{
     AssemblyParameters, AxisCoefficient, CalibrationEstimate, CalibrationGroup, CalibrationPlan,
     CalibrationRank, CalibrationSheet, CalibrationTruth, CompensationCheck, EstimateError,
@@ -11,7 +11,7 @@ use crate::signal::{
 };
 
 /// The sheet of a record; see [`super::calibration_json`].
-pub(super) fn calibration_sheet(record: &Value) -> Option<CalibrationSheet> {
+pub(in crate::report) fn calibration_sheet(record: &Value) -> Option<CalibrationSheet> {
     let groups = record.get("groups")?.as_array()?.iter().map(group);
     let estimates = record.get("estimates")?.as_object()?.iter();
     let estimates = estimates.map(|(name, found)| estimate(name, found));
