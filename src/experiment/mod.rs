@@ -7,20 +7,25 @@ mod budget;
 mod build;
 mod campaign;
 mod channel_filter;
+#[cfg(feature = "report")]
 mod log;
 mod pipeline_metrics;
 mod plan;
 mod run;
 mod scenario;
+#[cfg(feature = "hdl")]
 mod stimulus;
+#[cfg(feature = "report")]
 mod suite;
 
 pub use budget::{GyroBudget, gyro_budget};
 pub use build::BUILD;
+#[cfg(feature = "report")]
 pub use campaign::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
-    calibrate_scenario, calibration_sheet,
 };
+pub use campaign::{calibrate_scenario, calibration_sheet};
+#[cfg(feature = "report")]
 pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogInput, LogMotion, LogSettings, LogTrial,
     LogTrialError, compensate_log, load_log_compensation, load_log_filters, try_log,
@@ -28,7 +33,9 @@ pub use log::{
 pub use plan::{Plan, Sound, check_suite, plan_suite};
 pub use run::{Progress, Run, RunError, Samples, UnknownName};
 pub use scenario::Scenario;
+#[cfg(feature = "hdl")]
 pub use stimulus::scenario_stimulus;
+#[cfg(feature = "report")]
 pub use suite::{
     Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX, run_suite,
     start_threads, thread_count, write_runs,

@@ -16,11 +16,9 @@ impl Run {
     ///
     /// # Errors
     /// As [`run_suite`](crate::experiment::run_suite): nothing of the user's is replaced.
-    pub fn write(&self, folder: impl Into<PathBuf>) -> Result<SuiteOutcome, SuiteError> {
-        write_runs(
-            std::slice::from_ref(self),
-            &SuiteOptions::new(folder.into()),
-        )
+    pub fn write(&self, folder: impl Into<PathBuf>) -> Result<(), SuiteError> {
+        let runs = std::slice::from_ref(self);
+        write_runs(runs, &SuiteOptions::new(folder.into())).map(drop)
     }
 }
 

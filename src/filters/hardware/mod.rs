@@ -5,6 +5,7 @@
 //!
 //! Invariant: the only part of the bench that knows [`fpga`](crate::fpga).
 
+#[cfg(feature = "hdl")]
 mod export;
 mod filter;
 mod lms;
@@ -13,6 +14,7 @@ mod rls;
 mod settings;
 mod sign_lms;
 
+#[cfg(feature = "hdl")]
 pub use export::{Stimulus, export_pipeline};
 pub use filter::HardwareFilter;
 pub(super) use lms::lms;
