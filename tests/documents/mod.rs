@@ -151,6 +151,16 @@ fn rust_version() -> String {
 }
 
 #[test]
+fn the_architecture_page_names_every_feature() {
+    let package: toml::Table = page("Cargo.toml").text.parse().expect("a package file");
+    let page = page("docs/architecture.md").text;
+    for feature in package["features"].as_table().expect("a table").keys() {
+        let row = format!("| `{feature}` |");
+        assert!(feature == "default" || page.contains(&row), "{feature}");
+    }
+}
+
+#[test]
 fn links_of_the_pages_lead_somewhere() {
     let broken: Vec<String> = pages().iter().flat_map(links::broken).collect();
     assert!(broken.is_empty(), "{}", broken.join("\n"));
