@@ -2,8 +2,9 @@
 
 use std::io;
 
-use super::arguments::{BudgetOptions, Format};
+use super::arguments::BudgetOptions;
 use super::exit::Exit;
+use super::format::Format;
 use super::{complaint, output, place};
 use crate::experiment::{GyroBudget, gyro_budget};
 use crate::report::{budget_files, budget_json, budget_text};

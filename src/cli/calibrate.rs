@@ -2,9 +2,9 @@
 
 use std::io;
 
-use super::arguments::Format;
 use super::calibrate_arguments::CalibrateOptions;
 use super::exit::Exit;
+use super::format::Format;
 use super::{complaint, output, place};
 use crate::experiment::{CalibrateError, CalibrationTrial, calibrate_campaign, calibrate_groups};
 use crate::recording::LogError;

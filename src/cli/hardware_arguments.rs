@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::arguments::Format;
+use super::format::Format;
 use super::numbers::{count_within, within};
 use crate::filters::hardware::PipelineSettings;
 use crate::fpga::kinds::CoreSettings;

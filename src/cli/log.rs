@@ -2,9 +2,9 @@
 
 use std::io;
 
-use super::arguments::Format;
 use super::complaint::{self, Complaint};
 use super::exit::Exit;
+use super::format::Format;
 use super::log_arguments::{AnalyzeOptions, FilterLogOptions, LogOptions};
 use super::{output, place};
 use crate::experiment::{

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::excerpt::excerpt;
-use super::schema::{self, Child, Group, Key, join};
+use super::schema::{self, Child, Key, join};
 use super::source::Mark;
 use super::suggest::{self, unknown_key};
 use super::tree::{Node, Table, Value, merge_node};
@@ -185,7 +185,7 @@ fn element_index(array: &str, elements: &[Node], selector: &Step) -> Result<usiz
 
 /// The alternative that stands in a table of alternatives.
 fn kind_of(schema_path: &str, table: &Table) -> Option<&'static str> {
-    let group = Group::of_table(schema_path)?;
+    let group = schema::group_of(schema_path)?;
     let is_there = |name: &&&str| table.contains_key(**name);
     group.alternatives.iter().find(is_there).copied()
 }

@@ -173,6 +173,7 @@ impl Term {
 
 /// A fitted noise model.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NoiseFit {
     /// Q, arcsec.
     pub quantisation_arcsec: Term,

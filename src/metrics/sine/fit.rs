@@ -31,6 +31,7 @@ pub struct SwingClock {
 
 /// `offset + amplitude cos(2 pi f t + phase)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SineFit {
     /// Amplitude, in the unit of the samples.
     pub amplitude: f64,
@@ -121,6 +122,7 @@ pub fn fit_sine(values: &[f64], clock: &SwingClock) -> Option<SineFit> {
 
 /// A record cut to whole cycles and into sub-blocks of whole cycles, with the fits of each.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SwingFit {
     /// Fit over all whole cycles.
     pub whole: SineFit,

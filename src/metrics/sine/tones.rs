@@ -121,6 +121,7 @@ pub struct ToneFits<'a> {
 
 /// Response of one series to another at one tone.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ToneResponse {
     /// Frequency, Hz.
     pub frequency_hz: f64,

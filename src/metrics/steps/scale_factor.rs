@@ -46,6 +46,7 @@ pub struct StaticZero {
 
 /// What the outputs at constant rates say.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ScaleFactorFit {
     /// Slope K.
     pub factor: Estimate,
@@ -66,6 +67,7 @@ pub struct ScaleFactorFit {
 
 /// Difference between the senses of rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Asymmetry {
     /// `|K+ - K-| / ((K+ + K-) / 2)`, a ratio.
     pub value: Estimate,

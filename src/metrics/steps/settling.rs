@@ -35,6 +35,7 @@ pub(crate) const STEP_SAMPLES_MIN: usize = 16;
 
 /// What a step record shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Settling {
     /// From the step to the stamp of the first sample after which the rate stays in the band, s.
     pub settling_time_s: f64,

@@ -66,6 +66,7 @@ pub struct GainUnits {
 
 /// Time until a gain is back.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Readaptation {
     /// From the beginning of the motion, s. The interval spans the windows on both sides of the
     /// border found, and what the scatter of the gain leaves open.
