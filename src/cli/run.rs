@@ -47,6 +47,9 @@ fn exit_of(suite: &SuiteOutcome) -> Exit {
     if suite.broken {
         return Exit::Internal;
     }
+    if suite.unwritten || !suite.failures.is_empty() {
+        return Exit::Io;
+    }
     match suite.runs.iter().map(RunOutcome::status).max() {
         None | Some(RunStatus::Pass) => Exit::Success,
         Some(RunStatus::GateFailed) => Exit::GateFailed,
@@ -150,6 +153,9 @@ impl<'a> Progress<'a> {
     }
 
     fn talk_of(&self, suite: &SuiteOutcome) {
+        for failure in &suite.failures {
+            self.talk(&format!("error: {failure}"));
+        }
         let asked = thread_count(usize::from(self.options.jobs));
         if suite.threads < asked {
             self.talk(&format!(

@@ -71,7 +71,7 @@ impl CalibrationTrial {
         let parameters = calibration_toml(&self.sheet, &provenance);
         staged.write("calibration.toml", parameters.as_bytes())?;
         staged.write("groups.csv", groups_csv(&self.sheet.groups).as_bytes())?;
-        staged.seal_plainly("calibration")?;
+        staged.seal_plainly()?;
         staged.put_files_in_place()
     }
 }

@@ -332,7 +332,7 @@ impl LogTrial {
                 staged.write(&format!("samples/{name}.csv"), text.as_bytes())?;
             }
         }
-        staged.seal_plainly("log")?;
+        staged.seal_plainly()?;
         staged.put_files_in_place()
     }
 

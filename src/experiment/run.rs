@@ -7,8 +7,9 @@ use super::progress::Unfinished;
 use super::results::{Results, run_plan};
 use super::resume::take_over;
 use super::run_files;
-use super::suite::{Observer, Suite, SuiteError};
+use super::suite::{Observer, Suite};
 use crate::report::{RunOutcome, RunReport};
+use crate::store::StoreError;
 
 /// Runs `plan`, judges it, puts its folder in place and enters it in the ledger, or takes over the
 /// result that stands there; none if it was stopped before that. A run that fails is left to the
@@ -19,7 +20,7 @@ pub(super) fn run_scenario(
     layout: &Layout,
     suite: &Suite,
     observer: &dyn Observer,
-) -> Result<Option<RunOutcome>, SuiteError> {
+) -> Result<Option<RunOutcome>, StoreError> {
     let kept = (suite.output, suite.resume);
     if let Some(outcome) = take_over(plan, index, layout, kept, observer) {
         suite.ledger.enter(index, &outcome);
@@ -67,7 +68,7 @@ pub(super) fn enter_result(
     layout: &Layout,
     suite: &Suite,
     observer: &dyn Observer,
-) -> Result<Option<RunOutcome>, SuiteError> {
+) -> Result<Option<RunOutcome>, StoreError> {
     let output = suite.output;
     let report = report(plan, results);
     let pictures = run_files::draw(plan, &report, &results.simulation);

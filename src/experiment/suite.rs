@@ -16,7 +16,7 @@ use super::plan::Plan;
 use super::progress::Progress;
 use super::resume::Resume;
 use super::run::{enter_result, run_scenario};
-use super::suite_output::{JUNIT, SUMMARY, SuiteOutput};
+use super::suite_output::{JUNIT, SUMMARY, Settled, SuiteOutput};
 use super::threads;
 use crate::report::{self, Comparison, RunOutcome, RunReport};
 use crate::store::StoreError;
@@ -51,7 +51,8 @@ impl SuiteOptions {
 pub trait Observer: Progress {
     /// Run `index` of the plan is done and its files stand in their place.
     fn finished(&self, _index: usize, _report: &RunReport) {}
-    /// Run `index` of the plan could not finish; a folder that says so stands in its place.
+    /// Run `index` of the plan could not finish, or its result could not be written; in the first case a
+    /// folder that says so stands in its place, in the second what stood there before.
     fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
     /// Hears how a suite ended that was to stop while runs are still in the middle of a long stage.
     /// Its files stand; these runs will write nothing more. The caller may end the program here:
@@ -80,6 +81,10 @@ pub struct SuiteOutcome {
     pub threads: usize,
     /// Folders that hold results of earlier scenarios of these names.
     pub stale: Vec<String>,
+    /// Whether the result of a run could not be written; its outcome says why.
+    pub unwritten: bool,
+    /// Why files of the suite could not be written, or results of an earlier one not removed.
+    pub failures: Vec<String>,
 }
 
 /// Why a suite stopped before its end.
@@ -111,13 +116,12 @@ pub(super) struct Suite<'a> {
 /// Results come back in the order of `plans`, whatever the order of completion; every file depends
 /// on its scenario, seed and the version of the program alone. The suite's own files are removed
 /// first and written last, so that a killed suite leaves no verdict of an earlier one; one that the
-/// observer stops has files that say which runs have ended. A run that breaks an invariant fails by
-/// itself; the others go on.
+/// observer stops has files that say which runs have ended. A run that breaks an invariant, or whose
+/// folder cannot be written, fails by itself; the others go on.
 ///
 /// # Errors
-/// [`SuiteError`] if something of the user's would be replaced, before anything runs; if another
-/// process writes into the folder; if a file cannot be written or no thread can be started. Folders
-/// of runs that were complete by then stay.
+/// [`SuiteError`], before anything runs: if something of the user's would be replaced; if another
+/// process writes into the folder; if it cannot be written, or no thread can be started.
 pub fn run_suite(
     plans: &[Plan],
     options: &SuiteOptions,
@@ -127,7 +131,7 @@ pub fn run_suite(
     let pool = threads::pool(threads::thread_count(options.threads))
         .map_err(|source| SuiteError::Threads { source })?;
     let output = &SuiteOutput::open(plans, layout, options)?;
-    if let Some(caution) = output.caution() {
+    for caution in output.cautions() {
         observer.caution(caution);
     }
     let ledger = &Ledger::new(plans.len());
@@ -137,9 +141,11 @@ pub fn run_suite(
         ledger,
     };
     let conclude = || {
-        let outcome = conclude(plans, layout, suite)?;
         let threads = pool.current_num_threads();
-        Ok(SuiteOutcome { threads, ..outcome })
+        Ok(SuiteOutcome {
+            threads,
+            ..conclude(plans, layout, suite)
+        })
     };
     let (end_of_work, work) = channel();
     let stopped = pool.in_place_scope(|scope| {
@@ -170,11 +176,16 @@ pub fn write_runs(runs: &[Run], options: &SuiteOptions) -> Result<SuiteOutcome, 
         ledger: &Ledger::new(plans.len()),
     };
     for (index, run) in runs.iter().enumerate() {
-        enter_result((&plans[index], index), &run.results, layout, suite, &())?;
+        let plan = &plans[index];
+        let written = enter_result((plan, index), &run.results, layout, suite, &());
+        if let Err(error) = written {
+            enter_unwritten((plan, index), &error, suite, &());
+        }
     }
-    let outcome = conclude(&plans, layout, suite)?;
-    let threads = rayon::current_num_threads();
-    Ok(SuiteOutcome { threads, ..outcome })
+    Ok(SuiteOutcome {
+        threads: rayon::current_num_threads(),
+        ..conclude(&plans, layout, suite)
+    })
 }
 
 /// Runs the plans longest first, so that the last core is not left alone with the longest run.
@@ -185,7 +196,7 @@ fn run_all(plans: &[Plan], layout: &Layout, suite: &Suite, observer: &dyn Observ
     let order = order.par_iter().with_max_len(1);
     let ledger = suite.ledger;
     order.for_each(|&index| {
-        if ledger.is_stopped() || observer.should_stop() {
+        if observer.should_stop() {
             return;
         }
         let plan = &plans[index];
@@ -201,7 +212,7 @@ fn run_all(plans: &[Plan], layout: &Layout, suite: &Suite, observer: &dyn Observ
                 }
             }
             Ok(None) => {}
-            Err(error) => ledger.fail(index, error),
+            Err(error) => enter_unwritten((plan, index), &error, suite, observer),
         }
     });
 }
@@ -215,40 +226,63 @@ fn enter_failure(
     suite: &Suite,
     observer: &dyn Observer,
 ) {
-    let ledger = suite.ledger;
-    match ledger.commit(index, outcome, || suite.output.record_failure(plan, reason)) {
-        Ok(true) => {
-            let tell = || observer.failed(index, outcome);
-            if catch_unwind(AssertUnwindSafe(tell)).is_err() {
-                ledger.note_broken();
-            }
-        }
+    let record = || suite.output.record_failure(plan, reason);
+    match suite.ledger.commit(index, outcome, record) {
+        Ok(true) => tell_failed(index, outcome, suite, observer),
         Ok(false) => {}
-        Err(error) => ledger.fail(index, error.into()),
+        Err(error) => enter_unwritten((plan, index), &error, suite, observer),
+    }
+}
+
+/// Enters a run whose folder could not be written, which leaves what stood in its place, and tells the
+/// observer.
+fn enter_unwritten(
+    (plan, index): (&Plan, usize),
+    error: &StoreError,
+    suite: &Suite,
+    observer: &dyn Observer,
+) {
+    let resolved = plan.resolved();
+    let name = &resolved.scenario.name;
+    let reason = error.to_string();
+    let outcome = RunOutcome::failed(name, &resolved.folder(), &resolved.file, reason);
+    if suite.ledger.enter(index, &outcome) {
+        suite.ledger.note_unwritten();
+        tell_failed(index, &outcome, suite, observer);
+    }
+}
+
+fn tell_failed(index: usize, outcome: &RunOutcome, suite: &Suite, observer: &dyn Observer) {
+    let tell = || observer.failed(index, outcome);
+    if catch_unwind(AssertUnwindSafe(tell)).is_err() {
+        suite.ledger.note_broken();
     }
 }
 
 /// Closes the ledger and writes the files of the suite. What breaks an invariant is left out, and
 /// the rest is written all the same.
-fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> Result<SuiteOutcome, SuiteError> {
+fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteOutcome {
     let Suite { output, ledger, .. } = *suite;
-    let runs = ledger.close(plans)?;
+    let runs = ledger.close(plans);
     let comparison = unbroken(ledger, || layout.fill(plans, &runs)).unwrap_or_default();
-    let stale = output.settle()?;
+    let Settled { stale, failures } = output.settle();
+    let mut failures: Vec<String> = failures.iter().map(ToString::to_string).collect();
     let tables = unbroken(ledger, || report::comparison_files(&comparison));
     let mut files = tables.unwrap_or_default();
     let summary = || report::suite_summary_json(VERSION, &runs, &comparison, &stale);
     let junit = || report::junit_xml(&runs);
     files.extend(unbroken(ledger, summary).map(|text| (SUMMARY.to_owned(), text)));
     files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
-    output.publish(&files)?;
-    Ok(SuiteOutcome {
+    failures.extend(output.publish(&files).err().map(|error| error.to_string()));
+    SuiteOutcome {
         runs,
         comparison,
         broken: ledger.is_broken(),
         threads: 0,
         stale,
-    })
+        unwritten: ledger.is_unwritten(),
+        failures,
+    }
 }
 
 /// What `make` makes; none, and a note in the ledger, if it breaks an invariant.
