@@ -14,6 +14,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use fogbench::fpga::engine::Engine as _;
 use fogbench::fpga::export::{ExportSettings, PipelineConfig, write_rtl};
 use fogbench::fpga::front_end::{FrontEnd, Pair};
 use fogbench::fpga::rls::{RlsConfig, RlsEngine, RlsPipeline, RlsSettings, rls_clocks_per_sample};

@@ -1,7 +1,8 @@
 //! Nanoseconds per half modulation period: the loop model against the plain loop.
 //!
 //! Both run in the same process, in alternation, with the same quantisers, generator and draws;
-//! the ratio is what counts.
+//! the ratio is what counts. `cargo bench --bench loop_model -- none` prints it alone. Wanted: at most
+//! 1.0.
 
 #[path = "plain_loop.rs"]
 mod plain_loop;

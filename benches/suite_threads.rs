@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use fogbench::experiment::{Plan, SuiteOptions, plan_suite, run_suite};
-use fogbench::report::{RunOutcome, RunReport};
 
 /// Runs of each thread count.
 const ROUNDS: usize = 5;

@@ -8,6 +8,7 @@
 
 use std::error::Error;
 
+use fogbench::fpga::engine::Engine as _;
 use fogbench::fpga::front_end::Pair;
 use fogbench::fpga::rls::{RlsConfig, RlsEngine, RlsPipeline, RlsSettings};
 use fogbench::vocabulary::{Division, UpdateSign};

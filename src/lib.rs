@@ -54,6 +54,23 @@
 //! * logs from files: [`recording::read_log`]; calibration of three axes: [`calibration`].
 //!
 //! The folder `examples` has a program for each.
+//!
+//! # Features
+//!
+//! All are on by default. With none there are the stages alone, on configurations made in Rust.
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `scenario` | scenario files, gates, [`Scenario`] and [`Run`] |
+//! | `report` | JSON, JUnit, CSV, NPY and SVG files: [`Run::write`] |
+//! | `hdl` | vectors, waveforms and Verilog of hardware pipelines |
+//! | `cli` | the program |
+//!
+//! Modules that this page does not list are internals: public for the program and the tests, free to
+//! change.
+
+// What one feature alone leaves without a user is none the less the same code.
+#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
 mod linear_algebra;
 pub mod random;
@@ -63,6 +80,7 @@ pub mod vocabulary;
 mod wording;
 
 // In the order of the data flow.
+#[cfg(feature = "scenario")]
 pub mod scenario;
 
 pub mod turntable;
@@ -79,14 +97,30 @@ pub mod calibration;
 
 pub mod recording;
 
+#[cfg(feature = "scenario")]
 pub mod gate;
 
+#[cfg(feature = "scenario")]
+#[doc(hidden)]
+pub mod comparison;
+
+#[cfg(feature = "report")]
+#[doc(hidden)]
 pub mod report;
 
+#[cfg(feature = "report")]
+#[doc(hidden)]
 pub mod store;
 
+#[cfg(feature = "scenario")]
+#[doc(hidden)]
 pub mod experiment;
 
+#[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;
 
-pub use experiment::{Plan, Run, Scenario};
+#[cfg(feature = "scenario")]
+pub use experiment::{Plan, Progress, Run, RunError, Samples, Scenario, UnknownName, plan_suite};
+#[cfg(feature = "report")]
+pub use experiment::{SuiteError, SuiteOptions, SuiteOutcome, write_runs};

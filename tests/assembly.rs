@@ -7,6 +7,7 @@ use fogbench::signal::MotionSegment;
 
 use crate::support::gyro_cases::{budget_of, silent_gyro};
 use crate::support::reference_gyro::reference_gyro;
+use crate::support::transcript::{Transcript, said_to_each};
 use crate::support::{
     assert_close, code, field, fogbench, npy, stderr, stdout, summary, tree, write,
 };
@@ -301,50 +302,26 @@ fn channels_that_do_not_exist_are_refused_with_those_that_do() {
     let filter = "[[filter]]\nname = \"lms\"\n[filter.lms]\n";
     let steps = "[turntable.steps]\nrates_deg_per_s = [0.0, 1.0]\ndwell_s = 0.25\n";
     let cases = [
-        (
-            format!("{ASSEMBLY}{filter}{}", gate("raw.mean_deg_per_h")),
-            "there is no channel raw: expected one of x_raw, y_raw, z_raw, x_lms, y_lms, z_lms",
-        ),
-        (
-            format!("{ASSEMBLY}{filter}{}", gate("lms.mean_deg_per_h")),
-            "there is no channel lms: expected one of x_raw,",
-        ),
-        (
-            format!("{filter}{}", gate("x_raw.mean_deg_per_h")),
-            "there is no channel x_raw: expected one of raw, lms",
-        ),
-        (
-            format!("{ASSEMBLY}{}", gate("y_raw.noise_gain")),
-            "`noise_gain` compares a filter with the raw channel",
-        ),
-        (
-            format!("{ASSEMBLY}{steps}{}", gate("x_raw.settling_time_s")),
-            "x_raw.settling_time_s: the table does not turn about this axis",
-        ),
-        (
-            "[gyro.assembly]\nbias_deg_per_h = [1.0, 2.0]\n".to_owned(),
-            "gyro.assembly.bias_deg_per_h holds 2 values: expected an array of three numbers \
-             (x, y, z), each [-1000000, 1000000] deg/h",
-        ),
-        (
-            "[gyro.assembly]\nscale_factor_error_ppm = [0, 2e5, 0]\n".to_owned(),
-            "gyro.assembly.scale_factor_error_ppm[1] = 200000.0 ppm is out of range",
-        ),
-        (
-            "[gyro.assembly]\ntheta_xx_arcsec = 1.0\n".to_owned(),
-            "unknown key gyro.assembly.theta_xx_arcsec",
-        ),
+        format!("{ASSEMBLY}{filter}{}", gate("raw.mean_deg_per_h")),
+        format!("{ASSEMBLY}{filter}{}", gate("lms.mean_deg_per_h")),
+        format!("{filter}{}", gate("x_raw.mean_deg_per_h")),
+        format!("{ASSEMBLY}{}", gate("y_raw.noise_gain")),
+        format!("{ASSEMBLY}{steps}{}", gate("x_raw.settling_time_s")),
+        "[gyro.assembly]\nbias_deg_per_h = [1.0, 2.0]\n".to_owned(),
+        "[gyro.assembly]\nscale_factor_error_ppm = [0, 2e5, 0]\n".to_owned(),
+        "[gyro.assembly]\ntheta_xx_arcsec = 1.0\n".to_owned(),
     ];
-    for (more, message) in cases {
-        write(folder.path(), "short.toml", &format!("{SHORT}{more}"));
-        let output = fogbench(folder.path(), &["check", "short.toml"]);
-        assert_eq!(code(&output), 2, "{more}");
-        assert!(
-            stderr(&output).contains(message),
-            "{message}\n{}",
+    said_to_each(
+        "assembly",
+        "Channels and keys that an assembly has not",
+        cases,
+        |more| {
+            write(folder.path(), "short.toml", &format!("{SHORT}{more}"));
+            let output = fogbench(folder.path(), &["check", "short.toml"]);
+            assert_eq!(code(&output), 2, "{more}");
             stderr(&output)
-        );
-    }
+        },
+    );
 }
 
 #[test]
@@ -366,11 +343,9 @@ fn records_that_do_not_fit_into_memory_are_refused() {
     assert_eq!(code(&hour), 0, "{}", stderr(&hour));
     let longer = case(3800.0);
     assert_eq!(code(&longer), 2);
-    assert!(
-        stderr(&longer).contains("words in 12 records"),
-        "{}",
-        stderr(&longer)
-    );
+    let mut transcript = Transcript::of("assembly", "Records that do not fit into memory");
+    transcript.case("twelve records of 3800 s", stderr(&longer));
+    transcript.check();
 }
 
 #[test]

@@ -2,7 +2,11 @@
 
 use std::path::Path;
 
+use crate::support::transcript::{Transcript, said_to_each};
 use crate::support::{code, field, fogbench, repository, stderr, stdout, summary, tree, write};
+
+/// The transcript of commands.
+const COMMANDS: &str = "commands";
 
 /// A scenario of two seconds of the rate model; runs in a fraction of a second.
 const SHORT: &str = "schema = 1
@@ -17,8 +21,23 @@ fn scratch() -> tempfile::TempDir {
 }
 
 #[test]
-fn documented_commands_print_what_the_snapshots_hold() {
-    trycmd::TestCases::new().case("tests/cmd/*.trycmd");
+fn lists_and_checks_print_what_the_transcript_holds() {
+    let commands = [
+        "list scenarios/quick",
+        "list no-such-folder",
+        "check scenarios/quick scenarios/paper",
+        "check scenarios/quick/swing.toml --set gyro.coil.length_m=-5",
+        "check scenarios/quick/swing.toml --set gyro.coil.lenght_m=5",
+    ];
+    said_to_each(COMMANDS, "Lists and checks", commands, |arguments| {
+        let words: Vec<&str> = arguments.split(' ').collect();
+        let output = fogbench(&repository(""), &words);
+        let ended = match code(&output) {
+            0 => String::new(),
+            code => format!("exit code {code}\n"),
+        };
+        format!("{ended}{}{}", stdout(&output), stderr(&output))
+    });
 }
 
 #[test]
@@ -130,11 +149,9 @@ fn a_bad_file_exits_2_before_anything_runs_and_earlier_results_stay() {
     );
     let output = fogbench(folder.path(), &["run", "good.toml", "bad.toml"]);
     assert_eq!(code(&output), 2);
-    let talk = stderr(&output);
-    assert!(
-        talk.contains("bad.toml:3:") && talk.contains("duration_s = -1"),
-        "{talk}"
-    );
+    let mut transcript = Transcript::of(COMMANDS, "A bad file ends before anything runs");
+    transcript.case("run good.toml bad.toml", stderr(&output));
+    transcript.check();
     assert!(stdout(&output).is_empty(), "nothing may run");
     assert_eq!(before, tree(&folder.path().join("output")));
 }
@@ -146,89 +163,61 @@ fn a_gate_that_the_duration_can_never_support_exits_2() {
     write(folder.path(), "a.toml", &format!("{SHORT}{gate}"));
     let output = fogbench(folder.path(), &["check", "a.toml"]);
     assert_eq!(code(&output), 2);
-    let talk = stderr(&output);
-    assert!(
-        talk.contains("a.toml:7:") && talk.contains("bias_stability_100s_deg_per_h"),
-        "{talk}"
-    );
+    let mut transcript = Transcript::of(COMMANDS, "A gate that the duration can never support");
+    transcript.case(gate, stderr(&output));
+    transcript.check();
 }
 
 #[test]
 fn a_gyro_of_nothing_but_noise_exits_2_at_the_key_to_blame() {
     let folder = scratch();
     let scenario = "name = \"x\"\nduration_s = 1.0\nwarm_up_s = 0.0\n";
-    for (set, key) in [
-        (
-            "gyro.noise.technical_phase_urad_per_sqrt_hz=1e6",
-            "gyro.noise",
-        ),
-        (
-            "gyro.controller.loop_bandwidth_hz=1e5",
-            "gyro.controller.loop_bandwidth_hz",
-        ),
+    let mut transcript = Transcript::of(COMMANDS, "A gyro of nothing but noise");
+    for set in [
+        "gyro.noise.technical_phase_urad_per_sqrt_hz=1e6",
+        "gyro.controller.loop_bandwidth_hz=1e5",
     ] {
         write(folder.path(), "x.toml", scenario);
         for command in ["check", "budget"] {
             let arguments = [command, "x.toml", "--set", "gyro.adc.bits=0", "--set", set];
             let output = fogbench(folder.path(), &arguments);
-            let talk = stderr(&output);
-            assert_eq!(code(&output), 2, "{command} {set}: {talk}");
-            assert!(
-                talk.contains(&format!(": {key}: ")),
-                "{command} {set}: {talk}"
-            );
+            assert_eq!(code(&output), 2, "{command} {set}");
+            transcript.case(format!("{command} x.toml --set {set}"), stderr(&output));
         }
     }
+    transcript.check();
 }
 
-/// Parts of the gyro whose least value is one of the physics: key, unit, a value just below the
-/// least one and the range as printed.
-const LEAST_PARTS: [(&str, &str, &str, &str); 8] = [
-    ("gyro.coil.length_m", "m", "0.999", "[1, 50000]"),
-    ("gyro.coil.diameter_mm", "mm", "0.999", "[1, 2000]"),
-    ("gyro.coil.group_index", "", "0.999", "[1, 4]"),
-    ("gyro.source.wavelength_nm", "nm", "199.9", "[200, 5000]"),
-    ("gyro.source.power_uw", "uW", "0.000999", "[0.001, 100000]"),
-    ("gyro.source.linewidth_nm", "nm", "9.99e-7", "[1e-6, 500]"),
-    ("gyro.source.visibility", "", "0.000999", "[0.001, 1]"),
-    (
-        "gyro.detector.transimpedance_kohm",
-        "kOhm",
-        "0.000999",
-        "[0.001, 1000000]",
-    ),
+/// Parts of the gyro whose least value is one of the physics: key, a value just below the least one,
+/// and the least one.
+const LEAST_PARTS: [(&str, &str, &str); 8] = [
+    ("gyro.coil.length_m", "0.999", "1"),
+    ("gyro.coil.diameter_mm", "0.999", "1"),
+    ("gyro.coil.group_index", "0.999", "1"),
+    ("gyro.source.wavelength_nm", "199.9", "200"),
+    ("gyro.source.power_uw", "0.000999", "1e-3"),
+    ("gyro.source.linewidth_nm", "9.99e-7", "1e-6"),
+    ("gyro.source.visibility", "0.000999", "1e-3"),
+    ("gyro.detector.transimpedance_kohm", "0.000999", "1e-3"),
 ];
 
 #[test]
 fn a_part_below_its_least_value_exits_2_with_line_unit_and_range() {
     let folder = scratch();
-    for (key, unit, below, range) in LEAST_PARTS {
+    let mut transcript = Transcript::of(COMMANDS, "Parts below their least value");
+    for (key, below, _) in LEAST_PARTS {
         let (table, name) = key.rsplit_once('.').expect("a key in a table");
-        let line = format!("{name} = {below}");
-        write(
-            folder.path(),
-            "a.toml",
-            &format!("{SHORT}[{table}]\n{line}\n"),
-        );
-        let unit = if unit.is_empty() {
-            String::new()
-        } else {
-            format!(" {unit}")
-        };
-        for command in ["check", "run", "budget"] {
+        let more = format!("[{table}]\n{name} = {below}\n");
+        write(folder.path(), "a.toml", &format!("{SHORT}{more}"));
+        let said = ["check", "run", "budget"].map(|command| {
             let output = fogbench(folder.path(), &[command, "a.toml"]);
-            assert_eq!(code(&output), 2, "{command} {key}: {}", stderr(&output));
-            let underline = "^".repeat(line.len());
-            assert_eq!(
-                stderr(&output),
-                format!(
-                    "error: a.toml:7:1: {key} = {below}{unit} is out of range: allowed {range}{unit}\n  \
-                     |\n7 | {line}\n  | {underline}\n"
-                ),
-                "{command}"
-            );
-        }
+            assert_eq!(code(&output), 2, "{command} {key}");
+            stderr(&output)
+        });
+        assert!(said[0] == said[1] && said[1] == said[2], "{said:?}");
+        transcript.case(more, &said[0]);
     }
+    transcript.check();
 }
 
 #[test]
@@ -237,11 +226,7 @@ fn the_least_value_itself_is_in_range() {
     // An ideal converter, as the noise of so little transimpedance is far below a step of the real one.
     let adc = "[gyro.adc]\nbits = 0\n";
     write(folder.path(), "a.toml", &format!("{SHORT}{adc}"));
-    for (key, _, _, range) in LEAST_PARTS {
-        let (least, _) = range
-            .trim_start_matches('[')
-            .split_once(',')
-            .expect("a range");
+    for (key, _, least) in LEAST_PARTS {
         let set = format!("{key}={least}");
         let output = fogbench(folder.path(), &["check", "a.toml", "--set", &set]);
         assert_eq!(code(&output), 0, "{set}: {}", stderr(&output));
@@ -255,11 +240,9 @@ fn an_unknown_metric_in_a_gate_names_the_nearest_one() {
     write(folder.path(), "a.toml", &format!("{SHORT}{gate}"));
     let output = fogbench(folder.path(), &["check", "a.toml"]);
     assert_eq!(code(&output), 2);
-    assert!(
-        stderr(&output).contains("mean_deg_per_h"),
-        "{}",
-        stderr(&output)
-    );
+    let mut transcript = Transcript::of(COMMANDS, "An unknown metric in a gate");
+    transcript.case(gate, stderr(&output));
+    transcript.check();
 }
 
 #[test]
@@ -269,7 +252,9 @@ fn an_unstable_step_is_refused_unless_it_is_asked_for() {
     write(folder.path(), "a.toml", &format!("{SHORT}{filter}"));
     let output = fogbench(folder.path(), &["check", "a.toml"]);
     assert_eq!(code(&output), 2);
-    assert!(stderr(&output).contains("unstable"), "{}", stderr(&output));
+    let mut transcript = Transcript::of(COMMANDS, "An unstable step is refused unless asked for");
+    transcript.case(filter, stderr(&output));
+    transcript.check();
     write(
         folder.path(),
         "a.toml",
@@ -281,19 +266,30 @@ fn an_unstable_step_is_refused_unless_it_is_asked_for() {
 #[test]
 fn nothing_selected_exits_4() {
     let folder = scratch();
-    assert_eq!(code(&fogbench(folder.path(), &["run"])), 4);
     write(folder.path(), "bases/base.toml", "schema = 1\nseed = 2\n");
-    assert_eq!(code(&fogbench(folder.path(), &["run", "bases"])), 4);
+    said_to_each(
+        COMMANDS,
+        "Nothing selected",
+        ["run", "run bases"],
+        |arguments| {
+            let words: Vec<&str> = arguments.split(' ').collect();
+            let output = fogbench(folder.path(), &words);
+            assert_eq!(code(&output), 4);
+            stderr(&output)
+        },
+    );
 }
 
 #[test]
 fn wrong_usage_exits_2() {
     let folder = scratch();
-    assert_eq!(
-        code(&fogbench(folder.path(), &["run", "--no-such-option"])),
-        2
-    );
-    assert_eq!(code(&fogbench(folder.path(), &["run", "missing.toml"])), 2);
+    let wrong = ["run --no-such-option", "run missing.toml"];
+    said_to_each(COMMANDS, "Wrong usage", wrong, |arguments| {
+        let words: Vec<&str> = arguments.split(' ').collect();
+        let output = fogbench(folder.path(), &words);
+        assert_eq!(code(&output), 2);
+        stderr(&output)
+    });
 }
 
 #[test]
@@ -433,11 +429,9 @@ fn a_published_figure_in_another_unit_exits_2() {
     };
     let output = published("raw.mean_deg_per_h", "deg/s");
     assert_eq!(code(&output), 2);
-    assert_eq!(
-        stderr(&output),
-        "error: a.toml:9:1: published[0].unit = \"deg/s\" is not the unit of mean_deg_per_h: \
-         give the value in \"deg/h\"\n  |\n9 | unit = \"deg/s\"\n  | ^^^^^^^^^^^^^^\n"
-    );
+    let mut transcript = Transcript::of(COMMANDS, "A published figure in another unit");
+    transcript.case("raw.mean_deg_per_h in deg/s", stderr(&output));
+    transcript.check();
     let output = published("raw.mean_deg_per_h", "deg/h");
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert_eq!(stdout(&output), "1 run of 1 file is sound\n");

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::support::transcript::Transcript;
 use crate::support::{assert_close, code, fogbench, repository, stderr, stdout, write};
 
 fn scratch() -> tempfile::TempDir {
@@ -162,29 +163,23 @@ fn known_answer_k15_the_searched_optimum_is_the_closed_form_at_any_visibility() 
 fn text_names_the_sources_the_optimum_and_what_is_largest() {
     let output = run("scenarios/base/fog70.toml", &[]);
     let text = stdout(&output);
-    for part in [
-        "thermal",
-        "0.00600 ",
-        "closed form",
-        "largest: thermal from",
-    ] {
-        assert!(text.contains(part), "no `{part}` in:\n{text}");
-    }
-    assert!(!text.contains("note:"), "{text}");
+    let mut transcript = Transcript::of("budget", "Budgets as they are printed");
+    transcript.case("budget fog70.toml", text);
     // Eight bits: rounding is no white noise, and the budget says so.
-    let coarse = run("scenarios/base/fog70.toml", &["--set", "gyro.adc.bits=8"]);
-    assert!(
-        stdout(&coarse).contains("note: gyro.adc:"),
-        "{}",
-        stdout(&coarse)
-    );
+    let set = "gyro.adc.bits=8";
+    let coarse = run("scenarios/base/fog70.toml", &["--set", set]);
+    transcript.case(format!("budget fog70.toml --set {set}"), stdout(&coarse));
     // Technical noise alone: nothing depends on the depth.
     let off =
         ["shot", "thermal", "amplifier", "rin"].map(|name| format!("gyro.noise.{name}=false"));
     let mut sets: Vec<&str> = off.iter().flat_map(|set| ["--set", set.as_str()]).collect();
     sets.extend(["--set", "gyro.adc.bits=0"]);
     let silent = run("scenarios/base/fog70-technical.toml", &sets);
-    assert!(stdout(&silent).contains("no source depends on the modulation depth"));
+    transcript.case(
+        "budget fog70-technical.toml with that noise alone",
+        stdout(&silent),
+    );
+    transcript.check();
     let report = json("scenarios/base/fog70-technical.toml", &sets);
     assert!(report["optimum"].is_null());
 }
@@ -228,28 +223,22 @@ fn bad_files_and_gyros_exit_2_and_say_why() {
         "seeds.toml",
         &format!("{sweep}seed = [1, 2]\n"),
     );
-    for (arguments, part) in [
-        (vec!["budget", "none.toml"], "none.toml: no such file"),
-        (vec!["budget", "."], "it is a folder"),
-        (
-            vec!["budget", "typo.toml"],
-            "did you mean gyro.coil.length_m",
-        ),
-        (
-            vec!["budget", "gyros.toml"],
-            "2 points of the sweep have different gyros",
-        ),
-        (
-            vec!["budget", "bare.toml", "--set", "gyro.source.power_uw=500.0"],
-            "lies outside the converter's range",
-        ),
-        (vec!["budget"], "<PATH>"),
+    let mut transcript = Transcript::of("budget", "Files and gyros without a budget");
+    for arguments in [
+        "budget none.toml",
+        "budget .",
+        "budget typo.toml",
+        "budget gyros.toml",
+        "budget bare.toml --set gyro.source.power_uw=500.0",
+        "budget",
     ] {
-        let output = fogbench(folder.path(), &arguments);
-        assert_eq!(code(&output), 2, "{arguments:?}");
-        assert!(stderr(&output).contains(part), "{}", stderr(&output));
+        let words: Vec<&str> = arguments.split(' ').collect();
+        let output = fogbench(folder.path(), &words);
+        assert_eq!(code(&output), 2, "{arguments}");
+        transcript.case(arguments, stderr(&output));
         assert_eq!(stdout(&output), "");
     }
+    transcript.check();
     for file in ["bare.toml", "seeds.toml"] {
         let output = fogbench(folder.path(), &["budget", file, "--format", "jsonl"]);
         assert_eq!(code(&output), 0, "{}", stderr(&output));

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use crate::support::transcript::Transcript;
 use crate::support::{code, fogbench, repository, stderr, stdout, summary, write};
 
 fn scratch() -> tempfile::TempDir {
@@ -45,50 +46,33 @@ fn units_with_latency_stall_the_pipeline() {
 
 #[test]
 fn bad_hardware_parameters_exit_2_and_say_the_range() {
-    fn export<'a>(more: &[&'a str]) -> Vec<&'a str> {
-        [&["export", "vectors", "out"][..], more].concat()
-    }
     let folder = scratch();
     write(folder.path(), "good.csv", "1.0\n2.0\n");
     write(folder.path(), "bad.csv", "rate\n1.0\nnan\n");
     write(folder.path(), "words.csv", "rate\n1.0\ntwo\n");
-    let good = ["--stimulus", "good.csv"];
-    for (arguments, part) in [
-        (vec!["timing", "--taps", "0"], "expected 1 to 64"),
-        (
-            vec!["timing", "--forgetting-factor", "1.5"],
-            "number from 0.001 to 1",
-        ),
-        (
-            vec!["timing", "--clock-mhz", "0"],
-            "from 0.001 to 10000 MHz",
-        ),
-        (vec!["timing", "--adder-latency", "0"], "adder latency = 0"),
-        (export(&[&good[..], &["--taps", "0"]].concat()), "1 to 64"),
-        (
-            export(&[&good[..], &["--forgetting-factor", "0"]].concat()),
-            "--forgetting-factor <A>",
-        ),
-        (
-            export(&[&good[..], &["--initial-inverse-correlation=-1"]].concat()),
-            "--initial-inverse-correlation <D>",
-        ),
-        (
-            export(&["--stimulus", "bad.csv"]),
-            "bad.csv:3: column rate: NaN",
-        ),
-        (
-            export(&["--stimulus", "words.csv"]),
-            "words.csv:3: column rate: `two`",
-        ),
+    let mut transcript = Transcript::of("hardware", "Parameters of hardware that cannot be");
+    let good = "export vectors out --stimulus good.csv";
+    for arguments in [
+        "timing --taps 0",
+        "timing --forgetting-factor 1.5",
+        "timing --clock-mhz 0",
+        "timing --adder-latency 0",
+        &format!("{good} --taps 0"),
+        &format!("{good} --forgetting-factor 0"),
+        &format!("{good} --initial-inverse-correlation=-1"),
+        "export vectors out --stimulus bad.csv",
+        "export vectors out --stimulus words.csv",
     ] {
-        let output = fogbench(folder.path(), &arguments);
-        assert_eq!(code(&output), 2, "{arguments:?}");
-        assert!(stderr(&output).contains(part), "{}", stderr(&output));
+        let words: Vec<&str> = arguments.split(' ').collect();
+        let output = fogbench(folder.path(), &words);
+        assert_eq!(code(&output), 2, "{arguments}");
+        transcript.case(arguments, stderr(&output));
     }
-    let missing = fogbench(folder.path(), &export(&["--stimulus", "none.csv"]));
+    let arguments = ["export", "vectors", "out", "--stimulus", "none.csv"];
+    let missing = fogbench(folder.path(), &arguments);
     assert_eq!(code(&missing), 74, "{}", stderr(&missing));
-    assert!(stderr(&missing).contains("cannot read none.csv"));
+    transcript.case(arguments.join(" "), stderr(&missing));
+    transcript.check();
     assert!(
         !folder.path().join("out").exists(),
         "nothing is written in error"

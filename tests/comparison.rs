@@ -3,13 +3,15 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use fogbench::metrics::{Estimate, Finding, Metric};
-use fogbench::report::{
-    Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison, comparison_text,
+use fogbench::comparison::{
+    Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
 };
+use fogbench::metrics::{Estimate, Finding, Metric};
+use fogbench::report::comparison_text;
 use fogbench::scenario::{ComparisonColumn, ComparisonKind, Resolved, load_suite};
 use serde_json::Value;
 
+use crate::support::transcript::Transcript;
 use crate::support::{assert_close, code, fogbench, repository, stderr, stdout, summary, write};
 
 const BASE: &str = r#"
@@ -216,24 +218,20 @@ fn a_table_that_refers_to_nothing_is_refused() {
         assert_eq!(code(&output), 2, "{change:?} was accepted");
         stderr(&output)
     };
-    let unnamed = complaint(("comparison = \"Table 9\"", "comparison = \"Table 8\""));
-    let expected = "comparison_row[0].comparison = \"Table 8\": there is no comparison of that name: \
-                    expected one of Table 9, By latitude";
-    assert!(unnamed.contains(expected), "{unnamed}");
-    let column = complaint(("\"rls.dc_gain\"", "\"dc_gain\""));
-    assert!(
-        column.contains("\"dc_gain\" is neither <channel>.<metric>"),
-        "{column}"
-    );
-    let metric = complaint(("\"rls.dc_gain\"", "\"rls.dc_gian\""));
-    assert!(metric.contains("there is no metric dc_gian"), "{metric}");
-    let twin = complaint(("name = \"By latitude\"", "name = \"table-9\""));
-    assert!(
-        twin.contains("gives no file name of its own (`table-9`)"),
-        "{twin}"
-    );
-    let key = complaint(("turntable.site.latitude_deg", "turntable.site.latitude"));
-    assert!(key.contains("assumption[0].key: unknown key"), "{key}");
+    let mut transcript = Transcript::of("comparison", "Tables that refer to nothing");
+    for change in [
+        ("comparison = \"Table 9\"", "comparison = \"Table 8\""),
+        ("\"rls.dc_gain\"", "\"dc_gain\""),
+        ("\"rls.dc_gain\"", "\"rls.dc_gian\""),
+        ("name = \"By latitude\"", "name = \"table-9\""),
+        ("turntable.site.latitude_deg", "turntable.site.latitude"),
+    ] {
+        transcript.case(
+            format!("{}, where {} stood", change.1, change.0),
+            complaint(change),
+        );
+    }
+    transcript.check();
 }
 
 #[test]
@@ -247,8 +245,9 @@ fn two_tables_of_one_name_in_a_suite_are_refused() {
     );
     let output = fogbench(folder.path(), &["check", "."]);
     assert_eq!(code(&output), 2);
-    let said = stderr(&output);
-    assert!(said.contains("stands for another table in"), "{said}");
+    let mut transcript = Transcript::of("comparison", "Two tables of one name in a suite");
+    transcript.case("check .", stderr(&output));
+    transcript.check();
 }
 
 /// A table of one row whose ratio stands at `low..high` of a gain of one half.
@@ -298,18 +297,12 @@ fn table(low: f64, high: f64) -> Comparison {
 
 #[test]
 fn the_cause_is_worded_by_the_interval_of_what_the_gain_leaves() {
-    let said = |low: f64, high: f64| {
+    let mut transcript = Transcript::of("comparison", "Causes of a ratio in words");
+    for (low, high) in [(0.99, 1.01), (0.7, 0.8), (1.2, 1.4), (0.8, 1.3)] {
         let text = comparison_text(&table(low, high), 1000, false);
-        assert!(
-            text.contains("row  0.483"),
-            "three digits are enough: {text}"
-        );
-        text
-    };
-    assert!(said(0.99, 1.01).contains("which is the ratio of DC gains, 0.5 "));
-    assert!(said(0.7, 0.8).contains("which is below the ratio of DC gains"));
-    assert!(said(1.2, 1.4).contains("which is above the ratio of DC gains"));
-    assert!(said(0.8, 1.3).contains("which is not told apart from the ratio of DC gains"));
+        transcript.case(format!("what the gain leaves is {low} to {high}"), text);
+    }
+    transcript.check();
 }
 
 fn shipped() -> Vec<Resolved> {

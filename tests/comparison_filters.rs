@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use fogbench::filters::{
-    ConstrainedRls, Filter, FixedFilter, FrontEndConfig, Kalman, RecursiveFilter, Rls, RlsConfig,
-    butterworth, kalman_gain, moving_average, one_pole, savitzky_golay,
+    ConstrainedRls, Filter, FixedFilter, FrontEndConfig, Kalman, KalmanConfig, RecursiveFilter,
+    Rls, RlsConfig, butterworth, kalman_gain, moving_average, one_pole, savitzky_golay,
 };
 use fogbench::metrics::predict;
 use fogbench::random::Streams;
@@ -109,7 +109,11 @@ fn fixed_weights_are_the_impulse_response_behind_the_register() {
 #[test]
 fn the_kalman_filter_starts_as_a_mean_and_settles_at_the_gain_of_the_riccati_equation() {
     // Without a walk the estimate is the mean of all words so far.
-    let mut filter = Kalman::new(19.0, 1e-9, OutputRegister::Immediate);
+    let mut filter = Kalman::new(&KalmanConfig {
+        noise_deg_per_h: 19.0,
+        step_deg_per_h: 1e-9,
+        output_register: OutputRegister::Immediate,
+    });
     let words = [3.0, 5.0, 1.0, 7.0];
     let mut sum = 0.0;
     for (index, word) in words.into_iter().enumerate() {
@@ -127,7 +131,11 @@ fn the_kalman_filter_starts_as_a_mean_and_settles_at_the_gain_of_the_riccati_equ
         1e-12,
         0.0,
     );
-    let mut filter = Kalman::new(noise, step, OutputRegister::Immediate);
+    let mut filter = Kalman::new(&KalmanConfig {
+        noise_deg_per_h: noise,
+        step_deg_per_h: step,
+        output_register: OutputRegister::Immediate,
+    });
     outputs(&mut filter, &[8.0; 1000]);
     let response = outputs(&mut filter, &[9.0, 8.0, 8.0]);
     assert_close(response[0] - 8.0, gain, 1e-9, 0.0);

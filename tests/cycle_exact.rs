@@ -11,6 +11,7 @@ use fogbench::fpga::rls::{
 use fogbench::vocabulary::{Division, UpdateSign};
 
 use crate::support::assert_close;
+use crate::support::transcript::Transcript;
 
 fn rls(tap_count: usize) -> RlsPipeline<f64> {
     RlsPipeline::new(
@@ -170,27 +171,29 @@ fn parameters_out_of_range_are_refused_with_value_and_range() {
         update_sign: UpdateSign::Corrected,
     };
     let refuse = |settings: RlsSettings| RlsConfig::<f64>::new(settings).unwrap_err().to_string();
+    let mut transcript = Transcript::of("hardware", "Parameters of an RLS pipeline that cannot be");
     for tap_count in [0, 65] {
-        assert_eq!(
-            refuse(RlsSettings { tap_count, ..good }),
-            format!("tap count {tap_count} is out of range: expected 1 to 64")
-        );
+        let said = refuse(RlsSettings { tap_count, ..good });
+        transcript.case(format!("{tap_count} taps"), said);
     }
     for forgetting_factor in [0.0, -0.5, 1.000_001, f64::NAN, f64::INFINITY, 5e-324] {
-        let text = refuse(RlsSettings {
+        let settings = RlsSettings {
             forgetting_factor,
             ..good
-        });
-        assert!(text.contains("expected > 0 and <= 1 in binary64"), "{text}");
-        assert!(text.contains(&forgetting_factor.to_string()), "{text}");
+        };
+        transcript.case(format!("alpha = {forgetting_factor:e}"), refuse(settings));
     }
     for initial_inverse_correlation in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let text = refuse(RlsSettings {
+        let settings = RlsSettings {
             initial_inverse_correlation,
             ..good
-        });
-        assert!(text.contains("expected > 0 and finite"), "{text}");
+        };
+        transcript.case(
+            format!("delta = {initial_inverse_correlation}"),
+            refuse(settings),
+        );
     }
+    transcript.check();
     // Rounded to binary32 this delta is infinite.
     let large = RlsSettings {
         initial_inverse_correlation: 1e39,

@@ -1,5 +1,6 @@
 //! The two ways a covariance-form RLS dies, shown and timed: gain-first order and wind-up.
 
+use fogbench::fpga::engine::Engine as _;
 use fogbench::fpga::float_unit::Fp;
 use fogbench::fpga::front_end::FrontEnd;
 use fogbench::fpga::health::{HealthMonitor, gain_first_failure_samples, wind_up_warning};
@@ -26,7 +27,11 @@ fn watch<F: Fp>(signal: &[f64], alpha: f64, order: UpdateOrder) -> HealthMonitor
         let output = engine.process(pair);
         monitor.sample(pair.input, pair.desired, output);
         if k % 10 == 9 {
-            monitor.matrix(engine.inverse_correlation(), 4, config.delta());
+            monitor.matrix(
+                engine.inverse_correlation().unwrap().matrix,
+                4,
+                config.delta(),
+            );
         }
     }
     monitor

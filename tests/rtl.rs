@@ -7,6 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use fogbench::fpga::engine::Engine as _;
 use fogbench::fpga::export::{
     ExportSettings, IntegerCodes, PipelineConfig, stimulus_pairs, write_rtl,
 };

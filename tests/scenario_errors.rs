@@ -3,9 +3,8 @@
 use std::fs;
 use std::path::PathBuf;
 
-use fogbench::scenario::{
-    FilterKind, MotionConfig, Resolved, ScenarioError, load_suite, manifest_toml,
-};
+use fogbench::filters::FilterKind;
+use fogbench::scenario::{MotionConfig, Resolved, ScenarioError, load_suite, manifest_toml};
 use tempfile::TempDir;
 
 use crate::support::transcript::{Transcript, said_to_each};

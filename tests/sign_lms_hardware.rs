@@ -1,7 +1,8 @@
 //! The line enhancer as a pipeline: words, clocks, formats.
 
-use fogbench::experiment::PipelineSettings;
+use fogbench::filters::FilterConfig;
 use fogbench::filters::{Filter, SignLms, SignLmsConfig as Textbook};
+use fogbench::fpga::engine::Engine as _;
 use fogbench::fpga::float_unit::{FlushToZero, Fp};
 use fogbench::fpga::front_end::{FrontEnd, Pair};
 use fogbench::fpga::sign_lms::{
@@ -9,7 +10,6 @@ use fogbench::fpga::sign_lms::{
     sign_lms_latency_clocks, sign_lms_stalled_clocks,
 };
 use fogbench::fpga::timing::{Units, measure};
-use fogbench::scenario::FilterConfig;
 use fogbench::vocabulary::{DesiredSignal, OutputRegister, SignLmsForm};
 use proptest::prelude::*;
 
@@ -151,7 +151,7 @@ fn textbook_and_hardware_of_the_line_enhancer_have_the_same_bits_in_the_bench() 
         )
     };
     let config: FilterConfig = toml::from_str(&text("fpga")).expect("a filter");
-    let settings = PipelineSettings::of(&config.kind).expect("a pipeline");
+    let settings = config.kind.settings().hardware().expect("a pipeline");
     let mut hardware = settings.filter(0).expect("sound constants");
     let stimulus: Vec<f64> = samples("static", 5000)
         .iter()

@@ -7,7 +7,7 @@ use super::exit::Exit;
 use super::place::Place;
 use super::{complaint, output};
 use crate::experiment::{GyroBudget, gyro_budget};
-use crate::report::{budget_csv, budget_json, budget_svg, budget_text};
+use crate::report::{budget_files, budget_json, budget_text};
 use crate::store::{OutputFolder, StoreError};
 
 /// Prints the budget; with a folder, writes `budget.svg` and `budget.csv` into it as well.
@@ -41,10 +41,9 @@ pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
 fn write(folder: &OutputFolder, budget: &GyroBudget) -> Result<(), StoreError> {
     let GyroBudget { file, sheet } = budget;
     let staged = folder.stage()?;
-    if let Some(svg) = budget_svg(file, sheet) {
-        staged.write("budget.svg", svg.as_bytes())?;
+    for (name, text) in budget_files(file, sheet) {
+        staged.write(&name, text.as_bytes())?;
     }
-    staged.write("budget.csv", budget_csv(sheet).as_bytes())?;
     staged.seal_plainly()?;
     staged.put_files_in_place()
 }

@@ -9,12 +9,13 @@ use super::hardware_arguments::ExportOptions;
 use super::log::unreadable;
 use super::output;
 use super::place::Place;
-use crate::experiment::{
-    PipelineSettings, Stimulus, export_pipeline, plan_suite, scenario_stimulus,
+use crate::experiment::{plan_suite, scenario_stimulus};
+use crate::filters::FilterConfig;
+use crate::filters::hardware::{
+    PipelineSettings, Stimulus, export_pipeline, has_hardware, kind_names,
 };
 use crate::fpga::FpgaError;
 use crate::recording::read_stimulus;
-use crate::scenario::{FilterConfig, FilterKind};
 use crate::vocabulary::ExportForm;
 use crate::wording::{counted, is_misspelling};
 
@@ -128,7 +129,7 @@ fn from_scenario(
         Some(name) => {
             let filters = &plan.resolved().scenario.filters;
             let filter = filters.iter().find(|filter| filter.name == *name);
-            let settings = filter.and_then(|filter| PipelineSettings::of(&filter.kind));
+            let settings = filter.and_then(|filter| filter.kind.settings().hardware());
             Some(settings.ok_or_else(|| refused(no_hardware(path, name, filters)))?)
         }
     };
@@ -150,18 +151,24 @@ fn no_hardware(path: &Path, name: &str, filters: &[FilterConfig]) -> String {
         "{}: there is no filter `{name}` with pipeline = \"fpga\"",
         path.display()
     );
-    let kind = |filter: &FilterConfig| match filter.kind {
-        FilterKind::Rls(_) => Some("rls"),
-        FilterKind::Lms(_) => Some("lms"),
-        FilterKind::SignLms(_) => Some("sign_lms"),
-        _ => None,
+    let listed = |last: &str| {
+        let kinds: Vec<&str> = kind_names().collect();
+        match kinds.split_last() {
+            Some((end, [])) => (*end).to_owned(),
+            Some((end, kinds)) => format!("{} {last} {end}", kinds.join(", ")),
+            None => String::new(),
+        }
     };
+    let kind = |filter: &FilterConfig| Some(filter.kind.name()).filter(|kind| has_hardware(kind));
     if let Some(filter) = filters.iter().find(|filter| filter.name == name) {
         return match kind(filter) {
             Some(kind) => {
                 format!("{lack}: write pipeline = \"fpga\" into its table [filter.{kind}]")
             }
-            None => format!("{lack}: its kind has no hardware, only rls, lms and sign_lms have"),
+            None => {
+                let kinds = listed("and");
+                format!("{lack}: its kind has no hardware, only {kinds} have")
+            }
         };
     }
     let names = filters.iter().filter(|filter| kind(filter).is_some());
@@ -170,6 +177,6 @@ fn no_hardware(path: &Path, name: &str, filters: &[FilterConfig]) -> String {
     match (alike.next(), names.is_empty()) {
         (Some(known), _) => format!("{lack}: did you mean `{known}`?"),
         (None, false) => format!("{lack}: expected one of {}", names.join(", ")),
-        (None, true) => format!("{lack}: the scenario has no rls, lms or sign_lms filter"),
+        (None, true) => format!("{lack}: the scenario has no {} filter", listed("or")),
     }
 }

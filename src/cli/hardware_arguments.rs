@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::arguments::Format;
 use super::numbers::{count_within, within};
-use crate::experiment::PipelineSettings;
+use crate::filters::hardware::PipelineSettings;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
 use crate::fpga::rls::{RlsCore, RlsSettings};

@@ -143,7 +143,7 @@ impl<'a> Progress<'a> {
                 self.talk(&format!("error: {error}"));
                 match error {
                     SuiteError::Store(error) => place::exit_of(error),
-                    SuiteError::Threads { .. } => Exit::Io,
+                    SuiteError::Unwritten { .. } | SuiteError::Threads { .. } => Exit::Io,
                 }
             }
         };

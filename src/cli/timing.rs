@@ -9,7 +9,7 @@ use super::arguments::Format;
 use super::exit::Exit;
 use super::hardware_arguments::{FilterOptions, TimingOptions};
 use super::output;
-use crate::experiment::PipelineTiming;
+use crate::filters::hardware::PipelineTiming;
 use crate::fpga::FpgaError;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::rls::{ScheduleReport, ScheduleSettings, TimingRow, schedule_clocks, table};

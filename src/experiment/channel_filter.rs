@@ -5,14 +5,10 @@
 //! the unperturbed run. *Adapted*: a twin filter runs on the same words plus a small rate from the
 //! first sample on and is free to adapt; its mean output differs by that rate times the gain.
 
-use super::pipeline_filter::{HardwareFilter, HealthSummary};
-use super::pipeline_settings::{PipelineSettings, PipelineTiming};
-use super::rate_twins::RateTwins;
-use super::simulate::RecordLength;
-use super::textbook::textbook_filter;
-use crate::filters::{Divergence, Filter, Output};
+use crate::experiment::run::{RateTwins, RecordLength};
+use crate::filters::hardware::{HardwareFilter, HealthSummary, PipelineSettings, PipelineTiming};
+use crate::filters::{Divergence, Filter, FilterKind, Output};
 use crate::metrics::RateGain;
-use crate::scenario::FilterKind;
 use crate::signal::{FilterShape, WeightRule};
 
 /// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
@@ -21,7 +17,7 @@ pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
 /// Blocks of the record whose mean weights are kept.
 const WEIGHT_BLOCKS: usize = 10;
 
-/// A filter channel while it runs.
+/// Filter channel state during a run.
 pub(super) struct ChannelFilter {
     name: String,
     settings: Option<PipelineSettings>,
@@ -42,16 +38,18 @@ pub(super) struct ChannelFilter {
     measured: u64,
 }
 
-/// How a filter starts afresh at samples that are told.
+/// Reset schedule of a filter.
 pub(super) struct Restarts {
-    /// Indices of these samples, warm-up included, the next one last.
+    /// Indices of the samples at which it starts afresh, warm-up included, the next one last.
     samples: Vec<usize>,
     kind: FilterKind,
     sample_period_s: f64,
 }
 
 impl Restarts {
-    /// * `samples`: indices, warm-up included, ascending.
+    /// The schedule of the filter of a kind.
+    ///
+    /// * `samples`: indices of the samples at which it starts afresh, warm-up included, ascending.
     pub(super) fn new(mut samples: Vec<usize>, kind: &FilterKind, sample_period_s: f64) -> Self {
         samples.reverse();
         Self {
@@ -61,7 +59,7 @@ impl Restarts {
         }
     }
 
-    /// The filter as it begins, if sample `index` is one of those.
+    /// Constructor of a fresh filter, if sample `index` is one of those.
     fn at(&mut self, index: usize) -> Option<impl Fn() -> Arithmetic> {
         self.samples.pop_if(|next| *next == index)?;
         // Nothing of what follows is left out of the health of a matrix.
@@ -73,11 +71,11 @@ impl Restarts {
     }
 }
 
-/// A filter channel after its run.
+/// Filter channel results.
 pub(super) struct FinishedFilter {
     /// Channel name.
     pub(super) name: String,
-    /// What the filter weighs and aims at.
+    /// Input samples that the filter weighs, and the rule of its weights.
     pub(super) shape: FilterShape,
     /// The words, or why there are none.
     pub(super) words: Result<FilterWords, Divergence>,
@@ -85,7 +83,7 @@ pub(super) struct FinishedFilter {
     pub(super) pipeline: Option<FinishedPipeline>,
 }
 
-/// What is known of a hardware pipeline after its run.
+/// Hardware pipeline results.
 pub(super) struct FinishedPipeline {
     /// Its constants.
     pub(super) settings: PipelineSettings,
@@ -97,7 +95,7 @@ pub(super) struct FinishedPipeline {
     pub(super) wind_up: Option<String>,
 }
 
-/// What a filter that did not fail has made.
+/// Output words of a filter that did not fail, and its gains.
 pub(super) struct FilterWords {
     /// Output words, deg/h, warm-up included.
     pub(super) output_deg_per_h: Vec<f64>,
@@ -114,7 +112,7 @@ pub(super) struct FilterWords {
     pub(super) block_weights: Vec<Vec<f64>>,
 }
 
-/// Whose arithmetic makes the words.
+/// Arithmetic that makes the words.
 pub(super) enum Arithmetic {
     Textbook(Box<dyn Filter>),
     Hardware(Box<dyn HardwareFilter>),
@@ -122,11 +120,11 @@ pub(super) enum Arithmetic {
 
 impl Arithmetic {
     fn new(kind: &FilterKind, length: RecordLength, sample_period_s: f64) -> Self {
-        if let Some(settings) = PipelineSettings::of(kind) {
+        if let Some(settings) = kind.settings().hardware() {
             let filter = settings.filter(length.warm_up as u64);
             return Self::Hardware(filter.expect(CHECKED));
         }
-        Self::Textbook(textbook_filter(kind, sample_period_s))
+        Self::Textbook(kind.settings().build(sample_period_s))
     }
 
     fn as_filter(&self) -> &dyn Filter {
@@ -165,7 +163,7 @@ impl ChannelFilter {
         let filter = arithmetic();
         Self {
             name,
-            settings: PipelineSettings::of(kind),
+            settings: kind.settings().hardware(),
             shape: filter.as_filter().shape(),
             weight_totals: std::array::from_fn(|_| vec![0.0; filter.as_filter().weights().len()]),
             weight_counts: [0; WEIGHT_BLOCKS],
@@ -189,7 +187,7 @@ impl ChannelFilter {
     }
 
     /// Filters the next words of the record.
-    pub(super) fn take(&mut self, words_deg_per_h: &[f64]) {
+    pub(super) fn process(&mut self, words_deg_per_h: &[f64]) {
         for &word in words_deg_per_h {
             if self.failure.is_some() {
                 return;

@@ -3,72 +3,40 @@
 //! Invariant: wiring only; what a stage does stands in the stage. Checks that need physics live in
 //! `plan`, so that `check` and `run` refuse the same files.
 
-mod allan_settings;
-mod assembly_motion;
 mod budget;
 mod build;
-mod calibrate;
-mod calibration_sheet;
-mod calibration_units;
 mod campaign;
-mod campaign_metrics;
-mod change_per_unit;
 mod channel_filter;
-mod comparison;
-mod compensation;
-mod group_findings;
-mod in_memory;
-mod ledger;
-mod line_enhancer;
-mod log_compensation;
-mod log_filters;
-mod log_trial;
-mod measurement;
-mod motion;
-mod output_average;
-mod pipeline_check;
-mod pipeline_export;
-mod pipeline_filter;
+#[cfg(feature = "report")]
+mod log;
 mod pipeline_metrics;
-mod pipeline_settings;
 mod plan;
-mod plan_filters;
-mod plan_metrics;
-mod progress;
-mod published_check;
-mod rate_twins;
-mod record_length;
-mod results;
-mod resume;
 mod run;
-mod run_files;
-mod simulate;
+mod scenario;
+#[cfg(feature = "hdl")]
+mod stimulus;
+#[cfg(feature = "report")]
 mod suite;
-mod suite_output;
-mod survey;
-mod textbook;
-mod theory;
-mod threads;
 
 pub use budget::{GyroBudget, gyro_budget};
 pub use build::BUILD;
-pub use calibrate::{
+#[cfg(feature = "report")]
+pub use campaign::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
 };
-pub use calibration_sheet::calibration_sheet;
-pub use campaign::calibrate_scenario;
-pub use in_memory::{Run, RunError, Samples, Scenario, UnknownName};
-pub use log_compensation::{
-    CompensatedLog, LogCompensation, compensate_log, load_log_compensation,
+pub use campaign::{calibrate_scenario, calibration_sheet};
+#[cfg(feature = "report")]
+pub use log::{
+    CompensatedLog, LogCompensation, LogFilters, LogInput, LogMotion, LogSettings, LogTrial,
+    LogTrialError, compensate_log, load_log_compensation, load_log_filters, try_log,
 };
-pub use log_filters::{LogFilters, load_log_filters};
-pub use log_trial::{LogInput, LogMotion, LogSettings, LogTrial, LogTrialError, try_log};
-pub use pipeline_export::{Stimulus, export_pipeline, scenario_stimulus};
-pub use pipeline_filter::{HardwareFilter, HealthSummary};
-pub use pipeline_settings::{PipelineSettings, PipelineTiming};
-pub use plan::{Plan, plan_suite};
-pub use progress::Progress;
-pub use resume::Resume;
-pub use suite::{Observer, SuiteError, SuiteOptions, SuiteOutcome, run_suite, write_runs};
-pub use survey::{Sound, check_suite};
-pub use threads::{THREADS_MAX, start_threads, thread_count};
+pub use plan::{Plan, Sound, check_suite, plan_suite};
+pub use run::{Progress, Run, RunError, Samples, UnknownName};
+pub use scenario::Scenario;
+#[cfg(feature = "hdl")]
+pub use stimulus::scenario_stimulus;
+#[cfg(feature = "report")]
+pub use suite::{
+    Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX, run_suite,
+    start_threads, thread_count, write_runs,
+};

@@ -5,7 +5,8 @@ use crate::metrics::catalogue::{
     ASYMMETRY_MAX, CLOCKS_PER_SAMPLE, CONDITION_NUMBER, LATENCY, PREDICTED_FAILURE, SAMPLE_PERIOD,
     SAMPLE_RATE_MAX, SMALLEST_PIVOT,
 };
-use crate::metrics::{ChannelMetrics, Estimate, MetricKey};
+use crate::metrics::{Applies, ChannelMetrics, Estimate, MetricKey};
+use crate::scenario::Scenario;
 use crate::units::us_to_s;
 use crate::vocabulary::OutputRegister;
 use crate::wording::counted;
@@ -13,6 +14,24 @@ use crate::wording::counted;
 /// Metrics of the matrix of recursive least squares.
 pub(super) static MATRIX_METRICS: [&MetricKey; 3] =
     [&ASYMMETRY_MAX, &SMALLEST_PIVOT, &CONDITION_NUMBER];
+
+/// Why a channel can never have a metric of hardware pipelines; nothing for other metrics.
+pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<&'static str> {
+    if key.applies != Applies::Pipeline {
+        return None;
+    }
+    let filter = scenario.filter_of(channel)?;
+    let Some(settings) = filter.kind.settings().hardware() else {
+        return Some("only a filter with pipeline = \"fpga\" has it");
+    };
+    if MATRIX_METRICS.contains(&key) && !settings.core.kind().has_matrix {
+        return Some("a least-mean-squares filter has no matrix");
+    }
+    if *key == PREDICTED_FAILURE && settings.failure_samples().is_none() {
+        return Some("only update_order = \"gain-first\" below a forgetting factor of 1 has it");
+    }
+    None
+}
 
 /// How long after their sample's stamp the outputs of a filter appear, s.
 ///

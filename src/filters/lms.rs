@@ -1,10 +1,93 @@
 //! Least mean squares, plain and normalised.
 
-use super::core_filter::{Core, CoreFilter, dot};
-use super::divergence::Fault;
-use super::filter::Output;
-use super::front_end::FrontEndConfig;
-use crate::vocabulary::UpdateSign;
+use serde::Deserialize;
+
+use super::common::{Complaints, Core, CoreFilter, Fault, Filter, FrontEndConfig, Output, dot};
+use super::hardware::{self, PipelineSettings};
+use super::kind::{ExpectedWords, FilterSettings};
+use crate::vocabulary::{DesiredSignal, NumberFormat, OutputRegister, Pipeline, UpdateSign};
+
+/// Least mean squares.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LmsFilterConfig {
+    /// Number of weights N.
+    pub taps: u32,
+    /// Step size mu.
+    pub step_size: f64,
+    /// Whether the step is divided by the input's energy (NLMS).
+    pub normalised: bool,
+    /// Added to the energy (normalised form), (deg/h)^2.
+    pub regularisation_deg2_per_h2: f64,
+    /// Run an un-normalised step beyond its stability bound.
+    pub allow_unstable: bool,
+    /// Desired signal.
+    pub desired: DesiredSignal,
+    /// Samples by which the regressors lag the desired signal's newest sample.
+    pub input_lag_samples: u32,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+    /// Sign of the weight update.
+    pub update_sign: UpdateSign,
+    /// Arithmetic.
+    pub pipeline: Pipeline,
+    /// Words of the hardware.
+    pub number_format: NumberFormat,
+    /// Clock of the hardware, MHz.
+    pub clock_mhz: f64,
+}
+
+impl FilterSettings for LmsFilterConfig {
+    /// Refuses an un-normalised step that the expected motion alone makes unstable.
+    fn check_on(&self, words: &ExpectedWords, complaints: &mut Complaints) {
+        let Some(run) = &words.run else {
+            return;
+        };
+        if self.normalised || self.allow_unstable {
+            return;
+        }
+        let (taps, rate_max) = (self.taps as usize, run.rate_max_deg_per_h);
+        let eigenvalue_max = match run.swing_step_rad {
+            Some(phase_step_rad) => sine_eigenvalue_max(taps, rate_max, phase_step_rad, 0.0),
+            None => constant_eigenvalue_max(taps, rate_max, 0.0),
+        };
+        let bound = lms_step_bound(eigenvalue_max);
+        if self.step_size >= bound {
+            let message = format!(
+                "= {} is unstable: with {} taps and up to {rate_max:.4} deg/h on the axis the \
+                 un-normalised step must stay below {bound:.3e} (deg/h)^-2; use normalised = true, \
+                 a smaller step, or allow_unstable = true",
+                self.step_size, self.taps
+            );
+            complaints.key("step_size", &message);
+        }
+    }
+
+    fn build(&self, _sample_period_s: f64) -> Box<dyn Filter> {
+        let regularisation_deg2_per_h2 = self.regularisation_deg2_per_h2;
+        Box::new(Lms::new(&LmsConfig {
+            taps: self.taps as usize,
+            step_size: self.step_size,
+            normalisation: if self.normalised {
+                Normalisation::Energy {
+                    regularisation_deg2_per_h2,
+                }
+            } else {
+                Normalisation::None
+            },
+            update_sign: self.update_sign,
+            front_end: FrontEndConfig {
+                desired: self.desired,
+                input_lag_samples: self.input_lag_samples as usize,
+                output_register: self.output_register,
+            },
+        }))
+    }
+
+    fn hardware(&self) -> Option<PipelineSettings> {
+        (self.pipeline == Pipeline::Fpga).then(|| hardware::lms(self))
+    }
+}
 
 /// What the step of a least-mean-squares filter is divided by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,4 +191,59 @@ impl Core for LmsCore {
     fn weights(&self) -> &[f64] {
         &self.weights
     }
+}
+
+/// Upper bound `2 / lambda_max` of the step size of un-normalised least mean squares.
+///
+/// * `eigenvalue_max`: largest eigenvalue of the input's correlation matrix, (deg/h)^2.
+///
+/// The bound is that of convergence of the mean weights. For a slow sine alone it is sharp: the
+/// logarithm of `|1 - mu N A^2 sin^2|`, averaged over a cycle, changes sign at `mu = 4 / (N A^2)`.
+///
+/// # Source
+/// Haykin, Adaptive Filter Theory, stability of the least-mean-squares algorithm; the remark on the
+/// sine is derived.
+#[must_use]
+pub fn lms_step_bound(eigenvalue_max: f64) -> f64 {
+    2.0 / eigenvalue_max
+}
+
+/// Largest eigenvalue of the correlation matrix of a sine in white noise, seen by `taps` taps.
+///
+/// `A^2 / 4 (N + |sin(N theta) / sin(theta)|) + s^2` with `theta` the phase step per sample; for a
+/// slow swing (`N theta << 1`) that is `N A^2 / 2 + s^2`. Derived: the correlation
+/// `A^2 / 2 cos((i - j) theta)` has rank 2.
+///
+/// * `amplitude`: A, deg/h.
+/// * `phase_step_rad`: `2 pi f T`, rad.
+/// * `noise_std`: s, deg/h.
+///
+/// Returns (deg/h)^2.
+#[must_use]
+pub fn sine_eigenvalue_max(
+    taps: usize,
+    amplitude: f64,
+    phase_step_rad: f64,
+    noise_std: f64,
+) -> f64 {
+    /// Below this `|sin|` the quotient equals N to rounding, or is 0 / 0.
+    const SINE_MIN: f64 = 1e-9;
+    let count = taps as f64;
+    let sine = phase_step_rad.sin();
+    let kernel = if sine.abs() < SINE_MIN {
+        count
+    } else {
+        ((count * phase_step_rad).sin() / sine).abs()
+    };
+    amplitude * amplitude / 4.0 * (count + kernel) + noise_std * noise_std
+}
+
+/// Largest eigenvalue of the correlation matrix of a constant in white noise: `N m^2 + s^2`.
+///
+/// * `mean`: m, deg/h. * `noise_std`: s, deg/h.
+///
+/// Returns (deg/h)^2.
+#[must_use]
+pub fn constant_eigenvalue_max(taps: usize, mean: f64, noise_std: f64) -> f64 {
+    taps as f64 * mean * mean + noise_std * noise_std
 }

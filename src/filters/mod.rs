@@ -12,8 +12,12 @@
 //! its normalised and unity-gain forms. All share the front end, the output register and the
 //! watch for divergence. Beside them stand [`FixedFilter`] (moving average, Savitzky-Golay),
 //! [`RecursiveFilter`] (one pole, Butterworth), [`Kalman`] for a constant rate, and
-//! [`ConstrainedRls`], least squares among the filters that leave a constant rate alone. A filter that diverges says so in every step from then on and never
-//! returns another number.
+//! [`ConstrainedRls`], least squares among the filters that leave a constant rate alone. A filter
+//! that diverges says so in every step from then on and never returns another number.
+//!
+//! A kind of filter is one file: the keys of its table, their checks, the filter they stand for and
+//! its equations. [`kind`](FilterKind) lists the kinds; [`hardware`] puts the pipelines of
+//! [`fpga`](crate::fpga) on the bench and is the only part that knows them.
 //!
 //! Words are rates in deg/h, but the equations only ask that the constants fit the words: the
 //! initial inverse correlation is in the inverse square of the words' unit, the regularisation of
@@ -21,32 +25,37 @@
 //!
 //! Invariant: a filter sees rate words and its own configuration, nothing else.
 
-mod constrained;
-mod core_filter;
-mod divergence;
-mod filter;
-mod fixed;
-mod front_end;
+mod butterworth;
+mod common;
+mod constrained_rls;
+pub mod hardware;
+mod kalman;
+mod kind;
 mod lms;
-mod recursive;
+mod moving_average;
+mod one_pole;
 mod rls;
+mod savitzky_golay;
 mod sign_lms;
-mod stability;
 
-pub use constrained::{ConstrainedRls, ConstrainedRlsCore};
-pub use core_filter::{Core, CoreFilter};
-pub use divergence::{Divergence, DivergenceKind, Fault, Watch};
-pub use filter::{Filter, Output};
-pub use fixed::{FixedCore, FixedFilter, moving_average, savitzky_golay};
-pub use front_end::{FrontEndConfig, Register, adaptive_rule};
-pub use lms::{Lms, LmsConfig, LmsCore, Normalisation};
-pub use recursive::{
-    Kalman, KalmanCore, RecursiveFilter, SectionsCore, butterworth, kalman_gain, one_pole,
+pub use butterworth::{ButterworthFilterConfig, butterworth};
+pub use common::{
+    Complaint, Complaints, Core, CoreFilter, Divergence, DivergenceKind, Fault, Filter, FixedCore,
+    FixedFilter, FrontEndConfig, Output, RecursiveFilter, Register, SectionsCore, Watch,
+    adaptive_rule,
 };
-pub use rls::{Rls, RlsConfig, RlsCore};
+pub use constrained_rls::{ConstrainedRls, ConstrainedRlsCore, ConstrainedRlsFilterConfig};
+pub use kalman::{Kalman, KalmanConfig, KalmanCore, KalmanFilterConfig, kalman_gain};
+pub use kind::{ExpectedRun, ExpectedWords, FilterConfig, FilterKind, FilterSettings, KINDS};
+pub use lms::{
+    Lms, LmsConfig, LmsCore, LmsFilterConfig, Normalisation, constant_eigenvalue_max,
+    lms_step_bound, sine_eigenvalue_max,
+};
+pub use moving_average::{MovingAverageFilterConfig, moving_average};
+pub use one_pole::{OnePoleFilterConfig, one_pole};
+pub use rls::{Rls, RlsConfig, RlsCore, RlsFilterConfig, covariance_digits_warning};
+pub use savitzky_golay::{SavitzkyGolayFilterConfig, savitzky_golay};
 pub use sign_lms::{
-    SignLms, SignLmsConfig, SignLmsCore, sign_lms_slew_per_sample, sign_lms_slew_samples,
-};
-pub use stability::{
-    constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
+    SignLms, SignLmsConfig, SignLmsCore, SignLmsFilterConfig, sign_lms_slew_per_sample,
+    sign_lms_slew_samples,
 };

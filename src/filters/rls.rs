@@ -1,10 +1,74 @@
 //! Recursive least squares in its textbook gain form.
 
-use super::core_filter::{Core, CoreFilter, dot};
-use super::divergence::{DivergenceKind, Fault};
-use super::filter::Output;
-use super::front_end::FrontEndConfig;
-use crate::vocabulary::UpdateSign;
+use serde::Deserialize;
+
+use super::common::{Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, dot};
+use super::hardware::{self, PipelineSettings};
+use super::kind::{ExpectedWords, FilterSettings};
+use crate::vocabulary::{
+    DesiredSignal, Division, NumberFormat, OutputRegister, Pipeline, UpdateOrder, UpdateSign,
+};
+
+/// Recursive least squares.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RlsFilterConfig {
+    /// Number of weights p.
+    pub taps: u32,
+    /// Forgetting factor alpha, (0, 1].
+    pub forgetting_factor: f64,
+    /// Initial inverse correlation delta, (deg/h)^-2.
+    pub initial_inverse_correlation: f64,
+    /// Desired signal.
+    pub desired: DesiredSignal,
+    /// Samples by which the regressors lag the desired signal's newest sample.
+    pub input_lag_samples: u32,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+    /// Sign of the weight update.
+    pub update_sign: UpdateSign,
+    /// Arithmetic.
+    pub pipeline: Pipeline,
+    /// Words of the hardware.
+    pub number_format: NumberFormat,
+    /// Clock of the hardware, MHz.
+    pub clock_mhz: f64,
+    /// Where the hardware divides.
+    pub division: Division,
+    /// Order of the products in the update of the inverse correlation matrix.
+    pub update_order: UpdateOrder,
+}
+
+impl FilterSettings for RlsFilterConfig {
+    fn notes(&self, words: &ExpectedWords) -> Vec<String> {
+        // The hardware warns by itself.
+        if self.pipeline == Pipeline::Fpga {
+            return Vec::new();
+        }
+        let delta = self.initial_inverse_correlation;
+        covariance_digits_warning(delta, self.taps as usize, words.peak_deg_per_h)
+            .into_iter()
+            .collect()
+    }
+
+    fn build(&self, _sample_period_s: f64) -> Box<dyn Filter> {
+        Box::new(Rls::new(&RlsConfig {
+            taps: self.taps as usize,
+            forgetting_factor: self.forgetting_factor,
+            initial_inverse_correlation: self.initial_inverse_correlation,
+            update_sign: self.update_sign,
+            front_end: FrontEndConfig {
+                desired: self.desired,
+                input_lag_samples: self.input_lag_samples as usize,
+                output_register: self.output_register,
+            },
+        }))
+    }
+
+    fn hardware(&self) -> Option<PipelineSettings> {
+        (self.pipeline == Pipeline::Fpga).then(|| hardware::rls(self))
+    }
+}
 
 /// Settings of a recursive-least-squares filter.
 #[derive(Clone, Debug, PartialEq)]
@@ -181,4 +245,35 @@ impl Core for RlsCore {
     fn weights(&self) -> &[f64] {
         &self.weights
     }
+}
+
+/// Digits of binary64 that may be spent on the initial inverse correlation: beyond
+/// `delta p x^2 = 1e10` fewer than six significant digits of P are left after the first updates.
+const COVARIANCE_RATIO_MAX: f64 = 1e10;
+
+/// Warns where recursive least squares in binary64 loses its digits to the initial condition.
+///
+/// The first updates subtract nearly all of `P = delta I`; what is left carries a relative error of
+/// about `2e-16 delta p x^2`.
+///
+/// * `initial_inverse_correlation`: delta, (deg/h)^-2.
+/// * `rate_max_deg_per_h`: largest input word to be expected, deg/h.
+///
+/// Returns a sentence if `delta p x^2` exceeds 1e10.
+#[must_use]
+pub fn covariance_digits_warning(
+    initial_inverse_correlation: f64,
+    taps: usize,
+    rate_max_deg_per_h: f64,
+) -> Option<String> {
+    let ratio = initial_inverse_correlation * taps as f64 * rate_max_deg_per_h * rate_max_deg_per_h;
+    (ratio > COVARIANCE_RATIO_MAX).then(|| {
+        let wanted = initial_inverse_correlation * COVARIANCE_RATIO_MAX / ratio;
+        format!(
+            "initial_inverse_correlation = {initial_inverse_correlation:e} (deg/h)^-2 with {taps} \
+             taps and rates up to {rate_max_deg_per_h} deg/h makes delta p x^2 = {ratio:.1e}, \
+             above {COVARIANCE_RATIO_MAX:e}: the covariance form loses its digits in binary64; \
+             use {wanted:.1e} or less"
+        )
+    })
 }

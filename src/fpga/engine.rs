@@ -8,6 +8,13 @@ pub trait Engine<F: Fp> {
     /// Filters one pair and returns `y`.
     fn process(&mut self, pair: Pair<F>) -> F;
 
+    /// Filters many pairs, appending one output word per pair.
+    fn run(&mut self, pairs: &[Pair<F>], outputs: &mut Vec<F>) {
+        for pair in pairs {
+            outputs.push(self.process(*pair));
+        }
+    }
+
     /// Weights, tap 0 (newest regressor word) first.
     fn weights(&self) -> &[F];
 
@@ -28,4 +35,16 @@ pub struct InverseCorrelation<'a, F> {
     pub delta: F,
     /// Forgetting factor alpha.
     pub alpha: F,
+}
+
+/// The ring of L as RAMA holds it.
+///
+/// * `line`: regressors, newest first. * `head`: slot of the newest.
+pub(super) fn ring<F: Fp>(line: &[F], head: usize) -> Vec<F> {
+    let count = line.len();
+    let mut words = vec![F::ZERO; count];
+    for (j, word) in line.iter().enumerate() {
+        words[(head + count - j) % count] = *word;
+    }
+    words
 }

@@ -82,6 +82,28 @@ pub trait Fp: Copy + Debug + PartialEq + PartialOrd + Send + Sync + 'static {
     }
 }
 
+/// The four operations of a format that the machine computes by itself, subnormals kept.
+macro_rules! native_operations {
+    () => {
+        #[inline]
+        fn add(self, other: Self) -> Self {
+            self + other
+        }
+        #[inline]
+        fn sub(self, other: Self) -> Self {
+            self - other
+        }
+        #[inline]
+        fn mul(self, other: Self) -> Self {
+            self * other
+        }
+        #[inline]
+        fn div(self, other: Self) -> Self {
+            self / other
+        }
+    };
+}
+
 impl Fp for f64 {
     const FORMAT: NumberFormat = NumberFormat::Binary64;
     const WIDTH: u32 = 64;
@@ -90,22 +112,8 @@ impl Fp for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
 
-    #[inline]
-    fn add(self, other: Self) -> Self {
-        self + other
-    }
-    #[inline]
-    fn sub(self, other: Self) -> Self {
-        self - other
-    }
-    #[inline]
-    fn mul(self, other: Self) -> Self {
-        self * other
-    }
-    #[inline]
-    fn div(self, other: Self) -> Self {
-        self / other
-    }
+    native_operations!();
+
     #[inline]
     fn from_bits(bits: u64) -> Self {
         f64::from_bits(bits)
@@ -136,22 +144,8 @@ impl Fp for f32 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
 
-    #[inline]
-    fn add(self, other: Self) -> Self {
-        self + other
-    }
-    #[inline]
-    fn sub(self, other: Self) -> Self {
-        self - other
-    }
-    #[inline]
-    fn mul(self, other: Self) -> Self {
-        self * other
-    }
-    #[inline]
-    fn div(self, other: Self) -> Self {
-        self / other
-    }
+    native_operations!();
+
     #[inline]
     #[expect(
         clippy::cast_possible_truncation,

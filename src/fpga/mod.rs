@@ -17,6 +17,7 @@ mod check;
 pub mod datapath;
 pub mod engine;
 pub mod error;
+#[cfg(feature = "hdl")]
 pub mod export;
 pub mod float_unit;
 pub mod front_end;
@@ -24,13 +25,17 @@ pub mod health;
 pub mod kinds;
 pub mod lms;
 pub mod machine;
+#[doc(hidden)]
 pub mod memory;
 pub mod pipeline;
+#[doc(hidden)]
 pub mod probe;
 pub mod registers;
 pub mod rls;
 pub mod sign_lms;
+mod steps;
 pub mod timing;
+#[doc(hidden)]
 pub mod trace;
 
 pub use error::FpgaError;

@@ -50,10 +50,12 @@ pub use loop_model::LoopModel;
 pub use loop_model::faults::LoopFaults;
 pub use noise::budget::NoiseBudget;
 pub use noise::budget_sheet::{budget_at, budget_sheet, power_independent_ratio};
-pub use noise::rin::relative_intensity_noise_per_hz;
 pub use noise::slow_noise::SlowNoise;
+pub use noise::{
+    Densities, Density, NoiseSource, SOURCES as NOISE_SOURCES, relative_intensity_noise_per_hz,
+};
 pub use optics::coil::Coil;
-pub use optics::detector::{CurrentNoise, Detector};
+pub use optics::detector::Detector;
 pub use optics::modulator::{Modulator, optimum_depth_rad};
 pub use optics::second_order::{expected_mean_rate_rad_per_s, spike_share};
 pub use rate_model::RateModel;

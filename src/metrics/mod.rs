@@ -7,6 +7,25 @@
 //! independent repeats. The estimators stand alone as well: [`overlapping_allan`], [`fit_noise`],
 //! [`block_means`], [`welch`], [`fit_swing`], [`noise_delay_bound`], [`predict`],
 //! [`settling`](fn@settling), [`fit_scale_factor`], [`fit_tones`].
+//!
+//! The rooms, each of which uses those before it alone:
+//!
+//! | room | subject |
+//! |---|---|
+//! | `key` | what a metric and a curve declare of themselves |
+//! | `theory` | what a filter will do to a record, and the least noise at a delay |
+//! | `estimate` | numbers with intervals, reasons, the table of one channel |
+//! | `allan` | Allan variances and the noise terms fitted to them: random walk, bias instability, ramp |
+//! | `record` | what a measurement is given |
+//! | `steps` | settling, overshoot, scale factor, threshold, dead band |
+//! | `sine` | fits of sines: one frequency, a free one, many |
+//! | `noise` | noise about the signal: level, colour, spectrum, bias stability |
+//! | `trial` | what a filter does: DC gain, delay, noise-delay bound, readaptation |
+//! | `motion` | the metrics of each kind of motion: steady, swing, several sines, steps, any other |
+//! | `verdict` | what the metrics say a filter did |
+//! | `catalogue` | the list of metrics, their names, and which records support them |
+//! | `pool` | independent repeats, and conditions compared |
+//! | `measure` | all of it for one channel |
 
 mod allan;
 mod calibration;
@@ -23,10 +42,12 @@ mod sine;
 mod steps;
 mod theory;
 mod trial;
+mod verdict;
 
+pub use allan::covariance::FLICKER_ALLAN_VARIANCE;
 pub use allan::noise_fit::{
-    FIT_TAU_PER_RECORD_MAX, FLICKER_ALLAN_VARIANCE, FitRange, NoiseCoefficients, NoiseFit, Term,
-    fit_noise, fit_pooled_noise, mixed_degrees_of_freedom,
+    FIT_TAU_PER_RECORD_MAX, FitRange, NoiseCoefficients, NoiseFit, Term, fit_noise,
+    fit_pooled_noise, mixed_degrees_of_freedom,
 };
 pub use allan::noise_identification::PowerLaw;
 pub use allan::overlapping::{
@@ -37,23 +58,26 @@ pub use allan::variants::{
     AllanEstimator, AllanOptions, AllanVariantPoint, allan_variant, allan_variant_at,
 };
 pub(crate) use catalogue::names::{meant, unknown};
-pub use catalogue::support::{encoder_lack, repeats_lack, support, truth_lack};
-pub use catalogue::{find, known_metrics, repeated_metrics};
+pub use catalogue::support::{encoder_lack, support, truth_lack};
+pub use catalogue::{columns, find, known_curves, known_metrics, repeated_metrics};
+pub use estimate::blocks::{block_label_s, block_means, is_sample_or_longer, samples_in};
 pub use estimate::missing::MissingMetric;
 pub use estimate::repeat_statistics::RepeatStatistics;
+pub use estimate::table::{ChannelFailure, ChannelMetrics};
 pub(crate) use estimate::text::{estimate_text, is_exact, plain, wants_exponent};
-pub use estimate::value::{ChannelFailure, ChannelMetrics, Estimate, Metric};
+pub use estimate::value::{Estimate, Metric};
+pub use key::curve::{Column, Curve, CurveKey};
 pub(crate) use key::metric::{Against, Headline, Table};
 pub use key::metric::{Applies, MetricKey};
 pub use measure::measure;
 pub use noise::autocovariance::autocovariance;
 pub use noise::bias_stability::{
-    block_label_s, block_means, effective_degrees_of_freedom, expected_bias_stability,
-    is_sample_or_longer, paired_ratio, samples_in,
+    effective_degrees_of_freedom, expected_bias_stability, paired_ratio,
 };
 pub use noise::memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
 pub use noise::spectrum::{Spectrum, log_binned, segment_samples, welch};
 pub use pool::aggregate::aggregate;
+pub use pool::repeatability::repeats_lack;
 pub use pool::sensitivity::{ConditionPoint, change_divisor, largest_change_per_unit};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
 pub use sine::correlation::correlation_delay_s;
@@ -69,9 +93,7 @@ pub use steps::scale_factor::{
 pub use steps::settling::{Settling, settling};
 pub use steps::shape::Step;
 pub use steps::small_input::smallest_answered;
-pub use theory::prediction::{
-    Prediction, lags_needed, noise_delay_bound, noise_delay_bound_coloured, noise_power_gain,
-    predict,
-};
+pub use theory::bound::{noise_delay_bound, noise_delay_bound_coloured, noise_power_gain};
+pub use theory::prediction::{Prediction, lags_needed, predict};
 pub use trial::readaptation::{GainUnits, Readaptation};
-pub use trial::verdict::{AgainstOne, Deed, FilterVerdict, Finding, filter_verdict};
+pub use verdict::{AgainstOne, Deed, FilterVerdict, Finding, filter_verdict};

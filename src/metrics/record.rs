@@ -6,6 +6,9 @@ use super::allan::variants::AllanOptions;
 use super::theory::prediction::Prediction;
 use crate::signal::{FilterShape, WeightRule};
 
+/// Fewest samples worth measuring.
+pub(crate) const SAMPLES_MIN: usize = 64;
+
 /// The samples of one channel with the two references it is compared to.
 ///
 /// All slices have the same length and are cut to the measured window; the truth may be empty.

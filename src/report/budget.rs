@@ -253,7 +253,7 @@ fn curve_json(points: &[BudgetPoint]) -> Value {
 /// The curves as CSV: which one, its point, and the walk of each source, deg/sqrt(h); empty where
 /// the bias point lies beyond the converter's range.
 #[must_use]
-pub fn budget_csv(sheet: &BudgetSheet) -> String {
+pub(super) fn budget_csv(sheet: &BudgetSheet) -> String {
     let names = sources(&sheet.by_depth);
     let mut text = String::from("curve,power_uw,modulation_depth_deg");
     for name in &names {

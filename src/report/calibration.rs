@@ -29,7 +29,10 @@ pub struct CalibrationProvenance<'a> {
 /// The text of `calibration.toml`: `[compensation]` with the applied parameters under the keys that
 /// a scenario applies them by, their covariance, and where they come from.
 #[must_use]
-pub fn calibration_toml(sheet: &CalibrationSheet, provenance: &CalibrationProvenance) -> String {
+pub(super) fn calibration_toml(
+    sheet: &CalibrationSheet,
+    provenance: &CalibrationProvenance,
+) -> String {
     let mut text = format!("schema = {SCHEMA}\n");
     let Some(applied) = sheet.applied_estimate() else {
         return text;
@@ -89,7 +92,7 @@ fn array(values: &[f64]) -> String {
 
 /// The groups as CSV, in the form that `fogbench calibrate` reads; names hold the units.
 #[must_use]
-pub fn groups_csv(groups: &[CalibrationGroup]) -> String {
+pub(super) fn groups_csv(groups: &[CalibrationGroup]) -> String {
     let has_start = groups.iter().all(|group| group.start_s.is_some());
     let mut heads = vec![
         "group".to_owned(),

@@ -1,6 +1,6 @@
 //! The files of a suite's tables: CSV and SVG beside the suite's summary.
 
-use crate::report::comparison::{ComparedTable, Comparison, file_stem};
+use crate::comparison::{ComparedTable, Comparison, file_stem};
 use crate::report::plot::comparison_svg;
 use crate::scenario::ComparisonKind;
 

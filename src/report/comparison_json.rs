@@ -2,10 +2,8 @@
 
 use serde_json::{Map, Value};
 
+use crate::comparison::{Assumed, Cause, ColumnChange, ComparedColumn, ComparedTable, Comparison};
 use crate::metrics::{AgainstOne, Estimate};
-use crate::report::comparison::{
-    Assumed, Cause, ColumnChange, ComparedColumn, ComparedTable, Comparison,
-};
 use crate::report::json::{object, put, put_array};
 use crate::report::summary::{estimate, interval};
 use crate::scenario::ComparisonKind;

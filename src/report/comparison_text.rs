@@ -1,11 +1,11 @@
 //! The end of a suite in text: tables over several scenarios, causes, assumptions and figures.
 
+use crate::comparison::{Assumed, Cause, ComparedTable, Comparison};
 use crate::gate::{estimate_text, plain};
 use crate::metrics::MetricKey;
 use crate::metrics::catalogue::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, MEAN_RATIO, NOISE_GAIN};
 use crate::metrics::{AgainstOne, Estimate, Finding, Metric};
 use crate::report::columns::{heading_of, unit_text};
-use crate::report::comparison::{Assumed, Cause, ComparedTable, Comparison};
 use crate::report::text::{Grid, Tone, toned, wrapped};
 
 const INDENT: &str = "  ";

@@ -4,15 +4,12 @@ use serde_json::{Map, Value};
 
 use crate::gate::plain;
 use crate::metrics::ChannelMetrics;
-use crate::report::csv::{allan_curve, autocovariance_curve, curve_csv, psd_curve};
 use crate::report::json::{object, pretty, put};
 use crate::report::measured::Measured;
-use crate::report::plot::log_plots;
 use crate::report::summary::{SCHEMA, channel, tool};
 use crate::report::table::{channels_text, failures_text, filter_verdicts};
 use crate::report::text::{Tone, toned, wrapped};
 use crate::scenario::MotionConfig;
-use crate::signal::RunSignals;
 use crate::wording::counted;
 
 /// Everything the report of one log shows.
@@ -43,7 +40,7 @@ pub struct LogReport<'a> {
 }
 
 impl<'a> LogReport<'a> {
-    fn measured(&self) -> Measured<'a> {
+    pub(super) fn measured(&self) -> Measured<'a> {
         Measured {
             name: self.file,
             motion: self.motion,
@@ -130,34 +127,4 @@ fn log(report: &LogReport) -> Value {
         record.insert("filters".to_owned(), filters.into());
     }
     record.into()
-}
-
-/// The files of a log's folder but for its samples: name and text. A picture that would be too large is
-/// left out with a note in `summary.json`.
-#[must_use]
-pub fn log_files(report: &LogReport, signals: &RunSignals) -> Vec<(String, String)> {
-    let pictures = log_plots(&report.measured(), signals);
-    let notes = [report.notes, &pictures.notes].concat();
-    let report = &LogReport {
-        notes: &notes,
-        ..report.clone()
-    };
-    let curves = [
-        (
-            "allan.csv",
-            curve_csv(report.channels, "allan", allan_curve),
-        ),
-        ("psd.csv", curve_csv(report.channels, "psd", psd_curve)),
-        (
-            "autocovariance.csv",
-            curve_csv(report.channels, "autocovariance", autocovariance_curve),
-        ),
-    ];
-    let curves = curves
-        .into_iter()
-        .filter_map(|(name, text)| Some((name.to_owned(), text?)));
-    std::iter::once(("summary.json".to_owned(), log_json(report)))
-        .chain(curves)
-        .chain(pictures.drawn)
-        .collect()
 }

@@ -198,7 +198,7 @@ pub(crate) fn repeats_json(metrics: &ChannelMetrics) -> Value {
 
 /// Every repeat of every channel, one row each; nothing for a single record.
 #[must_use]
-pub fn runs_csv(report: &RunReport) -> Option<String> {
+pub(super) fn runs_csv(report: &RunReport) -> Option<String> {
     let has = |key: &MetricKey| {
         let mut channels = report.channels.iter();
         channels.any(|(_, metrics)| metrics.repeats.contains_key(key.name))

@@ -1,24 +1,29 @@
 //! The table of a scale factor test: what every rate became in every channel.
 
-use super::csv::{Curve, curve_csv};
 use super::text::{Grid, Tone, toned, wrapped};
 use crate::gate::plain;
-use crate::metrics::MetricKey;
-use crate::metrics::catalogue::{SCALE_FACTOR_NONLINEARITY, SCALE_FACTOR_NONLINEARITY_OF_READING};
+use crate::metrics::catalogue::{
+    SCALE_FACTOR, SCALE_FACTOR_NONLINEARITY, SCALE_FACTOR_NONLINEARITY_OF_READING,
+};
+use crate::metrics::columns::staircase::{
+    INPUT, MEASURED, RESIDUAL, RESIDUAL_HIGH, RESIDUAL_LOW, RESIDUAL_OF_READING,
+    RESIDUAL_OF_READING_HIGH, RESIDUAL_OF_READING_LOW, TURNS, WHOLE_TURNS,
+};
+use crate::metrics::{Column, Curve, MetricKey};
 use crate::report::RunReport;
 use crate::scenario::{FilterState, MotionConfig, Stairs};
 use crate::units::deg_per_h_to_deg_per_s;
 
 const INDENT: &str = "  ";
 
-/// Rates of a staircase.
-const CURVE: &str = "scale_factor";
-
-/// Rates of the staircase of every channel, or nothing if no channel has a scale factor.
-#[must_use]
-pub fn scale_factor_csv(report: &RunReport) -> Option<String> {
-    curve_csv(report.channels, CURVE, |metrics| metrics.curves.get(CURVE))
-}
+/// Residual of full scale with the ends of its interval.
+pub(crate) const OF_FULL_SCALE: [&Column; 3] = [&RESIDUAL, &RESIDUAL_LOW, &RESIDUAL_HIGH];
+/// Residual of reading with the ends of its interval.
+pub(crate) const OF_READING: [&Column; 3] = [
+    &RESIDUAL_OF_READING,
+    &RESIDUAL_OF_READING_LOW,
+    &RESIDUAL_OF_READING_HIGH,
+];
 
 /// The word of a setting in tables and files.
 pub(crate) fn filter_state_word(state: FilterState) -> &'static str {
@@ -37,7 +42,7 @@ pub(crate) fn scale_factor_text(report: &RunReport, width: usize, colour: bool) 
     let curves: Vec<(&str, &Curve)> = report
         .channels
         .iter()
-        .filter_map(|(name, metrics)| Some((name.as_str(), metrics.curves.get("scale_factor")?)))
+        .filter_map(|(name, metrics)| Some((name.as_str(), metrics.curve(&SCALE_FACTOR)?)))
         .collect();
     let Some((_, first)) = curves.first() else {
         return String::new();
@@ -53,7 +58,7 @@ pub(crate) fn scale_factor_text(report: &RunReport, width: usize, colour: bool) 
     let mut text = format!("\n{}", wrapped(&line, INDENT, width));
     text.push_str(&noise_floors(report, width));
     text.push_str(&rows(first, &curves, colour).lines(INDENT));
-    if column(first, "whole_turns").contains(&0.0) {
+    if WHOLE_TURNS.of(first).contains(&0.0) {
         let note = "* not a whole number of turns: an error that goes with the table's angle does \
                     not average out";
         text.push_str(&wrapped(note, INDENT, width));
@@ -91,30 +96,26 @@ fn rows(first: &Curve, curves: &[(&str, &Curve)], colour: bool) -> Grid {
         .flat_map(|(name, _)| [format!("{name} [ppm FS]"), format!("{name} [ppm]")]);
     let heads = heads.into_iter().chain(channels);
     grid.row(heads.map(|head| toned(&head, Tone::Heading, colour)));
-    for row in 0..column(first, "input_deg_per_h").len() {
-        let at = |name: &str| column(first, name).get(row).copied().unwrap_or(0.0);
-        let mark = if at("whole_turns") > 0.0 { "" } else { "*" };
+    for row in 0..INPUT.of(first).len() {
+        let at = |column: &Column| column.of(first).get(row).copied().unwrap_or(0.0);
+        let mark = if at(&WHOLE_TURNS) > 0.0 { "" } else { "*" };
         let own = [
-            format!("{:+.4}", deg_per_h_to_deg_per_s(at("input_deg_per_h"))),
-            format!("{:.2}", at("measured_s")),
-            format!("{:+.3}{mark}", at("turns")),
+            format!("{:+.4}", deg_per_h_to_deg_per_s(at(&INPUT))),
+            format!("{:.2}", at(&MEASURED)),
+            format!("{:+.3}{mark}", at(&TURNS)),
         ];
         let residuals = curves
             .iter()
-            .flat_map(|(_, curve)| ["full_scale", "reading"].map(|of| residual(curve, of, row)));
+            .flat_map(|(_, curve)| [OF_FULL_SCALE, OF_READING].map(|of| residual(curve, of, row)));
         grid.row(own.into_iter().chain(residuals));
     }
     grid
 }
 
 /// A residual with the half width of its interval.
-fn residual(curve: &Curve, of: &str, row: usize) -> String {
-    let end = |end: &str| {
-        let values = column(curve, &format!("residual{end}_ppm_of_{of}"));
-        values.get(row).copied().unwrap_or(0.0)
-    };
-    let half_width = 0.5 * (end("_high") - end("_low"));
-    format!("{} +- {}", rounded(end("")), rounded(half_width))
+fn residual(curve: &Curve, of: [&Column; 3], row: usize) -> String {
+    let [value, low, high] = of.map(|column| column.of(curve).get(row).copied().unwrap_or(0.0));
+    format!("{} +- {}", rounded(value), rounded(0.5 * (high - low)))
 }
 
 /// Two decimals below ten, one below a hundred, none from there on.
@@ -125,8 +126,4 @@ fn rounded(value: f64) -> String {
         _ => 0,
     };
     format!("{value:.decimals$}")
-}
-
-fn column<'a>(curve: &'a Curve, name: &str) -> &'a [f64] {
-    curve.get(name).map_or(&[], Vec::as_slice)
 }

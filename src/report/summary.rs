@@ -1,5 +1,6 @@
 //! `summary.json` of a run and of a suite.
 
+use crate::comparison::Comparison;
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::{ChannelMetrics, Estimate, Metric};
 use crate::report::calibration::calibration_json;
@@ -9,7 +10,7 @@ use crate::report::json::{array, numbers, object, pretty, put};
 use crate::report::repeats::repeats_json;
 use crate::report::scale_factor::filter_state_word;
 use crate::report::verdict_text::verdict_text;
-use crate::report::{Comparison, RunOutcome, RunReport, RunStatus};
+use crate::report::{RunOutcome, RunReport, RunStatus};
 use crate::scenario::{Fidelity, PublishedConfig, Stairs, portable_place};
 use crate::signal::GyroFacts;
 use serde_json::{Map, Value};

@@ -2,8 +2,8 @@
 //! which motion they are measured.
 
 use super::config::Scenario;
-use super::filter_config::FilterConfig;
 use super::turntable_config::MotionConfig;
+use crate::filters::FilterConfig;
 
 /// Prefixes of the channels of an assembly, in the order of its case axes.
 const ASSEMBLY: &[&str] = &["x_", "y_", "z_"];

@@ -13,9 +13,9 @@ use super::comparison_config::{
     AssumptionConfig, ComparisonConfig, ComparisonRowConfig, FigureConfig,
 };
 use super::compensation_config::CompensationConfig;
-use super::filter_config::FilterConfig;
 use super::gyro_config::GyroConfig;
 use super::turntable_config::TurntableConfig;
+use crate::filters::FilterConfig;
 use crate::vocabulary::AveragingTimes;
 
 /// One resolved run.

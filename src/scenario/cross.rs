@@ -5,14 +5,12 @@ use crate::wording::{counted, is_misspelling, number};
 
 use super::cross_comparison;
 use super::cross_compensation;
-use super::cross_filter;
 use super::cross_gyro;
 use super::cross_multi_sine;
 use super::cross_optics;
 use super::cross_servo;
 use super::cross_vibration;
 use super::error::ScenarioError;
-use super::filter_config::FilterKind;
 use super::injection_config::InjectionConfig;
 use super::resolved::Resolved;
 use super::turntable_config::{MotionConfig, MultiSineConfig};
@@ -33,9 +31,10 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
         errors: Vec::new(),
     };
     checks.names();
-    checks.smoothing_polynomials();
-    for (key, message) in cross_filter::check(&resolved.scenario.filters) {
-        checks.complain(&key, message);
+    for (index, filter) in resolved.scenario.filters.iter().enumerate() {
+        for complaint in filter.check(index) {
+            checks.complain(&complaint.key, complaint.message);
+        }
     }
     checks.motion();
     checks.injection();
@@ -90,24 +89,6 @@ impl Checks<'_> {
                 let message = format!(
                     "{path} = \"{}\" is the name of filter[{earlier}] already: give each channel its own",
                     filter.name
-                );
-                self.complain(&path, message);
-            }
-        }
-    }
-
-    fn smoothing_polynomials(&mut self) {
-        for (index, filter) in self.resolved.scenario.filters.iter().enumerate() {
-            let FilterKind::SavitzkyGolay(config) = &filter.kind else {
-                continue;
-            };
-            if config.polynomial_order >= config.taps {
-                let path = format!("filter[{index}].savitzky_golay.polynomial_order");
-                let message = format!(
-                    "{path} = {} is too high for {} samples: allowed up to taps - 1 = {}",
-                    config.polynomial_order,
-                    config.taps,
-                    config.taps - 1
                 );
                 self.complain(&path, message);
             }

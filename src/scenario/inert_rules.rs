@@ -4,13 +4,14 @@
 //! limit that the motion never reaches, is none.
 
 use super::config::{Fidelity, GateConfig, GateDecision, Scenario};
-use super::filter_config::{FilterConfig, FilterKind};
 use super::gyro_config::{NoiseDraw, OutputQuantisation};
 use super::stairs::Stairs;
 use super::thermal_config::{PowerConfig, TemperatureConfig, ThermalWarmUp};
 use super::turntable_config::{MotionConfig, ServoConfig};
 use super::vibration_config::VibrationMotion;
-use crate::vocabulary::{EstimatorKind, Pipeline};
+use crate::filters::hardware::has_hardware;
+use crate::filters::{FilterConfig, FilterKind};
+use crate::vocabulary::EstimatorKind;
 
 /// The condition under which a key acts.
 #[derive(Clone, Copy)]
@@ -362,11 +363,5 @@ fn runs_any(scenario: &Scenario, kinds: &[EstimatorKind]) -> bool {
 }
 
 fn is_hardware(filter: &FilterConfig) -> bool {
-    let pipeline = match &filter.kind {
-        FilterKind::Rls(config) => config.pipeline,
-        FilterKind::Lms(config) => config.pipeline,
-        FilterKind::SignLms(config) => config.pipeline,
-        _ => return true,
-    };
-    pipeline == Pipeline::Fpga
+    filter.kind.settings().hardware().is_some() || !has_hardware(filter.kind.name())
 }

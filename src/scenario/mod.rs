@@ -20,7 +20,6 @@ mod cross;
 mod cross_calibration;
 mod cross_comparison;
 mod cross_compensation;
-mod cross_filter;
 mod cross_gyro;
 mod cross_multi_sine;
 mod cross_optics;
@@ -35,7 +34,6 @@ mod emit;
 mod error;
 mod excerpt;
 mod faults;
-mod filter_config;
 mod gyro_config;
 mod inert;
 mod inert_rules;
@@ -86,11 +84,6 @@ pub(crate) use draft::UnsoundReading;
 pub use error::{Location, ScenarioError};
 pub(crate) use error::{in_both, in_order, portable_place};
 pub use excerpt::{bounded, excerpt};
-pub use filter_config::{
-    ButterworthFilterConfig, ConstrainedRlsFilterConfig, FilterConfig, FilterKind,
-    KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, OnePoleFilterConfig,
-    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig,
-};
 pub use gyro_config::{
     AdcConfig, CoilConfig, ControllerConfig, DetectorConfig, GyroConfig, ModulationScheme,
     ModulatorConfig, NoiseConfig, NoiseDraw, OutputQuantisation, RateOutputConfig, ResetSample,

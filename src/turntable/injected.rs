@@ -1,6 +1,6 @@
 //! The signal that is added inside the loop while the table is at rest.
 
-use super::profile::Profile;
+use super::motion::Profile;
 use crate::scenario::InjectionConfig;
 use crate::signal::MotionSegment;
 

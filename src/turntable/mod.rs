@@ -19,14 +19,14 @@
 mod axis;
 mod encoder;
 mod injected;
+mod motion;
 mod platform;
-mod profile;
 mod servo;
 mod table;
 
 pub use axis::{InputAxisBounds, earth_rate_rad_per_s, input_axis_bounds};
 pub use injected::InjectedSignal;
-pub use profile::{
+pub use motion::{
     CommandExtremes, campaign_angles_rad, campaign_command_extremes, command_extremes,
     command_rate_max_rad_per_s, dwell_ends, first_measured_index,
     multi_sine_acceleration_max_rad_per_s2, step_indices, swing_rate_amplitude_rad_per_s,

@@ -2,8 +2,8 @@
 
 use super::axis::fixed_earth_rate;
 use super::encoder::Encoder;
+use super::motion::{Profile, remountings};
 use super::platform::Platform;
-use super::profile::{Profile, remountings};
 use super::servo::Servo;
 use crate::scenario::{CaseAxis, MotionConfig, TurntableConfig};
 use crate::signal::MotionSegment;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use fogbench::experiment::{PipelineSettings, Stimulus, export_pipeline};
+use fogbench::filters::hardware::{PipelineSettings, Stimulus, export_pipeline};
 use fogbench::recording::read_stimulus;
 use fogbench::scenario::load_suite;
 use fogbench::vocabulary::ExportForm;
@@ -37,7 +37,7 @@ fn pipelines() -> &'static [PipelineSettings] {
         let runs = load_suite(&[path], &[]).unwrap_or_else(|errors| panic!("{errors:?}"));
         let filters = runs[0].scenario.filters.iter();
         filters
-            .filter_map(|filter| PipelineSettings::of(&filter.kind))
+            .filter_map(|filter| filter.kind.settings().hardware())
             .collect()
     })
 }

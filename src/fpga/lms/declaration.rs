@@ -5,10 +5,8 @@ use super::config::{DesiredSource, LmsConfig, LmsSettings};
 use super::engine::LmsEngine;
 use super::machine::LmsPipeline;
 use super::state::LmsState;
-use crate::fpga::engine::Engine;
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::Pair;
 use crate::fpga::pipeline::{Clocked, Core, Kind, Macro, Parameters, Pipeline};
 use crate::fpga::registers::ControlState;
 use crate::fpga::timing::Units;
@@ -95,17 +93,5 @@ impl<F: Fp> Pipeline<F> for LmsConfig<F> {
 
     fn clocked(&self) -> Box<dyn Clocked<F>> {
         Box::new(LmsPipeline::new(*self))
-    }
-}
-
-impl<F: Fp> Engine<F> for LmsEngine<F> {
-    #[inline]
-    fn process(&mut self, pair: Pair<F>) -> F {
-        self.process(pair)
-    }
-
-    #[inline]
-    fn weights(&self) -> &[F] {
-        self.weights()
     }
 }

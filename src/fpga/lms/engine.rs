@@ -9,6 +9,7 @@
 //! ```
 
 use super::config::{DesiredSource, LmsConfig};
+use crate::fpga::engine::{Engine, ring};
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
 use crate::vocabulary::UpdateSign;
@@ -48,21 +49,10 @@ impl<F: Fp> LmsEngine<F> {
         &self.config
     }
 
-    /// Weights, tap 0 (newest input) first.
-    #[must_use]
-    pub fn weights(&self) -> &[F] {
-        &self.weights
-    }
-
     /// The words RAMA holds after the last sample: the ring of L.
     #[must_use]
     pub fn rama(&self) -> Vec<F> {
-        let n = self.config.tap_count;
-        let mut words = vec![F::ZERO; n];
-        for j in 0..n {
-            words[(self.head + n - j) % n] = self.line[j];
-        }
-        words
+        ring(&self.line, self.head)
     }
 
     /// The words RAMB holds after the last sample: W.
@@ -70,9 +60,11 @@ impl<F: Fp> LmsEngine<F> {
     pub fn ramb(&self) -> Vec<F> {
         self.weights.clone()
     }
+}
 
-    /// Filters one pair and returns `y`.
-    pub fn process(&mut self, pair: Pair<F>) -> F {
+impl<F: Fp> Engine<F> for LmsEngine<F> {
+    #[inline]
+    fn process(&mut self, pair: Pair<F>) -> F {
         self.head = (self.head + 1) % self.config.tap_count;
         self.line.rotate_right(1);
         self.line[0] = pair.input;
@@ -106,10 +98,8 @@ impl<F: Fp> LmsEngine<F> {
         output
     }
 
-    /// Filters many pairs, appending one output word per pair.
-    pub fn run(&mut self, pairs: &[Pair<F>], outputs: &mut Vec<F>) {
-        for pair in pairs {
-            outputs.push(self.process(*pair));
-        }
+    #[inline]
+    fn weights(&self) -> &[F] {
+        &self.weights
     }
 }

@@ -88,7 +88,7 @@ impl<F: Fp> Machine for LmsMachine<F> {
             LmsState::Idle | LmsState::LLoading => {}
             LmsState::LlReading => self.accumulate_energy(datapath),
             LmsState::LlWriting => {
-                self.registers.denominator = self.last_sum(datapath);
+                self.registers.denominator = self.registers.last_sum(datapath);
                 self.registers.state = LmsState::OutReading;
             }
             LmsState::OutReading => self.accumulate_output(datapath),
@@ -102,36 +102,14 @@ impl<F: Fp> Machine for LmsMachine<F> {
 }
 
 impl<F: Fp> LmsMachine<F> {
-    /// One clock of a dot product: `P <- a*b`, `ACC <- first` or `ACC + P`.
-    #[inline]
-    fn accumulate(
-        &mut self,
-        a: F,
-        b: F,
-        first: F,
-        done: LmsState,
-        datapath: &mut Datapath<'_, F, impl Probe<F>>,
-    ) {
-        let sum = if self.registers.j == 0 {
-            first
-        } else {
-            datapath.add(self.registers.accumulator, self.registers.product)
-        };
-        self.registers.product = datapath.multiply(a, b);
-        self.registers.accumulator = sum;
-        self.registers.j += 1;
-        if self.registers.j == self.config.tap_count {
-            self.registers.j = 0;
-            self.registers.state = done;
-        }
-    }
-
     /// LL_reading: `L'L`, both factors from one read of RAMA, started at the regularisation.
     #[inline]
     fn accumulate_energy(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
         let l_j = datapath.read_a(self.registers.slot(self.registers.j, self.config.tap_count));
         let first = self.config.regularisation.unwrap_or(F::ZERO);
-        self.accumulate(l_j, l_j, first, LmsState::LlWriting, datapath);
+        let taps = self.config.tap_count;
+        self.registers
+            .accumulate((l_j, l_j), first, taps, LmsState::LlWriting, datapath);
     }
 
     /// Out_reading: `W'L`, started at `+0`.
@@ -139,19 +117,15 @@ impl<F: Fp> LmsMachine<F> {
     fn accumulate_output(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
         let l_j = datapath.read_a(self.registers.slot(self.registers.j, self.config.tap_count));
         let w_j = datapath.read_b(self.registers.j);
-        self.accumulate(l_j, w_j, F::ZERO, LmsState::OutWriting, datapath);
-    }
-
-    /// The last sum of a dot product, in its writing clock.
-    #[inline]
-    fn last_sum(&self, datapath: &mut Datapath<'_, F, impl Probe<F>>) -> F {
-        datapath.add(self.registers.accumulator, self.registers.product)
+        let taps = self.config.tap_count;
+        self.registers
+            .accumulate((l_j, w_j), F::ZERO, taps, LmsState::OutWriting, datapath);
     }
 
     /// Out_writing: the result is registered and the desired word halved.
     #[inline]
     fn write_output(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
-        self.registers.output = self.last_sum(datapath);
+        self.registers.output = self.registers.last_sum(datapath);
         // The multiplier is free in this clock.
         if self.config.desired == DesiredSource::MeanOfTwoNewest {
             self.registers.desired = datapath.multiply(self.registers.desired, self.config.half);
@@ -185,9 +159,7 @@ impl<F: Fp> LmsMachine<F> {
     /// LMW_reading: `L_j * e` while `W_j` is latched.
     #[inline]
     fn weight_read(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
-        let l_j = datapath.read_a(self.registers.slot(self.registers.j, self.config.tap_count));
-        self.registers.read_latch = datapath.read_b(self.registers.j);
-        self.registers.product = datapath.multiply(l_j, self.registers.error);
+        self.registers.read_weight(self.config.tap_count, datapath);
         self.registers.state = LmsState::LmwWriting;
     }
 
@@ -195,7 +167,6 @@ impl<F: Fp> LmsMachine<F> {
     #[inline]
     fn weight_write(&mut self, next_waits: bool, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
         let Registers {
-            j,
             read_latch,
             product,
             ..
@@ -204,13 +175,11 @@ impl<F: Fp> LmsMachine<F> {
             UpdateSign::Corrected => datapath.add(read_latch, product),
             UpdateSign::AsPrinted => datapath.subtract(read_latch, product),
         };
-        datapath.write_b(j, weight);
-        if j + 1 < self.config.tap_count {
-            self.registers.j = j + 1;
-            self.registers.state = LmsState::LmwReading;
+        let taps = self.config.tap_count;
+        self.registers.state = if self.registers.write_weight(weight, taps, datapath) {
+            Self::after_sample(next_waits)
         } else {
-            self.registers.j = 0;
-            self.registers.state = Self::after_sample(next_waits);
-        }
+            LmsState::LmwReading
+        };
     }
 }

@@ -5,10 +5,8 @@ use super::config::{RlsConfig, RlsSettings};
 use super::engine::RlsEngine;
 use super::machine::RlsPipeline;
 use super::state::RlsState;
-use crate::fpga::engine::{Engine, InverseCorrelation};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::Pair;
 use crate::fpga::health::{Warning, gain_first_failure_samples, initial_digits_warning};
 use crate::fpga::pipeline::{Clocked, Core, Kind, Macro, Parameters, Pipeline};
 use crate::fpga::registers::ControlState;
@@ -138,26 +136,5 @@ impl<F: Fp> Pipeline<F> for RlsConfig<F> {
 
     fn clocked(&self) -> Box<dyn Clocked<F>> {
         Box::new(RlsPipeline::new(*self))
-    }
-}
-
-impl<F: Fp> Engine<F> for RlsEngine<F> {
-    #[inline]
-    fn process(&mut self, pair: Pair<F>) -> F {
-        self.process(pair)
-    }
-
-    #[inline]
-    fn weights(&self) -> &[F] {
-        self.weights()
-    }
-
-    fn inverse_correlation(&self) -> Option<InverseCorrelation<'_, F>> {
-        Some(InverseCorrelation {
-            matrix: self.inverse_correlation(),
-            tap_count: self.config().tap_count,
-            delta: self.config().delta,
-            alpha: self.config().alpha,
-        })
     }
 }

@@ -12,6 +12,7 @@
 //! ```
 
 use super::config::RlsConfig;
+use crate::fpga::engine::{Engine, InverseCorrelation, ring};
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
 use crate::vocabulary::{Division, UpdateOrder, UpdateSign};
@@ -66,9 +67,41 @@ impl<F: Fp> RlsEngine<F> {
         &self.config
     }
 
-    /// Filters one pair and returns `y`.
+    fn matrix(&self) -> &[F] {
+        match &self.core {
+            Core::Four(core) => core.inverse.as_flattened(),
+            Core::Any(core) => &core.inverse,
+        }
+    }
+
+    /// The words RAMA holds after the last sample: ring of L, then M.
+    #[must_use]
+    pub fn rama(&self) -> Vec<F> {
+        let (line, gain): (&[F], &[F]) = match &self.core {
+            Core::Four(core) => (&core.line, &core.gain),
+            Core::Any(core) => (&core.line, &core.gain),
+        };
+        [&ring(line, self.head), gain].concat()
+    }
+
+    /// The words RAMB holds after the last sample: W, t, R.
+    #[must_use]
+    pub fn ramb(&self) -> Vec<F> {
+        let intermediate: &[F] = match &self.core {
+            Core::Four(core) => &core.intermediate,
+            Core::Any(core) => &core.intermediate,
+        };
+        [self.weights(), intermediate, self.matrix()].concat()
+    }
+
+    fn advance_head(&mut self, samples: usize) {
+        self.head = (self.head + samples) % self.config.tap_count;
+    }
+}
+
+impl<F: Fp> Engine<F> for RlsEngine<F> {
     #[inline]
-    pub fn process(&mut self, pair: Pair<F>) -> F {
+    fn process(&mut self, pair: Pair<F>) -> F {
         self.advance_head(1);
         match &mut self.core {
             Core::Four(core) => core.process(&self.config, pair),
@@ -76,8 +109,7 @@ impl<F: Fp> RlsEngine<F> {
         }
     }
 
-    /// Filters many pairs, appending one output word per pair.
-    pub fn run(&mut self, pairs: &[Pair<F>], outputs: &mut Vec<F>) {
+    fn run(&mut self, pairs: &[Pair<F>], outputs: &mut Vec<F>) {
         self.advance_head(pairs.len());
         match &mut self.core {
             Core::Four(core) => {
@@ -95,52 +127,20 @@ impl<F: Fp> RlsEngine<F> {
         }
     }
 
-    /// Weights, tap 0 (newest regressor) first.
-    #[must_use]
-    pub fn weights(&self) -> &[F] {
+    fn weights(&self) -> &[F] {
         match &self.core {
             Core::Four(core) => &core.weights,
             Core::Any(core) => &core.weights,
         }
     }
 
-    /// Inverse correlation matrix, `[p * p]`, row by row.
-    #[must_use]
-    pub fn inverse_correlation(&self) -> &[F] {
-        match &self.core {
-            Core::Four(core) => core.inverse.as_flattened(),
-            Core::Any(core) => &core.inverse,
-        }
-    }
-
-    /// The words RAMA holds after the last sample: ring of L, then M.
-    #[must_use]
-    pub fn rama(&self) -> Vec<F> {
-        let p = self.config.tap_count;
-        let (line, gain): (&[F], &[F]) = match &self.core {
-            Core::Four(core) => (&core.line, &core.gain),
-            Core::Any(core) => (&core.line, &core.gain),
-        };
-        let mut words = vec![F::ZERO; 2 * p];
-        for j in 0..p {
-            words[(self.head + p - j) % p] = line[j];
-        }
-        words[p..].copy_from_slice(gain);
-        words
-    }
-
-    /// The words RAMB holds after the last sample: W, t, R.
-    #[must_use]
-    pub fn ramb(&self) -> Vec<F> {
-        let intermediate: &[F] = match &self.core {
-            Core::Four(core) => &core.intermediate,
-            Core::Any(core) => &core.intermediate,
-        };
-        [self.weights(), intermediate, self.inverse_correlation()].concat()
-    }
-
-    fn advance_head(&mut self, samples: usize) {
-        self.head = (self.head + samples) % self.config.tap_count;
+    fn inverse_correlation(&self) -> Option<InverseCorrelation<'_, F>> {
+        Some(InverseCorrelation {
+            matrix: self.matrix(),
+            tap_count: self.config.tap_count,
+            delta: self.config.delta,
+            alpha: self.config.alpha,
+        })
     }
 }
 

@@ -106,7 +106,7 @@ impl<F: Fp> RlsMachine<F> {
         2 * p + self.registers.i * p + self.registers.j
     }
 
-    /// One clock of a dot product: `P <- A*B`, `ACC <- first` or `ACC + P`.
+    /// One clock of a dot product of L with the words of RAMB, that of tap j at address `b`.
     #[inline]
     fn accumulate(
         &mut self,
@@ -115,22 +115,11 @@ impl<F: Fp> RlsMachine<F> {
         done: RlsState,
         datapath: &mut Datapath<'_, F, impl Probe<F>>,
     ) {
-        let j = self.registers.j;
-        let l_j = datapath.read_a(self.registers.slot(j, self.config.tap_count));
+        let taps = self.config.tap_count;
+        let l_j = datapath.read_a(self.registers.slot(self.registers.j, taps));
         let b_j = datapath.read_b(b);
-        let sum = if j == 0 {
-            first
-        } else {
-            datapath.add(self.registers.accumulator, self.registers.product)
-        };
-        self.registers.product = datapath.multiply(l_j, b_j);
-        self.registers.accumulator = sum;
-        if j + 1 == self.config.tap_count {
-            self.registers.j = 0;
-            self.registers.state = done;
-        } else {
-            self.registers.j = j + 1;
-        }
+        self.registers
+            .accumulate((l_j, b_j), first, taps, done, datapath);
     }
 
     /// RiL_reading and RFM_reading: a row of R times L, started at `+0`.
@@ -158,12 +147,6 @@ impl<F: Fp> RlsMachine<F> {
         self.accumulate(b, F::ZERO, RlsState::OutWriting, datapath);
     }
 
-    /// The last sum of a dot product.
-    #[inline]
-    fn last_sum(&self, datapath: &mut Datapath<'_, F, impl Probe<F>>) -> F {
-        datapath.add(self.registers.accumulator, self.registers.product)
-    }
-
     /// Counts the row up; `true` after the last one, with the counter back at zero.
     #[inline]
     fn row_done(&mut self) -> bool {
@@ -176,7 +159,7 @@ impl<F: Fp> RlsMachine<F> {
     /// RiL_writing: `t_i` goes to both memories, so that LRL and RFR find both factors in one clock.
     #[inline]
     fn write_intermediate(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
-        let sum = self.last_sum(datapath);
+        let sum = self.registers.last_sum(datapath);
         let address = self.config.tap_count + self.registers.i;
         datapath.write_a(address, sum);
         datapath.write_b(address, sum);
@@ -190,7 +173,7 @@ impl<F: Fp> RlsMachine<F> {
     /// LRL_writing: DEN has no word in a memory.
     #[inline]
     fn write_denominator(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
-        self.registers.denominator = self.last_sum(datapath);
+        self.registers.denominator = self.registers.last_sum(datapath);
         self.registers.state = RlsState::RfrReading;
     }
 
@@ -245,7 +228,7 @@ impl<F: Fp> RlsMachine<F> {
     /// RFM_writing: `M_i` replaces `t_i` in RAMA; t stays in RAMB.
     #[inline]
     fn write_gain(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
-        let sum = self.last_sum(datapath);
+        let sum = self.registers.last_sum(datapath);
         datapath.write_a(self.config.tap_count + self.registers.i, sum);
         self.registers.state = if self.row_done() {
             RlsState::OutReading
@@ -257,7 +240,7 @@ impl<F: Fp> RlsMachine<F> {
     /// Out_writing: the result is registered.
     #[inline]
     fn write_output(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
-        self.registers.output = self.last_sum(datapath);
+        self.registers.output = self.registers.last_sum(datapath);
         self.registers.state = RlsState::RfwReading;
     }
 

@@ -5,10 +5,8 @@ use super::config::{SignLmsConfig, SignLmsSettings};
 use super::engine::SignLmsEngine;
 use super::machine::SignLmsPipeline;
 use super::state::SignLmsState;
-use crate::fpga::engine::Engine;
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::front_end::Pair;
 use crate::fpga::pipeline::{Clocked, Core, Kind, Macro, Parameters, Pipeline};
 use crate::fpga::registers::ControlState;
 use crate::fpga::timing::Units;
@@ -103,17 +101,5 @@ impl<F: Fp> Pipeline<F> for SignLmsConfig<F> {
 
     fn clocked(&self) -> Box<dyn Clocked<F>> {
         Box::new(SignLmsPipeline::new(*self))
-    }
-}
-
-impl<F: Fp> Engine<F> for SignLmsEngine<F> {
-    #[inline]
-    fn process(&mut self, pair: Pair<F>) -> F {
-        self.process(pair)
-    }
-
-    #[inline]
-    fn weights(&self) -> &[F] {
-        self.weights()
     }
 }

@@ -11,6 +11,7 @@
 //! ```
 
 use super::config::{SignLmsConfig, clamp, signed};
+use crate::fpga::engine::{Engine, ring};
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
 
@@ -55,12 +56,6 @@ impl<F: Fp> SignLmsEngine<F> {
         &self.config
     }
 
-    /// Weights, tap 0 (newest regressor word) first.
-    #[must_use]
-    pub fn weights(&self) -> &[F] {
-        &self.weights
-    }
-
     /// The recursive norm S.
     #[must_use]
     pub fn norm(&self) -> F {
@@ -70,48 +65,13 @@ impl<F: Fp> SignLmsEngine<F> {
     /// The words RAMA holds after the last sample: the ring of L.
     #[must_use]
     pub fn rama(&self) -> Vec<F> {
-        let n = self.config.tap_count;
-        let mut words = vec![F::ZERO; n];
-        for j in 0..n {
-            words[(self.head + n - j) % n] = self.line[j];
-        }
-        words
+        ring(&self.line, self.head)
     }
 
     /// The words RAMB holds after the last sample: W.
     #[must_use]
     pub fn ramb(&self) -> Vec<F> {
         self.weights.clone()
-    }
-
-    /// Filters one pair and returns `y`.
-    pub fn process(&mut self, pair: Pair<F>) -> F {
-        let n = self.config.tap_count;
-        self.head = (self.head + 1) % n;
-        let leaving = self.line[n - 1];
-        self.line.rotate_right(1);
-        self.line[0] = pair.input;
-        self.slide(pair.input.mul(pair.input), leaving.mul(leaving));
-        let step = self
-            .config
-            .step
-            .div(self.config.regularisation.add(self.norm));
-        let mut output = F::ZERO;
-        for (l_j, w_j) in self.line.iter().zip(&self.weights) {
-            output = output.add(l_j.mul(*w_j));
-        }
-        let error = pair.desired.sub(output);
-        let gain = if self.is_held(error) {
-            F::ZERO
-        } else if self.config.normalised {
-            error.mul(step)
-        } else {
-            signed(step, error)
-        };
-        for (l_j, w_j) in self.line.iter().zip(&mut self.weights) {
-            *w_j = w_j.add(l_j.mul(gain));
-        }
-        output
     }
 
     fn slide(&mut self, entering: F, leaving: F) {
@@ -145,11 +105,41 @@ impl<F: Fp> SignLmsEngine<F> {
         self.held_samples += usize::from(is_held);
         is_held
     }
+}
 
-    /// Filters many pairs, appending one output word per pair.
-    pub fn run(&mut self, pairs: &[Pair<F>], outputs: &mut Vec<F>) {
-        for pair in pairs {
-            outputs.push(self.process(*pair));
+impl<F: Fp> Engine<F> for SignLmsEngine<F> {
+    #[inline]
+    fn process(&mut self, pair: Pair<F>) -> F {
+        let n = self.config.tap_count;
+        self.head = (self.head + 1) % n;
+        let leaving = self.line[n - 1];
+        self.line.rotate_right(1);
+        self.line[0] = pair.input;
+        self.slide(pair.input.mul(pair.input), leaving.mul(leaving));
+        let step = self
+            .config
+            .step
+            .div(self.config.regularisation.add(self.norm));
+        let mut output = F::ZERO;
+        for (l_j, w_j) in self.line.iter().zip(&self.weights) {
+            output = output.add(l_j.mul(*w_j));
         }
+        let error = pair.desired.sub(output);
+        let gain = if self.is_held(error) {
+            F::ZERO
+        } else if self.config.normalised {
+            error.mul(step)
+        } else {
+            signed(step, error)
+        };
+        for (l_j, w_j) in self.line.iter().zip(&mut self.weights) {
+            *w_j = w_j.add(l_j.mul(gain));
+        }
+        output
+    }
+
+    #[inline]
+    fn weights(&self) -> &[F] {
+        &self.weights
     }
 }

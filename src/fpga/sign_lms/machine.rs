@@ -166,23 +166,16 @@ impl<F: Fp> SignLmsMachine<F> {
         let w_j = datapath.read_b(j);
         if j == 0 {
             self.registers.denominator = datapath.add(self.config.regularisation, self.norm);
-            self.registers.accumulator = F::ZERO;
-        } else {
-            self.registers.accumulator =
-                datapath.add(self.registers.accumulator, self.registers.product);
         }
-        self.registers.product = datapath.multiply(l_j, w_j);
-        self.registers.j = j + 1;
-        if self.registers.j == self.config.tap_count {
-            self.registers.j = 0;
-            self.registers.state = SignLmsState::OutWriting;
-        }
+        let (taps, done) = (self.config.tap_count, SignLmsState::OutWriting);
+        self.registers
+            .accumulate((l_j, w_j), F::ZERO, taps, done, datapath);
     }
 
     /// Out_writing: the result is registered.
     #[inline]
     fn write_output(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
-        self.registers.output = datapath.add(self.registers.accumulator, self.registers.product);
+        self.registers.output = self.registers.last_sum(datapath);
         self.registers.state = SignLmsState::Err;
     }
 
@@ -217,29 +210,19 @@ impl<F: Fp> SignLmsMachine<F> {
     /// LMW_reading: `L_j * e` while `W_j` is latched.
     #[inline]
     fn weight_read(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
-        let l_j = datapath.read_a(self.registers.slot(self.registers.j, self.config.tap_count));
-        self.registers.read_latch = datapath.read_b(self.registers.j);
-        self.registers.product = datapath.multiply(l_j, self.registers.error);
+        self.registers.read_weight(self.config.tap_count, datapath);
         self.registers.state = SignLmsState::LmwWriting;
     }
 
     /// LMW_writing: the new weight; after the last one the next sample is loaded at once.
     #[inline]
     fn weight_write(&mut self, next_waits: bool, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
-        let Registers {
-            j,
-            read_latch,
-            product,
-            ..
-        } = self.registers;
-        let weight = datapath.add(read_latch, product);
-        datapath.write_b(j, weight);
-        if j + 1 < self.config.tap_count {
-            self.registers.j = j + 1;
-            self.registers.state = SignLmsState::LmwReading;
+        let weight = datapath.add(self.registers.read_latch, self.registers.product);
+        let taps = self.config.tap_count;
+        self.registers.state = if self.registers.write_weight(weight, taps, datapath) {
+            Self::after_sample(next_waits)
         } else {
-            self.registers.j = 0;
-            self.registers.state = Self::after_sample(next_waits);
-        }
+            SignLmsState::LmwReading
+        };
     }
 }

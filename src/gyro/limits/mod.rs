@@ -187,7 +187,7 @@ fn converter(
         return Ok(None);
     }
     let count = detector.samples_per_half_period;
-    let density = detector.noise.total_a2_per_hz();
+    let density = detector.noise_a2_per_hz();
     let sample_variance_a2 = count * detector.half_period_variance_a2(density, coil.transit_time_s);
     let step_a = detector.converter_step_v / detector.transimpedance_v_per_a;
     let noise_lsb = sample_variance_a2.sqrt() / step_a;

@@ -5,10 +5,10 @@
 //! n, `q^2 / 12 n`, and one normal the same ratio to the step as each of n would have), or the
 //! voltage of the nominal mean power for an ideal converter.
 
+use crate::gyro::noise::exact_draw::{DrawUnits, ExactDraw};
 use crate::gyro::optics::detector::Detector;
 use crate::gyro::optics::modulator::Modulator;
 use crate::random::{Stream, Streams};
-use crate::units::ELEMENTARY_CHARGE_C;
 
 /// Adding and subtracting `1.5 * 2^52` rounds to the nearest whole number, ties to even.
 ///
@@ -242,27 +242,17 @@ fn steps_per_ampere(detector: &Detector) -> f64 {
 
 /// Every source and every converter sample drawn on its own.
 ///
-/// Per half period: technical noise of the phase, before the fringe. Per sample: shot noise of the instantaneous photocurrent, Johnson and amplifier noise added,
-/// intensity noise multiplied, then rounding to the converter's own step. The variance of one
-/// sample is `n S / (2 gate_duty tau)`, so that the mean of n has that of the gate.
+/// Per half period the noise of the phase, before the fringe. Per sample that of the light, of the
+/// instantaneous photocurrent and of the amplifier, then rounding to the converter's own step.
 #[derive(Clone, Debug)]
 pub(super) struct ExactSampler {
     fringe: Fringe,
     dark: f64,
-    shot_variance_per_level: f64,
-    thermal: f64,
-    amplifier: f64,
-    rin: f64,
-    technical_codes: f64,
+    draw: ExactDraw,
     samples: u32,
     level_max: f64,
     is_rounded: bool,
     mean_scale: f64,
-    shot_stream: Stream,
-    thermal_stream: Stream,
-    amplifier_stream: Stream,
-    rin_stream: Stream,
-    technical_stream: Stream,
     faults: Faults,
 }
 
@@ -277,34 +267,21 @@ impl ExactSampler {
     ) -> Self {
         let is_rounded = detector.converter_step_v > 0.0;
         let count = detector.samples_per_half_period;
-        let units_per_a = if is_rounded {
+        let levels_per_a = if is_rounded {
             steps_per_ampere(detector)
         } else {
             detector.nominal_current_a.recip()
         };
-        let per_sample = |density: f64| {
-            (count * detector.half_period_variance_a2(density, transit_time_s)).sqrt()
+        let units = DrawUnits {
+            levels_per_a,
+            codes_per_rad: modulator.codes_per_rad(),
+            state_time_s: transit_time_s,
         };
-        let shot_density_per_a = if detector.noise.shot_a2_per_hz > 0.0 {
-            2.0 * ELEMENTARY_CHARGE_C
-        } else {
-            0.0
-        };
-        let mean = detector.mean_current_a * units_per_a;
+        let mean = detector.mean_current_a * levels_per_a;
         Self {
             fringe: Fringe::new(mean, mean * detector.visibility, modulator),
-            dark: detector.dark_current_a * units_per_a,
-            // 2 e I is linear in the current: one factor of the unit converts I, one remains.
-            shot_variance_per_level: count
-                * detector.half_period_variance_a2(shot_density_per_a, transit_time_s)
-                * units_per_a,
-            thermal: per_sample(detector.noise.thermal_a2_per_hz) * units_per_a,
-            amplifier: per_sample(detector.noise.amplifier_a2_per_hz) * units_per_a,
-            rin: per_sample(detector.rin_per_hz),
-            technical_codes: detector
-                .half_period_phase_variance_rad2(transit_time_s)
-                .sqrt()
-                * modulator.codes_per_rad(),
+            dark: detector.dark_current_a * levels_per_a,
+            draw: ExactDraw::new(detector, units, streams),
             samples: config_samples,
             level_max: detector.converter_code_max,
             is_rounded,
@@ -313,11 +290,6 @@ impl ExactSampler {
             } else {
                 count.recip()
             },
-            shot_stream: streams.stream("shot"),
-            thermal_stream: streams.stream("thermal"),
-            amplifier_stream: streams.stream("amplifier"),
-            rin_stream: streams.stream("rin"),
-            technical_stream: streams.stream("technical"),
             faults: Faults::default(),
         }
     }
@@ -329,24 +301,16 @@ impl ExactSampler {
     /// The chain of `other`, with the noise and the faults so far of this one.
     pub(super) fn retuned(&self, other: Self) -> Self {
         Self {
-            shot_stream: self.shot_stream.clone(),
-            thermal_stream: self.thermal_stream.clone(),
-            amplifier_stream: self.amplifier_stream.clone(),
-            rin_stream: self.rin_stream.clone(),
-            technical_stream: self.technical_stream.clone(),
+            draw: self.draw.retuned(other.draw),
             faults: self.faults,
             ..other
         }
     }
 
-    /// Light of the half period, technical phase noise included.
+    /// Light of the half period, noise of the phase included.
     #[inline]
     fn light<const PLUS: bool>(&mut self, error_codes: f64) -> f64 {
-        let phase_codes = if self.technical_codes > 0.0 {
-            error_codes + self.technical_codes * self.technical_stream.normal()
-        } else {
-            error_codes
-        };
+        let phase_codes = self.draw.phase_codes(error_codes);
         self.fringe.level::<PLUS>(phase_codes, &mut self.faults)
     }
 
@@ -356,21 +320,7 @@ impl ExactSampler {
         let mut sum = 0.0;
         let mut saturated = 0;
         for _ in 0..self.samples {
-            let mut level = light;
-            if self.rin > 0.0 {
-                level *= 1.0 + self.rin * self.rin_stream.normal();
-            }
-            level += self.dark;
-            if self.shot_variance_per_level > 0.0 {
-                let variance = self.shot_variance_per_level * (light + self.dark);
-                level += variance.max(0.0).sqrt() * self.shot_stream.normal();
-            }
-            if self.thermal > 0.0 {
-                level += self.thermal * self.thermal_stream.normal();
-            }
-            if self.amplifier > 0.0 {
-                level += self.amplifier * self.amplifier_stream.normal();
-            }
+            let level = self.draw.sample_level(light, self.dark);
             sum += if self.is_rounded {
                 convert(level, self.level_max, &mut saturated)
             } else {

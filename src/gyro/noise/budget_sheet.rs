@@ -3,6 +3,7 @@
 use crate::gyro::error::GyroError;
 use crate::gyro::limits::{MotionExtremes, cautions};
 use crate::gyro::noise::budget::NoiseBudget;
+use crate::gyro::noise::source::Density;
 use crate::gyro::optics::coil::Coil;
 use crate::gyro::optics::detector::Detector;
 use crate::gyro::optics::modulator::{Modulator, optimum_depth_rad};
@@ -10,9 +11,7 @@ use crate::gyro::parts::Parts;
 use crate::gyro::thermal::condition::Condition;
 use crate::scenario::{Fidelity, GyroConfig};
 use crate::signal::{BudgetEntry, BudgetPoint, BudgetSheet};
-use crate::units::{
-    ELEMENTARY_CHARGE_C, deg_per_sqrt_h_to_rad_per_sqrt_s, rad_to_deg, rad_to_urad,
-};
+use crate::units::{deg_per_sqrt_h_to_rad_per_sqrt_s, rad_to_deg, rad_to_urad};
 
 /// Modulation depths at which the budget is given, deg: whole degrees from here to there.
 const DEPTHS_DEG: std::ops::RangeInclusive<u32> = 15..=175;
@@ -60,17 +59,23 @@ pub fn budget_at(
 #[must_use]
 pub fn power_independent_ratio(detector: &Detector, coil: &Coil) -> f64 {
     let current_a = detector.mean_current_a;
-    let has_shot = detector.noise.shot_a2_per_hz > 0.0;
-    let charge_c = if has_shot { ELEMENTARY_CHARGE_C } else { 0.0 };
-    let step_a = detector.converter_step_v / detector.transimpedance_v_per_a;
-    let rounding = detector.gate_duty * coil.transit_time_s * step_a * step_a
-        / (6.0 * detector.samples_per_half_period);
-    let shot = 2.0 * charge_c * current_a;
-    let rin = detector.rin_per_hz * current_a * current_a;
-    let constant = 2.0 * charge_c * detector.dark_current_a
-        + detector.noise.thermal_a2_per_hz
-        + detector.noise.amplifier_a2_per_hz
-        + rounding;
+    let (mut shot, mut constant, mut rin) = (0.0, 0.0, 0.0);
+    for density in detector.densities.0 {
+        match density {
+            Density::OfCurrent { a2_per_hz_per_a } => {
+                shot += a2_per_hz_per_a * current_a;
+                constant += a2_per_hz_per_a * detector.dark_current_a;
+            }
+            Density::Intensity { per_hz } => rin += per_hz * current_a * current_a,
+            Density::Current { a2_per_hz } => constant += a2_per_hz,
+            Density::Rounding { step_v } => {
+                let step_a = step_v / detector.transimpedance_v_per_a;
+                constant += detector.gate_duty * coil.transit_time_s * step_a * step_a
+                    / (6.0 * detector.samples_per_half_period);
+            }
+            Density::Phase { .. } => {}
+        }
+    }
     let visibility = detector.visibility;
     (shot + constant + rin * (1.0 + visibility * visibility)) / ((shot + 2.0 * rin) * visibility)
         - 1.0

@@ -1,9 +1,21 @@
-//! Light source: relative intensity noise of broadband light.
+//! Relative intensity noise of the light source: `RIN I^2`.
 
 use std::f64::consts::{LN_2, PI};
 
+use crate::gyro::noise::source::{Density, NoiseSource, when};
 use crate::scenario::SourceConfig;
 use crate::units::{NANO, SPEED_OF_LIGHT_M_PER_S};
+
+pub(super) const RIN: NoiseSource = NoiseSource {
+    name: "rin",
+    key: "gyro.noise.rin",
+    density: |config, _| Density::Intensity {
+        per_hz: when(
+            config.noise.rin,
+            relative_intensity_noise_per_hz(&config.source),
+        ),
+    },
+};
 
 /// One-sided relative intensity noise of thermal-like light with a Gaussian spectrum, 1/Hz.
 ///

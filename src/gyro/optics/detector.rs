@@ -1,36 +1,12 @@
 //! Photodetector, amplifier and converter: levels at the bias point and noise densities.
 
 use crate::gyro::error::GyroError;
-use crate::gyro::noise::rin::relative_intensity_noise_per_hz;
+use crate::gyro::noise::Densities;
+use crate::gyro::optics::converter::{converter_code_max, converter_step_v};
 use crate::gyro::optics::modulator::Modulator;
 use crate::gyro::thermal::condition::Condition;
 use crate::scenario::GyroConfig;
-use crate::units::{
-    BOLTZMANN_J_PER_K, ELEMENTARY_CHARGE_C, KILO, MICRO, NANO, PICO, celsius_to_kelvin,
-};
-
-/// One-sided current noise density of each source at the bias point, A^2/Hz.
-///
-/// A source that is switched off has 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurrentNoise {
-    /// Shot noise `2 e (I_b + I_dark)`.
-    pub shot_a2_per_hz: f64,
-    /// Johnson noise `4 k T / R_f`.
-    pub thermal_a2_per_hz: f64,
-    /// Amplifier `(e_n / R_f)^2 + i_n^2`.
-    pub amplifier_a2_per_hz: f64,
-    /// Intensity noise `RIN I_b^2`.
-    pub rin_a2_per_hz: f64,
-}
-
-impl CurrentNoise {
-    /// Sum of all sources, A^2/Hz.
-    #[must_use]
-    pub fn total_a2_per_hz(&self) -> f64 {
-        self.shot_a2_per_hz + self.thermal_a2_per_hz + self.amplifier_a2_per_hz + self.rin_a2_per_hz
-    }
-}
+use crate::units::{KILO, MICRO, NANO};
 
 /// Detection chain at the bias point.
 ///
@@ -52,12 +28,8 @@ pub struct Detector {
     pub slope_a_per_rad: f64,
     /// Converter volts per ampere of photocurrent, `G = R_f G_v`.
     pub transimpedance_v_per_a: f64,
-    /// Relative intensity noise, 1/Hz; 0 when switched off.
-    pub rin_per_hz: f64,
-    /// Noise densities at the bias point.
-    pub noise: CurrentNoise,
-    /// One-sided technical phase noise of the half periods, rad^2/Hz; 0 when there is none.
-    pub technical_phase_rad2_per_hz: f64,
+    /// Noise densities of all sources.
+    pub densities: Densities,
     /// Gated fraction of a half period.
     pub gate_duty: f64,
     /// Converter step q, V; 0 for an ideal converter.
@@ -88,7 +60,6 @@ impl Detector {
         let transimpedance_v_per_a =
             config.detector.transimpedance_kohm * KILO * config.detector.post_gain;
         let bits = config.adc.bits;
-        let codes = 2.0_f64.powi(bits.cast_signed());
         let bias_current_a = mean_current_a * (1.0 + visibility * cosine);
         let detector = Self {
             nominal_current_a,
@@ -98,25 +69,10 @@ impl Detector {
             bias_current_a,
             slope_a_per_rad: mean_current_a * visibility * sine,
             transimpedance_v_per_a,
-            rin_per_hz: if config.noise.rin {
-                relative_intensity_noise_per_hz(&config.source)
-            } else {
-                0.0
-            },
-            noise: current_noise(config, bias_current_a, condition.case_c),
-            technical_phase_rad2_per_hz: (config.noise.technical_phase_urad_per_sqrt_hz * MICRO)
-                .powi(2),
+            densities: Densities::new(config, condition),
             gate_duty: config.detector.gate_duty,
-            converter_step_v: if bits == 0 {
-                0.0
-            } else {
-                config.adc.range_v / codes
-            },
-            converter_code_max: if bits == 0 {
-                f64::INFINITY
-            } else {
-                codes - 1.0
-            },
+            converter_step_v: converter_step_v(&config.adc),
+            converter_code_max: converter_code_max(&config.adc),
             samples_per_half_period: f64::from(config.adc.samples_per_half_period),
         };
         if detector.slope_a_per_rad.is_nan() || detector.slope_a_per_rad <= 1e-9 * mean_current_a {
@@ -143,14 +99,11 @@ impl Detector {
         density_a2_per_hz / (2.0 * self.gate_duty * transit_time_s)
     }
 
-    /// Variance of the technical phase noise of one half period, rad^2.
-    ///
-    /// `S1 / (2 tau)`: one independent phase per half period, of one-sided density `S1` up to half
-    /// the half-period rate. Noise of that band passes the gate unaltered; if it were white far
-    /// beyond the gate's band, each gate would alias it up to `S1 / (2 gate_duty tau)`.
+    /// Current noise of all sources at the bias point, A^2/Hz.
     #[must_use]
-    pub fn half_period_phase_variance_rad2(&self, transit_time_s: f64) -> f64 {
-        self.technical_phase_rad2_per_hz / (2.0 * transit_time_s)
+    pub fn noise_a2_per_hz(&self) -> f64 {
+        self.densities
+            .a2_per_hz(self.bias_current_a, self.dark_current_a)
     }
 
     /// Variance of the mean current of one half period, all sources together, A^2.
@@ -158,36 +111,21 @@ impl Detector {
     /// Phase noise counts through the slope at the bias point, as the linear loop sees it.
     #[must_use]
     pub fn half_period_noise_a2(&self, transit_time_s: f64) -> f64 {
-        let phase_rad2 = self.half_period_phase_variance_rad2(transit_time_s);
-        self.half_period_variance_a2(self.noise.total_a2_per_hz(), transit_time_s)
+        let density_rad2_per_hz = self.densities.phase_rad2_per_hz();
+        let phase_rad2 = half_period_phase_variance_rad2(density_rad2_per_hz, transit_time_s);
+        self.half_period_variance_a2(self.noise_a2_per_hz(), transit_time_s)
             + phase_rad2 * self.slope_a_per_rad * self.slope_a_per_rad
     }
 }
 
-fn current_noise(config: &GyroConfig, bias_current_a: f64, case_c: f64) -> CurrentNoise {
-    let kelvin = celsius_to_kelvin(case_c);
-    let feedback_ohm = config.detector.transimpedance_kohm * KILO;
-    let dark_current_a = config.detector.dark_current_na * NANO;
-    let voltage_noise = config.detector.voltage_noise_nv_per_sqrt_hz * NANO / feedback_ohm;
-    let current_noise = config.detector.current_noise_pa_per_sqrt_hz * PICO;
-    let rin_per_hz = relative_intensity_noise_per_hz(&config.source);
-    let when = |is_on: bool, density: f64| if is_on { density } else { 0.0 };
-    CurrentNoise {
-        shot_a2_per_hz: when(
-            config.noise.shot,
-            2.0 * ELEMENTARY_CHARGE_C * (bias_current_a + dark_current_a),
-        ),
-        thermal_a2_per_hz: when(
-            config.noise.thermal,
-            4.0 * BOLTZMANN_J_PER_K * kelvin / feedback_ohm,
-        ),
-        amplifier_a2_per_hz: when(
-            config.noise.amplifier,
-            voltage_noise * voltage_noise + current_noise * current_noise,
-        ),
-        rin_a2_per_hz: when(
-            config.noise.rin,
-            rin_per_hz * bias_current_a * bias_current_a,
-        ),
-    }
+/// Variance of phase noise of one half period, rad^2.
+///
+/// `S1 / (2 tau)`: one independent phase per half period, of one-sided density `S1` up to half
+/// the half-period rate. Noise of that band passes the gate unaltered; if it were white far
+/// beyond the gate's band, each gate would alias it up to `S1 / (2 gate_duty tau)`.
+pub(in crate::gyro) fn half_period_phase_variance_rad2(
+    density_rad2_per_hz: f64,
+    transit_time_s: f64,
+) -> f64 {
+    density_rad2_per_hz / (2.0 * transit_time_s)
 }

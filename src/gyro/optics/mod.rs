@@ -8,6 +8,7 @@
 //! `second_order` has what departs from the ideal modulator and ramp, in closed form.
 
 pub(in crate::gyro) mod coil;
+pub(in crate::gyro) mod converter;
 pub(in crate::gyro) mod detector;
 pub(in crate::gyro) mod modulation;
 pub(in crate::gyro) mod modulator;

@@ -2,6 +2,9 @@
 
 use std::f64::consts::PI;
 
+/// `AVAR / B^2` of flicker noise, `2 ln 2 / pi`; its square root is the familiar 0.664.
+pub const FLICKER_ALLAN_VARIANCE: f64 = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;
+
 /// Terms of the model, in the order of the fit's columns.
 pub(crate) const TERMS: usize = 5;
 pub(crate) const WHITE: usize = 0;

@@ -2,9 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::covariance::Structure;
-pub(crate) use super::covariance::{FLICKER, INVERSE_SQUARE, RAMP, TERMS, WALK, WHITE};
-use super::noise_fit::FLICKER_ALLAN_VARIANCE;
+use super::covariance::{FLICKER, FLICKER_ALLAN_VARIANCE, RAMP, Structure, TERMS, WALK, WHITE};
 use super::overlapping::AllanPoint;
 use super::sampling::{Sampling, THIRD_AT};
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;

@@ -4,6 +4,7 @@ pub(super) mod angle;
 pub(super) mod combined_freedom;
 pub(super) mod covariance;
 pub(super) mod curves;
+pub(super) mod entry;
 pub(super) mod least_squares;
 pub(super) mod noise_fit;
 pub(super) mod noise_identification;

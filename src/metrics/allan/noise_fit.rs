@@ -1,8 +1,7 @@
 //! Noise coefficients from an Allan variance curve.
 
-use super::least_squares::{
-    FLICKER, INVERSE_SQUARE, Problem, RAMP, TERMS, WALK, WHITE, basis, fitted_variance,
-};
+use super::covariance::{FLICKER, INVERSE_SQUARE, RAMP, TERMS, WALK, WHITE};
+use super::least_squares::{Problem, basis, fitted_variance};
 use super::overlapping::{AllanPoint, NoiseType, degrees_of_freedom};
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Pool, Table};
@@ -69,9 +68,6 @@ pub static QUANTISATION: MetricKey = MetricKey::new(
 .needs(Needs::AllanFit)
 .pooled(Pool::AllanFit)
 .closing_tables();
-
-/// `AVAR / B^2` of flicker noise, `2 ln 2 / pi`; its square root is the familiar 0.664.
-pub const FLICKER_ALLAN_VARIANCE: f64 = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;
 
 /// Q is said to be found from this many standard errors on; N and B as soon as they are positive,
 /// with an interval that may begin at zero.

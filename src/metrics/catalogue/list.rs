@@ -1,31 +1,33 @@
-//! List of the metrics, in the order of the columns of tables.
+//! List of the metrics, in the order of the columns of tables, and of the curves.
 
+use crate::metrics::key::curve::CurveKey;
 use crate::metrics::key::metric::MetricKey;
 
-/// Names the metrics and lists them: each row is a module and the metric that it declares.
-macro_rules! catalogue {
-    ($($($segment:ident)::+),* $(,)?) => {
+/// Names rows and lists them: each is a module and the row that it declares.
+macro_rules! rows {
+    ($list:ident: $row:ty; $($($segment:ident)::+),* $(,)?) => {
         $(pub use crate::metrics::$($segment)::+;)*
 
-        const CATALOGUE: &[&MetricKey] = &[$(&crate::metrics::$($segment)::+),*];
+        const $list: &[&$row] = &[$(&crate::metrics::$($segment)::+),*];
     };
 }
 
-catalogue! {
+rows! {
+    CATALOGUE: MetricKey;
     allan::noise_fit::ANGLE_RANDOM_WALK,
-    motion::steady::ANGLE_RANDOM_WALK_OVER_DC_GAIN,
+    trial::dc_gain::ANGLE_RANDOM_WALK_OVER_DC_GAIN,
     trial::weight_noise::WEIGHT_NOISE_RATIO,
     noise::bias_stability::BIAS_STABILITY_1S,
     noise::bias_stability::BIAS_STABILITY_10S,
     noise::bias_stability::BIAS_STABILITY_100S,
     noise::bias_stability::BIAS_STABILITY,
-    motion::steady::BIAS_STABILITY_OVER_DC_GAIN,
+    trial::dc_gain::BIAS_STABILITY_OVER_DC_GAIN,
     allan::noise_fit::BIAS_INSTABILITY,
     allan::noise_fit::RATE_RANDOM_WALK,
     allan::noise_fit::RATE_RAMP,
     allan::noise_fit::QUANTISATION,
-    pool::aggregate::BIAS_REPEATABILITY,
-    measure::SETTLING_TIME,
+    pool::repeatability::BIAS_REPEATABILITY,
+    steps::settling::SETTLING_TIME,
     steps::shape::RISE_TIME,
     steps::shape::OVERSHOOT,
     motion::swing::DELAY_VS_RAW,
@@ -36,30 +38,30 @@ catalogue! {
     motion::swing::AMPLITUDE_RATIO,
     motion::multi_sine::BANDWIDTH,
     motion::swing::HARMONIC_DISTORTION,
-    motion::steady::MEAN,
-    motion::steady::MEAN_ERROR,
-    noise::level::MEAN_RATIO,
-    measure::MINIMUM,
-    measure::MAXIMUM,
+    motion::mean::MEAN,
+    motion::mean::MEAN_ERROR,
+    motion::mean::MEAN_RATIO,
+    motion::mean::MINIMUM,
+    motion::mean::MAXIMUM,
     steps::staircase::SCALE_FACTOR_ERROR,
     steps::staircase::SCALE_FACTOR_NONLINEARITY,
     steps::staircase::SCALE_FACTOR_NONLINEARITY_OF_READING,
     steps::staircase::SCALE_FACTOR_ASYMMETRY,
-    pool::aggregate::SCALE_FACTOR_REPEATABILITY,
+    pool::repeatability::SCALE_FACTOR_REPEATABILITY,
     steps::small_input::THRESHOLD,
     steps::small_input::DEAD_BAND,
     steps::small_input::RESOLUTION,
-    measure::TRACKING_ERROR_RMS,
+    motion::tracking::TRACKING_ERROR_RMS,
     noise::level::NOISE_STD,
     noise::autocovariance::LAG1_CORRELATION,
     noise::level::NOISE_GAIN,
     trial::noise_delay::NOISE_DELAY_BOUND_NOISE_GAIN,
     trial::noise_delay::NOISE_GAIN_OVER_BOUND,
-    measure::DC_GAIN,
-    motion::steady::DC_GAIN_PREDICTED,
-    measure::DC_GAIN_ADAPTED,
-    motion::steady::DELAY_AT_DC,
-    measure::SETTLED_GAIN,
+    trial::dc_gain::DC_GAIN,
+    trial::predicted::DC_GAIN_PREDICTED,
+    trial::dc_gain::DC_GAIN_ADAPTED,
+    trial::predicted::DELAY_AT_DC,
+    motion::steps::SETTLED_GAIN,
     trial::readaptation::READAPTATION_TIME,
     pipeline::PREDICTED_FAILURE,
     measure::DIVERGED_AT,
@@ -79,15 +81,31 @@ catalogue! {
     calibration::ROUNDING_LOSS,
 }
 
+rows! {
+    CURVES: CurveKey;
+    allan::curves::ALLAN,
+    allan::curves::ALLAN_FIT,
+    noise::spectrum::PSD,
+    noise::autocovariance::AUTOCOVARIANCE,
+    steps::staircase::RESPONSE,
+    steps::staircase::SCALE_FACTOR,
+    motion::multi_sine::FREQUENCY_RESPONSE,
+    motion::multi_sine::FREQUENCY_RESPONSE_VS_RAW,
+    trial::frozen_response::FROZEN_RESPONSE,
+    trial::noise_delay::NOISE_DELAY_BOUND,
+    trial::rate_gain::RATE_GAIN,
+}
+
 /// Every metric a channel can have, in the order tables print them.
 #[must_use]
 pub fn known_metrics() -> &'static [&'static MetricKey] {
     CATALOGUE
 }
 
-/// Metrics that the Allan fit gives.
-pub(crate) fn fitted_metrics() -> impl Iterator<Item = &'static MetricKey> {
-    CATALOGUE.iter().copied().filter(|key| key.is_fitted())
+/// Every curve a channel can have.
+#[must_use]
+pub fn known_curves() -> &'static [&'static CurveKey] {
+    CURVES
 }
 
 /// Metrics whose values of every repeat are kept, in the order of the columns of `runs.csv`.
@@ -113,6 +131,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+    use crate::metrics::allan::entry::FIT_METRICS;
+    use crate::metrics::key::metric::Pool;
 
     #[test]
     fn every_metric_has_a_name_of_its_own_and_a_heading_where_a_table_shows_it() {
@@ -125,6 +145,15 @@ mod tests {
             let is_headline_only = key.tables.is_empty() && !key.headlines.is_empty();
             assert!(!is_headline_only, "{} heads a line of no table", key.name);
         }
+    }
+
+    #[test]
+    fn the_fit_to_the_pooled_allan_variance_gives_what_is_declared_so() {
+        let declared = CATALOGUE.iter().copied();
+        let declared: Vec<_> = declared
+            .filter(|key| matches!(key.pool, Pool::AllanFit))
+            .collect();
+        assert_eq!(declared, FIT_METRICS);
     }
 
     #[test]

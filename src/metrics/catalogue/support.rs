@@ -2,52 +2,19 @@
 
 use super::list::find;
 use super::names::unknown;
+use crate::metrics::allan::entry::SLOW_NOISE_DURATION_MIN_S;
 use crate::metrics::estimate::interval::round_to_count;
+use crate::metrics::estimate::reason::{NO_TRUTH, too_short};
 use crate::metrics::key::metric::{Against, Applies, MetricKey, Needs};
-use crate::metrics::noise::bias_stability::is_sample_or_longer;
-use crate::metrics::record::Motion;
+use crate::metrics::noise::bias_stability::{BLOCKS_MIN, averaging_lack};
+use crate::metrics::record::{Motion, SAMPLES_MIN};
 use crate::metrics::sine::fit::{CYCLES_MIN, SwingClock};
 use crate::metrics::steps::settling::{STEP_SAMPLES_MIN, tail_start};
 use crate::metrics::steps::staircase::lack;
 use crate::wording::plain;
 
-/// Fewest samples worth measuring.
-pub(crate) const SAMPLES_MIN: usize = 64;
-
-/// Fewest blocks of which a bias stability is given.
-pub(crate) const BLOCKS_MIN: usize = 5;
-
 /// Fewest samples of which an angle random walk can be fitted: eight tau points up to a ninth.
 const FIT_SAMPLES_MIN: f64 = 900.0;
-
-/// Shortest record, s, of which B, K or R can be fitted: the fit must reach 10 s.
-const SLOW_NOISE_DURATION_MIN_S: f64 = 90.0;
-
-/// Why a record cannot show B, K or R; nothing if it can, or for another metric.
-pub(crate) fn slow_noise_lack(key: &MetricKey, duration_s: f64) -> Option<String> {
-    let is_short = duration_s < SLOW_NOISE_DURATION_MIN_S * (1.0 - 1e-9);
-    (key.needs == Needs::SlowNoiseFit && is_short)
-        .then(|| too_short(key.name, SLOW_NOISE_DURATION_MIN_S, duration_s))
-}
-
-fn too_short(metric: &str, needed_s: f64, duration_s: f64) -> String {
-    format!(
-        "`{metric}` needs a record of at least {} s; this one has {} s",
-        plain(needed_s),
-        plain(duration_s)
-    )
-}
-
-/// Why samples of a period cannot be averaged over a time; nothing if they can.
-pub(crate) fn averaging_lack(averaging_time_s: f64, sample_period_s: f64) -> Option<String> {
-    (!is_sample_or_longer(averaging_time_s, sample_period_s)).then(|| {
-        format!(
-            "an averaging time of {} s is shorter than a sample, which takes {} s",
-            plain(averaging_time_s),
-            plain(sample_period_s)
-        )
-    })
-}
 
 /// Whether a record of this length and motion can ever support a metric.
 ///
@@ -132,21 +99,6 @@ pub fn encoder_lack(key: &MetricKey, has_encoder: bool) -> Option<&'static str> 
     (key.against == Against::Encoder && !has_encoder)
         .then_some("the table has no encoder: give turntable.encoder.resolution_arcsec")
 }
-
-/// Fewest repeats of which a repeatability is given.
-///
-/// Source: GJB 2426A and IEEE Std 952 ask for six.
-const REPEATS_MIN: usize = 6;
-
-/// Why too few repeats can never have a metric; nothing for other metrics.
-#[must_use]
-pub fn repeats_lack(key: &MetricKey, repeats: usize) -> Option<String> {
-    let is_lacking = key.is_repeatability() && repeats < REPEATS_MIN;
-    is_lacking.then(|| format!("it needs {REPEATS_MIN} repeats or more; there are {repeats}"))
-}
-
-/// Why a record without its true rate lacks what is compared with it.
-pub(crate) const NO_TRUTH: &str = "the true rate is not known: a recorded log brings none";
 
 /// Why a record without its true rate can never have a metric; nothing for other metrics.
 ///

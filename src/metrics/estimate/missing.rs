@@ -1,6 +1,7 @@
 //! Looking up a metric by its key, with the reason where it is missing.
 
-use super::value::{ChannelMetrics, Estimate};
+use super::table::ChannelMetrics;
+use super::value::Estimate;
 use crate::metrics::key::metric::MetricKey;
 
 /// A metric that a channel does not have, and why.

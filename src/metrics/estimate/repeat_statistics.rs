@@ -1,7 +1,7 @@
 //! A metric over the independent repeats of a run: every value, and what they have in common.
 
 use super::interval;
-use super::value::ChannelMetrics;
+use super::table::ChannelMetrics;
 use crate::metrics::key::metric::MetricKey;
 
 /// One metric over the repeats.

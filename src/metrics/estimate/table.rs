@@ -1,14 +1,11 @@
-//! Filling a channel's table: units from the catalogue, fits and curves in their fixed form.
+//! The table of one channel: its metrics, its curves, and the reasons for what is missing.
 
 use std::collections::BTreeMap;
 
-use super::value::{ChannelMetrics, Estimate, Metric};
-use crate::metrics::allan::noise_fit::{
-    ANGLE_RANDOM_WALK, BIAS_INSTABILITY, NoiseFit, QUANTISATION, RATE_RAMP, RATE_RANDOM_WALK, Term,
-};
+use super::repeat_statistics::RepeatStatistics;
+use super::value::{Estimate, Metric};
+use crate::metrics::key::curve::{Column, Curve, CurveKey};
 use crate::metrics::key::metric::MetricKey;
-use crate::metrics::noise::spectrum::Spectrum;
-use crate::units;
 
 /// Field of a bias stability: correlation of its means with those of raw.
 pub(crate) const RAW_CORRELATION: &str = "raw_correlation";
@@ -18,15 +15,38 @@ pub(crate) const DEGREES_OF_FREEDOM: &str = "degrees_of_freedom";
 /// Field of a bias stability: what the fitted noise makes one expect.
 pub(crate) const EXPECTED: &str = "expected_deg_per_h";
 
-/// Upper end beyond which an interval says nothing, whatever the unit.
-const BOUND_MAX: f64 = 1e6;
-
-/// Column of the two-sided density in the curve `psd`; `psd_deg2_per_h2_per_hz` is one-sided.
-pub(crate) const TWO_SIDED_PSD: &str = "two_sided_psd_deg2_per_h2_per_hz";
 /// Reason of a metric or curve that came out as no finite number.
 const NOT_FINITE: &str = "the record gives no finite number";
 /// Width of an interval, as a part of its value, that rounding makes.
 const ROUNDING: f64 = 1e-12;
+
+/// Why a channel has no numbers: it failed while running.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelFailure {
+    /// Kind, e.g. `diverged`.
+    pub kind: String,
+    /// Index of the sample (warm-up included) at which it failed.
+    pub sample: u64,
+    /// What happened, for people.
+    pub message: String,
+}
+
+/// Everything measured on one channel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ChannelMetrics {
+    /// Metrics by key (`angle_random_walk_deg_per_sqrt_h`, ...).
+    pub metrics: BTreeMap<String, Metric>,
+    /// Metrics the record cannot support, with the reason.
+    pub unavailable: BTreeMap<String, String>,
+    /// Curves: name, then column name and values.
+    pub curves: BTreeMap<String, Curve>,
+    /// The main metrics over the repeats by key; empty for a single record.
+    pub repeats: BTreeMap<String, RepeatStatistics>,
+    /// Columns of words of a curve, by curve and column; a single word holds for all its points.
+    pub curve_labels: BTreeMap<String, BTreeMap<String, Vec<&'static str>>>,
+    /// Set when the channel failed; its metrics are then empty but for `diverged_at_s`.
+    pub error: Option<ChannelFailure>,
+}
 
 impl ChannelMetrics {
     /// Enters a metric under its catalogue unit, and returns it for its defining fields.
@@ -36,6 +56,57 @@ impl ChannelMetrics {
         self.metrics
             .entry(key.name.to_owned())
             .or_insert_with(|| Metric::new(estimate, key.unit))
+    }
+
+    /// Enters a curve, in place of an earlier one.
+    pub(crate) fn put_curve(
+        &mut self,
+        key: &CurveKey,
+        columns: impl IntoIterator<Item = (&'static Column, Vec<f64>)>,
+    ) {
+        let columns = columns.into_iter().map(|(column, values)| {
+            debug_assert!(
+                key.has(column),
+                "{} has no column {}",
+                key.name,
+                column.name
+            );
+            (column.name.to_owned(), values)
+        });
+        self.curves.insert(key.name.to_owned(), columns.collect());
+    }
+
+    /// Enters the columns of words of a curve.
+    pub(crate) fn put_words(
+        &mut self,
+        key: &CurveKey,
+        columns: impl IntoIterator<Item = (&'static Column, Vec<&'static str>)>,
+    ) {
+        let columns = columns.into_iter().map(|(column, words)| {
+            debug_assert!(
+                key.has(column),
+                "{} has no column {}",
+                key.name,
+                column.name
+            );
+            (column.name.to_owned(), words)
+        });
+        let columns = columns.collect();
+        self.curve_labels.insert(key.name.to_owned(), columns);
+    }
+
+    /// A curve of the channel; none if the record does not support it.
+    #[must_use]
+    pub fn curve(&self, key: &CurveKey) -> Option<&Curve> {
+        self.curves.get(key.name)
+    }
+
+    /// Words of a column of a curve, empty where there are none.
+    #[must_use]
+    pub fn words(&self, key: &CurveKey, column: &Column) -> &[&'static str] {
+        let labels = self.curve_labels.get(key.name);
+        let words = labels.and_then(|labels| labels.get(column.name));
+        words.map_or(&[], Vec::as_slice)
     }
 
     /// Says why a metric is missing.
@@ -123,86 +194,5 @@ impl ChannelMetrics {
                 metric.fields.insert("exact_to_word", 1.0);
             }
         }
-    }
-
-    /// Enters the five fitted coefficients or the reasons for their absence.
-    pub(crate) fn put_noise_fit(&mut self, fit: &NoiseFit) {
-        type Conversion = fn(f64) -> f64;
-        let entries: [(&MetricKey, &Term, Conversion); 5] = [
-            (
-                &ANGLE_RANDOM_WALK,
-                &fit.angle_random_walk_deg_per_h_sqrt_s,
-                units::deg_per_h_sqrt_s_to_deg_per_sqrt_h,
-            ),
-            (
-                &BIAS_INSTABILITY,
-                &fit.bias_instability_deg_per_h,
-                std::convert::identity,
-            ),
-            (
-                &RATE_RANDOM_WALK,
-                &fit.rate_random_walk_deg_per_h_per_sqrt_s,
-                units::deg_per_h_per_sqrt_s_to_deg_per_h_per_sqrt_h,
-            ),
-            (
-                &RATE_RAMP,
-                &fit.rate_ramp_deg_per_h_per_s,
-                units::deg_per_h_per_s_to_deg_per_h_per_h,
-            ),
-            (
-                &QUANTISATION,
-                &fit.quantisation_arcsec,
-                std::convert::identity,
-            ),
-        ];
-        for (key, term, convert) in entries {
-            match term {
-                Term::Found(estimate) => {
-                    let estimate = estimate.scaled(convert(1.0));
-                    let metric = self.put(key, estimate);
-                    metric.fields.insert("tau_min_s", fit.tau_range_s[0]);
-                    metric.fields.insert("tau_max_s", fit.tau_range_s[1]);
-                }
-                Term::LeftOut { reason, allowed } => {
-                    self.metrics.remove(key.name);
-                    let high = convert(allowed.high);
-                    // A bound of nothing is that of a record that these five terms do not describe.
-                    let bound = if high > 0.0 && high < BOUND_MAX {
-                        format!("; it is {} {} at most (95 %)", three_digits(high), key.unit)
-                    } else {
-                        String::new()
-                    };
-                    self.miss(key, format!("{reason}{bound}"));
-                }
-            }
-        }
-    }
-
-    /// Enters the spectrum.
-    pub(crate) fn put_spectrum(&mut self, spectrum: Spectrum) {
-        let mut curve = BTreeMap::new();
-        // Half the one-sided density at either sign of the frequency: N^2 of white noise.
-        let halves = spectrum.density_deg2_per_h2_per_hz.iter();
-        curve.insert(
-            TWO_SIDED_PSD.into(),
-            halves.map(|density| density / 2.0).collect(),
-        );
-        curve.insert("frequency_hz".into(), spectrum.frequency_hz);
-        curve.insert(
-            "psd_deg2_per_h2_per_hz".into(),
-            spectrum.density_deg2_per_h2_per_hz,
-        );
-        self.curves.insert("psd".into(), curve);
-    }
-}
-
-/// A bound to three digits, as plain as its size allows.
-fn three_digits(value: f64) -> String {
-    if (1e-3..1e4).contains(&value) {
-        let magnitude = value.log10().floor();
-        let decimals = (2.0 - magnitude).max(0.0);
-        format!("{value:.*}", super::interval::round_to_count(decimals))
-    } else {
-        format!("{value:.2e}")
     }
 }

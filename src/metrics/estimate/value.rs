@@ -1,8 +1,6 @@
-//! A number with its interval, and the table of such numbers for one channel.
+//! A number with its interval.
 
 use std::collections::BTreeMap;
-
-use super::repeat_statistics::RepeatStatistics;
 
 /// Confidence of every interval unless a record says otherwise.
 pub(crate) const CONFIDENCE: f64 = 0.95;
@@ -96,32 +94,4 @@ impl Metric {
         self.fields.insert(field, value);
         self
     }
-}
-
-/// Why a channel has no numbers: it failed while running.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ChannelFailure {
-    /// Kind, e.g. `diverged`.
-    pub kind: String,
-    /// Index of the sample (warm-up included) at which it failed.
-    pub sample: u64,
-    /// What happened, for people.
-    pub message: String,
-}
-
-/// Everything measured on one channel.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ChannelMetrics {
-    /// Metrics by key (`angle_random_walk_deg_per_sqrt_h`, ...).
-    pub metrics: BTreeMap<String, Metric>,
-    /// Metrics the record cannot support, with the reason.
-    pub unavailable: BTreeMap<String, String>,
-    /// Curves: name, then column name and values.
-    pub curves: BTreeMap<String, BTreeMap<String, Vec<f64>>>,
-    /// The main metrics over the repeats by key; empty for a single record.
-    pub repeats: BTreeMap<String, RepeatStatistics>,
-    /// Columns of words of a curve, by curve and column; a single word holds for all its points.
-    pub curve_labels: BTreeMap<String, BTreeMap<String, Vec<&'static str>>>,
-    /// Set when the channel failed; its metrics are then empty but for `diverged_at_s`.
-    pub error: Option<ChannelFailure>,
 }

@@ -309,11 +309,6 @@ impl MetricKey {
             .map_or_else(|| self.name.replace('_', " "), str::to_owned)
     }
 
-    /// Whether the Allan fit gives it.
-    pub(crate) fn is_fitted(&self) -> bool {
-        matches!(self.pool, Pool::AllanFit)
-    }
-
     /// Whether the scatter of repeats gives it, which a single record cannot.
     pub(crate) fn is_repeatability(&self) -> bool {
         matches!(self.pool, Pool::ScatterOf(_) | Pool::RelativeScatterOf(_))

@@ -1,5 +1,8 @@
 //! Measuring one channel under each kind of motion.
 
+pub(super) mod mean;
 pub(super) mod multi_sine;
 pub(super) mod steady;
+pub(super) mod steps;
 pub(super) mod swing;
+pub(super) mod tracking;

@@ -1,21 +1,39 @@
 //! Metrics of a record of several sines at once.
 
-use std::collections::BTreeMap;
-
-use super::steady::{LAGS_MIN, RATIO_BLOCKS, equal_block_means, put_mean};
+use super::mean::{MEAN_RATIO, put_mean, ratio_of_means_lack};
+use super::steady::LAGS_MIN;
 use super::swing::{AMPLITUDE_RATIO, DELAY_VS_RAW, DELAY_VS_TRUTH};
+use super::tracking::TRACKING_ERROR_RMS;
+use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::curve::CurveKey;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
-use crate::metrics::measure::TRACKING_ERROR_RMS;
 use crate::metrics::noise::autocovariance::LaggedProducts;
-use crate::metrics::noise::level::{
-    MEAN_RATIO, put_noise_gain, put_noise_std, ratio_of_means_lack,
-};
+use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::truth_response::{reach, remove_response};
 use crate::metrics::record::{FilterFacts, Record};
-use crate::metrics::sine::tones::{ToneClock, ToneFits, ToneResponse, fit_tones};
+use crate::metrics::sine::tones::{
+    RESPONSE_COLUMNS, ToneClock, ToneFits, ToneResponse, fit_tones, put_responses,
+};
 use crate::units;
+
+/// Frequency response to the true rate.
+pub static FREQUENCY_RESPONSE: CurveKey = CurveKey::new(
+    "frequency_response",
+    RESPONSE_COLUMNS,
+    "response of the channel to the true rate at every tone",
+)
+.picture("bode.svg");
+
+/// Frequency response of a filter to raw.
+pub static FREQUENCY_RESPONSE_VS_RAW: CurveKey = CurveKey::new(
+    "frequency_response_vs_raw",
+    RESPONSE_COLUMNS,
+    "response of a filter to raw at every tone, while it adapts",
+)
+.picture("filter-response.svg");
 
 /// Bandwidth.
 pub static BANDWIDTH: MetricKey = MetricKey::new(
@@ -69,12 +87,12 @@ pub(crate) fn measure_multi_sine(
     let reference = if filter.is_some() {
         let behind_raw = later(fits.response(CHANNEL, RAW), latency_s);
         put_lowest(&DELAY_VS_RAW, &behind_raw, metrics);
-        put_curve("frequency_response_vs_raw", &behind_raw, metrics);
+        put_responses(&FREQUENCY_RESPONSE_VS_RAW, &behind_raw, metrics);
         behind_raw
     } else {
         behind_truth.clone()
     };
-    put_curve("frequency_response", &behind_truth, metrics);
+    put_responses(&FREQUENCY_RESPONSE, &behind_truth, metrics);
     if let Some(lowest) = reference.first() {
         let metric = metrics.put(&AMPLITUDE_RATIO, lowest.gain);
         metric.fields.insert("frequency_hz", lowest.frequency_hz);
@@ -117,49 +135,6 @@ fn put_lowest(key: &MetricKey, responses: &[ToneResponse], metrics: &mut Channel
         let delay_ms = lowest.delay_s.scaled(units::s_to_ms(1.0));
         let metric = metrics.put(key, delay_ms);
         metric.fields.insert("frequency_hz", lowest.frequency_hz);
-    }
-}
-
-/// Enters gain, phase and delay of every tone with their intervals.
-pub(crate) fn put_curve(name: &str, responses: &[ToneResponse], metrics: &mut ChannelMetrics) {
-    type Pick = fn(&ToneResponse) -> Estimate;
-    let quantities: [(&str, &str, Pick); 3] = [
-        ("gain", "", |response| response.gain),
-        ("phase", "_deg", |response| {
-            response.phase_rad.scaled(units::rad_to_deg(1.0))
-        }),
-        ("delay", "_ms", |response| {
-            response.delay_s.scaled(units::s_to_ms(1.0))
-        }),
-    ];
-    let frequencies_hz = responses.iter().map(|response| response.frequency_hz);
-    let mut curve = BTreeMap::from([("frequency_hz".to_owned(), frequencies_hz.collect())]);
-    for (quantity, unit, pick) in quantities {
-        let column = |end: fn(Estimate) -> f64| -> Vec<f64> {
-            responses
-                .iter()
-                .map(|response| end(pick(response)))
-                .collect()
-        };
-        curve.insert(
-            format!("{quantity}{unit}"),
-            column(|estimate| estimate.value),
-        );
-        curve.insert(
-            format!("{quantity}_low{unit}"),
-            column(|estimate| estimate.low),
-        );
-        curve.insert(
-            format!("{quantity}_high{unit}"),
-            column(|estimate| estimate.high),
-        );
-    }
-    if curve
-        .values()
-        .flatten()
-        .all(|value: &f64| value.is_finite())
-    {
-        metrics.curves.insert(name.to_owned(), curve);
     }
 }
 

@@ -2,23 +2,25 @@
 
 use std::f64::consts::TAU;
 
-use super::steady::{DC_GAIN_PREDICTED, LAGS_MIN, put_mean};
+use super::mean::{MEAN_RATIO, put_mean, ratio_of_means_lack};
+use super::steady::LAGS_MIN;
+use super::tracking::TRACKING_ERROR_RMS;
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate, Metric};
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::{Estimate, Metric};
 use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Table};
-use crate::metrics::measure::TRACKING_ERROR_RMS;
 use crate::metrics::noise::autocovariance::LaggedProducts;
-use crate::metrics::noise::level::{
-    MEAN_RATIO, put_noise_gain, put_noise_std, ratio_of_means_lack,
-};
+use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::truth_response::{reach, remove_response};
 use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::sine::correlation::correlation_delay_s;
 use crate::metrics::sine::fit::{SwingClock, SwingFit, fit_swing};
-use crate::metrics::theory::prediction::{filter_bound, lags_needed, predict};
+use crate::metrics::theory::bound::filter_bound;
+use crate::metrics::theory::prediction::{lags_needed, predict};
 use crate::metrics::trial::noise_delay::{
     NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve, put_over_bound,
 };
+use crate::metrics::trial::predicted::DC_GAIN_PREDICTED;
 use crate::metrics::trial::readaptation;
 use crate::metrics::trial::readaptation::GainUnits;
 use crate::units;

@@ -2,8 +2,28 @@
 
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::curve::{Column, CurveKey};
 use crate::metrics::key::metric::{Applies, MetricKey, Needs};
+
+/// Lag.
+pub static LAG: Column = Column::new("lag_s", "s", "time between the two samples");
+
+/// Autocovariance at a lag.
+pub static PRODUCT: Column = Column::new(
+    "autocovariance_deg2_per_h2",
+    "(deg/h)^2",
+    "mean product of the noise of two samples that far apart",
+);
+
+/// Autocovariance of the noise.
+pub static AUTOCOVARIANCE: CurveKey = CurveKey::new(
+    "autocovariance",
+    &[&LAG, &PRODUCT],
+    "autocovariance of the noise about the signal over the first lags",
+)
+.csv("autocovariance.csv");
 
 /// Correlation at lag one.
 pub static LAG1_CORRELATION: MetricKey = MetricKey::new(
@@ -65,13 +85,8 @@ pub(crate) fn put_autocovariance(
     let mut autocovariance = products.autocovariance();
     autocovariance.truncate(CURVE_LAGS + 1);
     let lags = (0..autocovariance.len()).map(|lag| lag as f64 * sample_period_s);
-    let curve = [
-        ("lag_s".to_owned(), lags.collect()),
-        ("autocovariance_deg2_per_h2".to_owned(), autocovariance),
-    ];
-    metrics
-        .curves
-        .insert("autocovariance".to_owned(), curve.into());
+    let columns = [(&LAG, lags.collect()), (&PRODUCT, autocovariance)];
+    metrics.put_curve(&AUTOCOVARIANCE, columns);
 }
 
 /// Sums of lagged products, block by block.

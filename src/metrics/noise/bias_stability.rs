@@ -3,11 +3,12 @@
 use std::f64::consts::PI;
 
 use crate::metrics::allan::noise_fit::NoiseCoefficients;
+use crate::metrics::estimate::blocks::is_sample_or_longer;
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::interval::round_to_count;
 use crate::metrics::estimate::table::{DEGREES_OF_FREEDOM, RAW_CORRELATION};
 use crate::metrics::estimate::value::{Estimate, Metric};
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
+use crate::wording::plain;
 
 /// Bias stability over 1 s.
 pub static BIAS_STABILITY_1S: MetricKey = MetricKey::new(
@@ -56,41 +57,18 @@ pub static BIAS_STABILITY: MetricKey = MetricKey::new(
 .tables(&[Table::Rest])
 .headlines(&[Headline::Rest]);
 
-/// Means of consecutive blocks of `block_samples`; what is left over at the end is not used.
-#[must_use]
-pub fn block_means(rate_deg_per_h: &[f64], block_samples: usize) -> Vec<f64> {
-    rate_deg_per_h
-        .chunks_exact(block_samples.max(1))
-        .map(interval::mean)
-        .collect()
-}
+/// Fewest blocks of which a bias stability is given.
+pub(crate) const BLOCKS_MIN: usize = 5;
 
-/// Number of whole samples in an averaging time, at least 1.
-#[must_use]
-pub fn samples_in(averaging_time_s: f64, sample_period_s: f64) -> usize {
-    round_to_count(averaging_time_s / sample_period_s).max(1)
-}
-
-/// Slack of a comparison of times that were rounded.
-const TIME_SLACK: f64 = 1e-9;
-
-/// Part of an averaging time by which the whole samples in it may miss it and still be named by it: half
-/// of that in a deviation, far within its interval.
-const NAMED_WITHIN: f64 = 0.01;
-
-/// Whether an averaging time holds a sample, which is the shortest time that can be averaged over.
-#[must_use]
-pub fn is_sample_or_longer(averaging_time_s: f64, sample_period_s: f64) -> bool {
-    averaging_time_s >= sample_period_s * (1.0 - TIME_SLACK)
-}
-
-/// Time that blocks of [`samples_in`] samples are labelled with, s: the time asked for where they hold it
-/// to a hundredth, else the time that they do hold.
-#[must_use]
-pub fn block_label_s(averaging_time_s: f64, sample_period_s: f64) -> f64 {
-    let block_s = samples_in(averaging_time_s, sample_period_s) as f64 * sample_period_s;
-    let is_named = (block_s - averaging_time_s).abs() <= NAMED_WITHIN * averaging_time_s;
-    if is_named { averaging_time_s } else { block_s }
+/// Why samples of a period cannot be averaged over a time; nothing if they can.
+pub(crate) fn averaging_lack(averaging_time_s: f64, sample_period_s: f64) -> Option<String> {
+    (!is_sample_or_longer(averaging_time_s, sample_period_s)).then(|| {
+        format!(
+            "an averaging time of {} s is shorter than a sample, which takes {} s",
+            plain(averaging_time_s),
+            plain(sample_period_s)
+        )
+    })
 }
 
 /// Expected standard deviation of `count` block means of `averaging_time_s` each, deg/h.
@@ -280,19 +258,6 @@ mod tests {
             rate_random_walk_deg_per_h_per_sqrt_s: 0.1,
             ..NoiseCoefficients::default()
         });
-    }
-
-    #[test]
-    fn blocks_are_labelled_with_the_time_they_hold() {
-        // Half a sample of 100 s at 4 kHz is nothing, of 1.4 s at 1 Hz it is 0.4 s.
-        let period_s = 1.0 / 3989.45;
-        assert_eq!(
-            block_label_s(100.0, period_s).to_bits(),
-            100.0_f64.to_bits()
-        );
-        assert_eq!(block_label_s(1.4, 1.0).to_bits(), 1.0_f64.to_bits());
-        assert_eq!(block_label_s(1.6, 1.0).to_bits(), 2.0_f64.to_bits());
-        assert!(is_sample_or_longer(0.3, 0.1 * 3.0) && !is_sample_or_longer(1e-6, 2.5e-4));
     }
 
     #[test]

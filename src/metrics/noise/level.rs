@@ -2,23 +2,9 @@
 
 use super::autocovariance::{LaggedProducts, independent_samples, put_autocovariance};
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::table::DEGREES_OF_FREEDOM;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
+use crate::metrics::estimate::table::{ChannelMetrics, DEGREES_OF_FREEDOM};
+use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
-use crate::metrics::motion::steady::{RATIO_BLOCKS, equal_block_means};
-use crate::metrics::record::Record;
-use crate::wording::decimals;
-
-/// Mean over that of raw.
-pub static MEAN_RATIO: MetricKey = MetricKey::of_filters(
-    "mean_ratio",
-    "1",
-    Applies::Always,
-    "mean of the channel over the mean of raw",
-)
-.heading("mean / raw mean")
-.of_one_motion()
-.tables(&[Table::Rest, Table::Steps]);
 
 /// Standard deviation of the noise.
 pub static NOISE_STD: MetricKey = MetricKey::new(
@@ -92,41 +78,4 @@ pub(crate) fn put_noise_gain(
     // A power is never negative.
     let gain = Estimate::with_interval(gain.value, gain.low.max(0.0), gain.high);
     metrics.put(&NOISE_GAIN, gain);
-}
-
-/// Ratio of the means, if raw's mean can be told from zero.
-pub(crate) fn measure_mean_ratio(record: &Record, metrics: &mut ChannelMetrics) {
-    let channel = equal_block_means(record.channel_deg_per_h, RATIO_BLOCKS);
-    let raw = equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS);
-    put_ratio_of_means(&MEAN_RATIO, &channel, &raw, metrics);
-}
-
-/// Why nothing can be divided by raw's mean; nothing if it can be told from zero.
-pub(crate) fn ratio_of_means_lack(raw_mean: &Estimate) -> Option<String> {
-    (raw_mean.low <= 0.0 && raw_mean.high >= 0.0).then(|| {
-        format!(
-            "the raw mean, {} deg/h, cannot be told from zero",
-            decimals(raw_mean.value, 4)
-        )
-    })
-}
-
-/// Enters the ratio of the means of equally long blocks.
-pub(crate) fn put_ratio_of_means(
-    key: &MetricKey,
-    channel: &[f64],
-    raw: &[f64],
-    metrics: &mut ChannelMetrics,
-) {
-    let raw_mean = interval::from_parts(interval::mean(raw), raw);
-    if let Some(reason) = ratio_of_means_lack(&raw_mean) {
-        return metrics.miss(key, reason);
-    }
-    let (channel_sum, raw_sum): (f64, f64) = (channel.iter().sum(), raw.iter().sum());
-    let left_out: Vec<f64> = channel
-        .iter()
-        .zip(raw)
-        .map(|(own, other)| (channel_sum - own) / (raw_sum - other))
-        .collect();
-    metrics.put(key, interval::jackknife(channel_sum / raw_sum, &left_out));
 }

@@ -5,6 +5,35 @@ use std::f64::consts::PI;
 use realfft::RealFftPlanner;
 
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::key::curve::{Column, CurveKey, CurvePool};
+
+/// Frequency.
+pub static FREQUENCY: Column = Column::new("frequency_hz", "Hz", "middle of the bin");
+
+/// One-sided density.
+pub static DENSITY: Column = Column::new(
+    "psd_deg2_per_h2_per_hz",
+    "(deg/h)^2/Hz",
+    "one-sided power spectral density: its integral over positive frequencies is the variance",
+);
+
+/// Two-sided density.
+pub static TWO_SIDED_DENSITY: Column = Column::new(
+    "two_sided_psd_deg2_per_h2_per_hz",
+    "(deg/h)^2/Hz",
+    "half of it, at either sign of the frequency; of white noise the square of N",
+);
+
+/// Power spectral density.
+pub static PSD: CurveKey = CurveKey::new(
+    "psd",
+    &[&FREQUENCY, &DENSITY, &TWO_SIDED_DENSITY],
+    "power spectral density of the rate by Welch's method, in bins of equal logarithmic width",
+)
+.csv("psd.csv")
+.picture("spectrum.svg")
+.pooled(CurvePool::Power);
 
 /// Longest segment, samples: 2^18 at 4 kHz reaches down to 15 mHz.
 const SEGMENT_MAX: usize = 1 << 18;
@@ -116,4 +145,17 @@ pub fn log_binned(spectrum: &Spectrum, points_max: usize) -> Spectrum {
         start = end;
     }
     binned
+}
+
+/// Enters the spectrum.
+pub(crate) fn put_spectrum(spectrum: Spectrum, metrics: &mut ChannelMetrics) {
+    // Half the one-sided density at either sign of the frequency: N^2 of white noise.
+    let halves = spectrum.density_deg2_per_h2_per_hz.iter();
+    let halves = halves.map(|density| density / 2.0).collect();
+    let columns = [
+        (&TWO_SIDED_DENSITY, halves),
+        (&FREQUENCY, spectrum.frequency_hz),
+        (&DENSITY, spectrum.density_deg2_per_h2_per_hz),
+    ];
+    metrics.put_curve(&PSD, columns);
 }

@@ -1,62 +1,22 @@
 //! Pooling of independent repeats of one channel.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::metrics::allan::curves::pool_allan;
-use crate::metrics::catalogue::support::repeats_lack;
-use crate::metrics::catalogue::{find, known_metrics, repeated_metrics};
+use super::allan::pool_allan;
+use super::curves::pool_curves;
+use super::repeatability::put_repeatability;
+use crate::metrics::catalogue::{find, repeated_metrics};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::repeat_statistics::RepeatStatistics;
 use crate::metrics::estimate::table::{
-    DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION, TWO_SIDED_PSD,
+    ChannelMetrics, DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION,
 };
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate, Metric};
-use crate::metrics::key::metric::{Applies, MetricKey, Pool, Table};
-use crate::metrics::motion::steady::MEAN;
-use crate::metrics::steps::scale_factor::scale_factor_repeatability;
-use crate::metrics::steps::staircase::SCALE_FACTOR_ERROR;
-use crate::units::ratio_to_ppm;
-
-/// Bias repeatability.
-pub static BIAS_REPEATABILITY: MetricKey = MetricKey::new(
-    "bias_repeatability_deg_per_h",
-    "deg/h",
-    Applies::Steady,
-    "standard deviation of the means of six repeats or more, each a start of its own",
-)
-.heading("bias repeatability")
-.pooled(Pool::ScatterOf(&MEAN))
-.by_choice()
-.tables(&[Table::Rest]);
-
-/// Scale factor repeatability.
-pub static SCALE_FACTOR_REPEATABILITY: MetricKey = MetricKey::new(
-    "scale_factor_repeatability_ppm",
-    "ppm",
-    Applies::Steps,
-    "standard deviation of the scale factors of six repeats or more over their mean",
-)
-.heading("scale factor repeatability")
-.pooled(Pool::RelativeScatterOf(&SCALE_FACTOR_ERROR))
-.of_turned_axis()
-.by_choice()
-.tables(&[Table::Steps]);
+use crate::metrics::estimate::value::{Estimate, Metric};
+use crate::metrics::key::metric::Pool;
 
 /// From this many repeats on, Student's t on their scatter gives the interval; below, the intervals
 /// of the repeats themselves say more.
 const SCATTER_REPEATS_MIN: usize = 6;
-
-/// Curves of points that have intervals of their own.
-const POINT_CURVES: [&str; 8] = [
-    "autocovariance",
-    "response",
-    "scale_factor",
-    "frequency_response",
-    "frequency_response_vs_raw",
-    "frozen_response",
-    "noise_delay_bound",
-    "rate_gain",
-];
 
 /// Pools independent repeats of the same channel.
 ///
@@ -98,57 +58,13 @@ pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
         }
     }
     put_repeatability(repeats, &mut pooled);
-    pool_spectra(repeats, &mut pooled);
-    pool_points(repeats, &mut pooled);
+    pool_curves(repeats, &mut pooled);
     pool_allan(repeats, &mut pooled);
     pooled.repeats = repeated_metrics()
         .into_iter()
         .filter_map(|key| Some((key.name.to_owned(), RepeatStatistics::of(repeats, key)?)))
         .collect();
     pooled
-}
-
-/// Enters the scatter of scale factor and bias over the repeats, where a single record would have
-/// them but for their number.
-///
-/// Source: IEEE Std 952, repeatability; the interval is the chi-square one of a standard deviation.
-fn put_repeatability(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
-    for key in known_metrics() {
-        let (Pool::ScatterOf(source) | Pool::RelativeScatterOf(source)) = key.pool else {
-            continue;
-        };
-        let single = repeats_lack(key, 1);
-        if pooled.why_unavailable(key) != single.as_deref() {
-            continue;
-        }
-        if let Some(reason) = repeats_lack(key, repeats.len()) {
-            pooled.miss(key, reason);
-            continue;
-        }
-        let values: Option<Vec<f64>> = repeats
-            .iter()
-            .map(|repeat| Some(repeat.get(source)?.estimate.value))
-            .collect();
-        let Some(values) = values else {
-            pooled.miss(key, format!("not every repeat has a {}", source.name));
-            continue;
-        };
-        let factors: Vec<f64> = values
-            .iter()
-            .map(|ppm| 1.0 + ppm / ratio_to_ppm(1.0))
-            .collect();
-        let is_relative = matches!(key.pool, Pool::RelativeScatterOf(_));
-        let scatter = match scale_factor_repeatability(&factors) {
-            Some(ratio) if is_relative => ratio_to_ppm(ratio),
-            _ => interval::sample_variance(&values).sqrt(),
-        };
-        let freedom = values.len() as f64 - 1.0;
-        let fields = &mut pooled
-            .put(key, interval::deviation(scatter, freedom))
-            .fields;
-        fields.insert(DEGREES_OF_FREEDOM, freedom);
-        fields.insert("repeats", values.len() as f64);
-    }
 }
 
 /// Whether a metric is pooled by its squares.
@@ -227,81 +143,4 @@ fn pool_mean(values: &[f64], metrics: &[&Metric]) -> Estimate {
     }
     let square: f64 = half_widths.iter().map(|width| width * width).sum();
     Estimate::symmetric(mean, square.sqrt() / values.len() as f64)
-}
-
-/// Column of a curve in every repeat; `None` unless all have it in the same length.
-pub(crate) fn columns<'a>(
-    repeats: &'a [ChannelMetrics],
-    curve: &str,
-    column: &str,
-) -> Option<Vec<&'a Vec<f64>>> {
-    let found: Option<Vec<&Vec<f64>>> = repeats
-        .iter()
-        .map(|repeat| repeat.curves.get(curve)?.get(column))
-        .collect();
-    found.filter(|all| !all.is_empty() && all.iter().all(|one| one.len() == all[0].len()))
-}
-
-/// Mean over the repeats of `transform(value)`, entry by entry.
-pub(crate) fn mean_of(columns: &[&Vec<f64>], transform: fn(f64) -> f64) -> Vec<f64> {
-    (0..columns[0].len())
-        .map(|index| {
-            let sum: f64 = columns.iter().map(|column| transform(column[index])).sum();
-            sum / columns.len() as f64
-        })
-        .collect()
-}
-
-fn pool_spectra(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
-    let frequency = columns(repeats, "psd", "frequency_hz");
-    let density = columns(repeats, "psd", "psd_deg2_per_h2_per_hz");
-    if let (Some(frequency), Some(density)) = (frequency, density) {
-        let curve = BTreeMap::from([
-            ("frequency_hz".to_owned(), frequency[0].clone()),
-            (
-                "psd_deg2_per_h2_per_hz".to_owned(),
-                mean_of(&density, std::convert::identity),
-            ),
-            (
-                TWO_SIDED_PSD.to_owned(),
-                mean_of(&density, |value| value / 2.0),
-            ),
-        ]);
-        pooled.curves.insert("psd".to_owned(), curve);
-    }
-}
-
-/// Averages the curves whose points have intervals of their own, which shrink with the root of the
-/// number of repeats.
-fn pool_points(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
-    let shrink = 1.0 / (repeats.len() as f64).sqrt();
-    for name in POINT_CURVES {
-        let Some(first) = repeats.first().and_then(|repeat| repeat.curves.get(name)) else {
-            continue;
-        };
-        let mean = |column: &str| {
-            let found = columns(repeats, name, column)?;
-            Some(mean_of(&found, std::convert::identity))
-        };
-        let pool = |column: &String| {
-            let own = mean(column)?;
-            let middle = ["_low", "_high"]
-                .iter()
-                .find(|end| column.contains(*end))
-                .and_then(|end| mean(&column.replace(end, "")));
-            let values = match middle {
-                Some(middle) => own
-                    .iter()
-                    .zip(&middle)
-                    .map(|(end, middle)| middle + shrink * (end - middle))
-                    .collect(),
-                None => own,
-            };
-            Some((column.clone(), values))
-        };
-        let curve: Option<BTreeMap<String, Vec<f64>>> = first.keys().map(pool).collect();
-        if let Some(curve) = curve {
-            pooled.curves.insert(name.to_owned(), curve);
-        }
-    }
 }

@@ -5,7 +5,10 @@ use std::f64::consts::TAU;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::curve::{Column, CurveKey};
+use crate::units;
 use crate::wording::counted;
 
 /// Blocks that leave the fit in turn, for the jackknife.
@@ -301,4 +304,82 @@ pub fn bandwidth_hz(frequencies_hz: &[f64], gains: &[f64]) -> Option<f64> {
             (squares[0] + part * (squares[1] - squares[0])).sqrt()
         })
     })
+}
+
+/// Frequency of a tone.
+pub static FREQUENCY: Column = Column::new("frequency_hz", "Hz", "frequency of the tone");
+
+/// Gain.
+pub static GAIN: Column = Column::new("gain", "1", "amplitude over that of the reference");
+
+/// Lower end of the gain.
+pub static GAIN_LOW: Column = Column::low("gain_low", &GAIN);
+
+/// Upper end of the gain.
+pub static GAIN_HIGH: Column = Column::high("gain_high", &GAIN);
+
+/// Phase.
+pub static PHASE: Column = Column::new(
+    "phase_deg",
+    "deg",
+    "phase against the reference, negative for a lag; continued from tone to tone",
+);
+
+/// Lower end of the phase.
+pub static PHASE_LOW: Column = Column::low("phase_low_deg", &PHASE);
+
+/// Upper end of the phase.
+pub static PHASE_HIGH: Column = Column::high("phase_high_deg", &PHASE);
+
+/// Phase delay.
+pub static DELAY: Column = Column::new("delay_ms", "ms", "phase delay behind the reference");
+
+/// Lower end of the delay.
+pub static DELAY_LOW: Column = Column::low("delay_low_ms", &DELAY);
+
+/// Upper end of the delay.
+pub static DELAY_HIGH: Column = Column::high("delay_high_ms", &DELAY);
+
+/// Columns of every curve of responses.
+pub(crate) const RESPONSE_COLUMNS: &[&Column] = &[
+    &FREQUENCY,
+    &GAIN,
+    &GAIN_LOW,
+    &GAIN_HIGH,
+    &PHASE,
+    &PHASE_LOW,
+    &PHASE_HIGH,
+    &DELAY,
+    &DELAY_LOW,
+    &DELAY_HIGH,
+];
+
+/// Enters gain, phase and delay of every tone with their intervals, where all are finite.
+pub(crate) fn put_responses(
+    key: &CurveKey,
+    responses: &[ToneResponse],
+    metrics: &mut ChannelMetrics,
+) {
+    type Pick = fn(&ToneResponse) -> Estimate;
+    let quantities: [([&'static Column; 3], Pick); 3] = [
+        ([&GAIN, &GAIN_LOW, &GAIN_HIGH], |response| response.gain),
+        ([&PHASE, &PHASE_LOW, &PHASE_HIGH], |response| {
+            response.phase_rad.scaled(units::rad_to_deg(1.0))
+        }),
+        ([&DELAY, &DELAY_LOW, &DELAY_HIGH], |response| {
+            response.delay_s.scaled(units::s_to_ms(1.0))
+        }),
+    ];
+    let frequencies_hz = responses.iter().map(|response| response.frequency_hz);
+    let mut columns = vec![(&FREQUENCY, frequencies_hz.collect::<Vec<f64>>())];
+    for ([value, low, high], pick) in quantities {
+        let column = |end: fn(Estimate) -> f64| responses.iter().map(|of| end(pick(of))).collect();
+        columns.push((value, column(|estimate| estimate.value)));
+        columns.push((low, column(|estimate| estimate.low)));
+        columns.push((high, column(|estimate| estimate.high)));
+    }
+    let mut values = columns.iter().flat_map(|(_, values)| values);
+    if values.all(|value| value.is_finite()) {
+        metrics.put_curve(key, columns);
+    }
 }

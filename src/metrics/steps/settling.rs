@@ -3,7 +3,21 @@
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::metrics::estimate::interval;
+use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
 use crate::wording::counted;
+
+/// Settling time.
+pub static SETTLING_TIME: MetricKey = MetricKey::new(
+    "settling_time_s",
+    "s",
+    Applies::Steps,
+    "time after the last step until the rate stays within max(1 % of the step, 5 sigma)",
+)
+.heading("settling time")
+.needs(Needs::Step)
+.of_turned_axis()
+.tables(&[Table::Steps])
+.headlines(&[Headline::Steps]);
 
 /// Half width of the band as a part of the step.
 const BAND_PER_STEP: f64 = 0.01;

@@ -2,7 +2,8 @@
 
 use super::settling::Settling;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Needs, Table};
 use crate::wording::decimals;
 

@@ -1,6 +1,5 @@
 //! Scale factor metrics of a staircase of rates.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::scale_factor::{
@@ -8,13 +7,119 @@ use super::scale_factor::{
     distinct_rates_by_sense, fit_scale_factor, too_few_rates,
 };
 use super::small_input::measure_small_inputs;
+use crate::metrics::estimate::blocks::equal_block_means;
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::curve::{Column, CurveKey};
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
-use crate::metrics::motion::steady::equal_block_means;
 use crate::metrics::record::{Dwell, Record, Staircase};
 use crate::units::{deg_per_h_to_deg_per_s, ratio_to_ppm};
 use crate::wording::plain;
+
+/// Input of a dwell.
+pub static INPUT: Column = Column::new(
+    "input_deg_per_h",
+    "deg/h",
+    "mean true rate of the dwell; in `scale_factor` less that at rest",
+);
+
+/// Output of a dwell.
+pub static OUTPUT: Column = Column::new(
+    "output_deg_per_h",
+    "deg/h",
+    "mean of the channel over its settled samples; in `scale_factor` less that at rest",
+);
+
+/// Error of a dwell.
+pub static ERROR: Column = Column::new("error_deg_per_h", "deg/h", "output minus input");
+
+/// Lower end of the error.
+pub static ERROR_LOW: Column = Column::low("error_low_deg_per_h", &ERROR);
+
+/// Upper end of the error.
+pub static ERROR_HIGH: Column = Column::high("error_high_deg_per_h", &ERROR);
+
+/// Output and error of every dwell.
+pub static RESPONSE: CurveKey = CurveKey::new(
+    "response",
+    &[&INPUT, &OUTPUT, &ERROR, &ERROR_LOW, &ERROR_HIGH],
+    "output and error at each rate of a staircase",
+)
+.picture("response.svg");
+
+/// Output of a dwell as it is.
+pub static MEAN_OUTPUT: Column = Column::new(
+    "mean_output_deg_per_h",
+    "deg/h",
+    "mean of the channel over its settled samples",
+);
+
+/// Time that a dwell was measured.
+pub static MEASURED: Column = Column::new("measured_s", "s", "time of its settled samples");
+
+/// Turns of the table.
+pub static TURNS: Column = Column::new("turns", "1", "turns of the table in that time");
+
+/// Whether they are whole.
+pub static WHOLE_TURNS: Column = Column::new(
+    "whole_turns",
+    "1",
+    "1 where they are whole, so that an error that goes with the angle averages out, else 0",
+);
+
+/// Residual of full scale.
+pub static RESIDUAL: Column = Column::new(
+    "residual_ppm_of_full_scale",
+    "ppm",
+    "distance from the line through all rates, of the largest rate",
+);
+
+/// Its lower end.
+pub static RESIDUAL_LOW: Column = Column::low("residual_low_ppm_of_full_scale", &RESIDUAL);
+
+/// Its upper end.
+pub static RESIDUAL_HIGH: Column = Column::high("residual_high_ppm_of_full_scale", &RESIDUAL);
+
+/// Residual of reading.
+pub static RESIDUAL_OF_READING: Column = Column::new(
+    "residual_ppm_of_reading",
+    "ppm",
+    "the same of the rate itself",
+);
+
+/// Its lower end.
+pub static RESIDUAL_OF_READING_LOW: Column =
+    Column::low("residual_low_ppm_of_reading", &RESIDUAL_OF_READING);
+
+/// Its upper end.
+pub static RESIDUAL_OF_READING_HIGH: Column =
+    Column::high("residual_high_ppm_of_reading", &RESIDUAL_OF_READING);
+
+/// Columns of [`SCALE_FACTOR`].
+const SCALE_FACTOR_COLUMNS: &[&Column; 12] = &[
+    &INPUT,
+    &MEAN_OUTPUT,
+    &OUTPUT,
+    &MEASURED,
+    &TURNS,
+    &WHOLE_TURNS,
+    &RESIDUAL,
+    &RESIDUAL_LOW,
+    &RESIDUAL_HIGH,
+    &RESIDUAL_OF_READING,
+    &RESIDUAL_OF_READING_LOW,
+    &RESIDUAL_OF_READING_HIGH,
+];
+
+/// Residuals of every rate about the line of the scale factor.
+pub static SCALE_FACTOR: CurveKey = CurveKey::new(
+    "scale_factor",
+    SCALE_FACTOR_COLUMNS,
+    "what the line through all rates of a scale factor test leaves at each of them",
+)
+.csv("scale-factor.csv")
+.picture("scale-factor.svg");
 
 /// Scale factor error.
 pub static SCALE_FACTOR_ERROR: MetricKey = MetricKey::new(
@@ -264,7 +369,7 @@ fn put_rates(
     fit: &ScaleFactorFit,
     metrics: &mut ChannelMetrics,
 ) {
-    let mut curve: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    let mut rows: Vec<[f64; 12]> = Vec::new();
     for ((dwell, point), residual) in dwells.iter().zip(&fit.residuals) {
         if !residual.is_moved {
             continue;
@@ -280,29 +385,27 @@ fn put_rates(
         let half_width = quantile * residual.deviation_deg_per_h;
         let of_full_scale = ratio_to_ppm(1.0 / fit.full_scale_deg_per_h);
         let of_reading = ratio_to_ppm(1.0 / residual.reading_deg_per_h.abs());
-        let mut put = |name: &str, value| curve.entry(name.to_owned()).or_default().push(value);
-        put(
-            "input_deg_per_h",
+        let [low, high] = [-half_width, half_width].map(|shift| residual.value_deg_per_h + shift);
+        rows.push([
             point.input_deg_per_h - rest.input_deg_per_h,
-        );
-        put("mean_output_deg_per_h", point.output_deg_per_h);
-        put(
-            "output_deg_per_h",
+            point.output_deg_per_h,
             point.output_deg_per_h - rest.output_deg_per_h,
-        );
-        put("measured_s", measured_s);
-        put("turns", turns);
-        put("whole_turns", f64::from(u8::from(is_whole)));
-        for (of, factor) in [("full_scale", of_full_scale), ("reading", of_reading)] {
-            for (end, shift) in [("", 0.0), ("_low", -half_width), ("_high", half_width)] {
-                let value = factor * (residual.value_deg_per_h + shift);
-                put(&format!("residual{end}_ppm_of_{of}"), value);
-            }
-        }
+            measured_s,
+            turns,
+            f64::from(u8::from(is_whole)),
+            of_full_scale * residual.value_deg_per_h,
+            of_full_scale * low,
+            of_full_scale * high,
+            of_reading * residual.value_deg_per_h,
+            of_reading * low,
+            of_reading * high,
+        ]);
     }
-    let mut values = curve.values().flatten();
-    if !curve.is_empty() && values.all(|value| value.is_finite()) {
-        metrics.curves.insert("scale_factor".to_owned(), curve);
+    if !rows.is_empty() && rows.as_flattened().iter().all(|value| value.is_finite()) {
+        let columns = SCALE_FACTOR_COLUMNS.iter().enumerate();
+        let columns =
+            columns.map(|(at, column)| (*column, rows.iter().map(|row| row[at]).collect()));
+        metrics.put_curve(&SCALE_FACTOR, columns);
     }
 }
 
@@ -321,22 +424,18 @@ fn put_response(points: &[RatePoint], metrics: &mut ChannelMetrics) {
         interval::student_quantile(point.degrees_of_freedom) * point.deviation_deg_per_h
     };
     let column = |pick: &dyn Fn(&RatePoint) -> f64| points.iter().map(pick).collect();
-    let columns: [(&str, Vec<f64>); 5] = [
-        ("input_deg_per_h", column(&|point| point.input_deg_per_h)),
-        ("output_deg_per_h", column(&|point| point.output_deg_per_h)),
-        ("error_deg_per_h", column(&error)),
+    let columns = [
+        (&INPUT, column(&|point| point.input_deg_per_h)),
+        (&OUTPUT, column(&|point| point.output_deg_per_h)),
+        (&ERROR, column(&error)),
         (
-            "error_low_deg_per_h",
+            &ERROR_LOW,
             column(&|point| error(point) - half_width(point)),
         ),
         (
-            "error_high_deg_per_h",
+            &ERROR_HIGH,
             column(&|point| error(point) + half_width(point)),
         ),
     ];
-    let curve: BTreeMap<String, Vec<f64>> = columns
-        .into_iter()
-        .map(|(name, values)| (name.to_owned(), values))
-        .collect();
-    metrics.curves.insert("response".to_owned(), curve);
+    metrics.put_curve(&RESPONSE, columns);
 }

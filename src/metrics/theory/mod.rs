@@ -1,3 +1,4 @@
 //! What theory says a filter will do, before anything is measured.
 
+pub(super) mod bound;
 pub(super) mod prediction;

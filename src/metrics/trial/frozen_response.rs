@@ -3,11 +3,20 @@
 use std::f64::consts::TAU;
 
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
-use crate::metrics::motion::multi_sine::put_curve;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::curve::CurveKey;
 use crate::metrics::record::FilterFacts;
-use crate::metrics::sine::tones::{ToneResponse, near};
+use crate::metrics::sine::tones::{RESPONSE_COLUMNS, ToneResponse, near, put_responses};
 use crate::metrics::theory::prediction::Prediction;
+
+/// Frequency response at the mean weights.
+pub static FROZEN_RESPONSE: CurveKey = CurveKey::new(
+    "frozen_response",
+    RESPONSE_COLUMNS,
+    "response of a filter to raw with its weights frozen at their mean over the run",
+)
+.picture("filter-response.svg");
 
 /// Points of the curve, equally spaced by the logarithm of the frequency.
 const POINTS: usize = 121;
@@ -66,5 +75,5 @@ pub(crate) fn put_frozen_response(
             }
         })
         .collect();
-    put_curve("frozen_response", &responses, metrics);
+    put_responses(&FROZEN_RESPONSE, &responses, metrics);
 }

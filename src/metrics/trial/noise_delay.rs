@@ -1,13 +1,13 @@
 //! A filter on the noise-delay plane: its bound, the curve of it, and how far above it stands.
 
-use std::collections::BTreeMap;
-
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::curve::{Column, CurveKey};
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::FilterFacts;
-use crate::metrics::theory::prediction::{filter_bound, noise_delay_bound};
+use crate::metrics::theory::bound::{filter_bound, noise_delay_bound};
 use crate::units;
 
 /// Least noise power gain at the delay of the filter.
@@ -27,6 +27,28 @@ pub static NOISE_GAIN_OVER_BOUND: MetricKey = MetricKey::of_filters(
     Applies::SteadyOrSwing,
     "noise gain over that least one; below 1 the weights adapt or the signal is attenuated",
 );
+
+/// Delay.
+pub static DELAY: Column = Column::new("delay_ms", "ms", "delay at DC, latency included");
+
+/// Bound for the noise of the record.
+pub static LEAST_NOISE_GAIN: Column = Column::new(
+    "noise_gain",
+    "1",
+    "least noise power gain at this delay for the colour of the raw noise",
+);
+
+/// Bound for white noise.
+pub static LEAST_WHITE_NOISE_GAIN: Column =
+    Column::new("white_noise_gain", "1", "the same for white noise");
+
+/// Noise-delay bound.
+pub static NOISE_DELAY_BOUND: CurveKey = CurveKey::new(
+    "noise_delay_bound",
+    &[&DELAY, &LEAST_NOISE_GAIN, &LEAST_WHITE_NOISE_GAIN],
+    "least noise gain of any fixed filter of as many taps with unit DC gain over the delay",
+)
+.picture("noise-delay.svg");
 
 /// Points of the curve.
 const CURVE_POINTS: usize = 41;
@@ -52,7 +74,7 @@ pub(crate) fn put_bound(
     }
 }
 
-/// Enters the curve `noise_delay_bound`: the bound over delays from one sample before the newest
+/// Enters the curve of the bound over delays from one sample before the newest
 /// age to one behind the oldest, for white noise and for the colour of raw's.
 ///
 /// The least of a quadratic form under linear constraints is a quadratic of what these are set to,
@@ -89,15 +111,13 @@ pub(crate) fn put_bound_curve(
     let delays_ms = delays
         .iter()
         .map(|delay| units::s_to_ms(delay * sample_period_s + facts.latency_s));
-    let curve = BTreeMap::from([
-        ("white_noise_gain".to_owned(), white.collect()),
-        ("delay_ms".to_owned(), delays_ms.collect()),
-        (
-            "noise_gain".to_owned(),
-            delays.iter().map(|delay| coloured(*delay)).collect(),
-        ),
-    ]);
-    metrics.curves.insert("noise_delay_bound".to_owned(), curve);
+    let coloured = delays.iter().map(|delay| coloured(*delay)).collect();
+    let columns = [
+        (&DELAY, delays_ms.collect()),
+        (&LEAST_NOISE_GAIN, coloured),
+        (&LEAST_WHITE_NOISE_GAIN, white.collect()),
+    ];
+    metrics.put_curve(&NOISE_DELAY_BOUND, columns);
 }
 
 /// Enters `noise_gain_over_bound`.

@@ -4,11 +4,12 @@
 //! rest their weights are those for rest, and a motion that begins then is attenuated until it has
 //! lasted long enough to count.
 
+use crate::metrics::estimate::blocks::RATIO_BLOCKS;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Needs, Table};
-use crate::metrics::motion::steady::RATIO_BLOCKS;
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::sine::fit::{SwingClock, fit_sine};

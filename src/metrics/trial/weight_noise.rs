@@ -1,11 +1,12 @@
 //! How much noise the wandering of a filter's weights adds.
 
+use super::dc_gain::dc_gain_lack;
 use crate::metrics::allan::overlapping::{NoiseType, degrees_of_freedom};
+use crate::metrics::estimate::blocks::samples_in;
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::value::{ChannelMetrics, Estimate};
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
-use crate::metrics::motion::steady::dc_gain_lack;
-use crate::metrics::noise::bias_stability::samples_in;
 use crate::metrics::noise::memory::memory_samples;
 use crate::metrics::record::{FilterFacts, Record};
 

@@ -7,9 +7,10 @@ use super::series::{extent, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::ChannelMetrics;
 use crate::metrics::MetricKey;
+use crate::metrics::catalogue::ALLAN;
 use crate::metrics::catalogue::ANGLE_RANDOM_WALK;
 use crate::metrics::catalogue::{BIAS_INSTABILITY, QUANTISATION, RATE_RAMP, RATE_RANDOM_WALK};
-use crate::report::csv::{abscissa, allan_curve, allan_estimator, fitted, interval_end, ordinate};
+use crate::metrics::columns::allan as column;
 use crate::report::measured::Measured;
 use crate::units::{
     deg_per_h_per_s_to_deg_per_h_per_h, deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s,
@@ -36,17 +37,17 @@ struct Reading {
 }
 
 /// The Allan deviation of every channel that has one.
-pub(super) fn picture(report: &Measured) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
     let tables = || {
         report
             .channels
             .iter()
             .enumerate()
             .filter_map(|(index, (name, metrics))| {
-                let table = allan_curve(metrics)?;
-                let (tau, deviation) = (abscissa(table)?, ordinate(table)?);
-                let low = interval_end(table, "low").unwrap_or(deviation);
-                let high = interval_end(table, "high").unwrap_or(deviation);
+                let curve = metrics.curve(&ALLAN)?;
+                let (tau, deviation) = (column::TAU.get(curve)?, column::DEVIATION.get(curve)?);
+                let low = column::LOW.get(curve).unwrap_or(deviation);
+                let high = column::HIGH.get(curve).unwrap_or(deviation);
                 Some((index, name.as_str(), metrics, tau, [deviation, low, high]))
             })
     };
@@ -54,7 +55,10 @@ pub(super) fn picture(report: &Measured) -> Option<Picture> {
     let tau = tables().flat_map(|(.., tau, _)| tau.iter().copied());
     let read_at = tables().flat_map(|(_, _, metrics, ..)| readings(metrics));
     let mut names = report.channels.iter();
-    let estimator = names.find_map(|(_, metrics)| allan_estimator(metrics));
+    let estimator = names.find_map(|(_, metrics)| {
+        let words = metrics.words(&ALLAN, &column::ESTIMATOR);
+        words.first().copied()
+    });
     let estimator = estimator.unwrap_or(OVERLAPPING);
     // The terms are read off the Allan deviation; the lines of the others lie elsewhere.
     let is_read = matches!(estimator, OVERLAPPING | "plain");
@@ -117,7 +121,9 @@ fn fit_line(metrics: &ChannelMetrics, tau: &[f64]) -> Vec<(f64, f64)> {
     let walk = metrics.get(&ANGLE_RANDOM_WALK);
     let first_s = walk.and_then(|walk| walk.fields.get("tau_min_s").copied());
     let first_s = first_s.unwrap_or(0.0);
-    let fit = allan_curve(metrics).and_then(fitted).unwrap_or_default();
+    let fit = metrics
+        .curve(&ALLAN)
+        .map_or(&[][..], |curve| column::FITTED.of(curve));
     let points = tau.iter().copied().zip(fit.iter().copied());
     points.filter(|(tau, _)| *tau >= first_s).collect()
 }

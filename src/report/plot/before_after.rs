@@ -18,7 +18,7 @@ const GAP: f64 = 66.0;
 const TOP: f64 = 56.0;
 
 /// One row for each channel of a gyro whose words are compensated: raw, compensated, each filter.
-pub(super) fn picture(report: &RunReport, signals: &RunSignals) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &RunReport, signals: &RunSignals) -> Option<Picture> {
     report.compensation?;
     let truth = signals.truth_deg_per_h.get(signals.first_measured..)?;
     let measured = report.measured();

@@ -6,10 +6,12 @@ use super::picture::{Picture, Stroke};
 use super::series::{extent, shape_of, stroke_of};
 use super::theory::{curves, draw, legend_of};
 use crate::gate::{estimate_text, plain};
-use crate::metrics::ChannelMetrics;
-use crate::metrics::catalogue::{BANDWIDTH, DELAY_VS_TRUTH};
+use crate::metrics::catalogue::{BANDWIDTH, DELAY_VS_TRUTH, FREQUENCY_RESPONSE};
+use crate::metrics::columns::tones::{
+    FREQUENCY, GAIN, GAIN_HIGH, GAIN_LOW, PHASE, PHASE_HIGH, PHASE_LOW,
+};
+use crate::metrics::{ChannelMetrics, Column, Curve};
 use crate::report::RunReport;
-use crate::report::csv::Curve;
 use crate::signal::TheoryQuantity;
 use crate::units::gain_to_db;
 
@@ -18,8 +20,8 @@ type Points = Vec<(f64, [f64; 3])>;
 
 /// A quantity of the response as one panel shows it.
 struct Quantity {
-    /// Column of the value; the ends of its interval have `_low` and `_high` before the unit.
-    columns: [&'static str; 3],
+    /// The value and the ends of its interval.
+    columns: [&'static Column; 3],
     convert: fn(f64) -> f64,
     title: &'static str,
     theory: TheoryQuantity,
@@ -28,14 +30,14 @@ struct Quantity {
 
 const QUANTITIES: [Quantity; 2] = [
     Quantity {
-        columns: ["gain", "gain_low", "gain_high"],
+        columns: [&GAIN, &GAIN_LOW, &GAIN_HIGH],
         convert: gain_to_db,
         title: "gain [dB]",
         theory: TheoryQuantity::GainDb,
         frame: (56.0, 400.0),
     },
     Quantity {
-        columns: ["phase_deg", "phase_low_deg", "phase_high_deg"],
+        columns: [&PHASE, &PHASE_LOW, &PHASE_HIGH],
         convert: std::convert::identity,
         title: "phase [deg]",
         theory: TheoryQuantity::PhaseDeg,
@@ -44,19 +46,19 @@ const QUANTITIES: [Quantity; 2] = [
 ];
 
 /// Measured points with their intervals, and the line of theory for the raw channel.
-pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     let channels: Vec<(usize, &str, &ChannelMetrics, &Curve)> = report
         .channels
         .iter()
         .enumerate()
         .filter_map(|(index, (name, metrics))| {
-            let curve = metrics.curves.get("frequency_response")?;
+            let curve = metrics.curve(&FREQUENCY_RESPONSE)?;
             Some((index, name.as_str(), metrics, curve))
         })
         .collect();
     let frequencies = channels
         .iter()
-        .filter_map(|(.., curve)| curve.get("frequency_hz"));
+        .filter_map(|(.., curve)| FREQUENCY.get(curve));
     let x = extent(frequencies.flatten().copied())?;
     let mut picture = Picture::new(WIDTH, 870.0);
     let title = format!("{}: response to the true rate", report.scenario.name);
@@ -100,8 +102,8 @@ pub(super) fn picture(report: &RunReport) -> Option<Picture> {
 }
 
 fn points(curve: &Curve, quantity: &Quantity) -> Option<Points> {
-    let frequency_hz = curve.get("frequency_hz")?;
-    let [value, low, high] = quantity.columns.map(|column| curve.get(column));
+    let frequency_hz = FREQUENCY.get(curve)?;
+    let [value, low, high] = quantity.columns.map(|column| column.get(curve));
     let (value, low, high) = (value?, low?, high?);
     let at = |index: usize| -> Option<(f64, [f64; 3])> {
         let ends = [*value.get(index)?, *low.get(index)?, *high.get(index)?];

@@ -14,7 +14,7 @@ const FLOOR: f64 = 0.02;
 /// Two panels: every source against depth, and the total against power; nothing if the picture would
 /// be too large.
 #[must_use]
-pub fn budget_svg(file: &str, sheet: &BudgetSheet) -> Option<String> {
+pub(crate) fn budget_svg(file: &str, sheet: &BudgetSheet) -> Option<String> {
     let mut picture = Picture::new(WIDTH, 900.0);
     let title = format!("{file}: noise budget in closed form");
     picture.heading((90.0, 28.0), &title, 18.0);

@@ -16,7 +16,7 @@ const GYROS: [&str; 3] = ["x", "y", "z"];
 /// bars are 95 % intervals from the measurement noise. Weights are those of gyro x. Nothing if the
 /// picture would be too large.
 #[must_use]
-pub fn calibration_svg(name: &str, sheet: &CalibrationSheet) -> Option<String> {
+pub(crate) fn calibration_svg(name: &str, sheet: &CalibrationSheet) -> Option<String> {
     let mut picture = Picture::new(WIDTH, 1180.0);
     picture.heading((90.0, 28.0), &format!("{name}: calibration"), 18.0);
     let from = if sheet.truth.is_some() {

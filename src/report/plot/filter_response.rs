@@ -7,10 +7,12 @@ use super::picture::{Picture, Stroke};
 use super::series::{extent, shape_of, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::MetricKey;
-use crate::metrics::catalogue::{DC_GAIN, DELAY_AT_DC};
-use crate::metrics::{ChannelMetrics, Estimate};
+use crate::metrics::catalogue::{DC_GAIN, DELAY_AT_DC, FREQUENCY_RESPONSE_VS_RAW, FROZEN_RESPONSE};
+use crate::metrics::columns::tones::{
+    DELAY, DELAY_HIGH, DELAY_LOW, FREQUENCY, GAIN, GAIN_HIGH, GAIN_LOW,
+};
+use crate::metrics::{ChannelMetrics, Column, Curve, Estimate};
 use crate::report::RunReport;
-use crate::report::csv::Curve;
 use crate::units::gain_to_db;
 
 /// Gain down to which the response is shown, dB.
@@ -32,7 +34,7 @@ struct Filter<'a> {
 
 /// One panel.
 struct Quantity {
-    columns: [&'static str; 3],
+    columns: [&'static Column; 3],
     convert: fn(f64) -> f64,
     title: &'static str,
     frame: (f64, f64),
@@ -42,14 +44,14 @@ struct Quantity {
 
 const QUANTITIES: [Quantity; 2] = [
     Quantity {
-        columns: ["gain", "gain_low", "gain_high"],
+        columns: [&GAIN, &GAIN_LOW, &GAIN_HIGH],
         convert: decibel,
         title: "gain over raw [dB]",
         frame: (56.0, 400.0),
         at_dc: &DC_GAIN,
     },
     Quantity {
-        columns: ["delay_ms", "delay_low_ms", "delay_high_ms"],
+        columns: [&DELAY, &DELAY_LOW, &DELAY_HIGH],
         convert: std::convert::identity,
         title: "phase delay behind raw [ms]",
         frame: (466.0, 810.0),
@@ -63,7 +65,7 @@ fn decibel(gain: f64) -> f64 {
 }
 
 /// Both panels; `None` where no filter has a response.
-pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     let channels = report.channels.iter().enumerate();
     let filters: Vec<Filter> = channels
         .filter_map(|(index, (name, metrics))| {
@@ -71,14 +73,14 @@ pub(super) fn picture(report: &RunReport) -> Option<Picture> {
                 index,
                 name,
                 metrics,
-                frozen: metrics.curves.get("frozen_response")?,
-                live: metrics.curves.get("frequency_response_vs_raw"),
+                frozen: metrics.curve(&FROZEN_RESPONSE)?,
+                live: metrics.curve(&FREQUENCY_RESPONSE_VS_RAW),
             })
         })
         .collect();
     let frequencies = filters
         .iter()
-        .filter_map(|filter| filter.frozen.get("frequency_hz"));
+        .filter_map(|filter| FREQUENCY.get(filter.frozen));
     let x = extent(frequencies.flatten().copied())?;
     let mut picture = Picture::new(WIDTH, 870.0);
     let title = format!("{}: response of the filters", report.scenario.name);
@@ -113,9 +115,8 @@ fn at_dc(filter: &Filter, key: &MetricKey) -> Option<Estimate> {
 
 /// The points of a curve that the panel shows.
 fn points(curve: &Curve, quantity: &Quantity) -> Vec<Point> {
-    let column = |name: &str| curve.get(name).map_or(&[][..], Vec::as_slice);
-    let [value, low, high] = quantity.columns.map(column);
-    let frequencies = column("frequency_hz").iter().zip(column("gain"));
+    let [value, low, high] = quantity.columns.map(|column| column.of(curve));
+    let frequencies = FREQUENCY.of(curve).iter().zip(GAIN.of(curve));
     let ends = value.iter().zip(low).zip(high);
     frequencies
         .zip(ends)

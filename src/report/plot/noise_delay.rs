@@ -6,7 +6,9 @@ use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{Anchor, Picture, Stroke};
 use super::series::{extent, real, shape_of, stroke_of};
 use crate::gate::estimate_text;
-use crate::metrics::{AgainstOne, Estimate, FilterVerdict, filter_verdict};
+use crate::metrics::catalogue::NOISE_DELAY_BOUND;
+use crate::metrics::columns::noise_delay::{DELAY, LEAST_NOISE_GAIN, LEAST_WHITE_NOISE_GAIN};
+use crate::metrics::{AgainstOne, Column, Estimate, FilterVerdict, filter_verdict};
 use crate::report::RunReport;
 
 /// How far above the highest point the bounds are shown: they rise without end on both sides.
@@ -26,7 +28,7 @@ struct Point<'a> {
 }
 
 /// Noise power gain over delay; `None` where no filter has both.
-pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     let points = points(report);
     let ends = |pick: fn(&Point) -> Estimate| {
         let each = points.iter().map(pick);
@@ -74,13 +76,11 @@ fn points<'a>(report: &RunReport<'a>) -> Vec<Point<'a>> {
     let channels = report.channels.iter().enumerate();
     let points = channels.filter_map(|(index, (name, metrics))| {
         let verdict = filter_verdict(metrics)?;
-        let curve = metrics.curves.get("noise_delay_bound");
-        let line = |column: &str| -> Vec<(f64, f64)> {
-            let columns =
-                curve.and_then(|curve| Some((curve.get("delay_ms")?, curve.get(column)?)));
-            columns.map_or_else(Vec::new, |(x, y)| {
-                x.iter().copied().zip(y.iter().copied()).collect()
-            })
+        let curve = metrics.curve(&NOISE_DELAY_BOUND);
+        let line = |column: &Column| -> Vec<(f64, f64)> {
+            let values = |column: &Column| curve.map_or(&[][..], |curve| column.of(curve));
+            let delays_ms = values(&DELAY).iter().copied();
+            delays_ms.zip(values(column).iter().copied()).collect()
         };
         let noise_gain = verdict.fast_noise?.estimate;
         (noise_gain.low > 0.0).then_some(Point {
@@ -89,8 +89,8 @@ fn points<'a>(report: &RunReport<'a>) -> Vec<Point<'a>> {
             verdict,
             delay_ms: verdict.delay_ms?,
             noise_gain,
-            bound: line("noise_gain"),
-            white: line("white_noise_gain"),
+            bound: line(&LEAST_NOISE_GAIN),
+            white: line(&LEAST_WHITE_NOISE_GAIN),
         })
     });
     points.collect()

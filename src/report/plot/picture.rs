@@ -99,7 +99,7 @@ enum Item {
 }
 
 /// A picture under construction.
-pub(super) struct Picture {
+pub(in crate::report) struct Picture {
     size: (f64, f64),
     items: Vec<Item>,
 }

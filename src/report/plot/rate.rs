@@ -22,7 +22,7 @@ const SWING_CYCLES: f64 = 2.0;
 
 /// Every channel over the measured record, and below it what the whole record hides: a window of a
 /// swing or of the largest step, or means.
-pub(super) fn picture(report: &Measured, signals: &RunSignals) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &Measured, signals: &RunSignals) -> Option<Picture> {
     let channels = series(report, signals);
     let (_, raw) = signals.channels.first()?;
     let samples = raw.len().checked_sub(signals.first_measured)?;

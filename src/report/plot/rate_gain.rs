@@ -4,6 +4,9 @@ use super::axis::Axis;
 use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{Picture, Stroke};
 use super::series::{extent, shape_of, stroke_of, truth_stroke};
+use crate::metrics::Column;
+use crate::metrics::catalogue::RATE_GAIN;
+use crate::metrics::columns::rate_gain::{MEAN_RATIO, MEAN_RATIO_HIGH, MEAN_RATIO_LOW, RATE};
 use crate::report::RunReport;
 
 /// A filter's points: added rate, deg/s, mean ratio, and the ends of its interval.
@@ -14,7 +17,7 @@ struct Channel<'a> {
 }
 
 /// Mean ratio over rate; `None` where no channel has the curve.
-pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     let channels = channels(report);
     let all = || channels.iter().flat_map(|channel| &channel.points);
     let x = extent(all().map(|point| point.0))?;
@@ -50,10 +53,10 @@ pub(super) fn picture(report: &RunReport) -> Option<Picture> {
 fn channels<'a>(report: &RunReport<'a>) -> Vec<Channel<'a>> {
     let channels = report.channels.iter().enumerate();
     let found = channels.filter_map(|(index, (name, metrics))| {
-        let curve = metrics.curves.get("rate_gain")?;
-        let column = |name: &str| curve.get(name).into_iter().flatten().copied();
-        let ends = column("mean_ratio_low").zip(column("mean_ratio_high"));
-        let points = column("rate_deg_per_s").zip(column("mean_ratio")).zip(ends);
+        let curve = metrics.curve(&RATE_GAIN)?;
+        let values = |column: &Column| column.of(curve).iter().copied();
+        let ends = values(&MEAN_RATIO_LOW).zip(values(&MEAN_RATIO_HIGH));
+        let points = values(&RATE).zip(values(&MEAN_RATIO)).zip(ends);
         let points = points.map(|((rate, ratio), (low, high))| (rate, ratio, low, high));
         Some(Channel {
             index,

@@ -6,12 +6,12 @@ use super::picture::{Picture, Stroke};
 use super::series::{extent, shape_of, stroke_of, truth_stroke};
 use super::theory::{curves, draw, legend_of};
 use crate::gate::estimate_text;
-use crate::metrics::ChannelMetrics;
 use crate::metrics::catalogue::{
-    SCALE_FACTOR_ASYMMETRY, SCALE_FACTOR_ERROR, SCALE_FACTOR_NONLINEARITY,
+    RESPONSE, SCALE_FACTOR_ASYMMETRY, SCALE_FACTOR_ERROR, SCALE_FACTOR_NONLINEARITY,
 };
+use crate::metrics::columns::staircase::{ERROR, ERROR_HIGH, ERROR_LOW, INPUT, OUTPUT};
+use crate::metrics::{ChannelMetrics, Curve};
 use crate::report::RunReport;
-use crate::report::csv::Curve;
 use crate::signal::TheoryQuantity;
 use crate::units::deg_per_h_to_deg_per_s;
 
@@ -43,13 +43,13 @@ struct Channel<'a> {
 
 /// Output against input above, error against input below; the latter is the dead band at small
 /// rates.
-pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     let channels: Vec<Channel> = report
         .channels
         .iter()
         .enumerate()
         .filter_map(|(index, (name, metrics))| {
-            let points = points(metrics.curves.get("response")?)?;
+            let points = points(metrics.curve(&RESPONSE)?)?;
             (points.len() >= POINTS_MIN).then_some(Channel {
                 index,
                 name,
@@ -167,12 +167,11 @@ fn draw_line(picture: &mut Picture, panel: &Panel, line: &[(f64, f64)], index: u
 
 /// The dwells of a curve by input.
 fn points(curve: &Curve) -> Option<Vec<Point>> {
-    let column = |name: &str| curve.get(name).map(Vec::as_slice);
-    let (input, output) = (column("input_deg_per_h")?, column("output_deg_per_h")?);
+    let (input, output) = (INPUT.get(curve)?, OUTPUT.get(curve)?);
     let error = [
-        column("error_deg_per_h")?,
-        column("error_low_deg_per_h")?,
-        column("error_high_deg_per_h")?,
+        ERROR.get(curve)?,
+        ERROR_LOW.get(curve)?,
+        ERROR_HIGH.get(curve)?,
     ];
     let at = |index: usize| {
         Some(Point {

@@ -5,10 +5,13 @@ use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{Picture, Stroke};
 use super::series::{extent, shape_of, stroke_of, truth_stroke};
 use crate::gate::estimate_text;
-use crate::metrics::ChannelMetrics;
-use crate::metrics::catalogue::{SCALE_FACTOR_NONLINEARITY, SCALE_FACTOR_NONLINEARITY_OF_READING};
+use crate::metrics::catalogue::{
+    SCALE_FACTOR, SCALE_FACTOR_NONLINEARITY, SCALE_FACTOR_NONLINEARITY_OF_READING,
+};
+use crate::metrics::columns::staircase::INPUT;
+use crate::metrics::{ChannelMetrics, Column};
 use crate::report::RunReport;
-use crate::report::scale_factor::filter_state_word;
+use crate::report::scale_factor::{OF_FULL_SCALE, OF_READING, filter_state_word};
 use crate::units::deg_per_h_to_deg_per_s;
 
 /// Residual of one rate with the ends of its interval, ppm.
@@ -24,7 +27,7 @@ struct Channel<'a> {
 
 /// Residuals of full scale over the rate above, those of reading over its size below; `None` where
 /// no channel has a scale factor.
-pub(super) fn picture(report: &RunReport) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     let channels = channels(report);
     let all = || channels.iter().flat_map(|channel| &channel.points);
     let x = extent(all().map(|point| point.0))?;
@@ -106,17 +109,15 @@ fn draw(picture: &mut Picture, panel: &Panel, index: usize, points: &[(f64, Bar)
 fn channels<'a>(report: &RunReport<'a>) -> Vec<Channel<'a>> {
     let channels = report.channels.iter().enumerate();
     let found = channels.filter_map(|(index, (name, metrics))| {
-        let curve = metrics.curves.get("scale_factor")?;
-        let column = |name: String| curve.get(&name).into_iter().flatten().copied();
-        let bars = |of: &str| {
-            let end = |end: &str| column(format!("residual{end}_ppm_of_{of}"));
-            let ends = end("_low").zip(end("_high"));
-            end("")
-                .zip(ends)
-                .map(|(value, (low, high))| [value, low, high])
+        let curve = metrics.curve(&SCALE_FACTOR)?;
+        let values = |column: &Column| column.of(curve).iter().copied();
+        let bars = |[value, low, high]: [&Column; 3]| {
+            let ends = values(low).zip(values(high));
+            let bars = values(value).zip(ends);
+            bars.map(|(value, (low, high))| [value, low, high])
         };
-        let rates = column("input_deg_per_h".to_owned()).map(deg_per_h_to_deg_per_s);
-        let points = rates.zip(bars("full_scale").zip(bars("reading")));
+        let rates = values(&INPUT).map(deg_per_h_to_deg_per_s);
+        let points = rates.zip(bars(OF_FULL_SCALE).zip(bars(OF_READING)));
         Some(Channel {
             index,
             name,

@@ -4,25 +4,23 @@ use super::axis::Axis;
 use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{Picture, Point};
 use super::series::{extent, real, stroke_of};
-use crate::report::csv::{abscissa, ordinate, psd_curve};
+use crate::metrics::catalogue::PSD;
+use crate::metrics::columns::spectrum::{DENSITY, FREQUENCY};
 use crate::report::measured::Measured;
 
 /// Densities are averaged over steps of this part of a decade.
 const STEPS_PER_DECADE: f64 = 60.0;
 
 /// The spectrum of every channel that has one.
-pub(super) fn picture(report: &Measured) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
     let curves: Vec<(usize, &str, Vec<Point>)> = report
         .channels
         .iter()
         .enumerate()
         .filter_map(|(index, (name, metrics))| {
-            let table = psd_curve(metrics)?;
-            Some((
-                index,
-                name.as_str(),
-                thinned(abscissa(table)?, ordinate(table)?),
-            ))
+            let curve = metrics.curve(&PSD)?;
+            let points = thinned(FREQUENCY.get(curve)?, DENSITY.get(curve)?);
+            Some((index, name.as_str(), points))
         })
         .collect();
     let points = || curves.iter().flat_map(|(_, _, points)| points);

@@ -23,7 +23,7 @@ const HALF_WIDTH_MS: f64 = 0.8;
 
 /// Two cycles as sampled; below them the mean of all cycles around the rising zero crossing of the
 /// true rate, with the measured delays marked.
-pub(super) fn picture(
+pub(in crate::report) fn picture(
     report: &RunReport,
     signals: &RunSignals,
     frequency_hz: f64,

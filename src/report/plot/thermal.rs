@@ -12,7 +12,7 @@ use crate::signal::{RunSignals, TemperatureRecord};
 const MEANS: usize = 120;
 
 /// Means of raw minus truth with the prediction; below them chamber, case and coil.
-pub(super) fn picture(report: &RunReport, signals: &RunSignals) -> Option<Picture> {
+pub(in crate::report) fn picture(report: &RunReport, signals: &RunSignals) -> Option<Picture> {
     let record = signals.temperature.as_ref()?;
     let (_, raw) = signals.channels.iter().find(|(name, _)| *name == "raw")?;
     let first = signals.first_measured;

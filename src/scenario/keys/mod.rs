@@ -106,17 +106,7 @@ pub(crate) const GROUPS: &[Group] = &[
     Group {
         table: "filter[]",
         noun: "filter kind",
-        alternatives: &[
-            "rls",
-            "lms",
-            "sign_lms",
-            "constrained_rls",
-            "moving_average",
-            "savitzky_golay",
-            "one_pole",
-            "butterworth",
-            "kalman",
-        ],
+        alternatives: crate::filters::KINDS,
     },
 ];
 

@@ -1,0 +1,365 @@
+//! A recorded log in place of table and gyro: measured as it is, or through filters.
+
+use std::str::FromStr;
+
+use rayon::prelude::*;
+
+use super::compensation::CompensatedLog;
+use super::filters::LogFilters;
+use crate::experiment::build::VERSION;
+use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
+use crate::experiment::pipeline_metrics;
+use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
+use crate::metrics::{ChannelMetrics, Motion, Settings, is_sample_or_longer, record_fit_tau_min_s};
+use crate::recording::{Log, csv_text};
+use crate::report::{LogReport, SAMPLES, SAMPLES_CSV, log_files};
+use crate::scenario::{AllanConfig, MotionConfig, StaticConfig, SwingConfig};
+use crate::signal::RunSignals;
+use crate::store::{OutputFolder, StoreError};
+use crate::turntable::first_measured_index;
+use crate::wording::{counted, plain};
+
+/// Name of the log's own channel.
+const RAW: &str = "raw";
+/// Name of the channel without the constant errors of its assembly.
+const COMPENSATED: &str = "compensated";
+
+/// What is measured and filtered.
+#[derive(Clone, Debug)]
+pub enum LogInput {
+    /// The words of one gyro.
+    Plain(Log),
+    /// Those of one axis of an assembly, compensated before the filters see them.
+    Compensated(CompensatedLog),
+}
+
+impl From<Log> for LogInput {
+    fn from(log: Log) -> Self {
+        Self::Plain(log)
+    }
+}
+
+/// Swing frequencies that a log can hold, Hz: one cycle in eleven days to a quarter of the fastest rate.
+const SWING_HZ: (f64, f64) = (1e-6, 2.5e8);
+
+/// What the gyro did while the log was taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LogMotion {
+    /// It rested, or turned at a constant rate.
+    Static,
+    /// It swung.
+    Swing {
+        /// Swing frequency, Hz.
+        frequency_hz: f64,
+    },
+}
+
+impl FromStr for LogMotion {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (least, most) = SWING_HZ;
+        if text == "static" {
+            return Ok(Self::Static);
+        }
+        let frequency = text.strip_prefix("swing:").map(str::parse::<f64>);
+        match frequency {
+            Some(Ok(frequency_hz)) if (least..=most).contains(&frequency_hz) => {
+                Ok(Self::Swing { frequency_hz })
+            }
+            _ => Err(format!(
+                "expected `static`, or `swing:F` with a frequency F from {least:e} to {most:e} Hz"
+            )),
+        }
+    }
+}
+
+/// How a log is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LogSettings {
+    /// What the gyro did.
+    pub motion: LogMotion,
+    /// Time at its start that metrics leave out, s.
+    pub warm_up_s: f64,
+    /// Averaging time of the plain `bias_stability_deg_per_h`, s.
+    pub bias_averaging_time_s: f64,
+    /// Shortest averaging time of the noise fit, s; none: four times as long as the fast noise is
+    /// correlated, ten samples at least.
+    pub fit_tau_min_s: Option<f64>,
+    /// Estimator and averaging times of the Allan curve.
+    pub allan: AllanConfig,
+}
+
+/// Why a log was not measured.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}: {message}")]
+pub struct LogTrialError {
+    /// Name of the log.
+    pub file: String,
+    /// What is wrong.
+    pub message: String,
+}
+
+/// A log with everything measured on it.
+pub struct LogTrial {
+    log: Log,
+    record: GyroRecord,
+    length: RecordLength,
+    motion: MotionConfig,
+    source: Option<(String, String)>,
+    filters: Vec<FinishedFilter>,
+    channels: Vec<(String, ChannelMetrics)>,
+    notes: Vec<String>,
+}
+
+/// Measures a log, and what filters make of its words.
+///
+/// The words enter the filters from the first on, as a run's do, and leave them the same to the
+/// bit; metrics use the samples from `ceil(warm_up_s f)` on. What needs the true rate is
+/// unavailable. Compensated words are a channel of their own and what the filters are given.
+///
+/// # Errors
+/// A warm-up that leaves no sample; an averaging time shorter than one; a swing too fast for the sample
+/// rate; a filter that has the name
+/// of the compensated channel.
+pub fn try_log(
+    input: impl Into<LogInput>,
+    filters: Option<&LogFilters>,
+    settings: &LogSettings,
+) -> Result<LogTrial, LogTrialError> {
+    let (mut log, compensated, mut notes) = match input.into() {
+        LogInput::Plain(log) => (log, None, Vec::new()),
+        LogInput::Compensated(CompensatedLog { log, words, notes }) => (log, Some(words), notes),
+    };
+    let sample_period_s = log.sample_period_s();
+    let length = record_length(&log, settings)?;
+    let record = GyroRecord {
+        truth_deg_per_h: Vec::new(),
+        raw_deg_per_h: std::mem::take(&mut log.rate_deg_per_h),
+        compensated_deg_per_h: compensated,
+    };
+    let clashes = |filters: &LogFilters| filters.configs().iter().any(|it| it.name == COMPENSATED);
+    if record.compensated_deg_per_h.is_some() && filters.is_some_and(clashes) {
+        return Err(LogTrialError {
+            file: log.file,
+            message: format!("a filter is named `{COMPENSATED}`, as is the channel it is given"),
+        });
+    }
+    let words = record.filter_input_deg_per_h();
+    let finished = filters.map_or_else(Vec::new, |filters| {
+        run(filters, length, sample_period_s, words)
+    });
+    let fit_tau_min_s = settings.fit_tau_min_s.unwrap_or_else(|| {
+        let measured = &record.raw_deg_per_h[length.warm_up..];
+        record_fit_tau_min_s(measured, sample_period_s)
+    });
+    let metric_settings = Settings {
+        motion: metric_motion(settings.motion),
+        bias_averaging_time_s: settings.bias_averaging_time_s,
+        fit_tau_min_s,
+        allan: allan_options(settings.allan),
+    };
+    let cut = Cut {
+        record: &record,
+        encoder_rad: None,
+        length,
+        sample_period_s,
+        settings: &metric_settings,
+    };
+    let (raw, others): (_, Vec<_>) = rayon::join(
+        || cut.measure_raw(),
+        || {
+            let filters = finished.par_iter();
+            filters
+                .map(|filter| (filter.name.clone(), cut.measure_filter(filter)))
+                .collect()
+        },
+    );
+    notes.splice(0..0, log.notes());
+    if let Some(filters) = filters {
+        notes.extend(filters.warnings(&record.raw_deg_per_h));
+        let of_pipelines = finished.iter();
+        notes.extend(of_pipelines.flat_map(|it| pipeline_metrics::notes(it, sample_period_s)));
+    }
+    let is_compensated = record.compensated_deg_per_h.is_some();
+    let compensated = is_compensated.then(|| (COMPENSATED.to_owned(), cut.measure_compensated()));
+    let own = std::iter::once((RAW.to_owned(), raw)).chain(compensated);
+    let channels = own.chain(others);
+    Ok(LogTrial {
+        channels: channels.collect(),
+        motion: report_motion(settings.motion),
+        source: filters.map(LogFilters::source),
+        filters: finished,
+        log,
+        record,
+        length,
+        notes,
+    })
+}
+
+/// Every filter over the whole log.
+fn run(
+    filters: &LogFilters,
+    length: RecordLength,
+    sample_period_s: f64,
+    words: &[f64],
+) -> Vec<FinishedFilter> {
+    let configs = filters.configs().par_iter();
+    configs
+        .map(|config| {
+            let name = config.name.clone();
+            let mut filter = ChannelFilter::new(name, &config.kind, length, sample_period_s, false);
+            filter.process(words);
+            filter.finish()
+        })
+        .collect()
+}
+
+fn record_length(log: &Log, settings: &LogSettings) -> Result<RecordLength, LogTrialError> {
+    let samples = log.rate_deg_per_h.len();
+    let refuse = |message: String| LogTrialError {
+        file: log.file.clone(),
+        message,
+    };
+    let warm_up = first_measured_index(settings.warm_up_s, log.sample_period_s());
+    let warm_up = usize::try_from(warm_up).unwrap_or(usize::MAX);
+    if warm_up >= samples {
+        return Err(refuse(format!(
+            "--warm-up-s {} leaves no sample: {} at {} Hz",
+            settings.warm_up_s,
+            counted(samples, "sample"),
+            plain(log.sample_rate_hz)
+        )));
+    }
+    let averaging_time_s = settings.bias_averaging_time_s;
+    if !is_sample_or_longer(averaging_time_s, log.sample_period_s()) {
+        return Err(refuse(format!(
+            "--bias-averaging-time-s {averaging_time_s} is shorter than a sample: allowed from {} s \
+             on at {} Hz",
+            log.sample_period_s(),
+            log.sample_rate_hz
+        )));
+    }
+    if let LogMotion::Swing { frequency_hz } = settings.motion
+        && frequency_hz > 0.25 * log.sample_rate_hz
+    {
+        return Err(refuse(format!(
+            "a swing of {frequency_hz} Hz needs four samples a cycle: the log has {} Hz",
+            plain(log.sample_rate_hz)
+        )));
+    }
+    Ok(RecordLength {
+        warm_up,
+        measured: samples - warm_up,
+    })
+}
+
+fn metric_motion(motion: LogMotion) -> Motion {
+    match motion {
+        LogMotion::Static => Motion::Steady,
+        LogMotion::Swing { frequency_hz } => Motion::Swing { frequency_hz },
+    }
+}
+
+/// The motion as reports head their columns by it; a log does not tell a swing's amplitude.
+fn report_motion(motion: LogMotion) -> MotionConfig {
+    match motion {
+        LogMotion::Static => MotionConfig::Static(StaticConfig {}),
+        LogMotion::Swing { frequency_hz } => MotionConfig::Swing(SwingConfig {
+            rate_amplitude_deg_per_s: None,
+            angle_amplitude_deg: None,
+            frequency_hz,
+            soft_start_s: 0.0,
+            from_rest: false,
+        }),
+    }
+}
+
+impl LogTrial {
+    /// Channels, `raw` first.
+    #[must_use]
+    pub fn channels(&self) -> &[(String, ChannelMetrics)] {
+        &self.channels
+    }
+
+    /// Whether a filter failed.
+    #[must_use]
+    pub fn has_failed(&self) -> bool {
+        let mut channels = self.channels.iter();
+        channels.any(|(_, metrics)| metrics.error.is_some())
+    }
+
+    /// Gives the report of the trial, printed or written, to `then`.
+    pub fn with_report<T>(&self, then: impl FnOnce(&LogReport) -> T) -> T {
+        let unit = self.log.unit.to_string();
+        let filters = self.source.as_ref();
+        then(&LogReport {
+            tool_version: VERSION,
+            file: &self.log.file,
+            column: self.log.column.as_deref(),
+            unit: &unit,
+            sample_rate_hz: self.log.sample_rate_hz,
+            samples: self.length.measured,
+            warm_up_samples: self.length.warm_up,
+            filters: filters.map(|(file, digest)| (file.as_str(), digest.as_str())),
+            motion: &self.motion,
+            channels: &self.channels,
+            notes: &self.notes,
+        })
+    }
+
+    /// Writes `summary.json`, curves and pictures into `folder`, and the words of every filter
+    /// below `samples/` as NPY, with `as_csv` as CSV as well; in place of what stood there, as one.
+    ///
+    /// # Errors
+    /// Whatever the file system says, with the path.
+    pub fn write(&self, folder: &OutputFolder, as_csv: bool) -> Result<(), StoreError> {
+        let staged = folder.stage()?;
+        let files = self.with_report(|report| log_files(report, &self.signals()));
+        for (name, text) in files {
+            staged.write(&name, text.as_bytes())?;
+        }
+        for (name, words) in self
+            .compensated_words()
+            .into_iter()
+            .chain(self.filter_words())
+        {
+            staged.write_npy(&SAMPLES.named(name), words)?;
+            if as_csv {
+                let text = csv_text(words, self.log.sample_period_s());
+                staged.write(&SAMPLES_CSV.named(name), text.as_bytes())?;
+            }
+        }
+        staged.seal_plainly()?;
+        staged.put_files_in_place()
+    }
+
+    /// The words of the filters that did not fail.
+    fn filter_words(&self) -> impl Iterator<Item = (&str, &[f64])> {
+        self.filters.iter().filter_map(|filter| {
+            let words = filter.words.as_ref().ok()?;
+            Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
+        })
+    }
+
+    fn compensated_words(&self) -> Option<(&str, &[f64])> {
+        let words = self.record.compensated_deg_per_h.as_deref();
+        words.map(|words| (COMPENSATED, words))
+    }
+
+    fn signals(&self) -> RunSignals<'_> {
+        let raw = (RAW, self.record.raw_deg_per_h.as_slice());
+        RunSignals {
+            sample_period_s: self.log.sample_period_s(),
+            first_measured: self.length.warm_up,
+            prefix: "",
+            truth_deg_per_h: &[],
+            encoder_rad: None,
+            channels: std::iter::once(raw)
+                .chain(self.compensated_words())
+                .chain(self.filter_words())
+                .collect(),
+            temperature: None,
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! The checks of a plan that concern its filters.
+
+use std::f64::consts::TAU;
+
+use super::checker::Checker;
+use crate::experiment::run::rate_deg_per_h_max;
+use crate::filters::{ExpectedRun, ExpectedWords};
+use crate::gyro;
+use crate::scenario::MotionConfig;
+use crate::signal::GyroFacts;
+
+/// Peak of the noise of a word that filters are to reckon with, standard deviations.
+const PEAK_SIGMAS: f64 = 4.0;
+
+impl Checker<'_> {
+    /// Refuses filters that cannot be or cannot keep up, and warns of those that will not do well.
+    pub(crate) fn filters(&mut self, facts: &GyroFacts) {
+        let words = self.expected_words(facts);
+        let filters = &self.resolved.scenario.filters;
+        for (index, filter) in filters.iter().enumerate() {
+            let complaints = filter.check_on(index, &words);
+            if complaints.is_empty() {
+                // No place: warnings stand in the results, which name no folder.
+                self.warnings.extend(filter.notes(&words));
+            }
+            for complaint in complaints {
+                self.complain(&complaint.key, complaint.message);
+            }
+        }
+    }
+
+    /// The words of the gyro, as far as they are known before it runs.
+    fn expected_words(&self, facts: &GyroFacts) -> ExpectedWords {
+        let scenario = &self.resolved.scenario;
+        let rate_max_deg_per_h = rate_deg_per_h_max(scenario);
+        let noise_std_deg_per_h = noise_std_deg_per_h(facts);
+        let swing_step_rad = match &scenario.turntable.motion {
+            MotionConfig::Swing(swing) => {
+                Some(TAU * swing.frequency_hz * gyro::sample_period_s(&scenario.gyro))
+            }
+            _ => None,
+        };
+        ExpectedWords {
+            sample_rate_hz: facts.output_rate_hz,
+            peak_deg_per_h: rate_max_deg_per_h + PEAK_SIGMAS * noise_std_deg_per_h,
+            run: Some(ExpectedRun {
+                rate_max_deg_per_h,
+                swing_step_rad,
+                noise_std_deg_per_h,
+                warm_up_s: scenario.warm_up_s,
+                duration_s: scenario.duration_s,
+            }),
+        }
+    }
+}
+
+/// Standard deviation of white noise with the budget's angle random walk, deg/h.
+fn noise_std_deg_per_h(facts: &GyroFacts) -> f64 {
+    let total = facts
+        .angle_random_walk_budget_deg_per_sqrt_h
+        .iter()
+        .find(|(source, _)| *source == "total")
+        .map_or(0.0, |(_, value)| *value);
+    crate::units::deg_per_sqrt_h_to_deg_per_h_sqrt_s(total) * facts.output_rate_hz.sqrt()
+}

@@ -1,0 +1,183 @@
+//! Metrics that gates, published figures and tables ask for: their names, and whether a record can
+//! ever have them.
+
+use super::checker::Checker;
+use super::published::wrong_unit;
+use crate::experiment::campaign;
+use crate::experiment::pipeline_metrics;
+use crate::experiment::run::{assembly_motion, motion};
+use crate::metrics::catalogue::DIVERGED_AT;
+use crate::metrics::{self, MetricKey};
+use crate::scenario::{ComparisonColumn, Scenario};
+use crate::signal::GyroFacts;
+
+/// A metric that a scenario asks for.
+struct Requested<'a> {
+    /// The key that asks.
+    key: String,
+    channel: &'a str,
+    metric: &'a str,
+}
+
+impl Checker<'_> {
+    /// Refuses metrics without a channel, and names that are no metrics, in tables as well.
+    pub(crate) fn names(&mut self) {
+        self.columns();
+        let scenario = &self.resolved.scenario;
+        let gates = scenario.gates.iter().map(|gate| &gate.metric);
+        let gates = gates
+            .enumerate()
+            .map(|(index, metric)| ("gate", index, metric));
+        let published = scenario.published.iter().map(|figure| &figure.metric);
+        let published = published
+            .enumerate()
+            .map(|(index, metric)| ("published", index, metric));
+        for (table, index, written) in gates.chain(published) {
+            let key = format!("{table}[{index}].metric");
+            match written.rsplit_once('.') {
+                Some((channel, name)) if !channel.is_empty() && !name.is_empty() => {
+                    let is_campaign = campaign::estimator_of(scenario, channel).is_some();
+                    if let Some(complaint) = metrics::unknown(name)
+                        && !is_campaign
+                    {
+                        self.complain(&key, format!("{key}: {channel}.{name}: {complaint}"));
+                    }
+                }
+                _ => {
+                    let message = self.without_channel(&key, written);
+                    self.complain(&key, message);
+                }
+            }
+        }
+    }
+
+    /// Refuses columns of tables that are no metrics.
+    fn columns(&mut self) {
+        let scenario = &self.resolved.scenario;
+        for (index, comparison) in scenario.comparisons.iter().enumerate() {
+            let columns = comparison.columns.iter();
+            for column in columns.filter_map(|text| ComparisonColumn::parse(text)) {
+                if let Some(complaint) = metrics::unknown(column.metric) {
+                    let key = format!("comparison[{index}].columns");
+                    let message =
+                        format!("{key}: there is no metric {}: {complaint}", column.metric);
+                    self.complain(&key, message);
+                }
+            }
+        }
+    }
+
+    /// The complaint about a metric without a channel, with a channel that has it.
+    fn without_channel(&self, key: &str, written: &str) -> String {
+        let scenario = &self.resolved.scenario;
+        let name = written.trim_matches('.');
+        let known = metrics::find(name).or_else(|| metrics::meant(name));
+        let filter = || scenario.filters.first();
+        let as_in = match known {
+            Some(metric) if metric.applies == metrics::Applies::Calibration => {
+                let channels = scenario.calibration_channels();
+                channels
+                    .first()
+                    .map(|channel| format!("{channel}.{}", metric.name))
+            }
+            Some(metric) if metric.filters_only => {
+                let prefix = scenario.axis_prefixes()[0];
+                filter().map(|filter| format!("{prefix}{}.{}", filter.name, metric.name))
+            }
+            Some(metric) => {
+                let raw = scenario.raw_channels();
+                raw.first()
+                    .map(|channel| format!("{channel}.{}", metric.name))
+            }
+            None => None,
+        };
+        let as_in = as_in.unwrap_or_else(|| "raw.angle_random_walk_deg_per_sqrt_h".to_owned());
+        format!(
+            "{key} = \"{written}\" names no channel: expected <channel>.<metric>, as in {as_in}"
+        )
+    }
+
+    /// Refuses gates and published figures that this record can never support.
+    pub(crate) fn metrics(&mut self, facts: &GyroFacts) {
+        let scenario = &self.resolved.scenario;
+        let motion = motion(scenario, 1.0 / facts.output_rate_hz);
+        let mut requested: Vec<Requested> = Vec::new();
+        for (index, gate) in scenario.gates.iter().enumerate() {
+            let Some((channel, metric)) = gate.metric.rsplit_once('.') else {
+                continue;
+            };
+            let key = format!("gate[{index}].metric");
+            requested.push(Requested {
+                key,
+                channel,
+                metric,
+            });
+            if let Some(reference) = &gate.relative_to {
+                requested.push(Requested {
+                    key: format!("gate[{index}].relative_to"),
+                    channel: reference,
+                    metric,
+                });
+            }
+        }
+        for (index, figure) in scenario.published.iter().enumerate() {
+            let Some((channel, metric)) = figure.metric.rsplit_once('.') else {
+                continue;
+            };
+            let key = format!("published[{index}].metric");
+            requested.push(Requested {
+                key,
+                channel,
+                metric,
+            });
+            if let Some((key, message)) = wrong_unit(index, metric, &figure.unit) {
+                self.complain(&key, message);
+            }
+        }
+        for Requested {
+            key,
+            channel,
+            metric: name,
+        } in requested
+        {
+            // The divergence of a channel may be what the gate expects.
+            if name == DIVERGED_AT.name {
+                continue;
+            }
+            if let Some(estimator) = campaign::estimator_of(scenario, channel) {
+                if let Err(reason) = campaign::supports(estimator, name) {
+                    self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
+                }
+                continue;
+            }
+            // A name that is no metric is refused above.
+            let Some(known) = metrics::find(name) else {
+                continue;
+            };
+            let supported = metrics::support(
+                name,
+                scenario.duration_s,
+                1.0 / facts.output_rate_hz,
+                &motion,
+                !scenario.is_unfiltered(channel),
+                scenario.bias_averaging_time_s,
+            );
+            let lack = || lacks(scenario, channel, known);
+            if let Some(reason) = supported.err().or_else(lack) {
+                self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
+            }
+        }
+    }
+}
+
+/// Why a channel of this scenario can never have a metric, whatever the length of its record.
+fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<String> {
+    let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
+    let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
+    pipeline_metrics::lacks(scenario, channel, key)
+        .or_else(|| assembly_motion::lacks(scenario, channel, key))
+        .or_else(|| campaign::lacks(scenario, key))
+        .or_else(|| metrics::encoder_lack(key, has_encoder))
+        .map(str::to_owned)
+        .or_else(|| metrics::repeats_lack(key, repeats))
+}

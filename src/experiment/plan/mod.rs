@@ -1,0 +1,15 @@
+//! Plans: scenarios that have passed the checks that need physics or metrics.
+
+mod checked;
+mod checker;
+mod filters;
+mod metrics;
+mod published;
+mod record_length;
+mod suite;
+mod survey;
+
+pub use checked::Plan;
+pub(crate) use suite::gather_plans;
+pub use suite::plan_suite;
+pub use survey::{Sound, check_suite};

@@ -1,0 +1,71 @@
+//! Checks of a whole suite that keep of each run only what is worth saying about it.
+
+use std::path::PathBuf;
+
+use super::checked::Plan;
+use super::suite::{compared, plan_suite, visit_plans};
+use crate::scenario::{ScenarioError, in_order, read_suite};
+
+/// What is worth saying about one run that has passed every check.
+#[derive(Clone, Debug)]
+pub struct Sound {
+    /// Folder of the run below the output folder.
+    pub folder: String,
+    /// The scenario's own file as messages show it.
+    pub file: String,
+    /// Name of the scenario.
+    pub name: String,
+    /// What a calibration campaign can determine, in a sentence.
+    pub calibration: Option<String>,
+    /// What is allowed but worth saying.
+    pub warnings: Vec<String>,
+    /// What is worth saying about the file, but no part of the results.
+    pub remarks: Vec<String>,
+}
+
+impl From<&Plan> for Sound {
+    fn from(plan: &Plan) -> Self {
+        Self {
+            folder: plan.resolved().folder(),
+            file: plan.resolved().shown_file(),
+            name: plan.resolved().scenario.name.clone(),
+            calibration: plan.calibration().map(str::to_owned),
+            warnings: plan.warnings().to_vec(),
+            remarks: plan.resolved().remarks.clone(),
+        }
+    }
+}
+
+/// Checks everything under `paths` as [`plan_suite`] does, without holding the plans in memory.
+///
+/// # Errors
+/// As [`plan_suite`].
+pub fn check_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Sound>, Vec<ScenarioError>> {
+    let mut sound = Vec::new();
+    let mut kept = Vec::new();
+    let mut has_tables = false;
+    let errors = visit_plans(&|take| read_suite(paths, sets, take), &mut |plan| {
+        let scenario = &plan.resolved().scenario;
+        has_tables |= !scenario.comparisons.is_empty() || !scenario.comparison_rows.is_empty();
+        if has_tables {
+            kept.push(plan);
+        } else {
+            sound.push(Sound::from(&plan));
+        }
+    });
+    if has_tables {
+        // A table over several scenarios is checked against all of them.
+        let plans = if sound.is_empty() {
+            compared(kept, errors)?
+        } else {
+            plan_suite(paths, sets)?
+        };
+        return Ok(plans.iter().map(Sound::from).collect());
+    }
+    sound.sort_by(|one, other| one.folder.cmp(&other.folder));
+    if errors.is_empty() {
+        Ok(sound)
+    } else {
+        Err(in_order(errors))
+    }
+}

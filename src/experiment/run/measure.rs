@@ -1,0 +1,173 @@
+//! Measuring the records of one repeat: which words are compared with which.
+
+use crate::metrics::catalogue::DIVERGED_AT;
+use rayon::prelude::*;
+
+use super::allan_settings::allan_options;
+use super::assembly_motion::drop_lacking;
+use super::motion::motion;
+use super::progress::{Progress, Unfinished, unless_stopped};
+use super::records::{RecordLength, stamp_s};
+use super::simulate::{GyroRecord, Simulation};
+use crate::experiment::campaign;
+use crate::experiment::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
+use crate::experiment::pipeline_metrics;
+use crate::experiment::plan::Plan;
+use crate::filters::Divergence;
+use crate::metrics::{
+    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Record, Settings, measure,
+};
+
+/// Channels of one repeat with their metrics.
+pub(crate) type Channels = Vec<(String, ChannelMetrics)>;
+
+/// Measures every channel of a repeat, in the order of the report; the listener can stop it between
+/// two channels.
+pub(crate) fn measure_repeat(
+    plan: &Plan,
+    simulation: &Simulation,
+    length: RecordLength,
+    progress: &dyn Progress,
+) -> Result<Channels, Unfinished> {
+    let scenario = &plan.resolved().scenario;
+    let sample_period_s = plan.sample_period_s();
+    let settings = &Settings {
+        motion: motion(scenario, sample_period_s),
+        bias_averaging_time_s: scenario.bias_averaging_time_s,
+        fit_tau_min_s: plan.fit_tau_min_s(),
+        allan: allan_options(scenario.allan),
+    };
+    let gyros = simulation.gyros.iter();
+    let cuts: Vec<Cut> = gyros
+        .map(|record| Cut {
+            record,
+            encoder_rad: simulation.encoder_rad.as_deref(),
+            length,
+            sample_period_s,
+            settings,
+        })
+        .collect();
+    let measured = |name: String, measure: &dyn Fn() -> ChannelMetrics| {
+        unless_stopped(progress)?;
+        Ok((name, measure()))
+    };
+    let (raw, filters): (Result<Channels, Unfinished>, Result<Channels, Unfinished>) = rayon::join(
+        || {
+            let named = cuts.par_iter().zip(scenario.raw_channels());
+            let raw = named.map(|(cut, name)| measured(name, &|| cut.measure_raw()));
+            let named = cuts.par_iter().zip(scenario.compensated_channels());
+            raw.chain(named.map(|(cut, name)| measured(name, &|| cut.measure_compensated())))
+                .collect()
+        },
+        || {
+            let filters = simulation.filters.par_iter();
+            let measure = |(gyro, filter): &(usize, FinishedFilter)| {
+                measured(filter.name.clone(), &|| cuts[*gyro].measure_filter(filter))
+            };
+            filters.map(measure).collect()
+        },
+    );
+    let mut channels: Channels = raw?.into_iter().chain(filters?).collect();
+    for (name, metrics) in &mut channels {
+        drop_lacking(scenario, name, metrics);
+        campaign::drop_lacking(scenario, metrics);
+    }
+    Ok(channels)
+}
+
+/// The measured part of one gyro's record and how to measure it.
+pub(crate) struct Cut<'a> {
+    pub(crate) record: &'a GyroRecord,
+    pub(crate) encoder_rad: Option<&'a [f64]>,
+    pub(crate) length: RecordLength,
+    pub(crate) sample_period_s: f64,
+    pub(crate) settings: &'a Settings,
+}
+
+impl Cut<'_> {
+    pub(crate) fn measure_raw(&self) -> ChannelMetrics {
+        self.measure_unfiltered(&self.record.raw_deg_per_h)
+    }
+
+    pub(crate) fn measure_compensated(&self) -> ChannelMetrics {
+        self.measure_unfiltered(self.record.filter_input_deg_per_h())
+    }
+
+    fn measure_unfiltered(&self, words: &[f64]) -> ChannelMetrics {
+        match words.iter().position(|word| !word.is_finite()) {
+            Some(sample) => failed(
+                "not finite",
+                sample as u64,
+                format!("the word of the gyro is {}", words[sample]),
+                self.sample_period_s,
+            ),
+            None => self.measure(words, words, None),
+        }
+    }
+
+    fn measure(
+        &self,
+        channel_deg_per_h: &[f64],
+        input_deg_per_h: &[f64],
+        filter: Option<&FilterFacts>,
+    ) -> ChannelMetrics {
+        let first = self.length.warm_up;
+        let record = Record {
+            channel_deg_per_h: &channel_deg_per_h[first..],
+            raw_deg_per_h: &input_deg_per_h[first..],
+            // A recorded log has none.
+            truth_deg_per_h: self.record.truth_deg_per_h.get(first..).unwrap_or(&[]),
+            encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
+            sample_period_s: self.sample_period_s,
+            first_stamp_s: stamp_s(first as u64, self.sample_period_s),
+        };
+        measure(&record, self.settings, filter)
+    }
+
+    pub(crate) fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
+        let mut metrics = match &filter.words {
+            Ok(words) => {
+                let facts = filter_facts(filter, words);
+                let input = self.record.filter_input_deg_per_h();
+                self.measure(&words.output_deg_per_h, input, Some(&facts))
+            }
+            Err(divergence) => diverged(divergence, self.sample_period_s),
+        };
+        if let Some(pipeline) = &filter.pipeline {
+            pipeline_metrics::enter(pipeline, self.sample_period_s, &mut metrics);
+            metrics.keep_finite();
+        }
+        metrics
+    }
+}
+
+fn filter_facts(filter: &FinishedFilter, words: &FilterWords) -> FilterFacts {
+    FilterFacts {
+        shape: filter.shape.clone(),
+        dc_gain: words.dc_gain,
+        dc_gain_adapted: words.dc_gain_adapted,
+        mean_weights: words.mean_weights.clone(),
+        block_weights: words.block_weights.clone(),
+        added_rate_deg_per_h: ADDED_RATE_DEG_PER_H,
+        rate_gains: words.rate_gains.clone(),
+        latency_s: pipeline_metrics::latency_s(filter.pipeline.as_ref()),
+    }
+}
+
+/// A channel that failed has no numbers of its record but the instant of its failure.
+fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
+    let (sample, message) = (divergence.sample, divergence.to_string());
+    failed("diverged", sample, message, sample_period_s)
+}
+
+fn failed(kind: &str, sample: u64, message: String, sample_period_s: f64) -> ChannelMetrics {
+    let mut channel = ChannelMetrics::default();
+    let at_s = stamp_s(sample, sample_period_s);
+    channel.put(&DIVERGED_AT, Estimate::exact(at_s));
+    channel.error = Some(ChannelFailure {
+        kind: kind.to_owned(),
+        sample,
+        message,
+    });
+    channel
+}

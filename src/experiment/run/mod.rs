@@ -1,0 +1,26 @@
+//! One run in memory: motion to gyro to filters to metrics, repeat by repeat.
+
+mod allan_settings;
+pub(crate) mod assembly_motion;
+mod in_memory;
+mod measure;
+mod motion;
+mod output_average;
+mod progress;
+mod rate_twins;
+mod records;
+mod results;
+mod simulate;
+mod theory;
+
+pub(crate) use allan_settings::allan_options;
+pub(crate) use assembly_motion::axis_index;
+pub use in_memory::{Run, RunError, Samples, UnknownName};
+pub(crate) use measure::Cut;
+pub(crate) use motion::{motion, motion_extremes, rate_deg_per_h_max};
+pub use progress::Progress;
+pub(crate) use progress::Unfinished;
+pub(crate) use rate_twins::RateTwins;
+pub(crate) use records::{RecordLength, count, stamp_s};
+pub(crate) use results::{Results, run_plan};
+pub(crate) use simulate::{GyroRecord, Simulation, first_words, simulate};

@@ -1,0 +1,176 @@
+//! One run in memory: its repeats, their measurement and the verdicts.
+
+use rayon::prelude::*;
+
+use super::measure::{Channels, measure_repeat};
+use super::progress::{Progress, Unfinished};
+use super::records::{RecordLength, count};
+use super::simulate::{Faults, Simulation, simulate};
+use super::theory::theory;
+use crate::experiment::campaign;
+use crate::experiment::campaign::Parameters;
+use crate::experiment::pipeline_metrics;
+use crate::experiment::plan::Plan;
+use crate::gate::{Verdict, judge};
+use crate::metrics::{ChannelMetrics, aggregate};
+use crate::signal::{CalibrationSheet, CompensationSheet, TheoryCurve};
+
+/// What a run comes to.
+pub(crate) struct Results {
+    /// Records of the first repeat.
+    pub(crate) simulation: Simulation,
+    /// Metrics of all repeats by channel, `raw` first.
+    pub(crate) channels: Channels,
+    /// Judged gates, in the order of the file.
+    pub(crate) verdicts: Vec<Verdict>,
+    /// What the reader of the results must know.
+    pub(crate) notes: Vec<String>,
+    /// What came of a calibration campaign.
+    pub(crate) calibration: Option<CalibrationSheet>,
+    /// What was taken out of the outputs.
+    pub(crate) compensation: Option<CompensationSheet>,
+    /// Lines of theory beside the measured points.
+    pub(crate) theory: Vec<TheoryCurve>,
+}
+
+/// Runs every repeat of `plan`, measures and judges.
+///
+/// # Errors
+/// Why it cannot be run to its end, or that the listener has stopped it.
+pub(crate) fn run_plan(plan: &Plan, progress: &dyn Progress) -> Result<Results, Unfinished> {
+    let resolved = plan.resolved();
+    let scenario = &resolved.scenario;
+    let theory = theory(scenario)?;
+    let Repeats {
+        simulation,
+        channels,
+        faults,
+        calibration,
+        parameters,
+    } = run_repeats(plan, progress)?;
+    let gates = scenario.gates.iter().enumerate();
+    let verdicts = gates
+        .map(|(index, gate)| judge(gate, &channels, Some(resolved.gate_place(index))))
+        .collect();
+    let sample_period_s = plan.sample_period_s();
+    let filters = simulation.filters.iter();
+    let pipelines: Vec<String> = filters
+        .flat_map(|(_, filter)| pipeline_metrics::notes(filter, sample_period_s))
+        .collect();
+    let notes = [plan.warnings().to_vec(), faults.notes(), pipelines].concat();
+    let compensation = parameters.map(|known| known.sheet(mean_true_rates(plan, &simulation)));
+    Ok(Results {
+        simulation,
+        channels,
+        verdicts,
+        notes,
+        calibration,
+        compensation,
+        theory,
+    })
+}
+
+/// Means of the true rates about the case axes over the first record, deg/h.
+fn mean_true_rates(plan: &Plan, simulation: &Simulation) -> [f64; 3] {
+    let scenario = &plan.resolved().scenario;
+    let first = RecordLength::new(scenario, plan.sample_period_s()).warm_up;
+    let mut means = [0.0; 3];
+    for (mean, gyro) in means.iter_mut().zip(&simulation.gyros) {
+        let truth = &gyro.truth_deg_per_h[first..];
+        *mean = truth.iter().sum::<f64>() / count(truth.len());
+    }
+    means
+}
+
+/// What the repeats of one run come to.
+struct Repeats {
+    /// Of the first.
+    simulation: Simulation,
+    channels: Channels,
+    faults: Faults,
+    /// Of the first, ranking those of all; none without a campaign.
+    calibration: Option<CalibrationSheet>,
+    /// What was taken out of the outputs.
+    parameters: Option<Parameters>,
+}
+
+/// Runs every repeat; the records of the first are kept for the plots and the sample files, those
+/// of the others are dropped as soon as they are measured.
+fn run_repeats(plan: &Plan, progress: &dyn Progress) -> Result<Repeats, Unfinished> {
+    let parameters = plan
+        .compensation()
+        .map(|plan| plan.parameters(progress))
+        .transpose()?;
+    let known = parameters.as_ref();
+    let (simulation, first, sheet) = run_repeat(plan, 0, known, progress)?;
+    let others: Vec<(Faults, Channels, Option<CalibrationSheet>)> =
+        (1..plan.resolved().scenario.repeats)
+            .into_par_iter()
+            .with_max_len(1)
+            .map(|repeat| {
+                run_repeat(plan, repeat, known, progress)
+                    .map(|(simulation, channels, sheet)| (simulation.faults, channels, sheet))
+            })
+            .collect::<Result<_, _>>()?;
+    let mut faults = simulation.faults;
+    let (mut channels, mut sheets) = (Vec::new(), Vec::from_iter(sheet));
+    for (more, other, sheet) in others {
+        faults = faults.plus(more);
+        channels.push(other);
+        sheets.extend(sheet);
+    }
+    Ok(Repeats {
+        simulation,
+        channels: combine(first, channels),
+        faults,
+        calibration: campaign::ranked(sheets),
+        parameters,
+    })
+}
+
+fn run_repeat(
+    plan: &Plan,
+    repeat: u32,
+    parameters: Option<&Parameters>,
+    progress: &dyn Progress,
+) -> Result<(Simulation, Channels, Option<CalibrationSheet>), Unfinished> {
+    let scenario = &plan.resolved().scenario;
+    let length = RecordLength::new(scenario, plan.sample_period_s());
+    let simulation = simulate(scenario, length, repeat, parameters, progress)?;
+    let mut channels = measure_repeat(plan, &simulation, length, progress)?;
+    let sheet = campaign::calibrate_simulation(scenario, &simulation)
+        .map_err(|error| Unfinished::Failed(format!("calibration: {error}")))?
+        .map(|(sheet, _)| sheet);
+    channels.extend(sheet.iter().flat_map(campaign::estimate_channels));
+    keep_finite(&mut channels);
+    Ok((simulation, channels, sheet))
+}
+
+/// One table from the tables of all repeats; a channel that failed once has failed.
+fn combine(first: Channels, others: Vec<Channels>) -> Channels {
+    if others.is_empty() {
+        return first;
+    }
+    let mut repeats = vec![first];
+    repeats.extend(others);
+    let names: Vec<String> = repeats[0].iter().map(|(name, _)| name.clone()).collect();
+    let combined = names.into_iter().enumerate().map(|(index, name)| {
+        let tables: Vec<ChannelMetrics> = repeats
+            .iter()
+            .map(|channels| channels[index].1.clone())
+            .collect();
+        let failed = tables.iter().find(|table| table.error.is_some());
+        let table = failed.cloned().unwrap_or_else(|| aggregate(&tables));
+        (name, table)
+    });
+    let mut combined = combined.collect();
+    keep_finite(&mut combined);
+    combined
+}
+
+/// Leaves only finite numbers in the tables; see [`ChannelMetrics::keep_finite`].
+fn keep_finite(channels: &mut Channels) {
+    for (_, metrics) in channels {
+        metrics.keep_finite();
+    }
+}

@@ -1,0 +1,66 @@
+//! The end of a suite: what its runs say across scenarios, and the files of the whole.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::entry::Suite;
+use super::ledger::Ledger;
+use super::outcome::SuiteOutcome;
+use super::output::{JUNIT, SUMMARY, Settled};
+use crate::comparison::{ComparedRun, Comparison, Layout};
+use crate::experiment::build::VERSION;
+use crate::experiment::plan::Plan;
+use crate::report::{self, RunOutcome};
+use crate::scenario::Resolved;
+
+/// What the plans ask of the runs of all.
+pub(crate) fn layout(plans: &[Plan]) -> Layout<'_> {
+    let suite: Vec<&Resolved> = plans.iter().map(Plan::resolved).collect();
+    Layout::of(&suite)
+}
+
+/// The tables over the runs that have ended; `runs` are those of `plans`, in their order.
+fn compare(plans: &[Plan], layout: &Layout, runs: &[RunOutcome]) -> Comparison {
+    let ended = plans.iter().zip(runs).filter(|(_, run)| !run.is_not_run);
+    let suite = ended.map(|(plan, run)| ComparedRun {
+        resolved: plan.resolved(),
+        folder: &run.folder,
+        kept: &run.kept,
+        pictures: &run.pictures,
+    });
+    layout.fill(&suite.collect::<Vec<_>>())
+}
+
+/// Closes the ledger and writes the files of the suite. What breaks an invariant is left out, and
+/// the rest is written all the same.
+pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteOutcome {
+    let Suite { output, ledger, .. } = *suite;
+    let runs = ledger.close(plans);
+    let comparison = unbroken(ledger, || compare(plans, layout, &runs)).unwrap_or_default();
+    let Settled { stale, failures } = output.settle();
+    let mut failures: Vec<String> = failures.iter().map(ToString::to_string).collect();
+    let tables = unbroken(ledger, || report::comparison_files(&comparison));
+    let mut files = tables.unwrap_or_default();
+    let summary = || report::suite_summary_json(VERSION, &runs, &comparison, &stale);
+    let junit = || report::junit_xml(&runs);
+    files.extend(unbroken(ledger, summary).map(|text| (SUMMARY.to_owned(), text)));
+    files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
+    failures.extend(output.publish(&files).err().map(|error| error.to_string()));
+    SuiteOutcome {
+        runs,
+        comparison,
+        broken: ledger.is_broken(),
+        threads: 0,
+        stale,
+        unwritten: ledger.is_unwritten(),
+        failures,
+    }
+}
+
+/// What `make` makes; none, and a note in the ledger, if it breaks an invariant.
+fn unbroken<T>(ledger: &Ledger, make: impl FnOnce() -> T) -> Option<T> {
+    let made = catch_unwind(AssertUnwindSafe(make)).ok();
+    if made.is_none() {
+        ledger.note_broken();
+    }
+    made
+}

@@ -1,0 +1,105 @@
+//! One run of a suite: its result or an earlier one, its files and its entry in the ledger.
+
+use super::files;
+use super::ledger::Ledger;
+use super::options::Resume;
+use super::outcome::Observer;
+use super::output::SuiteOutput;
+use super::resume::take_over;
+use crate::comparison::Layout;
+use crate::experiment::build::VERSION;
+use crate::experiment::plan::Plan;
+use crate::experiment::run::{Results, Unfinished, run_plan};
+use crate::report::{RunOutcome, RunReport};
+use crate::store::StoreError;
+
+/// What the runs of a suite share.
+pub(crate) struct Suite<'a> {
+    /// Where their folders go.
+    pub(crate) output: &'a SuiteOutput,
+    /// Whose results are taken over.
+    pub(crate) resume: Resume,
+    /// Which of them have ended.
+    pub(crate) ledger: &'a Ledger,
+}
+
+/// Runs `plan`, judges it, puts its folder in place and enters it in the ledger, or takes over the
+/// result that stands there; none if it was stopped before that. A run that fails is left to the
+/// caller to enter.
+pub(crate) fn run_scenario(
+    plan: &Plan,
+    index: usize,
+    layout: &Layout,
+    suite: &Suite,
+    observer: &dyn Observer,
+) -> Result<Option<RunOutcome>, StoreError> {
+    let kept = (suite.output, suite.resume);
+    if let Some(outcome) = take_over(plan, index, layout, kept, observer) {
+        suite.ledger.enter(index, &outcome);
+        return Ok(Some(outcome));
+    }
+    match run_plan(plan, observer) {
+        Ok(results) => enter_result((plan, index), &results, layout, suite, observer),
+        Err(Unfinished::Stopped) => Ok(None),
+        Err(Unfinished::Failed(error)) => {
+            let resolved = plan.resolved();
+            let (name, file) = (&resolved.scenario.name, &resolved.file);
+            let failed = RunOutcome::failed(name, &resolved.folder(), file, error);
+            Ok(Some(failed))
+        }
+    }
+}
+
+/// What the report of a run shows.
+fn report<'a>(plan: &'a Plan, results: &'a Results) -> RunReport<'a> {
+    let resolved = plan.resolved();
+    RunReport {
+        tool_version: VERSION,
+        scenario: &resolved.scenario,
+        file: &resolved.file,
+        digest: &resolved.digest,
+        sweep: resolved
+            .sweep
+            .as_ref()
+            .map(|point| (point.index, point.assignments.clone())),
+        gyro: plan.facts(),
+        compensation: results.compensation.as_ref(),
+        theory: &results.theory,
+        channels: &results.channels,
+        calibration: results.calibration.as_ref(),
+        verdicts: &results.verdicts,
+        notes: &results.notes,
+    }
+}
+
+/// Draws and writes a result, puts its folder in place and enters it in the ledger; none if the suite
+/// has come to its end before that.
+pub(crate) fn enter_result(
+    (plan, index): (&Plan, usize),
+    results: &Results,
+    layout: &Layout,
+    suite: &Suite,
+    observer: &dyn Observer,
+) -> Result<Option<RunOutcome>, StoreError> {
+    let output = suite.output;
+    let report = report(plan, results);
+    let pictures = files::draw(plan, &report, &results.simulation);
+    let notes = [report.notes, &pictures.notes].concat();
+    let report = &RunReport {
+        notes: &notes,
+        ..report
+    };
+    let written = files::write_folder(plan, report, &results.simulation, &pictures, output)?;
+    let outcome = RunOutcome::from_report(report, &plan.resolved().folder());
+    let pictures = pictures.drawn.into_iter().map(|(name, _)| name).collect();
+    let outcome = RunOutcome {
+        pictures,
+        ..outcome.keeping(report, layout.metrics_of(&report.scenario.name))
+    };
+    let swap = || output.put_in_place(written, plan);
+    if !suite.ledger.commit(index, &outcome, swap)? {
+        return Ok(None);
+    }
+    observer.finished(index, report);
+    Ok(Some(outcome))
+}

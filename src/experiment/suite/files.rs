@@ -1,0 +1,109 @@
+//! The files of one run.
+
+use super::output::SuiteOutput;
+use crate::experiment::plan::Plan;
+use crate::experiment::run::{RecordLength, Simulation, stamp_s};
+use crate::gyro::temperature_record;
+use crate::report::{self, Pictures, RunReport};
+use crate::scenario::SamplesFormat;
+use crate::signal::RunSignals;
+use crate::store::{Staged, StoreError};
+use crate::units::rad_to_arcsec;
+
+/// The pictures of one run, and what to say of those that are left out.
+pub(crate) fn draw(plan: &Plan, report: &RunReport, simulation: &Simulation) -> Pictures {
+    let names = Names::of(report);
+    report::run_pictures(report, &signals(plan, simulation, &names))
+}
+
+/// Writes everything of one run beside its place, to be swapped in whole.
+pub(crate) fn write_folder<'a>(
+    plan: &Plan,
+    report: &RunReport,
+    simulation: &Simulation,
+    pictures: &Pictures,
+    output: &'a SuiteOutput,
+) -> Result<Staged<'a>, StoreError> {
+    let folder = output.stage()?;
+    for (name, text) in report::run_files(report) {
+        folder.write(&name, text.as_bytes())?;
+    }
+    for (name, svg) in &pictures.drawn {
+        folder.write(name, svg.as_bytes())?;
+    }
+    if report.scenario.output.samples == SamplesFormat::Npy {
+        let names = Names::of(report);
+        write_samples(&folder, &signals(plan, simulation, &names))?;
+    }
+    Ok(folder)
+}
+
+/// Names of the channels of the gyros.
+struct Names {
+    raw: Vec<String>,
+    compensated: Vec<String>,
+}
+
+impl Names {
+    fn of(report: &RunReport) -> Self {
+        Self {
+            raw: report.scenario.raw_channels(),
+            compensated: report.scenario.compensated_channels(),
+        }
+    }
+}
+
+/// The samples of each gyro.
+fn signals<'a>(plan: &Plan, simulation: &'a Simulation, names: &'a Names) -> Vec<RunSignals<'a>> {
+    let scenario = &plan.resolved().scenario;
+    let sample_period_s = plan.sample_period_s();
+    let first_measured = RecordLength::new(scenario, sample_period_s).warm_up;
+    let end_s = scenario.warm_up_s + scenario.duration_s;
+    let gyros = simulation.gyros.iter().enumerate();
+    let named = gyros.zip(scenario.axis_prefixes().iter().zip(&names.raw));
+    let signals = named.map(|((gyro, record), (prefix, raw_name))| {
+        let raw = (raw_name.as_str(), record.raw_deg_per_h.as_slice());
+        let compensated = record.compensated_deg_per_h.as_deref();
+        let name = names.compensated.get(gyro).map(String::as_str);
+        let compensated = name.zip(compensated);
+        let filters = simulation.filters.iter().filter_map(|(of, filter)| {
+            let words = filter.words.as_ref().ok().filter(|_| *of == gyro)?;
+            Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
+        });
+        RunSignals {
+            sample_period_s,
+            first_measured,
+            prefix,
+            truth_deg_per_h: &record.truth_deg_per_h,
+            encoder_rad: simulation.encoder_rad.as_deref(),
+            channels: std::iter::once(raw)
+                .chain(compensated)
+                .chain(filters)
+                .collect(),
+            temperature: temperature_record(&scenario.gyro, scenario.warm_up_s, end_s),
+        }
+    });
+    signals.collect()
+}
+
+fn write_samples(folder: &Staged, gyros: &[RunSignals]) -> Result<(), StoreError> {
+    for signals in gyros {
+        for (name, words) in &signals.channels {
+            folder.write_npy(&report::SAMPLES.named(name), words)?;
+        }
+        let truth = report::TRUTH_SAMPLES.named(signals.prefix);
+        folder.write_npy(&truth, signals.truth_deg_per_h)?;
+    }
+    let Some(first) = gyros.first() else {
+        return Ok(());
+    };
+    if let Some(readings) = first.encoder_rad {
+        let angles: Vec<f64> = readings.iter().copied().map(rad_to_arcsec).collect();
+        folder.write_npy(report::ENCODER_SAMPLES.name, &angles)?;
+    }
+    let samples = first.truth_deg_per_h.len() as u64;
+    let time_s: Vec<f64> = (0..samples)
+        .map(|index| stamp_s(index, first.sample_period_s))
+        .collect();
+    folder.write_npy(report::TIME_SAMPLES.name, &time_s)
+}

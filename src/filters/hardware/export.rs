@@ -1,0 +1,77 @@
+//! Exports of hardware pipelines with a stimulus.
+
+use std::path::{Path, PathBuf};
+
+use super::settings::{PipelineSettings, with_word};
+use crate::fpga::FpgaError;
+use crate::fpga::export::{
+    ExportSettings, IntegerCodes, stimulus_pairs, write_rtl, write_vectors, write_waveform,
+};
+use crate::fpga::float_unit::Fp;
+use crate::fpga::trace::Window;
+use crate::vocabulary::{DesiredSignal, ExportForm};
+
+/// A sample stream in front of the front end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stimulus {
+    /// Samples, in the unit of the pipeline's constants.
+    pub words: Vec<f64>,
+    /// The gyro's integer codes behind them, if they have any.
+    pub codes: Option<IntegerCodes>,
+}
+
+/// Writes the folder; returns its files. The update is in the schedule's order, the hardware's.
+///
+/// # Errors
+/// Constants or stimulus that the pipeline refuses, and files that cannot be written.
+pub fn export_pipeline(
+    folder: &Path,
+    form: ExportForm,
+    settings: &PipelineSettings,
+    stimulus: Stimulus,
+    trace_samples: usize,
+) -> Result<Vec<PathBuf>, FpgaError> {
+    with_word!(settings.format, F => {
+        export::<F>(folder, form, settings, stimulus, trace_samples)
+    })
+}
+
+fn export<F: Fp>(
+    folder: &Path,
+    form: ExportForm,
+    settings: &PipelineSettings,
+    stimulus: Stimulus,
+    trace_samples: usize,
+) -> Result<Vec<PathBuf>, FpgaError> {
+    let pairs = stimulus_pairs(&stimulus.words, &mut settings.front_end::<F>())?;
+    let export = ExportSettings {
+        pipeline: settings.constants::<F>()?,
+        clock_mhz: settings.clock_mhz,
+        front_end: front_end_words(settings),
+        trace_samples: trace_samples.min(pairs.len()),
+        codes: stimulus.codes,
+    };
+    match form {
+        ExportForm::Vectors => write_vectors(folder, &export, &pairs),
+        ExportForm::Rtl => write_rtl(folder, &export, &pairs),
+        ExportForm::Waveform => {
+            let samples = export.trace_samples as u64;
+            let window = Window {
+                first_clock: 0,
+                clock_count: 1 + samples * export.pipeline.as_pipeline().clocks_per_sample() as u64,
+            };
+            write_waveform(folder, &export, &pairs, window)
+        }
+    }
+}
+
+fn front_end_words(settings: &PipelineSettings) -> String {
+    let desired = match settings.desired {
+        DesiredSignal::Current => "the newest sample",
+        DesiredSignal::TwoSampleMean => "the mean of the two newest samples",
+    };
+    format!(
+        "x: the sample {} samples ago; d: {desired}",
+        settings.input_lag_samples
+    )
+}

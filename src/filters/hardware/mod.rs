@@ -1,0 +1,24 @@
+//! Hardware pipelines on the bench: from a filter's keys to its pipeline, that pipeline as a filter,
+//! the watch over its matrix, its timing and its exports.
+//!
+//! One file per kind says which pipeline its keys stand for: [`rls`], [`lms`], [`sign_lms`].
+//!
+//! Invariant: the only part of the bench that knows [`fpga`](crate::fpga).
+
+#[cfg(feature = "hdl")]
+mod export;
+mod filter;
+mod lms;
+mod monitor;
+mod rls;
+mod settings;
+mod sign_lms;
+
+#[cfg(feature = "hdl")]
+pub use export::{Stimulus, export_pipeline};
+pub use filter::HardwareFilter;
+pub(super) use lms::lms;
+pub use monitor::HealthSummary;
+pub(super) use rls::rls;
+pub use settings::{PipelineSettings, PipelineTiming, has_hardware, kind_names};
+pub(super) use sign_lms::sign_lms;

@@ -1,0 +1,28 @@
+//! Recursive least squares in hardware.
+
+use super::settings::PipelineSettings;
+use crate::filters::rls::RlsFilterConfig;
+use crate::fpga::kinds::CoreSettings;
+use crate::fpga::rls::{RlsCore, RlsSettings};
+
+/// The pipeline that the keys stand for.
+pub(in crate::filters) fn rls(config: &RlsFilterConfig) -> PipelineSettings {
+    let settings = RlsSettings {
+        tap_count: config.taps as usize,
+        forgetting_factor: config.forgetting_factor,
+        initial_inverse_correlation: config.initial_inverse_correlation,
+        division: config.division,
+        update_sign: config.update_sign,
+    };
+    PipelineSettings {
+        core: CoreSettings::Rls(RlsCore {
+            settings,
+            order: config.update_order,
+        }),
+        desired: config.desired,
+        input_lag_samples: config.input_lag_samples as usize,
+        output_register: config.output_register,
+        format: config.number_format,
+        clock_mhz: config.clock_mhz,
+    }
+}

@@ -1,0 +1,188 @@
+//! A hardware pipeline with its front end: constants, checks, timing and the filter they stand for.
+
+use super::filter::{HardwareFilter, PipelineFilter};
+use crate::filters::common::{Complaints, FrontEndConfig, adaptive_rule};
+use crate::fpga::FpgaError;
+use crate::fpga::float_unit::Fp;
+use crate::fpga::front_end::FrontEnd;
+use crate::fpga::health::Warning;
+use crate::fpga::kinds::{CoreSettings, CoreVisitor, KINDS, PipelineConfig};
+use crate::fpga::pipeline::Core;
+use crate::fpga::timing::{Usage, sample_period_us, sample_rate_max_khz};
+use crate::signal::FilterShape;
+use crate::units::s_to_us;
+use crate::vocabulary::{DesiredSignal, NumberFormat, OutputRegister};
+
+/// A hardware pipeline with its front end, before any check.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PipelineSettings {
+    /// The filter.
+    pub core: CoreSettings,
+    /// What the filter is asked to reproduce.
+    pub desired: DesiredSignal,
+    /// Samples by which the regressors lag the newest sample.
+    pub input_lag_samples: usize,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+    /// Words.
+    pub format: NumberFormat,
+    /// Clock, MHz.
+    pub clock_mhz: f64,
+}
+
+/// What one sample costs, counted on the running model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PipelineTiming {
+    /// Clocks, states, ports and units of one back-to-back sample.
+    pub usage: Usage,
+    /// Time of all clocks of a sample, us.
+    pub sample_period_us: f64,
+    /// From the accepting clock to the result, us.
+    pub latency_us: f64,
+    /// `1 / sample_period_us`, kHz.
+    pub sample_rate_max_khz: f64,
+}
+
+/// Runs `$body` with `$word` standing for the word type of a [`NumberFormat`].
+macro_rules! with_word {
+    ($format:expr, $word:ident => $body:expr) => {
+        match $format {
+            $crate::vocabulary::NumberFormat::Binary64 => {
+                type $word = f64;
+                $body
+            }
+            $crate::vocabulary::NumberFormat::Binary32 => {
+                type $word = f32;
+                $body
+            }
+            $crate::vocabulary::NumberFormat::Binary64FlushToZero => {
+                type $word = $crate::fpga::float_unit::FlushToZero<f64>;
+                $body
+            }
+            $crate::vocabulary::NumberFormat::Binary32FlushToZero => {
+                type $word = $crate::fpga::float_unit::FlushToZero<f32>;
+                $body
+            }
+        }
+    };
+}
+pub(super) use with_word;
+
+/// Names of the kinds of filters that have a hardware pipeline.
+pub fn kind_names() -> impl Iterator<Item = &'static str> {
+    KINDS.iter().map(|kind| kind.name)
+}
+
+/// Whether filters of a kind have a hardware pipeline.
+#[must_use]
+pub fn has_hardware(kind: &str) -> bool {
+    kind_names().any(|name| name == kind)
+}
+
+impl PipelineSettings {
+    /// Number of weights.
+    #[must_use]
+    pub fn tap_count(&self) -> usize {
+        self.core.tap_count()
+    }
+
+    /// Rounds the constants to the word format, checks them and counts one sample's clocks.
+    ///
+    /// # Errors
+    /// What the pipeline refuses: tap count, forgetting factor, initial inverse correlation, step
+    /// or regularisation out of range in the word format.
+    pub fn timing(&self) -> Result<PipelineTiming, FpgaError> {
+        let usage = with_word!(self.format, F => {
+            self.constants::<F>()?.as_pipeline().clocked().usage()
+        });
+        let clock_mhz = self.clock_mhz;
+        Ok(PipelineTiming {
+            sample_period_us: sample_period_us(usage.clocks_per_sample, clock_mhz),
+            latency_us: sample_period_us(usage.latency_clocks, clock_mhz),
+            sample_rate_max_khz: sample_rate_max_khz(usage.clocks_per_sample, clock_mhz),
+            usage,
+        })
+    }
+
+    /// Checks the constants in their word format, and that a sample is done before the next arrives.
+    pub(in crate::filters) fn check(&self, sample_rate_hz: f64, complaints: &mut Complaints) {
+        let timing = match self.timing() {
+            Ok(timing) => timing,
+            Err(error) => return complaints.table(&error.to_string()),
+        };
+        let period_us = s_to_us(1.0 / sample_rate_hz);
+        if timing.sample_period_us > period_us {
+            let message = format!(
+                "= {} is too slow: {} clocks a sample take {:.3} us, the gyro gives one every \
+                 {period_us:.3} us; use {:.3} MHz or more, or fewer taps",
+                self.clock_mhz,
+                timing.usage.clocks_per_sample,
+                timing.sample_period_us,
+                self.clock_mhz * timing.sample_period_us / period_us
+            );
+            complaints.key("clock_mhz", &message);
+        }
+    }
+
+    /// Warns if the first updates cost the words their digits, for inputs up to `input_max`.
+    #[must_use]
+    pub fn digits_warning(&self, input_max: f64) -> Option<Warning> {
+        with_word!(self.format, F => self.core.digits_warning::<F>(input_max))
+    }
+
+    /// Samples after which theory expects the gain-first order to fail; none for the others.
+    #[must_use]
+    pub fn failure_samples(&self) -> Option<f64> {
+        with_word!(self.format, F => self.core.failure_samples::<F>())
+    }
+
+    /// The filter in front of the bench, bit for bit the hardware's.
+    ///
+    /// * `warm_up_samples`: samples before the record; health is summed up from there on.
+    ///
+    /// # Errors
+    /// As [`Self::timing`].
+    pub fn filter(&self, warm_up_samples: u64) -> Result<Box<dyn HardwareFilter>, FpgaError> {
+        self.core.visit(FilterBuilder {
+            settings: self,
+            warm_up_samples,
+        })
+    }
+
+    /// The constants in the word format.
+    pub(super) fn constants<F: Fp>(&self) -> Result<PipelineConfig<F>, FpgaError> {
+        self.core.config()
+    }
+
+    /// The hold registers in front of the core.
+    pub(super) fn front_end<F: Fp>(&self) -> FrontEnd<F> {
+        FrontEnd::new(self.desired, self.input_lag_samples)
+    }
+
+    /// Regressors, desired signal and register in the terms of the bench.
+    pub(super) fn shape(&self) -> FilterShape {
+        let front_end = FrontEndConfig {
+            desired: self.desired,
+            input_lag_samples: self.input_lag_samples,
+            output_register: self.output_register,
+        };
+        front_end.shape(Some(self.tap_count()), adaptive_rule(self.desired))
+    }
+}
+
+/// Puts the engine of any kind behind its front end.
+struct FilterBuilder<'a> {
+    settings: &'a PipelineSettings,
+    warm_up_samples: u64,
+}
+
+impl CoreVisitor for FilterBuilder<'_> {
+    type Outcome = Result<Box<dyn HardwareFilter>, FpgaError>;
+
+    fn visit<C: Core>(self, core: &C) -> Self::Outcome {
+        with_word!(self.settings.format, F => {
+            let engine = core.engine::<F>()?;
+            Ok(Box::new(PipelineFilter::new(self.settings, engine, self.warm_up_samples)))
+        })
+    }
+}

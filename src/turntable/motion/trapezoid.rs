@@ -1,0 +1,78 @@
+//! Trapezoids of rate: accelerate, hold, decelerate, rest.
+
+use super::course::Instant;
+use super::samples::first_measured_index;
+use crate::scenario::TrapezoidConfig;
+use crate::units::deg_per_s_to_rad_per_s;
+
+/// Trapezoids in a row, the first of which begins with the record; at rest before and after.
+///
+/// The rate has no jumps, the acceleration does; a corner lies wherever the times put it, and the
+/// sample that holds it is the cubic through the rates and slopes at its ends, which there misses
+/// the corner by at most 4/27 of what the rate changes in one sample.
+#[derive(Clone, Debug)]
+pub(super) struct Trapezoids {
+    /// Rate of the first, rad/s.
+    rate: f64,
+    /// Length of a ramp, samples.
+    ramp: f64,
+    /// Length of the top, samples.
+    hold: f64,
+    /// From the start of one to the start of the next, samples.
+    period: f64,
+    count: f64,
+    /// Whether every other one turns the other way.
+    alternates: bool,
+    /// Where the first begins, samples.
+    first: f64,
+}
+
+impl Trapezoids {
+    pub(super) fn new(config: &TrapezoidConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
+        let samples = |time_s: f64| time_s / sample_period_s;
+        let ramp = samples(ramp_s(config));
+        let hold = samples(config.hold_s);
+        Self {
+            rate: deg_per_s_to_rad_per_s(config.rate_deg_per_s),
+            ramp,
+            hold,
+            period: 2.0 * ramp + hold + samples(config.rest_s),
+            count: f64::from(config.count()),
+            alternates: config.both_senses,
+            first: first_measured_index(warm_up_s, sample_period_s) as f64,
+        }
+    }
+
+    /// Command at `instant` samples from the start.
+    pub(super) fn at(&self, instant: f64) -> Instant {
+        let since = instant - self.first;
+        let number = (since / self.period).floor();
+        if since < 0.0 || number >= self.count {
+            return Instant::REST;
+        }
+        let is_backward = self.alternates && number % 2.0 > 0.5;
+        let rate = if is_backward { -self.rate } else { self.rate };
+        let within = since - number * self.period;
+        let falling = within - self.ramp - self.hold;
+        if within < self.ramp {
+            Instant {
+                rate: rate * (within / self.ramp),
+                slope: rate / self.ramp,
+            }
+        } else if falling < 0.0 {
+            Instant { rate, slope: 0.0 }
+        } else if falling < self.ramp {
+            Instant {
+                rate: rate * (1.0 - falling / self.ramp),
+                slope: -rate / self.ramp,
+            }
+        } else {
+            Instant::REST
+        }
+    }
+}
+
+/// Length of a ramp, s.
+fn ramp_s(config: &TrapezoidConfig) -> f64 {
+    config.rate_deg_per_s.abs() / config.acceleration_deg_per_s2
+}
