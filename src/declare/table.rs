@@ -210,6 +210,10 @@ macro_rules! alternatives {
 pub(crate) use {alternatives, table};
 
 #[cfg(test)]
+#[expect(
+    unreachable_pub,
+    reason = "the macros declare public items, which a module of tests does not reach"
+)]
 mod tests {
     use crate::declare::{Content, Keys, Kind, Presence};
     use crate::vocabulary::words;
