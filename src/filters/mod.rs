@@ -45,7 +45,9 @@ pub use common::{
     adaptive_rule,
 };
 pub use constrained_rls::{ConstrainedRls, ConstrainedRlsCore, ConstrainedRlsFilterConfig};
-pub use kalman::{Kalman, KalmanConfig, KalmanCore, KalmanFilterConfig, kalman_gain};
+pub use kalman::{
+    Kalman, KalmanConfig, KalmanCore, KalmanFilterConfig, RateRandomWalk, kalman_gain,
+};
 pub use kind::{ExpectedRun, ExpectedWords, FilterConfig, FilterKind, FilterSettings};
 pub use lms::{
     Lms, LmsConfig, LmsCore, LmsFilterConfig, Normalisation, constant_eigenvalue_max,

@@ -11,6 +11,7 @@ use super::error::{ScenarioError, in_both};
 use super::faults::Taken;
 use super::numbers;
 use super::presence::check_presence;
+use super::renamed;
 use super::resolved::{InputFile, Resolved, SweepPoint, broken, configuration, digest};
 use super::script;
 use super::source::{Mark, Sources};
@@ -211,7 +212,7 @@ impl Draft {
             digest: origin.digest,
             inputs: origin.inputs,
             sweep: origin.sweep,
-            warnings: self.warnings,
+            warnings: [self.warnings, renamed::warnings(&self.root)].concat(),
             remarks: self.remarks,
             is_base_point: false,
             campaign,

@@ -40,6 +40,7 @@ mod matrix;
 mod numbers;
 mod presence;
 mod reference;
+mod renamed;
 mod resolved;
 mod schema;
 mod script;

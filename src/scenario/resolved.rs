@@ -9,6 +9,7 @@ use super::defaults::default_of;
 use super::deserialize::from_table;
 use super::emit::to_toml;
 use super::error::{Location, ScenarioError};
+use super::renamed;
 use super::source::{Mark, Sources};
 use super::tree::{Node, Table, Value};
 
@@ -86,6 +87,12 @@ impl Resolved {
     /// # Errors
     /// Every contradiction between the values.
     pub(super) fn with_tree(&self, tree: Table, text: &str) -> Result<Self, Vec<ScenarioError>> {
+        let former = renamed::warnings(&self.tree);
+        let lasting = self
+            .warnings
+            .iter()
+            .filter(|warning| !former.contains(warning));
+        let warnings = lasting.cloned().chain(renamed::warnings(&tree)).collect();
         let other = Self {
             scenario: configuration(&tree, self.root_mark, &self.sources)?,
             digest: digest(text),
@@ -93,7 +100,7 @@ impl Resolved {
             file: self.file.clone(),
             inputs: self.inputs.clone(),
             sweep: None,
-            warnings: self.warnings.clone(),
+            warnings,
             remarks: self.remarks.clone(),
             is_base_point: false,
             campaign: self.campaign.clone(),
