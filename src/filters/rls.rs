@@ -2,7 +2,7 @@
 
 use super::common::{Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, dot};
 use super::hardware::{self, PipelineSettings};
-use super::kind::{ExpectedWords, FilterSettings};
+use super::kind::{Condition, ExpectedWords, FilterSettings, HARDWARE};
 use crate::declare::table;
 use crate::vocabulary::{
     DesiredSignal, Division, NumberFormat, OutputRegister, Pipeline, UpdateOrder, UpdateSign,
@@ -45,6 +45,31 @@ table! {
 }
 
 impl FilterSettings for RlsFilterConfig {
+    fn conditions() -> &'static [Condition<Self>] {
+        &[
+            Condition {
+                key: "number_format",
+                needs: HARDWARE,
+                acts: |settings| settings.pipeline == Pipeline::Fpga,
+            },
+            Condition {
+                key: "clock_mhz",
+                needs: HARDWARE,
+                acts: |settings| settings.pipeline == Pipeline::Fpga,
+            },
+            Condition {
+                key: "division",
+                needs: HARDWARE,
+                acts: |settings| settings.pipeline == Pipeline::Fpga,
+            },
+            Condition {
+                key: "update_order",
+                needs: HARDWARE,
+                acts: |settings| settings.pipeline == Pipeline::Fpga,
+            },
+        ]
+    }
+
     fn notes(&self, words: &ExpectedWords) -> Vec<String> {
         // The hardware warns by itself.
         if self.pipeline == Pipeline::Fpga {

@@ -9,7 +9,7 @@ use super::address::{Step, display};
 use super::defaults::default_of;
 use super::error::{Location, ScenarioError};
 use super::excerpt::excerpt;
-use super::inert_rules::{Acts, RULES, Rule};
+use super::inert_rules::{Acts, Rule, rules};
 use super::resolved::Resolved;
 use super::source::Mark;
 use super::tree::{Node, Table};
@@ -39,7 +39,7 @@ impl Idle {
     pub(crate) fn of(first: &Resolved, swept: &[(Vec<Step>, Mark)]) -> Self {
         let mut wishes = Vec::new();
         let mut is_written_out = None;
-        for rule in RULES {
+        for rule in rules() {
             for Written { path, node, mark } in places(first, rule) {
                 let axis = swept.iter().find(|(swept, _)| *swept == path);
                 let mark = axis.map_or(mark, |(_, mark)| *mark);
@@ -123,9 +123,9 @@ fn acts(run: &Resolved, rule: &Rule, path: &[Step]) -> bool {
     });
     match rule.acts {
         Acts::Run(acts) => acts(scenario),
-        Acts::Filter(acts) => index
+        Acts::Filter(kind, key) => index
             .and_then(|index| scenario.filters.get(index))
-            .is_none_or(acts),
+            .is_none_or(|filter| filter.kind.name() != kind || filter.kind.acts(key)),
         Acts::Gate(acts) => index
             .and_then(|index| scenario.gates.get(index))
             .is_none_or(acts),
