@@ -8,8 +8,8 @@ const HEAD: &str = "\
 
 <!-- Generated from scenarios/reference.toml by the test `generated_page_of_the_scenario_keys`. -->
 
-A scenario is a TOML file. [`scenarios/reference.toml`](../scenarios/reference.toml) declares every key
-with its default and is the program's only source of defaults; this page is the same text as tables.
+A scenario is a TOML file. [`scenarios/reference.toml`](../scenarios/reference.toml) shows every key with
+its default, as the stages declare them; this page is the same text as tables.
 `fogbench schema` prints the JSON Schema for editors, which is checked in as
 [`scenarios/scenario.schema.json`](../scenarios/scenario.schema.json).
 
