@@ -3,11 +3,13 @@
 use std::f64::consts::{PI, TAU};
 
 use fogbench::filters::{
-    ConstrainedRls, Filter, FixedFilter, FrontEndConfig, Kalman, KalmanConfig, RecursiveFilter,
-    Rls, RlsConfig, butterworth, kalman_gain, moving_average, one_pole, savitzky_golay,
+    ConstrainedRls, Filter, FilterKind, FixedFilter, FrontEndConfig, Kalman, KalmanConfig,
+    RecursiveFilter, Rls, RlsConfig, butterworth, kalman_gain, moving_average, one_pole,
+    savitzky_golay,
 };
 use fogbench::metrics::predict;
 use fogbench::random::Streams;
+use fogbench::scenario::{Resolved, load_suite};
 use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 
 use crate::support::{assert_close, code, field, fogbench, stderr, stdout, summary, write};
@@ -281,4 +283,67 @@ fn constants_that_make_no_filter_are_refused() {
         assert!(said.contains(key) && said.contains(allowed), "{said}");
         assert!(said.contains("bad.toml:4"), "{said}");
     }
+}
+
+#[test]
+fn the_random_walk_under_its_former_name_keeps_its_bits_and_is_answered_with_the_new_one() {
+    const OLD: &str = "rate_random_walk_deg_per_h_per_sqrt_s";
+    const NEW: &str = "rate_random_walk_deg_per_h_per_sqrt_h";
+    const PERIOD_S: f64 = 0.000_25;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("walk.toml");
+    let read = |text: &str, sets: &[String]| {
+        std::fs::write(&path, text).unwrap();
+        load_suite(std::slice::from_ref(&path), sets).map(|mut runs| runs.remove(0))
+    };
+    let scenario = |keys: &str| {
+        format!(
+            "schema = 1\nname = \"walk\"\nduration_s = 1.0\n[[filter]]\nname = \"k\"\n\
+             [filter.kalman]\n{keys}\n"
+        )
+    };
+    // The step of the walk in a word, which is all that the filter reads of the key.
+    let step = |run: &Resolved| match &run.scenario.filters[0].kind {
+        FilterKind::Kalman(config) => config.rate_random_walk.after(PERIOD_S),
+        other => panic!("{other:?}"),
+    };
+    let default = read(&scenario(""), &[]).unwrap();
+    assert_eq!(
+        step(&default).to_bits(),
+        (190.0 * PERIOD_S.sqrt()).to_bits()
+    );
+    assert!(default.warnings.is_empty());
+
+    // 0.7 x 60 / 60 is another number than 0.7 in binary64 for some values: the old one is kept as it is.
+    for old in [0.7, 0.1, 123.456, 190.0, 7.3e-5] {
+        let run = read(&scenario(&format!("{OLD} = {old:?}")), &[]).unwrap();
+        assert_eq!(
+            step(&run).to_bits(),
+            (old * PERIOD_S.sqrt()).to_bits(),
+            "{old}"
+        );
+        let said = format!(
+            "filter[0].kalman.{OLD} = {old:?} deg/h/sqrt(s) is the former name and unit of {NEW}: \
+             write {NEW} = {:?} (deg/h/sqrt(h))",
+            old * 60.0
+        );
+        assert_eq!(run.warnings, [said]);
+        // What is printed of the run can be read again and is the same run.
+        let again = read(&run.to_toml(), &[]).unwrap();
+        assert_eq!(step(&again).to_bits(), step(&run).to_bits());
+    }
+    let run = read(&scenario(&format!("{NEW} = 42.0")), &[]).unwrap();
+    assert_eq!(step(&run).to_bits(), (0.7 * PERIOD_S.sqrt()).to_bits());
+
+    // Both in one file contradict each other; a later source replaces an earlier one.
+    let both = read(&scenario(&format!("{OLD} = 1.0\n{NEW} = 60.0")), &[]).unwrap_err();
+    let said = both[0].to_string();
+    assert!(
+        said.contains(OLD) && said.contains(NEW) && said.contains("contradicts"),
+        "{said}"
+    );
+    let sets = [format!("filter.k.{NEW}=60.0")];
+    let run = read(&scenario(&format!("{OLD} = 5.0")), &sets).unwrap();
+    assert_eq!(step(&run).to_bits(), PERIOD_S.sqrt().to_bits());
+    assert!(run.warnings.is_empty(), "{:?}", run.warnings);
 }

@@ -2,17 +2,18 @@
 
 use std::f64::consts::TAU;
 
+use fogbench::Scenario;
 use fogbench::filters::{
-    Core, DivergenceKind, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, Rls, RlsConfig,
-    RlsCore, adaptive_rule, constant_eigenvalue_max, covariance_digits_warning, lms_step_bound,
-    sine_eigenvalue_max,
+    Core, DivergenceKind, ExpectedWords, Filter, FilterKind, FrontEndConfig, Lms, LmsConfig,
+    Normalisation, Rls, RlsConfig, RlsCore, adaptive_rule, conditional_keys,
+    constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
 };
 use fogbench::random::Streams;
 use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::{ProptestConfig, prop_assert, proptest};
 
-use crate::support::assert_close;
+use crate::support::{assert_close, repository};
 
 const PERIOD_S: f64 = 0.000_25;
 
@@ -507,5 +508,66 @@ proptest! {
         for (base, other) in base.iter().zip(&other) {
             prop_assert!((other / scale - base).abs() < 1e-9 * (1.0 + base.abs()));
         }
+    }
+}
+
+/// Names of every kind of filter.
+fn kinds() -> &'static [&'static str] {
+    FilterKind::TABLE
+        .group
+        .expect("a filter has one kind")
+        .alternatives
+}
+
+#[test]
+fn every_kind_is_read_built_and_run_with_its_defaults_and_stands_in_the_page_of_filters() {
+    let page =
+        std::fs::read_to_string(repository("docs/filters.md")).expect("the page is readable");
+    for kind in kinds() {
+        assert!(
+            page.contains(&format!("`{kind}`")),
+            "docs/filters.md lacks `{kind}`"
+        );
+        let text = format!(
+            "schema = 1\nname = \"one\"\nduration_s = 1.0\n[[filter]]\nname = \"f\"\n[filter.{kind}]\n"
+        );
+        let scenario = Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{kind}: {error}"));
+        let plans = scenario
+            .points()
+            .unwrap_or_else(|error| panic!("{kind}: {error}"));
+        let filter = &plans[0].resolved().scenario.filters[0];
+        assert_eq!(filter.kind.name(), *kind);
+        let words = ExpectedWords {
+            sample_rate_hz: 1.0 / PERIOD_S,
+            peak_deg_per_h: 20.0,
+            run: None,
+        };
+        assert_eq!(filter.check(0), []);
+        assert_eq!(filter.check_on(0, &words), []);
+        // A word enters the output and is forgotten, or is the rate that was always there.
+        let mut built = filter.kind.settings().build(PERIOD_S);
+        let noise = white(kind, 2000);
+        let outputs: Vec<f64> = noise
+            .iter()
+            .map(|word| {
+                built
+                    .step(15.0 + word)
+                    .expect("no divergence")
+                    .value_deg_per_h
+            })
+            .collect();
+        let last = outputs[1999];
+        assert!(
+            last.is_finite() && outputs[1000..].iter().any(|word| *word != last),
+            "{kind}"
+        );
+        let shape = built.shape();
+        assert!(shape.newest_age_samples >= shape.register_samples, "{kind}");
+    }
+    for key in conditional_keys() {
+        assert!(
+            kinds().contains(&key.kind) && !key.needs.is_empty(),
+            "{key:?}"
+        );
     }
 }

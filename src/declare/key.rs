@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::kind::{Content, Kind};
-use super::row::{Group, Presence, Row, Table};
+use super::row::{Group, Presence, Row, Successor, Table};
 
 /// One key of a file.
 ///
@@ -22,6 +22,8 @@ pub struct Key {
     pub literal: &'static str,
     /// What it means and where its default comes from, line by line.
     pub doc: &'static [&'static str],
+    /// The key that has taken its place, if its name is a former one.
+    pub successor: Option<Successor>,
 }
 
 /// Every key of a file, the groups of alternatives and the tables that may be absent.
@@ -88,6 +90,7 @@ impl Key {
             presence: row.presence,
             literal: row.literal,
             doc: row.about(),
+            successor: row.successor,
         }
     }
 

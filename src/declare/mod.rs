@@ -2,7 +2,7 @@
 //!
 //! [`table!`] makes of one declaration the configuration struct with its documentation, how it is read,
 //! its value in the reference and a [`Table`] of rows; [`alternatives!`] does so for tables of which one
-//! stands. Checks, suggestions, JSON Schema and `scenarios/reference.toml` read the rows.
+//! stands, [`renamed!`] a key with a former name. Checks, suggestions, JSON Schema and `scenarios/reference.toml` read the rows.
 //!
 //! Invariant: knows no stage and no file format; every stage may import it.
 
@@ -14,6 +14,6 @@ mod table;
 
 pub use key::{Key, Keys};
 pub use kind::{Content, Integers, Kind, Limits, Range, Shape};
-pub use row::{Group, Presence, Row, Table};
+pub use row::{Group, Presence, Row, Successor, Table};
 pub use setting::{FromLiteral, Reference, Setting};
-pub(crate) use table::{alternatives, table};
+pub(crate) use table::{alternatives, renamed, table};

@@ -30,6 +30,36 @@ pub struct Row {
     pub literal: &'static str,
     /// What it means and where its default comes from, line by line.
     pub doc: &'static [&'static str],
+    /// The key that has taken its place, if its name is a former one.
+    pub successor: Option<Successor>,
+}
+
+/// The key that has taken the place of one with a former name and unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Successor {
+    /// Its name, in the same table.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Its value over that of the former key.
+    pub factor: f64,
+}
+
+impl Table {
+    /// The rows that stand in it, those of tables without a name among them; former names are left out.
+    pub fn current_rows(&'static self) -> impl Iterator<Item = &'static Row> {
+        let rows = self.rows.iter().flat_map(|row| match row.content {
+            Content::Table(inner) if inner.is_renaming() => inner.rows,
+            _ => std::slice::from_ref(row),
+        });
+        rows.filter(|row| row.successor.is_none())
+    }
+
+    /// Whether it only joins a key and its former name.
+    #[must_use]
+    pub fn is_renaming(&self) -> bool {
+        self.rows.iter().any(|row| row.successor.is_some())
+    }
 }
 
 impl Row {

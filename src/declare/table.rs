@@ -64,6 +64,7 @@ macro_rules! table {
                     presence: $crate::declare::table!(@presence $type $(, $default)?),
                     literal: concat!($(stringify!($default))? $(stringify!($example))?),
                     doc: &[$($doc),*],
+                    successor: None,
                 }),*],
                 group: $crate::declare::table!(@group $($noun $($alternative)+)?),
                 beside: concat!($($beside)?),
@@ -176,6 +177,7 @@ macro_rules! alternatives {
                     presence: $crate::declare::Presence::Defaulted,
                     literal: "",
                     doc: &[$($doc),*],
+                    successor: None,
                 }),+],
                 group: Some($crate::declare::Group {
                     table: "",
@@ -207,7 +209,91 @@ macro_rules! alternatives {
     };
 }
 
-pub(crate) use {alternatives, table};
+/// Declares a key beside its former name, under which files may still give it in another unit.
+///
+/// The enumeration holds the value in the unit in which it was given, so that an old file keeps its
+/// bits; `times` is the value of the key over that of the former one. It stands flat in its table.
+///
+/// ```text
+/// renamed! {
+///     /// Random walk of the rate.
+///     pub enum RateRandomWalk, one "random walk" {
+///         /// Random walk of the rate. Source of the default: assumed.
+///         PerSqrtH = "walk_per_sqrt_h": 11400.0, in 6e-8..=6e10, "deg/h/sqrt(h)";
+///         formerly PerSqrtS = "walk_per_sqrt_s": 190.0, in 1e-9..=1e9, "deg/h/sqrt(s)", times 60.0;
+///     }
+/// }
+/// ```
+macro_rules! renamed {
+    (
+        $(#[doc = $about:literal])+
+        pub enum $name:ident, one $noun:literal {
+            $(#[doc = $doc:literal])+
+            $now:ident = $key:literal: $default:literal, in $low:literal..=$high:literal, $unit:literal;
+            formerly $former:ident = $old:literal: $example:literal,
+                in $old_low:literal..=$old_high:literal, $old_unit:literal, times $factor:literal;
+        }
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+        pub enum $name {
+            $(#[doc = $doc])+
+            #[doc = concat!("\n\n`", $key, " = ", stringify!($default), "`, ", $unit)]
+            #[serde(rename = $key)]
+            $now(f64),
+            #[doc = concat!("The same in ", $old_unit, " under its former name `", $old, "`.")]
+            #[serde(rename = $old)]
+            $former(f64),
+        }
+
+        impl $name {
+            /// The declaration of the key and its former name.
+            pub const TABLE: $crate::declare::Table = $crate::declare::Table {
+                about: &[$($about),+],
+                rows: &[
+                    $crate::declare::Row {
+                        name: $key,
+                        content: $crate::declare::table!(@content f64, of $low, $high),
+                        unit: $unit,
+                        presence: $crate::declare::Presence::Defaulted,
+                        literal: stringify!($default),
+                        doc: &[$($doc),+],
+                        successor: None,
+                    },
+                    $crate::declare::Row {
+                        name: $old,
+                        content: $crate::declare::table!(@content f64, of $old_low, $old_high),
+                        unit: $old_unit,
+                        presence: $crate::declare::Presence::Optional,
+                        literal: stringify!($example),
+                        doc: &[concat!(" Former name of ", $key, ", in another unit.")],
+                        successor: Some($crate::declare::Successor {
+                            name: $key,
+                            unit: $unit,
+                            factor: $factor,
+                        }),
+                    },
+                ],
+                group: Some($crate::declare::Group {
+                    table: "",
+                    noun: $noun,
+                    alternatives: &[$key, $old],
+                    has_default: true,
+                }),
+                beside: "",
+            };
+
+            /// The default.
+            #[must_use]
+            pub fn reference() -> Self {
+                Self::$now($default)
+            }
+        }
+        $crate::declare::table!(@setting $name);
+    };
+}
+
+pub(crate) use {alternatives, renamed, table};
 
 #[cfg(test)]
 #[expect(

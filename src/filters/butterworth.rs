@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::common::sections::{check_cutoff, checked};
 use super::common::{Complaints, Filter, RecursiveFilter};
-use super::settings::{ExpectedWords, FilterSettings};
+use super::kind::{ExpectedWords, FilterSettings};
 use crate::declare::table;
 use crate::signal::Section;
 use crate::vocabulary::OutputRegister;

@@ -1,8 +1,8 @@
 //! Recursive least squares held to unit DC gain.
 
 use super::common::{Core, CoreFilter, Fault, Filter, FrontEndConfig, Output, dot};
+use super::kind::FilterSettings;
 use super::rls::{RlsConfig, RlsCore};
-use super::settings::FilterSettings;
 use crate::declare::table;
 use crate::signal::WeightRule;
 use crate::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};

@@ -1,9 +1,9 @@
 //! Kalman filter for a rate that walks, in white noise.
 
 use super::common::{Core, CoreFilter, Fault, Filter, FrontEndConfig, Output};
+use super::kind::FilterSettings;
 use super::one_pole::one_pole_of_gain;
-use super::settings::FilterSettings;
-use crate::declare::table;
+use crate::declare::{renamed, table};
 use crate::signal::WeightRule;
 use crate::vocabulary::{DesiredSignal, OutputRegister};
 
@@ -12,11 +12,33 @@ table! {
     pub struct KalmanFilterConfig {
         /// Standard deviation of the white noise of one word. Source of the default: the noise budget.
         measurement_noise_deg_per_h: f64 = 19.0, in 1e-6..=1e9, "deg/h";
-        /// Random walk of the rate that the filter reckons with. Source of the default: assumed; gives
-        /// half power at about 100 Hz.
-        rate_random_walk_deg_per_h_per_sqrt_s: f64 = 190.0, in 1e-9..=1e9, "deg/h/sqrt(s)";
+        #[serde(flatten)]
+        rate_random_walk: RateRandomWalk;
         /// When the result appears: at the next sample tick, or as soon as it is computed.
         output_register: OutputRegister = "next-sample";
+    }
+}
+
+renamed! {
+    /// Random walk of the rate that a Kalman filter reckons with.
+    pub enum RateRandomWalk, one "random walk of the rate" {
+        /// Random walk of the rate that the filter reckons with, as of gyro.slow_noise. Source of the
+        /// default: assumed; gives half power at about 100 Hz.
+        PerSqrtH = "rate_random_walk_deg_per_h_per_sqrt_h": 11400.0, in 6e-8..=6e10, "deg/h/sqrt(h)";
+        formerly PerSqrtS = "rate_random_walk_deg_per_h_per_sqrt_s": 190.0, in 1e-9..=1e9,
+            "deg/h/sqrt(s)", times 60.0;
+    }
+}
+
+impl RateRandomWalk {
+    /// Standard deviation of the walk after a time, deg/h.
+    #[must_use]
+    pub fn after(self, time_s: f64) -> f64 {
+        let per_sqrt_s = match self {
+            Self::PerSqrtH(per_sqrt_h) => per_sqrt_h / 60.0,
+            Self::PerSqrtS(per_sqrt_s) => per_sqrt_s,
+        };
+        per_sqrt_s * time_s.sqrt()
     }
 }
 
@@ -24,7 +46,7 @@ impl FilterSettings for KalmanFilterConfig {
     fn build(&self, sample_period_s: f64) -> Box<dyn Filter> {
         Box::new(Kalman::new(&KalmanConfig {
             noise_deg_per_h: self.measurement_noise_deg_per_h,
-            step_deg_per_h: self.rate_random_walk_deg_per_h_per_sqrt_s * sample_period_s.sqrt(),
+            step_deg_per_h: self.rate_random_walk.after(sample_period_s),
             output_register: self.output_register,
         }))
     }

@@ -1,22 +1,98 @@
-//! The one list of the kinds of filters.
+//! What each kind of filter says of itself. The list of the kinds stands in the module.
 
-use super::butterworth::ButterworthFilterConfig;
-use super::common::{Complaint, Complaints};
-use super::constrained_rls::ConstrainedRlsFilterConfig;
-use super::kalman::KalmanFilterConfig;
-use super::lms::LmsFilterConfig;
-use super::moving_average::MovingAverageFilterConfig;
-use super::one_pole::OnePoleFilterConfig;
-use super::rls::RlsFilterConfig;
-use super::savitzky_golay::SavitzkyGolayFilterConfig;
-use super::settings::{ExpectedWords, FilterSettings};
-use super::sign_lms::SignLmsFilterConfig;
-use crate::declare::{alternatives, table};
+use super::FilterKind;
+use super::common::{Complaint, Complaints, Filter};
+use super::hardware::PipelineSettings;
+use crate::declare::table;
+
+/// Settings of a filter of one kind, and all that follows from them.
+pub trait FilterSettings {
+    /// Refuses settings that contradict each other.
+    fn check(&self, _complaints: &mut Complaints) {}
+
+    /// Refuses settings that do not suit the words to be filtered.
+    fn check_on(&self, _words: &ExpectedWords, _complaints: &mut Complaints) {}
+
+    /// Keys that other settings of the filter can leave without effect.
+    fn conditions() -> &'static [Condition<Self>]
+    where
+        Self: Sized,
+    {
+        &[]
+    }
+
+    /// What a user must know of the settings before such words are filtered, in sentences.
+    fn notes(&self, _words: &ExpectedWords) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The textbook filter for words that come every `sample_period_s`.
+    ///
+    /// # Panics
+    /// If a setting is one that the reader or [`Self::check_on`] refuses.
+    fn build(&self, sample_period_s: f64) -> Box<dyn Filter>;
+
+    /// The hardware that filters in its place; none for the arithmetic of the textbook.
+    fn hardware(&self) -> Option<PipelineSettings> {
+        None
+    }
+}
+
+/// A key of a kind of filter that other settings can leave without effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Condition<S> {
+    /// Name of the key.
+    pub key: &'static str,
+    /// What must be set for it to act; a reason, where it helps, stands before it with a semicolon.
+    pub needs: &'static str,
+    /// Whether it acts.
+    pub acts: fn(&S) -> bool,
+}
+
+/// What the keys of a pipeline need.
+pub(super) const HARDWARE: &str = "pipeline = \"textbook\" has no hardware; pipeline = \"fpga\"";
+
+/// A key of any filter that other settings can leave without effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ConditionalKey {
+    /// Kind of the filter.
+    pub kind: &'static str,
+    /// Name of the key.
+    pub key: &'static str,
+    /// What must be set for it to act, as of [`Condition`].
+    pub needs: &'static str,
+}
+
+/// What is known beforehand of the words to be filtered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedWords {
+    /// Words per second, Hz.
+    pub sample_rate_hz: f64,
+    /// Largest word, deg/h; 0 where none is known yet.
+    pub peak_deg_per_h: f64,
+    /// What a simulation knows besides; none of a recorded log.
+    pub run: Option<ExpectedRun>,
+}
+
+/// What a simulation knows of its run beforehand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedRun {
+    /// Largest rate on the axis, deg/h.
+    pub rate_max_deg_per_h: f64,
+    /// Phase step of a swing from sample to sample, rad; none of any other motion.
+    pub swing_step_rad: Option<f64>,
+    /// Standard deviation of the white noise of a word, deg/h.
+    pub noise_std_deg_per_h: f64,
+    /// Time before the record, s.
+    pub warm_up_s: f64,
+    /// Length of the record, s.
+    pub duration_s: f64,
+}
 
 /// Declares the kinds: the settings of each and the name of its table in a scenario.
 macro_rules! kinds {
     ($($kind:ident($settings:ty) = $name:literal,)+) => {
-        alternatives! {
+        $crate::declare::alternatives! {
             /// Kind of a filter and its settings.
             pub enum FilterKind, one "filter kind" {
                 $($kind($settings) = $name,)+
@@ -24,28 +100,39 @@ macro_rules! kinds {
         }
 
         impl FilterKind {
+            /// Whether a key has an effect beside the other settings.
+            #[must_use]
+            pub fn acts(&self, key: &str) -> bool {
+                match self {
+                    $(Self::$kind(settings) => <$settings as $crate::filters::FilterSettings>::conditions()
+                        .iter()
+                        .all(|condition| condition.key != key || (condition.acts)(settings)),)+
+                }
+            }
+
             /// The settings, whatever the kind.
             #[must_use]
-            pub fn settings(&self) -> &dyn FilterSettings {
+            pub fn settings(&self) -> &dyn $crate::filters::FilterSettings {
                 match self {
                     $(Self::$kind(settings) => settings,)+
                 }
             }
         }
+
+        /// Keys of all kinds that other settings of their filter can leave without effect.
+        #[must_use]
+        pub fn conditional_keys() -> Vec<$crate::filters::ConditionalKey> {
+            let mut keys = Vec::new();
+            $(keys.extend(<$settings as $crate::filters::FilterSettings>::conditions().iter().map(|condition| $crate::filters::ConditionalKey {
+                kind: $name,
+                key: condition.key,
+                needs: condition.needs,
+            }));)+
+            keys
+        }
     };
 }
-
-kinds! {
-    Rls(RlsFilterConfig) = "rls",
-    Lms(LmsFilterConfig) = "lms",
-    SignLms(SignLmsFilterConfig) = "sign_lms",
-    ConstrainedRls(ConstrainedRlsFilterConfig) = "constrained_rls",
-    MovingAverage(MovingAverageFilterConfig) = "moving_average",
-    SavitzkyGolay(SavitzkyGolayFilterConfig) = "savitzky_golay",
-    OnePole(OnePoleFilterConfig) = "one_pole",
-    Butterworth(ButterworthFilterConfig) = "butterworth",
-    Kalman(KalmanFilterConfig) = "kalman",
-}
+pub(super) use kinds;
 
 table! {
     /// Filters: one `[[filter]]` per channel, with one kind. None by default.

@@ -2,7 +2,7 @@
 
 use super::common::{Complaints, Core, CoreFilter, Fault, Filter, FrontEndConfig, Output, dot};
 use super::hardware::{self, PipelineSettings};
-use super::settings::{ExpectedWords, FilterSettings};
+use super::kind::{Condition, ExpectedWords, FilterSettings, HARDWARE};
 use crate::declare::table;
 use crate::vocabulary::{DesiredSignal, NumberFormat, OutputRegister, Pipeline, UpdateSign};
 
@@ -39,6 +39,31 @@ table! {
 }
 
 impl FilterSettings for LmsFilterConfig {
+    fn conditions() -> &'static [Condition<Self>] {
+        &[
+            Condition {
+                key: "regularisation_deg2_per_h2",
+                needs: "normalised = true",
+                acts: |settings| settings.normalised,
+            },
+            Condition {
+                key: "allow_unstable",
+                needs: "normalised = false",
+                acts: |settings| !settings.normalised,
+            },
+            Condition {
+                key: "number_format",
+                needs: HARDWARE,
+                acts: |settings| settings.pipeline == Pipeline::Fpga,
+            },
+            Condition {
+                key: "clock_mhz",
+                needs: HARDWARE,
+                acts: |settings| settings.pipeline == Pipeline::Fpga,
+            },
+        ]
+    }
+
     /// Refuses an un-normalised step that the expected motion alone makes unstable.
     fn check_on(&self, words: &ExpectedWords, complaints: &mut Complaints) {
         let Some(run) = &words.run else {

@@ -16,7 +16,7 @@
 //! that diverges says so in every step from then on and never returns another number.
 //!
 //! A kind of filter is one file: the keys of its table, their checks, the filter they stand for and
-//! its equations. [`kind`](FilterKind) lists the kinds; [`hardware`] puts the pipelines of
+//! its equations. [`FilterKind`] lists the kinds; [`hardware`] puts the pipelines of
 //! [`fpga`](crate::fpga) on the bench and is the only part that knows them.
 //!
 //! Words are rates in deg/h, but the equations only ask that the constants fit the words: the
@@ -36,7 +36,6 @@ mod moving_average;
 mod one_pole;
 mod rls;
 mod savitzky_golay;
-mod settings;
 mod sign_lms;
 
 pub use butterworth::{ButterworthFilterConfig, butterworth};
@@ -46,8 +45,13 @@ pub use common::{
     adaptive_rule,
 };
 pub use constrained_rls::{ConstrainedRls, ConstrainedRlsCore, ConstrainedRlsFilterConfig};
-pub use kalman::{Kalman, KalmanConfig, KalmanCore, KalmanFilterConfig, kalman_gain};
-pub use kind::{FilterConfig, FilterKind};
+pub use kalman::{
+    Kalman, KalmanConfig, KalmanCore, KalmanFilterConfig, RateRandomWalk, kalman_gain,
+};
+use kind::kinds;
+pub use kind::{
+    Condition, ConditionalKey, ExpectedRun, ExpectedWords, FilterConfig, FilterSettings,
+};
 pub use lms::{
     Lms, LmsConfig, LmsCore, LmsFilterConfig, Normalisation, constant_eigenvalue_max,
     lms_step_bound, sine_eigenvalue_max,
@@ -56,8 +60,20 @@ pub use moving_average::{MovingAverageFilterConfig, moving_average};
 pub use one_pole::{OnePoleFilterConfig, one_pole};
 pub use rls::{Rls, RlsConfig, RlsCore, RlsFilterConfig, covariance_digits_warning};
 pub use savitzky_golay::{SavitzkyGolayFilterConfig, savitzky_golay};
-pub use settings::{ExpectedRun, ExpectedWords, FilterSettings};
 pub use sign_lms::{
     SignLms, SignLmsConfig, SignLmsCore, SignLmsFilterConfig, sign_lms_slew_per_sample,
     sign_lms_slew_samples,
 };
+
+// The kinds of filters, in the order in which the reference shows them.
+kinds! {
+    Rls(RlsFilterConfig) = "rls",
+    Lms(LmsFilterConfig) = "lms",
+    SignLms(SignLmsFilterConfig) = "sign_lms",
+    ConstrainedRls(ConstrainedRlsFilterConfig) = "constrained_rls",
+    MovingAverage(MovingAverageFilterConfig) = "moving_average",
+    SavitzkyGolay(SavitzkyGolayFilterConfig) = "savitzky_golay",
+    OnePole(OnePoleFilterConfig) = "one_pole",
+    Butterworth(ButterworthFilterConfig) = "butterworth",
+    Kalman(KalmanFilterConfig) = "kalman",
+}

@@ -1,7 +1,7 @@
 //! Mean of the newest samples.
 
 use super::common::{Filter, FixedFilter};
-use super::settings::FilterSettings;
+use super::kind::FilterSettings;
 use crate::declare::table;
 use crate::vocabulary::OutputRegister;
 

@@ -1,7 +1,7 @@
 //! Savitzky-Golay filter at the newest sample.
 
 use super::common::{Complaints, Filter, FixedFilter};
-use super::settings::FilterSettings;
+use super::kind::FilterSettings;
 use crate::declare::table;
 use crate::vocabulary::OutputRegister;
 use nalgebra::{DMatrix, DVector};

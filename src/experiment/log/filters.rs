@@ -86,6 +86,7 @@ impl LogFilters {
             .configs()
             .iter()
             .flat_map(|filter| filter.notes(&words));
-        notes.collect()
+        let said = self.resolved.warnings.iter().cloned();
+        said.chain(notes).collect()
     }
 }

@@ -5,7 +5,7 @@
 //! prints it. A key of the scenario's own file that says what the default says asks for nothing. A
 //! wish that acts in no point of a sweep is refused; one by `--set` if it acts in no run of the suite.
 
-use crate::scenario::check::inert_rules::{Acts, RULES, Rule};
+use crate::scenario::check::inert_rules::{Acts, Rule, rules};
 use crate::scenario::document::address::{Step, display};
 use crate::scenario::document::source::Mark;
 use crate::scenario::document::tree::{Node, Table};
@@ -39,7 +39,7 @@ impl Idle {
     pub(crate) fn of(first: &Resolved, swept: &[(Vec<Step>, Mark)]) -> Self {
         let mut wishes = Vec::new();
         let mut is_written_out = None;
-        for rule in RULES {
+        for rule in rules() {
             for Written { path, node, mark } in places(first, rule) {
                 let axis = swept.iter().find(|(swept, _)| *swept == path);
                 let mark = axis.map_or(mark, |(_, mark)| *mark);
@@ -127,9 +127,9 @@ fn acts(run: &Resolved, rule: &Rule, path: &[Step]) -> bool {
             let motion = &scenario.turntable.motion;
             !motion.is_idle(rule.path, scenario.duration_s)
         }
-        Acts::Filter(acts) => index
+        Acts::Filter(kind, key) => index
             .and_then(|index| scenario.filters.get(index))
-            .is_none_or(acts),
+            .is_none_or(|filter| filter.kind.name() != kind || filter.kind.acts(key)),
         Acts::Gate(acts) => index
             .and_then(|index| scenario.gates.get(index))
             .is_none_or(acts),

@@ -3,8 +3,9 @@
 //! A key that is not here acts in every run. A condition that only a run could find out, such as a
 //! limit that the motion never reaches, is none.
 
-use crate::filters::hardware::has_hardware;
-use crate::filters::{FilterConfig, FilterKind};
+use std::sync::OnceLock;
+
+use crate::filters::conditional_keys;
 use crate::gyro::Fidelity;
 use crate::gyro::VibrationMotion;
 use crate::gyro::{NoiseDraw, OutputQuantisation};
@@ -20,13 +21,14 @@ pub(in crate::scenario) enum Acts {
     Run(fn(&Scenario) -> bool),
     /// One of the motion whose key it is.
     Motion,
-    /// One of the filter whose key it is.
-    Filter(fn(&FilterConfig) -> bool),
+    /// One of the filter whose key it is: the kind, which knows, and the name of the key.
+    Filter(&'static str, &'static str),
     /// One of the gate whose key it is.
     Gate(fn(&GateConfig) -> bool),
 }
 
 /// A key that does not always act.
+#[derive(Clone, Copy)]
 pub(in crate::scenario) struct Rule {
     /// Its schema path.
     pub(in crate::scenario) path: &'static str,
@@ -53,14 +55,6 @@ const fn motion(path: &'static str, needs: &'static str) -> Rule {
     }
 }
 
-const fn filter(path: &'static str, needs: &'static str, acts: fn(&FilterConfig) -> bool) -> Rule {
-    Rule {
-        path,
-        acts: Acts::Filter(acts),
-        needs,
-    }
-}
-
 const ENCODER: &str = "the table has no encoder; turntable.encoder.resolution_arcsec (0.0 for one that \
                        does not round)";
 const CAMPAIGN: &str = "the motion [turntable.calibration]";
@@ -79,12 +73,11 @@ const EXPANDING: &str = "a temperature that changes (gyro.temperature.ramp or pr
 const DEPARTURE: &str = "a temperature other than gyro.thermal.reference_c: gyro.temperature or \
                          gyro.thermal.self_heating_c";
 const STEADY: &str = "a steady motion, [turntable.static] or [turntable.rotation]";
-const HARDWARE: &str = "pipeline = \"textbook\" has no hardware; pipeline = \"fpga\"";
 const TURNING: &str = "a motion other than [turntable.static]";
 
 /// Every key that does not always act.
 #[rustfmt::skip]
-pub(in crate::scenario) const RULES: &[Rule] = &[
+const RULES: &[Rule] = &[
     run("bias_averaging_time_s", STEADY, is_steady),
     motion("turntable.rotation.soft_start_s", "turntable.rotation.rate_deg_per_s other than 0"),
     motion("turntable.trapezoid.rest_s", "turntable.trapezoid.cycles above 1 or both_senses = true"),
@@ -244,18 +237,6 @@ pub(in crate::scenario) const RULES: &[Rule] = &[
     run("calibration.initial_covariance", RECURSION,
         |s| runs_any(s, &[EstimatorKind::Arls, EstimatorKind::ArlsCovariance])),
     run("calibration.outlier_threshold", CAMPAIGN, is_campaign),
-    filter("filter[].rls.number_format", HARDWARE, is_hardware),
-    filter("filter[].rls.clock_mhz", HARDWARE, is_hardware),
-    filter("filter[].rls.division", HARDWARE, is_hardware),
-    filter("filter[].rls.update_order", HARDWARE, is_hardware),
-    filter("filter[].lms.regularisation_deg2_per_h2", "normalised = true",
-        |f| !matches!(&f.kind, FilterKind::Lms(lms) if !lms.normalised)),
-    filter("filter[].lms.allow_unstable", "normalised = false",
-        |f| !matches!(&f.kind, FilterKind::Lms(lms) if lms.normalised)),
-    filter("filter[].lms.number_format", HARDWARE, is_hardware),
-    filter("filter[].lms.clock_mhz", HARDWARE, is_hardware),
-    filter("filter[].sign_lms.number_format", HARDWARE, is_hardware),
-    filter("filter[].sign_lms.clock_mhz", HARDWARE, is_hardware),
     run("allan.estimator", STEADY, is_steady),
     run("allan.averaging_times", STEADY, is_steady),
     run("trial.rate_gain", "a [[filter]]", |s| !s.filters.is_empty()),
@@ -351,6 +332,15 @@ fn runs_any(scenario: &Scenario, kinds: &[EstimatorKind]) -> bool {
     is_campaign(scenario) && kinds.iter().any(|kind| runs.contains(kind))
 }
 
-fn is_hardware(filter: &FilterConfig) -> bool {
-    filter.kind.settings().hardware().is_some() || !has_hardware(filter.kind.name())
+/// Every key that does not always act, those that the kinds of filters declare among them.
+pub(in crate::scenario) fn rules() -> &'static [Rule] {
+    static ALL: OnceLock<Vec<Rule>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        let of_filters = conditional_keys().into_iter().map(|key| Rule {
+            path: format!("filter[].{}.{}", key.kind, key.key).leak(),
+            acts: Acts::Filter(key.kind, key.key),
+            needs: key.needs,
+        });
+        RULES.iter().copied().chain(of_filters).collect()
+    })
 }

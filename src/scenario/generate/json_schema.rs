@@ -160,6 +160,9 @@ fn leaf(key: &Key) -> Value {
         Kind::Matrix => json!({"type": "object", "minProperties": 1}),
     };
     schema["description"] = json!(format!("{} {}", key.sentence(), key.line()));
+    if key.successor.is_some() {
+        schema["deprecated"] = json!(true);
+    }
     if let Some(default) = default_of(key.path).and_then(plain) {
         schema["default"] = default;
     }

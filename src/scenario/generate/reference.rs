@@ -138,7 +138,7 @@ impl Print {
 
     /// Writes a table that stands by default, then what stands inside; `about` was not said yet.
     fn live(&mut self, path: &str, table: &'static Table, about: &[&str]) {
-        let values = || table.rows.iter().filter_map(value_key);
+        let values = || table.current_rows().filter_map(value_key);
         let is_live = |key: &Key| key.presence == Presence::Defaulted;
         let (has_live, has_others) = (
             values().any(|key| is_live(&key)),
@@ -174,6 +174,10 @@ impl Print {
             let is_alternative = table
                 .group
                 .is_some_and(|group| group.default() != Some(row.name));
+            if inner.is_renaming() {
+                // Its key stands among the others.
+                continue;
+            }
             if row.name.is_empty() {
                 self.inner(path, inner);
             } else if inner.rows.is_empty() {
@@ -255,7 +259,7 @@ impl Print {
             chosen.is_some_and(|(_, group)| group.alternatives.contains(&key.path))
                 && !is_chosen(key)
         };
-        let keys = table.rows.iter().filter_map(value_key).filter(|key| {
+        let keys = table.current_rows().filter_map(value_key).filter(|key| {
             let is_needed = is_first || is_chosen(key) || key.presence == Presence::Required;
             !is_other(key) && is_needed
         });
@@ -301,7 +305,7 @@ fn value_key(row: &'static Row) -> Option<Key> {
 /// The alternatives of a table and where they are declared: in it, or in one whose rows stand in it.
 fn alternatives_of(table: &'static Table) -> (Option<Group>, &'static Table) {
     let flat = table.rows.iter().find_map(|row| match row.content {
-        Content::Table(inner) if row.name.is_empty() => Some(inner),
+        Content::Table(inner) if row.name.is_empty() && !inner.is_renaming() => Some(inner),
         _ => None,
     });
     match (table.group, flat) {

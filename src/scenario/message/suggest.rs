@@ -65,7 +65,7 @@ fn paths() -> &'static [&'static str] {
     static PATHS: OnceLock<Vec<&'static str>> = OnceLock::new();
     PATHS.get_or_init(|| {
         let mut paths: Vec<&'static str> = Vec::new();
-        for key in keys() {
+        for key in keys().filter(|key| key.successor.is_none()) {
             let ends = key.path.match_indices('.').map(|(at, _)| at);
             for end in ends.chain([key.path.len()]) {
                 let path = &key.path[..end];

@@ -49,7 +49,7 @@ const ROWS: &[Row] = &[
     (
         &["rate_random_walk"],
         "filter[]",
-        Key("filter[].kalman.rate_random_walk_deg_per_h_per_sqrt_s"),
+        Key("filter[].kalman.rate_random_walk_deg_per_h_per_sqrt_h"),
     ),
     (
         &["drift", "rate_ramp", "bias_drift"],

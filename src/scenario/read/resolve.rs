@@ -10,6 +10,7 @@ use crate::scenario::check::stand_in::{Variant, make_whole};
 use crate::scenario::check::values::check_values;
 use crate::scenario::document::emit::to_toml;
 use crate::scenario::keys::defaults::fill;
+use crate::scenario::keys::renamed;
 use crate::scenario::message::error::{ScenarioError, in_both};
 use crate::scenario::read::compensation_source;
 use crate::scenario::read::draft::{Draft, Recorded};
@@ -162,7 +163,7 @@ impl Draft {
             digest: origin.digest,
             inputs: origin.inputs,
             sweep: origin.sweep,
-            warnings: self.warnings,
+            warnings: [self.warnings, renamed::warnings(&self.root)].concat(),
             remarks: self.remarks,
             is_base_point: false,
             campaign,

@@ -12,6 +12,7 @@ use crate::scenario::check::numbers::settled_value;
 use crate::scenario::document::address::{self, Step};
 use crate::scenario::document::emit::to_toml_around;
 use crate::scenario::document::tree::{Node, Table};
+use crate::scenario::keys::renamed;
 use crate::scenario::keys::schema::Key;
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::read::resolved::{Resolved, configuration, digest};
@@ -116,6 +117,10 @@ impl Template {
 /// # Errors
 /// Every contradiction between the values.
 fn with_tree(run: &Resolved, tree: Table, text: &str) -> Result<Resolved, Vec<ScenarioError>> {
+    let former = renamed::warnings(&run.tree);
+    let lasting = run.warnings.iter();
+    let lasting = lasting.filter(|warning| !former.contains(warning)).cloned();
+    let warnings = lasting.chain(renamed::warnings(&tree)).collect();
     let other = Resolved {
         scenario: configuration(&tree, run.root_mark, &run.sources)?,
         digest: digest(text),
@@ -123,7 +128,7 @@ fn with_tree(run: &Resolved, tree: Table, text: &str) -> Result<Resolved, Vec<Sc
         file: run.file.clone(),
         inputs: run.inputs.clone(),
         sweep: None,
-        warnings: run.warnings.clone(),
+        warnings,
         remarks: run.remarks.clone(),
         is_base_point: false,
         campaign: run.campaign.clone(),
