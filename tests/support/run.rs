@@ -14,6 +14,7 @@ pub(crate) fn scenario(motion: &str) -> Scenario {
         value,
         unit: unit.to_owned(),
         source: source.to_owned(),
+        ..PublishedConfig::reference()
     };
     Scenario {
         published: vec![
