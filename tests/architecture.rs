@@ -379,3 +379,69 @@ fn no_source_file_is_too_long_to_be_read_whole() {
         assert!(lines <= LINES_MAX, "{} has {lines} lines", path.display());
     }
 }
+
+/// Rooms of a module in the order of the table in its `mod.rs`.
+fn rooms_of(module: &str) -> Vec<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("src/{module}/mod.rs"));
+    let text = fs::read_to_string(path).expect("a module has a file");
+    let rows = text.lines().filter_map(|line| line.strip_prefix("//! | `"));
+    rows.filter_map(|row| Some(row.split_once('`')?.0.to_owned()))
+        .collect()
+}
+
+/// Rooms that a file of a module names: below the root of the crate, and beside it where it is a room
+/// of its own.
+fn rooms_named<'a>(module: &str, code: &'a str, is_room: bool) -> Vec<&'a str> {
+    let root = format!("crate::{module}::");
+    let mut starts: Vec<usize> = code
+        .match_indices(&root)
+        .map(|(at, _)| at + root.len())
+        .collect();
+    if is_room {
+        starts.extend(
+            code.match_indices("use super::")
+                .map(|(at, use_)| at + use_.len()),
+        );
+    }
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let name = |start: usize| {
+        code[start..]
+            .split(|c| !is_name(c))
+            .next()
+            .unwrap_or_default()
+    };
+    starts.into_iter().map(name).collect()
+}
+
+#[test]
+fn rooms_of_metrics_and_report_use_those_before_them_alone() {
+    for module in ["metrics", "report"] {
+        let rooms = rooms_of(module);
+        assert!(rooms.len() > 8, "{module}: {rooms:?}");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("src")
+            .join(module);
+        let place = |name: &str| rooms.iter().position(|room| room == name);
+        for path in sources().iter().filter(|path| path.starts_with(&folder)) {
+            let inside = path.strip_prefix(&folder).expect("it lies there");
+            let first = inside.components().next().expect("a name").as_os_str();
+            let room = Path::new(first).file_stem().expect("a name");
+            let Some(own) = place(&room.to_string_lossy()) else {
+                continue;
+            };
+            let text = fs::read_to_string(path).expect("a source file is readable");
+            let code = text
+                .split("#[cfg(test)]\nmod tests")
+                .next()
+                .unwrap_or_default();
+            let lines = code
+                .lines()
+                .map(|line| line.split("//").next().unwrap_or_default());
+            let code = lines.collect::<Vec<_>>().join("\n");
+            for name in rooms_named(module, &code, inside.components().count() == 1) {
+                let is_before = place(name).is_none_or(|other| other <= own);
+                assert!(is_before, "{} looks up to `{name}`", path.display());
+            }
+        }
+    }
+}

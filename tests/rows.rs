@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::fs;
+use std::sync::LazyLock;
 
 use fogbench::Scenario;
 use fogbench::metrics::catalogue::{BIAS_REPEATABILITY, SCALE_FACTOR_REPEATABILITY};
@@ -212,7 +213,9 @@ impl Found {
     }
 }
 
-/// Metrics and curves of single records, and of their repeats pooled.
+/// What single records and their repeats pooled hold, and channels of one repeat.
+static FOUND: LazyLock<(Found, Found, Vec<(String, ChannelMetrics)>)> = LazyLock::new(found);
+
 fn found() -> (Found, Found, Vec<(String, ChannelMetrics)>) {
     let (mut single, mut pooled) = (Found::default(), Found::default());
     let mut channels = Vec::new();
@@ -246,6 +249,7 @@ pipeline = "fpga"
 [[filter]]
 name = "winding"
 [filter.rls]
+forgetting_factor = 0.99
 pipeline = "fpga"
 update_order = "gain-first"
 "#;
@@ -261,7 +265,7 @@ fn of_pipelines() -> BTreeSet<String> {
 
 #[test]
 fn every_metric_is_yielded_pooled_headed_and_documented() {
-    let (single, pooled, _) = found();
+    let (single, pooled, _) = &*FOUND;
     let pipelines = of_pipelines();
     let page = fs::read_to_string(repository("docs/metrics.md")).expect("the page is there");
     for key in known_metrics() {
@@ -290,7 +294,7 @@ fn every_metric_is_yielded_pooled_headed_and_documented() {
 
 #[test]
 fn every_curve_is_yielded_pooled_and_documented_and_its_file_has_its_columns() {
-    let (single, pooled, channels) = found();
+    let (single, pooled, channels) = &*FOUND;
     let page = fs::read_to_string(repository("docs/files.md")).expect("the page is there");
     for key in known_curves() {
         let name = key.name;
@@ -300,7 +304,7 @@ fn every_curve_is_yielded_pooled_and_documented_and_its_file_has_its_columns() {
             page.contains(&format!("\n### {name}\n")),
             "{name} is not documented"
         );
-        let csv = curve_csv(key, &channels).expect("a channel has it");
+        let csv = curve_csv(key, channels).expect("a channel has it");
         let head: BTreeSet<&str> = csv.lines().next().expect("a heading").split(',').collect();
         let columns = key
             .columns
@@ -315,7 +319,7 @@ fn every_curve_is_yielded_pooled_and_documented_and_its_file_has_its_columns() {
 #[test]
 fn every_file_of_a_run_and_of_its_suite_is_a_row_and_every_row_is_documented() {
     let folder = tempfile::tempdir().expect("a scratch folder");
-    let text = "schema = 1\nname = \"files\"\nduration_s = 2.0\nwarm_up_s = 0.1\nrepeats = 2\n\
+    let text = "schema = 1\nname = \"files\"\nduration_s = 2.0\nwarm_up_s = 1.0\n\
         [output]\nsamples = \"npy\"\n[turntable.swing]\nrate_amplitude_deg_per_s = 1.0\n\
         frequency_hz = 5.0\n[[filter]]\nname = \"rls\"\n[filter.rls]\n";
     write(folder.path(), "files.toml", text);

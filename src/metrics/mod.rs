@@ -13,8 +13,8 @@
 //! | room | subject |
 //! |---|---|
 //! | `key` | what a metric and a curve declare of themselves |
-//! | `theory` | what a filter will do to a record, and the least noise at a delay |
 //! | `estimate` | numbers with intervals, reasons, the table of one channel |
+//! | `theory` | what a filter will do to a record, and the least noise at a delay |
 //! | `allan` | Allan variances and the noise terms fitted to them: random walk, bias instability, ramp |
 //! | `record` | what a measurement is given |
 //! | `steps` | settling, overshoot, scale factor, threshold, dead band |

@@ -9,8 +9,8 @@
 //! |---|---|
 //! | `record` | what a report is made of, and which metrics it shows |
 //! | `layout` | aligned text and readable JSON |
-//! | `text` | tables of runs and suites |
 //! | `calibration` | a calibration as text, JSON, parameters and groups |
+//! | `text` | tables of runs and suites |
 //! | `plot` | pictures |
 //! | `comparison` | tables over several scenarios |
 //! | `json` | `summary.json` of runs and suites |
