@@ -97,6 +97,17 @@ macro_rules! table {
             }
         }
     };
+    (@each $name:ident () $($variant:ident)+) => {};
+    (@each $name:ident ($kind:ident) $($variant:ident)+) => {
+        impl $name {
+            /// The alternative that stands, whichever it is.
+            fn kind(&self) -> &dyn $kind {
+                match self {
+                    $(Self::$variant(one) => one,)+
+                }
+            }
+        }
+    };
     (@name $field:ident; $flatten:ident) => { "" };
     (@name $field:ident) => { stringify!($field) };
     (@name $field:ident $array:literal) => { $array };
@@ -131,11 +142,12 @@ macro_rules! table {
 
 /// Declares tables of which exactly one stands: an enumeration of their configurations.
 ///
-/// `first by default` lets the first one stand where a file gives none.
+/// `first by default` lets the first one stand where a file gives none, `each as Trait` gives the
+/// enumeration a method `kind` that takes the one that stands as a `&dyn Trait`.
 macro_rules! alternatives {
     (
         $(#[doc = $about:literal])+
-        pub enum $name:ident, one $noun:literal $(, first by $default:ident)? {
+        pub enum $name:ident, one $noun:literal $(, first by $default:ident)? $(, each as $kind:ident)? {
             $(
                 $(#[doc = $doc:literal])*
                 $variant:ident($type:ty) = $word:literal,
@@ -190,6 +202,7 @@ macro_rules! alternatives {
                 all[0]()
             }
         }
+        $crate::declare::table!(@each $name ($($kind)?) $($variant)+);
         $crate::declare::table!(@setting $name);
     };
 }
@@ -197,6 +210,10 @@ macro_rules! alternatives {
 pub(crate) use {alternatives, table};
 
 #[cfg(test)]
+#[expect(
+    unreachable_pub,
+    reason = "the macros declare public items, which a module of tests does not reach"
+)]
 mod tests {
     use crate::declare::{Content, Keys, Kind, Presence};
     use crate::vocabulary::words;
