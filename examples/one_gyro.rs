@@ -15,10 +15,10 @@ use fogbench::units::{deg_per_h_sqrt_s_to_deg_per_sqrt_h, deg_per_h_to_rad_per_s
 const SAMPLES: usize = 60_000;
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
-    // Twice the light of the reference.
+    // Half the light of the reference.
     let reference = GyroConfig::reference();
     let source = SourceConfig {
-        power_uw: 2.0 * reference.source.power_uw,
+        power_uw: 0.5 * reference.source.power_uw,
         ..reference.source
     };
     let config = GyroConfig {
@@ -35,11 +35,11 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let turning = MotionSegment::constant(deg_per_h_to_rad_per_s(10.0));
     let words: Vec<f64> = (0..SAMPLES).map(|_| gyro.next_word(&turning)).collect();
 
-    // White noise: sigma(tau) = N / sqrt(tau). A tenth of a second is long against the loop.
+    // White noise: sigma(tau) = N / sqrt(tau). Twenty milliseconds are long against the loop.
     let points = overlapping_allan(&words, gyro.sample_period_s());
     let point = points
         .iter()
-        .find(|point| point.tau_s > 0.1)
+        .find(|point| point.tau_s > 0.02)
         .ok_or("a longer record")?;
     let walk = point.deviation_deg_per_h.scaled(point.tau_s.sqrt());
     let walk = walk.scaled(deg_per_h_sqrt_s_to_deg_per_sqrt_h(1.0));

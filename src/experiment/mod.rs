@@ -24,7 +24,6 @@ pub use build::BUILD;
 pub use campaign::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
 };
-pub use campaign::{calibrate_scenario, calibration_sheet};
 #[cfg(feature = "report")]
 pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogInput, LogMotion, LogSettings, LogTrial,

@@ -3,7 +3,9 @@
 use crate::gate::number::limits_text;
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::catalogue::DIVERGED_AT;
-use crate::metrics::{ChannelMetrics, Estimate, Metric, estimate_text, is_exact, plain};
+use crate::metrics::{
+    ChannelFailure, ChannelMetrics, Estimate, Metric, estimate_text, is_exact, plain,
+};
 use crate::scenario::{GateConfig, GateDecision, InconclusivePolicy};
 
 /// Digits of the half width shown in reasons: one more than in tables, so that a near miss shows.
@@ -38,7 +40,7 @@ pub fn judge(
         location,
     };
     match measured(gate, channels) {
-        Err(reason) => verdict.reason = reason,
+        Err(reason) => verdict.reason = reason.to_string(),
         Ok((quotient, unit)) => decide(&mut verdict, gate, &quotient, unit),
     }
     verdict.accepted = match verdict.kind {
@@ -64,18 +66,48 @@ struct Quotient {
     confidence: f64,
 }
 
+/// Why there is no number to judge.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+enum NoNumber {
+    #[error("the gate has neither min nor max")]
+    NoLimit,
+    #[error("`{0}` is not of the form <channel>.<metric>")]
+    Form(String),
+    #[error("there is no channel `{0}`")]
+    Channel(String),
+    #[error("channel `{channel}` failed at sample {} ({}): {}", failure.sample, failure.kind, failure.message)]
+    Failed {
+        channel: String,
+        failure: ChannelFailure,
+    },
+    #[error("channel `{0}` did not diverge")]
+    NotDiverged(String),
+    #[error("`{metric}` is unavailable: {reason}")]
+    Unavailable { metric: String, reason: String },
+    #[error("`{0}` was not measured in this run")]
+    NotMeasured(String),
+    #[error("`{0}` is 0, so that the ratio to it has no value")]
+    ZeroDivisor(String),
+    #[error("`{metric}` is not a finite value with a finite interval: {value}{interval}")]
+    NotFinite {
+        metric: String,
+        value: f64,
+        interval: String,
+    },
+}
+
 /// The number a gate asks for, with its unit, or the reason why there is none.
 fn measured<'a>(
     gate: &GateConfig,
     channels: &'a [(String, ChannelMetrics)],
-) -> Result<(Quotient, &'a str), String> {
+) -> Result<(Quotient, &'a str), NoNumber> {
     if gate.min.is_none() && gate.max.is_none() {
-        return Err("the gate has neither min nor max".to_owned());
+        return Err(NoNumber::NoLimit);
     }
     let (channel, key) = gate
         .metric
         .rsplit_once('.')
-        .ok_or_else(|| format!("`{}` is not of the form <channel>.<metric>", gate.metric))?;
+        .ok_or_else(|| NoNumber::Form(gate.metric.clone()))?;
     let metric = lookup(channel, key, channels)?;
     let quotient = match &gate.relative_to {
         None => Quotient {
@@ -86,9 +118,7 @@ fn measured<'a>(
         Some(other) => {
             let divisor = &lookup(other, key, channels)?.estimate;
             if divisor.value == 0.0 {
-                return Err(format!(
-                    "`{other}.{key}` is 0, so that the ratio to it has no value"
-                ));
+                return Err(NoNumber::ZeroDivisor(format!("{other}.{key}")));
             }
             ratio(&metric.estimate, divisor)
         }
@@ -97,13 +127,13 @@ fn measured<'a>(
         .interval
         .is_none_or(|(low, high)| low.is_finite() && high.is_finite() && low <= high);
     if !quotient.value.is_finite() || !in_order {
-        let interval = quotient
-            .interval
-            .map_or_else(String::new, |(low, high)| format!(" in [{low}, {high}]"));
-        return Err(format!(
-            "`{}` is not a finite value with a finite interval: {}{interval}",
-            gate.metric, quotient.value
-        ));
+        let interval = quotient.interval;
+        return Err(NoNumber::NotFinite {
+            metric: gate.metric.clone(),
+            value: quotient.value,
+            interval: interval
+                .map_or_else(String::new, |(low, high)| format!(" in [{low}, {high}]")),
+        });
     }
     let unit = if gate.relative_to.is_some() {
         "1"
@@ -118,26 +148,29 @@ fn lookup<'a>(
     channel: &str,
     key: &str,
     channels: &'a [(String, ChannelMetrics)],
-) -> Result<&'a Metric, String> {
+) -> Result<&'a Metric, NoNumber> {
     let (_, metrics) = channels
         .iter()
         .find(|(name, _)| name == channel)
-        .ok_or_else(|| format!("there is no channel `{channel}`"))?;
+        .ok_or_else(|| NoNumber::Channel(channel.to_owned()))?;
     if let Some(metric) = metrics.metrics.get(key) {
         return Ok(metric);
     }
+    let channel = channel.to_owned();
     if let Some(failure) = &metrics.error {
-        return Err(format!(
-            "channel `{channel}` failed at sample {} ({}): {}",
-            failure.sample, failure.kind, failure.message
-        ));
+        let failure = failure.clone();
+        return Err(NoNumber::Failed { channel, failure });
     }
     if key == DIVERGED_AT.name {
-        return Err(format!("channel `{channel}` did not diverge"));
+        return Err(NoNumber::NotDiverged(channel));
     }
+    let metric = format!("{channel}.{key}");
     Err(match metrics.unavailable.get(key) {
-        Some(reason) => format!("`{channel}.{key}` is unavailable: {reason}"),
-        None => format!("`{channel}.{key}` was not measured in this run"),
+        Some(reason) => NoNumber::Unavailable {
+            metric,
+            reason: reason.to_string(),
+        },
+        None => NoNumber::NotMeasured(metric),
     })
 }
 

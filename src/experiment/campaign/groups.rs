@@ -356,17 +356,8 @@ pub(crate) fn calibrate_simulation(
 /// it, without files or metrics.
 ///
 /// # Errors
-/// In words: the table does not turn as a campaign, the gyro cannot be simulated, the groups do not
-/// calibrate, or the listener has stopped it.
-pub fn calibrate_scenario(
-    scenario: &Scenario,
-    repeat: u32,
-    progress: &dyn Progress,
-) -> Result<(CalibrationSheet, Calibration), String> {
-    run_campaign(scenario, repeat, progress).map_err(|error| error.to_string())
-}
-
-/// As [`calibrate_scenario`], told apart from a stop.
+/// The table does not turn as a campaign, the gyro cannot be simulated, the groups do not calibrate,
+/// or the listener has stopped it.
 pub(crate) fn run_campaign(
     scenario: &Scenario,
     repeat: u32,

@@ -14,10 +14,8 @@ mod units;
 
 pub(crate) use compensation::{Compensator, Parameters};
 pub(crate) use compensation_plan::CompensationPlan;
-pub use groups::calibrate_scenario;
 pub(crate) use groups::{calibrate_simulation, campaign, check_campaign};
 pub(crate) use metrics::{drop_lacking, estimate_channels, estimator_of, lacks, ranked, supports};
-pub use sheet::calibration_sheet;
 #[cfg(feature = "report")]
 pub use trial::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,

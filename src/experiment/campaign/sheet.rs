@@ -29,7 +29,7 @@ const MISFIT: f64 = 6.0;
 ///
 /// # Panics
 /// Never: the applied estimator is among those that run.
-pub fn calibration_sheet(
+pub(crate) fn calibration_sheet(
     groups: &[CalibrationGroup],
     settings: &CalibrationConfig,
     truth: Option<&CalibrationTruth>,

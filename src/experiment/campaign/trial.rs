@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::findings::complaint;
-use super::groups::{calibrate_scenario, campaign};
+use super::groups::{campaign, run_campaign};
 use super::sheet::calibration_sheet;
 use crate::calibration::{
     CalibrationError, GroupDesign, GroupObservation, TableGroup, diagnose,
@@ -123,7 +123,7 @@ pub fn calibrate_groups(
         file: recorded.file.clone(),
         message,
     };
-    check_latitude(&recorded, settings).map_err(|message| vec![refuse(message)])?;
+    check_latitude(&recorded, settings).map_err(|error| vec![error])?;
     let observations: Vec<GroupObservation> = recorded
         .groups
         .iter()
@@ -203,7 +203,8 @@ pub fn calibrate_campaign(
                 .to_owned(),
         ));
     }
-    let (sheet, _) = calibrate_scenario(&resolved.scenario, 0, progress).map_err(refuse)?;
+    let (sheet, _) =
+        run_campaign(&resolved.scenario, 0, progress).map_err(|error| refuse(error.to_string()))?;
     Ok(CalibrationTrial {
         file: resolved.file.clone(),
         digest: resolved.digest.clone(),
@@ -283,23 +284,30 @@ fn sheet(
     }
 }
 
-fn check_latitude(recorded: &RecordedGroups, settings: &GroupsSettings) -> Result<(), String> {
+fn check_latitude(
+    recorded: &RecordedGroups,
+    settings: &GroupsSettings,
+) -> Result<(), CalibrateError> {
     let lacks = |group: &&RecordedGroup| group.reference_rate_deg_per_s.is_none();
     let lacking = recorded.groups.iter().find(lacks);
-    match (lacking, settings.latitude_deg) {
-        (Some(group), None) => Err(format!(
+    let message = match (lacking, settings.latitude_deg) {
+        (Some(group), None) => format!(
             "line {}: the Earth rate about the table axis is not known: give --latitude-deg, or the \
              rates about the case axes with the Earth rate in them as reference_x_deg_per_s, \
              reference_y_deg_per_s and reference_z_deg_per_s",
             group.line
-        )),
-        (None, Some(_)) => Err(
+        ),
+        (None, Some(_)) => {
             "--latitude-deg has no effect where every line gives reference_x, reference_y and \
              reference_z: leave it out"
-                .to_owned(),
-        ),
-        _ => Ok(()),
-    }
+                .to_owned()
+        }
+        _ => return Ok(()),
+    };
+    Err(CalibrateError::Refused {
+        file: recorded.file.clone(),
+        message,
+    })
 }
 
 fn observation(group: &RecordedGroup, latitude_deg: Option<f64>) -> GroupObservation {
