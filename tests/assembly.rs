@@ -35,18 +35,7 @@ const SILENT: &str = "[gyro.noise]\nshot = false\nthermal = false\namplifier = f
 const SHORT: &str = "schema = 1\nname = \"short\"\nduration_s = 0.5\nwarm_up_s = 0.1\n";
 
 fn ideal() -> AssemblyConfig {
-    AssemblyConfig {
-        bias_deg_per_h: [0.0; 3],
-        scale_factor_error_ppm: [0.0; 3],
-        bias_deg_per_h_per_k: [0.0; 3],
-        scale_factor_ppm_per_k: [0.0; 3],
-        theta_xy_arcsec: 0.0,
-        theta_xz_arcsec: 0.0,
-        theta_yx_arcsec: 0.0,
-        theta_yz_arcsec: 0.0,
-        theta_zx_arcsec: 0.0,
-        theta_zy_arcsec: 0.0,
-    }
+    AssemblyConfig::reference()
 }
 
 fn assembly(config: GyroConfig, fidelity: Fidelity) -> Vec<CaseGyro> {

@@ -293,7 +293,7 @@ fn wrong_usage_exits_2() {
 }
 
 #[test]
-fn an_output_folder_that_cannot_be_made_exits_74() {
+fn a_file_in_the_place_of_the_output_folder_exits_2() {
     let folder = scratch();
     write(folder.path(), "a.toml", SHORT);
     write(
@@ -302,7 +302,7 @@ fn an_output_folder_that_cannot_be_made_exits_74() {
         "a file stands where the folder should",
     );
     let output = fogbench(folder.path(), &["run", "a.toml", "-o", "taken"]);
-    assert_eq!(code(&output), 74, "{}", stderr(&output));
+    assert_eq!(code(&output), 2, "{}", stderr(&output));
 }
 
 #[test]

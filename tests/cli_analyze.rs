@@ -317,7 +317,7 @@ fn bad_logs_and_usage_exit_2_and_unreadable_files_74() {
     assert_eq!(code(&output), 74, "{}", stderr(&output));
     transcript.case(missing.join(" "), stderr(&output));
     let (code, text) = on("analyze", &["100", "-o", "log.csv"]);
-    assert_eq!(code, 74, "{text}");
+    assert_eq!(code, 2, "{text}");
     transcript.case("analyze log.csv --rate-hz 100 -o log.csv", text);
     transcript.check();
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use fogbench::experiment::plan_suite;
 use fogbench::metrics::{ChannelMetrics, Motion, Record, SwingClock, fit_swing, measure};
-use fogbench::scenario::{EncoderConfig, MotionConfig, ServoConfig, StaticConfig};
+use fogbench::scenario::{EncoderConfig, MotionConfig, ServoConfig};
 use fogbench::units::{deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h, rad_per_s_to_deg_per_s};
 
 use crate::support::records::{settings, value};
@@ -12,7 +12,7 @@ use crate::support::tables::{PERIOD_S, ideal_encoder, record, rotation, swing, t
 use crate::support::{assert_close, code, field, fogbench, stderr, stdout, summary, write};
 
 fn ideal_table(motion: MotionConfig, encoder: EncoderConfig, count: usize) -> (Vec<f64>, Vec<f64>) {
-    let servo = ServoConfig::Ideal(StaticConfig {});
+    let servo = ServoConfig::ideal();
     record(table(motion, servo, encoder, PERIOD_S), count)
 }
 

@@ -8,8 +8,7 @@ use fogbench::metrics::{
 };
 use fogbench::random::Streams;
 use fogbench::scenario::{
-    Fidelity, GyroConfig, MotionConfig, MultiSineConfig, ServoConfig, SiteConfig, StaticConfig,
-    TurntableConfig,
+    Fidelity, GyroConfig, MotionConfig, MultiSineConfig, ServoConfig, SiteConfig, TurntableConfig,
 };
 use fogbench::turntable::Turntable;
 use fogbench::units::{deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
@@ -144,21 +143,23 @@ fn shaken(soft_start_s: f64) -> MultiSineConfig {
         rate_amplitudes_deg_per_s: vec![0.01],
         phases: PhaseRule::Schroeder,
         soft_start_s,
+        ..MultiSineConfig::reference()
     }
 }
 
 fn table(motion: MultiSineConfig) -> TurntableConfig {
     TurntableConfig {
         motion: MotionConfig::MultiSine(motion),
-        servo: ServoConfig::Ideal(StaticConfig {}),
+        servo: ServoConfig::ideal(),
         encoder: no_encoder(),
         axis: true_axis(),
         mounting: true_mounting(),
         site: SiteConfig {
             latitude_deg: 34.27,
             axis_elevation_deg: 90.0,
-            axis_azimuth_deg: 0.0,
+            ..SiteConfig::reference()
         },
+        ..TurntableConfig::reference()
     }
 }
 

@@ -86,7 +86,10 @@ fn drifting_gyro(temperature: TemperatureConfig) -> GyroConfig {
 }
 
 fn soak(temperature_c: f64) -> TemperatureConfig {
-    TemperatureConfig::Soak(SoakConfig { temperature_c })
+    TemperatureConfig::Soak(SoakConfig {
+        temperature_c,
+        ..SoakConfig::reference()
+    })
 }
 
 #[test]
@@ -162,7 +165,7 @@ fn both_models_follow_the_half_wave_voltage_up_a_ramp() {
         start_c: 25.0,
         end_c: 60.0,
         rate_c_per_min: 60.0,
-        start_s: 0.0,
+        ..TemperatureRampConfig::reference()
     }));
     let segment = MotionSegment::constant(deg_per_s_to_rad_per_s(10.0));
     let (mut model, mut twin) = (loop_model(&config), rate_model(&config));

@@ -612,21 +612,48 @@ mod process {
     }
 
     #[test]
-    fn a_file_beyond_the_size_limit_is_an_error_like_any_other() {
+    fn a_file_beyond_the_size_limit_fails_its_run_and_the_suite_has_its_verdict() {
         let folder = scratch();
-        scenario(
-            folder.path(),
-            "a",
-            &format!("{SHORT}[output]\nsamples = \"npy\"\n"),
+        let long = "duration_s = 60.0\nwarm_up_s = 0.5\nfidelity = \"rate\"\n[output]\nsamples = \"npy\"\n";
+        scenario(folder.path(), "a", long);
+        let gate = "[[gate]]\nmetric = \"raw.mean_deg_per_h\"\nmax = 1.0\n";
+        scenario(folder.path(), "b", &format!("{SHORT}{gate}"));
+        let run = |limit: &str| {
+            let output = Command::new("sh")
+                .args([
+                    "-c",
+                    &format!("{limit}; exec \"$0\" run a.toml b.toml -j 1"),
+                ])
+                .arg(env!("CARGO_BIN_EXE_fogbench"))
+                .current_dir(folder.path())
+                .output()
+                .expect("it starts");
+            (output.status.code(), stderr(&output))
+        };
+        assert_eq!(run("true").0, Some(1));
+        let before = std::fs::read(folder.path().join("output/a/manifest.toml")).expect("written");
+        let (code, talk) = run("ulimit -f 1000");
+        assert_eq!(code, Some(74), "{talk}");
+        assert!(
+            talk.contains("error: a: ") && talk.contains("File too large"),
+            "{talk}"
         );
-        let output = Command::new("sh")
-            .args(["-c", "ulimit -f 16; exec \"$0\" run a.toml"])
-            .arg(env!("CARGO_BIN_EXE_fogbench"))
-            .current_dir(folder.path())
-            .output()
-            .expect("it starts");
-        assert_eq!(output.status.code(), Some(74), "{output:?}");
-        assert!(stderr(&output).contains("File too large"), "{output:?}");
+        let output = folder.path().join("output");
+        assert_eq!(
+            statuses(&output),
+            [pair("a", "run_failed"), pair("b", "gate_failed")]
+        );
+        let suite = suite_summary(&output);
+        let reason = suite["runs"][0]["error"].as_str().expect("a reason");
+        assert!(
+            reason.contains("a/samples") || reason.contains(".npy"),
+            "{reason}"
+        );
+        assert_eq!(suite["stale"], serde_json::json!(["a"]));
+        let after = std::fs::read(output.join("a/manifest.toml")).expect("it stays");
+        assert!(before == after, "the earlier result stands");
+        let junit = std::fs::read_to_string(output.join("junit.xml")).expect("written");
+        assert!(junit.contains("File too large"), "{junit}");
     }
 
     #[test]

@@ -88,7 +88,7 @@ fn drawn() -> impl Iterator<Item = NoiseSource> {
 fn only(name: &str) -> NoiseConfig {
     let mut settings: Vec<String> = drawn()
         .map(|source| {
-            if source.name == name {
+            if source.name() == name {
                 on(&source)
             } else {
                 off(&source)
@@ -116,7 +116,7 @@ fn each_source_is_switched_by_its_key_and_counts_once_in_the_total() {
         facts.angle_random_walk_budget_deg_per_sqrt_h
     };
     let full = budget(&all);
-    let names: Vec<&str> = NOISE_SOURCES.iter().map(|source| source.name).collect();
+    let names: Vec<&str> = NOISE_SOURCES.iter().map(|source| source.name()).collect();
     let shown: Vec<&str> = full.iter().map(|(name, _)| *name).collect();
     assert_eq!(shown, [names.as_slice(), &["total"]].concat());
     for (index, source) in NOISE_SOURCES.iter().enumerate() {
@@ -126,7 +126,7 @@ fn each_source_is_switched_by_its_key_and_counts_once_in_the_total() {
         let mut squares = 0.0;
         for ((name, before), (_, after)) in full.iter().zip(&without).take(names.len()) {
             assert!(*before > 0.0, "{name}");
-            let want = if *name == source.name { 0.0 } else { *before };
+            let want = if *name == source.name() { 0.0 } else { *before };
             assert_close(*after, want, 1e-12, 0.0);
             squares += after * after;
         }
@@ -138,7 +138,7 @@ fn each_source_is_switched_by_its_key_and_counts_once_in_the_total() {
 #[test]
 fn known_answer_k13_each_source_alone_has_its_closed_form() {
     let depths_deg = [90.0, 120.0, 135.0];
-    let cases = drawn().flat_map(|source| depths_deg.map(|depth_deg| (source.name, depth_deg)));
+    let cases = drawn().flat_map(|source| depths_deg.map(|depth_deg| (source.name(), depth_deg)));
     for (source, depth_deg) in cases {
         let mut config = fast_gyro();
         config.noise = only(source);

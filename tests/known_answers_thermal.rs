@@ -17,7 +17,10 @@ use crate::support::reference_gyro::reference_gyro;
 use crate::support::{assert_close, code, fogbench, stderr, write};
 
 fn at(mut config: GyroConfig, temperature_c: f64) -> GyroConfig {
-    config.temperature = TemperatureConfig::Soak(SoakConfig { temperature_c });
+    config.temperature = TemperatureConfig::Soak(SoakConfig {
+        temperature_c,
+        ..SoakConfig::reference()
+    });
     config
 }
 
@@ -27,6 +30,7 @@ fn ramp(start_c: f64, end_c: f64, rate_c_per_min: f64, start_s: f64) -> Temperat
         end_c,
         rate_c_per_min,
         start_s,
+        ..TemperatureRampConfig::reference()
     })
 }
 
@@ -171,6 +175,7 @@ fn the_chamber_follows_its_points_and_its_derivative() {
     let profile = TemperatureConfig::Profile(TemperatureProfileConfig {
         times_s: vec![0.0, 3900.0, 11_100.0, 17_100.0],
         temperatures_c: vec![25.0, -40.0, -40.0, 60.0],
+        ..TemperatureProfileConfig::reference()
     });
     let chamber = Chamber::new(&profile, &thermal);
     for (time_s, want) in [(-1.0, 25.0), (1950.0, -7.5), (5000.0, -40.0), (2e4, 60.0)] {
@@ -279,7 +284,10 @@ fn hurried(mut config: GyroConfig) -> GyroConfig {
     config.thermal.outer_time_constant_s = 10.0;
     config.thermal.inner_time_constant_s = 10.0;
     config.thermal.winding = Winding::Dipole;
-    config.thermal.power = PowerConfig::Exponential(ExponentialPowerConfig { fall_k: 20.0 });
+    config.thermal.power = PowerConfig::Exponential(ExponentialPowerConfig {
+        fall_k: 20.0,
+        ..ExponentialPowerConfig::reference()
+    });
     config
 }
 
@@ -382,7 +390,10 @@ fn power_that_vanishes_or_makes_the_loop_oscillate_is_refused() {
     }
     let error = facts(&config).unwrap_err();
     assert!(matches!(error, GyroError::NoPower { .. }), "{error}");
-    config.thermal.power = PowerConfig::Exponential(ExponentialPowerConfig { fall_k: 10.0 });
+    config.thermal.power = PowerConfig::Exponential(ExponentialPowerConfig {
+        fall_k: 10.0,
+        ..ExponentialPowerConfig::reference()
+    });
     config.temperature = ramp(25.0, -30.0, -1.0, 0.0);
     config.adc.bits = 0;
     let error = facts(&config).unwrap_err();

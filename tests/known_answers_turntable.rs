@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use fogbench::scenario::{
     MotionConfig, RotationConfig, SecondOrderServoConfig, ServoConfig, SiteConfig, Stairs,
-    StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
+    StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
 use fogbench::turntable::{Turntable, earth_rate_rad_per_s, first_measured_index, step_indices};
@@ -29,16 +29,16 @@ fn site(latitude_deg: f64, axis_elevation_deg: f64, axis_azimuth_deg: f64) -> Si
         latitude_deg,
         axis_elevation_deg,
         axis_azimuth_deg,
+        ..SiteConfig::reference()
     }
 }
 
 fn swing(frequency_hz: f64, soft_start_s: f64) -> MotionConfig {
     MotionConfig::Swing(SwingConfig {
         rate_amplitude_deg_per_s: Some(1.0),
-        angle_amplitude_deg: None,
         frequency_hz,
         soft_start_s,
-        from_rest: false,
+        ..SwingConfig::reference()
     })
 }
 
@@ -46,11 +46,12 @@ fn second_order(natural_frequency_hz: f64, damping_ratio: f64) -> ServoConfig {
     ServoConfig::SecondOrder(SecondOrderServoConfig {
         natural_frequency_hz,
         damping_ratio,
+        ..SecondOrderServoConfig::reference()
     })
 }
 
 fn ideal() -> ServoConfig {
-    ServoConfig::Ideal(StaticConfig {})
+    ServoConfig::ideal()
 }
 
 fn table(
@@ -67,6 +68,7 @@ fn table(
         site,
         axis: true_axis(),
         mounting: true_mounting(),
+        ..TurntableConfig::reference()
     };
     Turntable::new(&config, warm_up_s, sample_period_s)
 }
@@ -125,21 +127,19 @@ fn earth_rate_follows_the_pointing_of_the_axis() {
 fn known_answer_k29_angle_amplitude_of_a_swing() {
     let rate_rad_per_s = SwingConfig {
         rate_amplitude_deg_per_s: Some(1.0),
-        angle_amplitude_deg: None,
         frequency_hz: 5.0,
         soft_start_s: 1.0,
-        from_rest: false,
+        ..SwingConfig::reference()
     }
     .rate_amplitude_rad_per_s();
     let angle_rad = rate_rad_per_s / (TAU * 5.0);
     assert_close(rad_to_arcsec(angle_rad), 114.592, 0.0, 0.000_5);
     // The same motion given by its angle.
     let by_angle = SwingConfig {
-        rate_amplitude_deg_per_s: None,
         angle_amplitude_deg: Some(rad_to_deg(angle_rad)),
         frequency_hz: 5.0,
         soft_start_s: 1.0,
-        from_rest: false,
+        ..SwingConfig::reference()
     };
     let rate = by_angle.rate_amplitude_rad_per_s();
     assert_close(rad_per_s_to_deg_per_s(rate), 1.0, 1e-12, 0.0);
@@ -155,7 +155,7 @@ fn a_swing_with_two_amplitudes_is_refused() {
         angle_amplitude_deg: Some(1.0),
         frequency_hz: 5.0,
         soft_start_s: 1.0,
-        from_rest: false,
+        ..SwingConfig::reference()
     }
     .rate_amplitude_rad_per_s();
 }
@@ -255,6 +255,7 @@ fn soft_start_is_a_raised_cosine_without_kinks() {
     let rotation = MotionConfig::Rotation(RotationConfig {
         rate_deg_per_s: RATE_DEG_PER_S,
         soft_start_s: 0.5,
+        ..RotationConfig::reference()
     });
     let mut table = table(rotation, ideal(), eastward(), 2.0, PERIOD_S);
     let segments: Vec<_> = (0..8000).map(|_| table.next_segment()).collect();
@@ -298,6 +299,7 @@ fn soft_start_lasts_one_second_at_most_and_never_longer_than_the_warm_up() {
         let rotation = MotionConfig::Rotation(RotationConfig {
             rate_deg_per_s: 1.0,
             soft_start_s,
+            ..RotationConfig::reference()
         });
         let table = table(rotation, ideal(), eastward(), warm_up_s, PERIOD_S);
         let truth = truth_deg_per_s(table, 0, 20_000);
@@ -335,6 +337,7 @@ fn staircase() -> StepsConfig {
         rates_deg_per_s: vec![2.0, -1.0, 0.5],
         dwell_s: 0.1,
         settle_s: 0.0,
+        ..StepsConfig::reference()
     }
 }
 
@@ -373,6 +376,7 @@ fn a_staircase_of_one_rate_has_no_step() {
         rates_deg_per_s: vec![3.0],
         dwell_s: 0.1,
         settle_s: 0.0,
+        ..StepsConfig::reference()
     };
     assert!(step_indices(&Stairs::from(&steps), 1.0, PERIOD_S).is_empty());
     // Settled from the start: no transient with a servo either.
@@ -395,6 +399,7 @@ fn a_servo_answers_a_step_as_the_textbook_says() {
         rates_deg_per_s: vec![0.0, 1.0],
         dwell_s: 0.1,
         settle_s: 0.0,
+        ..StepsConfig::reference()
     };
     let first = usize::try_from(step_indices(&Stairs::from(&steps), 0.0, PERIOD_S)[0]).unwrap();
     assert_eq!(first, 400);
@@ -423,7 +428,7 @@ fn a_servo_answers_a_step_as_the_textbook_says() {
 fn a_table_at_rest_turns_with_the_earth() {
     let config = site(45.0, 90.0, 0.0);
     let table = table(
-        MotionConfig::Static(StaticConfig {}),
+        MotionConfig::rest(),
         second_order(40.0, 0.7),
         config,
         1.0,

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use fogbench::experiment::{RunError, SuiteOptions, write_runs};
-use fogbench::gyro::{self, Gyro};
+use fogbench::gyro::{self, CoilConfig, Fidelity, Gyro, GyroConfig};
 use fogbench::metrics::catalogue::{
     AMPLITUDE_RATIO, ANGLE_RANDOM_WALK, DC_GAIN, DELAY_VS_RAW, MEAN,
 };
@@ -18,6 +18,8 @@ use crate::support::{code, fogbench, stderr, tree, write};
 mod allan_of_a_log;
 #[path = "../examples/one_filter.rs"]
 mod one_filter;
+#[path = "../examples/one_gyro.rs"]
+mod one_gyro;
 #[path = "../examples/pipeline_bits.rs"]
 mod pipeline_bits;
 #[path = "../examples/run_scenario.rs"]
@@ -47,6 +49,7 @@ fn at_rest() -> Scenario {
 fn the_examples_run() -> Result<(), Box<dyn Error>> {
     allan_of_a_log::main()?;
     one_filter::main()?;
+    one_gyro::main()?;
     pipeline_bits::main()?;
     run_scenario::main()
 }
@@ -269,21 +272,17 @@ fn settings_of_every_type_are_taken() -> Result<(), Box<dyn Error>> {
 
 #[test]
 fn the_gyro_runs_alone() -> Result<(), Box<dyn Error>> {
-    let plan = &at_rest().points()?[0];
-    let config = plan.resolved().scenario.gyro.clone();
-    let config = fogbench::scenario::GyroConfig {
-        coil: fogbench::scenario::CoilConfig {
-            length_m: 2.0 * config.coil.length_m,
-            ..config.coil
-        },
-        ..config
+    let reference = GyroConfig::reference();
+    let coil = CoilConfig {
+        length_m: 2.0 * reference.coil.length_m,
+        ..reference.coil
     };
-    let facts = gyro::facts(&config)?;
-    let twice = facts.scale_factor_s / plan.facts().scale_factor_s;
+    let scale_factor_s = gyro::facts(&reference)?.scale_factor_s;
+    let config = GyroConfig { coil, ..reference };
+    let twice = gyro::facts(&config)?.scale_factor_s / scale_factor_s;
     assert!((twice - 2.0).abs() < 1e-12, "{twice}");
     let rate = deg_per_h_to_rad_per_s(3600.0);
-    let fidelity = fogbench::scenario::Fidelity::Loop;
-    let mut gyro = Gyro::new(&config, fidelity, 1.0, &Streams::new(1, 0))?;
+    let mut gyro = Gyro::new(&config, Fidelity::Loop, 1.0, &Streams::new(1, 0))?;
     let words: Vec<f64> = (0..400)
         .map(|_| gyro.next_word(&MotionSegment::constant(rate)))
         .collect();

@@ -1,5 +1,10 @@
 //! The one integration-test binary.
 
+#![expect(
+    clippy::needless_update,
+    reason = "settings are those of the reference but for what is given, so that a new key breaks no test"
+)]
+
 mod allan_coverage;
 mod allan_curves;
 mod architecture;
@@ -11,6 +16,7 @@ mod calibrate;
 mod calibrate_files;
 mod calibration_campaign;
 mod campaign;
+mod circles;
 mod cli;
 mod cli_analyze;
 mod cli_budget;
@@ -66,6 +72,7 @@ mod recording;
 mod registry;
 mod report;
 mod resume;
+mod rows;
 mod rtl;
 mod scale_factor_test;
 mod scenario_errors;

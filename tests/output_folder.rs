@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use fogbench::experiment::{Observer, Progress, SuiteOptions, plan_suite, run_suite};
+use fogbench::experiment::{Observer, Progress, SuiteOptions, SuiteOutcome, plan_suite, run_suite};
 use fogbench::report::RunReport;
 use fogbench::store::{OutputFolder, StoreOptions, SuiteFileNames};
 
@@ -558,4 +558,398 @@ fn an_export_leaves_no_file_of_an_earlier_one() {
         "wave.vcd",
     ];
     assert_eq!(names_in(&at.join("dir")), left);
+}
+
+/// Does something in the output folder once the first run is finished.
+struct Meanwhile<F>(std::sync::Mutex<Option<F>>);
+
+impl<F> Progress for Meanwhile<F> where F: FnOnce() + Send {}
+
+impl<F: FnOnce() + Send> Observer for Meanwhile<F> {
+    fn finished(&self, _: usize, _: &RunReport) {
+        let act = self.0.lock().expect("nothing panics here").take();
+        if let Some(act) = act {
+            act();
+        }
+    }
+}
+
+/// Runs scenarios one after the other into `output`, with `act` after the first.
+fn run_with(at: &Path, files: &[&str], act: impl FnOnce() + Send) -> SuiteOutcome {
+    let files: Vec<PathBuf> = files.iter().map(|file| at.join(file)).collect();
+    let plans = plan_suite(&files, &[]).expect("sound scenarios");
+    let options = SuiteOptions {
+        threads: 1,
+        ..SuiteOptions::new(at.join("output"))
+    };
+    let observer = Meanwhile(std::sync::Mutex::new(Some(act)));
+    run_suite(&plans, &options, &observer).expect("a free folder")
+}
+
+/// Folder and status of every run in the suite's summary, which names `words` in its one error.
+#[track_caller]
+fn statuses(at: &Path, words: &[&str]) -> Vec<(String, String)> {
+    let suite = summary(&at.join("output"), ".");
+    let mut errors = Vec::new();
+    let mut statuses = Vec::new();
+    for run in suite["runs"].as_array().expect("runs") {
+        let word = |key: &str| run[key].as_str().map(str::to_owned);
+        statuses.push((
+            word("folder").expect("a name"),
+            word("status").expect("a word"),
+        ));
+        errors.extend(word("error"));
+    }
+    let [error] = &errors[..] else {
+        panic!("{errors:?}");
+    };
+    for word in words {
+        assert!(error.contains(word), "no `{word}` in {error}");
+    }
+    let junit = fs::read_to_string(at.join("output/junit.xml")).expect("written");
+    assert!(junit.contains(words[0]), "{junit}");
+    assert!(at.join("output/.fogbench.toml").is_file());
+    statuses
+}
+
+fn pairs(expected: &[(&str, &str)]) -> Vec<(String, String)> {
+    let pairs = expected.iter();
+    pairs
+        .map(|(one, other)| ((*one).to_owned(), (*other).to_owned()))
+        .collect()
+}
+
+#[test]
+fn a_file_that_comes_into_one_run_fails_that_run_alone() {
+    let folder = scratch();
+    let at = folder.path();
+    sweep(at, "sw", "[0.5, 0.87, 2.0]");
+    runs(at, &["sw.toml"]);
+    let result = tree(&at.join("output"));
+    for (file, reason) in [
+        ("sw/0001/thesis.txt", "not written by fogbench"),
+        ("sw/0001/allan.csv", "was changed"),
+    ] {
+        let file = file.replace("allan.csv", "psd.csv");
+        let outcome = run_with(at, &["sw.toml"], || {
+            write(at, &format!("output/{file}"), "years of work");
+        });
+        assert!(
+            outcome.unwritten && outcome.failures.is_empty(),
+            "{outcome:?}"
+        );
+        let expected = [
+            ("sw/0000", "pass"),
+            ("sw/0001", "run_failed"),
+            ("sw/0002", "pass"),
+        ];
+        assert_eq!(statuses(at, &["sw/0001", &file, reason]), pairs(&expected));
+        let text = fs::read_to_string(at.join("output").join(&file)).expect("it stays");
+        assert_eq!(text, "years of work");
+        let stale = &summary(&at.join("output"), ".")["stale"];
+        assert_eq!(*stale, serde_json::json!(["sw/0001"]));
+        assert_eq!(names_in(&at.join("output/.fogbench")), ["lock"]);
+        fs::remove_file(at.join("output").join(&file)).expect("removable");
+        runs(at, &["sw.toml", "--resume=any-build"]);
+        assert!(result == tree(&at.join("output")), "brought right");
+    }
+}
+
+#[test]
+fn a_file_that_comes_into_a_stale_point_keeps_it_and_the_verdict_is_written() {
+    let folder = scratch();
+    let at = folder.path();
+    sweep(at, "sw", "[0.5, 0.87, 2.0]");
+    runs(at, &["sw.toml"]);
+    sweep(at, "sw", "[0.5, 0.87]");
+    let thesis = at.join("output/sw/0002/thesis.txt");
+    let outcome = run_with(at, &["sw.toml"], || {
+        fs::write(&thesis, "years of work").expect("writable");
+    });
+    let [failure] = &outcome.failures[..] else {
+        panic!("{outcome:?}");
+    };
+    assert!(failure.contains("0002/thesis.txt"), "{failure}");
+    assert!(thesis.is_file());
+    let suite = summary(&at.join("output"), ".");
+    assert_eq!(suite["stale"], serde_json::json!(["sw/0002"]));
+    assert_eq!(suite["totals"]["passed"], 2);
+    fs::remove_file(thesis).expect("removable");
+    runs(at, &["sw.toml"]);
+    assert_eq!(names_in(&at.join("output/sw")), ["0000", "0001"]);
+}
+
+#[test]
+fn a_summary_that_comes_in_the_suites_place_stays_and_the_new_one_is_kept() {
+    let folder = scratch();
+    let at = folder.path();
+    plain(at, "s0");
+    runs(at, &["s0.toml"]);
+    let verdict = fs::read_to_string(at.join("output/summary.json")).expect("written");
+    let outcome = run_with(at, &["s0.toml"], || {
+        write(at, "output/summary.json", "mine");
+    });
+    let [failure] = &outcome.failures[..] else {
+        panic!("{outcome:?}");
+    };
+    for word in ["summary.json", "stays as it is", "kept-"] {
+        assert!(failure.contains(word), "{failure}");
+    }
+    let text = |file: &str| fs::read_to_string(at.join("output").join(file)).expect("written");
+    assert_eq!(text("summary.json"), "mine");
+    assert!(text("junit.xml").contains("s0"));
+    let names = names_in(&at.join("output/.fogbench"));
+    let kept = names.iter().find(|name| name.starts_with("kept-"));
+    let kept = kept.expect("the new one is kept");
+    assert_eq!(text(&format!(".fogbench/{kept}/summary.json")), verdict);
+    is_refused(at, &["run", "s0.toml"], &["summary.json"]);
+    fs::remove_file(at.join("output/summary.json")).expect("removable");
+    let next = runs(at, &["s0.toml"]);
+    assert!(stderr(&next).contains(kept.as_str()), "{}", stderr(&next));
+}
+
+#[test]
+fn journals_take_nothing_of_the_users() {
+    let folder = scratch();
+    let at = folder.path();
+    for name in ["p", "q"] {
+        plain(at, name);
+    }
+    // Killed while it changed the files of the folder; then the user wrote into one of them.
+    runs(at, &["p.toml"]);
+    let workshop = at.join("output/.fogbench");
+    let journal = "new = \"new-7-0\"\nremoved = [\"note\"]\n\
+                   installed = [\"summary.json\", \".fogbench.toml\"]\n";
+    fs::create_dir(workshop.join("new-7-0")).expect("writable");
+    for name in ["summary.json", ".fogbench.toml"] {
+        let new = workshop.join("new-7-0").join(name);
+        fs::rename(at.join("output").join(name), new).expect("movable");
+    }
+    write(&workshop, "update-7-0.toml", journal);
+    write(at, "output/note", "mine");
+    write(at, "output/summary.json", "thesis");
+    for command in [
+        &["run", "q.toml"][..],
+        &["budget", "p.toml", "-o", "output"],
+    ] {
+        let output = fogbench(at, command);
+        assert_eq!(code(&output), 2, "{}", stderr(&output));
+        for (file, text) in [("note", "mine"), ("summary.json", "thesis")] {
+            let path = at.join("output").join(file);
+            assert_eq!(fs::read_to_string(path).expect("it stays"), text);
+        }
+    }
+    assert!(workshop.join("kept-7-0/summary.json").is_file());
+    fs::remove_file(at.join("output/summary.json")).expect("removable");
+    runs(at, &["q.toml"]);
+    assert_eq!(
+        fs::read_to_string(at.join("output/note")).expect("mine"),
+        "mine"
+    );
+}
+
+#[test]
+fn a_damaged_journal_is_named_and_stops_nobody() {
+    let folder = scratch();
+    let at = folder.path();
+    plain(at, "p");
+    runs(at, &["p.toml"]);
+    let workshop = at.join("output/.fogbench");
+    write(&workshop, "old-7-0/summary.json", "the only copy");
+    fs::write(workshop.join("swap-7-0.toml"), b"\xff\xfe\x00").expect("writable");
+    fs::create_dir(workshop.join("swap-8-0.toml")).expect("writable");
+    write(&workshop, "update-9-0.toml", "");
+    #[cfg(unix)]
+    rustix_fifo(&workshop.join("swap-6-0.toml"));
+    let output = runs(at, &["p.toml"]);
+    let text = stderr(&output);
+    for name in ["swap-7-0.toml", "swap-8-0.toml", "update-9-0.toml"] {
+        assert!(text.contains(name), "{text}");
+    }
+    assert!(workshop.join("old-7-0/summary.json").is_file());
+}
+
+/// A pipe that nobody writes to.
+#[cfg(unix)]
+fn rustix_fifo(path: &Path) {
+    let made = Command::new("mkfifo").arg(path).status();
+    assert!(made.expect("a shell has it").success());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_lock_is_never_taken_for_a_file_of_the_users() {
+    let folder = scratch();
+    let at = folder.path();
+    plain(at, "p");
+    write(at, "precious", "thesis");
+    for kind in ["link", "hard link", "file", "pipe"] {
+        let lock = at.join("output/.fogbench/lock");
+        fs::create_dir_all(at.join("output/.fogbench")).expect("writable");
+        match kind {
+            "link" => std::os::unix::fs::symlink("../../precious", &lock).expect("links"),
+            "hard link" => fs::hard_link(at.join("precious"), &lock).expect("links"),
+            "file" => fs::write(&lock, "thesis").expect("writable"),
+            _ => rustix_fifo(&lock),
+        }
+        for command in [
+            &["run", "p.toml"][..],
+            &["budget", "p.toml", "-o", "output"],
+            &["run", "p.toml", "--force"],
+        ] {
+            let output = fogbench(at, command);
+            assert_eq!(code(&output), 2, "{kind}: {}", stderr(&output));
+            assert!(stderr(&output).contains("lock"), "{}", stderr(&output));
+            let precious = fs::read_to_string(at.join("precious")).expect("it stays");
+            assert_eq!(precious, "thesis", "{kind}");
+            assert!(!at.join("output/p").exists());
+        }
+        if kind == "file" {
+            assert_eq!(fs::read_to_string(&lock).expect("it stays"), "thesis");
+        }
+        fs::remove_dir_all(at.join("output")).expect("removable");
+    }
+    // What a killed holder leaves is no file of the user's.
+    write(at, "output/.fogbench/lock", "process 12 on here\n");
+    runs(at, &["p.toml"]);
+}
+
+#[test]
+fn nobody_writes_inside_a_folder_that_is_being_written() {
+    let folder = scratch();
+    let at = folder.path();
+    plain(at, "p");
+    runs(at, &["p.toml"]);
+    let output = at.join("output");
+    let names = SuiteFileNames::default();
+    let held = OutputFolder::of_suite(&output, StoreOptions::default(), names, &|_| Ok(()));
+    let held = held.expect("a free folder");
+    for inside in ["output/p", "output/new/deep"] {
+        let second = fogbench(at, &["run", "p.toml", "-o", inside]);
+        let text = stderr(&second);
+        assert_eq!(code(&second), 74, "{text}");
+        assert!(text.contains("output is in use by process"), "{text}");
+        assert!(!at.join(inside).join(".fogbench").exists());
+    }
+    drop(held);
+    runs(at, &["p.toml", "-o", "output/new/deep"]);
+}
+
+#[test]
+fn an_output_folder_inside_the_folder_of_a_run_is_named_as_one() {
+    let folder = scratch();
+    let at = folder.path();
+    plain(at, "p");
+    runs(at, &["p.toml"]);
+    runs(at, &["p.toml", "-o", "output/p/q"]);
+    is_refused(
+        at,
+        &["run", "p.toml"],
+        &["output/p/q", "output folder of its own"],
+    );
+    fs::remove_dir_all(at.join("output/p/q")).expect("removable");
+    write(at, "output/p/manifest.toml", "");
+    is_refused(at, &["run", "p.toml"], &["manifest.toml", "damaged"]);
+}
+
+#[test]
+fn what_cannot_be_an_output_folder_is_refused_before_anything_runs() {
+    let folder = scratch();
+    let at = folder.path();
+    plain(at, "p");
+    write(at, "a-file", "mine");
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("nowhere", at.join("dangling")).expect("links");
+    let mut places = vec!["a-file", "a-file/deep", "o/.fogbench"];
+    if cfg!(unix) {
+        places.push("dangling");
+    }
+    for place in places {
+        for command in [&["run"][..], &["budget"]] {
+            let output = fogbench(at, &[command, &["p.toml", "-o", place]].concat());
+            let text = stderr(&output);
+            assert_eq!(code(&output), 2, "{place}: {text}");
+            assert!(
+                text.contains(place) && text.contains("nothing was done"),
+                "{text}"
+            );
+        }
+    }
+    assert_eq!(
+        fs::read_to_string(at.join("a-file")).expect("it stays"),
+        "mine"
+    );
+    assert!(!at.join("o").exists() && !at.join("nowhere").exists());
+}
+
+#[test]
+fn a_command_replaces_neither_what_it_reads_nor_results_of_another_kind() {
+    let folder = scratch();
+    let at = folder.path();
+    log(at);
+    groups(at);
+    let scenario = repository("scenarios/quick/static.toml");
+    let scenario = scenario.to_str().expect("a path in Unicode");
+    let of_log = ["--unit", "deg/h", "--rate-hz", "100", "-o", "c"];
+    let filter = |input| [&["filter", input, "--filters", scenario], &of_log[..]].concat();
+    let analyze = |input| [&["analyze", input], &of_log[..]].concat();
+    assert!(matches!(code(&fogbench(at, &filter("log.csv"))), 0 | 3));
+    let samples = names_in(&at.join("c/samples"));
+    let input = format!("c/samples/{}", samples[0]);
+    let before = tree(at);
+    for command in [
+        analyze(&input),
+        filter(&input),
+        [&analyze(&input)[..], &["--force"]].concat(),
+    ] {
+        let output = fogbench(at, &command);
+        let text = stderr(&output);
+        assert_eq!(code(&output), 2, "{text}");
+        assert!(text.contains(&input), "{text}");
+        assert!(before == tree(at), "something changed");
+    }
+    let calibrate = |place| {
+        vec![
+            "calibrate",
+            "groups.csv",
+            "--latitude-deg",
+            "32.03",
+            "-o",
+            place,
+        ]
+    };
+    let budget = |place| vec!["budget", scenario, "-o", place];
+    let export = |place| {
+        vec![
+            "export",
+            "vectors",
+            place,
+            "--samples",
+            "20",
+            "--stimulus",
+            "log.csv",
+        ]
+    };
+    for command in [calibrate("c"), budget("c"), export("c")] {
+        is_refused(at, &command, &["another kind"]);
+    }
+    assert_eq!(code(&fogbench(at, &budget("b"))), 0);
+    for command in [calibrate("b"), export("b")] {
+        is_refused(at, &command, &["another kind"]);
+    }
+    assert_eq!(
+        code(&fogbench(
+            at,
+            &export("b")[..]
+                .iter()
+                .chain(&["--force"])
+                .copied()
+                .collect::<Vec<_>>()
+        )),
+        0
+    );
+    plain(at, "s0");
+    runs(at, &["s0.toml"]);
+    is_refused(at, &budget("output/s0"), &["manifest.toml", "another kind"]);
+    is_refused(at, &budget("output"), &["another kind"]);
 }

@@ -1,5 +1,6 @@
 //! The packages that the lock file names.
 
+use std::collections::BTreeSet;
 use std::process::Command;
 
 use serde_json::Value;
@@ -51,4 +52,24 @@ fn no_package_asks_for_a_newer_rust_than_ours() {
 fn versions_of_rust_compare_as_numbers() {
     assert!(version("1.90") < version("1.100"));
     assert!(version("1.90.1") > version("1.90"));
+}
+
+#[test]
+fn the_library_alone_brings_at_most_sixty_packages() {
+    let count = |features: &str| {
+        let output = Command::new(env!("CARGO"))
+            .args(["tree", "--locked", "--offline", "--edges", "normal"])
+            .args(["--prefix", "none", "--format", "{p}"])
+            .args(["--no-default-features", "--features", features])
+            .current_dir(repository(""))
+            .output()
+            .expect("cargo starts");
+        assert!(output.status.success(), "cargo tree");
+        let text = stdout(&output);
+        let names = text.lines().map(|line| line.trim_end_matches(" (*)"));
+        names.collect::<BTreeSet<_>>().len()
+    };
+    let alone = count("");
+    assert!(alone <= 60, "{alone} packages without features");
+    assert!(alone < count("cli"), "the program needs more");
 }

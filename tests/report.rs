@@ -18,9 +18,9 @@ fn gate(metric: &str, min: Option<f64>, max: Option<f64>) -> GateConfig {
         metric: metric.to_owned(),
         min,
         max,
-        relative_to: None,
         decide: GateDecision::Interval,
         inconclusive: InconclusivePolicy::Fail,
+        ..GateConfig::reference()
     }
 }
 

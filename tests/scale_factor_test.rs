@@ -21,6 +21,7 @@ fn test() -> ScaleFactorTestConfig {
         dwell_max_s: Some(9.0),
         static_s: 3.0,
         settle_s: 0.5,
+        ..ScaleFactorTestConfig::reference()
     }
 }
 

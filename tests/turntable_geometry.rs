@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use fogbench::scenario::{
-    AxisConfig, MotionConfig, MountingConfig, RotationConfig, ServoConfig, SiteConfig,
-    StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
+    AxisConfig, MotionConfig, MountingConfig, RotationConfig, ServoConfig, SiteConfig, StepsConfig,
+    SwingConfig, TurntableConfig,
 };
 use fogbench::turntable::{Turntable, earth_rate_rad_per_s, input_axis_bounds};
 use fogbench::units::{
@@ -23,7 +23,7 @@ fn upright() -> SiteConfig {
     SiteConfig {
         latitude_deg: LATITUDE_DEG,
         axis_elevation_deg: 90.0,
-        axis_azimuth_deg: 0.0,
+        ..SiteConfig::reference()
     }
 }
 
@@ -31,27 +31,28 @@ fn rotation(rate_deg_per_s: f64) -> MotionConfig {
     MotionConfig::Rotation(RotationConfig {
         rate_deg_per_s,
         soft_start_s: 0.0,
+        ..RotationConfig::reference()
     })
 }
 
 fn swing() -> MotionConfig {
     MotionConfig::Swing(SwingConfig {
         rate_amplitude_deg_per_s: Some(300.0),
-        angle_amplitude_deg: None,
         frequency_hz: 0.7,
         soft_start_s: 0.5,
-        from_rest: false,
+        ..SwingConfig::reference()
     })
 }
 
 fn config(motion: MotionConfig, axis: AxisConfig, mounting: MountingConfig) -> TurntableConfig {
     TurntableConfig {
         motion,
-        servo: ServoConfig::Ideal(StaticConfig {}),
+        servo: ServoConfig::ideal(),
         encoder: no_encoder(),
         site: upright(),
         axis,
         mounting,
+        ..TurntableConfig::reference()
     }
 }
 
@@ -165,12 +166,14 @@ fn crooked(axis_along_table: CaseAxis, wobble_harmonic: u32) -> TurntableConfig 
             tilt_east_arcsec: -3000.0,
             wobble_arcsec: 3000.0,
             wobble_harmonic,
+            ..AxisConfig::reference()
         },
         MountingConfig {
             misalignment_arcsec: 90_000.0,
             misalignment_azimuth_deg: 130.0,
             start_angle_deg: 40.0,
             axis_along_table,
+            ..MountingConfig::reference()
         },
     );
     config.site.axis_elevation_deg = 35.0;
@@ -191,7 +194,7 @@ fn platform_rates_are_those_of_the_rotations() {
             site: SiteConfig {
                 latitude_deg: 0.0,
                 axis_elevation_deg: 90.0,
-                axis_azimuth_deg: 0.0,
+                ..SiteConfig::reference()
             },
             axis: true_axis(),
             mounting: true_mounting(),
@@ -278,6 +281,7 @@ fn first_order_formula_holds_to_second_order() {
         tilt_east_arcsec: 70.0,
         wobble_arcsec: 5.0,
         wobble_harmonic: 2,
+        ..AxisConfig::reference()
     };
     let mu = 5e-4;
     let config = config(rotation(20.0), axis, askew(rad_to_arcsec(mu), 60.0));
@@ -347,7 +351,7 @@ fn the_case_axis_along_the_table_is_the_input_axis() {
 #[test]
 fn rates_of_the_three_axes_make_the_whole_vector() {
     let mut config = crooked(CaseAxis::X, 1);
-    config.motion = MotionConfig::Static(StaticConfig {});
+    config.motion = MotionConfig::rest();
     let mut table = table(&config);
     let rates = table
         .next_platform_segments()
@@ -382,6 +386,7 @@ fn a_true_table_adds_the_rate_of_the_earth_and_nothing_else() {
         rates_deg_per_s: vec![2.0, -1.0],
         dwell_s: 0.1,
         settle_s: 0.0,
+        ..StepsConfig::reference()
     });
     for motion in [rotation(7.0), swing(), steps] {
         let config = config(motion, true_axis(), true_mounting());
@@ -418,7 +423,7 @@ fn a_tilted_axis_sees_its_new_pointing() {
             tilt_east_arcsec,
             ..true_axis()
         };
-        let config = config(MotionConfig::Static(StaticConfig {}), axis, true_mounting());
+        let config = config(MotionConfig::rest(), axis, true_mounting());
         rad_per_s_to_deg_per_h(table(&config).next_segment().rate_at(1.0))
     };
     let (up, north) = (seen(0.0, 0.0), seen(360.0, 0.0));
@@ -473,11 +478,10 @@ fn bounds_hold_and_are_reached() {
 #[test]
 fn the_angle_of_a_swing_is_the_integral_of_its_rate() {
     let motion = MotionConfig::Swing(SwingConfig {
-        rate_amplitude_deg_per_s: None,
         angle_amplitude_deg: Some(3.0),
         frequency_hz: 5.0,
         soft_start_s: 0.0,
-        from_rest: false,
+        ..SwingConfig::reference()
     });
     let mounting = MountingConfig {
         start_angle_deg: -20.0,

@@ -4,8 +4,7 @@ use std::f64::consts::TAU;
 
 use fogbench::scenario::{
     ChirpConfig, MotionConfig, MountingConfig, Progression, ScriptConfig, ScriptPoints,
-    SecondOrderServoConfig, ServoConfig, SiteConfig, StaticConfig, TrapezoidConfig,
-    TurntableConfig,
+    SecondOrderServoConfig, ServoConfig, SiteConfig, TrapezoidConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
 use fogbench::turntable::{CommandExtremes, Surroundings, Turntable};
@@ -21,23 +20,25 @@ const WARM_UP: usize = 4000;
 fn config(motion: MotionConfig) -> TurntableConfig {
     TurntableConfig {
         motion,
-        servo: ServoConfig::Ideal(StaticConfig {}),
+        servo: ServoConfig::ideal(),
         encoder: no_encoder(),
         // Level and eastward: no Earth rate to speak of.
         site: SiteConfig {
             latitude_deg: 34.27,
             axis_elevation_deg: 0.0,
             axis_azimuth_deg: 90.0,
+            ..SiteConfig::reference()
         },
         axis: true_axis(),
         mounting: true_mounting(),
+        ..TurntableConfig::reference()
     }
 }
 
 fn extremes(motion: &MotionConfig) -> CommandExtremes {
     motion.extremes(Surroundings {
         warm_up_s: 1.0,
-        servo: &ServoConfig::Ideal(StaticConfig {}),
+        servo: &ServoConfig::ideal(),
     })
 }
 
@@ -85,6 +86,7 @@ fn trapezoid(both_senses: bool) -> TrapezoidConfig {
         rest_s: 0.25,
         cycles: 2,
         both_senses,
+        ..TrapezoidConfig::reference()
     }
 }
 
@@ -143,6 +145,7 @@ fn chirp(progression: Progression, is_angle: bool) -> ChirpConfig {
         progression,
         soft_start_s: 0.5,
         soft_stop_s: 0.5,
+        ..ChirpConfig::reference()
     }
 }
 
@@ -247,6 +250,7 @@ fn script(rates: Option<Vec<f64>>, angles: Option<Vec<f64>>) -> MotionConfig {
             rate_deg_per_s: rates,
             angle_deg: angles,
         },
+        ..ScriptConfig::reference()
     })
 }
 
@@ -335,6 +339,7 @@ fn a_servo_follows_a_script_and_an_askew_gyro_senses_it() {
     config.servo = ServoConfig::SecondOrder(SecondOrderServoConfig {
         natural_frequency_hz: 40.0,
         damping_ratio: 0.7,
+        ..SecondOrderServoConfig::reference()
     });
     config.mounting = MountingConfig {
         misalignment_arcsec: 3600.0 * 60.0,

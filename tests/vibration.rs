@@ -210,7 +210,7 @@ fn random(from_hz: f64, to_hz: f64, coherent: bool) -> RandomVibrationConfig {
         rate_psd_deg2_per_s2_per_hz: 4e-6,
         tones: 64,
         coherent,
-        rate_phase_deg: 0.0,
+        ..RandomVibrationConfig::reference()
     }
 }
 

@@ -5,14 +5,16 @@ use std::io;
 use super::arguments::BudgetOptions;
 use super::exit::Exit;
 use super::format::Format;
-use super::{complaint, output, place};
+use super::place::Place;
+use super::{complaint, output};
 use crate::experiment::{GyroBudget, gyro_budget};
 use crate::report::{budget_files, budget_json, budget_text};
 use crate::store::{OutputFolder, StoreError};
 
 /// Prints the budget; with a folder, writes `budget.svg` and `budget.csv` into it as well.
 pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
-    if let Err(exit) = place::check(options.output.as_deref(), options.force) {
+    let place = Place::new(options.output.as_deref(), "budget", options.force);
+    if let Err(exit) = place.check(&[&options.path]) {
         return Ok(exit);
     }
     let budget = match gyro_budget(&options.path, &options.set) {
@@ -23,9 +25,7 @@ pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
         }
     };
     let GyroBudget { file, sheet } = &budget;
-    if let Some(path) = &options.output
-        && let Err(exit) = place::fill(path, options.force, |folder| write(folder, &budget))
-    {
+    if let Err(exit) = place.fill(|folder| write(folder, &budget)) {
         return Ok(exit);
     }
     output::data(&match options.format {
@@ -45,6 +45,6 @@ fn write(folder: &OutputFolder, budget: &GyroBudget) -> Result<(), StoreError> {
     for (name, text) in budget_files(file, sheet) {
         staged.write(&name, text.as_bytes())?;
     }
-    staged.seal_plainly("budget")?;
+    staged.seal_plainly()?;
     staged.put_files_in_place()
 }

@@ -5,14 +5,16 @@ use std::io;
 use super::calibrate_arguments::CalibrateOptions;
 use super::exit::Exit;
 use super::format::Format;
-use super::{complaint, output, place};
+use super::place::Place;
+use super::{complaint, output};
 use crate::experiment::{CalibrateError, CalibrationTrial, calibrate_campaign, calibrate_groups};
 use crate::recording::LogError;
 use crate::report::{calibrate_json, calibrate_text};
 
 /// Prints the calibration; with a folder, writes `calibration.toml` and `groups.csv` into it.
 pub(super) fn calibrate(options: &CalibrateOptions) -> io::Result<Exit> {
-    if let Err(exit) = place::check(options.output.as_deref(), options.force) {
+    let place = Place::new(options.output.as_deref(), "calibration", options.force);
+    if let Err(exit) = place.check(&[&options.path]) {
         return Ok(exit);
     }
     let found = if options.is_scenario() {
@@ -24,9 +26,7 @@ pub(super) fn calibrate(options: &CalibrateOptions) -> io::Result<Exit> {
         Ok(found) => found,
         Err(exit) => return Ok(exit),
     };
-    if let Some(path) = &options.output
-        && let Err(exit) = place::fill(path, options.force, |folder| found.write(folder))
-    {
+    if let Err(exit) = place.fill(|folder| found.write(folder)) {
         return Ok(exit);
     }
     let report = found.report();

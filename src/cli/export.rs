@@ -1,13 +1,14 @@
 //! `fogbench export`: golden vectors, waveforms and RTL of a hardware pipeline.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::complaint;
 use super::exit::Exit;
 use super::hardware_arguments::ExportOptions;
 use super::log::unreadable;
-use super::{output, place};
+use super::output;
+use super::place::Place;
 use crate::experiment::{plan_suite, scenario_stimulus};
 use crate::filters::FilterConfig;
 use crate::filters::hardware::{
@@ -24,7 +25,9 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
         Ok(prepared) => prepared,
         Err(exit) => return Ok(exit),
     };
-    if let Err(exit) = place::check(Some(&options.folder), options.force) {
+    let place = Place::new(Some(&options.folder), "export", options.force);
+    let inputs = options.stimulus.iter().chain(&options.scenario);
+    if let Err(exit) = place.check(&inputs.map(PathBuf::as_path).collect::<Vec<_>>()) {
         return Ok(exit);
     }
     let form = options.what;
@@ -34,7 +37,7 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
         _ => stimulus.words.len(),
     };
     let mut exported = Ok(Vec::new());
-    let filled = place::fill(&options.folder, options.force, |folder| {
+    let filled = place.fill(|folder| {
         let staged = folder.stage()?;
         exported = export_pipeline(staged.path(), form, &settings, stimulus, trace_samples);
         let Ok(files) = &mut exported else {
@@ -45,7 +48,7 @@ pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
                 *file = options.folder.join(name);
             }
         }
-        staged.seal_plainly("export")?;
+        staged.seal_plainly()?;
         staged.put_files_in_place()
     });
     if let Err(exit) = filled {

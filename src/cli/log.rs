@@ -1,12 +1,14 @@
 //! `fogbench analyze` and `fogbench filter`: a recorded log in place of table and gyro.
 
 use std::io;
+use std::path::{Path, PathBuf};
 
 use super::complaint::{self, Complaint};
 use super::exit::Exit;
 use super::format::Format;
 use super::log_arguments::{AnalyzeOptions, FilterLogOptions, LogOptions};
-use super::{output, place};
+use super::output;
+use super::place::Place;
 use crate::experiment::{
     LogFilters, LogInput, LogSettings, LogTrial, compensate_log, load_log_compensation,
     load_log_filters, try_log,
@@ -17,7 +19,7 @@ use crate::scenario::AllanConfig;
 
 /// Measures a log.
 pub(super) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
-    if let Err(exit) = place::check(options.log.output.as_deref(), options.log.force) {
+    if let Err(exit) = place(&options.log).check(&inputs(&options.log)) {
         return Ok(exit);
     }
     let input = match read(&options.log) {
@@ -29,7 +31,9 @@ pub(super) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
 
 /// Puts a log through the filters of a scenario and measures what they make of it.
 pub(super) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
-    if let Err(exit) = place::check(options.log.output.as_deref(), options.log.force) {
+    let mut inputs = inputs(&options.log);
+    inputs.push(&options.filters);
+    if let Err(exit) = place(&options.log).check(&inputs) {
         return Ok(exit);
     }
     let (input, sample_rate_hz) = match read(&options.log) {
@@ -41,6 +45,20 @@ pub(super) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
         Err(errors) => return Ok(refused(&errors)),
     };
     conclude(input, Some(&filters), &options.log, options.csv)
+}
+
+/// Where the results go.
+fn place(options: &LogOptions) -> Place<'_> {
+    Place::new(options.output.as_deref(), "log", options.force)
+}
+
+/// Files that are read.
+fn inputs(options: &LogOptions) -> Vec<&Path> {
+    let calibration = options.calibration.iter();
+    std::iter::once(&options.file)
+        .chain(calibration)
+        .map(PathBuf::as_path)
+        .collect()
 }
 
 /// The words to measure and their rate, Hz: of one column, or of three and a calibration.
@@ -124,9 +142,7 @@ fn conclude(
         }
     };
     let folder = options.output.as_deref();
-    if let Some(path) = folder
-        && let Err(exit) = place::fill(path, options.force, |folder| trial.write(folder, as_csv))
-    {
+    if let Err(exit) = place(options).fill(|folder| trial.write(folder, as_csv)) {
         return Ok(exit);
     }
     output::data(&text(&trial, options.format))?;

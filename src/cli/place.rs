@@ -4,37 +4,69 @@ use std::path::Path;
 
 use super::exit::Exit;
 use super::output;
-use crate::store::{OutputFolder, StoreError, StoreOptions};
+use crate::store::{OutputFolder, StoreError, StoreOptions, holds_result};
 
-/// Checks the folder of a result, if one is asked for, before anything is computed.
-///
-/// A refusal is printed before its exit code is returned.
-pub(super) fn check(folder: Option<&Path>, force: bool) -> Result<(), Exit> {
-    let Some(path) = folder else {
-        return Ok(());
-    };
-    OutputFolder::check_result(path, options(force)).map_err(|error| refused(&error))
+/// The folder of a result, if one is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place<'a> {
+    folder: Option<&'a Path>,
+    /// Kind of the result, as the record of the folder says.
+    holds: &'static str,
+    options: StoreOptions,
 }
 
-/// Takes the folder of a result and gives it to `write`.
-pub(super) fn fill(
-    path: &Path,
-    force: bool,
-    write: impl FnOnce(&OutputFolder) -> Result<(), StoreError>,
-) -> Result<(), Exit> {
-    let written = OutputFolder::of_result(path, options(force)).and_then(|folder| {
-        if let Some(caution) = folder.caution() {
+impl<'a> Place<'a> {
+    /// The place of a result of the kind `holds`.
+    pub(super) fn new(folder: Option<&'a Path>, holds: &'static str, force: bool) -> Self {
+        let options = StoreOptions {
+            force,
+            ..StoreOptions::default()
+        };
+        Self {
+            folder,
+            holds,
+            options,
+        }
+    }
+
+    /// Checks the folder before anything is computed; none of the `inputs` may be a file of the results
+    /// that would be replaced.
+    ///
+    /// A refusal is printed before its exit code is returned.
+    pub(super) fn check(self, inputs: &[&Path]) -> Result<(), Exit> {
+        let Some(folder) = self.folder else {
+            return Ok(());
+        };
+        if let Some(input) = inputs.iter().find(|input| holds_result(folder, input)) {
+            output::talk(&format!(
+                "error: {} is read, and is among the results in {} that would be replaced: nothing was \
+                 done; choose another folder",
+                input.display(),
+                folder.display()
+            ));
+            return Err(Exit::Usage);
+        }
+        let cautions = OutputFolder::check_result(folder, self.holds, self.options)
+            .map_err(|error| refused(&error))?;
+        for caution in cautions {
             output::talk(&format!("warning: {caution}"));
         }
-        write(&folder)
-    });
-    written.map_err(|error| refused(&error))
-}
+        Ok(())
+    }
 
-fn options(force: bool) -> StoreOptions {
-    StoreOptions {
-        force,
-        ..StoreOptions::default()
+    /// Takes the folder, if there is one, and gives it to `write`.
+    pub(super) fn fill(
+        self,
+        write: impl FnOnce(&OutputFolder) -> Result<(), StoreError>,
+    ) -> Result<(), Exit> {
+        let Some(path) = self.folder else {
+            return Ok(());
+        };
+        // What is worth saying was said when the folder was checked, but for what has come since.
+        let folder = OutputFolder::of_result(path, self.holds, self.options);
+        folder
+            .and_then(|folder| write(&folder))
+            .map_err(|error| refused(&error))
     }
 }
 

@@ -48,6 +48,9 @@ fn exit_of(suite: &SuiteOutcome) -> Exit {
     if suite.broken {
         return Exit::Internal;
     }
+    if suite.unwritten || !suite.failures.is_empty() {
+        return Exit::Io;
+    }
     match suite.runs.iter().map(RunOutcome::status).max() {
         None | Some(RunStatus::Pass) => Exit::Success,
         Some(RunStatus::GateFailed) => Exit::GateFailed,
@@ -141,7 +144,7 @@ impl<'a> Progress<'a> {
                 self.talk(&format!("error: {error}"));
                 match error {
                     SuiteError::Store(error) => place::exit_of(error),
-                    SuiteError::Threads { .. } => Exit::Io,
+                    SuiteError::Unwritten { .. } | SuiteError::Threads { .. } => Exit::Io,
                 }
             }
         };
@@ -151,6 +154,9 @@ impl<'a> Progress<'a> {
     }
 
     fn talk_of(&self, suite: &SuiteOutcome) {
+        for failure in &suite.failures {
+            self.talk(&format!("error: {failure}"));
+        }
         let asked = thread_count(usize::from(self.options.jobs));
         if suite.threads < asked {
             self.talk(&format!(

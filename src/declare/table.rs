@@ -97,6 +97,17 @@ macro_rules! table {
             }
         }
     };
+    (@each $name:ident () $($variant:ident)+) => {};
+    (@each $name:ident ($kind:ident) $($variant:ident)+) => {
+        impl $name {
+            /// The alternative that stands, whichever it is.
+            fn kind(&self) -> &dyn $kind {
+                match self {
+                    $(Self::$variant(one) => one,)+
+                }
+            }
+        }
+    };
     (@name $field:ident; $flatten:ident) => { "" };
     (@name $field:ident) => { stringify!($field) };
     (@name $field:ident $array:literal) => { $array };
@@ -131,11 +142,12 @@ macro_rules! table {
 
 /// Declares tables of which exactly one stands: an enumeration of their configurations.
 ///
-/// `first by default` lets the first one stand where a file gives none.
+/// `first by default` lets the first one stand where a file gives none, `each as Trait` gives the
+/// enumeration a method `kind` that takes the one that stands as a `&dyn Trait`.
 macro_rules! alternatives {
     (
         $(#[doc = $about:literal])+
-        pub enum $name:ident, one $noun:literal $(, first by $default:ident)? {
+        pub enum $name:ident, one $noun:literal $(, first by $default:ident)? $(, each as $kind:ident)? {
             $(
                 $(#[doc = $doc:literal])*
                 $variant:ident($type:ty) = $word:literal,
@@ -190,8 +202,115 @@ macro_rules! alternatives {
                 all[0]()
             }
         }
+        $crate::declare::table!(@each $name ($($kind)?) $($variant)+);
         $crate::declare::table!(@setting $name);
     };
 }
 
 pub(crate) use {alternatives, table};
+
+#[cfg(test)]
+#[expect(
+    unreachable_pub,
+    reason = "the macros declare public items, which a module of tests does not reach"
+)]
+mod tests {
+    use crate::declare::{Content, Keys, Kind, Presence};
+    use crate::vocabulary::words;
+
+    words! {
+        /// Colours of a lamp.
+        pub enum Colour {
+            /// Red.
+            Red = "red",
+            /// Green.
+            Green = "green",
+        }
+    }
+
+    table! {
+        /// A lamp.
+        pub struct Lamp {
+            /// Power. Source of the default: none.
+            power_w: f64 = 5.0, in 0.0..=100.0, "W";
+            /// Pulses in a row,
+            /// in pairs.
+            pulses: u32 = 4, even in 2..=8;
+            /// Colour.
+            colour: Colour = "green";
+            /// Where it stands.
+            place: String, example "hall";
+            /// Dimming, if it is dimmed.
+            dimming: Option<f64>, example 0.5, in 0.0..=1.0;
+            /// File it was read from.
+            file: Option<String>, example "lamp.toml", apart "it has been read";
+            mount: Mount;
+        }
+    }
+
+    alternatives! {
+        /// How it is fixed.
+        pub enum Mount, one "mount", first by default {
+            /// It stands.
+            Foot(Foot) = "foot",
+            Chain(Chain) = "chain",
+        }
+    }
+
+    table! {
+        /// Nothing to set.
+        pub struct Foot {}
+    }
+
+    table! {
+        /// A chain.
+        pub struct Chain {
+            /// Its lengths.
+            lengths_m: Vec<f64>, example [1.0, 2.0], in 0.0..=10.0, "m";
+        }
+    }
+
+    #[test]
+    fn one_declaration_gives_rows_and_values() {
+        let lamp = Lamp::reference();
+        assert_eq!(lamp.power_w.to_bits(), 5.0_f64.to_bits());
+        assert_eq!((lamp.pulses, lamp.colour), (4, Colour::Green));
+        assert_eq!(lamp.place, "hall");
+        assert_eq!((lamp.dimming, lamp.mount.name()), (None, "foot"));
+        assert_eq!(lamp.mount, Mount::Foot(Foot {}));
+        assert_eq!(Chain::reference().lengths_m, [1.0, 2.0]);
+        assert!(matches!(Lamp::TABLE.rows[6].content, Content::Table(_)));
+    }
+
+    #[test]
+    fn the_keys_of_a_declaration_stand_under_their_paths() {
+        let found = Keys::of(&Lamp::TABLE);
+        let lines: Vec<String> = found
+            .keys
+            .iter()
+            .map(|key| format!("{} = {} | {}", key.path, key.literal, key.line()))
+            .collect();
+        assert_eq!(
+            lines,
+            [
+                "power_w = 5.0 | Number [0, 100]; unit W; default.",
+                "pulses = 4 | Integer even 2..=8; default.",
+                "colour = \"green\" | Choice \"red\", \"green\"; default.",
+                "place = \"hall\" | Text; required.",
+                "dimming = 0.5 | Number [0, 1]; optional.",
+                "file = \"lamp.toml\" | Text; optional.",
+                "mount.foot =  | Table without keys; default.",
+                "mount.chain.lengths_m = [1.0, 2.0] | Array of numbers [0, 10]; unit m; required.",
+            ]
+        );
+        let foot = found.keys.iter().find(|key| key.path == "mount.foot");
+        assert_eq!(foot.map(|key| key.summary()).as_deref(), Some("It stands"));
+        assert_eq!(found.keys[0].summary(), "Power");
+        assert_eq!(found.keys[1].sentence(), "Pulses in a row, in pairs.");
+        let groups = found.groups.iter();
+        let groups: Vec<_> = groups.map(|group| (group.table, group.default())).collect();
+        assert_eq!(groups, [("mount", Some("foot"))]);
+        assert!(matches!(found.keys[6].kind, Kind::EmptyTable));
+        assert_eq!(found.keys[7].presence, Presence::Required);
+    }
+}

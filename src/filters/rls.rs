@@ -91,6 +91,32 @@ pub struct RlsConfig {
 }
 
 /// Recursive least squares behind the common front end.
+///
+/// ```
+/// use fogbench::filters::{Filter, FrontEndConfig, Rls, RlsConfig};
+/// use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
+///
+/// # fn main() -> Result<(), fogbench::filters::Divergence> {
+/// let mut filter = Rls::new(&RlsConfig {
+///     taps: 2,
+///     forgetting_factor: 1.0,
+///     initial_inverse_correlation: 1e6,
+///     update_sign: UpdateSign::Corrected,
+///     front_end: FrontEndConfig {
+///         desired: DesiredSignal::Current,
+///         input_lag_samples: 1,
+///         output_register: OutputRegister::Immediate,
+///     },
+/// });
+/// // A sine obeys x[k] = 2 cos(w) x[k-1] - x[k-2]: the predictor finds these weights.
+/// for k in 0..200 {
+///     filter.step((0.3 * f64::from(k)).sin())?;
+/// }
+/// assert!((filter.weights()[0] - 2.0 * 0.3_f64.cos()).abs() < 1e-3);
+/// assert!((filter.weights()[1] + 1.0).abs() < 1e-3);
+/// # Ok(())
+/// # }
+/// ```
 pub type Rls = CoreFilter<RlsCore>;
 
 impl Rls {

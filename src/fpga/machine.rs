@@ -86,6 +86,28 @@ pub trait Machine {
 }
 
 /// Clocked pipeline: a machine, its two memories, and one clock at a time.
+///
+/// ```
+/// use fogbench::fpga::front_end::Pair;
+/// use fogbench::fpga::lms::{DesiredSource, LmsConfig, LmsPipeline, LmsSettings};
+/// use fogbench::vocabulary::UpdateSign;
+///
+/// # fn main() -> Result<(), fogbench::fpga::FpgaError> {
+/// let config = LmsConfig::<f64>::new(LmsSettings {
+///     tap_count: 2,
+///     step_size: 0.25,
+///     regularisation: None,
+///     desired: DesiredSource::Port,
+///     update_sign: UpdateSign::Corrected,
+/// })?;
+/// let mut pipeline = LmsPipeline::new(config);
+/// let mut words = Vec::new();
+/// pipeline.run(&[Pair::from_f64(1.0, 1.0); 3], &mut words);
+/// // W begins at zero; each step adds mu e x: 0, then 0.25, then a second tap that has seen a word.
+/// assert_eq!(words, [0.0, 0.25, 0.625]);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Sequencer<M: Machine> {
     machine: M,

@@ -14,6 +14,30 @@ use crate::signal::{GyroFacts, MotionSegment};
 use crate::units::{hz_to_khz, s_to_ms, s_to_us};
 
 /// A gyro: motion segments in, rate words out.
+///
+/// ```
+/// use fogbench::gyro::{self, CoilConfig, Fidelity, Gyro, GyroConfig};
+/// use fogbench::random::Streams;
+/// use fogbench::signal::MotionSegment;
+/// use fogbench::units::deg_per_h_to_rad_per_s;
+///
+/// # fn main() -> Result<(), fogbench::gyro::GyroError> {
+/// let reference = GyroConfig::reference();
+/// let coil = CoilConfig { length_m: 1000.0, ..reference.coil };
+/// let config = GyroConfig { coil, ..reference };
+///
+/// // What it ought to be, in closed form, and what it says at 3600 deg/h.
+/// let facts = gyro::facts(&config)?;
+/// let mut gyro = Gyro::new(&config, Fidelity::Rate, 1.0, &Streams::new(1, 0))?;
+/// let turning = MotionSegment::constant(deg_per_h_to_rad_per_s(3600.0));
+/// let words: Vec<f64> = (0..500).map(|_| gyro.next_word(&turning)).collect();
+/// let settled = &words[100..];
+/// let mean = settled.iter().sum::<f64>() / settled.len() as f64;
+/// assert!((mean - 3600.0).abs() < 5.0);
+/// assert!((facts.output_rate_hz * gyro.sample_period_s() - 1.0).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Gyro {
     model: Model,

@@ -28,8 +28,11 @@
 //! periods, `r` = step of the ramp per `tau` (the register), `phi_m` = modulation depth.
 
 mod assembly;
+mod config;
 mod controller;
 mod error;
+mod injection;
+mod input_axis;
 mod instrument;
 mod limits;
 mod loop_model;
@@ -38,13 +41,17 @@ mod optics;
 mod parts;
 mod rate_model;
 mod rate_word;
-mod settings;
 mod thermal;
 mod vibration;
 
-pub use assembly::{CaseGyro, InputAxis};
+pub use assembly::CaseGyro;
+pub use config::{Fidelity, GyroConfig};
+pub use controller::ControllerConfig;
 pub use controller::{Controller, gain_limit};
 pub use error::GyroError;
+pub use injection::InjectionConfig;
+pub use input_axis::AssemblyConfig;
+pub use input_axis::InputAxis;
 pub use instrument::{Gyro, facts, sample_period_s, word_period_s, word_response};
 pub use limits::{MotionExtremes, cautions};
 pub use loop_model::LoopModel;
@@ -52,22 +59,30 @@ pub use loop_model::faults::LoopFaults;
 pub use noise::budget::NoiseBudget;
 pub use noise::budget_sheet::{budget_at, budget_sheet, power_independent_ratio};
 pub use noise::slow_noise::SlowNoise;
-pub use noise::{
-    Densities, Density, NoiseSource, SOURCES as NOISE_SOURCES, relative_intensity_noise_per_hz,
-};
+pub use noise::slow_noise::SlowNoiseConfig;
+pub use noise::{Densities, Density, NoiseSource, SOURCES as NOISE_SOURCES};
+pub use noise::{NoiseConfig, NoiseDraw};
 pub use optics::coil::Coil;
+pub use optics::coil::CoilConfig;
+pub use optics::converter::AdcConfig;
 pub use optics::detector::Detector;
+pub use optics::modulator::{ModulationScheme, ModulatorConfig, ResetSample};
 pub use optics::modulator::{Modulator, optimum_depth_rad};
+pub use optics::receiver::DetectorConfig;
 pub use optics::second_order::{expected_mean_rate_rad_per_s, spike_share};
+pub use optics::source::SourceConfig;
+pub use optics::source::relative_intensity_noise_per_hz;
 pub use rate_model::RateModel;
-pub use settings::{
-    AdcConfig, AssemblyConfig, CoilConfig, ConstantPowerConfig, ControllerConfig, DetectorConfig,
-    ExponentialPowerConfig, Fidelity, GyroConfig, InjectionConfig, ModulationScheme,
-    ModulatorConfig, NoVibrationConfig, NoiseConfig, NoiseDraw, OutputQuantisation, PowerConfig,
-    QuadraticPowerConfig, RandomVibrationConfig, RateOutputConfig, ResetSample,
-    SineVibrationConfig, SlowNoiseConfig, SoakConfig, SourceConfig, TemperatureConfig,
-    TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig, ThermalWarmUp, VibrationConfig,
-    VibrationMotion, Winding,
+pub use rate_word::{OutputQuantisation, RateOutputConfig};
+pub use thermal::chamber::{
+    SoakConfig, TemperatureConfig, TemperatureProfileConfig, TemperatureRampConfig,
 };
 pub use thermal::condition::{CoilThermometer, Condition, coil_temperatures_c, temperature_record};
+pub use thermal::power::{
+    ConstantPowerConfig, ExponentialPowerConfig, PowerConfig, QuadraticPowerConfig,
+};
+pub use thermal::settings::{ThermalConfig, ThermalWarmUp, Winding};
 pub use thermal::{Chamber, Network, NetworkState, Propagator, Shupe, layer_integral, layer_order};
+pub use vibration::settings::{
+    NoVibrationConfig, RandomVibrationConfig, SineVibrationConfig, VibrationConfig, VibrationMotion,
+};

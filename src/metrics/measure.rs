@@ -45,6 +45,32 @@ const SPECTRUM_POINTS_MAX: usize = 400;
 ///
 /// # Panics
 /// If the slices of the record differ in length, an empty truth excepted.
+///
+/// ```
+/// use fogbench::metrics::catalogue::{DC_GAIN, MEAN, NOISE_STD};
+/// use fogbench::metrics::{AllanOptions, Motion, Record, Settings, measure};
+///
+/// let words: Vec<f64> = (0..4000).map(|k| 10.0 + f64::from(k % 2)).collect();
+/// let record = Record {
+///     channel_deg_per_h: &words,
+///     raw_deg_per_h: &words,
+///     truth_deg_per_h: &[],
+///     encoder_rad: None,
+///     sample_period_s: 0.01,
+///     first_stamp_s: 0.01,
+/// };
+/// let settings = Settings {
+///     motion: Motion::Steady,
+///     bias_averaging_time_s: 1.0,
+///     fit_tau_min_s: 0.1,
+///     allan: AllanOptions::default(),
+/// };
+/// let metrics = measure(&record, &settings, None);
+/// assert_eq!(metrics.metric(&MEAN).unwrap().value, 10.5);
+/// assert!((metrics.metric(&NOISE_STD).unwrap().value - 0.5).abs() < 1e-3);
+/// // What cannot be had says why.
+/// assert!(metrics.metric(&DC_GAIN).is_err());
+/// ```
 #[must_use]
 pub fn measure(
     record: &Record,

@@ -35,6 +35,7 @@ pub enum AgainstOne {
 
 /// A ratio and where it lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Finding {
     /// The ratio.
     pub estimate: Estimate,

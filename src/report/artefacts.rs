@@ -4,15 +4,15 @@
 //! documentation and the tests read the table.
 
 use super::budget::budget_csv;
-use super::calibration::{CalibrationProvenance, calibration_toml, groups_csv};
-use super::csv::curve_csv;
 use super::log::{LogReport, log_json};
-use super::measured::Measured;
 use super::plot::{self, Picture, Pictures};
-use super::record::RunReport;
-use super::repeats::runs_csv;
-use super::summary::run_summary_json;
 use crate::metrics::{CurveKey, known_curves};
+use crate::report::calibration::documents::{CalibrationProvenance, calibration_toml, groups_csv};
+use crate::report::csv::curves::curve_csv;
+use crate::report::csv::runs::runs_csv;
+use crate::report::json::summary::run_summary_json;
+use crate::report::record::measured::Measured;
+use crate::report::record::run::RunReport;
 use crate::scenario::MotionClass;
 use crate::signal::{BudgetSheet, CalibrationSheet, RunSignals};
 

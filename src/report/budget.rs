@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use serde_json::{Map, Value};
 
 use crate::gate::plain;
-use crate::report::json::{number, numbers, object, pretty, put};
-use crate::report::text::Grid;
+use crate::report::layout::json::{number, numbers, object, pretty, put};
+use crate::report::layout::text::Grid;
 use crate::signal::{BudgetPoint, BudgetSheet};
 
 /// Name of the sum of all sources.
@@ -253,7 +253,7 @@ fn curve_json(points: &[BudgetPoint]) -> Value {
 /// The curves as CSV: which one, its point, and the walk of each source, deg/sqrt(h); empty where
 /// the bias point lies beyond the converter's range.
 #[must_use]
-pub(super) fn budget_csv(sheet: &BudgetSheet) -> String {
+pub(in crate::report) fn budget_csv(sheet: &BudgetSheet) -> String {
     let names = sources(&sheet.by_depth);
     let mut text = String::from("curve,power_uw,modulation_depth_deg");
     for name in &names {

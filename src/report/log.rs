@@ -1,4 +1,4 @@
-//! What is said of a recorded log: text, JSON, and the files of its folder.
+//! What is said of a recorded log: text and JSON.
 
 use std::borrow::Cow;
 
@@ -6,11 +6,12 @@ use serde_json::{Map, Value};
 
 use crate::gate::plain;
 use crate::metrics::ChannelMetrics;
-use crate::report::json::{object, pretty, put};
-use crate::report::measured::Measured;
-use crate::report::summary::{SCHEMA, channel, tool};
-use crate::report::table::{channels_text, failures_text, filter_verdicts};
-use crate::report::text::{Tone, toned, wrapped};
+use crate::report::json::channel::channel;
+use crate::report::layout::json::{SCHEMA, tool};
+use crate::report::layout::json::{object, pretty, put};
+use crate::report::layout::text::{Tone, toned, wrapped};
+use crate::report::record::measured::Measured;
+use crate::report::text::table::{channels_text, failures_text, filter_verdicts};
 use crate::scenario::{MotionClass, MotionConfig};
 use crate::wording::counted;
 
@@ -42,7 +43,7 @@ pub struct LogReport<'a> {
 }
 
 impl<'a> LogReport<'a> {
-    pub(super) fn measured(&self) -> Measured<'a> {
+    pub(in crate::report) fn measured(&self) -> Measured<'a> {
         Measured {
             name: self.file,
             motion: Cow::Borrowed(self.motion),

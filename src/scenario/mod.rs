@@ -1,56 +1,23 @@
 //! Scenario files: TOML in, checked immutable configuration out.
 //!
-//! Invariant: pure data. No state, no hidden default: `scenarios/reference.toml` is embedded and is
-//! the only source of defaults; a value that reaches a stage has been checked for type, range and
-//! contradiction, and every complaint points at the file, line and key that is wrong.
+//! ```text
+//!  files ──> read ──> document ──> check ──> config ──> stages
+//!                                   │  └──> message
+//!              declarations ──> keys┴──> generate: reference.toml, scenario.schema.json
+//! ```
+//!
+//! Invariant: pure data. No state, no hidden default: a default stands in the declaration of its key,
+//! beside the stage that works by it, and `scenarios/reference.toml` prints it. A value that reaches a
+//! stage has been checked for type, range and contradiction, and every complaint points at the file,
+//! line and key that is wrong.
 
-mod address;
-mod chain;
-mod channels;
 mod check;
-mod clashes;
-mod compensation_source;
-mod complaints;
 mod config;
-mod cross;
-mod cross_comparison;
-mod cross_compensation;
-mod cross_gyro;
-mod cross_optics;
-mod cross_servo;
-mod cross_vibration;
-mod defaults;
-mod deserialize;
-mod discover;
-mod draft;
-mod emit;
-mod error;
-mod excerpt;
-mod faults;
-mod inert;
-mod inert_rules;
-mod input;
-mod json_schema;
-mod leaf;
-mod manifest;
-mod matrix;
-mod numbers;
-mod presence;
-mod reference;
-mod resolve;
-mod resolved;
-mod schema;
-mod script;
-mod setting;
-mod source;
-mod stand_in;
-mod suggest;
-mod suite;
-mod synonyms;
-mod template;
-mod tree;
-mod unresolved;
-mod weight;
+mod document;
+mod generate;
+mod keys;
+mod message;
+mod read;
 
 pub use crate::calibration::{CalibrationConfig, CompensationConfig, CompensationParameters};
 pub use crate::filters::{
@@ -74,30 +41,26 @@ pub use crate::turntable::{
     ServoConfig, SiteConfig, Stairs, StaticConfig, StepsConfig, SwingConfig, TEST_RATES_MIN,
     TrapezoidConfig, TurntableConfig,
 };
-pub use compensation_source::load_calibration;
-pub use complaints::ScenarioErrors;
+pub(crate) use check::cross::comparison::slug;
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, ComparisonColumn, ComparisonConfig,
     ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig, GateDecision,
     InconclusivePolicy, OutputConfig, PublishedConfig, SamplesFormat, Scenario, TrialConfig,
 };
-pub(crate) use cross_comparison::slug;
-pub(crate) use draft::UnsoundReading;
-pub use error::{Location, ScenarioError};
-pub(crate) use error::{in_both, in_order, portable_place};
-pub use excerpt::{bounded, excerpt};
-pub use json_schema::json_schema;
-pub use manifest::manifest_toml;
-pub use reference::reference_toml;
-pub use resolved::{InputFile, Resolved, SweepPoint};
-pub use setting::Setting;
-pub(crate) use suite::{Reading, read_suite};
-pub use suite::{load_base_or_scenario, load_suite, visit_suite};
-pub(crate) use unresolved::Unresolved;
+pub use document::setting::Setting;
+pub use generate::json_schema::json_schema;
+pub use generate::reference::reference_toml;
+pub use message::complaints::ScenarioErrors;
+pub use message::error::{Location, ScenarioError};
+pub(crate) use message::error::{in_both, in_order, portable_place};
+pub use message::excerpt::{bounded, excerpt};
+pub use read::compensation_source::load_calibration;
+pub use read::manifest::manifest_toml;
+pub(crate) use read::resolve::UnsoundReading;
+pub use read::resolved::{InputFile, Resolved, SweepPoint};
+pub(crate) use read::suite::{Reading, read_suite};
+pub use read::suite::{load_base_or_scenario, load_suite, visit_suite};
+pub(crate) use read::unresolved::Unresolved;
 
 #[cfg(test)]
-mod inert_tests;
-#[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod wish_tests;

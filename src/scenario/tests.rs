@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use proptest::prelude::*;
 
-use super::config::Scenario;
-use super::defaults::default_of;
 use super::reference_toml;
-use super::schema::{self, Child, Key, Kind, Presence, groups, keys};
-use super::tree::{Node, Table, Value, merge, parse_document};
-use super::{Resolved, ScenarioError, load_suite};
 use crate::gyro::Fidelity;
+use crate::scenario::config::Scenario;
+use crate::scenario::document::tree::{Node, Table, Value, merge, parse_document};
+use crate::scenario::keys::defaults::default_of;
+use crate::scenario::keys::schema::{self, Child, Key, Kind, Presence, groups, keys};
+use crate::scenario::{Resolved, ScenarioError, load_suite};
 use crate::turntable::{MotionConfig, ServoConfig};
 
 /// The least a scenario needs besides the defaults.
@@ -225,7 +225,7 @@ fn a_chosen_alternative_replaces_the_default_one_and_brings_its_own_defaults() {
 
 #[test]
 fn suggestions_prefer_the_same_table_and_are_none_when_nothing_is_near() {
-    let found = super::suggest::suggestions;
+    let found = crate::scenario::message::suggest::suggestions;
     assert_eq!(found("gyro.coil", "lenght_m"), ["gyro.coil.length_m"]);
     assert_eq!(found("gyro", "length_m"), ["gyro.coil.length_m"]);
     assert!(found("", "completely_different").is_empty());
@@ -233,7 +233,7 @@ fn suggestions_prefer_the_same_table_and_are_none_when_nothing_is_near() {
 
 #[test]
 fn json_schema_follows_the_key_table() {
-    let document = super::json_schema();
+    let document = crate::scenario::json_schema();
     let length = &document["properties"]["gyro"]["properties"]["coil"]["properties"]["length_m"];
     assert_eq!(length["minimum"], 1.0);
     assert_eq!(length["maximum"], 50_000.0);
@@ -259,7 +259,7 @@ fn json_schema_follows_the_key_table() {
 
 #[test]
 fn json_schema_asks_for_what_the_reader_asks_for() {
-    let document = super::json_schema();
+    let document = crate::scenario::json_schema();
     let items = |name: &str| &document["properties"][name]["items"];
     let required = |name: &str| serde_json::json!({"required": [name]});
     assert_eq!(

@@ -6,6 +6,8 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use super::files::read_text;
+
 /// Files of a run, a log or a calibration.
 const FILES: [&str; 11] = [
     "summary.json",
@@ -68,7 +70,7 @@ fn is_named_in(name: &str, path: &Path) -> bool {
         return json(path)
             .is_some_and(|summary| is_ours(&summary) && summary.get("runs").is_none());
     }
-    let text = fs::read_to_string(path).unwrap_or_default();
+    let text = text_of(path).unwrap_or_default();
     let table: toml::Table = text.parse().unwrap_or_default();
     let word = |table: &str, key: &str, all: &toml::Table| {
         Some(all.get(table)?.get(key)?.as_str()?.to_owned())
@@ -87,8 +89,8 @@ pub(super) fn suite_files(output: &Path) -> Vec<String> {
         return Vec::new();
     }
     let mut names = vec!["summary.json".to_owned()];
-    let junit = fs::read_to_string(output.join("junit.xml"));
-    if junit.is_ok_and(|text| text.contains("<testsuites name=\"fogbench\"")) {
+    let junit = text_of(&output.join("junit.xml"));
+    if junit.is_some_and(|text| text.contains("<testsuites name=\"fogbench\"")) {
         names.push("junit.xml".to_owned());
     }
     for entry in fs::read_dir(output).into_iter().flatten().flatten() {
@@ -99,7 +101,7 @@ pub(super) fn suite_files(output: &Path) -> Vec<String> {
         let Some(stem) = name.strip_suffix(".csv").filter(|_| is_table) else {
             continue;
         };
-        if fs::read_to_string(entry.path()).is_ok_and(|text| text.starts_with(TABLE_HEADING)) {
+        if text_of(&entry.path()).is_some_and(|text| text.starts_with(TABLE_HEADING)) {
             names.push(format!("{stem}.svg"));
             names.push(name);
         }
@@ -108,7 +110,11 @@ pub(super) fn suite_files(output: &Path) -> Vec<String> {
 }
 
 fn json(path: &Path) -> Option<Value> {
-    serde_json::from_str(&fs::read_to_string(path).ok()?).ok()
+    serde_json::from_str(&text_of(path)?).ok()
+}
+
+fn text_of(path: &Path) -> Option<String> {
+    read_text(path).ok().flatten()
 }
 
 fn is_ours(document: &Value) -> bool {

@@ -1,14 +1,18 @@
 //! One writer at a time.
 
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Read, Seek, Write};
+use std::io::{self, Read as _, Seek as _, Write as _};
 use std::path::Path;
 use std::time::Duration;
 
-use super::error::StoreError;
+use super::error::{Foreign, StoreError};
+use super::files::plain_file;
 
 /// File of the lock, which is never removed: a lock on a removed file excludes nobody.
 pub(super) const FILE: &str = "lock";
+
+/// How the words of a holder begin.
+const PROCESS: &str = "process ";
 
 /// The right to write into an output folder, until dropped.
 #[derive(Debug)]
@@ -22,17 +26,30 @@ impl Lock {
     /// Takes the lock of the workshop of `output`.
     ///
     /// The file is opened for writing, since file systems of networks grant an exclusive lock for
-    /// nothing less. The system releases the lock of a process that is killed.
+    /// nothing less. The system releases the lock of a process that is killed. What is no lock of the
+    /// tool's, such as a link or a file with other words in it, stays as it is.
     pub(super) fn take(output: &Path, workshop: &Path) -> Result<Self, StoreError> {
         let path = workshop.join(FILE);
         let at = StoreError::at(&path);
-        let opened = fs::OpenOptions::new()
+        let foreign = |reason| StoreError::Obstacle {
+            folder: output.to_owned(),
+            path: path.clone(),
+            reason,
+        };
+        if let Some(reason) = foreign_file(&path).map_err(&at)? {
+            return Err(foreign(reason));
+        }
+        let opened = plain_file()
             .read(true)
             .write(true)
             .create(true)
             .truncate(false)
             .open(&path);
         let mut file = opened.map_err(&at)?;
+        // Once more: the name may have come to mean something else.
+        if let Some(reason) = foreign_file(&path).map_err(&at)? {
+            return Err(foreign(reason));
+        }
         let caution = match try_for_a_moment(&mut file) {
             Ok(()) => None,
             Err(Refusal::Held { holder }) => {
@@ -47,7 +64,10 @@ impl Lock {
                 output.display()
             )),
         };
-        let words = format!("process {} on {}\n", std::process::id(), host_name());
+        if !holds_own_words(&mut file).map_err(&at)? {
+            return Err(foreign(Foreign::Unknown));
+        }
+        let words = format!("{PROCESS}{} on {}\n", std::process::id(), host_name());
         let written = file
             .set_len(0)
             .and_then(|()| file.rewind())
@@ -55,6 +75,78 @@ impl Lock {
         written.map_err(at)?;
         Ok(Self { file, caution })
     }
+}
+
+/// What makes a file that stands in the place of a lock the user's.
+fn foreign_file(path: &Path) -> io::Result<Option<Foreign>> {
+    let kind = match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        kind => kind?,
+    };
+    Ok(if kind.is_symlink() {
+        Some(Foreign::Link)
+    } else if !kind.is_file() {
+        Some(Foreign::NoFile)
+    } else if names_of(&kind) > 1 {
+        Some(Foreign::SecondName)
+    } else {
+        None
+    })
+}
+
+/// How many names a file has, as far as the system tells.
+#[cfg(unix)]
+fn names_of(kind: &fs::Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::nlink(kind)
+}
+
+#[cfg(not(unix))]
+fn names_of(_kind: &fs::Metadata) -> u64 {
+    1
+}
+
+/// Whether a file holds nothing but what a lock may: the words of a holder, of which a kill may have
+/// left the beginning.
+fn holds_own_words(file: &mut File) -> io::Result<bool> {
+    const LENGTH_MAX: u64 = 1000;
+    let mut bytes = Vec::new();
+    file.rewind()?;
+    file.take(LENGTH_MAX).read_to_end(&mut bytes)?;
+    let Ok(words) = std::str::from_utf8(&bytes) else {
+        return Ok(false);
+    };
+    let is_short = (bytes.len() as u64) < LENGTH_MAX;
+    let is_one_line = words.find('\n').is_none_or(|end| end + 1 == words.len());
+    let begins = words.starts_with(PROCESS) || PROCESS.starts_with(words);
+    Ok(is_short && is_one_line && begins)
+}
+
+/// Refuses a folder inside another that is being written.
+pub(super) fn refuse_inside_held(output: &Path) -> Result<(), StoreError> {
+    let Ok(absolute) = std::path::absolute(output) else {
+        return Ok(());
+    };
+    let existing = absolute.ancestors().skip(1).find(|path| path.is_dir());
+    let Some(Ok(above)) = existing.map(fs::canonicalize) else {
+        return Ok(());
+    };
+    for folder in above.ancestors() {
+        let path = folder.join(super::WORKSHOP).join(FILE);
+        if !matches!(foreign_file(&path), Ok(None)) {
+            continue;
+        }
+        let Ok(mut file) = plain_file().read(true).open(&path) else {
+            continue;
+        };
+        if matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)) {
+            let holder = holder(&mut file).unwrap_or_else(|| "another process".to_owned());
+            return Err(StoreError::InUse {
+                folder: folder.to_owned(),
+                holder,
+            });
+        }
+    }
+    Ok(())
 }
 
 impl Lock {
@@ -121,16 +213,4 @@ fn host_name() -> String {
 #[cfg(not(unix))]
 fn host_name() -> String {
     std::env::var("COMPUTERNAME").unwrap_or_else(|_| "this host".to_owned())
-}
-
-/// Makes a folder for the lock where there is none.
-pub(super) fn make_workshop(workshop: &Path) -> io::Result<()> {
-    match fs::symlink_metadata(workshop) {
-        Ok(kind) if kind.is_dir() => Ok(()),
-        Ok(_) => Err(io::Error::new(
-            io::ErrorKind::NotADirectory,
-            "it is no folder, and the lock belongs there",
-        )),
-        Err(_) => fs::create_dir_all(workshop),
-    }
 }

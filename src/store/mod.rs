@@ -21,10 +21,10 @@ mod suite_files;
 mod swap;
 mod update;
 
-pub use error::{Foreign, StoreError};
+pub use error::{Foreign, Spared, StoreError};
 pub use files::write_npy;
 pub use output_folder::{OutputFolder, StoreOptions, refuse_theirs};
-pub use ownership::{Ownership, inspect};
+pub use ownership::{Ownership, holds_result, inspect};
 pub use record::{Head, MANIFEST_FILE, RECORD_FILE, Record};
 pub use staged::Staged;
 pub use suite_files::SuiteFileNames;

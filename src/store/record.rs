@@ -6,6 +6,7 @@ use std::io;
 use std::path::Path;
 
 use super::WORKSHOP;
+use super::files::read_text;
 
 /// File that records a folder with the origin of a run.
 pub const MANIFEST_FILE: &str = "manifest.toml";
@@ -21,6 +22,8 @@ const BUILD_LINE: &str = "build = ";
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Record {
     pub(super) files: BTreeMap<String, String>,
+    /// What the folder holds, as the text above the record says; a manifest does not.
+    pub(super) holds: Option<String>,
 }
 
 /// What a file that ought to hold a record holds.
@@ -97,17 +100,13 @@ impl Record {
 
     /// Reads the record of a file; see [`Record::sealed`].
     pub(super) fn read(path: &Path) -> io::Result<Sealed> {
-        let bytes = match fs::read(path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Sealed::Absent),
-            bytes => bytes?,
-        };
-        let Ok(text) = String::from_utf8(bytes) else {
-            return Ok(Sealed::Absent);
-        };
-        Ok(Self::parse(&text))
+        match read_text(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Sealed::Absent),
+            text => Ok(text?.map_or(Sealed::Absent, |text| Self::parse(&text))),
+        }
     }
 
-    fn parse(text: &str) -> Sealed {
+    pub(super) fn parse(text: &str) -> Sealed {
         let Some(end) = text.rfind(SEAL) else {
             return Sealed::Absent;
         };
@@ -117,8 +116,16 @@ impl Record {
         if comment_and_digest.is_none_or(|(_, found)| found != digest) {
             return Sealed::Changed;
         }
+        let Ok(mut head) = head_of(text).parse::<toml::Table>() else {
+            return Sealed::Changed;
+        };
+        let holds = match head.remove("holds") {
+            Some(toml::Value::String(holds)) => Some(holds),
+            _ => None,
+        };
         let Some(start) = sealed.find(FIRST_FILE) else {
-            return Sealed::Whole(Self::default());
+            let files = BTreeMap::new();
+            return Sealed::Whole(Self { files, holds });
         };
         let files = sealed[start..].parse::<toml::Table>().ok().and_then(|all| {
             let files = all.get("file")?.as_array()?.iter();
@@ -128,7 +135,9 @@ impl Record {
             };
             files.map(entry).collect::<Option<BTreeMap<_, _>>>()
         });
-        files.map_or(Sealed::Changed, |files| Sealed::Whole(Self { files }))
+        files.map_or(Sealed::Changed, |files| {
+            Sealed::Whole(Self { files, holds })
+        })
     }
 }
 
@@ -203,6 +212,7 @@ mod tests {
         let names = ["a b.csv", "samples/raw.npy"].map(str::to_owned);
         Record {
             files: names.map(|name| (name, "00".to_owned())).into(),
+            holds: None,
         }
     }
 
@@ -212,6 +222,9 @@ mod tests {
         text.parse::<toml::Table>().expect("TOML");
         assert!(matches!(Record::parse(&text), Sealed::Whole(found) if found == sample()));
         assert_eq!(head_of(&text), HEAD);
+        let of_log = sample().sealed("schema = 1\nholds = \"log\"\n");
+        let holds = |sealed| matches!(sealed, Sealed::Whole(found) if found.holds.as_deref() == Some("log"));
+        assert!(holds(Record::parse(&of_log)));
         let empty = Record::default().sealed(HEAD);
         assert!(matches!(Record::parse(&empty), Sealed::Whole(found) if found.files.is_empty()));
         assert_eq!(head_of(&empty), HEAD);

@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 use super::error::StoreError;
 use super::files::{remove, write_npy};
 use super::flush::flush_tree;
-use super::journal::UpdateJournal;
+use super::journal::{UpdateJournal, displaced};
 use super::output_folder::OutputFolder;
+use super::ownership::clear;
 use super::record::{RECORD_FILE, Record};
-use super::{WORKSHOP, files, swap, update};
+use super::{WORKSHOP, files, swap};
 
 /// A folder being built; dropped before it is put in place, it goes.
 #[derive(Debug)]
@@ -69,11 +70,12 @@ impl<'a> Staged<'a> {
         self.write(name, record.sealed(head).as_bytes())
     }
 
-    /// Writes the record of a folder without a manifest.
+    /// Writes the record of a folder without a manifest, which says what the folder holds.
     ///
     /// # Errors
     /// Whatever the file system says.
-    pub fn seal_plainly(&self, holds: &str) -> Result<(), StoreError> {
+    pub fn seal_plainly(&self) -> Result<(), StoreError> {
+        let holds = self.output.holds();
         let head = format!(
             "# Written by fogbench: the files of this folder. A command replaces them only while they are\n\
              # unchanged.\nschema = 1\nholds = \"{holds}\"\n\n[tool]\nname = \"fogbench\"\nversion = \"{}\"\n",
@@ -91,16 +93,14 @@ impl<'a> Staged<'a> {
     /// Flushes the folder and swaps it into its place below the output folder.
     ///
     /// # Errors
-    /// [`StoreError::NotOurs`] if what stands there has become the user's meanwhile; whatever the file
+    /// [`StoreError::Kept`] if what stands there has become the user's meanwhile; whatever the file
     /// system says, and what stood there then stands untouched.
     pub fn put_in_place(mut self, place: &str) -> Result<(), StoreError> {
         let target = self.output.path().join(place);
-        self.output.refuse_theirs(&target)?;
-        let put = flush_tree(&self.path).and_then(|()| {
-            let how = self.output.options().swap;
-            swap::put(self.output.path(), &self.name, Path::new(place), how)
-        });
-        put.map_err(StoreError::at(&target))?;
+        self.output.check_theirs(&target)?;
+        flush_tree(&self.path).map_err(StoreError::at(&target))?;
+        let how = (self.output.options().swap, self.output.displaced());
+        swap::put(self.output.path(), &self.name, Path::new(place), how)?;
         self.is_in_place = true;
         Ok(())
     }
@@ -108,30 +108,30 @@ impl<'a> Staged<'a> {
     /// Flushes the files and makes them those of the output folder itself, in place of the recorded ones.
     ///
     /// # Errors
-    /// Whatever the file system says; the old files then stand untouched.
+    /// [`StoreError::NotOurs`] and [`StoreError::Obstacle`], and nothing was done; [`StoreError::Kept`]
+    /// if some of the files have become the user's, and all others are in place; whatever the file
+    /// system says.
     pub fn put_files_in_place(mut self) -> Result<(), StoreError> {
         let output = self.output.path().to_owned();
         let at = StoreError::at(&output);
-        let mut removed = self.output.known_files()?;
-        let own = Record::of(&self.path).map_err(&at)?;
-        let mut installed: Vec<String> = own.names().map(str::to_owned).collect();
-        installed.extend(
-            [RECORD_FILE]
-                .into_iter()
-                .filter(|name| self.path.join(name).is_file())
-                .map(str::to_owned),
-        );
-        removed.retain(|name| !installed.contains(name));
+        let own = self.output.known_files()?;
+        let built = Record::of(&self.path).map_err(&at)?;
+        let mut installed: Vec<String> = built.names().map(str::to_owned).collect();
+        // The record last, once what it tells of is there.
+        let has_record = self.path.join(RECORD_FILE).is_file();
+        installed.extend(has_record.then(|| RECORD_FILE.to_owned()));
+        let removed = own.keys().filter(|name| !installed.contains(name));
         let change = UpdateJournal {
             new: self.name.clone(),
-            removed,
+            removed: removed.cloned().collect(),
             installed,
+            own,
         };
         flush_tree(&self.path).map_err(&at)?;
-        update::refuse_obstacles(&output, &change).map_err(&at)?;
+        self.output.check_change(&change)?;
         // From here on a journal may tell of the folder, and then the next run needs it.
         self.is_in_place = true;
-        update::update(&output, &change).map_err(at)
+        self.output.change_files(&change)
     }
 
     fn place(&self, name: &str) -> Result<PathBuf, StoreError> {
@@ -155,6 +155,9 @@ impl Drop for Staged<'_> {
         if !self.is_in_place {
             // Best effort: the next run clears the workshop.
             let _ = remove(&self.path);
+            // A folder that has stood in its place goes only as its record tells.
+            let workshop = self.output.path().join(WORKSHOP);
+            let _ = clear(&workshop.join(displaced(&self.name)));
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The files of a suite among the folders of its runs.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -7,7 +8,7 @@ use std::path::Path;
 use super::error::Foreign;
 use super::legacy;
 use super::ownership::{Finding, Ownership, check_file, record_of};
-use super::record::{MANIFEST_FILE, RECORD_FILE, Record, Sealed, head_of};
+use super::record::{MANIFEST_FILE, RECORD_FILE, Record, Sealed, digest_of};
 
 /// What the record of a suite's own files says that it holds.
 const SUITE: &str = "suite";
@@ -18,7 +19,7 @@ pub struct SuiteFileNames(pub Vec<String>);
 
 impl SuiteFileNames {
     /// What the record of these files says that it holds.
-    pub const HOLDS: &'static str = SUITE;
+    pub(super) const HOLDS: &'static str = SUITE;
 }
 
 /// Whose the suite's files in an output folder are; other files there are nobody's business.
@@ -39,7 +40,7 @@ fn examine(output: &Path, names: &SuiteFileNames) -> Result<(), Finding> {
         Ok(kind) if kind.is_symlink() => return theirs(&record_path, Foreign::Link),
         Ok(kind) if !kind.is_file() => return theirs(&record_path, Foreign::NoFile),
         Ok(_) => match Record::read(&record_path)? {
-            Sealed::Whole(_) if !is_of_suite(&record_path)? => {
+            Sealed::Whole(record) if !is_of_suite(&record) => {
                 return theirs(&record_path, Foreign::OtherResult);
             }
             Sealed::Whole(record) => Some(record),
@@ -87,25 +88,27 @@ fn is_of_run(output: &Path, name: &str) -> Result<bool, Finding> {
 }
 
 /// Whether a record is of the files of a suite.
-fn is_of_suite(record: &Path) -> io::Result<bool> {
-    let text = fs::read_to_string(record)?;
-    let table: Option<toml::Table> = head_of(&text).parse().ok();
-    let holds = table
-        .as_ref()
-        .and_then(|table| table.get("holds")?.as_str());
-    Ok(holds == Some(SUITE))
+fn is_of_suite(record: &Record) -> bool {
+    record.holds.as_deref() == Some(SUITE)
 }
 
-/// The suite's files that an earlier suite wrote, the record of them last.
-pub(super) fn known(output: &Path) -> io::Result<Vec<String>> {
+/// The suite's files that an earlier suite wrote, with their digests, the one that holds the record
+/// among them.
+pub(super) fn known(output: &Path) -> io::Result<BTreeMap<String, String>> {
     let path = output.join(RECORD_FILE);
     match Record::read(&path)? {
-        Sealed::Whole(record) if is_of_suite(&path)? => {
-            let mut names: Vec<String> = record.names().map(str::to_owned).collect();
-            names.push(RECORD_FILE.to_owned());
-            Ok(names)
+        Sealed::Whole(record) if is_of_suite(&record) => {
+            let mut files = record.files;
+            files.insert(RECORD_FILE.to_owned(), digest_of(&path)?);
+            Ok(files)
         }
-        Sealed::Absent => Ok(legacy::suite_files(output)),
-        _ => Ok(Vec::new()),
+        Sealed::Absent => {
+            let names = legacy::suite_files(output).into_iter();
+            let standing = names.filter(|name| output.join(name).is_file());
+            standing
+                .map(|name| Ok((name.clone(), digest_of(&output.join(name))?)))
+                .collect()
+        }
+        _ => Ok(BTreeMap::new()),
     }
 }

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::turntable::{AxisConfig, MountingConfig, SiteConfig, TurntableConfig};
+use crate::turntable::config::TurntableConfig;
+use crate::turntable::site::{AxisConfig, MountingConfig, SiteConfig};
 use crate::units::{EARTH_RATE_RAD_PER_S, arcsec_to_rad, deg_to_rad};
 
 /// A vector in the frame that the place of use names.

@@ -1,8 +1,7 @@
 //! The signal that is added inside the loop while the table is at rest.
 
-use super::motion::{Command, Motion};
+use super::motion::{Command, Motion, MultiSineConfig};
 use crate::signal::MotionSegment;
-use crate::turntable::MultiSineConfig;
 
 /// Generator of an injected signal, in the place of a rate table.
 ///

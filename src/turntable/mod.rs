@@ -17,26 +17,26 @@
 //! Invariant: this is truth; it never sees a gyro output.
 
 mod axis;
+mod config;
 mod encoder;
 mod injected;
 mod motion;
 mod platform;
 mod servo;
-mod settings;
-mod stairs;
+mod site;
 mod table;
 
 pub use axis::{InputAxisBounds, earth_rate_rad_per_s, input_axis_bounds};
+pub use config::TurntableConfig;
+pub use encoder::EncoderConfig;
 pub use injected::InjectedSignal;
 pub use motion::{
-    CommandExtremes, MotionChecks, MotionClass, Surroundings, campaign_angles_rad, dwell_ends,
+    CampaignConfig, CampaignGroup, ChirpConfig, CommandExtremes, MotionChecks, MotionClass,
+    MotionConfig, MultiSineConfig, PreferredSeries, Progression, RotationConfig,
+    ScaleFactorTestConfig, ScriptConfig, ScriptPoints, Stairs, StaticConfig, StepsConfig,
+    Surroundings, SwingConfig, TEST_RATES_MIN, TrapezoidConfig, campaign_angles_rad, dwell_ends,
     first_measured_index, step_indices,
 };
-pub use settings::{
-    AxisConfig, CampaignConfig, CampaignGroup, ChirpConfig, DirectDriveServoConfig, EncoderConfig,
-    MotionConfig, MountingConfig, MultiSineConfig, PreferredSeries, Progression, RotationConfig,
-    ScaleFactorTestConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig,
-    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TrapezoidConfig, TurntableConfig,
-};
-pub use stairs::{Stairs, TEST_RATES_MIN};
+pub use servo::{DirectDriveServoConfig, IdealServoConfig, SecondOrderServoConfig, ServoConfig};
+pub use site::{AxisConfig, MountingConfig, SiteConfig};
 pub use table::Turntable;

@@ -2,7 +2,8 @@
 
 use super::axis::{Vector, cross, dot, earth_in_table_frame};
 use crate::signal::MotionSegment;
-use crate::turntable::{MountingConfig, TurntableConfig};
+use crate::turntable::config::TurntableConfig;
+use crate::turntable::site::MountingConfig;
 use crate::units::{arcsec_to_rad, deg_to_rad};
 use crate::vocabulary::CaseAxis;
 

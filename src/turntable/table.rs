@@ -6,7 +6,7 @@ use super::motion::{Command, remountings};
 use super::platform::Platform;
 use super::servo::Servo;
 use crate::signal::MotionSegment;
-use crate::turntable::TurntableConfig;
+use crate::turntable::config::TurntableConfig;
 use crate::units::deg_to_rad;
 use crate::vocabulary::CaseAxis;
 
@@ -15,6 +15,22 @@ use crate::vocabulary::CaseAxis;
 /// Delivers truth: the inertial rate of axes fixed in the platform after the servo, table motion
 /// and the Earth's rotation as the pointing of axis and mounting make them. Nothing it does depends
 /// on anything but its configuration.
+///
+/// ```
+/// use fogbench::turntable::{MotionConfig, RotationConfig, Turntable, TurntableConfig};
+/// use fogbench::units::rad_per_s_to_deg_per_h;
+///
+/// let reference = TurntableConfig::reference();
+/// let motion = MotionConfig::Rotation(RotationConfig {
+///     rate_deg_per_s: 1.0,
+///     ..RotationConfig::reference()
+/// });
+/// let mut table = Turntable::new(&TurntableConfig { motion, ..reference }, 2.0, 0.01);
+/// let segments: Vec<_> = (0..300).map(|_| table.next_segment()).collect();
+/// // A degree a second, and what the Earth adds about the vertical.
+/// let rate = rad_per_s_to_deg_per_h(segments[299].rate_at(1.0));
+/// assert!(rate > 3600.0 && rate < 3600.0 + 15.05);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Turntable {
     command: Command,
@@ -42,7 +58,7 @@ impl Turntable {
     /// reader refuses all of these.
     #[must_use]
     pub fn new(config: &TurntableConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
-        let course = config.motion.kind().course(warm_up_s, sample_period_s);
+        let course = config.motion.course(warm_up_s, sample_period_s);
         let command = Command::new(course);
         let initial_rate = command.initial_rate();
         let start_angle = deg_to_rad(config.mounting.start_angle_deg);

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use fogbench::metrics::{MetricKey, known_metrics};
+use fogbench::metrics::{MetricKey, known_metrics, requirement};
 
 use crate::support::repository;
 
@@ -29,9 +29,10 @@ what a filter is given: the output of the gyro, or with a `[compensation]` the c
 - A gate passes when the whole interval lies inside its limits, fails when it lies outside, and is
   *inconclusive*, which fails too unless the gate allows it, when the interval reaches over a limit.
 
-The column *of* says which channels and motions have a metric: *filters* where raw has none. In
-`summary.json` a metric stands under `channels.<name>.<key>`; see [results](output.md). The source
-file of a metric declares it beside its computation.
+The tables say for which motions a metric is defined (*filters* where raw has none), what the record must
+offer, and how independent repeats are pooled (*mean*: what has degrees of freedom as root of the mean
+square). In `summary.json` a metric stands under `channels.<name>.<key>`; see [results](output.md). The
+source file of a metric declares it beside its computation.
 ";
 
 /// Path of the file that declares a metric, from the root of the repository.
@@ -107,6 +108,29 @@ fn rooms(sources: &BTreeMap<String, String>) -> Vec<Room<'static>> {
     rooms
 }
 
+/// Row of a metric that `file` declares.
+fn row(key: &MetricKey, file: &str) -> String {
+    let only = if key.filters_only { "filters; " } else { "" };
+    let records = key.applies.words().trim_end_matches(',');
+    let reference = match key.reference() {
+        "" => String::new(),
+        reference => format!("; against {reference}"),
+    };
+    let pooling = key.pooling();
+    let pooling = pooling.split(';').next().unwrap_or_default();
+    let source = file.rsplit('/').next().unwrap_or_default();
+    let cells = [
+        format!("`{}`", key.name),
+        key.unit.to_owned(),
+        key.definition.to_owned(),
+        format!("{only}{records}{reference}"),
+        requirement(key),
+        pooling.to_owned(),
+        format!("[{source}](../{file})"),
+    ];
+    format!("| {} |\n", cells.join(" | "))
+}
+
 /// Markdown page of the metrics.
 pub(crate) fn page() -> String {
     let mut sources = BTreeMap::new();
@@ -118,17 +142,9 @@ pub(crate) fn page() -> String {
         let module = sources.get(&folder).or_else(|| sources.get(&file));
         let doc = subject(module.expect("a module has a file"));
         write!(page, "\n## {name}\n\n{doc}\n\n").expect("a string takes it");
-        page.push_str("| key | unit | definition | of | source |\n|---|---|---|---|---|\n");
+        page.push_str("| key | unit | definition | defined for | needs | repeats | source |\n|---|---|---|---|---|---|---|\n");
         for (key, file) in keys {
-            let only = if key.filters_only { "filters; " } else { "" };
-            let records = key.applies.words();
-            let source = file.rsplit('/').next().unwrap_or_default();
-            let (name, unit, definition) = (key.name, key.unit, key.definition);
-            writeln!(
-                page,
-                "| `{name}` | {unit} | {definition} | {only}{records} | [{source}](../{file}) |"
-            )
-            .expect("a string takes it");
+            page.push_str(&row(key, &file));
         }
     }
     page

@@ -10,6 +10,7 @@ mod links;
 mod metrics_page;
 mod scenario_page;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -148,6 +149,30 @@ fn figures_of_the_prose_are_printed_by_a_command_or_stand_in_a_scenario() {
 /// The one figure of the README that a file of the build states.
 fn rust_version() -> String {
     format!("README.md: {}", env!("CARGO_PKG_RUST_VERSION"))
+}
+
+#[test]
+fn the_architecture_page_names_every_feature() {
+    let package: toml::Table = page("Cargo.toml").text.parse().expect("a package file");
+    let page = page("docs/architecture.md").text;
+    for feature in package["features"].as_table().expect("a table").keys() {
+        let row = format!("| `{feature}` |");
+        assert!(feature == "default" || page.contains(&row), "{feature}");
+    }
+}
+
+#[test]
+fn the_page_of_filters_names_every_kind() {
+    let reference = page("scenarios/reference.toml").text;
+    let tables = reference
+        .lines()
+        .filter_map(|line| line.strip_prefix("#| [filter."));
+    let kinds: BTreeSet<&str> = tables.filter_map(|rest| rest.strip_suffix(']')).collect();
+    let filters = page("docs/filters.md").text;
+    assert!(kinds.contains("rls"), "{kinds:?}");
+    for kind in kinds {
+        assert!(filters.contains(&format!("`{kind}`")), "{kind}");
+    }
 }
 
 #[test]

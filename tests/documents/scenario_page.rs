@@ -8,10 +8,10 @@ const HEAD: &str = "\
 
 <!-- Generated from scenarios/reference.toml by the test `generated_page_of_the_scenario_keys`. -->
 
-A scenario is a TOML file. [`scenarios/reference.toml`](../scenarios/reference.toml) declares every key
-with its default and is the program's only source of defaults; this page is the same text as tables.
-`fogbench schema` prints the JSON Schema for editors, which is checked in as
-[`scenarios/scenario.schema.json`](../scenarios/scenario.schema.json).
+A scenario is a TOML file. Every key is declared once, beside the equations that use it; printed from these
+declarations are this page, [`scenarios/reference.toml`](../scenarios/reference.toml), a scenario of
+defaults with the same text as comments, and the JSON Schema for editors,
+[`scenarios/scenario.schema.json`](../scenarios/scenario.schema.json) (`fogbench schema` prints it).
 
 ";
 

@@ -119,6 +119,7 @@ fn settings(draws: &mut Draws, log: &Log) -> LogSettings {
         allan: AllanConfig {
             estimator: *draws.pick(&estimators),
             averaging_times: *draws.pick(&times),
+            ..AllanConfig::reference()
         },
     }
 }

@@ -148,7 +148,8 @@ fn watch(kind: &str) -> Sender<u64> {
 
 /// The folder of a result, below that of the case.
 fn result_folder(folder: &Path) -> OutputFolder {
-    OutputFolder::of_result(&folder.join("out"), StoreOptions::default()).expect("a free folder")
+    OutputFolder::of_result(&folder.join("out"), "log", StoreOptions::default())
+        .expect("a free folder")
 }
 
 /// Asserts that a complaint is short, on one line and about the file.

@@ -14,6 +14,7 @@ pub(crate) fn scenario(motion: &str) -> Scenario {
         value,
         unit: unit.to_owned(),
         source: source.to_owned(),
+        ..PublishedConfig::reference()
     };
     Scenario {
         published: vec![
@@ -52,16 +53,13 @@ pub(crate) fn gyro() -> GyroFacts {
 
 /// A channel from keys, `value, low, high` and units.
 pub(crate) fn channel(metrics: &[(&str, [f64; 3], &'static str)]) -> ChannelMetrics {
-    ChannelMetrics {
-        metrics: metrics
-            .iter()
-            .map(|(key, [value, low, high], unit)| {
-                let estimate = Estimate::with_interval(*value, *low, *high);
-                ((*key).to_owned(), Metric::new(estimate, unit))
-            })
-            .collect(),
-        ..ChannelMetrics::default()
+    let mut channel = ChannelMetrics::default();
+    for (key, [value, low, high], unit) in metrics {
+        let estimate = Estimate::with_interval(*value, *low, *high);
+        let metric = Metric::new(estimate, unit);
+        channel.metrics.insert((*key).to_owned(), metric);
     }
+    channel
 }
 
 /// A curve from its columns.

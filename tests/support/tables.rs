@@ -16,10 +16,9 @@ pub(crate) const PERIOD_S: f64 = 0.000_25;
 pub(crate) fn swing(rate_amplitude_deg_per_s: f64, frequency_hz: f64) -> MotionConfig {
     MotionConfig::Swing(SwingConfig {
         rate_amplitude_deg_per_s: Some(rate_amplitude_deg_per_s),
-        angle_amplitude_deg: None,
         frequency_hz,
         soft_start_s: 1.0,
-        from_rest: false,
+        ..SwingConfig::reference()
     })
 }
 
@@ -27,6 +26,7 @@ pub(crate) fn rotation(rate_deg_per_s: f64) -> MotionConfig {
     MotionConfig::Rotation(RotationConfig {
         rate_deg_per_s,
         soft_start_s: 0.0,
+        ..RotationConfig::reference()
     })
 }
 
@@ -36,6 +36,7 @@ pub(crate) fn steps(rates_deg_per_s: &[f64], dwell_s: f64) -> MotionConfig {
         rates_deg_per_s: rates_deg_per_s.to_vec(),
         dwell_s,
         settle_s: 0.0,
+        ..StepsConfig::reference()
     })
 }
 
@@ -60,8 +61,7 @@ pub(crate) fn linear_drive() -> DirectDriveServoConfig {
         friction_smoothing_rad_per_s: 1e-4,
         cogging_n_m: 0.0,
         cogging_per_revolution: 24,
-        unbalance_n_m: 0.0,
-        unbalance_phase_deg: 0.0,
+        ..DirectDriveServoConfig::reference()
     }
 }
 
@@ -89,9 +89,11 @@ pub(crate) fn table(
             latitude_deg: 34.27,
             axis_elevation_deg: 0.0,
             axis_azimuth_deg: 90.0,
+            ..SiteConfig::reference()
         },
         axis: true_axis(),
         mounting: true_mounting(),
+        ..TurntableConfig::reference()
     };
     Turntable::new(&config, 1.0, sample_period_s)
 }

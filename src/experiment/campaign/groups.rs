@@ -56,7 +56,7 @@ fn reference_rates(scenario: &Scenario, campaign: &CampaignConfig) -> Vec<[f64; 
 fn at_rest(table: &TurntableConfig, group: &CampaignGroup, turned_rad: f64) -> [f64; 3] {
     let mut still = table.clone();
     still.motion = MotionConfig::rest();
-    still.servo = crate::scenario::ServoConfig::Ideal(crate::scenario::StaticConfig {});
+    still.servo = crate::scenario::ServoConfig::ideal();
     still.axis.tilt_north_arcsec = 0.0;
     still.axis.tilt_east_arcsec = 0.0;
     still.axis.wobble_arcsec = 0.0;

@@ -70,7 +70,7 @@ impl CalibrationTrial {
         for (name, text) in calibration_files(&self.sheet, &provenance) {
             staged.write(&name, text.as_bytes())?;
         }
-        staged.seal_plainly("calibration")?;
+        staged.seal_plainly()?;
         staged.put_files_in_place()
     }
 }

@@ -331,7 +331,7 @@ impl LogTrial {
                 staged.write(&SAMPLES_CSV.named(name), text.as_bytes())?;
             }
         }
-        staged.seal_plainly("log")?;
+        staged.seal_plainly()?;
         staged.put_files_in_place()
     }
 

@@ -4,8 +4,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::entry::Suite;
 use super::ledger::Ledger;
-use super::outcome::{SuiteError, SuiteOutcome};
-use super::output::{JUNIT, SUMMARY};
+use super::outcome::SuiteOutcome;
+use super::output::{JUNIT, SUMMARY, Settled};
 use crate::comparison::{ComparedRun, Comparison, Layout};
 use crate::experiment::build::VERSION;
 use crate::experiment::plan::Plan;
@@ -32,29 +32,28 @@ fn compare(plans: &[Plan], layout: &Layout, runs: &[RunOutcome]) -> Comparison {
 
 /// Closes the ledger and writes the files of the suite. What breaks an invariant is left out, and
 /// the rest is written all the same.
-pub(crate) fn conclude(
-    plans: &[Plan],
-    layout: &Layout,
-    suite: &Suite,
-) -> Result<SuiteOutcome, SuiteError> {
+pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteOutcome {
     let Suite { output, ledger, .. } = *suite;
-    let runs = ledger.close(plans)?;
+    let runs = ledger.close(plans);
     let comparison = unbroken(ledger, || compare(plans, layout, &runs)).unwrap_or_default();
-    let stale = output.settle()?;
+    let Settled { stale, failures } = output.settle();
+    let mut failures: Vec<String> = failures.iter().map(ToString::to_string).collect();
     let tables = unbroken(ledger, || report::comparison_files(&comparison));
     let mut files = tables.unwrap_or_default();
     let summary = || report::suite_summary_json(VERSION, &runs, &comparison, &stale);
     let junit = || report::junit_xml(&runs);
     files.extend(unbroken(ledger, summary).map(|text| (SUMMARY.to_owned(), text)));
     files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
-    output.publish(&files)?;
-    Ok(SuiteOutcome {
+    failures.extend(output.publish(&files).err().map(|error| error.to_string()));
+    SuiteOutcome {
         runs,
         comparison,
         broken: ledger.is_broken(),
         threads: 0,
         stale,
-    })
+        unwritten: ledger.is_unwritten(),
+        failures,
+    }
 }
 
 /// What `make` makes; none, and a note in the ledger, if it breaks an invariant.

@@ -3,7 +3,7 @@
 use super::files;
 use super::ledger::Ledger;
 use super::options::Resume;
-use super::outcome::{Observer, SuiteError};
+use super::outcome::Observer;
 use super::output::SuiteOutput;
 use super::resume::take_over;
 use crate::comparison::Layout;
@@ -11,6 +11,7 @@ use crate::experiment::build::VERSION;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{Results, Unfinished, run_plan};
 use crate::report::{RunOutcome, RunReport};
+use crate::store::StoreError;
 
 /// What the runs of a suite share.
 pub(crate) struct Suite<'a> {
@@ -31,7 +32,7 @@ pub(crate) fn run_scenario(
     layout: &Layout,
     suite: &Suite,
     observer: &dyn Observer,
-) -> Result<Option<RunOutcome>, SuiteError> {
+) -> Result<Option<RunOutcome>, StoreError> {
     let kept = (suite.output, suite.resume);
     if let Some(outcome) = take_over(plan, index, layout, kept, observer) {
         suite.ledger.enter(index, &outcome);
@@ -79,7 +80,7 @@ pub(crate) fn enter_result(
     layout: &Layout,
     suite: &Suite,
     observer: &dyn Observer,
-) -> Result<Option<RunOutcome>, SuiteError> {
+) -> Result<Option<RunOutcome>, StoreError> {
     let output = suite.output;
     let report = report(plan, results);
     let pictures = files::draw(plan, &report, &results.simulation);

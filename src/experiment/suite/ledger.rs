@@ -5,7 +5,6 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
 use std::time::{Duration, Instant};
 
-use super::outcome::SuiteError;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::Progress;
 use crate::report::RunOutcome;
@@ -27,15 +26,13 @@ pub(crate) struct Ledger {
     entries: Mutex<Entries>,
     /// Held for reading while a folder is swapped in and entered, for writing to close.
     is_closed: RwLock<bool>,
-    /// Set by the first file that cannot be written: no further run is begun.
-    is_stopped: AtomicBool,
+    /// Set by the first run that cannot be written.
+    is_unwritten: AtomicBool,
     is_broken: AtomicBool,
 }
 
 struct Entries {
     outcomes: Vec<Option<RunOutcome>>,
-    /// Of the first run in the order of the plans that could not write.
-    failure: Option<(usize, SuiteError)>,
 }
 
 impl Ledger {
@@ -43,12 +40,11 @@ impl Ledger {
     pub(crate) fn new(runs: usize) -> Self {
         let entries = Entries {
             outcomes: vec![None; runs],
-            failure: None,
         };
         Self {
             entries: Mutex::new(entries),
             is_closed: RwLock::new(false),
-            is_stopped: AtomicBool::new(false),
+            is_unwritten: AtomicBool::new(false),
             is_broken: AtomicBool::new(false),
         }
     }
@@ -76,25 +72,20 @@ impl Ledger {
         Ok(true)
     }
 
-    /// Enters a run that has no folder to swap in; nothing is done if the ledger is closed.
-    pub(crate) fn enter(&self, index: usize, outcome: &RunOutcome) {
+    /// Enters a run that has no folder to swap in; false, and nothing is done, if the ledger is closed.
+    pub(crate) fn enter(&self, index: usize, outcome: &RunOutcome) -> bool {
         // Without a swap there is nothing to fail.
-        let _ = self.commit(index, outcome, || Ok(()));
+        self.commit(index, outcome, || Ok(())).unwrap_or(false)
     }
 
-    /// Enters that run `index` could not write, which ends the suite.
-    pub(crate) fn fail(&self, index: usize, error: SuiteError) {
-        self.is_stopped.store(true, Ordering::Relaxed);
-        let failure = &mut self.entries().failure;
-        let is_first = failure.as_ref().is_none_or(|(first, _)| index < *first);
-        if is_first {
-            *failure = Some((index, error));
-        }
+    /// Notes that what a run gave could not be written.
+    pub(crate) fn note_unwritten(&self) {
+        self.is_unwritten.store(true, Ordering::Relaxed);
     }
 
-    /// Whether no further run is to begin.
-    pub(crate) fn is_stopped(&self) -> bool {
-        self.is_stopped.load(Ordering::Relaxed)
+    /// Whether what a run gave could not be written.
+    pub(crate) fn is_unwritten(&self) -> bool {
+        self.is_unwritten.load(Ordering::Relaxed)
     }
 
     /// Notes that an invariant was broken.
@@ -109,18 +100,12 @@ impl Ledger {
 
     /// Waits for the swaps under way and closes; then the outcome of every plan, those that have not
     /// ended as not run.
-    ///
-    /// # Errors
-    /// What the first run in the order of the plans could not write.
-    pub(crate) fn close(&self, plans: &[Plan]) -> Result<Vec<RunOutcome>, SuiteError> {
+    pub(crate) fn close(&self, plans: &[Plan]) -> Vec<RunOutcome> {
         *self
             .is_closed
             .write()
             .unwrap_or_else(PoisonError::into_inner) = true;
         let mut entries = self.entries();
-        if let Some((_, error)) = entries.failure.take() {
-            return Err(error);
-        }
         let ended = std::mem::take(&mut entries.outcomes).into_iter();
         let all = ended.zip(plans).map(|(outcome, plan)| {
             outcome.unwrap_or_else(|| {
@@ -129,7 +114,7 @@ impl Ledger {
                 RunOutcome::not_run(name, &resolved.folder(), &resolved.file)
             })
         });
-        Ok(all.collect())
+        all.collect()
     }
 
     /// The entries. Nothing that can panic runs while they are held, so that a poisoned lock still
@@ -171,23 +156,17 @@ mod tests {
     #[test]
     fn a_closed_ledger_swaps_nothing_in() {
         let ledger = Ledger::new(1);
-        assert!(ledger.close(&[]).is_ok());
+        assert!(ledger.close(&[]).is_empty());
         let swapped = ledger.commit(0, &outcome("late"), || panic!("swapped after the end"));
         assert!(!swapped.expect("nothing was tried"));
     }
 
     #[test]
-    fn a_failed_swap_is_not_entered_and_the_first_run_is_blamed() {
+    fn a_failed_swap_is_not_entered() {
         let ledger = Ledger::new(2);
         let refused = || Err(full("b"));
         assert!(ledger.commit(1, &outcome("b"), refused).is_err());
         assert!(ledger.entries().outcomes.iter().all(Option::is_none));
-        for (index, path) in [(1, "b"), (0, "a")] {
-            ledger.fail(index, full(path).into());
-        }
-        assert!(ledger.is_stopped());
-        let error = ledger.close(&[]).expect_err("it could not write");
-        assert_eq!(error.to_string(), "cannot write a: full");
     }
 
     #[test]

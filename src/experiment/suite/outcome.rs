@@ -11,7 +11,8 @@ use crate::store::StoreError;
 pub trait Observer: Progress {
     /// Run `index` of the plan is done and its files stand in their place.
     fn finished(&self, _index: usize, _report: &RunReport) {}
-    /// Run `index` of the plan could not finish; a folder that says so stands in its place.
+    /// Run `index` of the plan could not finish, or its result could not be written; in the first case a
+    /// folder that says so stands in its place, in the second what stood there before.
     fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
     /// Hears how a suite ended that was to stop while runs are still in the middle of a long stage.
     /// Its files stand; these runs will write nothing more. The caller may end the program here:
@@ -41,6 +42,23 @@ pub struct SuiteOutcome {
     pub threads: usize,
     /// Folders that hold results of earlier scenarios of these names.
     pub stale: Vec<String>,
+    /// Whether the result of a run could not be written; its outcome says why.
+    pub unwritten: bool,
+    /// Why files of the suite could not be written, or results of an earlier one not removed.
+    pub failures: Vec<String>,
+}
+
+impl SuiteOutcome {
+    /// Why something that belongs into the output folder does not stand there, in words; none if
+    /// everything does.
+    #[must_use]
+    pub fn lack(&self) -> Option<String> {
+        let runs = self.runs.iter().filter(|_| self.unwritten);
+        let mut reasons = runs
+            .filter_map(|run| run.error.as_ref())
+            .chain(&self.failures);
+        reasons.next().cloned()
+    }
 }
 
 /// Why a suite stopped before its end.
@@ -50,6 +68,12 @@ pub enum SuiteError {
     /// The output folder is in use or holds something of the user's, or a file could not be written.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// Something that was to be written does not stand in its place.
+    #[error("{reason}")]
+    Unwritten {
+        /// Why.
+        reason: String,
+    },
     /// The system gave not one thread.
     #[error("cannot start a thread: {source}")]
     Threads {

@@ -28,6 +28,15 @@ pub(crate) struct SuiteOutput {
     placed: Mutex<BTreeSet<String>>,
 }
 
+/// What became of what earlier suites left.
+#[derive(Debug, Default)]
+pub(super) struct Settled {
+    /// Folders that hold results of theirs.
+    pub(super) stale: Vec<String>,
+    /// Why some of them could not be removed.
+    pub(super) failures: Vec<StoreError>,
+}
+
 /// The runs of one scenario in a suite.
 struct Scenario {
     /// Its name and folder.
@@ -100,9 +109,9 @@ impl SuiteOutput {
         })
     }
 
-    /// What to say where nothing keeps other writers out of the folder.
-    pub(crate) fn caution(&self) -> Option<&str> {
-        self.folder.caution()
+    /// What is worth saying of the folder.
+    pub(crate) fn cautions(&self) -> &[String] {
+        self.folder.cautions()
     }
 
     /// The output folder.
@@ -153,26 +162,32 @@ impl SuiteOutput {
     }
 
     /// Removes what earlier scenarios of these names left behind, each in one step, where every run of
-    /// the scenario stands in its place; names what stays.
-    pub(crate) fn settle(&self) -> Result<Vec<String>, StoreError> {
+    /// the scenario stands in its place.
+    pub(crate) fn settle(&self) -> Settled {
         let placed = self.placed.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut stale = Vec::new();
+        let mut settled = Settled::default();
         for scenario in &self.scenarios {
-            let read = |source| StoreError::Write {
-                path: self.path().join(&scenario.name),
-                source,
+            let unplaced = scenario.folders.iter();
+            let mut unplaced = unplaced
+                .filter(|folder| !placed.contains(*folder))
+                .peekable();
+            let is_done = scenario.is_complete() && unplaced.peek().is_none();
+            // What could not be replaced is of an earlier suite.
+            let held = unplaced.filter(|folder| self.path().join(folder).join(SUMMARY).is_file());
+            settled.stale.extend(held.cloned());
+            let left = match scenario.leftovers(self.path()) {
+                Ok(left) => left,
+                Err(source) => {
+                    let path = self.path().join(&scenario.name);
+                    settled.failures.push(StoreError::Write { path, source });
+                    continue;
+                }
             };
-            let left = scenario.leftovers(self.path()).map_err(read)?;
-            let is_done = scenario.is_complete()
-                && scenario
-                    .folders
-                    .iter()
-                    .all(|folder| placed.contains(folder));
             if left.is_empty() {
                 continue;
             }
             if !is_done || scenario.points.is_none() {
-                stale.extend(left);
+                settled.stale.extend(left);
                 continue;
             }
             let own = format!("{}/", scenario.name);
@@ -181,9 +196,14 @@ impl SuiteOutput {
                 .filter_map(|folder| folder.strip_prefix(&own))
                 .map(str::to_owned)
                 .collect();
-            self.folder.keep_only(&scenario.name, &points)?;
+            if let Err(error) = self.folder.keep_only(&scenario.name, &points) {
+                settled.failures.push(error);
+                settled.stale.extend(left);
+            }
         }
-        Ok(stale)
+        settled.stale.sort();
+        settled.stale.dedup();
+        settled
     }
 
     /// Writes the suite's own files, as one.
@@ -192,7 +212,7 @@ impl SuiteOutput {
         for (name, text) in files {
             staged.write(name, text.as_bytes())?;
         }
-        staged.seal_plainly(SuiteFileNames::HOLDS)?;
+        staged.seal_plainly()?;
         staged.put_files_in_place()
     }
 }

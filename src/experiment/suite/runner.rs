@@ -16,19 +16,19 @@ use super::threads;
 use crate::comparison::Layout;
 use crate::experiment::plan::Plan;
 use crate::report::RunOutcome;
+use crate::store::StoreError;
 
 /// Runs every plan and writes `options.output`.
 ///
 /// Results come back in the order of `plans`, whatever the order of completion; every file depends
 /// on its scenario, seed and the version of the program alone. The suite's own files are removed
 /// first and written last, so that a killed suite leaves no verdict of an earlier one; one that the
-/// observer stops has files that say which runs have ended. A run that breaks an invariant fails by
-/// itself; the others go on.
+/// observer stops has files that say which runs have ended. A run that breaks an invariant, or whose
+/// folder cannot be written, fails by itself; the others go on.
 ///
 /// # Errors
-/// [`SuiteError`] if something of the user's would be replaced, before anything runs; if another
-/// process writes into the folder; if a file cannot be written or no thread can be started. Folders
-/// of runs that were complete by then stay.
+/// [`SuiteError`], before anything runs: if something of the user's would be replaced; if another
+/// process writes into the folder; if it cannot be written, or no thread can be started.
 pub fn run_suite(
     plans: &[Plan],
     options: &SuiteOptions,
@@ -38,7 +38,7 @@ pub fn run_suite(
     let pool = threads::pool(threads::thread_count(options.threads))
         .map_err(|source| SuiteError::Threads { source })?;
     let output = &SuiteOutput::open(plans, layout, options)?;
-    if let Some(caution) = output.caution() {
+    for caution in output.cautions() {
         observer.caution(caution);
     }
     let ledger = &Ledger::new(plans.len());
@@ -48,9 +48,10 @@ pub fn run_suite(
         ledger,
     };
     let conclude = || {
-        let outcome = conclude(plans, layout, suite)?;
-        let threads = pool.current_num_threads();
-        Ok(SuiteOutcome { threads, ..outcome })
+        Ok(SuiteOutcome {
+            threads: pool.current_num_threads(),
+            ..conclude(plans, layout, suite)
+        })
     };
     let (end_of_work, work) = channel();
     let stopped = pool.in_place_scope(|scope| {
@@ -76,7 +77,7 @@ fn run_all(plans: &[Plan], layout: &Layout, suite: &Suite, observer: &dyn Observ
     let order = order.par_iter().with_max_len(1);
     let ledger = suite.ledger;
     order.for_each(|&index| {
-        if ledger.is_stopped() || observer.should_stop() {
+        if observer.should_stop() {
             return;
         }
         let plan = &plans[index];
@@ -92,7 +93,7 @@ fn run_all(plans: &[Plan], layout: &Layout, suite: &Suite, observer: &dyn Observ
                 }
             }
             Ok(None) => {}
-            Err(error) => ledger.fail(index, error),
+            Err(error) => enter_unwritten((plan, index), &error, suite, observer),
         }
     });
 }
@@ -106,16 +107,36 @@ fn enter_failure(
     suite: &Suite,
     observer: &dyn Observer,
 ) {
-    let ledger = suite.ledger;
-    match ledger.commit(index, outcome, || suite.output.record_failure(plan, reason)) {
-        Ok(true) => {
-            let tell = || observer.failed(index, outcome);
-            if catch_unwind(AssertUnwindSafe(tell)).is_err() {
-                ledger.note_broken();
-            }
-        }
+    let record = || suite.output.record_failure(plan, reason);
+    match suite.ledger.commit(index, outcome, record) {
+        Ok(true) => tell_failed(index, outcome, suite, observer),
         Ok(false) => {}
-        Err(error) => ledger.fail(index, error.into()),
+        Err(error) => enter_unwritten((plan, index), &error, suite, observer),
+    }
+}
+
+/// Enters a run whose folder could not be written, which leaves what stood in its place, and tells the
+/// observer.
+pub(super) fn enter_unwritten(
+    (plan, index): (&Plan, usize),
+    error: &StoreError,
+    suite: &Suite,
+    observer: &dyn Observer,
+) {
+    let resolved = plan.resolved();
+    let name = &resolved.scenario.name;
+    let reason = error.to_string();
+    let outcome = RunOutcome::failed(name, &resolved.folder(), &resolved.file, reason);
+    if suite.ledger.enter(index, &outcome) {
+        suite.ledger.note_unwritten();
+        tell_failed(index, &outcome, suite, observer);
+    }
+}
+
+fn tell_failed(index: usize, outcome: &RunOutcome, suite: &Suite, observer: &dyn Observer) {
+    let tell = || observer.failed(index, outcome);
+    if catch_unwind(AssertUnwindSafe(tell)).is_err() {
+        suite.ledger.note_broken();
     }
 }
 

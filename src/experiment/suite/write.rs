@@ -8,6 +8,7 @@ use super::ledger::Ledger;
 use super::options::{Resume, SuiteOptions};
 use super::outcome::{SuiteError, SuiteOutcome};
 use super::output::SuiteOutput;
+use super::runner::enter_unwritten;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::Run;
 
@@ -15,10 +16,15 @@ impl Run {
     /// Writes what `fogbench run` writes of this scenario into a folder: the same files, byte for byte.
     ///
     /// # Errors
-    /// As [`run_suite`](crate::experiment::run_suite): nothing of the user's is replaced.
+    /// As [`run_suite`](crate::experiment::run_suite), or [`SuiteError::Unwritten`]: nothing of the
+    /// user's is replaced.
     pub fn write(&self, folder: impl Into<PathBuf>) -> Result<(), SuiteError> {
         let runs = std::slice::from_ref(self);
-        write_runs(runs, &SuiteOptions::new(folder.into())).map(drop)
+        let outcome = write_runs(runs, &SuiteOptions::new(folder.into()))?;
+        match outcome.lack() {
+            None => Ok(()),
+            Some(reason) => Err(SuiteError::Unwritten { reason }),
+        }
     }
 }
 
@@ -35,9 +41,14 @@ pub fn write_runs(runs: &[Run], options: &SuiteOptions) -> Result<SuiteOutcome, 
         ledger: &Ledger::new(plans.len()),
     };
     for (index, run) in runs.iter().enumerate() {
-        enter_result((&plans[index], index), &run.results, layout, suite, &())?;
+        let plan = &plans[index];
+        let written = enter_result((plan, index), &run.results, layout, suite, &());
+        if let Err(error) = written {
+            enter_unwritten((plan, index), &error, suite, &());
+        }
     }
-    let outcome = conclude(&plans, layout, suite)?;
-    let threads = rayon::current_num_threads();
-    Ok(SuiteOutcome { threads, ..outcome })
+    Ok(SuiteOutcome {
+        threads: rayon::current_num_threads(),
+        ..conclude(&plans, layout, suite)
+    })
 }

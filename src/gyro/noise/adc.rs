@@ -2,13 +2,12 @@
 //!
 //! Not drawn: the loop model rounds, and its budget counts what rounding amounts to.
 
-use crate::gyro::noise::source::{Density, NoiseSource};
+use crate::gyro::noise::law::{Density, NoiseLaw};
 use crate::gyro::optics::converter::converter_step_v;
 
-pub(super) const ADC: NoiseSource = NoiseSource {
+pub(super) const ADC: NoiseLaw = NoiseLaw {
     name: "adc",
-    key: "gyro.adc.bits",
-    density: |config, _| Density::Rounding {
-        step_v: converter_step_v(&config.adc),
+    density: |_, point| Density::Rounding {
+        step_v: converter_step_v(point.adc),
     },
 };

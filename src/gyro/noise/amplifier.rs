@@ -1,20 +1,16 @@
 //! Voltage and current noise of the amplifier: `(e_n / R_f)^2 + i_n^2`.
 
-use crate::gyro::noise::source::{Density, NoiseSource, when};
-use crate::units::{KILO, NANO, PICO};
+use crate::gyro::noise::law::{Density, NoiseLaw};
+use crate::units::{NANO, PICO};
 
-pub(super) const AMPLIFIER: NoiseSource = NoiseSource {
+pub(super) const AMPLIFIER: NoiseLaw = NoiseLaw {
     name: "amplifier",
-    key: "gyro.noise.amplifier",
-    density: |config, _| {
-        let feedback_ohm = config.detector.transimpedance_kohm * KILO;
-        let voltage = config.detector.voltage_noise_nv_per_sqrt_hz * NANO / feedback_ohm;
-        let current = config.detector.current_noise_pa_per_sqrt_hz * PICO;
+    density: |amount, point| {
+        let detector = point.detector;
+        let voltage = detector.voltage_noise_nv_per_sqrt_hz * NANO / detector.feedback_ohm();
+        let current = detector.current_noise_pa_per_sqrt_hz * PICO;
         Density::Current {
-            a2_per_hz: when(
-                config.noise.amplifier,
-                voltage * voltage + current * current,
-            ),
+            a2_per_hz: amount * (voltage * voltage + current * current),
         }
     },
 };

@@ -1,7 +1,7 @@
 //! Angle random walk by source, in closed form.
 
 use crate::gyro::noise::SOURCES;
-use crate::gyro::noise::source::Density;
+use crate::gyro::noise::law::Density;
 use crate::gyro::optics::coil::Coil;
 use crate::gyro::optics::detector::Detector;
 use crate::units::rad_per_sqrt_s_to_deg_per_sqrt_h;
@@ -63,7 +63,7 @@ impl NoiseBudget {
     /// Name and angle random walk of each source and of the total, deg/sqrt(h), in report order.
     #[must_use]
     pub fn entries(&self) -> Vec<(&'static str, f64)> {
-        let names = SOURCES.iter().map(|source| source.name);
+        let names = SOURCES.iter().map(|source| source.name());
         names
             .zip(self.walks_deg_per_sqrt_h)
             .chain([(TOTAL, self.total_deg_per_sqrt_h())])

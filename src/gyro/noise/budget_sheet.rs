@@ -3,7 +3,7 @@
 use crate::gyro::error::GyroError;
 use crate::gyro::limits::{MotionExtremes, cautions};
 use crate::gyro::noise::budget::NoiseBudget;
-use crate::gyro::noise::source::Density;
+use crate::gyro::noise::law::Density;
 use crate::gyro::optics::coil::Coil;
 use crate::gyro::optics::detector::Detector;
 use crate::gyro::optics::modulator::{Modulator, optimum_depth_rad};

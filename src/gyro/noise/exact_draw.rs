@@ -1,7 +1,7 @@
 //! Every noise source drawn on its own, each from the stream of its name.
 
 use crate::gyro::noise::SOURCES;
-use crate::gyro::noise::source::Density;
+use crate::gyro::noise::law::Density;
 use crate::gyro::optics::detector::{Detector, half_period_phase_variance_rad2};
 use crate::random::{Stream, Streams};
 
@@ -52,7 +52,7 @@ impl ExactDraw {
     pub(in crate::gyro) fn new(detector: &Detector, units: DrawUnits, streams: &Streams) -> Self {
         let mut drawn = std::array::from_fn(|index| {
             let (place, scale) = scaled(detector.densities.0[index], detector, units);
-            let name = SOURCES[index].name;
+            let name = SOURCES[index].name();
             Drawn {
                 name,
                 place: if scale > 0.0 { place } else { Place::Nowhere },

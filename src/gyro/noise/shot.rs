@@ -1,12 +1,11 @@
 //! Shot noise of the photocurrent, dark current included: `2 e I`.
 
-use crate::gyro::noise::source::{Density, NoiseSource, when};
+use crate::gyro::noise::law::{Density, NoiseLaw};
 use crate::units::ELEMENTARY_CHARGE_C;
 
-pub(super) const SHOT: NoiseSource = NoiseSource {
+pub(super) const SHOT: NoiseLaw = NoiseLaw {
     name: "shot",
-    key: "gyro.noise.shot",
-    density: |config, _| Density::OfCurrent {
-        a2_per_hz_per_a: when(config.noise.shot, 2.0 * ELEMENTARY_CHARGE_C),
+    density: |amount, _| Density::OfCurrent {
+        a2_per_hz_per_a: amount * (2.0 * ELEMENTARY_CHARGE_C),
     },
 };

@@ -1,12 +1,11 @@
 //! Technical phase noise: whatever else jitters the demodulated phase (modulator, ramp, clock).
 
-use crate::gyro::noise::source::{Density, NoiseSource};
+use crate::gyro::noise::law::{Density, NoiseLaw};
 use crate::units::MICRO;
 
-pub(super) const TECHNICAL: NoiseSource = NoiseSource {
+pub(super) const TECHNICAL: NoiseLaw = NoiseLaw {
     name: "technical",
-    key: "gyro.noise.technical_phase_urad_per_sqrt_hz",
-    density: |config, _| Density::Phase {
-        rad2_per_hz: (config.noise.technical_phase_urad_per_sqrt_hz * MICRO).powi(2),
+    density: |urad_per_sqrt_hz, _| Density::Phase {
+        rad2_per_hz: (urad_per_sqrt_hz * MICRO).powi(2),
     },
 };

@@ -2,8 +2,22 @@
 
 use std::f64::consts::PI;
 
-use crate::gyro::{CoilConfig, SourceConfig};
+use crate::declare::table;
+use crate::gyro::SourceConfig;
 use crate::units::{MILLI, NANO, SPEED_OF_LIGHT_M_PER_S};
+
+table! {
+    /// Fibre coil.
+    pub struct CoilConfig {
+        /// Fibre length. Source of the default: the paper.
+        length_m: f64 = 800.0, in 1.0..=50000.0, "m";
+        /// Mean coil diameter. Source of the default: the paper.
+        diameter_mm: f64 = 70.0, in 1.0..=2000.0, "mm";
+        /// Group index of the fibre; sets the transit time, not the scale factor. Source of the default:
+        /// standard single-mode fibre at 1310 nm.
+        group_index: f64 = 1.4677, in 1.0..=4.0;
+    }
+}
 
 /// The two numbers a coil gives the gyro.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,18 @@
 //! Analogue-to-digital converter: codes and step.
 
-use crate::gyro::AdcConfig;
+use crate::declare::table;
+
+table! {
+    /// Analogue-to-digital converter.
+    pub struct AdcConfig {
+        /// Bits; 0 is ideal, without quantisation or saturation. Source of the default: assumed.
+        bits: u32 = 12, in 0..=32;
+        /// Range: the codes cover 0 to this. Source of the default: assumed.
+        range_v: f64 = 2.0, in 1e-3..=1000.0, "V";
+        /// Samples averaged per half period. Source of the default: assumed.
+        samples_per_half_period: u32 = 8, in 1..=1024;
+    }
+}
 
 /// Step of a converter, V; 0 for an ideal one.
 pub(in crate::gyro) fn converter_step_v(config: &AdcConfig) -> f64 {

@@ -3,10 +3,11 @@
 use crate::gyro::GyroConfig;
 use crate::gyro::error::GyroError;
 use crate::gyro::noise::Densities;
+use crate::gyro::noise::law::WorkingPoint;
 use crate::gyro::optics::converter::{converter_code_max, converter_step_v};
 use crate::gyro::optics::modulator::Modulator;
 use crate::gyro::thermal::condition::Condition;
-use crate::units::{KILO, MICRO, NANO};
+use crate::units::MICRO;
 
 /// Detection chain at the bias point.
 ///
@@ -57,19 +58,24 @@ impl Detector {
         let nominal_current_a =
             config.detector.responsivity_a_per_w * config.source.power_uw * MICRO;
         let mean_current_a = nominal_current_a * condition.power_ratio;
-        let transimpedance_v_per_a =
-            config.detector.transimpedance_kohm * KILO * config.detector.post_gain;
+        let transimpedance_v_per_a = config.detector.transimpedance_v_per_a();
         let bits = config.adc.bits;
         let bias_current_a = mean_current_a * (1.0 + visibility * cosine);
+        let point = WorkingPoint {
+            source: &config.source,
+            detector: &config.detector,
+            adc: &config.adc,
+            case_c: condition.case_c,
+        };
         let detector = Self {
             nominal_current_a,
             mean_current_a,
             visibility,
-            dark_current_a: config.detector.dark_current_na * NANO,
+            dark_current_a: config.detector.dark_current_a(),
             bias_current_a,
             slope_a_per_rad: mean_current_a * visibility * sine,
             transimpedance_v_per_a,
-            densities: Densities::new(config, condition),
+            densities: Densities::new(&config.noise, &point),
             gate_duty: config.detector.gate_duty,
             converter_step_v: converter_step_v(&config.adc),
             converter_code_max: converter_code_max(&config.adc),

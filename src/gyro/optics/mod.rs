@@ -12,4 +12,6 @@ pub(in crate::gyro) mod converter;
 pub(in crate::gyro) mod detector;
 pub(in crate::gyro) mod modulation;
 pub(in crate::gyro) mod modulator;
+pub(in crate::gyro) mod receiver;
 pub(in crate::gyro) mod second_order;
+pub(in crate::gyro) mod source;

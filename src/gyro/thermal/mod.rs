@@ -8,10 +8,12 @@
 //!
 //! Invariant: no random numbers; everything follows from the configuration and the time.
 
-mod chamber;
+pub(in crate::gyro) mod chamber;
 pub(in crate::gyro) mod condition;
 mod network;
+pub(in crate::gyro) mod power;
 mod sensitivities;
+pub(in crate::gyro) mod settings;
 mod winding;
 
 pub use chamber::Chamber;

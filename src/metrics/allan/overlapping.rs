@@ -108,6 +108,20 @@ pub fn degrees_of_freedom(noise: NoiseType, angle_count: usize, averaged_samples
 /// memory; octave averaging times ([`overlapping_allan_at`]) do without.
 ///
 /// Source: IEEE Std 952-1997 annex C; NIST SP 1065 section 5.2.4.
+///
+/// ```
+/// use fogbench::metrics::overlapping_allan;
+/// use fogbench::random::Streams;
+///
+/// // White noise of 2 deg/h in words of 10 ms: sigma(tau) = 2 sqrt(0.01 / tau).
+/// let mut words = vec![0.0; 20_000];
+/// Streams::new(1, 0).stream("words").fill_normal(&mut words);
+/// words.iter_mut().for_each(|word| *word *= 2.0);
+/// for point in overlapping_allan(&words, 0.01).iter().take(20) {
+///     let expected = 2.0 * (0.01 / point.tau_s).sqrt();
+///     assert!((point.deviation_deg_per_h.value / expected - 1.0).abs() < 0.1);
+/// }
+/// ```
 #[must_use]
 pub fn overlapping_allan(rate_deg_per_h: &[f64], sample_period_s: f64) -> Vec<AllanPoint> {
     let factors = averaging_factors(rate_deg_per_h.len() / 4);

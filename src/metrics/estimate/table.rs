@@ -34,6 +34,7 @@ pub struct ChannelFailure {
 
 /// Everything measured on one channel.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ChannelMetrics {
     /// Metrics by key (`angle_random_walk_deg_per_sqrt_h`, ...).
     pub metrics: BTreeMap<String, Metric>,

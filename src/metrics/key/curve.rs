@@ -11,6 +11,7 @@ pub type Curve = BTreeMap<String, Vec<f64>>;
 
 /// Declaration of a column of a curve.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Column {
     /// Name in results and files.
     pub name: &'static str,
@@ -113,6 +114,7 @@ impl CurvePool {
 
 /// Declaration of a curve.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct CurveKey {
     /// Name in results.
     pub name: &'static str,

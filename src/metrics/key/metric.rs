@@ -1,11 +1,12 @@
 //! Declaration of a metric: key, unit, heading, definition, and where and how it is measured.
 //!
 //! A metric is one [`MetricKey`], declared beside its computation and listed in
-//! [`catalogue`](super::catalogue). Tables, gates, pooling over repeats, the reasons for what is
+//! [`catalogue`](crate::metrics::catalogue). Tables, gates, pooling over repeats, the reasons for what is
 //! missing and the documentation read that row.
 
 /// Records that a metric belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Applies {
     /// Every record.
     Always,
@@ -175,6 +176,7 @@ pub(crate) enum Headline {
 
 /// Declaration of a metric.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct MetricKey {
     /// Key in results and scenario files.
     pub name: &'static str,

@@ -11,7 +11,7 @@ use crate::metrics::catalogue::ALLAN;
 use crate::metrics::catalogue::ANGLE_RANDOM_WALK;
 use crate::metrics::catalogue::{BIAS_INSTABILITY, QUANTISATION, RATE_RAMP, RATE_RANDOM_WALK};
 use crate::metrics::columns::allan as column;
-use crate::report::measured::Measured;
+use crate::report::record::measured::Measured;
 use crate::units::{
     deg_per_h_per_s_to_deg_per_h_per_h, deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s,
     deg_per_sqrt_h_to_deg_per_h_sqrt_s,

@@ -5,7 +5,7 @@ use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{BLACK, Picture, Shape, Stroke};
 use super::series::{extent, real, stroke_of};
 use crate::comparison::{ComparedCell, ComparedColumn, ComparedTable};
-use crate::report::columns::{heading_of, unit_text};
+use crate::report::record::columns::{heading_of, unit_text};
 
 /// Height of one panel with its titles, pixels.
 const PANEL: f64 = 300.0;

@@ -36,6 +36,7 @@ pub const SVG_BYTES_MAX: usize = 500_000;
 
 /// Pictures as file name and SVG text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Pictures {
     /// Those that are small enough.
     pub drawn: Vec<(String, String)>,

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{Picture, Point};
 use super::series::{Series, columns, extent, index, real, series, truth_stroke};
-use crate::report::measured::Measured;
+use crate::report::record::measured::Measured;
 use crate::scenario::{MotionClass, MotionConfig};
 use crate::signal::RunSignals;
 use crate::units::s_to_ms;

@@ -11,7 +11,7 @@ use crate::metrics::catalogue::{
 use crate::metrics::columns::staircase::INPUT;
 use crate::metrics::{ChannelMetrics, Column};
 use crate::report::RunReport;
-use crate::report::scale_factor::{OF_FULL_SCALE, OF_READING, filter_state_word};
+use crate::report::text::scale_factor::{OF_FULL_SCALE, OF_READING, filter_state_word};
 use crate::units::deg_per_h_to_deg_per_s;
 
 /// Residual of one rate with the ends of its interval, ppm.

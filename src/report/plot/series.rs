@@ -2,7 +2,7 @@
 
 use super::picture::{BLACK, Colour, Dash, Shape, Stroke};
 use crate::metrics::ChannelMetrics;
-use crate::report::measured::Measured;
+use crate::report::record::measured::Measured;
 use crate::signal::RunSignals;
 
 /// Colours that colour-blind readers tell apart (Okabe and Ito, 2008), raw first, then darker ones

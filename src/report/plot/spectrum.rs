@@ -6,7 +6,7 @@ use super::picture::{Picture, Point};
 use super::series::{extent, real, stroke_of};
 use crate::metrics::catalogue::PSD;
 use crate::metrics::columns::spectrum::{DENSITY, FREQUENCY};
-use crate::report::measured::Measured;
+use crate::report::record::measured::Measured;
 
 /// Densities are averaged over steps of this part of a decade.
 const STEPS_PER_DECADE: f64 = 60.0;

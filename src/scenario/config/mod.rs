@@ -3,6 +3,7 @@
 //! Invariant: declarations only. A value that reaches a stage has been checked by the reader.
 
 mod allan;
+pub(in crate::scenario) mod channels;
 mod comparison;
 mod judging;
 mod output;

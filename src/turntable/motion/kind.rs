@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::checks::MotionChecks;
 use super::course::Course;
-use crate::turntable::{CampaignConfig, ServoConfig, Stairs};
+use crate::turntable::motion::campaign::CampaignConfig;
+use crate::turntable::motion::stairs::Stairs;
+use crate::turntable::servo::ServoConfig;
 
 /// Kind of motion: implemented by the settings of each.
 pub(in crate::turntable) trait Motion {

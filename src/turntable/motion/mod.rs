@@ -17,37 +17,54 @@ mod scale_factor_test;
 mod script;
 mod soft_start;
 mod staircase;
+mod stairs;
 mod steps;
 mod swing;
 mod trapezoid;
 
-pub use campaign::campaign_angles_rad;
-pub(in crate::turntable) use campaign::remountings;
+pub use campaign::{CampaignConfig, CampaignGroup, campaign_angles_rad};
 pub use checks::MotionChecks;
+pub use chirp::{ChirpConfig, Progression};
+pub use kind::{CommandExtremes, MotionClass, Surroundings};
+pub use multi_sine::MultiSineConfig;
+pub use rest::StaticConfig;
+pub use rotation::RotationConfig;
+pub use samples::{dwell_ends, first_measured_index, step_indices};
+pub use scale_factor_test::{PreferredSeries, ScaleFactorTestConfig, TEST_RATES_MIN};
+pub use script::{ScriptConfig, ScriptPoints};
+pub use stairs::Stairs;
+pub use steps::StepsConfig;
+pub use swing::SwingConfig;
+pub use trapezoid::TrapezoidConfig;
+
+pub(in crate::turntable) use campaign::remountings;
 pub(in crate::turntable) use command::Command;
 pub(in crate::turntable) use kind::Motion;
-pub use kind::{CommandExtremes, MotionClass, Surroundings};
-pub use samples::{dwell_ends, first_measured_index, step_indices};
 
-use crate::turntable::{CampaignConfig, MotionConfig, Stairs, StaticConfig};
+use std::sync::Arc;
+
+use course::Course;
+
+use crate::declare::alternatives;
+
+alternatives! {
+    /// Commanded motion.
+    pub enum MotionConfig, one "motion", first by default, each as Motion {
+        /// The table is at rest.
+        Static(StaticConfig) = "static",
+        Swing(SwingConfig) = "swing",
+        MultiSine(MultiSineConfig) = "multi_sine",
+        Steps(StepsConfig) = "steps",
+        ScaleFactorTest(ScaleFactorTestConfig) = "scale_factor_test",
+        Rotation(RotationConfig) = "rotation",
+        Trapezoid(TrapezoidConfig) = "trapezoid",
+        Chirp(ChirpConfig) = "chirp",
+        Script(ScriptConfig) = "script",
+        Calibration(CampaignConfig) = "calibration",
+    }
+}
 
 impl MotionConfig {
-    /// The motion whatever its kind.
-    pub(in crate::turntable) fn kind(&self) -> &dyn Motion {
-        match self {
-            Self::Static(kind) => kind,
-            Self::Swing(kind) => kind,
-            Self::MultiSine(kind) => kind,
-            Self::Steps(kind) => kind,
-            Self::ScaleFactorTest(kind) => kind,
-            Self::Rotation(kind) => kind,
-            Self::Trapezoid(kind) => kind,
-            Self::Chirp(kind) => kind,
-            Self::Script(kind) => kind,
-            Self::Calibration(kind) => kind,
-        }
-    }
-
     /// No motion.
     #[must_use]
     pub fn rest() -> Self {
@@ -113,5 +130,14 @@ impl MotionConfig {
     #[must_use]
     pub fn is_idle(&self, key: &str, duration_s: f64) -> bool {
         self.kind().is_idle(key, duration_s)
+    }
+
+    /// Command of the motion: the record begins after `warm_up_s`, one sample lasts `sample_period_s`.
+    pub(in crate::turntable) fn course(
+        &self,
+        warm_up_s: f64,
+        sample_period_s: f64,
+    ) -> Arc<dyn Course> {
+        self.kind().course(warm_up_s, sample_period_s)
     }
 }

@@ -7,9 +7,40 @@ use super::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN};
 use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::soft_start::SoftStart;
-use crate::turntable::MultiSineConfig;
+use crate::declare::table;
 use crate::units::deg_per_s_to_rad_per_s;
 use crate::vocabulary::PhaseRule;
+
+table! {
+    /// Several sines of rate at once, for a frequency response from one record.
+    pub struct MultiSineConfig {
+        /// Frequencies, ascending, at most 64; a cycle must span at least 8 output samples, and the record
+        /// three cycles of the lowest and one of each difference.
+        frequencies_hz: Vec<f64>, example [5.0, 20.0, 80.0, 320.0], in 1e-6..=100_000.0, "Hz";
+        /// Rate amplitudes: one for all frequencies, or one for each.
+        rate_amplitudes_deg_per_s: Vec<f64>, example [1.0], in 1e-9..=2000.0, "deg/s";
+        /// Phases, which decide how high the sum peaks: cosines of phase -pi k (k - 1) / K (if all K
+        /// amplitudes are equal) or pi (k - 1)^2 / K, or sines of phase zero. Source of the default:
+        /// Schroeder, IEEE Trans. Inf. Theory 16 (1970) 85, which serves unequal amplitudes too.
+        phases: PhaseRule = "schroeder";
+        /// Raised-cosine start of the motion, inside the warm-up. Source of the default: assumed.
+        soft_start_s: f64 = 1.0, in 0.0..=1.0, "s";
+    }
+}
+
+impl MultiSineConfig {
+    /// Rate amplitude of tone `index`, deg/s.
+    ///
+    /// # Panics
+    /// If there is neither one amplitude nor one for each frequency; the reader refuses that.
+    #[must_use]
+    pub fn rate_amplitude_deg_per_s(&self, index: usize) -> f64 {
+        match self.rate_amplitudes_deg_per_s.as_slice() {
+            [common] => *common,
+            each => each[index],
+        }
+    }
+}
 
 /// Most sines: the fit grows with the square of their number.
 const TONES_MAX: usize = 64;
@@ -216,7 +247,7 @@ mod tests {
             frequencies_hz: (1..=32).map(f64::from).collect(),
             rate_amplitudes_deg_per_s: vec![1.0],
             phases,
-            soft_start_s: 0.0,
+            ..MultiSineConfig::reference()
         };
         let tones = tones(&config, 1.0 / 4096.0);
         let rates = (0..4096_i32).map(|k| sum_at(&tones, f64::from(k)).0);
@@ -240,7 +271,7 @@ mod tests {
             frequencies_hz: (1..=10).map(f64::from).collect(),
             rate_amplitudes_deg_per_s: vec![2.0],
             phases: PhaseRule::Schroeder,
-            soft_start_s: 0.0,
+            ..MultiSineConfig::reference()
         };
         for (tone, k) in tones(&config, 1e-3).iter().zip(1_i32..) {
             let expected = COSINE - f64::from(k * (k - 1)) / 20.0;

@@ -5,7 +5,13 @@ use std::sync::Arc;
 use super::checks::MotionChecks;
 use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
-use crate::turntable::StaticConfig;
+use crate::declare::table;
+
+table! {
+    /// Nothing to set.
+    pub struct StaticConfig {
+    }
+}
 
 impl Motion for StaticConfig {
     fn class(&self) -> MotionClass<'_> {

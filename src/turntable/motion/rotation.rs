@@ -6,8 +6,18 @@ use super::checks::MotionChecks;
 use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::soft_start::SoftStart;
-use crate::turntable::RotationConfig;
+use crate::declare::table;
 use crate::units::deg_per_s_to_rad_per_s;
+
+table! {
+    /// Constant rotation.
+    pub struct RotationConfig {
+        /// Constant rate.
+        rate_deg_per_s: f64, example 10.0, in -2000.0..=2000.0, "deg/s";
+        /// Raised-cosine start of the motion, inside the warm-up. Source of the default: assumed.
+        soft_start_s: f64 = 1.0, in 0.0..=1.0, "s";
+    }
+}
 
 impl Motion for RotationConfig {
     fn class(&self) -> MotionClass<'_> {

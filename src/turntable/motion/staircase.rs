@@ -4,7 +4,7 @@ use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Surroundings};
 use super::samples::step_indices;
 use crate::signal::MotionSegment;
-use crate::turntable::Stairs;
+use crate::turntable::motion::stairs::Stairs;
 use crate::turntable::servo::step_response_extremes;
 use crate::units::deg_per_s_to_rad_per_s;
 

@@ -6,9 +6,39 @@ use super::checks::MotionChecks;
 use super::course::Course;
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::staircase::{Held, extremes};
-use crate::turntable::{Stairs, StepsConfig};
+use crate::declare::table;
+use crate::turntable::motion::stairs::Stairs;
 use crate::units::deg_per_s_to_rad_per_s;
 use crate::wording::{counted, number};
+
+table! {
+    /// Staircase: each rate is held for the dwell time; the last one is held for ever.
+    pub struct StepsConfig {
+        /// Rates in order; the first is held through the warm-up, the last one for ever.
+        rates_deg_per_s: Vec<f64>, example [0.0, 1.0], in -2000.0..=2000.0, "deg/s";
+        /// Time at each rate; all of them must fit into the duration.
+        dwell_s: f64, example 5.0, in 1e-6..=1e6, "s";
+        /// Time at the start of each dwell that the scale factor leaves out. Source of the default:
+        /// assumed; a hundred time constants of a loop of 160 Hz, six times the memory of 64 taps.
+        settle_s: f64 = 0.1, in 0.0..=1e6, "s";
+    }
+}
+
+impl From<&StepsConfig> for Stairs {
+    fn from(steps: &StepsConfig) -> Self {
+        let counts = 1_u32..;
+        let rates = steps.rates_deg_per_s.clone();
+        Self {
+            ends_s: counts
+                .take(rates.len())
+                .map(|count| f64::from(count) * steps.dwell_s)
+                .collect(),
+            rates_deg_per_s: rates,
+            settle_s: steps.settle_s,
+            has_static_zeros: false,
+        }
+    }
+}
 
 impl Motion for StepsConfig {
     fn class(&self) -> MotionClass<'_> {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::turntable::DirectDriveServoConfig;
+use crate::turntable::servo::settings::DirectDriveServoConfig;
 
 /// What the axis is told at one instant.
 #[derive(Clone, Copy, Debug)]

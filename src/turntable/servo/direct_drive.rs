@@ -3,8 +3,8 @@
 use super::controller::{Controller, Setpoint};
 use super::plant::{Axis, Plant};
 use crate::signal::MotionSegment;
-use crate::turntable::encoder::Scale;
-use crate::turntable::{DirectDriveServoConfig, EncoderConfig};
+use crate::turntable::encoder::{EncoderConfig, Scale};
+use crate::turntable::servo::settings::DirectDriveServoConfig;
 use crate::units::us_to_s;
 
 /// Motor, friction, encoder and controller, each on its own clock.

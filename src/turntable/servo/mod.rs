@@ -4,11 +4,14 @@ mod controller;
 mod direct_drive;
 mod plant;
 mod second_order;
+mod settings;
+
+pub use settings::{DirectDriveServoConfig, IdealServoConfig, SecondOrderServoConfig, ServoConfig};
 
 use std::f64::consts::TAU;
 
 use crate::signal::MotionSegment;
-use crate::turntable::{EncoderConfig, ServoConfig};
+use crate::turntable::encoder::EncoderConfig;
 use direct_drive::DirectDrive;
 use second_order::SecondOrder;
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::signal::MotionSegment;
-use crate::turntable::SecondOrderServoConfig;
+use crate::turntable::servo::settings::SecondOrderServoConfig;
 
 /// `H(s) = wn^2 / (s^2 + 2 zeta wn s + wn^2)`, advanced exactly over cubic commands.
 ///

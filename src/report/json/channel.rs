@@ -1,0 +1,81 @@
+//! One channel in `summary.json`: metrics, verdict, repeats, curves, and reasons for what is missing.
+
+use serde_json::{Map, Value};
+
+use crate::metrics::{ChannelMetrics, RepeatStatistics};
+use crate::report::layout::json::{array, estimate, numbers, object, put_array};
+use crate::report::text::verdict::verdict_text;
+
+/// One channel of `channels`.
+pub(crate) fn channel(metrics: &ChannelMetrics) -> Value {
+    let mut record: Map<String, Value> = metrics
+        .metrics
+        .iter()
+        .map(|(key, metric)| (key.clone(), estimate(metric).into()))
+        .collect();
+    if let Some(verdict) = verdict_text(metrics) {
+        record.insert("verdict".to_owned(), verdict.into());
+    }
+    if !metrics.repeats.is_empty() {
+        record.insert("repeats".to_owned(), repeats_json(metrics));
+    }
+    if !metrics.curves.is_empty() {
+        let curves: Map<String, Value> = metrics
+            .curves
+            .iter()
+            .map(|(curve, columns)| {
+                let labels = metrics.curve_labels.get(curve).into_iter().flatten();
+                let words = labels.map(|(column, words)| (column.clone(), words_of(words)));
+                let columns: Map<String, Value> = columns
+                    .iter()
+                    .filter_map(|(column, values)| Some((column.clone(), array(values)?)))
+                    .chain(words)
+                    .collect();
+                (curve.clone(), columns.into())
+            })
+            .collect();
+        record.insert("curves".to_owned(), curves.into());
+    }
+    if !metrics.unavailable.is_empty() {
+        let reasons: Map<String, Value> = metrics
+            .unavailable
+            .iter()
+            .map(|(key, reason)| (key.clone(), reason.as_str().into()))
+            .collect();
+        record.insert("unavailable".to_owned(), reasons.into());
+    }
+    if let Some(failure) = &metrics.error {
+        let error = object([
+            ("kind", failure.kind.as_str().into()),
+            ("sample", failure.sample.into()),
+            ("message", failure.message.as_str().into()),
+        ]);
+        record.insert("error".to_owned(), error.into());
+    }
+    record.into()
+}
+
+/// A column of words; one that holds for all points stands alone.
+fn words_of(words: &[&str]) -> Value {
+    match words {
+        [one] => (*one).into(),
+        all => all.iter().copied().collect(),
+    }
+}
+
+/// `channels.<name>.repeats` of the summary.
+pub(crate) fn repeats_json(metrics: &ChannelMetrics) -> Value {
+    let of = |(key, statistics): (&String, &RepeatStatistics)| {
+        let mut record = object([("unit", statistics.unit.into())]);
+        put_array(&mut record, "values", &statistics.values);
+        record.extend(numbers([
+            ("mean", statistics.mean),
+            ("standard_deviation", statistics.standard_deviation),
+            ("minimum", statistics.minimum),
+            ("maximum", statistics.maximum),
+        ]));
+        (key.clone(), Value::Object(record))
+    };
+    let records: Map<String, Value> = metrics.repeats.iter().map(of).collect();
+    records.into()
+}

@@ -1,0 +1,6 @@
+//! `summary.json` of a run, of a suite and of a run that failed.
+
+pub(super) mod channel;
+pub(super) mod compensation;
+pub(super) mod failed;
+pub(super) mod summary;

@@ -1,0 +1,4 @@
+//! How text is aligned and JSON is written.
+
+pub(super) mod json;
+pub(super) mod text;

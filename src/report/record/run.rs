@@ -1,0 +1,200 @@
+//! What a report is made of, and how one run ended.
+
+use crate::gate::{Verdict, VerdictKind, expects_failure};
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::metrics::{ChannelFailure, ChannelMetrics, Metric};
+use crate::report::record::columns::headline;
+use crate::scenario::Scenario;
+use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
+
+/// Everything the report of one run shows.
+#[derive(Clone, Debug)]
+pub struct RunReport<'a> {
+    /// Version of the tool.
+    pub tool_version: &'a str,
+    /// The resolved scenario.
+    pub scenario: &'a Scenario,
+    /// Name of its file, without the folder.
+    pub file: &'a str,
+    /// Digest of the resolved scenario.
+    pub digest: &'a str,
+    /// Point of a sweep: its index and the keys it sets.
+    pub sweep: Option<(usize, Vec<(String, String)>)>,
+    /// The gyro in closed form.
+    pub gyro: &'a GyroFacts,
+    /// What was taken out of the outputs, if anything was.
+    pub compensation: Option<&'a CompensationSheet>,
+    /// Lines of theory for the pictures.
+    pub theory: &'a [TheoryCurve],
+    /// Channels, `raw` first, then in the order of the file.
+    pub channels: &'a [(String, ChannelMetrics)],
+    /// What came of a calibration campaign.
+    pub calibration: Option<&'a CalibrationSheet>,
+    /// Judged gates, in the order of the file.
+    pub verdicts: &'a [Verdict],
+    /// Warnings for people, e.g. a filter that loses its digits.
+    pub notes: &'a [String],
+}
+
+/// How a run ended, worst last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum RunStatus {
+    /// It ran and every gate was accepted.
+    Pass,
+    /// A gate was not accepted.
+    GateFailed,
+    /// A channel failed, and no gate expected it to.
+    ChannelFailed,
+    /// It has not run: the suite was stopped before its end.
+    NotRun,
+    /// The run itself could not finish.
+    RunFailed,
+}
+
+impl RunStatus {
+    /// The word in files: `pass`, `gate_failed`, `channel_failed`, `not_run` or `run_failed`.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::GateFailed => "gate_failed",
+            Self::ChannelFailed => "channel_failed",
+            Self::NotRun => "not_run",
+            Self::RunFailed => "run_failed",
+        }
+    }
+}
+
+/// One channel, as the suite sees it.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ChannelOutcome {
+    /// Name.
+    pub name: String,
+    /// The figures that matter for this motion, formatted: title and value with unit.
+    pub headline: Vec<(String, String)>,
+    /// Why it failed, if it did.
+    pub failure: Option<ChannelFailure>,
+    /// Whether a gate on `<channel>.diverged_at_s` expects the failure.
+    pub expected_failure: bool,
+}
+
+/// One run, as the suite sees it: small enough to keep for every run of a large sweep.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RunOutcome {
+    /// Scenario name.
+    pub name: String,
+    /// Folder below the output folder, `/` between parts: `swing-5hz` or `power/0003`.
+    pub folder: String,
+    /// Name of the scenario file, without the folder.
+    pub file: String,
+    /// Channels, `raw` first.
+    pub channels: Vec<ChannelOutcome>,
+    /// Judged gates.
+    pub verdicts: Vec<Verdict>,
+    /// Metrics that a table of the suite asks for, by channel and key.
+    pub kept: Vec<(String, BTreeMap<String, Metric>)>,
+    /// Pictures in the folder of the run.
+    pub pictures: Vec<String>,
+    /// Why the run could not finish, if it could not.
+    pub error: Option<String>,
+    /// Whether the suite was stopped before the end of the run.
+    pub is_not_run: bool,
+}
+
+impl RunOutcome {
+    /// The outcome of a run that finished.
+    #[must_use]
+    pub fn from_report(report: &RunReport, folder: &str) -> Self {
+        let expects = |channel: &str| expects_failure(report.verdicts, channel);
+        let channels = report
+            .channels
+            .iter()
+            .map(|(name, metrics)| ChannelOutcome {
+                name: name.clone(),
+                headline: headline(&report.scenario.measured_motion(), metrics),
+                failure: metrics.error.clone(),
+                expected_failure: metrics.error.is_some() && expects(name),
+            })
+            .collect();
+        Self {
+            name: report.scenario.name.clone(),
+            folder: folder.to_owned(),
+            file: report.file.to_owned(),
+            channels,
+            verdicts: report.verdicts.to_vec(),
+            kept: Vec::new(),
+            pictures: Vec::new(),
+            error: None,
+            is_not_run: false,
+        }
+    }
+
+    /// The outcome of a run that could not finish.
+    #[must_use]
+    pub fn failed(name: &str, folder: &str, file: &str, error: String) -> Self {
+        Self {
+            name: name.to_owned(),
+            folder: folder.to_owned(),
+            file: file.to_owned(),
+            channels: Vec::new(),
+            verdicts: Vec::new(),
+            kept: Vec::new(),
+            pictures: Vec::new(),
+            error: Some(error),
+            is_not_run: false,
+        }
+    }
+
+    /// The outcome of a run that a suite was stopped before or in the middle of.
+    #[must_use]
+    pub fn not_run(name: &str, folder: &str, file: &str) -> Self {
+        Self {
+            error: None,
+            is_not_run: true,
+            ..Self::failed(name, folder, file, String::new())
+        }
+    }
+
+    /// The outcome with the metrics `keys` of every channel that has one of them.
+    #[must_use]
+    pub fn keeping(mut self, report: &RunReport, keys: &BTreeSet<&str>) -> Self {
+        let channels = report.channels.iter().map(|(name, metrics)| {
+            let kept = metrics.metrics.iter();
+            let kept = kept.filter(|(key, _)| keys.contains(key.as_str()));
+            let kept = kept.map(|(key, metric)| (key.clone(), metric.clone()));
+            (name.clone(), kept.collect::<BTreeMap<_, _>>())
+        });
+        self.kept = channels.filter(|(_, kept)| !kept.is_empty()).collect();
+        self
+    }
+
+    /// How the run ended.
+    #[must_use]
+    pub fn status(&self) -> RunStatus {
+        let unexpected =
+            |channel: &ChannelOutcome| channel.failure.is_some() && !channel.expected_failure;
+        if self.error.is_some() {
+            RunStatus::RunFailed
+        } else if self.is_not_run {
+            RunStatus::NotRun
+        } else if self.channels.iter().any(unexpected) {
+            RunStatus::ChannelFailed
+        } else if self.verdicts.iter().any(|verdict| !verdict.accepted) {
+            RunStatus::GateFailed
+        } else {
+            RunStatus::Pass
+        }
+    }
+
+    /// Number of gates with the verdict `kind`.
+    #[must_use]
+    pub fn count(&self, kind: VerdictKind) -> usize {
+        self.verdicts
+            .iter()
+            .filter(|verdict| verdict.kind == kind)
+            .count()
+    }
+}

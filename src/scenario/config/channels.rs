@@ -1,0 +1,124 @@
+//! The channels of a scenario: which there are, in which order, whose words they carry and against
+//! which motion they are measured.
+
+use std::borrow::Cow;
+
+use crate::filters::FilterConfig;
+use crate::scenario::config::Scenario;
+use crate::turntable::{MotionConfig, MultiSineConfig};
+
+/// Prefixes of the channels of an assembly, in the order of its case axes.
+const ASSEMBLY: &[&str] = &["x_", "y_", "z_"];
+/// A single gyro needs no prefix.
+const SINGLE: &[&str] = &[""];
+
+/// Name of the unfiltered output of a gyro, behind its prefix.
+const RAW: &str = "raw";
+/// Name of that output with its constant errors taken out, which is what filters are given.
+pub(in crate::scenario) const COMPENSATED: &str = "compensated";
+
+/// Prefix of the names of estimates.
+const CALIBRATION: &str = "calibration_";
+
+impl Scenario {
+    /// The motion that a record is measured against: the table's, or what an injected signal equals.
+    #[must_use]
+    pub fn measured_motion(&self) -> Cow<'_, MotionConfig> {
+        match self.injected_sines() {
+            None => Cow::Borrowed(&self.turntable.motion),
+            Some(sines) => Cow::Owned(MotionConfig::MultiSine(sines)),
+        }
+    }
+
+    /// The signal that is added inside the loop, as the sines of rate that would do the same.
+    ///
+    /// To the loop a step `-A` added to each step of its ramp is the Sagnac phase `A` of the rate
+    /// `A / Ks`, `Ks` the scale factor in seconds.
+    #[must_use]
+    pub fn injected_sines(&self) -> Option<MultiSineConfig> {
+        let injection = self.gyro.injection.as_ref()?;
+        Some(MultiSineConfig {
+            frequencies_hz: injection.frequencies_hz.clone(),
+            rate_amplitudes_deg_per_s: injection.rate_amplitudes_deg_per_s.clone(),
+            phases: injection.phases,
+            soft_start_s: injection.soft_start_s,
+        })
+    }
+
+    /// Prefix of the channel names of each gyro: one empty one, or `x_`, `y_`, `z_`.
+    #[must_use]
+    pub fn axis_prefixes(&self) -> &'static [&'static str] {
+        match self.gyro.assembly {
+            None => SINGLE,
+            Some(_) => ASSEMBLY,
+        }
+    }
+
+    /// Names of the unfiltered channels, one for each gyro: `raw`, or `x_raw`, `y_raw`, `z_raw`.
+    #[must_use]
+    pub fn raw_channels(&self) -> Vec<String> {
+        let prefixes = self.axis_prefixes().iter();
+        prefixes.map(|prefix| format!("{prefix}{RAW}")).collect()
+    }
+
+    /// Names of the compensated channels, one for each gyro; none without a compensation.
+    #[must_use]
+    pub fn compensated_channels(&self) -> Vec<String> {
+        if self.compensation.is_none() {
+            return Vec::new();
+        }
+        let prefixes = self.axis_prefixes().iter();
+        prefixes
+            .map(|prefix| format!("{prefix}{COMPENSATED}"))
+            .collect()
+    }
+
+    /// Every channel in the order of the report: the unfiltered ones, the compensated ones, then
+    /// those of each filter.
+    #[must_use]
+    pub fn channel_names(&self) -> Vec<String> {
+        let mut names = self.raw_channels();
+        names.extend(self.compensated_channels());
+        for filter in &self.filters {
+            let prefixes = self.axis_prefixes().iter();
+            names.extend(prefixes.map(|prefix| format!("{prefix}{}", filter.name)));
+        }
+        names
+    }
+
+    /// Names under which gates find the estimates of a calibration campaign, one for each estimator;
+    /// none with another motion.
+    #[must_use]
+    pub fn calibration_channels(&self) -> Vec<String> {
+        if self.turntable.motion.campaign().is_none() {
+            return Vec::new();
+        }
+        let kinds = self.calibration.kinds();
+        let names = kinds.iter().map(|kind| kind.word());
+        names.map(|name| format!("{CALIBRATION}{name}")).collect()
+    }
+
+    /// Whether a channel is the unfiltered output of a gyro.
+    #[must_use]
+    pub fn is_raw(&self, channel: &str) -> bool {
+        self.raw_channels().iter().any(|raw| raw == channel)
+    }
+
+    /// Whether a channel is no filter's: the output of a gyro, compensated or not.
+    #[must_use]
+    pub fn is_unfiltered(&self, channel: &str) -> bool {
+        let is_compensated = |name: &String| name == channel;
+        self.is_raw(channel) || self.compensated_channels().iter().any(is_compensated)
+    }
+
+    /// The filter whose words a channel carries; none for an unfiltered or unknown one.
+    #[must_use]
+    pub fn filter_of(&self, channel: &str) -> Option<&FilterConfig> {
+        let prefixes = self.axis_prefixes();
+        self.filters.iter().find(|filter| {
+            prefixes
+                .iter()
+                .any(|prefix| channel.strip_prefix(prefix) == Some(filter.name.as_str()))
+        })
+    }
+}

@@ -1,0 +1,4 @@
+//! What is printed from the declarations: the reference and the JSON Schema.
+
+pub(in crate::scenario) mod json_schema;
+pub(in crate::scenario) mod reference;

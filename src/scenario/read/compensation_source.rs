@@ -1,0 +1,257 @@
+//! Where the parameters of a compensation come from: a file, or the scenario of a campaign.
+//!
+//! Both are read where the key that names them was written and take the place of that key, as the
+//! table of a script does: a manifest holds them and needs no other file.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::calibration::CompensationParameters;
+use crate::scenario::document::source::{Label, Mark, Sources, shown_path};
+use crate::scenario::document::tree::{Node, Table, Value, parse_document};
+use crate::scenario::message::error::{Location, ScenarioError};
+use crate::scenario::read::chain;
+use crate::scenario::read::draft::Draft;
+use crate::scenario::read::input::{self, Input};
+use crate::scenario::read::resolved::{InputFile, Resolved};
+
+/// The table of a scenario and of a calibration file.
+const TABLE: &str = "compensation";
+const FILE: &str = "file";
+const PARAMETERS: &str = "parameters";
+const CAMPAIGN: &str = "campaign";
+const CAMPAIGN_SCENARIO: &str = "campaign_scenario";
+
+/// The version of calibration files this build reads.
+const FILE_VERSION: i64 = 1;
+
+/// Replaces `compensation.file` by the parameters in that file and `compensation.campaign` by the
+/// scenario in that file; returns the campaign, if there is one.
+///
+/// # Errors
+/// A file that cannot be read or is no such file, at the line and column that is wrong.
+pub(crate) fn read_into(
+    root: &mut Table,
+    sources: &mut Sources,
+    inputs: &mut Vec<InputFile>,
+) -> Result<Option<Arc<Resolved>>, Vec<ScenarioError>> {
+    let Some(table) = root.get_mut(TABLE).and_then(Node::as_table_mut) else {
+        return Ok(None);
+    };
+    if let Some(named) = Named::of(table, FILE, sources) {
+        let node = parameters(&named, sources, inputs).map_err(|error| vec![error])?;
+        table.remove(FILE);
+        table.insert(PARAMETERS.to_owned(), node);
+    }
+    if let Some(named) = Named::of(table, CAMPAIGN, sources) {
+        let campaign = campaign(&named, sources)?;
+        inputs.extend(campaign.inputs.iter().cloned());
+        table.remove(CAMPAIGN);
+        let node = Node {
+            value: Value::Text(campaign.to_toml()),
+            mark: Some(named.mark),
+        };
+        table.insert(CAMPAIGN_SCENARIO.to_owned(), node);
+        return Ok(Some(Arc::new(campaign)));
+    }
+    let written = table.get(CAMPAIGN_SCENARIO);
+    // A value that is no text is refused with the other types.
+    let Some((text, mark)) = written.and_then(|node| Some((node.as_text()?, node.mark?))) else {
+        return Ok(None);
+    };
+    let text = text.to_owned();
+    written_campaign(&text, mark, sources).map(|campaign| Some(Arc::new(campaign)))
+}
+
+/// The scenario that a calibration file is checked in where there is none: nothing of it is used.
+const FRAME: &str = "schema = 1\nname = \"calibration\"\nduration_s = 1.0\n[turntable.static]\n\
+                     [gyro.assembly]\n[compensation]\n";
+
+/// Reads the parameters in a calibration file, and its digest.
+///
+/// # Errors
+/// A file that cannot be read or is no such file, values out of range, at their line and column.
+pub fn load_calibration(
+    path: &Path,
+) -> Result<(CompensationParameters, String), Vec<ScenarioError>> {
+    let mut sources = Sources::default();
+    let label = Label::of_scenario(path);
+    let source = sources.add_file(shown_path(path), FRAME.to_owned(), label.clone());
+    let start = Mark { source, start: 0 };
+    let named = Named {
+        key: FILE,
+        mark: start,
+        path: path.to_owned(),
+        label: label.clone(),
+    };
+    let mut inputs = Vec::new();
+    let node = parameters(&named, &mut sources, &mut inputs).map_err(|error| vec![error])?;
+    let mut root =
+        parse_document(source, FRAME).map_err(|error| vec![sources.error(start, error.message)])?;
+    if let Some(table) = root.get_mut(TABLE).and_then(Node::as_table_mut) {
+        table.insert(PARAMETERS.to_owned(), node);
+    }
+    let resolved = Draft {
+        root,
+        root_mark: start,
+        sources: Arc::new(sources),
+        file: label.text(),
+        inputs: inputs.clone(),
+        recorded: None,
+        warnings: Vec::new(),
+        remarks: Vec::new(),
+        is_record: true,
+        is_partial: false,
+    }
+    .resolve()
+    .map_err(|unsound| unsound.errors)?;
+    let found = resolved.scenario.compensation;
+    let found = found.and_then(|compensation| compensation.parameters);
+    let digest = inputs.into_iter().next().map(|input| input.digest);
+    match (found, digest) {
+        (Some(parameters), Some(digest)) => Ok((parameters, digest)),
+        _ => Err(vec![resolved_error(path)]),
+    }
+}
+
+fn resolved_error(path: &Path) -> ScenarioError {
+    let location = Location::of_file(shown_path(path));
+    ScenarioError::at(location, "it holds no parameters")
+}
+
+/// A file that a key names.
+struct Named {
+    key: &'static str,
+    mark: Mark,
+    path: PathBuf,
+    label: Label,
+}
+
+impl Named {
+    /// What `compensation.<key>` names; none if it is absent or no text.
+    fn of(table: &Table, key: &'static str, sources: &Sources) -> Option<Self> {
+        let node = table.get(key)?;
+        let mark = node.mark?;
+        let (path, label) = sources.beside(mark, node.as_text()?);
+        Some(Self {
+            key,
+            mark,
+            path,
+            label,
+        })
+    }
+
+    /// A complaint at the key.
+    fn error(&self, sources: &Sources, message: &str) -> ScenarioError {
+        let shown = shown_path(&self.path);
+        let key = self.key;
+        sources.error(self.mark, format!("{TABLE}.{key} = {shown}: {message}"))
+    }
+
+    /// The text of the file and its digest.
+    fn read(&self, sources: &Sources) -> Result<Input, ScenarioError> {
+        input::read(&self.path).map_err(|error| self.error(sources, &error.to_string()))
+    }
+}
+
+/// The parameters in a calibration file, every value marked where it stands.
+fn parameters(
+    named: &Named,
+    sources: &mut Sources,
+    inputs: &mut Vec<InputFile>,
+) -> Result<Node, ScenarioError> {
+    let Input { text, digest } = named.read(sources)?;
+    let shown = shown_path(&named.path);
+    let source = sources.add_file(shown, text.clone(), named.label.clone());
+    inputs.push(InputFile {
+        file: named.label.text(),
+        digest,
+    });
+    let start = Mark { source, start: 0 };
+    let mut root = parse_document(source, &text).map_err(|error| {
+        let start = error.start;
+        sources.error(Mark { source, start }, error.message)
+    })?;
+    let version = root.get("schema");
+    if !matches!(
+        version.map(|node| &node.value),
+        None | Some(Value::Integer(FILE_VERSION))
+    ) {
+        let mark = version.and_then(|node| node.mark).unwrap_or(start);
+        let message = format!(
+            "schema is not supported: this build reads calibration files of schema {FILE_VERSION}"
+        );
+        return Err(sources.error(mark, message));
+    }
+    match root.remove(TABLE) {
+        Some(node) if node.as_table().is_some() => Ok(node),
+        _ => {
+            let message = format!(
+                "this is no calibration file: expected a table [{TABLE}] with the parameters, as \
+                 `fogbench calibrate` writes it"
+            );
+            Err(sources.error(start, message))
+        }
+    }
+}
+
+/// The scenario of a campaign in a file.
+fn campaign(named: &Named, sources: &Sources) -> Result<Resolved, Vec<ScenarioError>> {
+    if !named.path.is_file() {
+        named.read(sources).map_err(|error| vec![error])?;
+    }
+    let draft = chain::load_campaign(&named.path, &named.label)?;
+    resolve(draft)
+}
+
+/// The scenario of a campaign as a manifest holds it.
+fn written_campaign(
+    text: &str,
+    mark: Mark,
+    sources: &Sources,
+) -> Result<Resolved, Vec<ScenarioError>> {
+    let mut own = Sources::default();
+    let shown = format!(
+        "{} ({TABLE}.{CAMPAIGN_SCENARIO})",
+        sources.locate(mark).file
+    );
+    let label = Label::of_scenario(&PathBuf::from(&shown));
+    let source = own.add_file(shown, text.to_owned(), label.clone());
+    let root = parse_document(source, text).map_err(|error| {
+        let start = error.start;
+        vec![own.error(Mark { source, start }, error.message)]
+    })?;
+    resolve(Draft {
+        root,
+        root_mark: Mark { source, start: 0 },
+        sources: Arc::new(own),
+        file: label.text(),
+        inputs: Vec::new(),
+        recorded: None,
+        warnings: Vec::new(),
+        remarks: Vec::new(),
+        is_record: true,
+        is_partial: false,
+    })
+}
+
+/// Resolves a campaign; one that is a sweep or is compensated itself is refused.
+fn resolve(draft: Draft) -> Result<Resolved, Vec<ScenarioError>> {
+    for (key, reason) in [
+        (
+            "matrix",
+            "a sweep: one campaign gives one set of parameters",
+        ),
+        (
+            TABLE,
+            "compensated itself: a calibration needs the outputs as they are",
+        ),
+    ] {
+        if let Some(node) = draft.root.get(key) {
+            let mark = node.mark.unwrap_or(draft.root_mark);
+            let message = format!("{key}: a campaign for a compensation must not be {reason}");
+            return Err(vec![draft.sources.error(mark, message)]);
+        }
+    }
+    draft.resolve().map_err(|unsound| unsound.errors)
+}

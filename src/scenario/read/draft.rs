@@ -1,0 +1,55 @@
+//! Merged values of a scenario, before anything of them is checked.
+
+use std::sync::Arc;
+
+use crate::scenario::document::source::{Mark, Sources};
+use crate::scenario::document::tree::Table;
+use crate::scenario::read::resolved::{InputFile, SweepPoint, broken};
+
+/// What a scenario is resolved from.
+#[derive(Clone, Debug)]
+pub(crate) struct Draft {
+    /// Merged values, without defaults.
+    pub(crate) root: Table,
+    /// Beginning of the scenario's own file.
+    pub(crate) root_mark: Mark,
+    /// What the marks point into.
+    pub(crate) sources: Arc<Sources>,
+    /// Name of the scenario's own file.
+    pub(crate) file: String,
+    /// Files it was read from.
+    pub(crate) inputs: Vec<InputFile>,
+    /// What a manifest says about the origin of its scenario.
+    pub(crate) recorded: Option<Recorded>,
+    /// What is worth saying about how it was read.
+    pub(crate) warnings: Vec<String>,
+    /// What is worth saying but must not stand in results.
+    pub(crate) remarks: Vec<String>,
+    /// Whether the file is a record, or a base of which a scenario was made up: what it sets is then
+    /// nobody's wish for this run.
+    pub(crate) is_record: bool,
+    /// Whether a file it builds on could not be read: only what is there can be checked.
+    pub(crate) is_partial: bool,
+}
+
+/// The origin of a resolved scenario, as a manifest records it.
+#[derive(Clone, Debug)]
+pub(crate) struct Recorded {
+    /// Digest of the scenario that the record is true of.
+    pub(crate) digest: String,
+    /// Name of the scenario's own file.
+    pub(crate) file: String,
+    /// Files it was read from.
+    pub(crate) inputs: Vec<InputFile>,
+    /// Which point of a sweep it was.
+    pub(crate) sweep: Option<SweepPoint>,
+    /// Where its gates were written.
+    pub(crate) gate_places: Vec<String>,
+}
+
+impl Recorded {
+    /// The first swept key that has another value than the record says, and what that is.
+    pub(crate) fn broken_point(&self, root: &Table) -> Option<(&str, &str)> {
+        broken(root, self.sweep.as_ref()?)
+    }
+}

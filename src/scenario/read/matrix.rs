@@ -1,0 +1,307 @@
+//! Sweeps: the Cartesian product of the arrays in `[matrix]`.
+
+use std::cmp::Reverse;
+use std::sync::Arc;
+
+use crate::scenario::document::address::{self, Step};
+use crate::scenario::document::source::{Mark, Sources};
+use crate::scenario::document::tree::{Node, Table, Value};
+use crate::scenario::keys::schema::Key;
+use crate::scenario::message::error::ScenarioError;
+use crate::scenario::read::draft::Draft;
+use crate::scenario::read::resolve::Unsound;
+use crate::scenario::read::resolved::{Resolved, SweepPoint};
+use crate::scenario::read::script;
+use crate::scenario::read::template::Template;
+
+/// Points tried, if none of them is sound: what they share is said by then.
+const TRIALS_MAX: usize = 100;
+
+/// Most numbers in the arrays of all points of one sweep: a script has two in a row.
+const NUMBERS_MAX: usize = 10_000_000;
+
+/// The path of a swept key, and where the matrix names it.
+pub(in crate::scenario) type Swept = (Vec<Step>, Mark);
+
+/// A swept key.
+struct Axis {
+    written: String,
+    path: Vec<Step>,
+    key: &'static Key,
+    mark: Mark,
+    values: Vec<Node>,
+}
+
+impl Axis {
+    /// The value of one point, pointing at itself.
+    fn value(&self, index: usize) -> Node {
+        let mut value = self.values[index].clone();
+        value.mark = value.mark.or(Some(self.mark));
+        value
+    }
+}
+
+/// Resolves every point of a sweep, in the order of their indices, and hands it over with what is
+/// swept.
+///
+/// # Errors
+/// Every complaint about the matrix; if it is in order, every complaint about its points.
+pub(in crate::scenario) fn expand(
+    draft: &Draft,
+    matrix: &Node,
+    set_paths: &[Vec<Step>],
+    visit: &mut dyn FnMut(Resolved, &[Swept]),
+) -> Result<(), Unsound> {
+    let (axes, errors) = axes(draft, matrix, set_paths)?;
+    if !errors.is_empty() {
+        // What else is wrong is seen at the first point of the axes that are in order.
+        let first = point(draft, &axes, &point_values(&axes, 0));
+        let mut unsound = first.err().unwrap_or_default();
+        unsound.errors.splice(0..0, errors);
+        return Err(unsound);
+    }
+    let count = axes
+        .iter()
+        .try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len()))
+        .filter(|count| *count <= SweepPoint::COUNT_MAX);
+    let Some(count) = count else {
+        let max = SweepPoint::COUNT_MAX;
+        let message = format!("matrix has too many points: allowed 1..={max}");
+        let mark = matrix.mark.unwrap_or(draft.root_mark);
+        return Err(vec![draft.sources.error(mark, message)].into());
+    };
+    let base = base_values(draft, &axes);
+    let swept = axes.iter().map(|axis| (axis.path.clone(), axis.mark));
+    let swept: Vec<Swept> = swept.collect();
+    let mut unsound = Unsound::default();
+    let mut points = Points::new(draft, &axes);
+    for index in 0..count {
+        let is_first = points.template.is_none() && points.has_template;
+        match points.resolve(index, unsound.reading.is_none()) {
+            Ok(mut resolved) => {
+                if is_first {
+                    check_size(&resolved, matrix, count).map_err(|error| vec![error])?;
+                }
+                resolved.sweep = Some(sweep_point(&resolved, &axes, index, count));
+                resolved.is_base_point = base.is_some() && base == values(&resolved, &axes);
+                visit(resolved, &swept);
+            }
+            Err(more) => {
+                unsound.errors.extend(more.errors);
+                unsound.reading = unsound.reading.or(more.reading);
+            }
+        }
+        let has_tried = points.template.is_none() && index + 1 >= TRIALS_MAX;
+        if has_tried && !unsound.errors.is_empty() {
+            break;
+        }
+    }
+    if unsound.errors.is_empty() {
+        Ok(())
+    } else {
+        Err(unsound)
+    }
+}
+
+/// The points of a sweep, resolved by the pattern of the first sound one.
+struct Points<'a> {
+    draft: &'a Draft,
+    axes: &'a [Axis],
+    template: Option<Template>,
+    /// Whether there is a pattern, or may still be one.
+    has_template: bool,
+}
+
+impl<'a> Points<'a> {
+    fn new(draft: &'a Draft, axes: &'a [Axis]) -> Self {
+        Self {
+            draft,
+            axes,
+            template: None,
+            has_template: true,
+        }
+    }
+
+    /// Resolves one point.
+    ///
+    /// * `is_thorough`: whether a point that is not sound is resolved from the beginning, which says
+    ///   how it can be checked further.
+    fn resolve(&mut self, index: usize, is_thorough: bool) -> Result<Resolved, Unsound> {
+        let values = point_values(self.axes, index);
+        let found = self.template.as_ref().map(|it| it.point(&values));
+        match found {
+            Some(Err(errors)) if !is_thorough => return Err(errors.into()),
+            Some(Ok(resolved)) => return Ok(resolved),
+            Some(Err(_)) | None => {}
+        }
+        let resolved = point(self.draft, self.axes, &values)?;
+        if self.template.is_none() && self.has_template {
+            let swept = self.axes.iter().map(|axis| (&axis.path[..], axis.key));
+            self.template = Template::of(&resolved, swept);
+            self.has_template = self.template.is_some();
+        }
+        Ok(resolved)
+    }
+}
+
+/// The values of the swept keys without the sweep; `None` where it is the sweep that gives one.
+fn base_values(draft: &Draft, axes: &[Axis]) -> Option<Vec<String>> {
+    let base = draft.clone().resolve().ok()?;
+    values(&base, axes)
+}
+
+/// The values of the swept keys.
+fn values(resolved: &Resolved, axes: &[Axis]) -> Option<Vec<String>> {
+    let mut paths = axes.iter().map(|axis| &axis.path);
+    paths.try_fold(Vec::new(), |mut values, path| {
+        values.push(resolved.value_toml(path)?);
+        Some(values)
+    })
+}
+
+/// The values of one point, in the order of the axes.
+fn point_values(axes: &[Axis], index: usize) -> Vec<Node> {
+    let mut rest = index;
+    // The last axis varies fastest, hence the digits are taken off from the end.
+    let digits = axes.iter().rev().map(|axis| {
+        let value = axis.value(rest % axis.values.len());
+        rest /= axis.values.len();
+        value
+    });
+    let mut values: Vec<Node> = digits.collect();
+    values.reverse();
+    values
+}
+
+/// Resolves one point from the beginning.
+fn point(draft: &Draft, axes: &[Axis], values: &[Node]) -> Result<Resolved, Unsound> {
+    let mut draft = draft.clone();
+    for (axis, value) in axes.iter().zip(values).rev() {
+        let mark = value.mark.unwrap_or(axis.mark);
+        address::assign(&mut draft.root, &axis.path, value.clone(), mark)
+            .map_err(|message| vec![draft.sources.error(mark, message)])?;
+    }
+    draft.resolve()
+}
+
+/// Which point of the sweep a run is.
+fn sweep_point(resolved: &Resolved, axes: &[Axis], index: usize, count: usize) -> SweepPoint {
+    let assignments = axes.iter().map(|axis| {
+        let value = resolved.value_toml(&axis.path).unwrap_or_default();
+        (axis.written.clone(), value)
+    });
+    SweepPoint {
+        index,
+        count,
+        assignments: assignments.collect(),
+    }
+}
+
+/// Refuses a sweep whose points hold more numbers together than a computer remembers.
+fn check_size(resolved: &Resolved, matrix: &Node, count: usize) -> Result<(), ScenarioError> {
+    let numbers = resolved.numbers_in_arrays();
+    if numbers.saturating_mul(count) <= NUMBERS_MAX {
+        return Ok(());
+    }
+    let message = format!(
+        "matrix: {count} points with {numbers} numbers in arrays each: allowed up to {NUMBERS_MAX} \
+         in all; sweep fewer values or shorten the script"
+    );
+    Err(resolved.error(matrix.mark, message))
+}
+
+/// The swept keys in the order of the file, those of bases first, and what is wrong with others.
+fn axes(
+    draft: &Draft,
+    matrix: &Node,
+    set_paths: &[Vec<Step>],
+) -> Result<(Vec<Axis>, Vec<ScenarioError>), Vec<ScenarioError>> {
+    let sources: &Arc<Sources> = &draft.sources;
+    let matrix_mark = matrix.mark.unwrap_or(draft.root_mark);
+    let Value::Table(table) = &matrix.value else {
+        let message = format!(
+            "matrix has the wrong type: expected a table, written [matrix], got {}",
+            matrix.value.type_name()
+        );
+        return Err(vec![sources.error(matrix_mark, message)]);
+    };
+    let mut entries = Vec::new();
+    flatten("", table, matrix_mark, &mut entries);
+    entries.sort_by_key(|(_, mark, _)| (Reverse(mark.source), mark.start));
+    let mut axes: Vec<Axis> = Vec::new();
+    let mut errors = Vec::new();
+    for (written, mark, node) in entries {
+        match axis(draft, &axes, set_paths, &written, node) {
+            Ok((path, key, values)) => axes.push(Axis {
+                written,
+                path,
+                key,
+                mark,
+                values,
+            }),
+            Err(message) => errors.push(sources.error(mark, format!("matrix: {message}"))),
+        }
+    }
+    if axes.is_empty() && errors.is_empty() {
+        errors.push(sources.error(
+            matrix_mark,
+            "matrix is empty: expected keys and their values, as in \"gyro.source.power_uw\" = [0.5, 1.0]",
+        ));
+    }
+    Ok((axes, errors))
+}
+
+/// Checks one swept key.
+fn axis(
+    draft: &Draft,
+    earlier: &[Axis],
+    set_paths: &[Vec<Step>],
+    written: &str,
+    node: &Node,
+) -> Result<(Vec<Step>, &'static Key, Vec<Node>), String> {
+    let (path, key) = address::resolve(&draft.root, written)?;
+    let Some(key) = key else {
+        return Err(format!("{written} is a table: sweep the keys inside it"));
+    };
+    if matches!(
+        key.path,
+        "schema" | "name" | "extends" | "matrix" | "description" | script::FILE_KEY
+    ) {
+        return Err(format!("{written} cannot be swept"));
+    }
+    if let Some(other) = earlier.iter().find(|other| other.path == path) {
+        return Err(format!("{written} is swept by {} already", other.written));
+    }
+    if set_paths.contains(&path) {
+        return Err(format!(
+            "{written} is swept here and given by --set: leave one of them out"
+        ));
+    }
+    match &node.value {
+        Value::Array(values) if values.is_empty() => Err(format!(
+            "{written} has no values: expected a non-empty array"
+        )),
+        Value::Array(values) => Ok((path, key, values.to_vec())),
+        other => Err(format!(
+            "{written} has the wrong type: expected an array of values, got {}",
+            other.type_name()
+        )),
+    }
+}
+
+/// Gathers the arrays of a matrix; unquoted keys make nested tables, which are joined with dots.
+fn flatten<'a>(
+    prefix: &str,
+    table: &'a Table,
+    mark: Mark,
+    entries: &mut Vec<(String, Mark, &'a Node)>,
+) {
+    for (name, node) in table {
+        let path = crate::scenario::keys::schema::join(prefix, name);
+        let mark = node.mark.unwrap_or(mark);
+        match &node.value {
+            Value::Table(inner) => flatten(&path, inner, mark, entries),
+            _ => entries.push((path, mark, node)),
+        }
+    }
+}

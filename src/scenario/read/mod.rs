@@ -1,0 +1,16 @@
+//! From files, arguments and manifests to resolved runs.
+
+pub(in crate::scenario) mod chain;
+pub(in crate::scenario) mod clashes;
+pub(in crate::scenario) mod compensation_source;
+pub(in crate::scenario) mod discover;
+pub(in crate::scenario) mod draft;
+pub(in crate::scenario) mod input;
+pub(in crate::scenario) mod manifest;
+pub(in crate::scenario) mod matrix;
+pub(in crate::scenario) mod resolve;
+pub(in crate::scenario) mod resolved;
+pub(in crate::scenario) mod script;
+pub(in crate::scenario) mod suite;
+pub(in crate::scenario) mod template;
+pub(in crate::scenario) mod unresolved;

@@ -1,9 +1,0 @@
-//! The table at rest.
-
-use crate::declare::table;
-
-table! {
-    /// Nothing to set.
-    pub struct StaticConfig {
-    }
-}
