@@ -8,6 +8,7 @@ use fogbench::report::SVG_BYTES_MAX;
 use fogbench::signal::{FilterShape, WeightRule};
 use serde_json::Value;
 
+use crate::campaign::schema::{leaves, root};
 use crate::support::transcript::{Transcript, said_to_each};
 use crate::support::{code, field, fogbench, stderr, stdout, summary, tree, write};
 
@@ -104,13 +105,13 @@ const BESIDE: [(&str, &str); 28] = [
 /// Writes a scenario in which a key means something. It inherits all but its name: keys beside the
 /// one under test may be without effect.
 fn write_scenario(folder: &Path, name: &str, path: &str) -> PathBuf {
-    write(folder, &format!("bases/{name}.toml"), &base(path));
+    write(folder, &format!("bases/{name}.toml"), &shortest(path));
     let own = format!("name = \"{name}\"\nextends = \"bases/{name}.toml\"\n");
     write(folder, &format!("{name}.toml"), &own)
 }
 
-/// The text of a base in which a key means something.
-fn base(path: &str) -> String {
+/// The text of the shortest scenario, without a name, in which a key means something.
+pub(crate) fn shortest(path: &str) -> String {
     let mut text = SHORT.to_owned();
     let (table, beside) = match BESIDE.iter().find(|(table, _)| path.starts_with(table)) {
         Some(("calibration", _)) => BESIDE[8],
@@ -247,30 +248,59 @@ fn every_key_at_its_least_value_runs_or_is_refused_with_finite_numbers() {
     );
 }
 
-#[test]
-fn no_key_takes_a_number_below_its_least_value() {
-    let folder = tempfile::tempdir().expect("a scratch folder");
-    let mut tried = 0;
-    for (index, (path, least)) in ends("minimum").iter().enumerate() {
-        let is_open_once =
-            least.parse::<f64>().is_ok_and(|it| it > 0.0) && least.contains(['.', 'e']);
-        if !is_open_once {
-            continue;
+/// The number of binary64, or the whole number, next to `end` on the side of `step`.
+fn beyond(end: &str, step: i64) -> String {
+    match end.parse::<i64>() {
+        Ok(end) => (end + step).to_string(),
+        Err(_) => {
+            let end: f64 = end.parse().expect("a number");
+            let next = if step < 0 {
+                end.next_down()
+            } else {
+                end.next_up()
+            };
+            format!("{next:?}")
         }
-        let name = format!("k{index}");
-        let file = write_scenario(folder.path(), &name, path);
-        let found = plan_suite(&[file], &[set(path, "5e-324")])
-            .map(|_| ())
-            .unwrap_err();
-        let text = found[0].to_string();
-        assert!(text.contains("= 5e-324"), "{path}: {text}");
-        assert!(
-            text.contains("is out of range: allowed ["),
-            "{path}: {text}"
-        );
-        tried += 1;
     }
-    assert!(tried > 50, "{tried} keys");
+}
+
+#[test]
+fn every_key_refuses_the_number_beyond_either_end_with_unit_and_range() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let leaves = leaves(&root());
+    for (end, step) in [("minimum", -1), ("maximum", 1)] {
+        for (index, (path, value)) in ends(end).iter().enumerate() {
+            let unit = leaves[path].unit.as_ref();
+            let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+            let is_array = value.starts_with('[');
+            let limit = value.trim_matches(['[', ']']).split(", ").next();
+            let limit = limit.expect("a number");
+            let wrong = beyond(limit, step);
+            let given = if is_array {
+                value.replacen(limit, &wrong, 1)
+            } else {
+                wrong.clone()
+            };
+            let file = write_scenario(folder.path(), &format!("k{index}"), path);
+            let found = plan_suite(&[file], &[set(path, &given)])
+                .map(|_| ())
+                .expect_err(path);
+            let text = found[0].to_string();
+            let place = if is_array { "[0]" } else { "" };
+            let key = path.replace("[]", "[0]");
+            let said = format!("{key}{place} = {wrong}{unit} is out of range: allowed ");
+            assert!(text.contains(&said), "{said}\n{text}");
+            let (_, range) = text
+                .split_once("is out of range: allowed ")
+                .expect("a range");
+            let range = range.trim_end_matches(&unit).trim_matches(['[', ']']);
+            let range = range.trim_start_matches("even ").replace("..=", ", ");
+            let (low, high) = range.split_once(", ").expect("two ends");
+            let stated: f64 = if step < 0 { low } else { high }.parse().expect("a number");
+            let limit: f64 = limit.parse().expect("a number");
+            assert_eq!(stated.to_bits(), limit.to_bits(), "{text}");
+        }
+    }
 }
 
 /// White-looking words about 10 deg/h: a linear congruence.

@@ -66,8 +66,10 @@ mod patent_known_answers;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
+mod properties;
 mod readers;
 mod recording;
+mod registry;
 mod report;
 mod resume;
 mod rows;

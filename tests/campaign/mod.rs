@@ -17,7 +17,7 @@ mod invariants;
 mod kills;
 mod pairs;
 mod scenarios;
-mod schema;
+pub(crate) mod schema;
 mod tally;
 mod texts;
 mod values;

@@ -8,8 +8,6 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use snapbox::data::IntoData as _;
-
 use super::repository;
 
 /// One test's section while it is being spoken.
@@ -62,15 +60,36 @@ impl Transcript {
             return;
         }
         let held = place.map_or("", |place| sections[place].1.as_str());
-        let file = format!("tests/snapshots/{}.txt, {}", self.subject, self.title);
-        if let Err(difference) = snapbox::Assert::new().try_eq(
-            Some(&file),
-            self.text.trim_end().into_data(),
-            held.trim_end().raw(),
-        ) {
-            panic!("{difference}\nif it is meant, FOGBENCH_BLESS=1 cargo test writes it\n");
+        let differences = differences(held, &self.text);
+        assert!(
+            differences.is_empty(),
+            "tests/snapshots/{}.txt, {}:\n\n{differences}if that is meant, FOGBENCH_BLESS=1 cargo test \
+             writes it\n",
+            self.subject,
+            self.title
+        );
+    }
+}
+
+/// The cases that are held and not said, marked `-`, and those that are said and not held, marked `+`.
+fn differences(held: &str, said: &str) -> String {
+    fn cases(text: &str) -> Vec<&str> {
+        text.trim_end().split("\n\n").collect()
+    }
+    let (held, said) = (cases(held), cases(said));
+    let mut shown = String::new();
+    for (mark, these, those) in [('-', &held, &said), ('+', &said, &held)] {
+        for case in these.iter().filter(|case| !those.contains(case)) {
+            for line in case.lines() {
+                shown.push_str(&format!("{mark} {line}\n"));
+            }
+            shown.push('\n');
         }
     }
+    if shown.is_empty() && held != said {
+        shown.push_str("the same cases in another order\n\n");
+    }
+    shown
 }
 
 /// A section of what is said to each of some inputs.
@@ -142,6 +161,17 @@ fn as_anywhere(line: &str) -> String {
         Some(digest) => as_anywhere(&line.replace(digest, "[digest]")),
         None => line,
     }
+}
+
+#[test]
+fn a_changed_message_is_told_from_its_siblings() {
+    let held = "> a\nfirst\n\n> b\nsecond\n";
+    assert_eq!(differences(held, held), "");
+    let changed = differences(held, "> a\nfirst\n\n> b\nother\n");
+    assert_eq!(changed, "- > b\n- second\n\n+ > b\n+ other\n\n");
+    let added = differences(held, "> a\nfirst\n\n> b\nsecond\n\n> c\nthird\n");
+    assert_eq!(added, "+ > c\n+ third\n\n");
+    assert!(!differences(held, "> b\nsecond\n\n> a\nfirst\n").is_empty());
 }
 
 #[test]
