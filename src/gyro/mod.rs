@@ -46,32 +46,29 @@ mod vibration;
 
 pub use assembly::CaseGyro;
 pub use config::{Fidelity, GyroConfig};
-pub use controller::ControllerConfig;
-pub use controller::{Controller, gain_limit};
+pub use controller::{Controller, ControllerConfig, gain_limit};
 pub use error::GyroError;
 pub use injection::InjectionConfig;
-pub use input_axis::AssemblyConfig;
-pub use input_axis::InputAxis;
+pub use input_axis::{AssemblyConfig, InputAxis};
 pub use instrument::{Gyro, facts, sample_period_s, word_period_s, word_response};
 pub use limits::{MotionExtremes, cautions};
 pub use loop_model::LoopModel;
 pub use loop_model::faults::LoopFaults;
 pub use noise::budget::NoiseBudget;
 pub use noise::budget_sheet::{budget_at, budget_sheet, power_independent_ratio};
-pub use noise::slow_noise::SlowNoise;
-pub use noise::slow_noise::SlowNoiseConfig;
-pub use noise::{Densities, Density, NoiseSource, SOURCES as NOISE_SOURCES};
-pub use noise::{NoiseConfig, NoiseDraw};
-pub use optics::coil::Coil;
-pub use optics::coil::CoilConfig;
+pub use noise::slow_noise::{SlowNoise, SlowNoiseConfig};
+pub use noise::{
+    Densities, Density, NoiseConfig, NoiseDraw, NoiseSource, SOURCES as NOISE_SOURCES,
+};
+pub use optics::coil::{Coil, CoilConfig};
 pub use optics::converter::AdcConfig;
 pub use optics::detector::Detector;
-pub use optics::modulator::{ModulationScheme, ModulatorConfig, ResetSample};
-pub use optics::modulator::{Modulator, optimum_depth_rad};
+pub use optics::modulator::{
+    ModulationScheme, Modulator, ModulatorConfig, ResetSample, optimum_depth_rad,
+};
 pub use optics::receiver::DetectorConfig;
 pub use optics::second_order::{expected_mean_rate_rad_per_s, spike_share};
-pub use optics::source::SourceConfig;
-pub use optics::source::relative_intensity_noise_per_hz;
+pub use optics::source::{SourceConfig, relative_intensity_noise_per_hz};
 pub use rate_model::RateModel;
 pub use rate_word::{OutputQuantisation, RateOutputConfig};
 pub use thermal::chamber::{
