@@ -28,7 +28,10 @@ fn watch<F: Fp>(signal: &[f64], alpha: f64, order: UpdateOrder) -> HealthMonitor
         monitor.sample(pair.input, pair.desired, output);
         if k % 10 == 9 {
             monitor.matrix(
-                engine.inverse_correlation().unwrap().matrix,
+                engine
+                    .inverse_correlation()
+                    .expect("the RLS has one")
+                    .matrix,
                 4,
                 config.delta(),
             );

@@ -186,7 +186,11 @@ fn a_signal_needs_a_table_at_rest_one_gyro_and_sines_that_can_be_sampled() {
         // What may lose the lock is a warning.
         assert_eq!(
             code(&output),
-            if tone_hz == 7000.0 { 0 } else { 2 },
+            if tone_hz.to_bits() == 7000.0_f64.to_bits() {
+                0
+            } else {
+                2
+            },
             "{text}"
         );
         let given = format!("{rest}{amplitude} deg/s at {tone_hz} Hz");

@@ -214,9 +214,12 @@ impl Found {
 }
 
 /// What single records and their repeats pooled hold, and channels of one repeat.
-static FOUND: LazyLock<(Found, Found, Vec<(String, ChannelMetrics)>)> = LazyLock::new(found);
+static FOUND: LazyLock<Findings> = LazyLock::new(found);
 
-fn found() -> (Found, Found, Vec<(String, ChannelMetrics)>) {
+/// Found in single records, in pooled ones, and the channels by name.
+type Findings = (Found, Found, Vec<(String, ChannelMetrics)>);
+
+fn found() -> Findings {
     let (mut single, mut pooled) = (Found::default(), Found::default());
     let mut channels = Vec::new();
     for case in cases() {

@@ -2,18 +2,14 @@
 
 use fogbench::scenario::{GyroConfig, Scenario, load_suite};
 
-/// What the reader makes of a scenario that gives nothing but a motion, e.g. `static = {}`.
-pub(crate) fn default_scenario(motion: &str) -> Scenario {
-    scenario_with("", motion)
-}
-
 /// The gyro of a scenario that gives nothing but these keys below `gyro`, as `noise.rin = false`.
 pub(crate) fn gyro(settings: &[String]) -> GyroConfig {
     let lines = settings.iter().map(|setting| format!("gyro.{setting}\n"));
     scenario_with(&lines.collect::<String>(), "static = {}").gyro
 }
 
-fn scenario_with(settings: &str, motion: &str) -> Scenario {
+/// The scenario of these lines before `[turntable]` and of this motion.
+pub(crate) fn scenario_with(settings: &str, motion: &str) -> Scenario {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let text = format!(
         "schema = 1\nname = \"fixture\"\n\

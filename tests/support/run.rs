@@ -5,7 +5,12 @@ use fogbench::scenario::{PublishedConfig, Scenario};
 use fogbench::signal::GyroFacts;
 use std::collections::BTreeMap;
 
-use super::reference_gyro::default_scenario;
+use super::reference_gyro::scenario_with;
+
+/// What the reader makes of a scenario that gives nothing but a motion, e.g. `static = {}`.
+pub(crate) fn default_scenario(motion: &str) -> Scenario {
+    scenario_with("", motion)
+}
 
 /// A scenario whose motion is the given table, with two published figures.
 pub(crate) fn scenario(motion: &str) -> Scenario {

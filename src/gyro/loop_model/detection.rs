@@ -14,6 +14,10 @@ use crate::random::Streams;
 
 /// The samplers a configuration can ask for.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a simulation holds one, which the kernel reads every half period: no pointer between"
+)]
 pub(super) enum Detection {
     Combined(CombinedSampler<true>),
     CombinedIdeal(CombinedSampler<false>),
