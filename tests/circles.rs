@@ -141,13 +141,14 @@ fn place_of(source: &Path, path: &Path) -> Option<Place> {
     Some(place)
 }
 
-/// The code of a file without comments and without its tests.
+/// The code of a file without comments, without the places of visibility and without its tests.
 fn code_of(text: &str) -> String {
     text.lines()
         .take_while(|line| *line != "#[cfg(test)]")
         .map(|line| line.split("//").next().unwrap_or_default())
         .collect::<Vec<_>>()
         .join("\n")
+        .replace("pub(in crate::", "pub(in ")
 }
 
 /// The `use` statements of a text, `pub` included, on one line each, and the code without them.

@@ -95,7 +95,8 @@ fn documented_keys() -> Vec<(String, String)> {
 #[test]
 fn reference_documents_every_key_with_its_exact_unit_and_range() {
     let documented = documented_keys();
-    for key in keys() {
+    // A former name is read and not shown.
+    for key in keys().filter(|key| key.successor.is_none()) {
         let line = key.line();
         let comments: Vec<&String> = documented
             .iter()
