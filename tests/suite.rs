@@ -98,10 +98,16 @@ fn an_earlier_verdict_does_not_outlive_a_suite_that_cannot_finish() {
         threads: 1,
         ..SuiteOptions::new(output.clone())
     };
-    let error = run_suite(&plans, &options, &GetsInTheWay(output.clone()))
-        .expect_err("a folder of the user's stands in the way");
-    assert!(error.to_string().contains("thesis.txt"), "{error}");
-    assert!(!output.join("junit.xml").exists(), "a stale verdict stays");
+    let outcome = run_suite(&plans, &options, &GetsInTheWay(output.clone()))
+        .expect("what stands in the way of one run fails that run alone");
+    assert!(outcome.unwritten);
+    let error = outcome.runs[1].error.as_deref().expect("the run failed");
+    assert!(error.contains("thesis.txt"), "{error}");
+    let junit = std::fs::read_to_string(output.join("junit.xml")).expect("the suite's verdict");
+    assert!(
+        junit.contains("thesis.txt"),
+        "a stale verdict stays: {junit}"
+    );
     assert!(output.join("one/summary.json").is_file(), "results stay");
     assert!(
         output.join("two/thesis.txt").is_file(),
