@@ -1,8 +1,8 @@
 //! Declarations of keys: a table of a scenario file is written once, in the stage that works by it.
 //!
-//! [`table!`] makes of one declaration the configuration struct with its documentation, how it is read,
-//! its value in the reference and a [`Table`] of rows; [`alternatives!`] does so for tables of which one
-//! stands, [`renamed!`] a key with a former name. Checks, suggestions, JSON Schema and `scenarios/reference.toml` read the rows.
+//! `table!` makes of one declaration the configuration struct with its documentation, how it is read,
+//! its value in the reference and a [`Table`] of rows; `alternatives!` does so for tables of which one
+//! stands, `renamed!` a key with a former name. Checks, suggestions, JSON Schema and `scenarios/reference.toml` read the rows.
 //!
 //! Invariant: knows no stage and no file format; every stage may import it.
 

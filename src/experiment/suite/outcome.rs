@@ -16,7 +16,7 @@ pub trait Observer: Progress {
     fn failed(&self, _index: usize, _outcome: &RunOutcome) {}
     /// Hears how a suite ended that was to stop while runs are still in the middle of a long stage.
     /// Its files stand; these runs will write nothing more. The caller may end the program here:
-    /// [`run_suite`] returns the same only once they have come to the end of their stage.
+    /// `run_suite` returns the same only once they have come to the end of their stage.
     fn abandoned(&self, _result: &Result<SuiteOutcome, SuiteError>) {}
     /// Run `index` of the plan is not run again: its folder holds the result. It counts as finished.
     fn taken_over(&self, index: usize, report: &RunReport) {

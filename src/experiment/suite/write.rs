@@ -16,7 +16,7 @@ impl Run {
     /// Writes what `fogbench run` writes of this scenario into a folder: the same files, byte for byte.
     ///
     /// # Errors
-    /// As [`run_suite`](crate::experiment::run_suite), or [`SuiteError::Unwritten`]: nothing of the
+    /// As `run_suite`(crate::experiment::run_suite), or [`SuiteError::Unwritten`]: nothing of the
     /// user's is replaced.
     pub fn write(&self, folder: impl Into<PathBuf>) -> Result<(), SuiteError> {
         let runs = std::slice::from_ref(self);
@@ -28,10 +28,10 @@ impl Run {
     }
 }
 
-/// Writes runs that are already in memory as [`run_suite`] writes them.
+/// Writes runs that are already in memory as `run_suite` writes them.
 ///
 /// # Errors
-/// As [`run_suite`], threads aside.
+/// As `run_suite`, threads aside.
 pub fn write_runs(runs: &[Run], options: &SuiteOptions) -> Result<SuiteOutcome, SuiteError> {
     let plans: Vec<Plan> = runs.iter().map(|run| run.plan().clone()).collect();
     let layout = &layout(&plans);

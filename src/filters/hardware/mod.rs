@@ -1,7 +1,7 @@
 //! Hardware pipelines on the bench: from a filter's keys to its pipeline, that pipeline as a filter,
 //! the watch over its matrix, its timing and its exports.
 //!
-//! One file per kind says which pipeline its keys stand for: [`rls`], [`lms`], [`sign_lms`].
+//! One file per kind says which pipeline its keys stand for: `rls`, `lms`, `sign_lms`.
 //!
 //! Invariant: the only part of the bench that knows [`fpga`](crate::fpga).
 

@@ -13,7 +13,7 @@ const BLOCK: usize = 8192;
 /// Overlapping Allan deviation at octave averaging times from samples that come one after another.
 ///
 /// For m up to 2^18 the differences start at every sample, exactly as in
-/// [`overlapping_allan_at`](super::overlapping_allan_at). Beyond, angles are kept at every second,
+/// [`overlapping_allan_at`](crate::metrics::overlapping_allan_at). Beyond, angles are kept at every second,
 /// fourth, ... sample, so that the starts are tau/2^18 apart: such a difference repeats its
 /// neighbour to four parts in a million, and nothing is lost. Memory is two averaging times of
 /// angles per level and one level per doubling of the record: 10 MB at first, 100 MB at 1e9 samples.
@@ -155,9 +155,9 @@ impl AllanStream {
     /// The points supported so far: m = 1, 2, 4, ... up to a quarter of the record.
     ///
     /// Degrees of freedom are those of white noise, as in
-    /// [`overlapping_allan`](super::overlapping_allan); the points suit
-    /// [`fit_noise`](super::fit_noise) and
-    /// [`mixed_degrees_of_freedom`](super::mixed_degrees_of_freedom).
+    /// [`overlapping_allan`](crate::metrics::overlapping_allan); the points suit
+    /// [`fit_noise`](crate::metrics::fit_noise) and
+    /// [`mixed_degrees_of_freedom`](crate::metrics::mixed_degrees_of_freedom).
     #[must_use]
     pub fn points(&mut self) -> Vec<AllanPoint> {
         let mut points = Vec::new();
