@@ -49,8 +49,16 @@ pub struct Condition<S> {
     pub acts: fn(&S) -> bool,
 }
 
-/// What the keys of a pipeline need.
-pub(super) const HARDWARE: &str = "pipeline = \"textbook\" has no hardware; pipeline = \"fpga\"";
+impl<S: FilterSettings> Condition<S> {
+    /// A key of the hardware, which acts where hardware filters.
+    pub(super) const fn hardware(key: &'static str) -> Self {
+        Self {
+            key,
+            needs: "pipeline = \"textbook\" has no hardware; pipeline = \"fpga\"",
+            acts: |settings| settings.hardware().is_some(),
+        }
+    }
+}
 
 /// A key of any filter that other settings can leave without effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use super::common::{Complaints, Core, CoreFilter, Fault, Filter, FrontEndConfig, Output, dot};
 use super::hardware::{self, PipelineSettings};
-use super::kind::{Condition, ExpectedWords, FilterSettings, HARDWARE};
+use super::kind::{Condition, ExpectedWords, FilterSettings};
 use crate::declare::table;
 use crate::vocabulary::{DesiredSignal, NumberFormat, OutputRegister, Pipeline, UpdateSign};
 
@@ -40,28 +40,22 @@ table! {
 
 impl FilterSettings for LmsFilterConfig {
     fn conditions() -> &'static [Condition<Self>] {
-        &[
-            Condition {
-                key: "regularisation_deg2_per_h2",
-                needs: "normalised = true",
-                acts: |settings| settings.normalised,
-            },
-            Condition {
-                key: "allow_unstable",
-                needs: "normalised = false",
-                acts: |settings| !settings.normalised,
-            },
-            Condition {
-                key: "number_format",
-                needs: HARDWARE,
-                acts: |settings| settings.pipeline == Pipeline::Fpga,
-            },
-            Condition {
-                key: "clock_mhz",
-                needs: HARDWARE,
-                acts: |settings| settings.pipeline == Pipeline::Fpga,
-            },
-        ]
+        const {
+            &[
+                Condition {
+                    key: "regularisation_deg2_per_h2",
+                    needs: "normalised = true",
+                    acts: |settings| settings.normalised,
+                },
+                Condition {
+                    key: "allow_unstable",
+                    needs: "normalised = false",
+                    acts: |settings| !settings.normalised,
+                },
+                Condition::hardware("number_format"),
+                Condition::hardware("clock_mhz"),
+            ]
+        }
     }
 
     /// Refuses an un-normalised step that the expected motion alone makes unstable.

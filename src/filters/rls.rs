@@ -2,7 +2,7 @@
 
 use super::common::{Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, dot};
 use super::hardware::{self, PipelineSettings};
-use super::kind::{Condition, ExpectedWords, FilterSettings, HARDWARE};
+use super::kind::{Condition, ExpectedWords, FilterSettings};
 use crate::declare::table;
 use crate::vocabulary::{
     DesiredSignal, Division, NumberFormat, OutputRegister, Pipeline, UpdateOrder, UpdateSign,
@@ -46,28 +46,14 @@ table! {
 
 impl FilterSettings for RlsFilterConfig {
     fn conditions() -> &'static [Condition<Self>] {
-        &[
-            Condition {
-                key: "number_format",
-                needs: HARDWARE,
-                acts: |settings| settings.pipeline == Pipeline::Fpga,
-            },
-            Condition {
-                key: "clock_mhz",
-                needs: HARDWARE,
-                acts: |settings| settings.pipeline == Pipeline::Fpga,
-            },
-            Condition {
-                key: "division",
-                needs: HARDWARE,
-                acts: |settings| settings.pipeline == Pipeline::Fpga,
-            },
-            Condition {
-                key: "update_order",
-                needs: HARDWARE,
-                acts: |settings| settings.pipeline == Pipeline::Fpga,
-            },
-        ]
+        const {
+            &[
+                Condition::hardware("number_format"),
+                Condition::hardware("clock_mhz"),
+                Condition::hardware("division"),
+                Condition::hardware("update_order"),
+            ]
+        }
     }
 
     fn notes(&self, words: &ExpectedWords) -> Vec<String> {

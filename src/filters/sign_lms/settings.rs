@@ -5,7 +5,7 @@ use super::notes;
 use crate::declare::table;
 use crate::filters::common::{Complaints, Filter};
 use crate::filters::hardware::{self, PipelineSettings};
-use crate::filters::kind::{Condition, ExpectedWords, FilterSettings, HARDWARE};
+use crate::filters::kind::{Condition, ExpectedWords, FilterSettings};
 use crate::units::{deg_per_s_to_deg_per_h, rad_per_s_to_deg_per_h};
 use crate::vocabulary::{
     ConstantUnit, InitialWeights, NumberFormat, OutputRegister, Pipeline, SignLmsForm,
@@ -88,18 +88,12 @@ impl SignLmsFilterConfig {
 
 impl FilterSettings for SignLmsFilterConfig {
     fn conditions() -> &'static [Condition<Self>] {
-        &[
-            Condition {
-                key: "number_format",
-                needs: HARDWARE,
-                acts: |settings| settings.pipeline == Pipeline::Fpga,
-            },
-            Condition {
-                key: "clock_mhz",
-                needs: HARDWARE,
-                acts: |settings| settings.pipeline == Pipeline::Fpga,
-            },
-        ]
+        const {
+            &[
+                Condition::hardware("number_format"),
+                Condition::hardware("clock_mhz"),
+            ]
+        }
     }
 
     fn check(&self, complaints: &mut Complaints) {
