@@ -7,7 +7,6 @@ use super::outcome::Observer;
 use super::output::SuiteOutput;
 use super::resume::take_over;
 use crate::comparison::Layout;
-use crate::experiment::build::VERSION;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{Results, Unfinished, run_plan};
 use crate::report::{RunOutcome, RunReport};
@@ -52,23 +51,14 @@ pub(crate) fn run_scenario(
 
 /// What the report of a run shows.
 fn report<'a>(plan: &'a Plan, results: &'a Results) -> RunReport<'a> {
-    let resolved = plan.resolved();
     RunReport {
-        tool_version: VERSION,
-        scenario: &resolved.scenario,
-        file: &resolved.file,
-        digest: &resolved.digest,
-        sweep: resolved
-            .sweep
-            .as_ref()
-            .map(|point| (point.index, point.assignments.clone())),
-        gyro: plan.facts(),
         compensation: results.compensation.as_ref(),
         theory: &results.theory,
         channels: &results.channels,
         calibration: results.calibration.as_ref(),
         verdicts: &results.verdicts,
         notes: &results.notes,
+        ..files::report_of_plan(plan)
     }
 }
 

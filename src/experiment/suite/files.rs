@@ -1,6 +1,7 @@
 //! The files of one run.
 
 use super::output::SuiteOutput;
+use crate::experiment::build::VERSION;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{RecordLength, Simulation, stamp_s};
 use crate::gyro::temperature_record;
@@ -9,6 +10,28 @@ use crate::scenario::SamplesFormat;
 use crate::signal::RunSignals;
 use crate::store::{Staged, StoreError};
 use crate::units::rad_to_arcsec;
+
+/// What the report of a run shows of its plan, before anything is measured.
+pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
+    let resolved = plan.resolved();
+    RunReport {
+        tool_version: VERSION,
+        scenario: &resolved.scenario,
+        file: &resolved.file,
+        digest: &resolved.digest,
+        sweep: resolved
+            .sweep
+            .as_ref()
+            .map(|point| (point.index, point.assignments.clone())),
+        gyro: plan.facts(),
+        compensation: None,
+        theory: &[],
+        channels: &[],
+        calibration: None,
+        verdicts: &[],
+        notes: &[],
+    }
+}
 
 /// The pictures of one run, and what to say of those that are left out.
 pub(crate) fn draw(plan: &Plan, report: &RunReport, simulation: &Simulation) -> Pictures {

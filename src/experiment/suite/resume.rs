@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use super::files::report_of_plan;
 use super::options::Resume;
 use super::outcome::Observer;
 use super::output::{SUMMARY, SuiteOutput};
@@ -39,21 +40,12 @@ pub(crate) fn take_over(
         .map(|(index, gate)| judge(gate, &restored.channels, Some(resolved.gate_place(index))))
         .collect();
     let report = RunReport {
-        tool_version: VERSION,
-        scenario: &resolved.scenario,
-        file: &resolved.file,
-        digest: &resolved.digest,
-        sweep: resolved
-            .sweep
-            .as_ref()
-            .map(|point| (point.index, point.assignments.clone())),
-        gyro: plan.facts(),
         compensation: restored.compensation.as_ref(),
-        theory: &[],
         channels: &restored.channels,
         calibration: restored.calibration.as_ref(),
         verdicts: &verdicts,
         notes: &restored.notes,
+        ..report_of_plan(plan)
     };
     if run_summary_json(&report) != summary {
         return None;
