@@ -192,7 +192,7 @@ fn spacing(
         let message = "the sample rate is not known: give --rate-hz, or a time column with --time";
         return Err(LogError::of_file(path, message));
     };
-    check_sample_rate(sample_rate_hz).map_err(|message| LogError::of_file(path, message))?;
+    check_sample_rate(sample_rate_hz).map_err(|error| LogError::of_file(path, error))?;
     Ok((timing, sample_rate_hz))
 }
 
@@ -231,7 +231,7 @@ fn rates(
         let unit = format.unit;
         let message = match check_rate(rate) {
             Ok(()) => return Ok(rate),
-            Err(message) if rate.is_finite() => format!("{value:?} {unit}: {message}"),
+            Err(error) if rate.is_finite() => format!("{value:?} {unit}: {error}"),
             Err(_) => format!("{value:?} {unit} is not a finite rate in deg/h"),
         };
         Err(LogError::at(path, columns.place(row), message))

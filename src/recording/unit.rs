@@ -85,15 +85,17 @@ impl RateUnit {
     }
 }
 
+/// A unit of rates that nobody knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected one of {}", NAMES.map(|(name, _)| name).join(", "))]
+pub struct UnknownRateUnit;
+
 impl FromStr for RateUnit {
-    type Err = String;
+    type Err = UnknownRateUnit;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let known = NAMES.iter().find(|(name, _)| *name == text);
-        known.map(|(_, unit)| *unit).ok_or_else(|| {
-            let names: Vec<&str> = NAMES.iter().map(|(name, _)| *name).collect();
-            format!("expected one of {}", names.join(", "))
-        })
+        known.map(|(_, unit)| *unit).ok_or(UnknownRateUnit)
     }
 }
 

@@ -21,20 +21,82 @@ pub(crate) enum Step {
     Index(usize),
 }
 
+/// Why a written path leads to no place of a scenario, or a place takes no value.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum AddressError {
+    /// Other than names between dots.
+    #[error("`{0}` is not a key path: expected names separated by dots, as in gyro.coil.length_m")]
+    NotNames(String),
+    /// Brackets around something other than an index.
+    #[error("`{0}` is not a key path: expected an index from 0 in brackets, as in gate[2].max")]
+    NotAnIndex(String),
+    /// Empty brackets, as the schema writes them.
+    #[error(
+        "`{path}` does not say which {array}: give its index, as in {}, or the name of a filter, \
+         as in filter.rls.taps",
+        path.replacen("[]", "[0]", 1)
+    )]
+    NoIndex {
+        /// The path as it was written.
+        path: String,
+        /// The array of tables.
+        array: String,
+    },
+    /// An index behind something that is no array.
+    #[error("{0} has no elements to number")]
+    NotAnArray(String),
+    /// A key inside a value.
+    #[error("{0} is not a table")]
+    NotATable(String),
+    /// A key that nobody knows, and what may have been meant.
+    #[error("{0}")]
+    UnknownKey(String),
+    /// An index behind the last element.
+    #[error("there is no {array}[{index}]: the scenario has {count} of them, counted from 0")]
+    NoElement {
+        /// The array of tables.
+        array: String,
+        /// The index that was asked for.
+        index: usize,
+        /// Number of elements.
+        count: usize,
+    },
+    /// A name that no element has.
+    #[error("there is no {array} named {name}: {}", instead_of_name(array, names))]
+    NoName {
+        /// The array of tables.
+        array: String,
+        /// The name that was asked for.
+        name: String,
+        /// Names that there are.
+        names: Vec<String>,
+    },
+    /// A table where a value of its own is expected.
+    #[error("{0} cannot be set as a whole")]
+    Whole(String),
+    /// An element that is gone.
+    #[error("{0} does not exist")]
+    Missing(String),
+}
+
+fn instead_of_name(array: &str, names: &[String]) -> String {
+    match names {
+        [] => format!("give an index, as in {array}[0]"),
+        _ => format!("expected one of {}", names.join(", ")),
+    }
+}
+
 /// Splits a written path.
 ///
 /// # Errors
 /// What is wrong with its spelling.
-pub(crate) fn parse(path: &str) -> Result<Vec<Step>, String> {
+pub(crate) fn parse(path: &str) -> Result<Vec<Step>, AddressError> {
     let mut steps = Vec::new();
     for part in path.split('.') {
         let (name, indices) = part.split_at(part.find('[').unwrap_or(part.len()));
         let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || !name.chars().all(is_bare) {
-            let path = excerpt(path);
-            return Err(format!(
-                "`{path}` is not a key path: expected names separated by dots, as in gyro.coil.length_m"
-            ));
+            return Err(AddressError::NotNames(excerpt(path).to_string()));
         }
         steps.push(Step::Key(name.to_owned()));
         if indices.is_empty() {
@@ -47,18 +109,12 @@ pub(crate) fn parse(path: &str) -> Result<Vec<Step>, String> {
         match index {
             Some(index) => steps.push(Step::Index(index)),
             None if indices == "[]" => {
-                let numbered = path.replacen("[]", "[0]", 1);
-                return Err(format!(
-                    "`{path}` does not say which {name}: give its index, as in {numbered}, or the name of \
-                     a filter, as in filter.rls.taps"
-                ));
+                return Err(AddressError::NoIndex {
+                    path: path.to_owned(),
+                    array: name.to_owned(),
+                });
             }
-            None => {
-                let path = excerpt(path);
-                return Err(format!(
-                    "`{path}` is not a key path: expected an index from 0 in brackets, as in gate[2].max"
-                ));
-            }
+            None => return Err(AddressError::NotAnIndex(excerpt(path).to_string())),
         }
     }
     Ok(steps)
@@ -84,17 +140,17 @@ pub(crate) fn display(steps: &[Step]) -> String {
 pub(crate) fn resolve(
     root: &Table,
     written: &str,
-) -> Result<(Vec<Step>, Option<&'static Key>), String> {
+) -> Result<(Vec<Step>, Option<&'static Key>), AddressError> {
     let mut rest = parse(written)?.into_iter().peekable();
     let mut path: Vec<Step> = Vec::new();
     let mut schema_path = String::new();
     let mut key = None;
     while let Some(step) = rest.next() {
         let Step::Key(name) = step else {
-            return Err(format!("{} has no elements to number", display(&path)));
+            return Err(AddressError::NotAnArray(display(&path)));
         };
         if key.is_some() {
-            return Err(format!("{} is not a table", display(&path)));
+            return Err(AddressError::NotATable(display(&path)));
         }
         match schema::child(&schema_path, &name) {
             None => {
@@ -103,7 +159,7 @@ pub(crate) fn resolve(
                     shown: written_table(written, &path, &name),
                     root: Some(root),
                 };
-                return Err(unknown_key(table, &name));
+                return Err(AddressError::UnknownKey(unknown_key(table, &name)));
             }
             Some(Child::Leaf(leaf)) => {
                 key = Some(leaf);
@@ -150,34 +206,24 @@ fn written_table<'a>(written: &'a str, path: &[Step], name: &str) -> &'a str {
 }
 
 /// The index of the element that a step selects by index or by name.
-fn element_index(array: &str, elements: &[Node], selector: &Step) -> Result<usize, String> {
+fn element_index(array: &str, elements: &[Node], selector: &Step) -> Result<usize, AddressError> {
     match selector {
         Step::Index(index) if *index < elements.len() => Ok(*index),
-        Step::Index(index) => Err(format!(
-            "there is no {array}[{index}]: the scenario has {} of them, counted from 0",
-            elements.len()
-        )),
+        Step::Index(index) => Err(AddressError::NoElement {
+            array: array.to_owned(),
+            index: *index,
+            count: elements.len(),
+        }),
         Step::Key(name) => {
-            let names: Vec<&str> = elements
+            let name_of =
+                |node: &'_ Node| node.as_table()?.get("name")?.as_text().map(str::to_owned);
+            let position = elements
                 .iter()
-                .filter_map(|node| node.as_table()?.get("name")?.as_text())
-                .collect();
-            let position = elements.iter().position(|node| {
-                node.as_table()
-                    .and_then(|table| table.get("name"))
-                    .and_then(Node::as_text)
-                    == Some(name)
-            });
-            position.ok_or_else(|| match names[..] {
-                [] => format!(
-                    "there is no {array} named {}: give an index, as in {array}[0]",
-                    excerpt(name)
-                ),
-                _ => format!(
-                    "there is no {array} named {}: expected one of {}",
-                    excerpt(name),
-                    names.join(", ")
-                ),
+                .position(|node| name_of(node).as_ref() == Some(name));
+            position.ok_or_else(|| AddressError::NoName {
+                array: array.to_owned(),
+                name: excerpt(name).to_string(),
+                names: elements.iter().filter_map(name_of).collect(),
             })
         }
     }
@@ -199,7 +245,7 @@ pub(crate) fn assign(
     path: &[Step],
     value: Node,
     mark: Mark,
-) -> Result<(), String> {
+) -> Result<(), AddressError> {
     let mut over = value;
     over.mark = Some(mark);
     // The part below the last array is wrapped into tables and merged, so that alternatives
@@ -217,7 +263,7 @@ pub(crate) fn assign(
         }
     }
     let Value::Table(over_table) = over.value else {
-        return Err(format!("{} cannot be set as a whole", display(path)));
+        return Err(AddressError::Whole(display(path)));
     };
     match outer {
         [] => {
@@ -229,7 +275,7 @@ pub(crate) fn assign(
                 .get_mut(array)
                 .and_then(Node::as_array_mut)
                 .and_then(|elements| elements.get_mut(*index))
-                .ok_or_else(|| format!("{} does not exist", display(outer)))?;
+                .ok_or_else(|| AddressError::Missing(display(outer)))?;
             let over = Node {
                 value: Value::Table(over_table),
                 mark: None,
@@ -237,7 +283,7 @@ pub(crate) fn assign(
             merge_node(&format!("{array}[]"), element, over);
             Ok(())
         }
-        _ => Err(format!("{} does not exist", display(outer))),
+        _ => Err(AddressError::Missing(display(outer))),
     }
 }
 
