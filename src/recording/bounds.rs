@@ -37,7 +37,7 @@ pub enum OutOfBounds {
     SampleRate(f64),
     /// A temperature, deg C.
     #[error(
-        "a temperature of {temperature_c} deg C is out of range: allowed [{least}, {most}] deg C",
+        "a temperature of {temperature_c:?} deg C is out of range: expected {least} to {most} deg C",
         temperature_c = .0,
         least = TEMPERATURE_C.0,
         most = TEMPERATURE_C.1

@@ -10,6 +10,7 @@ use super::input::read_whole;
 use super::text::{Lines, NumberError, finite, shown};
 use super::unit::RateUnit;
 use crate::units::deg_per_h_to_deg_per_s;
+use crate::wording::exact;
 
 /// Fastest rate of a table that is believed, deg/s.
 const TABLE_RATE_MAX_DEG_PER_S: f64 = 2000.0;
@@ -232,7 +233,7 @@ enum CellError {
     Empty { unit: String },
     #[error("{error}: expected {unit}")]
     NotANumber { error: NumberError, unit: String },
-    #[error("{value} {unit} is out of range: expected {min} to {max} {unit}")]
+    #[error("{} {unit} is out of range: expected {min} to {max} {unit}", exact(*value))]
     OutOfRange {
         value: f64,
         min: f64,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::bounds::{TEMPERATURE_C, check_rate, check_sample_rate};
+use super::bounds::{check_rate, check_sample_rate, check_temperature};
 use super::column::Columns;
 use super::csv::{self, Wanted};
 use super::error::LogError;
@@ -115,15 +115,8 @@ pub fn read_assembly_log(
     let gyro = |index: usize| log(path, &columns, index, format, spacing);
     let gyros = [gyro(0)?, gyro(1)?, gyro(2)?];
     let temperature_c = columns.data.get(3).map(|column| column.values.clone());
-    let (low, high) = TEMPERATURE_C;
-    let is_far = |warmth: &f64| !(low..=high).contains(warmth);
-    let far = temperature_c.as_deref().unwrap_or_default();
-    if let Some(row) = far.iter().position(is_far) {
-        let message = format!(
-            "a temperature of {:?} deg C is out of range: expected {low} to {high} deg C",
-            far[row]
-        );
-        return Err(LogError::at(path, columns.place(row), message));
+    for (row, &warmth) in temperature_c.iter().flatten().enumerate() {
+        check_temperature(warmth).map_err(|error| LogError::at(path, columns.place(row), error))?;
     }
     Ok(AssemblyLog {
         gyros,

@@ -34,6 +34,13 @@ pub(crate) fn plain(value: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
+/// A number as it was written, without the `.0` of a whole one: what is compared with the end of a
+/// range must not be rounded to it.
+pub(crate) fn exact(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
 /// Sizes beyond which a number in fixed decimals would be a row of digits that nobody reads.
 const FIXED_MAX: f64 = 1e9;
 
