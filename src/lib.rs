@@ -74,6 +74,8 @@
 
 mod linear_algebra;
 pub mod random;
+#[cfg(feature = "scenario")]
+mod seal;
 pub mod signal;
 pub mod units;
 pub mod vocabulary;

@@ -8,10 +8,14 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("vocabulary", &[]),
     ("wording", &[]),
+    ("seal", &[]),
     ("linear_algebra", &[]),
     ("random", &["units"]),
     ("signal", &["units"]),
-    ("scenario", &["units", "recording", "wording", "filters"]),
+    (
+        "scenario",
+        &["units", "recording", "wording", "seal", "filters"],
+    ),
     ("turntable", &["units", "signal", "random", "scenario"]),
     ("gyro", &["units", "signal", "random", "scenario"]),
     ("fpga", &[]),
@@ -22,7 +26,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("recording", &["units", "signal", "wording"]),
     ("gate", &["metrics", "scenario"]),
     ("comparison", &["metrics", "gate", "scenario"]),
-    ("store", &[]),
+    ("store", &["seal"]),
     (
         "report",
         &[

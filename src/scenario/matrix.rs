@@ -1,11 +1,13 @@
 //! Sweeps: the Cartesian product of the arrays in `[matrix]`.
 
 use std::cmp::Reverse;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::address::{self, Step};
 use super::draft::{Draft, Unsound};
 use super::error::ScenarioError;
+use super::excerpt::excerpt;
 use super::resolved::{Resolved, SweepPoint};
 use super::schema::Key;
 use super::script;
@@ -84,6 +86,9 @@ pub(super) fn expand(
                     check_size(&resolved, matrix, count).map_err(|error| vec![error])?;
                 }
                 resolved.sweep = Some(sweep_point(&resolved, &axes, index, count));
+                if index == 0 {
+                    resolved.remarks.extend(remarks(draft, &axes));
+                }
                 resolved.is_base_point = base.is_some() && base == values(&resolved, &axes);
                 visit(resolved, &swept);
             }
@@ -102,6 +107,36 @@ pub(super) fn expand(
     } else {
         Err(unsound)
     }
+}
+
+/// What is worth saying of a sweep: values that stand twice, and a kind that is replaced.
+fn remarks(draft: &Draft, axes: &[Axis]) -> Vec<String> {
+    let mut found = Vec::new();
+    for axis in axes {
+        let mut seen = BTreeSet::new();
+        let texts = axis.values.iter().map(|value| value.value.to_toml());
+        let twice = texts.filter(|text| !seen.insert(text.clone()));
+        let twice: BTreeSet<String> = twice.collect();
+        if let Some(first) = twice.first() {
+            let more = match twice.len() - 1 {
+                0 => String::new(),
+                more => format!(", as do {more} more"),
+            };
+            found.push(format!(
+                "{}: matrix: {} = {} stands more than once{more}: such points are the same run",
+                draft.file,
+                axis.written,
+                excerpt(first)
+            ));
+        }
+        if let Some(remark) = address::kind_replaced(&draft.root, &axis.path) {
+            found.push(format!(
+                "{}: matrix: {}: {remark}",
+                draft.file, axis.written
+            ));
+        }
+    }
+    found
 }
 
 /// The points of a sweep, resolved by the pattern of the first sound one.
