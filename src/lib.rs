@@ -72,6 +72,7 @@
 // What one feature alone leaves without a user is none the less the same code.
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
+pub mod declare;
 mod linear_algebra;
 pub mod random;
 #[cfg(feature = "scenario")]

@@ -7,23 +7,33 @@ use std::path::{Path, PathBuf};
 const IMPORTS: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("vocabulary", &[]),
+    ("declare", &[]),
     ("wording", &[]),
     ("seal", &[]),
     ("linear_algebra", &[]),
     ("random", &["units"]),
     ("signal", &["units"]),
-    (
-        "scenario",
-        &["units", "recording", "wording", "seal", "filters"],
-    ),
-    ("turntable", &["units", "signal", "random", "scenario"]),
-    ("gyro", &["units", "signal", "random", "scenario"]),
+    ("turntable", &["units", "signal", "random", "wording"]),
+    ("gyro", &["units", "signal", "random"]),
     ("fpga", &[]),
     ("filters", &["units", "signal"]),
     ("filters/hardware", &["units", "signal", "filters", "fpga"]),
     ("metrics", &["units", "linear_algebra", "signal", "wording"]),
     ("calibration", &["units", "linear_algebra", "signal"]),
     ("recording", &["units", "signal", "wording"]),
+    (
+        "scenario",
+        &[
+            "units",
+            "wording",
+            "seal",
+            "recording",
+            "turntable",
+            "gyro",
+            "filters",
+            "calibration",
+        ],
+    ),
     ("gate", &["metrics", "scenario"]),
     ("comparison", &["metrics", "gate", "scenario"]),
     ("store", &["seal"]),
@@ -78,7 +88,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
 ];
 
 /// Modules that every other one may import.
-const FOR_ALL: &[&str] = &["vocabulary"];
+const FOR_ALL: &[&str] = &["declare", "vocabulary"];
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<_> = fs::read_dir(folder)

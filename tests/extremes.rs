@@ -429,7 +429,7 @@ fn measuring_words_whose_squares_overflow_ends_with_reasons() {
         let reasons = table.unavailable.values();
         assert!(
             reasons
-                .filter(|reason| reason.contains("no finite number"))
+                .filter(|reason| reason.as_str().contains("no finite number"))
                 .count()
                 > 0,
             "{:?}",

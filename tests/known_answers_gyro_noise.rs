@@ -1,7 +1,8 @@
 //! Known answers of the gyro's noise: closed-form budget and colour.
 
 use fogbench::gyro::{
-    Coil, LoopModel, RateModel, facts, optimum_depth_rad, relative_intensity_noise_per_hz,
+    Coil, LoopModel, NOISE_SOURCES, NoiseSource, RateModel, facts, optimum_depth_rad,
+    relative_intensity_noise_per_hz,
 };
 use fogbench::random::Streams;
 use fogbench::scenario::{GyroConfig, NoiseConfig, NoiseDraw};
@@ -12,8 +13,8 @@ use fogbench::units::{
 use std::f64::consts::PI;
 
 use crate::support::assert_close;
-use crate::support::gyro_cases::{allan_deviation, budget_of};
-use crate::support::reference_gyro::reference_gyro;
+use crate::support::gyro_cases::{allan_deviation, budget_of, off, on};
+use crate::support::reference_gyro::{gyro, reference_gyro};
 
 /// Relative standard error of an overlapping Allan deviation of white rate noise.
 ///
@@ -77,24 +78,67 @@ fn fast_gyro() -> GyroConfig {
 /// `1.5 (T_L / g) / 20 ms` = 0.26 % of the variance, a tenth of the standard error.
 const FACTOR: usize = 80;
 
-fn only(source: &str) -> NoiseConfig {
-    NoiseConfig {
-        shot: source == "shot",
-        thermal: source == "thermal",
-        amplifier: source == "amplifier",
-        rin: source == "rin",
-        technical_phase_urad_per_sqrt_hz: if source == "technical" { 2.0 } else { 0.0 },
-        draw: NoiseDraw::Exact,
+/// Every noise source that is drawn.
+fn drawn() -> impl Iterator<Item = NoiseSource> {
+    let sources = NOISE_SOURCES.into_iter();
+    sources.filter(|source| source.key.starts_with("gyro.noise."))
+}
+
+/// One source on, the others that are drawn off, each source drawn on its own.
+fn only(name: &str) -> NoiseConfig {
+    let mut settings: Vec<String> = drawn()
+        .map(|source| {
+            if source.name == name {
+                on(&source)
+            } else {
+                off(&source)
+            }
+        })
+        .collect();
+    settings.push("noise.draw = \"exact\"".to_owned());
+    gyro(&settings).noise
+}
+
+#[test]
+fn each_source_is_switched_by_its_key_and_counts_once_in_the_total() {
+    let all: Vec<String> = NOISE_SOURCES
+        .iter()
+        .map(|source| {
+            if source.key == "gyro.adc.bits" {
+                "adc.bits = 12".to_owned()
+            } else {
+                on(source)
+            }
+        })
+        .collect();
+    let budget = |settings: &[String]| {
+        let facts = fogbench::gyro::facts(&gyro(settings)).expect("the gyro is sound");
+        facts.angle_random_walk_budget_deg_per_sqrt_h
+    };
+    let full = budget(&all);
+    let names: Vec<&str> = NOISE_SOURCES.iter().map(|source| source.name).collect();
+    let shown: Vec<&str> = full.iter().map(|(name, _)| *name).collect();
+    assert_eq!(shown, [names.as_slice(), &["total"]].concat());
+    for (index, source) in NOISE_SOURCES.iter().enumerate() {
+        let mut settings = all.clone();
+        settings[index] = off(source);
+        let without = budget(&settings);
+        let mut squares = 0.0;
+        for ((name, before), (_, after)) in full.iter().zip(&without).take(names.len()) {
+            assert!(*before > 0.0, "{name}");
+            let want = if *name == source.name { 0.0 } else { *before };
+            assert_close(*after, want, 1e-12, 0.0);
+            squares += after * after;
+        }
+        let (_, total) = without[names.len()];
+        assert_close(total, squares.sqrt(), 1e-12, 0.0);
     }
 }
 
 #[test]
 fn known_answer_k13_each_source_alone_has_its_closed_form() {
-    let sources = ["shot", "thermal", "amplifier", "rin", "technical"];
     let depths_deg = [90.0, 120.0, 135.0];
-    let cases = sources
-        .iter()
-        .flat_map(|source| depths_deg.map(|depth_deg| (*source, depth_deg)));
+    let cases = drawn().flat_map(|source| depths_deg.map(|depth_deg| (source.name, depth_deg)));
     for (source, depth_deg) in cases {
         let mut config = fast_gyro();
         config.noise = only(source);

@@ -115,6 +115,7 @@ fn three_rates_make_a_scale_factor_and_two_of_each_sense_an_asymmetry() {
     assert!(
         fit(&[1.0, 2.0, 1.0, 2.0])
             .unwrap_err()
+            .as_str()
             .contains("there are 2")
     );
     assert!(fit(&[1.0, 2.0, 3.0]).unwrap().asymmetry.is_none());

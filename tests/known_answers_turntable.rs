@@ -7,10 +7,7 @@ use fogbench::scenario::{
     StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
-use fogbench::turntable::{
-    Turntable, command_rate_max_rad_per_s, earth_rate_rad_per_s, first_measured_index,
-    step_indices, swing_rate_amplitude_rad_per_s,
-};
+use fogbench::turntable::{Turntable, earth_rate_rad_per_s, first_measured_index, step_indices};
 use fogbench::units::{
     deg_per_s_to_rad_per_s, deg_to_rad, rad_per_s_to_deg_per_h, rad_per_s_to_deg_per_s,
     rad_to_arcsec, rad_to_deg,
@@ -126,13 +123,14 @@ fn earth_rate_follows_the_pointing_of_the_axis() {
 
 #[test]
 fn known_answer_k29_angle_amplitude_of_a_swing() {
-    let rate_rad_per_s = swing_rate_amplitude_rad_per_s(&SwingConfig {
+    let rate_rad_per_s = SwingConfig {
         rate_amplitude_deg_per_s: Some(1.0),
         angle_amplitude_deg: None,
         frequency_hz: 5.0,
         soft_start_s: 1.0,
         from_rest: false,
-    });
+    }
+    .rate_amplitude_rad_per_s();
     let angle_rad = rate_rad_per_s / (TAU * 5.0);
     assert_close(rad_to_arcsec(angle_rad), 114.592, 0.0, 0.000_5);
     // The same motion given by its angle.
@@ -143,22 +141,23 @@ fn known_answer_k29_angle_amplitude_of_a_swing() {
         soft_start_s: 1.0,
         from_rest: false,
     };
-    let rate = swing_rate_amplitude_rad_per_s(&by_angle);
+    let rate = by_angle.rate_amplitude_rad_per_s();
     assert_close(rad_per_s_to_deg_per_s(rate), 1.0, 1e-12, 0.0);
-    let max = command_rate_max_rad_per_s(&MotionConfig::Swing(by_angle));
+    let max = MotionConfig::Swing(by_angle).rate_max_rad_per_s();
     assert_close(max, rate, 1e-15, 0.0);
 }
 
 #[test]
 #[should_panic(expected = "a swing has one amplitude")]
 fn a_swing_with_two_amplitudes_is_refused() {
-    let _ = swing_rate_amplitude_rad_per_s(&SwingConfig {
+    let _ = SwingConfig {
         rate_amplitude_deg_per_s: Some(1.0),
         angle_amplitude_deg: Some(1.0),
         frequency_hz: 5.0,
         soft_start_s: 1.0,
         from_rest: false,
-    });
+    }
+    .rate_amplitude_rad_per_s();
 }
 
 #[test]
@@ -348,7 +347,7 @@ fn steps_fall_on_sample_boundaries() {
     assert_eq!(changes, [599, 998]);
     let steps = MotionConfig::Steps(staircase());
     assert_close(
-        rad_per_s_to_deg_per_s(command_rate_max_rad_per_s(&steps)),
+        rad_per_s_to_deg_per_s(steps.rate_max_rad_per_s()),
         2.0,
         1e-15,
         0.0,

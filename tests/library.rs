@@ -89,7 +89,7 @@ fn a_channel_that_fails_is_accepted_only_if_a_gate_expects_it() -> Result<(), Bo
     assert!(unexpected.samples("f").is_err());
     let missing = unexpected["f"].metric(&DC_GAIN).unwrap_err();
     let failure = unexpected["f"].error.as_ref().expect("seen above");
-    assert_eq!(missing.reason, failure.message);
+    assert_eq!(missing.reason.as_str(), failure.message);
     Ok(())
 }
 
@@ -101,7 +101,7 @@ fn a_missing_metric_says_why() -> Result<(), Box<dyn Error>> {
     let reason = run["raw"].why_unavailable(&ANGLE_RANDOM_WALK);
     assert_eq!(Some(missing.reason.as_str()), reason);
     let other = run["raw"].metric(&DELAY_VS_RAW).unwrap_err();
-    assert!(!other.reason.is_empty());
+    assert!(!other.reason.as_str().is_empty());
     Ok(())
 }
 

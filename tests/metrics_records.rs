@@ -92,7 +92,7 @@ fn a_constant_output_is_said_not_to_vary() {
     let constant = vec![8.1; raw.len()];
     let metrics = measured(&raw, &constant, &settings(Motion::Steady), Some(&facts()));
     every_metric_is_answered(&metrics);
-    let reason = &metrics.unavailable["angle_random_walk_deg_per_sqrt_h"];
+    let reason = metrics.unavailable["angle_random_walk_deg_per_sqrt_h"].as_str();
     assert!(reason.contains("does not vary"), "{reason}");
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use fogbench::scenario::{
-    AxisConfig, CaseAxis, MotionConfig, MountingConfig, RotationConfig, ServoConfig, SiteConfig,
+    AxisConfig, MotionConfig, MountingConfig, RotationConfig, ServoConfig, SiteConfig,
     StaticConfig, StepsConfig, SwingConfig, TurntableConfig,
 };
 use fogbench::turntable::{Turntable, earth_rate_rad_per_s, input_axis_bounds};
@@ -11,6 +11,7 @@ use fogbench::units::{
     EARTH_RATE_RAD_PER_S, arcsec_to_rad, deg_per_s_to_rad_per_s, deg_to_rad,
     rad_per_s_to_deg_per_h, rad_to_arcsec,
 };
+use fogbench::vocabulary::CaseAxis;
 
 use crate::support::assert_close;
 use crate::support::turntable_cases::{no_encoder, true_axis, true_mounting};

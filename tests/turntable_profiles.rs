@@ -8,7 +8,7 @@ use fogbench::scenario::{
     TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
-use fogbench::turntable::{Turntable, command_extremes, command_rate_max_rad_per_s};
+use fogbench::turntable::{CommandExtremes, Surroundings, Turntable};
 use fogbench::units::{deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_s, rad_to_deg};
 
 use crate::support::assert_close;
@@ -32,6 +32,13 @@ fn config(motion: MotionConfig) -> TurntableConfig {
         axis: true_axis(),
         mounting: true_mounting(),
     }
+}
+
+fn extremes(motion: &MotionConfig) -> CommandExtremes {
+    motion.extremes(Surroundings {
+        warm_up_s: 1.0,
+        servo: &ServoConfig::Ideal(StaticConfig {}),
+    })
 }
 
 fn table(motion: MotionConfig) -> Turntable {
@@ -120,8 +127,8 @@ fn trapezoids_of_both_senses_come_back() {
 fn trapezoids_join_and_keep_to_their_extremes() {
     let motion = MotionConfig::Trapezoid(trapezoid(true));
     let (rate, acceleration) = assert_joined(table(motion.clone()), 25_000);
-    let extremes = command_extremes(&motion).unwrap();
-    assert_close(rate, command_rate_max_rad_per_s(&motion), 1e-12, 0.0);
+    let extremes = extremes(&motion);
+    assert_close(rate, motion.rate_max_rad_per_s(), 1e-12, 0.0);
     assert_close(acceleration, extremes.acceleration_rad_per_s2, 1e-9, 0.0);
     assert_close(extremes.jump_rad_per_s, 0.0, 0.0, 0.0);
 }
@@ -204,8 +211,8 @@ fn a_sweep_starts_and_stops_softly_and_then_rests() {
     for is_angle in [false, true] {
         let motion = MotionConfig::Chirp(chirp(Progression::Logarithmic, is_angle));
         let (rate, acceleration) = assert_joined(table(motion.clone()), 24_000);
-        let extremes = command_extremes(&motion).unwrap();
-        assert!(rate <= command_rate_max_rad_per_s(&motion) * (1.0 + 1e-12));
+        let extremes = extremes(&motion);
+        assert!(rate <= motion.rate_max_rad_per_s() * (1.0 + 1e-12));
         assert!(acceleration <= extremes.acceleration_rad_per_s2);
         assert!(acceleration > 0.9 * extremes.acceleration_rad_per_s2);
         let record = recorded(table(motion), 19_000);
@@ -259,7 +266,7 @@ fn scripted_rates_are_joined_by_straight_lines() {
     }
     // The first rate is held from the start: one second of 1 deg/s, then the areas of the lines.
     assert_close(record[7999].1, 1.0 + 1.5 + 0.25 - 0.625, 0.0, 1e-6);
-    let extremes = command_extremes(&motion).unwrap();
+    let extremes = extremes(&motion);
     assert_close(
         extremes.jump_rad_per_s,
         deg_per_s_to_rad_per_s(1.0),
@@ -273,7 +280,7 @@ fn scripted_rates_are_joined_by_straight_lines() {
         0.0,
     );
     assert_close(
-        command_rate_max_rad_per_s(&motion),
+        motion.rate_max_rad_per_s(),
         deg_per_s_to_rad_per_s(5.0),
         1e-15,
         0.0,
@@ -285,7 +292,7 @@ fn scripted_angles_are_met_and_never_exceeded() {
     let angles = vec![0.0, 10.0, 40.0, 20.0];
     let motion = script(None, Some(angles));
     let record = recorded(table(motion.clone()), 10_000);
-    let extremes = command_extremes(&motion).unwrap();
+    let extremes = extremes(&motion);
     // The slope at a point is that after it: each jump of it turns the sample before the point by
     // T^2 / 12 of the jump, of which the record holds four.
     let jump = 2.0 * rad_per_s_to_deg_per_s(extremes.acceleration_rad_per_s2);
@@ -316,7 +323,7 @@ fn scripted_angles_are_met_and_never_exceeded() {
         0.0,
     );
     let (rate, acceleration) = assert_joined(table(motion.clone()), 14_000);
-    assert_close(rate, command_rate_max_rad_per_s(&motion), 1e-5, 0.0);
+    assert_close(rate, motion.rate_max_rad_per_s(), 1e-5, 0.0);
     assert!(acceleration <= extremes.acceleration_rad_per_s2 * (1.0 + 1e-9));
     assert!(acceleration > 0.99 * extremes.acceleration_rad_per_s2);
     assert_close(extremes.jump_rad_per_s, 0.0, 0.0, 0.0);

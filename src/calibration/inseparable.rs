@@ -22,6 +22,7 @@ use crate::linear_algebra::singular_value_decomposition;
 
 /// One direction in which the parameters may move without any output changing.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Inseparable {
     /// Columns that take part.
     pub columns: Vec<Column>,

@@ -92,6 +92,7 @@ pub enum Averaging {
 
 /// Means of one group.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct GroupMeans {
     /// Mean outputs of the gyros x, y, z, deg/s.
     pub output_deg_per_s: [f64; 3],

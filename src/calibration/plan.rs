@@ -24,6 +24,7 @@ pub const RANK_TOLERANCE: f64 = 1e-4;
 /// both senses, -90, 10 and 90 deg/s, 43, and a bias half as uncertain, as the mean rate of a mounting
 /// is then near zero and its bias no longer an extrapolation.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AxisPlan {
     /// Singular values of the rows `a_i`, descending, in the module's units (deg/s, 1, K).
     pub singular_values: Vec<f64>,
@@ -40,6 +41,7 @@ pub struct AxisPlan {
 
 /// A plan that determines every parameter.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PlanReport {
     /// Groups of the plan.
     pub groups: usize,

@@ -4,6 +4,7 @@ use super::error_model::ErrorParameters;
 
 /// A coefficient of the gyros x, y, z with its standard error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct AxisCoefficients {
     /// Values.
     pub value: [f64; 3],
@@ -13,6 +14,7 @@ pub struct AxisCoefficients {
 
 /// Temperature coefficients, where the estimator fitted them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct TemperatureCoefficients {
     /// Of the bias, deg/s per K.
     pub bias: Option<AxisCoefficients>,
@@ -24,6 +26,7 @@ pub struct TemperatureCoefficients {
 
 /// What double precision cost the covariance recursion: largest differences from the square-root form.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RoundingLoss {
     /// Of a bias, deg/s.
     pub bias_deg_per_s: f64,
@@ -52,6 +55,7 @@ impl RoundingLoss {
 
 /// Estimated parameters of an assembly, with what they rest on.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Calibration {
     /// The twelve parameters, at the reference temperature.
     pub parameters: ErrorParameters,

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::calibrate_arguments::CalibrateOptions;
+use super::format::Format;
 use super::hardware_arguments::{ExportOptions, TimingOptions};
 use super::log_arguments::{AnalyzeOptions, FilterLogOptions};
 
@@ -70,17 +71,6 @@ pub(super) struct SelectOptions {
     /// Override a key of every selected scenario; `filter.<name>.<key>` reaches into a filter
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(super) set: Vec<String>,
-}
-
-/// Form of printed results.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Format {
-    /// Tables for people
-    Text,
-    /// One JSON document
-    Json,
-    /// One JSON document per line and run
-    Jsonl,
 }
 
 /// Whose results `run --resume` takes over.

@@ -2,8 +2,9 @@
 
 use std::io;
 
-use super::arguments::{BudgetOptions, Format};
+use super::arguments::BudgetOptions;
 use super::exit::Exit;
+use super::format::Format;
 use super::place::Place;
 use super::{complaint, output};
 use crate::experiment::{GyroBudget, gyro_budget};

@@ -2,9 +2,9 @@
 
 use std::io;
 
-use super::arguments::Format;
 use super::calibrate_arguments::CalibrateOptions;
 use super::exit::Exit;
+use super::format::Format;
 use super::place::Place;
 use super::{complaint, output};
 use crate::experiment::{CalibrateError, CalibrationTrial, calibrate_campaign, calibrate_groups};

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::arguments::Format;
+use super::format::Format;
+use super::numbers::{OptionError, within};
 use crate::experiment::GroupsSettings;
-use crate::scenario::reference_calibration;
+use crate::scenario::CalibrationConfig;
 use crate::vocabulary::{EstimatorKind, ForgettingForm};
 
 /// Options of `calibrate`.
@@ -31,11 +32,11 @@ pub(super) struct CalibrateOptions {
     pub(super) forgetting_form: Option<ForgettingForm>,
     /// Its constant without a temperature coefficient, 1/K
     /// [default: calibration.forgetting_constant_per_k]
-    #[arg(long, value_name = "C", value_parser = constant)]
+    #[arg(long, value_name = "C", value_parser = within(0.0, 1000.0, "1/K"))]
     pub(super) forgetting_constant_per_k: Option<f64>,
     /// Its constant beside a temperature coefficient, 1/K
     /// [default: calibration.forgetting_constant_with_temperature_per_k]
-    #[arg(long, value_name = "C", value_parser = constant)]
+    #[arg(long, value_name = "C", value_parser = within(0.0, 1000.0, "1/K"))]
     pub(super) forgetting_constant_with_temperature_per_k: Option<f64>,
     /// Override a key of the scenario
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -59,7 +60,7 @@ impl CalibrateOptions {
 
     /// Settings for a groups file.
     pub(super) fn groups_settings(&self) -> GroupsSettings {
-        let mut calibration = reference_calibration();
+        let mut calibration = CalibrationConfig::reference();
         let settings = &mut calibration;
         settings.apply = self.estimator.unwrap_or(settings.apply);
         settings.forgetting_form = self.forgetting_form.unwrap_or(settings.forgetting_form);
@@ -121,16 +122,9 @@ impl CalibrateOptions {
     }
 }
 
-fn latitude(text: &str) -> Result<f64, String> {
+fn latitude(text: &str) -> Result<f64, OptionError> {
     match text.parse::<f64>() {
         Ok(number) if (-90.0..=90.0).contains(&number) => Ok(number),
-        _ => Err("expected a latitude from -90 to 90 deg".to_owned()),
-    }
-}
-
-fn constant(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if (0.0..=1000.0).contains(&number) => Ok(number),
-        _ => Err("expected a number from 0 to 1000 1/K".to_owned()),
+        _ => Err(OptionError::Latitude),
     }
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::arguments::Format;
-use super::numbers::{count_within, within};
+use super::format::Format;
+use super::numbers::{OptionError, count_within, within};
 use crate::filters::hardware::PipelineSettings;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
@@ -197,7 +197,7 @@ pub(super) struct TimingOptions {
 }
 
 /// A parser of clocks that an operation may take.
-fn clocks() -> impl Fn(&str) -> Result<u64, String> + Clone + Send + Sync + 'static {
+fn clocks() -> impl Fn(&str) -> Result<u64, OptionError> + Clone + Send + Sync + 'static {
     let parse = count_within(1, CLOCKS_MAX);
     move |text| parse(text).map(|clocks| clocks as u64)
 }

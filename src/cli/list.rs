@@ -5,8 +5,9 @@ use std::io;
 
 use serde_json::json;
 
-use super::arguments::{Format, ListOptions};
+use super::arguments::ListOptions;
 use super::exit::Exit;
+use super::format::Format;
 use super::{output, select};
 use crate::experiment::Plan;
 use crate::wording::printable;

@@ -3,9 +3,9 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::arguments::Format;
 use super::complaint::{self, Complaint};
 use super::exit::Exit;
+use super::format::Format;
 use super::log_arguments::{AnalyzeOptions, FilterLogOptions, LogOptions};
 use super::output;
 use super::place::Place;

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::arguments::Format;
-use super::numbers::within;
+use super::format::Format;
+use super::numbers::{OptionError, within};
 use crate::experiment::LogMotion;
 use crate::recording::{RateUnit, SAMPLE_RATE_HZ, TimeUnit};
 use crate::scenario::AllanEstimatorConfig;
@@ -135,17 +135,15 @@ pub(super) struct FilterLogOptions {
     pub(super) csv: bool,
 }
 
-fn axis(text: &str) -> Result<usize, String> {
+fn axis(text: &str) -> Result<usize, OptionError> {
     let found = ["x", "y", "z"].iter().position(|axis| *axis == text);
-    found.ok_or_else(|| "expected x, y or z".to_owned())
+    found.ok_or(OptionError::Axis)
 }
 
 /// A negative one turns the sense of the axis.
-fn factor(text: &str) -> Result<f64, String> {
+fn factor(text: &str) -> Result<f64, OptionError> {
     let (least, most) = FACTOR;
     let number = text.parse::<f64>().ok();
     let number = number.filter(|number| (least..=most).contains(&number.abs()));
-    number.ok_or_else(|| {
-        format!("expected a number from {least:e} to {most:e}, or the negative of such a number")
-    })
+    number.ok_or(OptionError::Factor { least, most })
 }

@@ -11,6 +11,7 @@ mod complaint;
 mod exit;
 mod expand;
 mod export;
+mod format;
 mod hardware_arguments;
 mod idle;
 mod list;

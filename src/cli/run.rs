@@ -6,8 +6,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::arguments::{Format, ResumeFrom, RunOptions};
+use super::arguments::{ResumeFrom, RunOptions};
 use super::exit::{Exit, io_failure};
+use super::format::Format;
 use super::signals::Interrupt;
 use super::{output, place, select};
 use crate::experiment::{

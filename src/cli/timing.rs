@@ -5,8 +5,8 @@ use std::io;
 
 use serde_json::{Value, json};
 
-use super::arguments::Format;
 use super::exit::Exit;
+use super::format::Format;
 use super::hardware_arguments::{FilterOptions, TimingOptions};
 use super::output;
 use crate::filters::hardware::PipelineTiming;

@@ -8,6 +8,7 @@ use crate::signal::BudgetSheet;
 
 /// The noise budget of one gyro, and whose it is.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct GyroBudget {
     /// The bare name of the file, so that what is written does not depend on where one stands.
     pub file: String,

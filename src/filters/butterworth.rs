@@ -2,11 +2,10 @@
 
 use std::f64::consts::PI;
 
-use serde::Deserialize;
-
 use super::common::sections::{check_cutoff, checked};
 use super::common::{Complaints, Filter, RecursiveFilter};
-use super::kind::{ExpectedWords, FilterSettings};
+use super::settings::{ExpectedWords, FilterSettings};
+use crate::declare::table;
 use crate::signal::Section;
 use crate::vocabulary::OutputRegister;
 
@@ -14,16 +13,16 @@ use crate::vocabulary::OutputRegister;
 /// a pair of poles leaves the square of `2 pi f T`: rounding moves it by 1e-5 there.
 const CUTOFF_SHARE_MIN: f64 = 1e-6;
 
-/// Butterworth low pass.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ButterworthFilterConfig {
-    /// Number of poles.
-    pub order: u32,
-    /// Half-power frequency, Hz.
-    pub cutoff_hz: f64,
-    /// When the result appears.
-    pub output_register: OutputRegister,
+table! {
+    /// Butterworth low pass.
+    pub struct ButterworthFilterConfig {
+        /// Number of poles. Source of the default: assumed.
+        order: u32 = 2, in 1..=12;
+        /// Half-power frequency, below half the output rate. Source of the default: assumed.
+        cutoff_hz: f64 = 100.0, in 1e-9..=1e6, "Hz";
+        /// When the result appears: at the next sample tick, or as soon as it is computed.
+        output_register: OutputRegister = "next-sample";
+    }
 }
 
 impl FilterSettings for ButterworthFilterConfig {

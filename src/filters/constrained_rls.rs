@@ -1,29 +1,28 @@
 //! Recursive least squares held to unit DC gain.
 
-use serde::Deserialize;
-
 use super::common::{Core, CoreFilter, Fault, Filter, FrontEndConfig, Output, dot};
-use super::kind::FilterSettings;
 use super::rls::{RlsConfig, RlsCore};
+use super::settings::FilterSettings;
+use crate::declare::table;
 use crate::signal::WeightRule;
 use crate::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 
-/// Recursive least squares held to unit DC gain.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ConstrainedRlsFilterConfig {
-    /// Number of weights p, one more than are free.
-    pub taps: u32,
-    /// Forgetting factor, (0, 1].
-    pub forgetting_factor: f64,
-    /// Initial inverse correlation delta, (deg/h)^-2.
-    pub initial_inverse_correlation: f64,
-    /// Desired signal.
-    pub desired: DesiredSignal,
-    /// Samples by which the regressors lag the desired signal's newest sample.
-    pub input_lag_samples: u32,
-    /// When the result appears.
-    pub output_register: OutputRegister,
+table! {
+    /// Recursive least squares held to unit DC gain: the mean rate cannot enter its weights.
+    pub struct ConstrainedRlsFilterConfig {
+        /// Number of weights, one more than are free. Source of the default: that of the plain filter.
+        taps: u32 = 4, in 2..=64;
+        /// Forgetting factor. Source of the default: that of the plain filter.
+        forgetting_factor: f64 = 1.0, in 1e-3..=1.0;
+        /// Initial inverse correlation. Source of the default: that of the plain filter.
+        initial_inverse_correlation: f64 = 7.716e-4, in 1e-18..=1e12, "(deg/h)^-2";
+        /// What the filter aims at.
+        desired: DesiredSignal = "current";
+        /// Samples by which the regressors lag the newest sample of the desired signal.
+        input_lag_samples: u32 = 1, in 0..=64;
+        /// When the result appears: at the next sample tick, or as soon as it is computed.
+        output_register: OutputRegister = "next-sample";
+    }
 }
 
 impl FilterSettings for ConstrainedRlsFilterConfig {

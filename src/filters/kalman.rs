@@ -1,23 +1,23 @@
 //! Kalman filter for a rate that walks, in white noise.
 
-use serde::Deserialize;
-
 use super::common::{Core, CoreFilter, Fault, Filter, FrontEndConfig, Output};
-use super::kind::FilterSettings;
 use super::one_pole::one_pole_of_gain;
+use super::settings::FilterSettings;
+use crate::declare::table;
 use crate::signal::WeightRule;
 use crate::vocabulary::{DesiredSignal, OutputRegister};
 
-/// Kalman filter for a rate that walks slowly, in white noise.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct KalmanFilterConfig {
-    /// Standard deviation of the white noise of one word, deg/h.
-    pub measurement_noise_deg_per_h: f64,
-    /// Random walk of the rate that the filter reckons with, deg/h/sqrt(s).
-    pub rate_random_walk_deg_per_h_per_sqrt_s: f64,
-    /// When the result appears.
-    pub output_register: OutputRegister,
+table! {
+    /// Kalman filter for a rate that walks slowly, in white noise: a one-pole filter once settled.
+    pub struct KalmanFilterConfig {
+        /// Standard deviation of the white noise of one word. Source of the default: the noise budget.
+        measurement_noise_deg_per_h: f64 = 19.0, in 1e-6..=1e9, "deg/h";
+        /// Random walk of the rate that the filter reckons with. Source of the default: assumed; gives
+        /// half power at about 100 Hz.
+        rate_random_walk_deg_per_h_per_sqrt_s: f64 = 190.0, in 1e-9..=1e9, "deg/h/sqrt(s)";
+        /// When the result appears: at the next sample tick, or as soon as it is computed.
+        output_register: OutputRegister = "next-sample";
+    }
 }
 
 impl FilterSettings for KalmanFilterConfig {

@@ -36,6 +36,7 @@ mod moving_average;
 mod one_pole;
 mod rls;
 mod savitzky_golay;
+mod settings;
 mod sign_lms;
 
 pub use butterworth::{ButterworthFilterConfig, butterworth};
@@ -46,7 +47,7 @@ pub use common::{
 };
 pub use constrained_rls::{ConstrainedRls, ConstrainedRlsCore, ConstrainedRlsFilterConfig};
 pub use kalman::{Kalman, KalmanConfig, KalmanCore, KalmanFilterConfig, kalman_gain};
-pub use kind::{ExpectedRun, ExpectedWords, FilterConfig, FilterKind, FilterSettings, KINDS};
+pub use kind::{FilterConfig, FilterKind};
 pub use lms::{
     Lms, LmsConfig, LmsCore, LmsFilterConfig, Normalisation, constant_eigenvalue_max,
     lms_step_bound, sine_eigenvalue_max,
@@ -55,6 +56,7 @@ pub use moving_average::{MovingAverageFilterConfig, moving_average};
 pub use one_pole::{OnePoleFilterConfig, one_pole};
 pub use rls::{Rls, RlsConfig, RlsCore, RlsFilterConfig, covariance_digits_warning};
 pub use savitzky_golay::{SavitzkyGolayFilterConfig, savitzky_golay};
+pub use settings::{ExpectedRun, ExpectedWords, FilterSettings};
 pub use sign_lms::{
     SignLms, SignLmsConfig, SignLmsCore, SignLmsFilterConfig, sign_lms_slew_per_sample,
     sign_lms_slew_samples,

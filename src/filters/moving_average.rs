@@ -1,21 +1,20 @@
 //! Mean of the newest samples.
 
-use serde::Deserialize;
-
 use super::common::{Filter, FixedFilter};
-use super::kind::FilterSettings;
+use super::settings::FilterSettings;
+use crate::declare::table;
 use crate::vocabulary::OutputRegister;
 
-/// Mean of the newest samples.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MovingAverageFilterConfig {
-    /// Number of samples.
-    pub taps: u32,
-    /// Age of the newest sample of the mean, samples.
-    pub delay_samples: u32,
-    /// When the result appears.
-    pub output_register: OutputRegister,
+table! {
+    /// Mean of the newest samples.
+    pub struct MovingAverageFilterConfig {
+        /// Number of samples. Source of the default: as many as the paper's filter has weights.
+        taps: u32 = 4, in 1..=4096;
+        /// Age of the newest sample of the mean. Source of the default: none.
+        delay_samples: u32 = 0, in 0..=4096;
+        /// When the result appears: at the next sample tick, or as soon as it is computed.
+        output_register: OutputRegister = "next-sample";
+    }
 }
 
 impl FilterSettings for MovingAverageFilterConfig {

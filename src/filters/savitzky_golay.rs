@@ -1,22 +1,21 @@
 //! Savitzky-Golay filter at the newest sample.
 
-use nalgebra::{DMatrix, DVector};
-use serde::Deserialize;
-
 use super::common::{Complaints, Filter, FixedFilter};
-use super::kind::FilterSettings;
+use super::settings::FilterSettings;
+use crate::declare::table;
 use crate::vocabulary::OutputRegister;
+use nalgebra::{DMatrix, DVector};
 
-/// Savitzky-Golay filter at the newest sample.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SavitzkyGolayFilterConfig {
-    /// Number of samples the polynomial is fitted to.
-    pub taps: u32,
-    /// Degree of the polynomial.
-    pub polynomial_order: u32,
-    /// When the result appears.
-    pub output_register: OutputRegister,
+table! {
+    /// Value at the newest sample of a polynomial fitted to the newest samples.
+    pub struct SavitzkyGolayFilterConfig {
+        /// Number of samples the polynomial is fitted to. Source of the default: assumed.
+        taps: u32 = 16, in 2..=4096;
+        /// Degree of the polynomial, below the number of samples. Source of the default: a straight line.
+        polynomial_order: u32 = 1, in 0..=8;
+        /// When the result appears: at the next sample tick, or as soon as it is computed.
+        output_register: OutputRegister = "next-sample";
+    }
 }
 
 impl FilterSettings for SavitzkyGolayFilterConfig {

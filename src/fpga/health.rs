@@ -21,6 +21,7 @@ pub const ASYMMETRY_LIMIT: f64 = 0.01;
 
 /// One look at an inverse correlation matrix. Dimensionless but for the diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MatrixHealth {
     /// Largest `|R[i][j] - R[j][i]|` over the largest `|R[i][j]|`.
     pub asymmetry: f64,
@@ -283,6 +284,7 @@ fn small_count(count: usize) -> f64 {
 
 /// When a channel first showed each sign of failure, as sample indices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct FirstFailures {
     /// A pair with a NaN or infinite word entered.
     pub non_finite_input: Option<u64>,

@@ -34,6 +34,7 @@ pub struct UnitUse<F> {
 
 /// Everything about one clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ClockRecord<F> {
     /// Clocks since reset.
     pub clock: u64,

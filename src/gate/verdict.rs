@@ -26,6 +26,7 @@ impl VerdictKind {
 
 /// One gate, judged.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Verdict {
     /// `<channel>.<metric>`, as the scenario names it.
     pub metric: String,

@@ -2,8 +2,8 @@
 
 use crate::gyro::error::GyroError;
 use crate::gyro::instrument::Gyro;
+use crate::gyro::{AssemblyConfig, Fidelity, GyroConfig};
 use crate::random::Streams;
-use crate::scenario::{AssemblyConfig, Fidelity, GyroConfig};
 use crate::signal::MotionSegment;
 use crate::units::{MICRO, arcsec_to_rad, deg_per_h_to_rad_per_s};
 

@@ -8,8 +8,8 @@ use crate::gyro::loop_model::faults::LoopFaults;
 use crate::gyro::noise::budget::NoiseBudget;
 use crate::gyro::parts::{Parts, half_period_s};
 use crate::gyro::rate_model::RateModel;
+use crate::gyro::{Fidelity, GyroConfig};
 use crate::random::Streams;
-use crate::scenario::{Fidelity, GyroConfig};
 use crate::signal::{GyroFacts, MotionSegment};
 use crate::units::{hz_to_khz, s_to_ms, s_to_us};
 

@@ -38,6 +38,7 @@ mod optics;
 mod parts;
 mod rate_model;
 mod rate_word;
+mod settings;
 mod thermal;
 mod vibration;
 
@@ -59,5 +60,14 @@ pub use optics::detector::Detector;
 pub use optics::modulator::{Modulator, optimum_depth_rad};
 pub use optics::second_order::{expected_mean_rate_rad_per_s, spike_share};
 pub use rate_model::RateModel;
+pub use settings::{
+    AdcConfig, AssemblyConfig, CoilConfig, ConstantPowerConfig, ControllerConfig, DetectorConfig,
+    ExponentialPowerConfig, Fidelity, GyroConfig, InjectionConfig, ModulationScheme,
+    ModulatorConfig, NoVibrationConfig, NoiseConfig, NoiseDraw, OutputQuantisation, PowerConfig,
+    QuadraticPowerConfig, RandomVibrationConfig, RateOutputConfig, ResetSample,
+    SineVibrationConfig, SlowNoiseConfig, SoakConfig, SourceConfig, TemperatureConfig,
+    TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig, ThermalWarmUp, VibrationConfig,
+    VibrationMotion, Winding,
+};
 pub use thermal::condition::{CoilThermometer, Condition, coil_temperatures_c, temperature_record};
 pub use thermal::{Chamber, Network, NetworkState, Propagator, Shupe, layer_integral, layer_order};

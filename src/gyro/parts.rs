@@ -1,12 +1,12 @@
 //! The parts every model of the gyro is built from, checked once.
 
+use crate::gyro::GyroConfig;
 use crate::gyro::controller::gain_limit;
 use crate::gyro::noise::budget::NoiseBudget;
 use crate::gyro::optics::modulation::Timing;
 use crate::gyro::optics::second_order::{Optics, spike_share};
 use crate::gyro::thermal::condition::{Condition, power_range};
 use crate::gyro::{Coil, Controller, Detector, GyroError, Modulator};
-use crate::scenario::GyroConfig;
 use crate::units::{deg_per_sqrt_h_to_rad_per_sqrt_s, rad_per_s_to_deg_per_s};
 
 /// Least Sagnac phase per rate that counts as a gyro, s: a billionth of a usual coil's.

@@ -1,7 +1,7 @@
 //! From the register to the rate word.
 
 use crate::gyro::optics::coil::Coil;
-use crate::scenario::{OutputQuantisation, RateOutputConfig};
+use crate::gyro::{OutputQuantisation, RateOutputConfig};
 use crate::units::{
     arcsec_per_s_to_deg_per_h, deg_per_h_to_arcsec_per_s, deg_per_s_to_deg_per_h,
     rad_per_s_to_deg_per_h, rad_per_s_to_deg_per_s,

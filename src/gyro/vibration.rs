@@ -12,10 +12,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use nalgebra::Complex;
 
 use crate::gyro::parts::Parts;
+use crate::gyro::{RandomVibrationConfig, SineVibrationConfig, VibrationConfig, VibrationMotion};
 use crate::random::{Stream, Streams};
-use crate::scenario::{
-    RandomVibrationConfig, SineVibrationConfig, VibrationConfig, VibrationMotion,
-};
 use crate::units::{deg_per_h_to_rad_per_s, deg_per_s_to_rad_per_s, deg_to_rad};
 
 /// Half periods whose tones are found from one sine and cosine each.

@@ -1,11 +1,10 @@
 //! From a record to the table of everything it supports.
 
 use super::catalogue::support::{encoder_lack, support, truth_lack};
-use super::estimate::reason::NO_TRUTH;
+use super::estimate::reason::{NO_TRUTH, Unavailable};
 use super::estimate::table::ChannelMetrics;
 use super::key::metric::{Applies, MetricKey, Needs};
-use super::motion::mean::measure_mean_ratio;
-use super::motion::mean::put_extremes;
+use super::motion::mean::{measure_mean_ratio, put_extremes};
 use super::motion::multi_sine::measure_multi_sine;
 use super::motion::steady::measure_steady;
 use super::motion::steps::measure_steps;
@@ -83,16 +82,17 @@ fn measure_motion(
     settings: &Settings,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
-) -> Result<(), String> {
+) -> Result<(), Unavailable> {
     let values = record.channel_deg_per_h;
     if values.len() < SAMPLES_MIN {
         return Err(format!(
             "the record holds {}; metrics need {SAMPLES_MIN}",
             counted(values.len(), "sample")
-        ));
+        )
+        .into());
     }
     if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-        return Err(format!("sample {index} of the record is not finite"));
+        return Err(format!("sample {index} of the record is not finite").into());
     }
     let spectrum = welch(
         values,
@@ -105,7 +105,7 @@ fn measure_motion(
         Motion::MultiSine { .. } | Motion::General | Motion::Steps { .. }
             if record.truth().is_none() =>
         {
-            Err(NO_TRUTH.to_owned())
+            Err(NO_TRUTH.into())
         }
         Motion::Steady => {
             measure_steady(record, settings, filter, metrics);
@@ -146,11 +146,11 @@ fn measure_motion(
 }
 
 /// Gives one reason to everything that is still missing.
-fn refuse_rest(reason: &str, metrics: &mut ChannelMetrics) {
+fn refuse_rest(reason: &Unavailable, metrics: &mut ChannelMetrics) {
     for known in known_metrics() {
         let is_own = **known == DIVERGED_AT || known.applies == Applies::Pipeline;
         if !is_own && metrics.get(known).is_none() {
-            metrics.miss(known, reason);
+            metrics.miss(known, reason.clone());
         }
     }
 }
@@ -180,12 +180,12 @@ fn explain_missing(
             settings.bias_averaging_time_s,
         )
         .err()
-        .or_else(|| truth_lack(known, record.truth().is_some(), is_filter).map(str::to_owned))
+        .or_else(|| truth_lack(known, record.truth().is_some(), is_filter).map(Unavailable::from))
         .or_else(|| repeats_lack(known, 1))
-        .or_else(|| encoder_lack(known, record.encoder_rad.is_some()).map(str::to_owned))
+        .or_else(|| encoder_lack(known, record.encoder_rad.is_some()).map(Unavailable::from))
         .unwrap_or_else(|| match known.applies {
-            Applies::Pipeline => PIPELINE_ONLY.to_owned(),
-            _ => "the record is too short for it".to_owned(),
+            Applies::Pipeline => PIPELINE_ONLY.into(),
+            _ => "the record is too short for it".into(),
         });
         metrics.miss(known, reason);
     }

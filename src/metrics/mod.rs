@@ -58,10 +58,11 @@ pub use allan::variants::{
     AllanEstimator, AllanOptions, AllanVariantPoint, allan_variant, allan_variant_at,
 };
 pub(crate) use catalogue::names::{meant, unknown};
-pub use catalogue::support::{encoder_lack, support, truth_lack};
+pub use catalogue::support::{encoder_lack, requirement, support, truth_lack};
 pub use catalogue::{columns, find, known_curves, known_metrics, repeated_metrics};
 pub use estimate::blocks::{block_label_s, block_means, is_sample_or_longer, samples_in};
 pub use estimate::missing::MissingMetric;
+pub use estimate::reason::Unavailable;
 pub use estimate::repeat_statistics::RepeatStatistics;
 pub use estimate::table::{ChannelFailure, ChannelMetrics};
 pub(crate) use estimate::text::{estimate_text, is_exact, plain, wants_exponent};

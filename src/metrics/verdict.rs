@@ -92,6 +92,7 @@ pub enum Deed {
 
 /// The verdict on one filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FilterVerdict {
     /// What it does to fast noise.
     pub deed: Deed,

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Why a log was not read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LogError {
     /// The file system refused.
     #[error("cannot read {}: {source}", path.display())]

@@ -36,6 +36,7 @@ pub struct Mounting {
 
 /// One line of a groups file.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RecordedGroup {
     /// Line in the file, from 1.
     pub line: usize,
@@ -69,6 +70,7 @@ pub struct RecordedGroup {
 
 /// A groups file.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RecordedGroups {
     /// Name of the file without its folder.
     pub file: String,

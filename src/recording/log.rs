@@ -31,6 +31,7 @@ pub struct LogFormat {
 
 /// A recorded log.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Log {
     /// Name of the file without its folder.
     pub file: String,
@@ -78,6 +79,7 @@ pub struct AssemblyColumns<'a> {
 
 /// Logs of an assembly.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AssemblyLog {
     /// Logs of the gyros x, y, z, of one length.
     pub gyros: [Log; 3],

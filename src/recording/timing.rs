@@ -54,6 +54,7 @@ impl FromStr for TimeUnit {
 
 /// What a time column says about the spacing of the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Timing {
     /// Sample rate over the whole record, Hz: one less than the stamps over the time between the
     /// first and the last.

@@ -13,7 +13,7 @@ use super::record::RunReport;
 use super::repeats::runs_csv;
 use super::summary::run_summary_json;
 use crate::metrics::{CurveKey, known_curves};
-use crate::scenario::MotionConfig;
+use crate::scenario::MotionClass;
 use crate::signal::{BudgetSheet, CalibrationSheet, RunSignals};
 
 /// Folder that a file is written into.
@@ -57,7 +57,6 @@ impl Place {
 }
 
 /// What is drawn: the channels of one gyro of a run, or of a log.
-#[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
     measured: Measured<'a>,
     signals: &'a RunSignals<'a>,
@@ -75,7 +74,7 @@ enum Made {
     /// CSV of a curve, of runs and logs.
     Curve(&'static CurveKey),
     /// Picture of one gyro.
-    Drawn(fn(Scene) -> Option<Picture>),
+    Drawn(fn(&Scene) -> Option<Picture>),
     /// Text of a calibration, of a campaign or of groups.
     Sheet(fn(&CalibrationSheet, &CalibrationProvenance) -> String),
     /// Picture of the calibration of a campaign.
@@ -286,9 +285,9 @@ const TABLE: &[Artefact] = &[
         "mean cycle of a swing and the delay of every channel",
         "swing",
         RUN,
-        |scene| match &scene.run?.scenario.turntable.motion {
-            MotionConfig::Swing(swing) => {
-                plot::swing::picture(scene.run?, scene.signals, swing.frequency_hz)
+        |scene| match scene.run?.scenario.turntable.motion.class() {
+            MotionClass::Swing { frequency_hz, .. } => {
+                plot::swing::picture(scene.run?, scene.signals, frequency_hz)
             }
             _ => None,
         },
@@ -338,7 +337,7 @@ const TABLE: &[Artefact] = &[
     drawn(
         "rate-gain.svg",
         "gain of every filter over the rate",
-        "trial.rate_gains",
+        "trial.rate_gain = true",
         RUN,
         |scene| plot::rate_gain::picture(scene.run?),
     ),
@@ -383,7 +382,7 @@ const fn drawn(
     holds: &'static str,
     when: &'static str,
     places: &'static [Place],
-    picture: fn(Scene) -> Option<Picture>,
+    picture: fn(&Scene) -> Option<Picture>,
 ) -> Artefact {
     Artefact {
         name,
@@ -444,7 +443,7 @@ pub fn log_files(report: &LogReport, signals: &RunSignals) -> Vec<(String, Strin
         signals,
         run: None,
     };
-    let pictures = drawn_of(Place::Log, scene, "");
+    let pictures = drawn_of(Place::Log, &scene, "");
     let notes = [report.notes, &pictures.notes].concat();
     let report = &LogReport {
         notes: &notes,
@@ -505,7 +504,7 @@ pub fn plots(report: &RunReport, signals: &RunSignals) -> Pictures {
         signals,
         run: Some(report),
     };
-    drawn_of(Place::Run, scene, &signals.prefix.replace('_', "-"))
+    drawn_of(Place::Run, &scene, &signals.prefix.replace('_', "-"))
 }
 
 /// Pictures of a run: of every gyro, and of the calibration of a campaign.
@@ -527,7 +526,7 @@ pub fn run_pictures(report: &RunReport, gyros: &[RunSignals]) -> Pictures {
 }
 
 /// The pictures that there are, named behind the axis.
-fn drawn_of(place: Place, scene: Scene, axis: &str) -> Pictures {
+fn drawn_of(place: Place, scene: &Scene, axis: &str) -> Pictures {
     let mut all = Pictures::default();
     for artefact in of(place) {
         if let Made::Drawn(draw) = artefact.made

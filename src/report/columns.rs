@@ -2,7 +2,7 @@
 
 use crate::gate::{estimate_text, plain};
 use crate::metrics::{ChannelMetrics, Headline, Metric, MetricKey, Table, find, known_metrics};
-use crate::scenario::MotionConfig;
+use crate::scenario::{MotionClass, MotionConfig};
 
 /// Digits of an interval's half width in tables.
 pub(crate) const DIGITS: i32 = 2;
@@ -18,31 +18,24 @@ pub(crate) struct Column {
 
 /// Table of the metrics of a motion.
 fn table_of(motion: &MotionConfig) -> Table {
-    match motion {
-        MotionConfig::Static(_) | MotionConfig::Rotation(_) => Table::Rest,
-        MotionConfig::Swing(_) => Table::Swing,
-        MotionConfig::MultiSine(_) => Table::MultiSine,
-        MotionConfig::Steps(_)
-        | MotionConfig::ScaleFactorTest(_)
-        | MotionConfig::Trapezoid(_)
-        | MotionConfig::Chirp(_)
-        | MotionConfig::Script(_) => Table::Steps,
-        MotionConfig::Calibration(_) => Table::Campaign,
+    match motion.class() {
+        MotionClass::Rest | MotionClass::Rotation => Table::Rest,
+        MotionClass::Swing { .. } => Table::Swing,
+        MotionClass::MultiSine { .. } => Table::MultiSine,
+        MotionClass::Steps(_) | MotionClass::General => Table::Steps,
+        MotionClass::Campaign(_) => Table::Campaign,
     }
 }
 
 /// Line of a motion in the suite's table.
 fn headline_of(motion: &MotionConfig) -> Headline {
-    match motion {
-        MotionConfig::Static(_) | MotionConfig::Rotation(_) => Headline::Rest,
-        MotionConfig::Swing(_) => Headline::Swing,
-        MotionConfig::MultiSine(_) => Headline::MultiSine,
-        MotionConfig::Steps(_) => Headline::Steps,
-        MotionConfig::ScaleFactorTest(_) => Headline::ScaleFactor,
-        MotionConfig::Trapezoid(_)
-        | MotionConfig::Chirp(_)
-        | MotionConfig::Script(_)
-        | MotionConfig::Calibration(_) => Headline::General,
+    match motion.class() {
+        MotionClass::Rest | MotionClass::Rotation => Headline::Rest,
+        MotionClass::Swing { .. } => Headline::Swing,
+        MotionClass::MultiSine { .. } => Headline::MultiSine,
+        MotionClass::Steps(stairs) if stairs.has_static_zeros => Headline::ScaleFactor,
+        MotionClass::Steps(_) => Headline::Steps,
+        MotionClass::General | MotionClass::Campaign(_) => Headline::General,
     }
 }
 

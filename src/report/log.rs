@@ -1,5 +1,7 @@
 //! What is said of a recorded log: text, JSON, and the files of its folder.
 
+use std::borrow::Cow;
+
 use serde_json::{Map, Value};
 
 use crate::gate::plain;
@@ -9,7 +11,7 @@ use crate::report::measured::Measured;
 use crate::report::summary::{SCHEMA, channel, tool};
 use crate::report::table::{channels_text, failures_text, filter_verdicts};
 use crate::report::text::{Tone, toned, wrapped};
-use crate::scenario::MotionConfig;
+use crate::scenario::{MotionClass, MotionConfig};
 use crate::wording::counted;
 
 /// Everything the report of one log shows.
@@ -43,7 +45,7 @@ impl<'a> LogReport<'a> {
     pub(super) fn measured(&self) -> Measured<'a> {
         Measured {
             name: self.file,
-            motion: self.motion,
+            motion: Cow::Borrowed(self.motion),
             channels: self.channels,
         }
     }
@@ -119,8 +121,8 @@ fn log(report: &LogReport) -> Value {
     if let Some(column) = report.column {
         record.insert("column".to_owned(), column.into());
     }
-    if let MotionConfig::Swing(swing) = report.motion {
-        put(&mut record, "swing_frequency_hz", swing.frequency_hz);
+    if let MotionClass::Swing { frequency_hz, .. } = report.motion.class() {
+        put(&mut record, "swing_frequency_hz", frequency_hz);
     }
     if let Some((file, digest)) = report.filters {
         let filters = object([("file", file.into()), ("digest", digest.into())]);

@@ -1,16 +1,18 @@
 //! What tables and pictures need to know, of a run and of a recorded log alike.
 
+use std::borrow::Cow;
+
 use crate::metrics::ChannelMetrics;
 use crate::report::RunReport;
 use crate::scenario::MotionConfig;
 
 /// Channels that were measured together.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Measured<'a> {
     /// Name in headings.
     pub(crate) name: &'a str,
     /// Motion during the record.
-    pub(crate) motion: &'a MotionConfig,
+    pub(crate) motion: Cow<'a, MotionConfig>,
     /// Channels, raw first.
     pub(crate) channels: &'a [(String, ChannelMetrics)],
 }

@@ -112,7 +112,7 @@ impl RunOutcome {
             .iter()
             .map(|(name, metrics)| ChannelOutcome {
                 name: name.clone(),
-                headline: headline(report.scenario.measured_motion(), metrics),
+                headline: headline(&report.scenario.measured_motion(), metrics),
                 failure: metrics.error.clone(),
                 expected_failure: metrics.error.is_some() && expects(name),
             })

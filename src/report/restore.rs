@@ -61,7 +61,7 @@ fn channel(record: &Value) -> Option<ChannelMetrics> {
             "unavailable" => {
                 for (name, reason) in value.as_object()? {
                     let reason = reason.as_str()?.to_owned();
-                    channel.unavailable.insert(name.clone(), reason);
+                    channel.unavailable.insert(name.clone(), reason.into());
                 }
             }
             "error" => {

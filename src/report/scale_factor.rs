@@ -11,7 +11,7 @@ use crate::metrics::columns::staircase::{
 };
 use crate::metrics::{Column, Curve, MetricKey};
 use crate::report::RunReport;
-use crate::scenario::{FilterState, MotionConfig, Stairs};
+use crate::scenario::FilterState;
 use crate::units::deg_per_h_to_deg_per_s;
 
 const INDENT: &str = "  ";
@@ -35,8 +35,8 @@ pub(crate) fn filter_state_word(state: FilterState) -> &'static str {
 
 /// How the test was made, then one row a rate; empty for other motions.
 pub(crate) fn scale_factor_text(report: &RunReport, width: usize, colour: bool) -> String {
-    let motion = &report.scenario.turntable.motion;
-    let (MotionConfig::ScaleFactorTest(_), Some(stairs)) = (motion, Stairs::of(motion)) else {
+    let stairs = report.scenario.turntable.motion.stairs();
+    let Some(stairs) = stairs.filter(|stairs| stairs.has_static_zeros) else {
         return String::new();
     };
     let curves: Vec<(&str, &Curve)> = report

@@ -11,7 +11,7 @@ use crate::report::repeats::repeats_json;
 use crate::report::scale_factor::filter_state_word;
 use crate::report::verdict_text::verdict_text;
 use crate::report::{RunOutcome, RunReport, RunStatus};
-use crate::scenario::{Fidelity, PublishedConfig, Stairs, portable_place};
+use crate::scenario::{Fidelity, PublishedConfig, portable_place};
 use crate::signal::GyroFacts;
 use serde_json::{Map, Value};
 
@@ -150,7 +150,7 @@ fn scenario(report: &RunReport) -> Value {
     ]);
     put(&mut record, "duration_s", scenario.duration_s);
     put(&mut record, "warm_up_s", scenario.warm_up_s);
-    if let Some(stairs) = Stairs::of(&scenario.turntable.motion) {
+    if let Some(stairs) = scenario.turntable.motion.stairs() {
         let state = filter_state_word(scenario.trial.filter_state);
         record.insert("filter_state".to_owned(), state.into());
         put(&mut record, "settle_s", stairs.settle_s);

@@ -14,7 +14,7 @@ use crate::report::repeats::repeats_text;
 use crate::report::scale_factor::scale_factor_text;
 use crate::report::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::report::verdict_text::verdict_text;
-use crate::scenario::{Fidelity, MotionConfig, PublishedConfig};
+use crate::scenario::{Fidelity, PublishedConfig};
 use crate::wording::printable;
 
 /// What stands where there is no number.
@@ -98,8 +98,8 @@ fn budget(report: &RunReport, width: usize) -> String {
 
 /// The channels, their columns broken into as many blocks as the width asks for.
 pub(crate) fn channels_text(report: &Measured, width: usize, colour: bool) -> String {
-    let columns = columns(report.motion, report.channels);
-    if columns.is_empty() && matches!(report.motion, MotionConfig::Calibration(_)) {
+    let columns = columns(&report.motion, report.channels);
+    if columns.is_empty() && report.motion.campaign().is_some() {
         return String::new();
     }
     let names = column_of_names(report.channels, colour);
@@ -261,10 +261,13 @@ fn missing<'a>(report: &Measured<'a>) -> BTreeMap<(&'a str, &'a str), Vec<&'a st
     for (name, metrics) in report.channels {
         for (key, reason) in &metrics.unavailable {
             let is_missed = find(key).is_some_and(|known| {
-                matters(report.motion, known) && !known.filters_only && !known.is_by_choice
+                matters(&report.motion, known) && !known.filters_only && !known.is_by_choice
             });
             if is_missed {
-                missing.entry((key, reason)).or_default().push(name);
+                missing
+                    .entry((key, reason.as_str()))
+                    .or_default()
+                    .push(name);
             }
         }
     }

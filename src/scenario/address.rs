@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::excerpt::excerpt;
-use super::schema::{self, Child, Group, Key, join};
+use super::schema::{self, Child, Key, join};
 use super::source::Mark;
 use super::suggest::{self, unknown_key};
 use super::tree::{Node, Table, Value, merge_node};
@@ -143,7 +143,7 @@ pub(crate) fn resolve(
 /// How to say which element of an array is meant by a path with `[]`, or that there is none.
 fn which_element(root: &Table, array: &str, rest: &str) -> String {
     let elements = root.get(array).and_then(Node::as_array).unwrap_or_default();
-    let kinds = Group::of_table(&format!("{array}[]")).map(|group| group.alternatives);
+    let kinds = schema::group_of(&format!("{array}[]")).map(|group| group.alternatives);
     let kind = rest.trim_start_matches('.').split(['.', '[']).next();
     let kind = kind.filter(|kind| kinds.is_some_and(|kinds| kinds.contains(kind)));
     let is_meant = |node: &Node| {
@@ -178,7 +178,7 @@ pub(crate) fn kind_replaced(root: &Table, path: &[Step]) -> Option<String> {
         return None;
     };
     let schema_path = format!("{array}[]");
-    let group = Group::of_table(&schema_path)?;
+    let group = schema::group_of(&schema_path)?;
     let element = root.get(array)?.as_array()?.get(*index)?.as_table()?;
     let had = kind_of(&schema_path, element)?;
     let is_other = group.alternatives.contains(&kind.as_str()) && had != kind;
@@ -238,7 +238,7 @@ fn element_index(array: &str, elements: &[Node], selector: &Step) -> Result<usiz
 
 /// The alternative that stands in a table of alternatives.
 fn kind_of(schema_path: &str, table: &Table) -> Option<&'static str> {
-    let group = Group::of_table(schema_path)?;
+    let group = schema::group_of(schema_path)?;
     let is_there = |name: &&&str| table.contains_key(**name);
     group.alternatives.iter().find(is_there).copied()
 }

@@ -1,9 +1,11 @@
 //! The channels of a scenario: which there are, in which order, whose words they carry and against
 //! which motion they are measured.
 
+use std::borrow::Cow;
+
 use super::config::Scenario;
-use super::turntable_config::MotionConfig;
 use crate::filters::FilterConfig;
+use crate::turntable::{MotionConfig, MultiSineConfig};
 
 /// Prefixes of the channels of an assembly, in the order of its case axes.
 const ASSEMBLY: &[&str] = &["x_", "y_", "z_"];
@@ -21,11 +23,26 @@ const CALIBRATION: &str = "calibration_";
 impl Scenario {
     /// The motion that a record is measured against: the table's, or what an injected signal equals.
     #[must_use]
-    pub fn measured_motion(&self) -> &MotionConfig {
-        match &self.gyro.injection {
-            None => &self.turntable.motion,
-            Some(injection) => injection.equivalent_motion(),
+    pub fn measured_motion(&self) -> Cow<'_, MotionConfig> {
+        match self.injected_sines() {
+            None => Cow::Borrowed(&self.turntable.motion),
+            Some(sines) => Cow::Owned(MotionConfig::MultiSine(sines)),
         }
+    }
+
+    /// The signal that is added inside the loop, as the sines of rate that would do the same.
+    ///
+    /// To the loop a step `-A` added to each step of its ramp is the Sagnac phase `A` of the rate
+    /// `A / Ks`, `Ks` the scale factor in seconds.
+    #[must_use]
+    pub fn injected_sines(&self) -> Option<MultiSineConfig> {
+        let injection = self.gyro.injection.as_ref()?;
+        Some(MultiSineConfig {
+            frequencies_hz: injection.frequencies_hz.clone(),
+            rate_amplitudes_deg_per_s: injection.rate_amplitudes_deg_per_s.clone(),
+            phases: injection.phases,
+            soft_start_s: injection.soft_start_s,
+        })
     }
 
     /// Prefix of the channel names of each gyro: one empty one, or `x_`, `y_`, `z_`.
@@ -73,7 +90,7 @@ impl Scenario {
     /// none with another motion.
     #[must_use]
     pub fn calibration_channels(&self) -> Vec<String> {
-        if !matches!(self.turntable.motion, MotionConfig::Calibration(_)) {
+        if self.turntable.motion.campaign().is_none() {
             return Vec::new();
         }
         let kinds = self.calibration.kinds();

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::chain;
-use super::compensation_config::CompensationParameters;
 use super::draft::Draft;
 use super::error::{Location, ScenarioError};
 use super::input::{self, Input};
 use super::resolved::{InputFile, Resolved};
 use super::source::{Label, Mark, Sources, shown_path};
 use super::tree::{Node, Table, Value, parse_document};
+use crate::calibration::CompensationParameters;
 
 /// The table of a scenario and of a calibration file.
 const TABLE: &str = "compensation";

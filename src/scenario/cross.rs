@@ -1,28 +1,27 @@
 //! Checks across values that need no physics beyond the transit time of the coil.
 
+use crate::turntable::MotionChecks;
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
-use crate::wording::{counted, is_misspelling, number};
+use crate::wording::is_misspelling;
 
+use super::config::{FilterState, Scenario};
 use super::cross_comparison;
 use super::cross_compensation;
 use super::cross_gyro;
-use super::cross_multi_sine;
 use super::cross_optics;
 use super::cross_servo;
 use super::cross_vibration;
 use super::error::ScenarioError;
-use super::injection_config::InjectionConfig;
 use super::resolved::Resolved;
-use super::turntable_config::{MotionConfig, MultiSineConfig};
 
 /// Channel names that mean something else.
 pub(crate) const RESERVED: [&str; 4] = ["raw", "truth", "time_s", "encoder_arcsec"];
 
-/// Fewest output samples per cycle of a swing.
-pub(super) const SAMPLES_PER_CYCLE_MIN: f64 = 8.0;
+/// Where an injected signal stands.
+const INJECTION: &str = "gyro.injection";
 
-/// Relative slack when times are compared, so that `3 x 0.1 s` fits into 0.3 s.
-pub(super) const TIME_SLACK: f64 = 1e-9;
+/// Relative slack when times are compared.
+const TIME_SLACK: f64 = 1e-9;
 
 /// Every complaint about a scenario whose single values are all in order.
 pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
@@ -36,7 +35,7 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
             checks.complain(&complaint.key, complaint.message);
         }
     }
-    checks.motion();
+    checks.motion(|scenario, checks| scenario.turntable.motion.check(checks));
     checks.injection();
     checks.filter_state();
     checks.averaging_time();
@@ -61,13 +60,13 @@ pub(crate) fn check(resolved: &Resolved) -> Vec<ScenarioError> {
     checks.errors
 }
 
-pub(super) struct Checks<'a> {
-    pub(super) resolved: &'a Resolved,
+struct Checks<'a> {
+    resolved: &'a Resolved,
     errors: Vec<ScenarioError>,
 }
 
 impl Checks<'_> {
-    pub(super) fn complain(&mut self, key_path: &str, message: String) {
+    fn complain(&mut self, key_path: &str, message: String) {
         let location = self.resolved.locate(key_path);
         self.errors.push(ScenarioError::at(location, message));
     }
@@ -95,115 +94,67 @@ impl Checks<'_> {
         }
     }
 
-    fn motion(&mut self) {
-        let scenario = &self.resolved.scenario;
-        match &scenario.turntable.motion {
-            MotionConfig::Static(_) => {}
-            MotionConfig::Swing(swing) => {
-                self.soft_start("turntable.swing.soft_start_s", swing.soft_start_s);
-                self.frequency("turntable.swing.frequency_hz", swing.frequency_hz);
-                self.swing_from_rest(swing);
-            }
-            MotionConfig::MultiSine(sines) => self.multi_sine("turntable.multi_sine", sines),
-            MotionConfig::Rotation(rotation) => {
-                self.soft_start("turntable.rotation.soft_start_s", rotation.soft_start_s);
-            }
-            MotionConfig::Trapezoid(trapezoid) => self.trapezoid(trapezoid),
-            MotionConfig::Chirp(chirp) => self.chirp(chirp),
-            MotionConfig::Script(script) => self.script(&script.points),
-            MotionConfig::ScaleFactorTest(test) => self.scale_factor_test(test),
-            MotionConfig::Calibration(campaign) => self.campaign(campaign),
-            MotionConfig::Steps(steps) => {
-                let count = steps.rates_deg_per_s.len();
-                let count_f64 = u32::try_from(count).map_or(f64::INFINITY, f64::from);
-                let needed_s = count_f64 * steps.dwell_s;
-                if needed_s > scenario.duration_s * (1.0 + TIME_SLACK) {
-                    let message = format!(
-                        "turntable.steps.dwell_s = {:?} s is too long: {} take {} s, \
-                         but duration_s = {:?} s",
-                        steps.dwell_s,
-                        counted(count, "rate"),
-                        number(needed_s),
-                        scenario.duration_s
-                    );
-                    self.complain("turntable.steps.dwell_s", message);
-                }
-                let settle = "turntable.steps.settle_s";
-                // The default is no wish: short dwells merely have no scale factor.
-                if steps.settle_s >= steps.dwell_s && self.resolved.is_asked_for(settle) {
-                    let message = format!(
-                        "{settle} = {:?} s leaves nothing of turntable.steps.dwell_s = {:?} s",
-                        steps.settle_s, steps.dwell_s
-                    );
-                    self.complain(settle, message);
-                }
-            }
-        }
-    }
-
-    fn multi_sine(&mut self, table: &str, sines: &MultiSineConfig) {
-        self.soft_start(&format!("{table}.soft_start_s"), sines.soft_start_s);
-        let found = cross_multi_sine::complaints(
-            table,
-            sines,
-            self.resolved.scenario.duration_s,
-            1.0 / self.sample_period_s(),
-            SAMPLES_PER_CYCLE_MIN,
-        );
-        for (key, message) in found {
+    /// Complaints of the motion, or of the sines that are injected in its place, about themselves.
+    fn motion(&mut self, check: impl FnOnce(&Scenario, &mut MotionChecks)) {
+        let (resolved, sample_period_s) = (self.resolved, self.sample_period_s());
+        let scenario = &resolved.scenario;
+        let mut checks = MotionChecks {
+            duration_s: scenario.duration_s,
+            warm_up_s: scenario.warm_up_s,
+            sample_period_s,
+            has_assembly: scenario.gyro.assembly.is_some(),
+            is_written: &|key| resolved.is_written(key),
+            is_asked_for: &|key| resolved.is_asked_for(key),
+            complaints: Vec::new(),
+        };
+        check(scenario, &mut checks);
+        for (key, message) in checks.complaints {
             self.complain(&key, message);
         }
     }
 
     fn injection(&mut self) {
         let scenario = &self.resolved.scenario;
-        for (key, message) in cross_multi_sine::injection_complaints(scenario) {
-            self.complain(key, message);
+        let Some(sines) = scenario.injected_sines() else {
+            return;
+        };
+        if !scenario.turntable.motion.is_at_rest() {
+            let text = format!(
+                "{INJECTION} needs a table at rest: a motion would add to the response, use turntable.static"
+            );
+            self.complain(INJECTION, text);
         }
-        let injection = scenario.gyro.injection.as_ref();
-        if let Some(MotionConfig::MultiSine(sines)) =
-            injection.map(InjectionConfig::equivalent_motion)
-        {
-            self.multi_sine(cross_multi_sine::INJECTION, sines);
+        if scenario.gyro.assembly.is_some() {
+            let text = format!("{INJECTION} is for one gyro: leave out gyro.assembly");
+            self.complain(INJECTION, text);
         }
+        self.motion(|_, checks| sines.check_at(INJECTION, checks));
     }
 
-    pub(super) fn soft_start(&mut self, path: &str, soft_start_s: f64) {
-        let warm_up_s = self.resolved.scenario.warm_up_s;
-        if soft_start_s > warm_up_s {
+    /// Refuses to reset filters where twins would go on.
+    fn filter_state(&mut self) {
+        let scenario = &self.resolved.scenario;
+        if scenario.trial.filter_state == FilterState::Carried {
+            return;
+        }
+        let key = "trial.filter_state";
+        if scenario.trial.rate_gain {
             let message = format!(
-                "{path} = {soft_start_s:?} s is longer than the warm-up: allowed [0, warm_up_s = {warm_up_s:?}] s"
+                "{key} = \"reset\" contradicts trial.rate_gain = true, which measures filters \
+                 that go on through the record"
             );
-            let blamed = if self.resolved.is_written(path) {
-                path
-            } else {
-                "warm_up_s"
-            };
-            self.complain(blamed, message);
+            self.complain(key, message);
         }
     }
 
     /// Period of the output samples, s, but for errors that the gyro's own check finds.
-    pub(super) fn sample_period_s(&self) -> f64 {
+    fn sample_period_s(&self) -> f64 {
         let gyro = &self.resolved.scenario.gyro;
         // A half modulation period is the transit time n L / c of the coil, but for a mismatch.
         let transit_time_s = gyro.coil.group_index * gyro.coil.length_m / SPEED_OF_LIGHT_M_PER_S;
         let half_period_s = transit_time_s * (1.0 + gyro.modulator.half_period_mismatch);
         let word_s = half_period_s * f64::from(gyro.output.half_periods_per_sample);
         word_s * f64::from(gyro.output.average_samples)
-    }
-
-    /// Refuses a frequency that the cubics between samples cannot follow.
-    pub(super) fn frequency(&mut self, path: &str, frequency_hz: f64) {
-        let output_rate_hz = 1.0 / self.sample_period_s();
-        let frequency_hz_max = output_rate_hz / SAMPLES_PER_CYCLE_MIN;
-        if frequency_hz > frequency_hz_max {
-            let message = format!(
-                "{path} = {frequency_hz:?} Hz is too fast: allowed up to \
-                 {frequency_hz_max:.6} Hz, 8 samples a cycle at the output rate of {output_rate_hz:.6} Hz"
-            );
-            self.complain(path, message);
-        }
     }
 
     /// Refuses an averaging time below a sample. The default is no wish: coarse words merely have no

@@ -1,7 +1,7 @@
 //! Checks of the tables that close the suite: names that refer to one another.
 
 use super::address;
-use super::comparison_config::ComparisonColumn;
+use super::config::ComparisonColumn;
 use super::resolved::Resolved;
 use super::schema::Kind;
 

@@ -1,7 +1,7 @@
 //! Checks across the values of the gyro's temperature that need no physics.
 
 use super::config::Scenario;
-use super::thermal_config::{
+use crate::gyro::{
     PowerConfig, TemperatureConfig, TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig,
     Winding,
 };

@@ -1,6 +1,6 @@
 //! Combinations of the gyro's keys that make no physical sense.
 
-use super::gyro_config::{GyroConfig, ModulationScheme};
+use crate::gyro::{GyroConfig, ModulationScheme};
 
 /// Key and complaint of every contradiction in a gyro.
 pub(super) fn contradictions(gyro: &GyroConfig) -> Vec<(&'static str, String)> {

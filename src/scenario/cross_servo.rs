@@ -3,8 +3,8 @@
 use crate::units::s_to_us;
 
 use super::resolved::Resolved;
-use super::servo_config::DirectDriveServoConfig;
-use super::turntable_config::ServoConfig;
+use crate::turntable::DirectDriveServoConfig;
+use crate::turntable::ServoConfig;
 use crate::wording::number;
 
 /// Fewest ticks of the controller per cycle of its natural frequency: at ten, sampling alone turns

@@ -2,8 +2,8 @@
 
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 
-use super::gyro_config::{GyroConfig, ModulationScheme};
-use super::vibration_config::{RandomVibrationConfig, SineVibrationConfig, VibrationMotion};
+use crate::gyro::{GyroConfig, ModulationScheme};
+use crate::gyro::{RandomVibrationConfig, SineVibrationConfig, VibrationMotion};
 
 /// Every complaint about a gyro's vibration: the key to blame and what is wrong.
 pub(crate) fn check(gyro: &GyroConfig) -> Vec<(&'static str, String)> {

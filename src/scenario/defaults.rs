@@ -1,64 +1,33 @@
-//! Defaults, all of which stand in `scenarios/reference.toml`.
+//! Defaults, each of which stands in the declaration of its key.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use super::calibration_config::CalibrationConfig;
-use super::deserialize::from_table;
-use super::keys::OPTIONAL_TABLES;
-use super::schema::{self, Child, Entry, Group, Presence, join};
+use super::schema::{self, Child, Entry, Group, Key, Kind, Presence, keys};
 use super::tree::{Node, Table, Value, parse_document};
 
-/// The reference, embedded.
-const REFERENCE: &str = include_str!("../../scenarios/reference.toml");
-
-/// How a line of a commented alternative begins.
-const ALTERNATIVE: &str = "#| ";
-
-/// The complete, commented manual of the scenario file, and the source of every default.
-#[must_use]
-pub fn reference_toml() -> &'static str {
-    REFERENCE
+/// The default of a key, if it has one.
+pub(crate) fn default_of(schema_path: &str) -> Option<&'static Value> {
+    static DEFAULTS: OnceLock<BTreeMap<&str, Value>> = OnceLock::new();
+    let defaults = DEFAULTS.get_or_init(|| {
+        let defaulted = keys().filter(|key| key.presence == Presence::Defaulted);
+        defaulted
+            .map(|key| (key.path, declared_value(key)))
+            .collect()
+    });
+    defaults.get(schema_path)
 }
 
-/// The calibration settings that stand in the reference: what a file of groups is calibrated with
-/// if nothing else is said.
-///
-/// # Panics
-/// If the reference is not valid, which a test excludes.
-#[must_use]
-pub fn reference_calibration() -> CalibrationConfig {
-    let mut root = Table::new();
-    fill(&mut root);
-    let settings = root.get("calibration").and_then(Node::as_table);
-    let settings = settings.expect("the reference has every default, which a test asserts");
-    from_table(settings).expect("the defaults are valid, which a test asserts")
-}
-
-/// The commented alternatives of the reference, each a document of its own.
-pub(crate) fn alternatives() -> Vec<String> {
-    let mut blocks: Vec<String> = Vec::new();
-    let mut is_inside = false;
-    for line in REFERENCE.lines() {
-        let Some(content) = line.strip_prefix(ALTERNATIVE) else {
-            is_inside = false;
-            continue;
-        };
-        if !is_inside {
-            blocks.push(String::new());
-        }
-        is_inside = true;
-        let block = blocks.last_mut().expect("a block was begun above");
-        block.push_str(content);
-        block.push('\n');
+/// The value that the declaration of a key writes.
+fn declared_value(key: &Key) -> Value {
+    if let Kind::EmptyTable = key.kind {
+        return Value::from(Table::new());
     }
-    blocks
-}
-
-/// Default values by schema path and the tables that stand live in the reference.
-struct Defaults {
-    values: BTreeMap<String, Value>,
-    live: Table,
+    let read = parse_document(0, &format!("value = {}", key.literal)).ok();
+    let node = read.and_then(|mut table| table.remove("value"));
+    let mut node = node.expect("a default is written in TOML, which a test asserts");
+    node.remark(None);
+    node.value
 }
 
 /// Tables outside arrays as they are where nothing of them is written, by schema path.
@@ -66,147 +35,59 @@ fn absent_table(schema_path: &str) -> Arc<Table> {
     static ABSENT: OnceLock<BTreeMap<&str, Arc<Table>>> = OnceLock::new();
     let absent = ABSENT.get_or_init(|| {
         let mut absent = BTreeMap::new();
-        gather_absent("", Some(&defaults().live), &mut absent);
+        gather_absent("", &mut absent);
         absent
     });
     absent.get(schema_path).cloned().unwrap_or_default()
 }
 
-/// Works out the absent tables below a path, the innermost first; `live` is that of the reference.
-fn gather_absent(
-    schema_path: &str,
-    live: Option<&Table>,
-    absent: &mut BTreeMap<&'static str, Arc<Table>>,
-) {
-    for Entry { name, child, path } in schema::entries(schema_path).iter().copied() {
+/// Works out the absent tables below a path, the innermost first.
+fn gather_absent(schema_path: &str, absent: &mut BTreeMap<&'static str, Arc<Table>>) {
+    for Entry { child, path, .. } in schema::entries(schema_path).iter().copied() {
         if let Child::Table = child {
-            let live = live.and_then(|live| live.get(name)?.as_table());
-            gather_absent(path, live, absent);
+            gather_absent(path, absent);
             let inner = |path: &str| absent.get(path).cloned().unwrap_or_default();
-            let table = filled(path, &Table::new(), live, &inner).unwrap_or_default();
+            let table = filled(path, &Table::new(), &inner).unwrap_or_default();
             absent.insert(path, Arc::new(table));
         }
     }
 }
 
-/// The defaults, read once.
-fn defaults() -> &'static Defaults {
-    static DEFAULTS: OnceLock<Defaults> = OnceLock::new();
-    DEFAULTS.get_or_init(|| {
-        let live = parse(REFERENCE);
-        let mut values = BTreeMap::new();
-        gather("", &live, &mut values);
-        for block in alternatives() {
-            gather("", &parse(&block), &mut values);
-        }
-        Defaults { values, live }
-    })
-}
-
-/// Parses the reference or one of its alternatives.
-fn parse(text: &str) -> Table {
-    parse_document(0, text)
-        .map_err(|error| error.message)
-        .expect("reference.toml is valid TOML, which a test asserts")
-}
-
-/// Takes the values of the defaulted keys; the first one given stands.
-fn gather(schema_path: &str, table: &Table, values: &mut BTreeMap<String, Value>) {
-    for (name, node) in table {
-        let path = join(schema_path, name);
-        match schema::child(schema_path, name) {
-            Some(Child::Leaf(key)) if key.presence == Presence::Defaulted => {
-                let mut node = node.clone();
-                if let (schema::Kind::Float(_), Value::Integer(_)) = (key.kind, &node.value) {
-                    unreachable!(
-                        "reference.toml writes {path} with a fraction, which a test asserts"
-                    )
-                }
-                node.remark(None);
-                values.entry(path).or_insert(node.value);
-            }
-            Some(Child::Table) => gather(&path, node.as_table().unwrap_or(&Table::new()), values),
-            Some(Child::Tables) => {
-                for table in node
-                    .as_array()
-                    .unwrap_or_default()
-                    .iter()
-                    .filter_map(Node::as_table)
-                {
-                    gather(&format!("{path}[]"), table, values);
-                }
-            }
-            _ => {}
-        }
-    }
-}
-
-/// The default of a key, if it has one.
-pub(crate) fn default_of(schema_path: &str) -> Option<&'static Value> {
-    defaults().values.get(schema_path)
-}
-
-/// Whether a group without a choice takes one that stands live in the reference.
-pub(crate) fn has_default_alternative(group: &Group) -> bool {
-    let live = group
-        .table
-        .split('.')
-        .try_fold(&defaults().live, |table, name| table.get(name)?.as_table());
-    let stands = |live: &Table| {
-        group
-            .alternatives
-            .iter()
-            .any(|name| live.contains_key(*name))
-    };
-    live.is_some_and(stands)
-}
-
 /// Fills every absent defaulted key and table of a tree; chosen alternatives stay, a group without a
-/// choice takes the alternative that stands live in the reference, and an optional table that is
-/// absent stays so.
+/// choice takes its default one, and an optional table that is absent stays so.
 ///
 /// What needs nothing stays shared, and so are tables of which nothing was written.
 pub(crate) fn fill(root: &mut Table) {
-    if let Some(filled) = filled("", root, Some(&defaults().live), &absent_table) {
+    if let Some(filled) = filled("", root, &absent_table) {
         *root = filled;
     }
 }
 
 /// The table with what it lacks; `None` if it lacks nothing.
 ///
-/// * `live`: the same table of the reference; `None` inside arrays and where it has none.
 /// * `absent`: the filled table at a path of which nothing was written.
-fn filled(
-    schema_path: &str,
-    table: &Table,
-    live: Option<&Table>,
-    absent: &dyn Fn(&str) -> Arc<Table>,
-) -> Option<Table> {
-    let group = Group::of_table(schema_path);
+fn filled(schema_path: &str, table: &Table, absent: &dyn Fn(&str) -> Arc<Table>) -> Option<Table> {
+    let group = schema::group_of(schema_path);
     let is_chosen = group.is_some_and(|group| {
         let mut alternatives = group.alternatives.iter();
         alternatives.any(|name| table.contains_key(*name))
     });
     let mut result = None;
     for Entry { name, child, path } in schema::entries(schema_path).iter().copied() {
-        let live = live.and_then(|live| live.get(name));
         let is_alternative = group.is_some_and(|group| group.alternatives.contains(&name));
         let may_add = if is_alternative {
-            !is_chosen && live.is_some()
+            !is_chosen && group.and_then(Group::default) == Some(name)
         } else {
-            !OPTIONAL_TABLES.contains(&path)
+            !schema::is_optional_table(path)
         };
-        let inside_live = live.and_then(Node::as_table);
         let node = match (table.get(name), child) {
-            (Some(node), Child::Table | Child::Tables) => {
-                filled_node(path, node, child, inside_live, absent)
-            }
+            (Some(node), Child::Table | Child::Tables) => filled_node(path, node, child, absent),
             (None, Child::Leaf(_)) if may_add => default_of(path).map(|value| Node {
                 value: value.clone(),
                 mark: None,
             }),
             (None, Child::Table) if may_add => Some(Node {
-                value: Value::Table(absent_in(path, inside_live, absent)),
+                value: Value::Table(absent_in(path, absent)),
                 mark: None,
             }),
             _ => None,
@@ -219,11 +100,10 @@ fn filled(
     result
 }
 
-/// A table of which nothing was written, filled. Those inside arrays have no counterpart in the
-/// reference and are not kept.
-fn absent_in(path: &str, live: Option<&Table>, absent: &dyn Fn(&str) -> Arc<Table>) -> Arc<Table> {
+/// A table of which nothing was written, filled. Those inside arrays are not kept.
+fn absent_in(path: &str, absent: &dyn Fn(&str) -> Arc<Table>) -> Arc<Table> {
     if path.contains("[]") {
-        Arc::new(filled(path, &Table::new(), live, absent).unwrap_or_default())
+        Arc::new(filled(path, &Table::new(), absent).unwrap_or_default())
     } else {
         absent(path)
     }
@@ -235,16 +115,15 @@ fn filled_node(
     path: &str,
     node: &Node,
     child: Child,
-    live: Option<&Table>,
     absent: &dyn Fn(&str) -> Arc<Table>,
 ) -> Option<Node> {
     let value = match (&node.value, child) {
-        (Value::Table(table), _) => filled(path, table, live, absent).map(Value::from),
+        (Value::Table(table), _) => filled(path, table, absent).map(Value::from),
         (Value::Array(elements), Child::Tables) => {
             let mut result = None;
             for (index, element) in elements.iter().enumerate() {
                 let table = element.as_table();
-                if let Some(table) = table.and_then(|table| filled(path, table, None, absent)) {
+                if let Some(table) = table.and_then(|table| filled(path, table, absent)) {
                     let changed = result.get_or_insert_with(|| elements.to_vec());
                     changed[index].value = table.into();
                 }

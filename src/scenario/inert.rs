@@ -123,6 +123,10 @@ fn acts(run: &Resolved, rule: &Rule, path: &[Step]) -> bool {
     });
     match rule.acts {
         Acts::Run(acts) => acts(scenario),
+        Acts::Motion => {
+            let motion = &scenario.turntable.motion;
+            !motion.is_idle(rule.path, scenario.duration_s)
+        }
         Acts::Filter(acts) => index
             .and_then(|index| scenario.filters.get(index))
             .is_none_or(acts),

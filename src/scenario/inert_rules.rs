@@ -3,14 +3,14 @@
 //! A key that is not here acts in every run. A condition that only a run could find out, such as a
 //! limit that the motion never reaches, is none.
 
-use super::config::{Fidelity, GateConfig, GateDecision, Scenario};
-use super::gyro_config::{NoiseDraw, OutputQuantisation};
-use super::stairs::Stairs;
-use super::thermal_config::{PowerConfig, TemperatureConfig, ThermalWarmUp};
-use super::turntable_config::{MotionConfig, ServoConfig};
-use super::vibration_config::VibrationMotion;
+use super::config::{GateConfig, GateDecision, Scenario};
 use crate::filters::hardware::has_hardware;
 use crate::filters::{FilterConfig, FilterKind};
+use crate::gyro::Fidelity;
+use crate::gyro::VibrationMotion;
+use crate::gyro::{NoiseDraw, OutputQuantisation};
+use crate::gyro::{PowerConfig, TemperatureConfig, ThermalWarmUp};
+use crate::turntable::{MotionClass, ServoConfig};
 use crate::vocabulary::EstimatorKind;
 
 /// The condition under which a key acts.
@@ -18,6 +18,8 @@ use crate::vocabulary::EstimatorKind;
 pub(super) enum Acts {
     /// One of the run as a whole.
     Run(fn(&Scenario) -> bool),
+    /// One of the motion whose key it is.
+    Motion,
     /// One of the filter whose key it is.
     Filter(fn(&FilterConfig) -> bool),
     /// One of the gate whose key it is.
@@ -38,6 +40,15 @@ const fn run(path: &'static str, needs: &'static str, acts: fn(&Scenario) -> boo
     Rule {
         path,
         acts: Acts::Run(acts),
+        needs,
+    }
+}
+
+/// A key of a motion, which knows itself when it acts.
+const fn motion(path: &'static str, needs: &'static str) -> Rule {
+    Rule {
+        path,
+        acts: Acts::Motion,
         needs,
     }
 }
@@ -75,22 +86,13 @@ const TURNING: &str = "a motion other than [turntable.static]";
 #[rustfmt::skip]
 pub(super) const RULES: &[Rule] = &[
     run("bias_averaging_time_s", STEADY, is_steady),
-    run("turntable.rotation.soft_start_s", "turntable.rotation.rate_deg_per_s other than 0",
-        |s| !matches!(&s.turntable.motion, MotionConfig::Rotation(turn) if is_zero(turn.rate_deg_per_s))),
-    run("turntable.trapezoid.rest_s", "turntable.trapezoid.cycles above 1 or both_senses = true",
-        |s| !matches!(&s.turntable.motion, MotionConfig::Trapezoid(one) if one.count() < 2)),
-    run("turntable.chirp.progression", "start and end frequencies that differ",
-        |s| !matches!(&s.turntable.motion, MotionConfig::Chirp(chirp)
-            if is_zero(chirp.end_frequency_hz - chirp.start_frequency_hz))),
-    run("turntable.chirp.soft_stop_s", "duration_s beyond turntable.chirp.sweep_s",
-        |s| !matches!(&s.turntable.motion, MotionConfig::Chirp(chirp) if chirp.sweep_s >= s.duration_s)),
-    run("turntable.calibration.change_s", "two groups in a row of one axis in turntable.calibration.axes",
-        |s| has_pause(s, false)),
-    run("turntable.calibration.remount_s", "different axes in turntable.calibration.axes",
-        |s| has_pause(s, true)),
-    run("turntable.calibration.whole_turns", "a group that turns in turntable.calibration.rates_deg_per_s",
-        |s| !matches!(&s.turntable.motion, MotionConfig::Calibration(campaign)
-            if campaign.rates_deg_per_s.iter().all(|rate| is_zero(*rate)))),
+    motion("turntable.rotation.soft_start_s", "turntable.rotation.rate_deg_per_s other than 0"),
+    motion("turntable.trapezoid.rest_s", "turntable.trapezoid.cycles above 1 or both_senses = true"),
+    motion("turntable.chirp.progression", "start and end frequencies that differ"),
+    motion("turntable.chirp.soft_stop_s", "duration_s beyond turntable.chirp.sweep_s"),
+    motion("turntable.calibration.change_s", "two groups in a row of one axis in turntable.calibration.axes"),
+    motion("turntable.calibration.remount_s", "different axes in turntable.calibration.axes"),
+    motion("turntable.calibration.whole_turns", "a group that turns in turntable.calibration.rates_deg_per_s"),
     run("turntable.servo.second_order.natural_frequency_hz", TURNING, is_turning),
     run("turntable.servo.second_order.damping_ratio", TURNING, is_turning),
     run("turntable.servo.direct_drive.rate_feed_forward", TURNING, is_turning),
@@ -260,7 +262,7 @@ pub(super) const RULES: &[Rule] = &[
     run("trial.filter_state",
         "it needs dwells to begin afresh at, and filters; [turntable.steps] or \
          [turntable.scale_factor_test] and a [[filter]]",
-        |s| !s.filters.is_empty() && Stairs::of(&s.turntable.motion).is_some()),
+        |s| !s.filters.is_empty() && s.turntable.motion.stairs().is_some()),
     Rule { path: "gate[].inconclusive", acts: Acts::Gate(|gate| gate.decide == GateDecision::Interval),
         needs: "a value alone is never inconclusive; decide = \"interval\"" },
 ];
@@ -271,28 +273,15 @@ fn is_zero(value: f64) -> bool {
 
 fn is_steady(scenario: &Scenario) -> bool {
     let motion = scenario.measured_motion();
-    matches!(motion, MotionConfig::Static(_) | MotionConfig::Rotation(_))
+    matches!(motion.class(), MotionClass::Rest | MotionClass::Rotation)
 }
 
 fn is_turning(scenario: &Scenario) -> bool {
-    !matches!(scenario.turntable.motion, MotionConfig::Static(_))
+    !scenario.turntable.motion.is_at_rest()
 }
 
 fn is_campaign(scenario: &Scenario) -> bool {
-    matches!(scenario.turntable.motion, MotionConfig::Calibration(_))
-}
-
-/// Whether a campaign has a pause, with or without a new mounting; so has every other motion, to
-/// which the keys do not belong.
-fn has_pause(scenario: &Scenario, is_remounting: bool) -> bool {
-    let MotionConfig::Calibration(campaign) = &scenario.turntable.motion else {
-        return true;
-    };
-    let groups = campaign.groups();
-    groups
-        .iter()
-        .skip(1)
-        .any(|group| group.is_remounted == is_remounting)
+    scenario.turntable.motion.campaign().is_some()
 }
 
 fn has_encoder(scenario: &Scenario) -> bool {

@@ -337,7 +337,7 @@ fn inherited_keys_defaults_and_records_are_never_refused() {
     }
     // What the default says asks for nothing.
     let text = "name = \"x\"\nduration_s = 20.0\ncalibration.apply = \"arls\"\n";
-    let default = super::reference_calibration().apply.word();
+    let default = super::CalibrationConfig::reference().apply.word();
     assert_eq!(
         idle(&text.replace("arls", default), "", &[]),
         Vec::<String>::new()

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::cross::RESERVED;
-use super::defaults::{default_of, has_default_alternative};
+use super::defaults::default_of;
 use super::schema::{self, Child, Group, Key, Kind, Presence, join};
 use super::tree;
 
@@ -49,7 +49,7 @@ fn object(schema_path: &str) -> Map<String, Value> {
     let mut schema = Map::new();
     schema.insert("type".to_owned(), json!("object"));
     schema.insert("additionalProperties".to_owned(), json!(false));
-    if let Some(group) = Group::of_table(schema_path)
+    if let Some(group) = schema::group_of(schema_path)
         && group.alternatives.len() > 1
     {
         schema.insert("not".to_owned(), json!({"anyOf": pairs(group)}));
@@ -62,7 +62,7 @@ fn object(schema_path: &str) -> Map<String, Value> {
 fn element(schema_path: &str) -> Value {
     let mut schema = object(schema_path);
     // One rule says it all: the weaker one would only double the complaint of an editor.
-    if Group::of_table(schema_path).is_some() {
+    if schema::group_of(schema_path).is_some() {
         schema.remove("not");
     }
     for (keyword, rule) in complete(schema_path) {
@@ -98,8 +98,8 @@ fn complete(schema_path: &str) -> Map<String, Value> {
     if !required.is_empty() {
         rules.insert("required".to_owned(), json!(required));
     }
-    if let Some(group) = Group::of_table(schema_path)
-        && !has_default_alternative(group)
+    if let Some(group) = schema::group_of(schema_path)
+        && group.default().is_none()
     {
         let choices = group.alternatives.iter();
         let choices: Vec<Value> = choices.map(|name| json!({"required": [name]})).collect();
@@ -159,7 +159,7 @@ fn leaf(key: &Key) -> Value {
         }
         Kind::Matrix => json!({"type": "object", "minProperties": 1}),
     };
-    schema["description"] = json!(format!("{} {}", key.doc, key.line()));
+    schema["description"] = json!(format!("{} {}", key.sentence(), key.line()));
     if let Some(default) = default_of(key.path).and_then(plain) {
         schema["default"] = default;
     }

@@ -50,7 +50,7 @@ impl Checker<'_> {
     }
 
     fn presence(&mut self, place: Place<'_>, table: &Table) {
-        let group = Group::of_table(place.schema_path);
+        let group = schema::group_of(place.schema_path);
         if let Some(group) = group
             && !group
                 .alternatives
@@ -84,7 +84,7 @@ impl Checker<'_> {
                     let message = format!(
                         "{shown} is required: expected {} ({})",
                         key.expected(),
-                        key.doc.trim_end_matches('.')
+                        key.summary()
                     );
                     self.miss(mark, message);
                 }
@@ -118,7 +118,7 @@ impl Checker<'_> {
     }
 
     fn contradictions(&mut self, place: Place<'_>, table: &Table) {
-        if let Some(group) = Group::of_table(place.schema_path) {
+        if let Some(group) = schema::group_of(place.schema_path) {
             let mut given: Vec<(Mark, &str)> = group
                 .alternatives
                 .iter()

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::address::{self, nearest_mark};
 use super::config::Scenario;
-use super::cross;
 use super::defaults::default_of;
 use super::deserialize::from_table;
 use super::emit::to_toml;
@@ -81,35 +80,6 @@ impl PartialEq for Resolved {
 }
 
 impl Resolved {
-    /// The run with other values, all of them checked one by one, and their canonical text.
-    ///
-    /// # Errors
-    /// Every contradiction between the values.
-    pub(super) fn with_tree(&self, tree: Table, text: &str) -> Result<Self, Vec<ScenarioError>> {
-        let other = Self {
-            scenario: configuration(&tree, self.root_mark, &self.sources)?,
-            digest: digest(text),
-            tree,
-            file: self.file.clone(),
-            inputs: self.inputs.clone(),
-            sweep: None,
-            warnings: self.warnings.clone(),
-            remarks: self.remarks.clone(),
-            is_base_point: false,
-            campaign: self.campaign.clone(),
-            gate_places: self.gate_places.clone(),
-            sources: Arc::clone(&self.sources),
-            root_mark: self.root_mark,
-            is_record: self.is_record,
-        };
-        let errors = cross::check(&other);
-        if errors.is_empty() {
-            Ok(other)
-        } else {
-            Err(errors)
-        }
-    }
-
     /// Count of the numbers that its scripts and profiles hold.
     pub(super) fn numbers_in_arrays(&self) -> usize {
         fn of(value: &Value) -> usize {

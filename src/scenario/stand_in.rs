@@ -6,7 +6,7 @@
 use super::address::{Step, get, get_mut, parse};
 use super::defaults::{default_of, fill};
 use super::faults::Taken;
-use super::schema::{Child, Group, Key, Kind, Presence, Range, child, children, join};
+use super::schema::{Child, Key, Kind, Presence, Range, child, children, group_of, join};
 use super::tree::{Node, Table, Value};
 
 /// Which made-up values are taken.
@@ -63,7 +63,7 @@ fn insert(root: &mut Table, path: &[Step], node: Node) {
 
 /// Makes up required keys and choices that are missing.
 fn complete(schema_path: &str, table: &mut Table, variant: Variant) {
-    if let Some(group) = Group::of_table(schema_path)
+    if let Some(group) = group_of(schema_path)
         && !group
             .alternatives
             .iter()

@@ -7,8 +7,7 @@ use std::sync::OnceLock;
 
 use super::address::{Step, display};
 use super::excerpt::excerpt;
-use super::keys::{GROUPS, keys};
-use super::schema::{children, join};
+use super::schema::{children, groups, join, keys};
 use super::synonyms::{Meaning, meaning};
 use super::tree::{Node, Table};
 use crate::wording::{Likeness, Name, Vocabulary, conversion, likeness};
@@ -175,7 +174,7 @@ fn path_is_open(schema_path: &str, path: &str) -> bool {
             _ => false,
         }
     };
-    let is_taken = GROUPS.iter().any(|group| {
+    let is_taken = groups().iter().any(|group| {
         let is_alternative = |path: &str| {
             let rest = path
                 .strip_prefix(group.table)

@@ -230,7 +230,7 @@ pub(super) fn meaning(schema_path: &str, name: &str) -> Option<Meaning> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::keys::keys;
+    use crate::scenario::schema::keys;
 
     #[test]
     fn every_key_that_a_name_means_exists() {

@@ -4,12 +4,15 @@
 //! been checked, filled in and spelled for one of them therefore holds for all: a further point
 //! costs its own values and the checks across values.
 
+use std::sync::Arc;
+
 use super::address::{self, Step};
+use super::cross;
 use super::emit::to_toml_around;
 use super::error::ScenarioError;
 use super::leaf::check_leaf;
 use super::numbers::settled_value;
-use super::resolved::Resolved;
+use super::resolved::{Resolved, configuration, digest};
 use super::schema::Key;
 use super::tree::{Node, Table};
 
@@ -105,5 +108,36 @@ impl Template {
             text.push_str(piece);
         }
         self.run.with_tree(tree, &text)
+    }
+}
+
+impl Resolved {
+    /// The run with other values, all of them checked one by one, and their canonical text.
+    ///
+    /// # Errors
+    /// Every contradiction between the values.
+    fn with_tree(&self, tree: Table, text: &str) -> Result<Self, Vec<ScenarioError>> {
+        let other = Self {
+            scenario: configuration(&tree, self.root_mark, &self.sources)?,
+            digest: digest(text),
+            tree,
+            file: self.file.clone(),
+            inputs: self.inputs.clone(),
+            sweep: None,
+            warnings: self.warnings.clone(),
+            remarks: self.remarks.clone(),
+            is_base_point: false,
+            campaign: self.campaign.clone(),
+            gate_places: self.gate_places.clone(),
+            sources: Arc::clone(&self.sources),
+            root_mark: self.root_mark,
+            is_record: self.is_record,
+        };
+        let errors = cross::check(&other);
+        if errors.is_empty() {
+            Ok(other)
+        } else {
+            Err(errors)
+        }
     }
 }

@@ -4,11 +4,14 @@ use std::path::PathBuf;
 
 use proptest::prelude::*;
 
-use super::defaults::{alternatives, default_of, reference_toml};
-use super::keys::{GROUPS, keys};
-use super::schema::{self, Child, Key, Kind, Presence};
+use super::config::Scenario;
+use super::defaults::default_of;
+use super::reference_toml;
+use super::schema::{self, Child, Key, Kind, Presence, groups, keys};
 use super::tree::{Node, Table, Value, merge, parse_document};
-use super::{Fidelity, MotionConfig, Resolved, ScenarioError, ServoConfig, load_suite};
+use super::{Resolved, ScenarioError, load_suite};
+use crate::gyro::Fidelity;
+use crate::turntable::{MotionConfig, ServoConfig};
 
 /// The least a scenario needs besides the defaults.
 const LEAST: &str = "name = \"x\"\nduration_s = 20.0\n";
@@ -31,6 +34,26 @@ fn enabled_lines() -> Vec<&'static str> {
         .lines()
         .map(|line| line.strip_prefix("#| ").unwrap_or(line))
         .collect()
+}
+
+/// The commented alternatives of the reference, each a document of its own.
+fn alternatives() -> Vec<String> {
+    let mut blocks: Vec<String> = Vec::new();
+    let mut is_inside = false;
+    for line in reference_toml().lines() {
+        let Some(content) = line.strip_prefix("#| ") else {
+            is_inside = false;
+            continue;
+        };
+        if !is_inside {
+            blocks.push(String::new());
+        }
+        is_inside = true;
+        let block = blocks.last_mut().unwrap();
+        block.push_str(content);
+        block.push('\n');
+    }
+    blocks
 }
 
 /// Every key line or header of a keyless table with its schema path and the comment above it.
@@ -152,6 +175,14 @@ fn each_alternative_of_the_reference_validates_when_enabled() {
 }
 
 #[test]
+fn the_reference_in_memory_has_the_defaults_of_the_file() {
+    let run = load(LEAST).unwrap().remove(0);
+    let mut built = Scenario::reference();
+    built.name = "x".to_owned();
+    assert_eq!(built, run.scenario);
+}
+
+#[test]
 fn an_alternative_that_breaks_a_range_is_refused() {
     let block = alternatives()
         .into_iter()
@@ -163,7 +194,7 @@ fn an_alternative_that_breaks_a_range_is_refused() {
 
 #[test]
 fn every_group_stands_in_a_table_that_knows_its_alternatives() {
-    for group in GROUPS {
+    for group in groups() {
         for name in group.alternatives {
             assert!(
                 schema::child(group.table, name).is_some(),
@@ -235,7 +266,7 @@ fn json_schema_asks_for_what_the_reader_asks_for() {
         items("gate")["anyOf"],
         serde_json::json!([required("min"), required("max")])
     );
-    let kinds = GROUPS.iter().find(|group| group.table == "filter[]");
+    let kinds = groups().iter().find(|group| group.table == "filter[]");
     let kinds = kinds.expect("filters are of one kind").alternatives;
     let one_of: Vec<_> = kinds.iter().map(|kind| required(kind)).collect();
     assert_eq!(items("filter")["oneOf"], serde_json::json!(one_of));

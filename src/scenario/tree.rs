@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::excerpt::excerpt;
-use super::schema::{Group, join};
+use super::schema::{group_of, join};
 use super::source::Mark;
 use super::weight;
 
@@ -305,7 +305,7 @@ fn float(text: &str) -> Value {
 /// In a table of alternatives ([`Group`]) an alternative of the later table removes those of the
 /// earlier one that the later does not give.
 pub(crate) fn merge(schema_path: &str, base: &mut Table, over: Table) {
-    if let Some(group) = Group::of_table(schema_path) {
+    if let Some(group) = group_of(schema_path) {
         let is_given = |name: &str| over.contains_key(name);
         if group.alternatives.iter().any(|name| is_given(name)) {
             for name in group.alternatives.iter().filter(|name| !is_given(name)) {

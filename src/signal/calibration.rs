@@ -17,6 +17,7 @@ pub struct AssemblyParameters {
 
 /// A coefficient of the gyros x, y, z with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AxisCoefficient {
     /// Values.
     pub value: [f64; 3],
@@ -26,6 +27,7 @@ pub struct AxisCoefficient {
 
 /// One group of a campaign: one mounting at one rate, reduced to means.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CalibrationGroup {
     /// Case axis along the table axis, 0 to 2 for x to z.
     pub mounting: usize,
@@ -55,6 +57,7 @@ pub struct CalibrationGroup {
 
 /// What a plan of mountings and rates can determine.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CalibrationPlan {
     /// Groups.
     pub groups: usize,
@@ -74,6 +77,7 @@ pub struct CalibrationPlan {
 
 /// The truth of a simulated assembly.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CalibrationTruth {
     /// Parameters at the reference temperature.
     pub parameters: AssemblyParameters,
@@ -85,6 +89,7 @@ pub struct CalibrationTruth {
 
 /// How far an estimate is from the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct EstimateError {
     /// Estimate minus truth.
     pub parameters: AssemblyParameters,
@@ -103,6 +108,7 @@ pub struct EstimateError {
 
 /// What double precision cost a recursion: largest differences from the square-root form.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ParameterRounding {
     /// Of a bias, deg/h.
     pub bias_deg_per_h: f64,
@@ -112,6 +118,7 @@ pub struct ParameterRounding {
 
 /// What one estimator made of the groups.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CalibrationEstimate {
     /// Name of the estimator as in `calibration.estimators`.
     pub name: String,
@@ -144,6 +151,7 @@ pub struct CalibrationEstimate {
 
 /// What a form of compensation leaves at the plan's rates.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CompensationCheck {
     /// `exact` or `first-order`.
     pub form: &'static str,
@@ -157,6 +165,7 @@ pub struct CompensationCheck {
 
 /// One row of the ranking of estimators over repeated campaigns.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CalibrationRank {
     /// Name of the estimator.
     pub name: String,
@@ -174,6 +183,7 @@ pub struct CalibrationRank {
 
 /// Everything that a report shows of a calibration.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CalibrationSheet {
     /// The plan for the twelve parameters.
     pub plan: CalibrationPlan,

@@ -171,6 +171,7 @@ pub enum TheoryQuantity {
 
 /// Temperatures of a run and what they are predicted to do, at equally spaced times.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct TemperatureRecord {
     /// Times, s from the start of the warm-up.
     pub time_s: Vec<f64>,
@@ -188,6 +189,7 @@ pub struct TemperatureRecord {
 
 /// One source in the noise budget of a gyro.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct BudgetEntry {
     /// Name as in [`GyroFacts::angle_random_walk_budget_deg_per_sqrt_h`].
     pub source: &'static str,
@@ -201,6 +203,7 @@ pub struct BudgetEntry {
 
 /// The noise budget at one power and modulation depth.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct BudgetPoint {
     /// Mean detected power over a fringe, uW.
     pub power_uw: f64,
@@ -223,6 +226,7 @@ impl BudgetPoint {
 
 /// The noise budget of a gyro in closed form, as the report prints it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct BudgetSheet {
     /// The configured power and depth.
     pub configured: BudgetPoint,
@@ -266,6 +270,7 @@ pub struct RunSignals<'a> {
 
 /// What a compensation takes out of the outputs of an assembly, as the report shows it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CompensationSheet {
     /// `exact` or `first-order`.
     pub form: &'static str,

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::scenario::{AxisConfig, MountingConfig, SiteConfig, TurntableConfig};
+use crate::turntable::{AxisConfig, MountingConfig, SiteConfig, TurntableConfig};
 use crate::units::{EARTH_RATE_RAD_PER_S, arcsec_to_rad, deg_to_rad};
 
 /// A vector in the frame that the place of use names.
@@ -76,6 +76,7 @@ pub(super) fn fixed_earth_rate(config: &TurntableConfig) -> Option<f64> {
 
 /// What the geometry makes of the table's motion at most; see [`input_axis_bounds`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct InputAxisBounds {
     /// Rate on the input axis over table rate, in magnitude.
     pub rate_ratio: f64,

@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use crate::scenario::EncoderConfig;
 use crate::signal::MotionSegment;
+use crate::turntable::EncoderConfig;
 use crate::units::{arcsec_to_rad, deg_to_rad, us_to_s};
 
 /// From the angle of the axis to the angle shown: cyclic errors, then rounding.

@@ -1,8 +1,8 @@
 //! The signal that is added inside the loop while the table is at rest.
 
-use super::motion::Profile;
-use crate::scenario::InjectionConfig;
+use super::motion::{Command, Motion};
 use crate::signal::MotionSegment;
+use crate::turntable::MultiSineConfig;
 
 /// Generator of an injected signal, in the place of a rate table.
 ///
@@ -11,7 +11,7 @@ use crate::signal::MotionSegment;
 /// answers with the same transfer function; errors of the modulator act on the loop's own step alone.
 #[derive(Clone, Debug)]
 pub struct InjectedSignal {
-    profile: Profile,
+    command: Command,
 }
 
 impl InjectedSignal {
@@ -23,15 +23,15 @@ impl InjectedSignal {
     /// # Panics
     /// If there is neither one amplitude nor one for each sine; the scenario reader refuses that.
     #[must_use]
-    pub fn new(config: &InjectionConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
+    pub fn new(sines: &MultiSineConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         Self {
-            profile: Profile::new(config.equivalent_motion(), warm_up_s, sample_period_s),
+            command: Command::new(sines.course(warm_up_s, sample_period_s)),
         }
     }
 
     /// Equivalent rate over the next output sample, rad/s: a cubic, exact at its ends (see
     /// [`Turntable::next_segment`](crate::turntable::Turntable::next_segment)).
     pub fn next_segment(&mut self) -> MotionSegment {
-        self.profile.next_segment()
+        self.command.next_segment()
     }
 }

@@ -1,7 +1,7 @@
 //! Rate table: commanded motion, servo and the site, giving the true rate of the gyro's input axis.
 //!
 //! ```text
-//!  motion ──> profile ──command──> servo ──table rate──> platform ──truth──> gyro
+//!  motion ──> course  ──command──> servo ──table rate──> platform ──truth──> gyro
 //!             swing, steps,        ideal,      │         wobble, mounting,
 //!             rotation, ...        2nd order,  │         + Earth rate
 //!                                  motor       └──> encoder ──> laboratory
@@ -22,13 +22,21 @@ mod injected;
 mod motion;
 mod platform;
 mod servo;
+mod settings;
+mod stairs;
 mod table;
 
 pub use axis::{InputAxisBounds, earth_rate_rad_per_s, input_axis_bounds};
 pub use injected::InjectedSignal;
 pub use motion::{
-    CommandExtremes, campaign_angles_rad, campaign_command_extremes, command_extremes,
-    command_rate_max_rad_per_s, dwell_ends, first_measured_index,
-    multi_sine_acceleration_max_rad_per_s2, step_indices, swing_rate_amplitude_rad_per_s,
+    CommandExtremes, MotionChecks, MotionClass, Surroundings, campaign_angles_rad, dwell_ends,
+    first_measured_index, step_indices,
 };
+pub use settings::{
+    AxisConfig, CampaignConfig, CampaignGroup, ChirpConfig, DirectDriveServoConfig, EncoderConfig,
+    MotionConfig, MountingConfig, MultiSineConfig, PreferredSeries, Progression, RotationConfig,
+    ScaleFactorTestConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig, ServoConfig,
+    SiteConfig, StaticConfig, StepsConfig, SwingConfig, TrapezoidConfig, TurntableConfig,
+};
+pub use stairs::{Stairs, TEST_RATES_MIN};
 pub use table::Turntable;

@@ -1,9 +1,10 @@
 //! The inertial rate of axes fixed in the platform: exact kinematics of an imperfect table.
 
 use super::axis::{Vector, cross, dot, earth_in_table_frame};
-use crate::scenario::{CaseAxis, MotionConfig, MountingConfig, TurntableConfig};
 use crate::signal::MotionSegment;
+use crate::turntable::{MountingConfig, TurntableConfig};
 use crate::units::{arcsec_to_rad, deg_to_rad};
+use crate::vocabulary::CaseAxis;
 
 /// The platform and what is mounted on it.
 ///
@@ -68,7 +69,7 @@ impl Platform {
     pub(super) fn new(config: &TurntableConfig, angle: f64, sample_period_s: f64) -> Self {
         let (wobble_sine, wobble_cosine) = arcsec_to_rad(config.axis.wobble_arcsec).sin_cos();
         let mut mounting = config.mounting.clone();
-        if let MotionConfig::Calibration(campaign) = &config.motion {
+        if let Some(campaign) = config.motion.campaign() {
             let first = campaign.axes.first().copied();
             mounting.axis_along_table = first.unwrap_or(mounting.axis_along_table);
         }

@@ -2,12 +2,13 @@
 
 use super::axis::fixed_earth_rate;
 use super::encoder::Encoder;
-use super::motion::{Profile, remountings};
+use super::motion::{Command, remountings};
 use super::platform::Platform;
 use super::servo::Servo;
-use crate::scenario::{CaseAxis, MotionConfig, TurntableConfig};
 use crate::signal::MotionSegment;
+use crate::turntable::TurntableConfig;
 use crate::units::deg_to_rad;
+use crate::vocabulary::CaseAxis;
 
 /// A rate table that carries one gyro, or the case of a three-axis assembly.
 ///
@@ -16,7 +17,7 @@ use crate::units::deg_to_rad;
 /// on anything but its configuration.
 #[derive(Clone, Debug)]
 pub struct Turntable {
-    profile: Profile,
+    command: Command,
     servo: Servo,
     encoder: Option<Encoder>,
     angle: TableAngle,
@@ -41,8 +42,9 @@ impl Turntable {
     /// reader refuses all of these.
     #[must_use]
     pub fn new(config: &TurntableConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
-        let profile = Profile::new(&config.motion, warm_up_s, sample_period_s);
-        let initial_rate = profile.initial_rate();
+        let course = config.motion.kind().course(warm_up_s, sample_period_s);
+        let command = Command::new(course);
+        let initial_rate = command.initial_rate();
         let start_angle = deg_to_rad(config.mounting.start_angle_deg);
         Self {
             servo: Servo::new(
@@ -52,15 +54,12 @@ impl Turntable {
                 sample_period_s,
             ),
             encoder: Encoder::new(&config.encoder, initial_rate, sample_period_s),
-            profile,
+            command,
             angle: TableAngle::new(start_angle, sample_period_s),
             platform: Platform::new(config, start_angle, sample_period_s),
-            remountings: match &config.motion {
-                MotionConfig::Calibration(campaign) => {
-                    remountings(campaign, warm_up_s, sample_period_s)
-                }
-                _ => Vec::new(),
-            },
+            remountings: config.motion.campaign().map_or_else(Vec::new, |campaign| {
+                remountings(campaign, warm_up_s, sample_period_s)
+            }),
             index: 0,
             fixed_earth_rate: fixed_earth_rate(config),
         }
@@ -113,7 +112,7 @@ impl Turntable {
     /// Motion of the table about its own axis over the next sample.
     fn turn(&mut self) -> MotionSegment {
         self.index += 1;
-        let motion = self.servo.follow(self.profile.next_segment());
+        let motion = self.servo.follow(self.command.next_segment());
         self.angle.add(&motion);
         if let Some(encoder) = &mut self.encoder {
             encoder.advance(&motion);

@@ -7,6 +7,7 @@ mod allan;
 mod calibration;
 mod filter;
 mod hardware;
+mod motion;
 mod word;
 
 pub use allan::AveragingTimes;
@@ -15,4 +16,6 @@ pub use filter::{
     ConstantUnit, DesiredSignal, InitialWeights, OutputRegister, Pipeline, SignLmsForm, UpdateSign,
 };
 pub use hardware::{Division, ExportForm, NumberFormat, UpdateOrder};
+pub use motion::{CaseAxis, PhaseRule};
+pub(crate) use word::words;
 pub use word::{UnknownWord, Word};

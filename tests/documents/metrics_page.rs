@@ -29,8 +29,9 @@ what a filter is given: the output of the gyro, or with a `[compensation]` the c
 - A gate passes when the whole interval lies inside its limits, fails when it lies outside, and is
   *inconclusive*, which fails too unless the gate allows it, when the interval reaches over a limit.
 
-In `summary.json` a metric stands under `channels.<name>.<key>`; see [results](output.md). The source file
-of a metric declares it beside its computation.
+The column *of* says which channels and motions have a metric: *filters* where raw has none. In
+`summary.json` a metric stands under `channels.<name>.<key>`; see [results](output.md). The source
+file of a metric declares it beside its computation.
 ";
 
 /// Path of the file that declares a metric, from the root of the repository.
@@ -117,14 +118,15 @@ pub(crate) fn page() -> String {
         let module = sources.get(&folder).or_else(|| sources.get(&file));
         let doc = subject(module.expect("a module has a file"));
         write!(page, "\n## {name}\n\n{doc}\n\n").expect("a string takes it");
-        page.push_str("| key | unit | definition | source |\n|---|---|---|---|\n");
+        page.push_str("| key | unit | definition | of | source |\n|---|---|---|---|---|\n");
         for (key, file) in keys {
-            let only = if key.filters_only { "filters: " } else { "" };
+            let only = if key.filters_only { "filters; " } else { "" };
+            let records = key.applies.words();
             let source = file.rsplit('/').next().unwrap_or_default();
             let (name, unit, definition) = (key.name, key.unit, key.definition);
             writeln!(
                 page,
-                "| `{name}` | {unit} | {only}{definition} | [{source}](../{file}) |"
+                "| `{name}` | {unit} | {definition} | {only}{records} | [{source}](../{file}) |"
             )
             .expect("a string takes it");
         }

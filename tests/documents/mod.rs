@@ -5,6 +5,7 @@
 mod command_line_page;
 mod console;
 mod figures;
+mod files_page;
 mod links;
 mod metrics_page;
 mod scenario_page;
@@ -16,8 +17,9 @@ use crate::support::generated::generated;
 use crate::support::{code, fogbench, repository, stderr};
 
 /// Pages that are written by tests, and hence hold what they are generated from.
-const GENERATED: [&str; 3] = [
+const GENERATED: [&str; 4] = [
     "docs/command-line.md",
+    "docs/files.md",
     "docs/metrics.md",
     "docs/scenario.md",
 ];
@@ -70,6 +72,11 @@ fn scenario_texts(folder: &Path, text: &mut String) {
 #[test]
 fn generated_page_of_the_metrics() {
     generated("docs/metrics.md", &metrics_page::page());
+}
+
+#[test]
+fn generated_page_of_the_files() {
+    generated("docs/files.md", &files_page::page());
 }
 
 #[test]

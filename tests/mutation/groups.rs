@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use fogbench::experiment::{GroupsSettings, calibrate_groups};
 use fogbench::recording::read_groups;
 use fogbench::report::{calibrate_json, calibrate_text};
-use fogbench::scenario::{CalibrationConfig, reference_calibration};
+use fogbench::scenario::CalibrationConfig;
 use fogbench::units::{deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h};
 use fogbench::vocabulary::EstimatorKind;
 
@@ -215,7 +215,7 @@ fn case(draws: &mut Draws, folder: &Path) -> Outcome {
         .groups
         .iter()
         .all(|it| it.reference_rate_deg_per_s.is_some());
-    static REFERENCE: LazyLock<CalibrationConfig> = LazyLock::new(reference_calibration);
+    static REFERENCE: LazyLock<CalibrationConfig> = LazyLock::new(CalibrationConfig::reference);
     let mut calibration = REFERENCE.clone();
     let kinds = [
         EstimatorKind::Batch,

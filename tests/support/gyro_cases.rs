@@ -1,23 +1,38 @@
 //! Variants of the reference gyro and readings of its facts.
 
-use fogbench::scenario::{GyroConfig, NoiseConfig, NoiseDraw};
+use fogbench::gyro::{NOISE_SOURCES, NoiseSource};
+use fogbench::scenario::{GyroConfig, reference_toml};
 
-use super::reference_gyro::reference_gyro;
+use super::reference_gyro::{gyro, undisturbed};
+
+/// Setting that switches a noise source off: `false`, or 0 for a source that has a size.
+pub(crate) fn off(source: &NoiseSource) -> String {
+    set(source, "false", "0")
+}
+
+/// Setting that switches a noise source on: `true`, or a size that shows.
+pub(crate) fn on(source: &NoiseSource) -> String {
+    set(source, "true", "2")
+}
+
+fn set(source: &NoiseSource, switch: &str, size: &str) -> String {
+    let reference: toml::Table = reference_toml().parse().expect("the reference is TOML");
+    let mut names = source.key.split('.');
+    let root = names.next().and_then(|name| reference.get(name));
+    let default = names.fold(root, |table, name| table.and_then(|table| table.get(name)));
+    let value = match default.expect("a noise source has a key of the reference") {
+        toml::Value::Boolean(_) => switch,
+        _ => size,
+    };
+    let name = source.key.strip_prefix("gyro.").expect("a key of the gyro");
+    format!("{name} = {value}")
+}
 
 /// The reference gyro with every noise off and ideal converters.
 pub(crate) fn silent_gyro() -> GyroConfig {
-    let mut config = reference_gyro();
-    config.noise = NoiseConfig {
-        shot: false,
-        thermal: false,
-        amplifier: false,
-        rin: false,
-        technical_phase_urad_per_sqrt_hz: 0.0,
-        draw: NoiseDraw::Combined,
-    };
-    config.adc.bits = 0;
-    config.modulator.dac_bits = 0;
-    config
+    let mut settings: Vec<String> = NOISE_SOURCES.iter().map(off).collect();
+    settings.push("modulator.dac_bits = 0".to_owned());
+    undisturbed(gyro(&settings))
 }
 
 /// One entry of the budget, deg/sqrt(h).

@@ -107,7 +107,7 @@ pub(crate) fn channels() -> Vec<(String, ChannelMetrics)> {
     );
     rls.unavailable.insert(
         "rate_random_walk_deg_per_h_per_sqrt_h".to_owned(),
-        "the record is too short".to_owned(),
+        "the record is too short".into(),
     );
     let mut bad = channel(&[("diverged_at_s", [1.5, 1.5, 1.5], "s")]);
     bad.error = Some(ChannelFailure {

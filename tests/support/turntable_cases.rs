@@ -1,6 +1,7 @@
 //! Tables without faults, from which tests depart.
 
-use fogbench::scenario::{AxisConfig, CaseAxis, EncoderConfig, MountingConfig};
+use fogbench::scenario::{AxisConfig, EncoderConfig, MountingConfig};
+use fogbench::vocabulary::CaseAxis;
 
 /// An axis without tilt or wobble.
 pub(crate) fn true_axis() -> AxisConfig {

@@ -20,10 +20,7 @@ use crate::units::{
 
 /// The campaign of a scenario; none if the table does something else.
 pub(crate) fn campaign(scenario: &Scenario) -> Option<&CampaignConfig> {
-    match &scenario.turntable.motion {
-        MotionConfig::Calibration(campaign) => Some(campaign),
-        _ => None,
-    }
+    scenario.turntable.motion.campaign()
 }
 
 /// Rates that a laboratory knows its gyros ought to see in each group, deg/s about the case axes.
@@ -58,7 +55,7 @@ fn reference_rates(scenario: &Scenario, campaign: &CampaignConfig) -> Vec<[f64; 
 /// Earth rate about the case axes of a table without errors at rest, deg/s.
 fn at_rest(table: &TurntableConfig, group: &CampaignGroup, turned_rad: f64) -> [f64; 3] {
     let mut still = table.clone();
-    still.motion = MotionConfig::Static(crate::scenario::StaticConfig {});
+    still.motion = MotionConfig::rest();
     still.servo = crate::scenario::ServoConfig::Ideal(crate::scenario::StaticConfig {});
     still.axis.tilt_north_arcsec = 0.0;
     still.axis.tilt_east_arcsec = 0.0;

@@ -6,11 +6,11 @@ use crate::metrics::catalogue::{
     PLAN_CONDITION_NUMBER, ROUNDING_LOSS, SCALE_FACTOR_ERROR_RMS,
 };
 use crate::metrics::{Applies, ChannelMetrics, Estimate, MetricKey, known_metrics};
-use crate::scenario::{MotionConfig, Scenario};
+use crate::scenario::Scenario;
 use crate::signal::{CalibrationEstimate, CalibrationRank, CalibrationSheet, EstimateError};
 
 fn is_campaign(scenario: &Scenario) -> bool {
-    matches!(scenario.turntable.motion, MotionConfig::Calibration(_))
+    scenario.turntable.motion.campaign().is_some()
 }
 
 /// Why the channels of a campaign never have a metric.

@@ -77,6 +77,7 @@ impl CalibrationTrial {
 
 /// Why there is no calibration.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CalibrateError {
     /// The groups file could not be read, or holds something else.
     #[error(transparent)]

@@ -13,7 +13,7 @@ use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
 use crate::metrics::{ChannelMetrics, Motion, Settings, is_sample_or_longer, record_fit_tau_min_s};
 use crate::recording::{Log, csv_text};
 use crate::report::{LogReport, SAMPLES, SAMPLES_CSV, log_files};
-use crate::scenario::{AllanConfig, MotionConfig, StaticConfig, SwingConfig};
+use crate::scenario::{AllanConfig, MotionConfig, SwingConfig};
 use crate::signal::RunSignals;
 use crate::store::{OutputFolder, StoreError};
 use crate::turntable::first_measured_index;
@@ -93,6 +93,7 @@ pub struct LogSettings {
 /// Why a log was not measured.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {message}")]
+#[non_exhaustive]
 pub struct LogTrialError {
     /// Name of the log.
     pub file: String,
@@ -264,7 +265,7 @@ fn metric_motion(motion: LogMotion) -> Motion {
 /// The motion as reports head their columns by it; a log does not tell a swing's amplitude.
 fn report_motion(motion: LogMotion) -> MotionConfig {
     match motion {
-        LogMotion::Static => MotionConfig::Static(StaticConfig {}),
+        LogMotion::Static => MotionConfig::rest(),
         LogMotion::Swing { frequency_hz } => MotionConfig::Swing(SwingConfig {
             rate_amplitude_deg_per_s: None,
             angle_amplitude_deg: None,

@@ -6,7 +6,7 @@ use super::checker::Checker;
 use crate::experiment::run::rate_deg_per_h_max;
 use crate::filters::{ExpectedRun, ExpectedWords};
 use crate::gyro;
-use crate::scenario::MotionConfig;
+use crate::scenario::MotionClass;
 use crate::signal::GyroFacts;
 
 /// Peak of the noise of a word that filters are to reckon with, standard deviations.
@@ -34,9 +34,9 @@ impl Checker<'_> {
         let scenario = &self.resolved.scenario;
         let rate_max_deg_per_h = rate_deg_per_h_max(scenario);
         let noise_std_deg_per_h = noise_std_deg_per_h(facts);
-        let swing_step_rad = match &scenario.turntable.motion {
-            MotionConfig::Swing(swing) => {
-                Some(TAU * swing.frequency_hz * gyro::sample_period_s(&scenario.gyro))
+        let swing_step_rad = match scenario.turntable.motion.class() {
+            MotionClass::Swing { frequency_hz, .. } => {
+                Some(TAU * frequency_hz * gyro::sample_period_s(&scenario.gyro))
             }
             _ => None,
         };

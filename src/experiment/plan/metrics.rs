@@ -7,7 +7,7 @@ use crate::experiment::campaign;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{assembly_motion, motion};
 use crate::metrics::catalogue::DIVERGED_AT;
-use crate::metrics::{self, MetricKey};
+use crate::metrics::{self, MetricKey, Unavailable};
 use crate::scenario::{ComparisonColumn, Scenario};
 use crate::signal::GyroFacts;
 
@@ -171,13 +171,13 @@ impl Checker<'_> {
 }
 
 /// Why a channel of this scenario can never have a metric, whatever the length of its record.
-fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<String> {
+fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<Unavailable> {
     let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
     let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
     pipeline_metrics::lacks(scenario, channel, key)
         .or_else(|| assembly_motion::lacks(scenario, channel, key))
         .or_else(|| campaign::lacks(scenario, key))
         .or_else(|| metrics::encoder_lack(key, has_encoder))
-        .map(str::to_owned)
+        .map(Unavailable::from)
         .or_else(|| metrics::repeats_lack(key, repeats))
 }

@@ -8,6 +8,7 @@ use crate::scenario::{ScenarioError, in_order, read_suite};
 
 /// What is worth saying about one run that has passed every check.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Sound {
     /// Folder of the run below the output folder.
     pub folder: String,

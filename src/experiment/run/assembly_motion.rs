@@ -2,8 +2,9 @@
 
 use crate::gyro::{InputAxis, MotionExtremes};
 use crate::metrics::{Against, ChannelMetrics, MetricKey, known_metrics};
-use crate::scenario::{AssemblyConfig, CaseAxis, MotionConfig, Scenario, TurntableConfig};
+use crate::scenario::{AssemblyConfig, Scenario, TurntableConfig};
 use crate::units::{EARTH_RATE_RAD_PER_S, arcsec_to_rad};
+use crate::vocabulary::CaseAxis;
 
 /// Index of a case axis.
 pub(crate) fn axis_index(axis: CaseAxis) -> usize {
@@ -21,12 +22,12 @@ fn index_along(table: &TurntableConfig) -> usize {
 
 /// Indices of the case axes that are ever along the table axis.
 fn indices_along(table: &TurntableConfig) -> Vec<usize> {
-    match &table.motion {
-        MotionConfig::Calibration(campaign) => {
+    match table.motion.campaign() {
+        Some(campaign) => {
             let axes = campaign.axes.iter();
             axes.map(|axis| axis_index(*axis)).collect()
         }
-        _ => vec![index_along(table)],
+        None => vec![index_along(table)],
     }
 }
 

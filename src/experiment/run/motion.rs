@@ -1,41 +1,29 @@
 //! The configured motion as the checks and the metrics need it.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
-
 use super::assembly_motion::hardest;
 use crate::gyro::{self, MotionExtremes};
 use crate::metrics::{Dwell, Motion, Staircase};
-use crate::scenario::{MotionConfig, Scenario, ServoConfig, Stairs};
+use crate::scenario::{Scenario, Stairs};
 use crate::turntable::{
-    campaign_command_extremes, command_extremes, command_rate_max_rad_per_s, dwell_ends,
-    earth_rate_rad_per_s, first_measured_index, input_axis_bounds,
-    multi_sine_acceleration_max_rad_per_s2, step_indices,
+    MotionClass, Surroundings, dwell_ends, earth_rate_rad_per_s, first_measured_index,
+    input_axis_bounds, step_indices,
 };
-use crate::units::{deg_per_s_to_deg_per_h, deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
+use crate::units::{deg_per_s_to_deg_per_h, rad_per_s_to_deg_per_h};
 
 /// Motion as the metrics see it; a staircase's last step counts from the start of the record.
 pub(crate) fn motion(scenario: &Scenario, sample_period_s: f64) -> Motion {
-    match scenario.measured_motion() {
-        MotionConfig::Static(_) | MotionConfig::Rotation(_) => Motion::Steady,
-        MotionConfig::Swing(swing) => {
-            let frequency_hz = swing.frequency_hz;
-            if swing.from_rest {
-                Motion::SwingFromRest { frequency_hz }
-            } else {
-                Motion::Swing { frequency_hz }
-            }
-        }
-        MotionConfig::Trapezoid(_)
-        | MotionConfig::Chirp(_)
-        | MotionConfig::Script(_)
-        | MotionConfig::Calibration(_) => Motion::General,
-        MotionConfig::MultiSine(multi_sine) => Motion::MultiSine {
-            frequencies_hz: multi_sine.frequencies_hz.clone(),
+    match scenario.measured_motion().class() {
+        MotionClass::Rest | MotionClass::Rotation => Motion::Steady,
+        MotionClass::Swing {
+            frequency_hz,
+            is_from_rest: true,
+        } => Motion::SwingFromRest { frequency_hz },
+        MotionClass::Swing { frequency_hz, .. } => Motion::Swing { frequency_hz },
+        MotionClass::MultiSine { frequencies_hz } => Motion::MultiSine {
+            frequencies_hz: frequencies_hz.to_vec(),
         },
-        MotionConfig::Steps(steps) => steps_motion(&steps.into(), scenario, sample_period_s),
-        MotionConfig::ScaleFactorTest(test) => {
-            steps_motion(&test.into(), scenario, sample_period_s)
-        }
+        MotionClass::Steps(stairs) => steps_motion(&stairs, scenario, sample_period_s),
+        MotionClass::Campaign(_) | MotionClass::General => Motion::General,
     }
 }
 
@@ -94,7 +82,7 @@ pub(crate) fn rate_deg_per_h_max(scenario: &Scenario) -> f64 {
         return rad_per_s_to_deg_per_h(motion_extremes(scenario).rate_rad_per_s);
     }
     let axis = input_axis_bounds(&scenario.turntable);
-    let commanded = command_rate_max_rad_per_s(&scenario.turntable.motion);
+    let commanded = scenario.turntable.motion.rate_max_rad_per_s();
     rad_per_s_to_deg_per_h(axis.earth_rate_rad_per_s)
         + rad_per_s_to_deg_per_h(axis.rate_ratio * commanded)
 }
@@ -128,57 +116,13 @@ pub(crate) fn motion_extremes(scenario: &Scenario) -> MotionExtremes {
 /// the servo starts settled.
 fn command_extremes_of(scenario: &Scenario) -> MotionExtremes {
     let motion = scenario.measured_motion();
-    let commanded = command_rate_max_rad_per_s(motion);
-    let own = command_extremes(motion);
-    let (jump, acceleration) = match motion {
-        MotionConfig::Static(_) => (0.0, 0.0),
-        MotionConfig::Swing(swing) => (0.0, TAU * swing.frequency_hz * commanded),
-        MotionConfig::MultiSine(multi_sine) => {
-            let acceleration = multi_sine_acceleration_max_rad_per_s2(multi_sine);
-            let soft_start_s = multi_sine.soft_start_s.min(scenario.warm_up_s);
-            if soft_start_s > 0.0 {
-                let of_start = FRAC_PI_2 * commanded / soft_start_s;
-                (0.0, acceleration + of_start)
-            } else {
-                (commanded, acceleration)
-            }
-        }
-        MotionConfig::Rotation(rotation) => {
-            let soft_start_s = rotation.soft_start_s.min(scenario.warm_up_s);
-            if soft_start_s > 0.0 {
-                (0.0, FRAC_PI_2 * commanded / soft_start_s)
-            } else {
-                (commanded, 0.0)
-            }
-        }
-        MotionConfig::Trapezoid(_) | MotionConfig::Chirp(_) | MotionConfig::Script(_) => own
-            .map_or((0.0, 0.0), |own| {
-                (own.jump_rad_per_s, own.acceleration_rad_per_s2)
-            }),
-        MotionConfig::Calibration(campaign) => {
-            let extremes = campaign_command_extremes(campaign, scenario.warm_up_s);
-            (extremes.jump_rad_per_s, extremes.acceleration_rad_per_s2)
-        }
-        motion @ (MotionConfig::Steps(_) | MotionConfig::ScaleFactorTest(_)) => {
-            let rates = Stairs::of(motion).map_or_else(Vec::new, |stairs| stairs.rates_deg_per_s);
-            let first = rates.first().map_or(0.0, |rate| rate.abs());
-            let rises = rates.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-            let rise = deg_per_s_to_rad_per_s(rises.fold(0.0, f64::max));
-            let first = deg_per_s_to_rad_per_s(first);
-            match &scenario.turntable.servo {
-                ServoConfig::Ideal(_) => (rise.max(first), 0.0),
-                // The slope of the step response of a second-order servo stays below wn.
-                ServoConfig::SecondOrder(servo) => (first, TAU * servo.natural_frequency_hz * rise),
-                // Whatever its controller demands, the motor is limited.
-                ServoConfig::DirectDrive(servo) => {
-                    (first, servo.acceleration_max_rad_per_s2(commanded))
-                }
-            }
-        }
-    };
+    let command = motion.extremes(Surroundings {
+        warm_up_s: scenario.warm_up_s,
+        servo: &scenario.turntable.servo,
+    });
     MotionExtremes {
-        rate_rad_per_s: commanded,
-        jump_rad_per_s: jump,
-        acceleration_rad_per_s2: acceleration,
+        rate_rad_per_s: motion.rate_max_rad_per_s(),
+        jump_rad_per_s: command.jump_rad_per_s,
+        acceleration_rad_per_s2: command.acceleration_rad_per_s2,
     }
 }

@@ -10,7 +10,7 @@ use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter, Restarts}
 use crate::filters::FilterKind;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
-use crate::scenario::{FilterState, Scenario, Stairs};
+use crate::scenario::{FilterState, Scenario};
 use crate::turntable::{InjectedSignal, Turntable, first_measured_index, step_indices};
 use crate::units::rad_per_s_to_deg_per_h;
 
@@ -205,7 +205,7 @@ fn restarts(scenario: &Scenario, kind: &FilterKind, sample_period_s: f64) -> Opt
     if scenario.trial.filter_state == FilterState::Carried {
         return None;
     }
-    let stairs = Stairs::of(&scenario.turntable.motion)?;
+    let stairs = scenario.turntable.motion.stairs()?;
     let first = first_measured_index(scenario.warm_up_s, sample_period_s);
     let changes = step_indices(&stairs, scenario.warm_up_s, sample_period_s);
     let settled = first_measured_index(0.5 * stairs.settle_s, sample_period_s);
@@ -292,10 +292,8 @@ impl Source {
         Ok(Self {
             table: Turntable::new(&scenario.turntable, warm_up_s, word_period_s),
             injected: scenario
-                .gyro
-                .injection
-                .as_ref()
-                .map(|signal| InjectedSignal::new(signal, warm_up_s, word_period_s)),
+                .injected_sines()
+                .map(|sines| InjectedSignal::new(&sines, warm_up_s, word_period_s)),
             encoder_rad: has_encoder.then(|| Vec::with_capacity(length.total())),
             gyros: Gyros::new(scenario, repeat)?,
             sample_period_s,

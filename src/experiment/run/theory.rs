@@ -1,9 +1,9 @@
 //! Closed forms of the gyro that the pictures draw beside the measured points.
 
 use crate::gyro::{self, GyroError};
-use crate::scenario::{MotionConfig, Scenario, Stairs};
+use crate::scenario::{Scenario, Stairs};
 use crate::signal::{TheoryCurve, TheoryQuantity};
-use crate::turntable::earth_rate_rad_per_s;
+use crate::turntable::{MotionClass, earth_rate_rad_per_s};
 use crate::units::{deg_per_s_to_rad_per_s, gain_to_db, rad_per_s_to_deg_per_h, rad_to_deg};
 
 /// Points of a line, equally spaced by the logarithm of the frequency.
@@ -17,9 +17,10 @@ const NAME: &str = "raw, theory";
 
 /// The lines of theory for the motion of a scenario; none where there is no closed form.
 pub(crate) fn theory(scenario: &Scenario) -> Result<Vec<TheoryCurve>, GyroError> {
-    match scenario.measured_motion() {
-        MotionConfig::MultiSine(multi_sine) => {
-            let tones = &multi_sine.frequencies_hz;
+    match scenario.measured_motion().class() {
+        MotionClass::MultiSine {
+            frequencies_hz: tones,
+        } => {
             let (Some(&low), Some(&high)) = (tones.first(), tones.last()) else {
                 return Ok(Vec::new());
             };
@@ -44,11 +45,7 @@ pub(crate) fn theory(scenario: &Scenario) -> Result<Vec<TheoryCurve>, GyroError>
                 line(TheoryQuantity::PhaseDeg, phase),
             ])
         }
-        motion @ (MotionConfig::Steps(_) | MotionConfig::ScaleFactorTest(_)) => {
-            let stairs = Stairs::of(motion);
-            let line = stairs.and_then(|stairs| rate_error(scenario, &stairs));
-            Ok(line.into_iter().collect())
-        }
+        MotionClass::Steps(stairs) => Ok(rate_error(scenario, &stairs).into_iter().collect()),
         _ => Ok(Vec::new()),
     }
 }

@@ -30,6 +30,7 @@ impl Observer for () {}
 
 /// What came of a suite.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SuiteOutcome {
     /// Runs in the order of the plans.
     pub runs: Vec<RunOutcome>,
@@ -62,6 +63,7 @@ impl SuiteOutcome {
 
 /// Why a suite stopped before its end.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SuiteError {
     /// The output folder is in use or holds something of the user's, or a file could not be written.
     #[error(transparent)]

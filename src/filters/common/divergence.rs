@@ -34,6 +34,7 @@ pub enum DivergenceKind {
 /// A filter has diverged.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("the filter diverged at sample {sample}: {message}")]
+#[non_exhaustive]
 pub struct Divergence {
     /// Index of the input sample, from 0, in which it was seen.
     pub sample: u64,

@@ -13,6 +13,7 @@ const LOOK_SAMPLES: u64 = 64;
 
 /// The matrix of recursive least squares over the record.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct HealthSummary {
     /// Largest asymmetry seen, relative.
     pub asymmetry_max: f64,

@@ -32,6 +32,7 @@ pub struct PipelineSettings {
 
 /// What one sample costs, counted on the running model.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PipelineTiming {
     /// Clocks, states, ports and units of one back-to-back sample.
     pub usage: Usage,

@@ -2,7 +2,7 @@
 
 use super::core::{sign_lms_slew_per_sample, sign_lms_slew_samples};
 use super::settings::SignLmsFilterConfig;
-use crate::filters::kind::ExpectedWords;
+use crate::filters::settings::ExpectedWords;
 use crate::vocabulary::{InitialWeights, SignLmsForm};
 
 /// A step above this multiple of the noise of a word makes the output of the sign form noisier than

@@ -1,12 +1,11 @@
 //! Keys of a line enhancer, their checks, and the filters they stand for.
 
-use serde::Deserialize;
-
 use super::core::{SignLms, SignLmsConfig};
 use super::notes;
+use crate::declare::table;
 use crate::filters::common::{Complaints, Filter};
 use crate::filters::hardware::{self, PipelineSettings};
-use crate::filters::kind::{ExpectedWords, FilterSettings};
+use crate::filters::settings::{ExpectedWords, FilterSettings};
 use crate::units::{deg_per_s_to_deg_per_h, rad_per_s_to_deg_per_h};
 use crate::vocabulary::{
     ConstantUnit, InitialWeights, NumberFormat, OutputRegister, Pipeline, SignLmsForm,
@@ -15,36 +14,50 @@ use crate::vocabulary::{
 /// Step at and beyond which the normalised forms are unstable in any input.
 const NORMALISED_STEP_BOUND: f64 = 2.0;
 
-/// Line enhancer of patent CN101221046.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SignLmsFilterConfig {
-    /// Number of weights M.
-    pub taps: u32,
-    /// Age of the newest weighed sample, samples.
-    pub delay_samples: u32,
-    /// How the weights are corrected.
-    pub form: SignLmsForm,
-    /// Step mu: in `unit` in the sign form, else without unit.
-    pub step: f64,
-    /// Regularisation alpha, in the square of `unit`.
-    pub regularisation: f64,
-    /// Unit of the words in which step and regularisation are meant.
-    pub unit: ConstantUnit,
-    /// Weights at the start.
-    pub initial_weights: InitialWeights,
-    /// Errors beyond this leave the weights alone for at most a delay and a filter length, deg/h.
-    pub guard_deg_per_h: Option<f64>,
-    /// Samples between two fresh sums of the norm; 0 = never.
-    pub norm_recompute_samples: u32,
-    /// When the result appears.
-    pub output_register: OutputRegister,
-    /// Arithmetic.
-    pub pipeline: Pipeline,
-    /// Words of the hardware.
-    pub number_format: NumberFormat,
-    /// Clock of the hardware, MHz.
-    pub clock_mhz: f64,
+table! {
+    /// Line enhancer of patent CN101221046: weights on delayed samples, moved by the sign of the error.
+    /// Step and regularisation mean something only together with the unit of the words (`unit`).
+    pub struct SignLmsFilterConfig {
+        /// Number of weights M. Source of the default: the patent.
+        taps: u32 = 20, in 1..=64;
+        /// Age of the newest weighed sample, at which the noise is no longer that of the newest. Source of
+        /// the default: the patent.
+        delay_samples: u32 = 15, in 1..=64;
+        /// What the weights are corrected by: the sign of the error (equation 34), the error (33), or the
+        /// error with the sum of the weights left alone. Source of the default: the patent.
+        form: SignLmsForm = "sign";
+        /// Step mu: in the unit below in the sign form, whose output moves by at most this per sample; else
+        /// without unit and below 2. Source of the default: the patent, which states no unit.
+        step: f64 = 0.005, in 1e-24..=1e9;
+        /// Regularisation alpha, in the square of the unit below. Source of the default: the patent, which
+        /// states no unit.
+        regularisation: f64 = 0.0001, in 1e-24..=1e12;
+        /// Unit of the words in which step and regularisation are meant. Source of the default: derived; the
+        /// patent prints rates in deg/s, in which a step of 0.005 makes the output of a fine gyro noisier.
+        unit: ConstantUnit = "deg/h";
+        /// Weights at the start: 1/M in every tap (DC gain 1) or zero. Source of the default: derived; the
+        /// patent does not say, and from zero the sign form climbs to a rate by one step a sample.
+        initial_weights: InitialWeights = "mean";
+        /// Errors beyond this leave the weights alone, for delay_samples + taps samples on end at most, so
+        /// that a change of rate, which shows as an error until it has passed the delay, does not spoil
+        /// them. Ten standard deviations of the noise of a word are a good value, which only the gyro can
+        /// tell: no guard without the key.
+        guard_deg_per_h: Option<f64>, example 190.0, in 1e-6..=1e9, "deg/h";
+        /// Samples between two fresh sums of the recursive norm, at least the number of weights; 0 = never,
+        /// as in the patent. Source of the default: derived; the recursion keeps every rounding, in binary32
+        /// more than the norm itself once the table has come to rest.
+        norm_recompute_samples: u32 = 1000, in 0..=1_000_000;
+        /// When the result appears: at the next sample tick, or as soon as it is computed.
+        output_register: OutputRegister = "next-sample";
+        /// Arithmetic: the recursion of the books, or the pipeline of the hardware with its bits and clocks
+        /// (not for form = "unity-gain").
+        pipeline: Pipeline = "textbook";
+        /// Words of the hardware; -ftz flushes subnormal numbers to zero. This key and those below only
+        /// matter with pipeline = "fpga". Source of the default: that of the other filters.
+        number_format: NumberFormat = "binary64";
+        /// Clock of the hardware. Source of the default: that of the other filters.
+        clock_mhz: f64 = 40.0, in 1e-3..=10000.0, "MHz";
+    }
 }
 
 impl SignLmsFilterConfig {

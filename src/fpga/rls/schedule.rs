@@ -59,6 +59,7 @@ impl Bound {
 
 /// Length of the interleaved schedule and what limits it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ScheduleReport {
     /// Clocks per sample, the loading clock included.
     pub clocks: u64,

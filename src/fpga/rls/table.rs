@@ -50,6 +50,7 @@ impl Basis {
 
 /// One row of Table 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TimingRow {
     /// Way of building the filter.
     pub design: Design,

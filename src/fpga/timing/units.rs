@@ -4,6 +4,7 @@ use crate::fpga::error::FpgaError;
 
 /// Timing of one arithmetic unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct UnitTiming {
     /// Clocks from operands to the result register, 1 to 1000.
     pub latency_clocks: u64,

@@ -8,6 +8,7 @@ use crate::fpga::registers::ControlState;
 
 /// Clocks spent in one state per sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct StateClocks {
     /// State name.
     pub state: &'static str,
@@ -17,6 +18,7 @@ pub struct StateClocks {
 
 /// What one back-to-back sample uses, as counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Usage {
     /// Clocks from one accepted sample to the next.
     pub clocks_per_sample: u64,

@@ -13,8 +13,8 @@ use crate::gyro::optics::detector::Detector;
 use crate::gyro::optics::modulator::Modulator;
 use crate::gyro::parts::Parts;
 use crate::gyro::vibration::{Tone, VibrationResponse, tones};
+use crate::gyro::{Fidelity, GyroConfig, NoiseDraw};
 use crate::random::Streams;
-use crate::scenario::{Fidelity, GyroConfig, NoiseDraw};
 use crate::units::{
     deg_per_h_to_rad_per_s, deg_per_sqrt_h_to_rad_per_sqrt_s, rad_per_s_to_deg_per_h,
     rad_per_s_to_deg_per_s,

@@ -2,13 +2,13 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use crate::gyro::Fidelity;
 use crate::gyro::error::GyroError;
 use crate::gyro::limits::MotionExtremes;
 use crate::gyro::noise::budget::NoiseBudget;
 use crate::gyro::optics::coil::Coil;
 use crate::gyro::parts::Parts;
 use crate::gyro::vibration::Tone;
-use crate::scenario::Fidelity;
 use crate::units::{
     deg_per_sqrt_h_to_rad_per_sqrt_s, rad_per_s_to_deg_per_h, rad_per_s_to_deg_per_s,
 };

@@ -9,8 +9,8 @@ use crate::gyro::optics::detector::Detector;
 use crate::gyro::optics::modulation::Timing;
 use crate::gyro::optics::modulator::Modulator;
 use crate::gyro::parts::Parts;
+use crate::gyro::{GyroConfig, NoiseDraw};
 use crate::random::Streams;
-use crate::scenario::{GyroConfig, NoiseDraw};
 
 /// The samplers a configuration can ask for.
 #[derive(Clone, Debug)]

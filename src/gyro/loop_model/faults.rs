@@ -2,6 +2,7 @@
 
 /// Where a gyro did not work as meant, beyond the counts that every gyro has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct LoopFaults {
     /// Loop periods in which the ramp's step was held at its limit.
     pub saturated_steps: u64,

@@ -2,13 +2,13 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::gyro::ModulationScheme;
 use crate::gyro::loop_model::plain_kernel::{LoopConstants, Registers};
 use crate::gyro::loop_model::sampler::{Sampler, round_whole};
 use crate::gyro::optics::modulation::{BiasState, states};
 use crate::gyro::optics::second_order::Optics;
 use crate::gyro::parts::Parts;
 use crate::random::{Stream, Streams};
-use crate::scenario::ModulationScheme;
 
 /// Configuration and state of the effects; the registers are those of the plain kernel.
 ///

@@ -8,6 +8,7 @@ mod sampler;
 
 use std::f64::consts::{PI, TAU};
 
+use crate::gyro::GyroConfig;
 use crate::gyro::controller::Controller;
 use crate::gyro::error::GyroError;
 use crate::gyro::loop_model::detection::{Detection, Drive, levels_per_rad};
@@ -22,7 +23,6 @@ use crate::gyro::rate_word::RateWord;
 use crate::gyro::thermal::condition::{Condition, Schedule};
 use crate::gyro::vibration::Vibration;
 use crate::random::Streams;
-use crate::scenario::GyroConfig;
 use crate::signal::MotionSegment;
 use crate::units::rad_per_s_to_deg_per_s;
 

@@ -9,7 +9,7 @@ use crate::gyro::optics::detector::Detector;
 use crate::gyro::optics::modulator::{Modulator, optimum_depth_rad};
 use crate::gyro::parts::Parts;
 use crate::gyro::thermal::condition::Condition;
-use crate::scenario::{Fidelity, GyroConfig};
+use crate::gyro::{Fidelity, GyroConfig};
 use crate::signal::{BudgetEntry, BudgetPoint, BudgetSheet};
 use crate::units::{deg_per_sqrt_h_to_rad_per_sqrt_s, rad_to_deg, rad_to_urad};
 

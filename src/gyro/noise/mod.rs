@@ -21,8 +21,8 @@ pub(in crate::gyro) mod source;
 pub use rin::relative_intensity_noise_per_hz;
 pub use source::{Density, NoiseSource};
 
+use crate::gyro::GyroConfig;
 use crate::gyro::thermal::condition::Condition;
-use crate::scenario::GyroConfig;
 
 /// Detector noise sources, in the order of the budget.
 ///

@@ -2,8 +2,8 @@
 
 use std::f64::consts::{LN_2, PI};
 
+use crate::gyro::SourceConfig;
 use crate::gyro::noise::source::{Density, NoiseSource, when};
-use crate::scenario::SourceConfig;
 use crate::units::{NANO, SPEED_OF_LIGHT_M_PER_S};
 
 pub(super) const RIN: NoiseSource = NoiseSource {

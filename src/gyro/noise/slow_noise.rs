@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
+use crate::gyro::SlowNoiseConfig;
 use crate::random::{Stream, Streams};
-use crate::scenario::SlowNoiseConfig;
 use crate::units::{
     deg_per_h_per_h_to_deg_per_h_per_s, deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s,
     deg_per_h_to_rad_per_s,

@@ -1,7 +1,7 @@
 //! Declaration of a noise source: where it enters the detection chain, and with what density.
 
+use crate::gyro::GyroConfig;
 use crate::gyro::thermal::condition::Condition;
-use crate::scenario::GyroConfig;
 
 /// Declaration of a detector noise source.
 #[derive(Clone, Copy, Debug)]

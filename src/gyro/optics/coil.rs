@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::scenario::{CoilConfig, SourceConfig};
+use crate::gyro::{CoilConfig, SourceConfig};
 use crate::units::{MILLI, NANO, SPEED_OF_LIGHT_M_PER_S};
 
 /// The two numbers a coil gives the gyro.

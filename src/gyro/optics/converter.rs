@@ -1,6 +1,6 @@
 //! Analogue-to-digital converter: codes and step.
 
-use crate::scenario::AdcConfig;
+use crate::gyro::AdcConfig;
 
 /// Step of a converter, V; 0 for an ideal one.
 pub(in crate::gyro) fn converter_step_v(config: &AdcConfig) -> f64 {

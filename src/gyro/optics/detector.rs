@@ -1,11 +1,11 @@
 //! Photodetector, amplifier and converter: levels at the bias point and noise densities.
 
+use crate::gyro::GyroConfig;
 use crate::gyro::error::GyroError;
 use crate::gyro::noise::Densities;
 use crate::gyro::optics::converter::{converter_code_max, converter_step_v};
 use crate::gyro::optics::modulator::Modulator;
 use crate::gyro::thermal::condition::Condition;
-use crate::scenario::GyroConfig;
 use crate::units::{KILO, MICRO, NANO};
 
 /// Detection chain at the bias point.

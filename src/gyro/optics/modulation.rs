@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::scenario::ModulationScheme;
+use crate::gyro::ModulationScheme;
 
 /// One state of the bias wave, as the interferometer sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Phase modulator: square-wave bias and the ramp converter.
 
-use crate::scenario::ModulatorConfig;
+use crate::gyro::ModulatorConfig;
 use crate::units::deg_to_rad;
 
 /// The modulator as the loop uses it.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::gyro::optics::coil::Coil;
 use crate::gyro::thermal::condition::Condition;
-use crate::scenario::{GyroConfig, ModulationScheme, ResetSample};
+use crate::gyro::{GyroConfig, ModulationScheme, ResetSample};
 use crate::units::{MICRO, deg_per_h_to_rad_per_s, deg_to_rad};
 
 /// Settings of the second-order effects, SI, as both models use them.

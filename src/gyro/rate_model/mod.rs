@@ -3,6 +3,7 @@
 mod matrices;
 mod second_order;
 
+use crate::gyro::GyroConfig;
 use crate::gyro::controller::Controller;
 use crate::gyro::error::GyroError;
 use crate::gyro::noise::budget::NoiseBudget;
@@ -15,7 +16,6 @@ use crate::gyro::rate_word::RateWord;
 use crate::gyro::thermal::condition::{Condition, Schedule};
 use crate::gyro::vibration::{VibrationResponse, tones};
 use crate::random::{Stream, Streams};
-use crate::scenario::GyroConfig;
 use crate::signal::MotionSegment;
 use crate::units::deg_per_sqrt_h_to_rad_per_sqrt_s;
 

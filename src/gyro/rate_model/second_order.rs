@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use crate::gyro::ModulationScheme;
 use crate::gyro::optics::modulation::Timing;
 use crate::gyro::optics::second_order::{Optics, adler_advance_rad};
 use crate::random::{Stream, Streams};
-use crate::scenario::ModulationScheme;
 
 /// What the effects make of the Sagnac phase of an output sample.
 ///

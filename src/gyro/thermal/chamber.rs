@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::scenario::{TemperatureConfig, ThermalConfig};
+use crate::gyro::{TemperatureConfig, ThermalConfig};
 use crate::units::k_per_min_to_k_per_s;
 
 /// Temperature of the chamber: straight lines between points, with a sine of control ripple.

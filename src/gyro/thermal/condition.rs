@@ -2,7 +2,7 @@
 
 use crate::gyro::error::GyroError;
 use crate::gyro::thermal::{Chamber, Network, NetworkState, Propagator, Sensitivities};
-use crate::scenario::{GyroConfig, ThermalWarmUp};
+use crate::gyro::{GyroConfig, ThermalWarmUp};
 use crate::signal::TemperatureRecord;
 use crate::units::rad_per_s_to_deg_per_h;
 

@@ -1,6 +1,6 @@
 //! Thermal network: chamber to case to outer to inner coil layer.
 
-use crate::scenario::ThermalConfig;
+use crate::gyro::ThermalConfig;
 
 /// Temperatures inside the gyro and the time constants between.
 const STATE: usize = 3;

@@ -3,7 +3,7 @@
 use crate::gyro::error::GyroError;
 use crate::gyro::thermal::condition::Condition;
 use crate::gyro::thermal::{NetworkState, Shupe};
-use crate::scenario::{GyroConfig, PowerConfig};
+use crate::gyro::{GyroConfig, PowerConfig};
 use crate::units::{MICRO, deg_per_h_to_rad_per_s, k_per_s_to_k_per_min};
 
 /// Largest change of the scale factor, and of its compensation, for which their laws count as such.

@@ -1,7 +1,7 @@
 //! Winding of the coil and the bias that changing temperatures make in it (Shupe effect).
 
 use crate::gyro::thermal::NetworkState;
-use crate::scenario::{GyroConfig, Winding};
+use crate::gyro::{GyroConfig, Winding};
 use crate::units::{MICRO, MILLI};
 
 /// Layer met at each position along the fibre, 0 being the innermost.

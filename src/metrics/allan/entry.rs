@@ -6,7 +6,7 @@ use super::noise_fit::{
 };
 use super::overlapping::AllanPoint;
 use crate::metrics::estimate::interval::round_to_count;
-use crate::metrics::estimate::reason::too_short;
+use crate::metrics::estimate::reason::{Unavailable, too_short};
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::key::metric::{MetricKey, Needs};
 use crate::units;
@@ -38,7 +38,7 @@ fn three_digits(value: f64) -> String {
 pub(crate) const SLOW_NOISE_DURATION_MIN_S: f64 = 90.0;
 
 /// Why a record cannot show B, K or R; nothing if it can, or for another metric.
-pub(crate) fn slow_noise_lack(key: &MetricKey, duration_s: f64) -> Option<String> {
+pub(crate) fn slow_noise_lack(key: &MetricKey, duration_s: f64) -> Option<Unavailable> {
     let is_short = duration_s < SLOW_NOISE_DURATION_MIN_S * (1.0 - 1e-9);
     (key.needs == Needs::SlowNoiseFit && is_short)
         .then(|| too_short(key.name, SLOW_NOISE_DURATION_MIN_S, duration_s))
@@ -63,7 +63,7 @@ pub(crate) fn enter_fit(
             } else {
                 String::new()
             };
-            metrics.withdraw(key, reason + &bound);
+            metrics.withdraw(key, format!("{reason}{bound}"));
         }
     }
     put_fit_curve(points, Some(fit), metrics);

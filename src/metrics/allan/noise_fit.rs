@@ -3,6 +3,7 @@
 use super::covariance::{FLICKER, INVERSE_SQUARE, RAMP, TERMS, WALK, WHITE};
 use super::least_squares::{Problem, basis, fitted_variance};
 use super::overlapping::{AllanPoint, NoiseType, degrees_of_freedom};
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Pool, Table};
 
@@ -13,6 +14,7 @@ pub static ANGLE_RANDOM_WALK: MetricKey = MetricKey::new(
     Applies::Steady,
     "N of the fit to the overlapping Allan variance, N^2/tau",
 )
+.synonyms(&["n", "angle_random_walk", "angular_random_walk"])
 .heading("ARW")
 .slow_noise()
 .needs(Needs::AllanFit)
@@ -28,6 +30,7 @@ pub static BIAS_INSTABILITY: MetricKey = MetricKey::new(
     Applies::Steady,
     "B of the fit to the overlapping Allan variance, (0.664 B)^2: the flicker floor over 0.664",
 )
+.synonyms(&["b", "flicker", "flicker_floor", "bias_instability"])
 .heading("bias instability")
 .needs(Needs::SlowNoiseFit)
 .pooled(Pool::AllanFit)
@@ -40,6 +43,7 @@ pub static RATE_RANDOM_WALK: MetricKey = MetricKey::new(
     Applies::Steady,
     "K of the fit to the overlapping Allan variance, K^2 tau/3",
 )
+.synonyms(&["k", "rate_random_walk"])
 .heading("rate random walk")
 .needs(Needs::SlowNoiseFit)
 .pooled(Pool::AllanFit)
@@ -52,6 +56,7 @@ pub static RATE_RAMP: MetricKey = MetricKey::new(
     Applies::Steady,
     "R of the fit to the overlapping Allan variance, R^2 tau^2/2",
 )
+.synonyms(&["r", "rate_ramp", "drift", "drift_rate"])
 .heading("rate ramp")
 .needs(Needs::SlowNoiseFit)
 .pooled(Pool::AllanFit)
@@ -64,6 +69,7 @@ pub static QUANTISATION: MetricKey = MetricKey::new(
     Applies::Steady,
     "Q of the fit to the overlapping Allan variance, 3 Q^2/tau^2",
 )
+.synonyms(&["q", "quantisation", "quantisation_noise"])
 .heading("quantisation")
 .needs(Needs::AllanFit)
 .pooled(Pool::AllanFit)
@@ -162,6 +168,7 @@ impl Term {
 
 /// A fitted noise model.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NoiseFit {
     /// Q, arcsec.
     pub quantisation_arcsec: Term,
@@ -261,7 +268,7 @@ pub struct FitRange {
 /// range.
 ///
 /// Source: IEEE Std 952-1997 annex C (model); derived: covariance, signed terms.
-pub fn fit_noise(points: &[AllanPoint], range: FitRange) -> Result<NoiseFit, String> {
+pub fn fit_noise(points: &[AllanPoint], range: FitRange) -> Result<NoiseFit, Unavailable> {
     fit_pooled_noise(points, range, 1.0)
 }
 
@@ -273,7 +280,7 @@ pub fn fit_pooled_noise(
     points: &[AllanPoint],
     range: FitRange,
     records: f64,
-) -> Result<NoiseFit, String> {
+) -> Result<NoiseFit, Unavailable> {
     // A hair of slack keeps a point whose tau equals the limit up to rounding.
     let used: Vec<AllanPoint> = points
         .iter()
@@ -296,7 +303,8 @@ pub fn fit_pooled_noise(
             used.len(),
             range.tau_min_s,
             range.tau_max_s,
-        ));
+        )
+        .into());
     }
     let used = thinned(used);
     let problem = Problem::new(&used, records);

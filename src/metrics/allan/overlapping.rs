@@ -10,6 +10,7 @@ const POINTS_PER_DECADE: f64 = 12.0;
 
 /// One point of an Allan deviation curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AllanPoint {
     /// Averaging time, s.
     pub tau_s: f64,

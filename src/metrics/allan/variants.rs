@@ -135,6 +135,7 @@ impl Default for AllanOptions {
 
 /// One point of a curve with what was found about the noise at its averaging time.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AllanVariantPoint {
     /// The deviation, its interval, degrees of freedom and number of differences.
     pub point: AllanPoint,

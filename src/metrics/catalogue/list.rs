@@ -128,7 +128,9 @@ pub fn find(name: &str) -> Option<&'static MetricKey> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
+    use std::collections::{BTreeMap, BTreeSet};
+    use std::fs;
+    use std::path::Path;
 
     use super::*;
     use crate::metrics::allan::entry::FIT_METRICS;
@@ -154,6 +156,61 @@ mod tests {
             .filter(|key| matches!(key.pool, Pool::AllanFit))
             .collect();
         assert_eq!(declared, FIT_METRICS);
+    }
+
+    #[test]
+    fn every_row_that_is_declared_is_listed() {
+        let mut sources = Vec::new();
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/metrics");
+        for room in fs::read_dir(folder).unwrap().flatten() {
+            match fs::read_dir(room.path()) {
+                Ok(files) => sources.extend(files.flatten().map(|file| file.path())),
+                Err(_) => sources.push(room.path()),
+            }
+        }
+        let mut declared = BTreeMap::new();
+        for text in sources.iter().map(|path| fs::read_to_string(path).unwrap()) {
+            for line in text.lines().filter(|line| line.starts_with("pub static ")) {
+                let (name, row) = line
+                    .trim_start_matches("pub static ")
+                    .split_once(": ")
+                    .unwrap();
+                declared.insert(name.to_owned(), row.split(' ').next().map(str::to_owned));
+            }
+        }
+        let list = include_str!("list.rs");
+        for (name, row) in declared {
+            let is_row = matches!(row.as_deref(), Some("MetricKey" | "CurveKey"));
+            let is_listed = list.contains(&format!("::{name},\n"));
+            assert!(!is_row || is_listed, "{name} is declared and not listed");
+        }
+    }
+
+    #[test]
+    fn every_curve_has_a_name_of_its_own_and_columns_that_say_what_they_hold() {
+        let names: BTreeSet<&str> = CURVES.iter().map(|key| key.name).collect();
+        assert_eq!(names.len(), CURVES.len());
+        for key in CURVES {
+            assert!(
+                !key.definition.is_empty() && !key.columns.is_empty(),
+                "{}",
+                key.name
+            );
+            let all = key.columns.iter().chain(key.words);
+            let columns: BTreeSet<&str> = all.clone().map(|column| column.name).collect();
+            assert_eq!(columns.len(), all.clone().count(), "{}", key.name);
+            for column in all {
+                let is_told = !column.unit().is_empty() && !column.definition().is_empty();
+                assert!(is_told, "{}.{}", key.name, column.name);
+                let middle = column.end_of;
+                assert!(
+                    middle.is_none_or(|of| key.has(of)),
+                    "{}.{}",
+                    key.name,
+                    column.name
+                );
+            }
+        }
     }
 
     #[test]

@@ -9,44 +9,6 @@ use crate::wording::{Likeness, Name, Vocabulary, conversion, likeness, words_of}
 /// Most metrics that are named at once.
 const NAMED_MAX: usize = 8;
 
-/// Names that people give to metrics, by their words without a unit.
-const SYNONYMS: &[(&[&str], &str)] = &[
-    (
-        &["n", "angle_random_walk", "angular_random_walk"],
-        "angle_random_walk_deg_per_sqrt_h",
-    ),
-    (
-        &["b", "flicker", "flicker_floor", "bias_instability"],
-        "bias_instability_deg_per_h",
-    ),
-    (
-        &["k", "rate_random_walk"],
-        "rate_random_walk_deg_per_h_per_sqrt_h",
-    ),
-    (
-        &["r", "rate_ramp", "drift", "drift_rate"],
-        "rate_ramp_deg_per_h_per_h",
-    ),
-    (
-        &["q", "quantisation", "quantisation_noise"],
-        "quantisation_arcsec",
-    ),
-    (&["average"], "mean_deg_per_h"),
-    (
-        &["std", "noise", "rms", "noise_rms", "standard_deviation"],
-        "noise_std_deg_per_h",
-    ),
-    (&["rise_time"], "rise_time_s"),
-    (&["settle_time", "settling"], "settling_time_s"),
-    (&["thd", "distortion"], "harmonic_distortion_percent"),
-    (&["gain"], "dc_gain"),
-    (&["noise_power_gain", "noise_reduction"], "noise_gain"),
-    (
-        &["tracking_error", "rms_error"],
-        "tracking_error_rms_deg_per_h",
-    ),
-];
-
 /// The words of each synonym and its metric.
 static SYNONYM_WORDS: OnceLock<Vec<(Vec<String>, &str)>> = OnceLock::new();
 
@@ -104,9 +66,9 @@ fn names() -> &'static [(Name, &'static MetricKey)] {
 fn suggestions(name: &str) -> Vec<&'static str> {
     let words = words_of(name);
     let synonyms = SYNONYM_WORDS.get_or_init(|| {
-        let names = SYNONYMS.iter().flat_map(|(names, metric)| {
-            let words = names.iter().map(|name| words_of(name));
-            words.map(|words| (words, *metric))
+        let names = known_metrics().iter().flat_map(|known| {
+            let words = known.synonyms.iter().map(|name| words_of(name));
+            words.map(|words| (words, known.name))
         });
         names.collect()
     });
@@ -148,11 +110,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_synonym_stands_for_a_metric() {
-        for (names, metric) in SYNONYMS {
-            assert!(find(metric).is_some(), "{metric}");
-            for name in *names {
-                assert_eq!(suggestions(name), [*metric], "{name}");
+    fn every_synonym_stands_for_its_metric_alone() {
+        for known in known_metrics() {
+            for name in known.synonyms {
+                assert_eq!(suggestions(name), [known.name], "{name}");
             }
         }
     }

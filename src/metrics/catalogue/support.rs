@@ -4,11 +4,12 @@ use super::list::find;
 use super::names::{meant, unknown};
 use crate::metrics::allan::entry::SLOW_NOISE_DURATION_MIN_S;
 use crate::metrics::estimate::interval::round_to_count;
-use crate::metrics::estimate::reason::{NO_TRUTH, too_short};
+use crate::metrics::estimate::reason::{NO_TRUTH, Unavailable, too_short};
 use crate::metrics::key::metric::{Against, Applies, MetricKey, Needs};
 use crate::metrics::noise::bias_stability::{BLOCKS_MIN, averaging_lack};
 use crate::metrics::record::{Motion, SAMPLES_MIN};
 use crate::metrics::sine::fit::{CYCLES_MIN, SwingClock};
+use crate::metrics::steps::scale_factor::{RATES_MIN, RATES_PER_SENSE_MIN};
 use crate::metrics::steps::settling::{STEP_SAMPLES_MIN, tail_start};
 use crate::metrics::steps::staircase::lack;
 use crate::wording::plain;
@@ -30,21 +31,23 @@ pub fn support(
     motion: &Motion,
     is_filter: bool,
     bias_averaging_time_s: f64,
-) -> Result<(), String> {
+) -> Result<(), Unavailable> {
     let Some(known) = find(metric) else {
         return Err(match meant(metric) {
             Some(known) if known.filters_only && !is_filter => format!(
                 "`{metric}` is not a metric; `{}`, the nearest, compares a filter with the raw channel, \
                  and raw itself has none",
                 known.name
-            ),
-            _ => unknown(metric).unwrap_or_default(),
+            )
+            .into(),
+            _ => unknown(metric).unwrap_or_default().into(),
         });
     };
     if known.filters_only && !is_filter {
         return Err(format!(
             "`{metric}` compares a filter with the raw channel; raw itself has none"
-        ));
+        )
+        .into());
     }
     check_motion(known, motion)?;
     let averaging_time_s = match known.needs {
@@ -53,7 +56,7 @@ pub fn support(
         _ => None,
     };
     if let Some(lack) = averaging_time_s.and_then(|it| averaging_lack(it, sample_period_s)) {
-        return Err(format!("`{metric}`: {lack}"));
+        return Err(format!("`{metric}`: {lack}").into());
     }
     let needed_s = match known.needs {
         Needs::AllanFit => FIT_SAMPLES_MIN * sample_period_s,
@@ -72,7 +75,8 @@ pub fn support(
             "`{metric}` needs a record of at least {SAMPLES_MIN} samples; {} s hold \
              {samples}",
             plain(duration_s)
-        ));
+        )
+        .into());
     }
     if known.needs == Needs::Samples {
         return Ok(());
@@ -83,7 +87,7 @@ pub fn support(
         }
         Motion::MultiSine { frequencies_hz } => {
             if known.needs == Needs::TwoSines && frequencies_hz.len() < 2 {
-                return Err(format!("`{metric}` needs two sines or more"));
+                return Err(format!("`{metric}` needs two sines or more").into());
             }
             let lowest_hz = frequencies_hz.first().copied().unwrap_or(0.0);
             check_cycles(metric, samples, sample_period_s, lowest_hz)
@@ -93,10 +97,37 @@ pub fn support(
             staircase,
             ..
         } => match lack(known, staircase, samples) {
-            Some(reason) => Err(format!("`{metric}`: {reason}")),
+            Some(reason) => Err(format!("`{metric}`: {reason}").into()),
             None => check_tail(known, samples, *last_step_index),
         },
         Motion::Steady | Motion::General => Ok(()),
+    }
+}
+
+/// What a record must offer to have a metric, beyond its motion, in words; empty for nothing.
+#[must_use]
+pub fn requirement(key: &MetricKey) -> String {
+    match key.needs {
+        Needs::Nothing => String::new(),
+        Needs::Samples => format!("{SAMPLES_MIN} samples"),
+        Needs::Record => format!(
+            "{SAMPLES_MIN} samples, and {CYCLES_MIN} whole cycles where the motion has some"
+        ),
+        Needs::AllanFit => format!("{FIT_SAMPLES_MIN} samples"),
+        Needs::SlowNoiseFit => format!("{SLOW_NOISE_DURATION_MIN_S} s"),
+        Needs::Blocks(averaging_time_s) => format!("{BLOCKS_MIN} blocks of {averaging_time_s} s"),
+        Needs::ScenarioBlocks => {
+            format!("{BLOCKS_MIN} blocks of the scenario's bias_averaging_time_s")
+        }
+        Needs::TwoSines => "two sines or more".to_owned(),
+        Needs::Step => format!("{STEP_SAMPLES_MIN} samples after the last step"),
+        Needs::SettledStep => {
+            format!("{SAMPLES_MIN} samples in the last quarter after the last step")
+        }
+        Needs::Dwells => format!("settled dwells at {RATES_MIN} distinct rates"),
+        Needs::DwellsOfBothSenses => {
+            format!("settled dwells at {RATES_PER_SENSE_MIN} distinct rates of each sense")
+        }
     }
 }
 
@@ -127,7 +158,7 @@ fn samples_in_record(duration_s: f64, sample_period_s: f64) -> usize {
 }
 
 /// Whether enough samples follow the last step.
-fn check_tail(key: &MetricKey, samples: usize, last_step_index: usize) -> Result<(), String> {
+fn check_tail(key: &MetricKey, samples: usize, last_step_index: usize) -> Result<(), Unavailable> {
     let after = samples.saturating_sub(last_step_index);
     let (found, needed) = match key.needs {
         Needs::Step => (after, STEP_SAMPLES_MIN),
@@ -148,10 +179,11 @@ fn check_tail(key: &MetricKey, samples: usize, last_step_index: usize) -> Result
     Err(format!(
         "`{}` needs {needed} samples {part}; there are {found}",
         key.name
-    ))
+    )
+    .into())
 }
 
-fn check_motion(known: &MetricKey, motion: &Motion) -> Result<(), String> {
+fn check_motion(known: &MetricKey, motion: &Motion) -> Result<(), Unavailable> {
     let fits = matches!(
         (known.applies, motion),
         (Applies::Always | Applies::Pipeline, _)
@@ -184,22 +216,8 @@ fn check_motion(known: &MetricKey, motion: &Motion) -> Result<(), String> {
     if fits {
         return Ok(());
     }
-    let wanted = match known.applies {
-        Applies::Always | Applies::Pipeline => "any motion",
-        Applies::Steady => "a table at rest or at constant rate",
-        Applies::Swing => "a swing",
-        Applies::Tones => "a swing or several sines",
-        Applies::MultiSine => "several sines",
-        Applies::Steps => "steps",
-        Applies::Onset => "steps, a swing from rest or a script",
-        Applies::SteadyOrSwing => "a swing or a table at rest or at constant rate",
-        Applies::Moving => "a moving table",
-        Applies::Calibration => "the estimates of a calibration campaign",
-        Applies::Separable => {
-            "rest, constant rate, sines or steps, where noise can be told from motion,"
-        }
-    };
-    Err(format!("`{}` is defined for {wanted} only", known.name))
+    let wanted = known.applies.words();
+    Err(format!("`{}` is defined for {wanted} only", known.name).into())
 }
 
 fn check_cycles(
@@ -207,7 +225,7 @@ fn check_cycles(
     samples: usize,
     sample_period_s: f64,
     frequency_hz: f64,
-) -> Result<(), String> {
+) -> Result<(), Unavailable> {
     let clock = SwingClock {
         frequency_hz,
         sample_period_s,
@@ -219,13 +237,15 @@ fn check_cycles(
             "`{metric}` needs {CYCLES_MIN} whole cycles of {} Hz; {samples} samples \
              hold {cycles}",
             plain(frequency_hz)
-        ));
+        )
+        .into());
     }
     if frequency_hz * sample_period_s > 0.25 {
         return Err(format!(
             "`{metric}` needs four samples per cycle of {} Hz",
             plain(frequency_hz)
-        ));
+        )
+        .into());
     }
     Ok(())
 }
@@ -238,14 +258,19 @@ mod tests {
 
     const PERIOD_S: f64 = 1.0 / 3989.45;
 
-    fn ask(metric: &str, duration_s: f64, motion: &Motion, is_filter: bool) -> Result<(), String> {
+    fn ask(
+        metric: &str,
+        duration_s: f64,
+        motion: &Motion,
+        is_filter: bool,
+    ) -> Result<(), Unavailable> {
         support(metric, duration_s, PERIOD_S, motion, is_filter, 100.0)
     }
 
     #[test]
     fn a_misspelt_metric_is_answered_with_the_nearest() {
         let answer = ask("delay_vs_row_ms", 20.0, &Motion::Steady, true).unwrap_err();
-        assert!(answer.contains("`delay_vs_raw_ms`"), "{answer}");
+        assert!(answer.as_str().contains("`delay_vs_raw_ms`"), "{answer}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Looking up a metric by its key, with the reason where it is missing.
 
+use super::reason::Unavailable;
 use super::table::ChannelMetrics;
 use super::value::Estimate;
 use crate::metrics::key::metric::MetricKey;
@@ -12,7 +13,7 @@ pub struct MissingMetric {
     /// Key of the metric.
     pub metric: &'static str,
     /// Why it is missing.
-    pub reason: String,
+    pub reason: Unavailable,
 }
 
 impl ChannelMetrics {
@@ -34,13 +35,12 @@ impl ChannelMetrics {
         if let Some(metric) = self.get(key) {
             return Ok(metric.estimate);
         }
-        let failure = self.error.as_ref().map(|failure| failure.message.as_str());
-        let reason = self.why_unavailable(key).or(failure);
+        let told = self.unavailable.get(key.name).cloned();
+        let failure = self.error.as_ref();
+        let reason = told.or_else(|| failure.map(|failure| failure.message.clone().into()));
         Err(MissingMetric {
             metric: key.name,
-            reason: reason
-                .unwrap_or("it was not measured in this record")
-                .to_owned(),
+            reason: reason.unwrap_or_else(|| "it was not measured in this record".into()),
         })
     }
 }

@@ -6,6 +6,7 @@ use crate::metrics::key::metric::MetricKey;
 
 /// One metric over the repeats.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RepeatStatistics {
     /// Unit of the metric.
     pub unit: &'static str,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::reason::Unavailable;
 use super::repeat_statistics::RepeatStatistics;
 use super::value::{Estimate, Metric};
 use crate::metrics::key::curve::{Column, Curve, CurveKey};
@@ -37,7 +38,7 @@ pub struct ChannelMetrics {
     /// Metrics by key (`angle_random_walk_deg_per_sqrt_h`, ...).
     pub metrics: BTreeMap<String, Metric>,
     /// Metrics the record cannot support, with the reason.
-    pub unavailable: BTreeMap<String, String>,
+    pub unavailable: BTreeMap<String, Unavailable>,
     /// Curves: name, then column name and values.
     pub curves: BTreeMap<String, Curve>,
     /// The main metrics over the repeats by key; empty for a single record.
@@ -110,12 +111,12 @@ impl ChannelMetrics {
     }
 
     /// Says why a metric is missing.
-    pub(crate) fn miss(&mut self, key: &MetricKey, reason: impl Into<String>) {
+    pub(crate) fn miss(&mut self, key: &MetricKey, reason: impl Into<Unavailable>) {
         self.unavailable.insert(key.name.to_owned(), reason.into());
     }
 
     /// Takes a metric out and says why, if it is there.
-    pub(crate) fn withdraw(&mut self, key: &MetricKey, reason: impl Into<String>) {
+    pub(crate) fn withdraw(&mut self, key: &MetricKey, reason: impl Into<Unavailable>) {
         if self.metrics.remove(key.name).is_some() {
             self.miss(key, reason);
         }
@@ -134,7 +135,7 @@ impl ChannelMetrics {
     /// Why a metric is missing; none if it is there.
     #[must_use]
     pub fn why_unavailable(&self, key: &MetricKey) -> Option<&str> {
-        self.unavailable.get(key.name).map(String::as_str)
+        self.unavailable.get(key.name).map(Unavailable::as_str)
     }
 
     /// Leaves only finite numbers in the table: the one gate between measuring and reporting.
@@ -155,12 +156,12 @@ impl ChannelMetrics {
                 .iter()
                 .all(|it| it.is_finite())
         };
-        let mut lost: Vec<(String, String)> = Vec::new();
+        let mut lost: Vec<(String, Unavailable)> = Vec::new();
         self.metrics.retain(|name, metric| {
             metric.fields.retain(|_, value| value.is_finite());
             let is_kept = is_finite(&metric.estimate);
             if !is_kept {
-                lost.push((name.clone(), NOT_FINITE.to_owned()));
+                lost.push((name.clone(), NOT_FINITE.into()));
             }
             is_kept
         });
@@ -169,7 +170,7 @@ impl ChannelMetrics {
             let broken = columns.find(|(_, values)| !values.iter().all(|it| it.is_finite()));
             if let Some((column, _)) = broken {
                 let reason = format!("{NOT_FINITE} for a point of {column}");
-                lost.push((format!("curves.{name}"), reason));
+                lost.push((format!("curves.{name}"), reason.into()));
             }
             broken.is_none()
         });

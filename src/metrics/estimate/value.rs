@@ -9,6 +9,7 @@ pub(crate) const CONFIDENCE: f64 = 0.95;
 ///
 /// Where no interval can be given, `low = high = value`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Estimate {
     /// Best value.
     pub value: f64,
@@ -68,6 +69,7 @@ impl Estimate {
 
 /// One metric of a channel: the estimate, its unit and the fields that define it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Metric {
     /// Value and interval.
     pub estimate: Estimate,

@@ -33,6 +33,29 @@ pub enum Applies {
     Calibration,
 }
 
+impl Applies {
+    /// The records in words, which follow "defined for".
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Always => "any motion",
+            Self::Pipeline => "a filter that is a hardware pipeline",
+            Self::Steady => "a table at rest or at constant rate",
+            Self::Swing => "a swing",
+            Self::Tones => "a swing or several sines",
+            Self::MultiSine => "several sines",
+            Self::Steps => "steps",
+            Self::Onset => "steps, a swing from rest or a script",
+            Self::SteadyOrSwing => "a swing or a table at rest or at constant rate",
+            Self::Moving => "a moving table",
+            Self::Calibration => "the estimates of a calibration campaign",
+            Self::Separable => {
+                "rest, constant rate, sines or steps, where noise can be told from motion,"
+            }
+        }
+    }
+}
+
 /// What a record must offer beyond its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Needs {
@@ -75,6 +98,18 @@ pub(crate) enum Against {
     Encoder,
 }
 
+impl Against {
+    /// The same in words.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Nothing => "",
+            Self::Truth => "the true rate",
+            Self::TruthForRaw => "raw; raw with the true rate",
+            Self::Encoder => "the table's encoder",
+        }
+    }
+}
+
 /// How independent repeats are pooled.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Pool {
@@ -88,6 +123,22 @@ pub(crate) enum Pool {
     ScatterOf(&'static MetricKey),
     /// Standard deviation of another metric, an error in ppm, over the mean of one plus that error.
     RelativeScatterOf(&'static MetricKey),
+}
+
+impl Pool {
+    /// The same in words.
+    fn words(self) -> String {
+        match self {
+            Self::Mean => "mean; what has degrees of freedom as root of the mean square".to_owned(),
+            Self::RootMeanSquare => "root of the mean square".to_owned(),
+            Self::AllanFit => "fit to the pooled Allan variance".to_owned(),
+            Self::ScatterOf(of) => format!("standard deviation of {} over the repeats", of.name),
+            Self::RelativeScatterOf(of) => format!(
+                "standard deviation over the repeats of one plus {}, over their mean",
+                of.name
+            ),
+        }
+    }
 }
 
 /// Tables that have a column for the metric, by the kind of motion.
@@ -135,6 +186,8 @@ pub struct MetricKey {
     pub applies: Applies,
     /// Whether only filters have it.
     pub filters_only: bool,
+    /// Names that people give to it, by their words without a unit.
+    pub(crate) synonyms: &'static [&'static str],
     pub(crate) heading: Option<&'static str>,
     pub(crate) needs: Needs,
     pub(crate) against: Against,
@@ -175,6 +228,7 @@ impl MetricKey {
             definition,
             applies,
             filters_only: false,
+            synonyms: &[],
             heading: None,
             needs: Needs::Record,
             against: Against::Nothing,
@@ -227,6 +281,11 @@ impl MetricKey {
             heading: Some(heading),
             ..self
         }
+    }
+
+    /// The same, known by other names too.
+    pub(crate) const fn synonyms(self, synonyms: &'static [&'static str]) -> Self {
+        Self { synonyms, ..self }
     }
 
     /// The same with what a record must offer.
@@ -307,6 +366,18 @@ impl MetricKey {
     pub fn title(&self) -> String {
         self.heading
             .map_or_else(|| self.name.replace('_', " "), str::to_owned)
+    }
+
+    /// What the channel is compared with beside raw, in words; empty for nothing.
+    #[must_use]
+    pub fn reference(&self) -> &'static str {
+        self.against.words()
+    }
+
+    /// How independent repeats are pooled, in words.
+    #[must_use]
+    pub fn pooling(&self) -> String {
+        self.pool.words()
     }
 
     /// Whether the scatter of repeats gives it, which a single record cannot.

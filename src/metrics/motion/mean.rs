@@ -2,6 +2,7 @@
 
 use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Needs, Table};
@@ -15,6 +16,7 @@ pub static MEAN: MetricKey = MetricKey::new(
     Applies::Always,
     "mean over the record; in a swing the offset of the sine fit over whole cycles",
 )
+.synonyms(&["average"])
 .heading("mean")
 .run_column(1)
 .of_one_motion()
@@ -107,12 +109,13 @@ pub(crate) fn measure_mean_ratio(record: &Record, metrics: &mut ChannelMetrics) 
 }
 
 /// Why nothing can be divided by raw's mean; nothing if it can be told from zero.
-pub(crate) fn ratio_of_means_lack(raw_mean: &Estimate) -> Option<String> {
+pub(crate) fn ratio_of_means_lack(raw_mean: &Estimate) -> Option<Unavailable> {
     (raw_mean.low <= 0.0 && raw_mean.high >= 0.0).then(|| {
         format!(
             "the raw mean, {} deg/h, cannot be told from zero",
             decimals(raw_mean.value, 4)
         )
+        .into()
     })
 }
 

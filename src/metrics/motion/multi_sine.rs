@@ -6,6 +6,7 @@ use super::swing::{AMPLITUDE_RATIO, DELAY_VS_RAW, DELAY_VS_TRUTH};
 use super::tracking::TRACKING_ERROR_RMS;
 use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::curve::CurveKey;
@@ -62,7 +63,7 @@ pub(crate) fn measure_multi_sine(
     frequencies_hz: &[f64],
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
-) -> Result<(), String> {
+) -> Result<(), Unavailable> {
     let clock = ToneClock {
         frequencies_hz,
         sample_period_s: record.sample_period_s,

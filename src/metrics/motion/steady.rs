@@ -97,7 +97,7 @@ fn measure_allan(
         .channel_deg_per_h
         .windows(2)
         .any(|two| two[0] < two[1] || two[1] < two[0]);
-    let constant = || Err("the output does not vary over the record".to_owned());
+    let constant = || Err("the output does not vary over the record".into());
     let fitted = if varies {
         fit_noise(&points, range)
     } else {
@@ -120,7 +120,7 @@ fn measure_allan(
         Err(reason) => {
             put_fit_curve(&points, None, metrics);
             for key in FIT_METRICS {
-                metrics.miss(key, reason.as_str());
+                metrics.miss(key, reason.clone());
             }
             None
         }

@@ -6,12 +6,14 @@ use super::mean::{MEAN_RATIO, put_mean, ratio_of_means_lack};
 use super::steady::LAGS_MIN;
 use super::tracking::TRACKING_ERROR_RMS;
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::{Estimate, Metric};
 use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::truth_response::{reach, remove_response};
+use crate::metrics::pipeline::LATENCY;
 use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::sine::correlation::correlation_delay_s;
 use crate::metrics::sine::fit::{SwingClock, SwingFit, fit_swing};
@@ -103,6 +105,7 @@ pub static HARMONIC_DISTORTION: MetricKey = MetricKey::new(
     Applies::Swing,
     "root sum of squares of harmonics 2 to 5 over the fundamental, noise power subtracted",
 )
+.synonyms(&["thd", "distortion"])
 .heading("harmonic distortion")
 .tables(&[Table::Swing]);
 
@@ -128,7 +131,7 @@ pub(crate) fn measure_swing(
     is_from_rest: bool,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
-) -> Result<(), String> {
+) -> Result<(), Unavailable> {
     let clock = SwingClock {
         frequency_hz,
         sample_period_s: record.sample_period_s,
@@ -187,7 +190,7 @@ pub(crate) fn measure_swing(
         measure_predictions(&fits, &clock, facts, &raw, metrics);
         measure_bound(&fits, &clock, facts, (&channel, &raw), metrics);
         let predicted = metrics.get(&DELAY_PREDICTED);
-        let final_gain = predicted.and_then(|metric| metric.fields.get("amplitude_ratio"));
+        let final_gain = predicted.and_then(|metric| metric.fields.get(AMPLITUDE_RATIO.name));
         if let Some(&final_gain) = final_gain.filter(|_| is_from_rest) {
             let (own, other) = (record.channel_deg_per_h, record.raw_deg_per_h);
             let units = GainUnits::of_swing(own, other, &clock);
@@ -218,7 +221,7 @@ fn measure_sines(
         describe(metric);
         if latency_s > 0.0 {
             let latency_us = units::s_to_us(latency_s);
-            metric.fields.insert("latency_us", latency_us);
+            metric.fields.insert(LATENCY.name, latency_us);
         }
     };
     if let Some(truth) = &fits.truth {
@@ -340,7 +343,7 @@ fn measure_predictions(
     let gains: Vec<f64> = parts.iter().map(|part| part.1).collect();
     let metric = metrics.put(&DELAY_PREDICTED, interval::jackknife(delay_ms, &delays));
     metric.fields.insert("frequency_hz", clock.frequency_hz);
-    metric.fields.insert("amplitude_ratio", amplitude);
+    metric.fields.insert(AMPLITUDE_RATIO.name, amplitude);
     metrics.put(&DC_GAIN_PREDICTED, interval::jackknife(dc_gain, &gains));
 }
 
@@ -363,7 +366,7 @@ fn measure_bound(
         filter_bound(&facts.shape, delay_samples, autocovariance)
     };
     let autocovariance = raw.autocovariance();
-    let without: Vec<Result<f64, String>> = (0..raw.blocks())
+    let without: Vec<Result<f64, Unavailable>> = (0..raw.blocks())
         .map(|block| at(delay.value, &raw.autocovariance_without(block)))
         .collect();
     let left_out: Vec<f64> = without.iter().flatten().copied().collect();

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use crate::metrics::allan::noise_fit::NoiseCoefficients;
 use crate::metrics::estimate::blocks::is_sample_or_longer;
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::{DEGREES_OF_FREEDOM, RAW_CORRELATION};
 use crate::metrics::estimate::value::{Estimate, Metric};
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
@@ -61,13 +62,14 @@ pub static BIAS_STABILITY: MetricKey = MetricKey::new(
 pub(crate) const BLOCKS_MIN: usize = 5;
 
 /// Why samples of a period cannot be averaged over a time; nothing if they can.
-pub(crate) fn averaging_lack(averaging_time_s: f64, sample_period_s: f64) -> Option<String> {
+pub(crate) fn averaging_lack(averaging_time_s: f64, sample_period_s: f64) -> Option<Unavailable> {
     (!is_sample_or_longer(averaging_time_s, sample_period_s)).then(|| {
         format!(
             "an averaging time of {} s is shorter than a sample, which takes {} s",
             plain(averaging_time_s),
             plain(sample_period_s)
         )
+        .into()
     })
 }
 

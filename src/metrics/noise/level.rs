@@ -13,6 +13,7 @@ pub static NOISE_STD: MetricKey = MetricKey::new(
     Applies::Separable,
     "standard deviation of the samples about the signal: mean, fitted sine, or settled rate",
 )
+.synonyms(&["std", "noise", "rms", "noise_rms", "standard_deviation"])
 .heading("noise std")
 .needs(Needs::SettledStep)
 .run_column(3)
@@ -26,6 +27,7 @@ pub static NOISE_GAIN: MetricKey = MetricKey::of_filters(
     Applies::Separable,
     "variance about the signal over that of raw",
 )
+.synonyms(&["noise_power_gain", "noise_reduction"])
 .heading("noise power gain")
 .needs(Needs::SettledStep)
 .tables(&[Table::Rest, Table::Swing, Table::MultiSine, Table::Steps]);

@@ -43,6 +43,7 @@ const SEGMENTS_MIN: usize = 8;
 
 /// A one-sided power spectral density.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Spectrum {
     /// Frequencies, Hz, rising, zero left out.
     pub frequency_hz: Vec<f64>,

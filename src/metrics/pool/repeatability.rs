@@ -1,6 +1,7 @@
 //! Repeatability: the scatter of a metric over independent repeats, each a start of its own.
 
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::{ChannelMetrics, DEGREES_OF_FREEDOM};
 use crate::metrics::key::metric::{Applies, MetricKey, Pool, Table};
 use crate::metrics::motion::mean::MEAN;
@@ -43,9 +44,10 @@ const REPEATS_MIN: usize = 6;
 
 /// Why too few repeats can never have a metric; nothing for other metrics.
 #[must_use]
-pub fn repeats_lack(key: &MetricKey, repeats: usize) -> Option<String> {
+pub fn repeats_lack(key: &MetricKey, repeats: usize) -> Option<Unavailable> {
     let is_lacking = key.is_repeatability() && repeats < REPEATS_MIN;
-    is_lacking.then(|| format!("it needs {REPEATS_MIN} repeats or more; there are {repeats}"))
+    is_lacking
+        .then(|| format!("it needs {REPEATS_MIN} repeats or more; there are {repeats}").into())
 }
 
 /// Enters the scatter of scale factor and bias over the repeats, where a single record would have
@@ -58,7 +60,7 @@ pub(crate) fn put_repeatability(repeats: &[ChannelMetrics], pooled: &mut Channel
             continue;
         };
         let single = repeats_lack(key, 1);
-        if pooled.why_unavailable(key) != single.as_deref() {
+        if pooled.why_unavailable(key) != single.as_ref().map(Unavailable::as_str) {
             continue;
         }
         if let Some(reason) = repeats_lack(key, repeats.len()) {

@@ -3,6 +3,7 @@
 use super::fit::{CYCLES_MIN, SwingClock};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::round_to_count;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
 
 /// Most blocks of the window, for the jackknife.
@@ -94,7 +95,7 @@ pub fn correlation_delay_s(
     reference: &[f64],
     values: &[f64],
     clock: &SwingClock,
-) -> Result<Estimate, String> {
+) -> Result<Estimate, Unavailable> {
     let samples_per_cycle = 1.0 / (clock.frequency_hz * clock.sample_period_s);
     let margin = round_to_count((samples_per_cycle / 4.0).ceil());
     let samples = reference.len().min(values.len());
@@ -103,7 +104,8 @@ pub fn correlation_delay_s(
         return Err(format!(
             "{cycles} whole cycles lie a quarter of a cycle inside the record; a correlation needs \
              {CYCLES_MIN}"
-        ));
+        )
+        .into());
     }
     let count = cycles.min(BLOCKS_MAX);
     let border =
@@ -122,7 +124,7 @@ pub fn correlation_delay_s(
     };
     let best = window.best_shift();
     if best == 0 || best == 2 * margin {
-        return Err("the correlation has no peak within a quarter of a cycle".to_owned());
+        return Err("the correlation has no peak within a quarter of a cycle".into());
     }
     let products = [best - 1, best, best + 1].map(|shift| window.products(shift));
     let [before, at, after] = &products;

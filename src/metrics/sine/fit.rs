@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::{NORMAL_QUANTILE, round_to_count};
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
 
 /// Most sub-blocks whose scatter gives the intervals.
@@ -30,6 +31,7 @@ pub struct SwingClock {
 
 /// `offset + amplitude cos(2 pi f t + phase)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SineFit {
     /// Amplitude, in the unit of the samples.
     pub amplitude: f64,
@@ -120,6 +122,7 @@ pub fn fit_sine(values: &[f64], clock: &SwingClock) -> Option<SineFit> {
 
 /// A record cut to whole cycles and into sub-blocks of whole cycles, with the fits of each.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SwingFit {
     /// Fit over all whole cycles.
     pub whole: SineFit,
@@ -137,7 +140,7 @@ pub struct SwingFit {
 ///
 /// # Errors
 /// The reason, in words, if there are fewer than three whole cycles or four samples per cycle.
-pub fn fit_swing(values: &[f64], clock: &SwingClock) -> Result<SwingFit, String> {
+pub fn fit_swing(values: &[f64], clock: &SwingClock) -> Result<SwingFit, Unavailable> {
     let cycles = clock.whole_cycles(values.len());
     if cycles < CYCLES_MIN || clock.samples_per_cycle() < 4.0 {
         return Err(format!(
@@ -145,7 +148,8 @@ pub fn fit_swing(values: &[f64], clock: &SwingClock) -> Result<SwingFit, String>
              with an interval needs {CYCLES_MIN} cycles of at least 4 samples",
             clock.frequency_hz,
             clock.samples_per_cycle(),
-        ));
+        )
+        .into());
     }
     let count = cycles.min(BLOCKS_MAX);
     let borders: Vec<usize> = (0..=count)
@@ -167,7 +171,7 @@ pub fn fit_swing(values: &[f64], clock: &SwingClock) -> Result<SwingFit, String>
             blocks,
             clock: *clock,
         }),
-        _ => Err("the samples do not determine a sine".to_owned()),
+        _ => Err("the samples do not determine a sine".into()),
     }
 }
 

@@ -14,6 +14,7 @@ const TOLERANCE_RAD: f64 = 1e-12;
 
 /// `offset + amplitude cos(2 pi f (t - centre) + phase)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FreeSineFit {
     /// Frequency, Hz.
     pub frequency_hz: f64,

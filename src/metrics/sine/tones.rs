@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::curve::{Column, CurveKey};
@@ -120,6 +121,7 @@ pub struct ToneFits<'a> {
 
 /// Response of one series to another at one tone.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ToneResponse {
     /// Frequency, Hz.
     pub frequency_hz: f64,
@@ -139,17 +141,21 @@ pub struct ToneResponse {
 ///
 /// # Errors
 /// The reason, in words, if the series differ in length or do not determine the tones.
-pub fn fit_tones<'a>(series: &[&[f64]], clock: &ToneClock<'a>) -> Result<ToneFits<'a>, String> {
+pub fn fit_tones<'a>(
+    series: &[&[f64]],
+    clock: &ToneClock<'a>,
+) -> Result<ToneFits<'a>, Unavailable> {
     let samples = series.first().map_or(0, |values| values.len());
-    let undetermined = || {
+    let undetermined = || -> Unavailable {
         format!(
             "{} do not determine {}",
             counted(samples, "sample"),
             counted(clock.frequencies_hz.len(), "sine")
         )
+        .into()
     };
     if series.iter().any(|values| values.len() != samples) {
-        return Err("the series differ in length".to_owned());
+        return Err("the series differ in length".into());
     }
     if samples < 2 * clock.parameters().max(BLOCKS) {
         return Err(undetermined());
@@ -256,7 +262,7 @@ impl ToneFits<'_> {
     ///
     /// # Errors
     /// The reason, in words, if the tones do not bracket it in every part of the record.
-    pub fn bandwidth_hz(&self, series: usize, reference: usize) -> Result<Estimate, String> {
+    pub fn bandwidth_hz(&self, series: usize, reference: usize) -> Result<Estimate, Unavailable> {
         let frequencies_hz = self.clock.frequencies_hz;
         let crossing = |fits: &[Parameters]| {
             let gains: Vec<f64> = (0..frequencies_hz.len())
@@ -264,8 +270,9 @@ impl ToneFits<'_> {
                 .collect();
             bandwidth_hz(frequencies_hz, &gains)
         };
-        let unbracketed =
-            || "the gain does not fall through 1/sqrt(2) between two of the tones".to_owned();
+        let unbracketed = || {
+            Unavailable::from("the gain does not fall through 1/sqrt(2) between two of the tones")
+        };
         let whole = crossing(&self.whole).ok_or_else(unbracketed)?;
         let parts: Option<Vec<f64>> = self.left_out.iter().map(|fits| crossing(fits)).collect();
         Ok(interval::jackknife(whole, &parts.ok_or_else(unbracketed)?))

@@ -16,6 +16,7 @@ const REACH: f64 = 8.0;
 
 /// Distance of one point from the line.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Residual {
     /// Output minus the line, deg/h.
     pub value_deg_per_h: f64,
@@ -31,6 +32,7 @@ pub struct Residual {
 
 /// The largest distance of all points as a ratio, and how large noise alone would make it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Nonlinearity {
     /// Largest ratio. Its interval is simultaneous over the points (Bonferroni): the largest of many
     /// residuals is large by chance, so that its own interval would not hold.

@@ -10,6 +10,7 @@
 
 use super::nonlinearity::{Nonlinearity, Residual};
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
 
 /// Inputs closer than this part of their span count as the same rate.
@@ -45,6 +46,7 @@ pub struct StaticZero {
 
 /// What the outputs at constant rates say.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ScaleFactorFit {
     /// Slope K.
     pub factor: Estimate,
@@ -65,6 +67,7 @@ pub struct ScaleFactorFit {
 
 /// Difference between the senses of rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Asymmetry {
     /// `|K+ - K-| / ((K+ + K-) / 2)`, a ratio.
     pub value: Estimate,
@@ -173,7 +176,10 @@ fn spread_of(parts: impl Iterator<Item = (f64, RatePoint)>) -> (f64, f64) {
 ///
 /// # Errors
 /// The reason, in words, with fewer than three distinct rates.
-pub fn fit_scale_factor(points: &[RatePoint], rest: StaticZero) -> Result<ScaleFactorFit, String> {
+pub fn fit_scale_factor(
+    points: &[RatePoint],
+    rest: StaticZero,
+) -> Result<ScaleFactorFit, Unavailable> {
     let inputs: Vec<f64> = points
         .iter()
         .map(|point| point.input_deg_per_h - rest.input_deg_per_h)
@@ -203,8 +209,8 @@ pub fn fit_scale_factor(points: &[RatePoint], rest: StaticZero) -> Result<ScaleF
 }
 
 /// Why there is no scale factor.
-pub(crate) fn too_few_rates(rates: usize) -> String {
-    format!("a scale factor needs {RATES_MIN} distinct rates; there are {rates}")
+pub(crate) fn too_few_rates(rates: usize) -> Unavailable {
+    format!("a scale factor needs {RATES_MIN} distinct rates; there are {rates}").into()
 }
 
 /// Distances of the points from the line, each with the noise of all points.

@@ -3,6 +3,7 @@
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
 use crate::wording::counted;
 
@@ -13,6 +14,7 @@ pub static SETTLING_TIME: MetricKey = MetricKey::new(
     Applies::Steps,
     "time after the last step until the rate stays within max(1 % of the step, 5 sigma)",
 )
+.synonyms(&["settle_time", "settling"])
 .heading("settling time")
 .needs(Needs::Step)
 .of_turned_axis()
@@ -33,6 +35,7 @@ pub(crate) const STEP_SAMPLES_MIN: usize = 16;
 
 /// What a step record shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Settling {
     /// From the step to the stamp of the first sample after which the rate stays in the band, s.
     pub settling_time_s: f64,
@@ -72,13 +75,14 @@ pub fn settling(
     step_index: usize,
     step_deg_per_h: f64,
     sample_period_s: f64,
-) -> Result<Settling, String> {
+) -> Result<Settling, Unavailable> {
     let samples = rate_deg_per_h.len();
     if samples < step_index + STEP_SAMPLES_MIN {
         return Err(format!(
             "{} after the last step; settling needs {STEP_SAMPLES_MIN}",
             counted(samples.saturating_sub(step_index), "sample")
-        ));
+        )
+        .into());
     }
     let start = tail_start(samples, step_index);
     let tail = &rate_deg_per_h[start..];
@@ -91,7 +95,7 @@ pub fn settling(
         .rposition(|rate| (rate - target).abs() > band);
     let settled = outside.map_or(0, |last| last + 1);
     if step_index + settled > start {
-        return Err("the rate has not settled before the last quarter of the record".to_owned());
+        return Err("the rate has not settled before the last quarter of the record".into());
     }
     Ok(Settling {
         settling_time_s: (settled + 1) as f64 * sample_period_s,

@@ -2,6 +2,7 @@
 
 use super::settling::Settling;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Needs, Table};
@@ -14,6 +15,7 @@ pub static RISE_TIME: MetricKey = MetricKey::new(
     Applies::Steps,
     "time from 10 % to 90 % of the last step, linear between samples",
 )
+.synonyms(&["rise_time"])
 .heading("rise time")
 .needs(Needs::Step)
 .of_turned_axis()
@@ -100,9 +102,9 @@ impl Step<'_> {
     ///
     /// # Errors
     /// The reason, in words, where the step has no height, the noise is large or no sample precedes the step.
-    pub fn rise_time_s(&self) -> Result<Estimate, String> {
+    pub fn rise_time_s(&self) -> Result<Estimate, Unavailable> {
         if !self.has_height() {
-            return Err(NO_HEIGHT.to_owned());
+            return Err(NO_HEIGHT.into());
         }
         let noise = self.noise();
         if noise > NOISE_MAX {
@@ -110,7 +112,8 @@ impl Step<'_> {
                 "the noise is {} % of the step: allowed up to {:.1} %",
                 decimals(100.0 * noise, 1),
                 100.0 * NOISE_MAX
-            ));
+            )
+            .into());
         }
         let shift = NORMAL_QUANTILE * noise;
         let rise = |shift: f64| {
@@ -122,7 +125,7 @@ impl Step<'_> {
         };
         let found = (rise(0.0), rise(shift), rise(-shift));
         let (Some(value), Some(short), Some(long)) = found else {
-            return Err("no sample precedes the step".to_owned());
+            return Err("no sample precedes the step".into());
         };
         let period_s = self.sample_period_s;
         let low = (short.min(value) - period_s).max(0.0);

@@ -6,6 +6,7 @@
 
 use super::scale_factor::RatePoint;
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
@@ -79,7 +80,7 @@ struct Answer {
 pub fn smallest_answered(
     points: &[RatePoint],
     base_deg_per_h: f64,
-) -> Result<[Option<Estimate>; 2], String> {
+) -> Result<[Option<Estimate>; 2], Unavailable> {
     let largest = points
         .iter()
         .fold(0.0_f64, |max, point| max.max(point.input_deg_per_h.abs()));
@@ -92,7 +93,8 @@ pub fn smallest_answered(
         return Err(format!(
             "no dwell has an input of {} deg/h",
             decimals(base_deg_per_h, 4)
-        ));
+        )
+        .into());
     }
     let output = bases
         .iter()
@@ -143,7 +145,7 @@ fn half_width(parts: impl Iterator<Item = (f64, f64)>, count: usize) -> f64 {
 }
 
 /// The smallest input from which on every input is answered; `answers` ascend and are not empty.
-fn decide(answers: &[Answer]) -> Result<Estimate, String> {
+fn decide(answers: &[Answer]) -> Result<Estimate, Unavailable> {
     let is_answered = |answer: &&Answer| answer.ratio - answer.half_width >= ANSWERED;
     let is_not = |answer: &&Answer| answer.ratio + answer.half_width < ANSWERED;
     let sure = answers.iter().rev().take_while(is_answered).last();
@@ -151,7 +153,7 @@ fn decide(answers: &[Answer]) -> Result<Estimate, String> {
         let last = answers[answers.len() - 1];
         let change = decimals(last.change_deg_per_h, 4);
         let percent = 100.0 * last.half_width;
-        return Err(if is_not(&&last) {
+        let reason = if is_not(&&last) {
             format!("not even {change} deg/h gives half of itself")
         } else if percent.is_finite() {
             format!(
@@ -160,7 +162,8 @@ fn decide(answers: &[Answer]) -> Result<Estimate, String> {
             )
         } else {
             format!("noise forbids: the mean output at {change} deg/h is not known at all")
-        });
+        };
+        return Err(reason.into());
     };
     let below = answers.iter().rfind(is_not);
     Ok(Estimate::with_interval(
@@ -223,10 +226,10 @@ fn larger(senses: [Option<Estimate>; 2]) -> Option<Estimate> {
 }
 
 /// The rate other than zero that is held most often, twice at least: increments start from it.
-fn bias_rate(points: &[RatePoint], staircase: &Staircase) -> Result<f64, String> {
+fn bias_rate(points: &[RatePoint], staircase: &Staircase) -> Result<f64, Unavailable> {
     let none = "no rate other than zero is held twice, from which increments could start";
     if staircase.has_static_zeros {
-        return Err(none.to_owned());
+        return Err(none.into());
     }
     let inputs = || points.iter().map(|point| point.input_deg_per_h);
     let largest = inputs().fold(0.0_f64, |max, input| max.max(input.abs()));
@@ -240,5 +243,5 @@ fn bias_rate(points: &[RatePoint], staircase: &Staircase) -> Result<f64, String>
             best = Some((times, input));
         }
     }
-    best.map(|(_, input)| input).ok_or_else(|| none.to_owned())
+    best.map(|(_, input)| input).ok_or_else(|| none.into())
 }

@@ -9,6 +9,7 @@ use super::scale_factor::{
 use super::small_input::measure_small_inputs;
 use crate::metrics::estimate::blocks::equal_block_means;
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::curve::{Column, CurveKey};
@@ -198,7 +199,7 @@ fn counted(dwell: &Dwell, samples: usize) -> Option<Range<usize>> {
 }
 
 /// Why a staircase cannot support one of the scale factor metrics, if it cannot.
-pub(crate) fn lack(key: &MetricKey, staircase: &Staircase, samples: usize) -> Option<String> {
+pub(crate) fn lack(key: &MetricKey, staircase: &Staircase, samples: usize) -> Option<Unavailable> {
     if !matches!(key.needs, Needs::Dwells | Needs::DwellsOfBothSenses) {
         return None;
     }
@@ -211,12 +212,13 @@ pub(crate) fn lack(key: &MetricKey, staircase: &Staircase, samples: usize) -> Op
     let distinct = distinct_rates(rates.iter().copied());
     let settle_s = staircase.settle_s;
     if distinct < RATES_MIN {
-        return Some(format!(
+        let reason = format!(
             "{} among the dwells that hold {DWELL_SAMPLES_MIN} samples after {} s of \
              settling",
             too_few_rates(distinct),
             plain(settle_s)
-        ));
+        );
+        return Some(reason.into());
     }
     let senses = distinct_rates_by_sense(&rates, staircase.rest_deg_per_h);
     let is_one_sided = senses.iter().any(|&rates| rates < RATES_PER_SENSE_MIN);
@@ -226,6 +228,7 @@ pub(crate) fn lack(key: &MetricKey, staircase: &Staircase, samples: usize) -> Op
             "asymmetry needs {RATES_PER_SENSE_MIN} distinct rates of each sense; there are \
              {positive} positive and {negative} negative"
         )
+        .into()
     })
 }
 
@@ -283,7 +286,7 @@ pub(crate) fn measure_scale_factor(
 fn static_zero(
     staircase: &Staircase,
     dwells: &mut Vec<(&Dwell, RatePoint)>,
-) -> Result<StaticZero, String> {
+) -> Result<StaticZero, Unavailable> {
     if !staircase.has_static_zeros {
         return Ok(StaticZero {
             input_deg_per_h: staircase.rest_deg_per_h,
@@ -296,7 +299,8 @@ fn static_zero(
             "the test is not whole: {} of {} dwells hold {DWELL_SAMPLES_MIN} settled samples",
             dwells.len(),
             staircase.dwells.len()
-        ));
+        )
+        .into());
     }
     let (before, after) = (dwells.remove(0).1, dwells.pop().map(|last| last.1));
     let after = after.unwrap_or(before);

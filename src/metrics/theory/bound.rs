@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::metrics::estimate::reason::Unavailable;
 use crate::signal::FilterShape;
 use crate::wording::{counted, decimals};
 
@@ -106,24 +107,22 @@ pub(crate) fn filter_bound(
     shape: &FilterShape,
     delay_samples: f64,
     autocovariance: &[f64],
-) -> Result<f64, String> {
+) -> Result<f64, Unavailable> {
     let Some(taps) = shape.taps else {
         return Err(
             "with unlimited taps there is no least noise gain at a delay at DC: more taps always \
              allow less"
-                .to_owned(),
+                .into(),
         );
     };
     if taps > BOUND_TAPS_MAX {
-        return Err(format!(
-            "{taps} taps: it is computed for up to {BOUND_TAPS_MAX}"
-        ));
+        return Err(format!("{taps} taps: it is computed for up to {BOUND_TAPS_MAX}").into());
     }
     if !delay_samples.is_finite() {
-        return Err(NO_DELAY_AT_DC.to_owned());
+        return Err(NO_DELAY_AT_DC.into());
     }
     if autocovariance.first().is_none_or(|power| *power <= 0.0) {
-        return Err("the raw channel has no noise".to_owned());
+        return Err("the raw channel has no noise".into());
     }
     let newest = shape.newest_age_samples;
     noise_delay_bound_coloured(taps, newest, delay_samples, autocovariance).ok_or_else(|| {
@@ -132,6 +131,7 @@ pub(crate) fn filter_bound(
             counted(taps, "tap"),
             decimals(delay_samples, 3)
         )
+        .into()
     })
 }
 
@@ -152,13 +152,13 @@ mod tests {
         let of_zero_sum = Prediction::of_weights(vec![1.0, -1.0], 1).delay_at_dc_samples();
         for delay in [of_zero_sum, f64::NAN] {
             let reason = filter_bound(&shape, delay, &[1.0, 0.0]).unwrap_err();
-            assert_eq!(reason, NO_DELAY_AT_DC);
+            assert_eq!(reason.as_str(), NO_DELAY_AT_DC);
         }
         let reason = filter_bound(&shape, 1.5, &[0.0, 0.0]).unwrap_err();
-        assert_eq!(reason, "the raw channel has no noise");
+        assert_eq!(reason.as_str(), "the raw channel has no noise");
         shape.taps = Some(1);
         let reason = filter_bound(&shape, 7.25, &[1.0]).unwrap_err();
         let said = "no filter of 1 tap and unit DC gain has a delay of 7.250 samples";
-        assert_eq!(reason, said);
+        assert_eq!(reason.as_str(), said);
     }
 }

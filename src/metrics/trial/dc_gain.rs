@@ -1,5 +1,6 @@
 //! DC gain of a filter, found by replay, and metrics restored by it.
 
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::{ChannelMetrics, EXPECTED};
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
@@ -12,6 +13,7 @@ pub static DC_GAIN: MetricKey = MetricKey::of_filters(
     Applies::Always,
     "response to a small added rate with the weight sequence of the unperturbed run replayed",
 )
+.synonyms(&["gain"])
 .heading("DC gain")
 .needs(Needs::Nothing)
 .run_column(8)
@@ -78,11 +80,11 @@ pub(crate) fn put_dc_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
 }
 
 /// Why nothing can be divided by a DC gain that is not above zero.
-pub(crate) fn dc_gain_lack(dc_gain: f64) -> String {
+pub(crate) fn dc_gain_lack(dc_gain: f64) -> Unavailable {
     if dc_gain.is_finite() {
-        format!("the DC gain, {dc_gain}, is not positive")
+        format!("the DC gain, {dc_gain}, is not positive").into()
     } else {
-        "the DC gain of this filter is not a finite number".to_owned()
+        "the DC gain of this filter is not a finite number".into()
     }
 }
 
@@ -97,7 +99,7 @@ pub(crate) fn put_over_dc_gain(
     match (metrics.get(key).cloned(), dc_gain) {
         (Some(metric), Some(gain)) if gain > 1e-6 && gain.is_finite() => {
             let mut fields = metric.fields;
-            fields.insert("dc_gain", gain);
+            fields.insert(DC_GAIN.name, gain);
             if let Some(expected) = fields.get_mut(EXPECTED) {
                 *expected /= gain;
             }
@@ -129,6 +131,9 @@ mod tests {
             let said = "the DC gain of this filter is not a finite number";
             assert_eq!(reason, Some(said));
         }
-        assert_eq!(dc_gain_lack(-0.5), "the DC gain, -0.5, is not positive");
+        assert_eq!(
+            dc_gain_lack(-0.5).as_str(),
+            "the DC gain, -0.5, is not positive"
+        );
     }
 }

@@ -1,6 +1,7 @@
 //! A filter on the noise-delay plane: its bound, the curve of it, and how far above it stands.
 
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::curve::{Column, CurveKey};
@@ -55,7 +56,7 @@ const CURVE_POINTS: usize = 41;
 
 /// Enters the noise-delay bound with the delay it holds at and the white-noise figure beside it.
 pub(crate) fn put_bound(
-    bound: Result<Estimate, String>,
+    bound: Result<Estimate, Unavailable>,
     facts: &FilterFacts,
     delay_samples: f64,
     sample_period_s: f64,
@@ -127,13 +128,13 @@ pub(crate) fn put_bound_curve(
 pub(crate) fn put_over_bound(
     channel: &LaggedProducts,
     raw: &LaggedProducts,
-    bound: &Result<f64, String>,
-    bounds_without: &[Result<f64, String>],
+    bound: &Result<f64, Unavailable>,
+    bounds_without: &[Result<f64, Unavailable>],
     metrics: &mut ChannelMetrics,
 ) {
     let bound = match bound {
         Ok(bound) => *bound,
-        Err(reason) => return metrics.miss(&NOISE_GAIN_OVER_BOUND, reason.as_str()),
+        Err(reason) => return metrics.miss(&NOISE_GAIN_OVER_BOUND, reason.clone()),
     };
     let ratio = |channel: &[f64], raw: &[f64], bound: f64| channel[0] / raw[0] / bound;
     let value = ratio(&channel.autocovariance(), &raw.autocovariance(), bound);

@@ -7,6 +7,7 @@
 use crate::metrics::estimate::blocks::RATIO_BLOCKS;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Needs, Table};
@@ -65,6 +66,7 @@ pub struct GainUnits {
 
 /// Time until a gain is back.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Readaptation {
     /// From the beginning of the motion, s. The interval spans the windows on both sides of the
     /// border found, and what the scatter of the gain leaves open.
@@ -132,15 +134,16 @@ impl GainUnits {
     ///
     /// # Errors
     /// The reason, in words: the gain scatters too much, or it is not back by the end of the record.
-    pub fn readaptation(&self, final_gain: f64) -> Result<Readaptation, String> {
+    pub fn readaptation(&self, final_gain: f64) -> Result<Readaptation, Unavailable> {
         if self.units.len() < WINDOWS_MIN {
             return Err(format!(
                 "the motion lasts for less than {WINDOWS_MIN} windows of {:.4} s",
                 self.unit_s
-            ));
+            )
+            .into());
         }
         if !final_gain.is_finite() {
-            return Err("the gain that the new motion teaches is not a finite number".to_owned());
+            return Err("the gain that the new motion teaches is not a finite number".into());
         }
         let mut count = 1;
         let (gains, scatter) = loop {
@@ -152,12 +155,13 @@ impl GainUnits {
             count *= 2;
             if self.units.len() / count < WINDOWS_MIN {
                 if scatter.is_nan() {
-                    return Err("there are windows without a motion of raw's".to_owned());
+                    return Err("there are windows without a motion of raw's".into());
                 }
                 return Err(format!(
                     "the gain scatters by more than {} % over an eighth of the record",
                     100.0 * SCATTER_MAX
-                ));
+                )
+                .into());
             }
         };
         let window_s = count as f64 * self.unit_s;
@@ -175,7 +179,8 @@ impl GainUnits {
                  1 % about {} is asked for",
                 decimals(gains[gains.len() - 1], 4),
                 decimals(final_gain, 4)
-            ));
+            )
+            .into());
         }
         let doubt = NORMAL_QUANTILE * scatter;
         let (early, late) = (back(band + doubt), back(band - doubt));
@@ -295,7 +300,9 @@ mod tests {
     fn what_does_not_come_back_is_bounded_by_the_record() {
         let reason = creeping(100, 200.0).readaptation(0.98).unwrap_err();
         assert!(
-            reason.starts_with("not within the record of 20.0000 s"),
+            reason
+                .as_str()
+                .starts_with("not within the record of 20.0000 s"),
             "{reason}"
         );
         let at_once = creeping(100, 1e-3).readaptation(0.98).unwrap();

@@ -1,6 +1,6 @@
 //! How much noise the wandering of a filter's weights adds.
 
-use super::dc_gain::dc_gain_lack;
+use super::dc_gain::{DC_GAIN, dc_gain_lack};
 use crate::metrics::allan::overlapping::{NoiseType, degrees_of_freedom};
 use crate::metrics::estimate::blocks::samples_in;
 use crate::metrics::estimate::interval;
@@ -109,7 +109,7 @@ pub(crate) fn measure_weight_noise(
         m as f64 * record.sample_period_s
     };
     metric.fields.insert("averaging_time_s", averaging_time_s);
-    metric.fields.insert("dc_gain", dc_gain);
+    metric.fields.insert(DC_GAIN.name, dc_gain);
 }
 
 /// Sums, block by block of their first sample, of the squared differences between the sums of `m`

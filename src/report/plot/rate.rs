@@ -5,7 +5,7 @@ use super::panel::{Legend, Panel, WIDTH};
 use super::picture::{Picture, Point};
 use super::series::{Series, columns, extent, index, real, series, truth_stroke};
 use crate::report::measured::Measured;
-use crate::scenario::MotionConfig;
+use crate::scenario::{MotionClass, MotionConfig};
 use crate::signal::RunSignals;
 use crate::units::s_to_ms;
 
@@ -56,7 +56,7 @@ pub(in crate::report) fn picture(report: &Measured, signals: &RunSignals) -> Opt
     drawing.envelope(&mut picture, (56.0, 400.0), &mut legend);
     let mut legend = Legend::new(476.0);
     let lower = (476.0, 800.0);
-    match window(report.motion, truth, samples, signals.sample_period_s) {
+    match window(&report.motion, truth, samples, signals.sample_period_s) {
         Some((range, name)) => drawing.window(&mut picture, lower, range, (&mut legend, &name)),
         None => drawing.means(&mut picture, lower, &mut legend),
     }
@@ -70,19 +70,19 @@ fn window(
     samples: usize,
     period_s: f64,
 ) -> Option<(std::ops::Range<usize>, String)> {
-    match motion {
-        MotionConfig::Swing(swing) => {
-            let length = index(SWING_CYCLES / (swing.frequency_hz * period_s)).clamp(2, samples);
+    match motion.class() {
+        MotionClass::Swing { frequency_hz, .. } => {
+            let length = index(SWING_CYCLES / (frequency_hz * period_s)).clamp(2, samples);
             let name = format!("first {SWING_CYCLES} cycles of the measured part");
             Some((0..length, name))
         }
-        MotionConfig::MultiSine(multi_sine) => {
-            let lowest_hz = multi_sine.frequencies_hz.first()?;
+        MotionClass::MultiSine { frequencies_hz } => {
+            let lowest_hz = frequencies_hz.first()?;
             let length = index(1.0 / (lowest_hz * period_s)).clamp(2, samples);
             let name = "first cycle of the lowest sine".to_owned();
             Some((0..length, name))
         }
-        MotionConfig::Steps(_) | MotionConfig::ScaleFactorTest(_) => {
+        MotionClass::Steps(_) => {
             let step = (1..truth.len())
                 .max_by(|a, b| {
                     let rise = |at: usize| (truth[at] - truth[at - 1]).abs();
@@ -94,11 +94,8 @@ fn window(
             (end > start + 1).then(|| (start..end, "around the largest step".to_owned()))
         }
         // Their motion shows in the envelope and in the means.
-        MotionConfig::Trapezoid(_)
-        | MotionConfig::Chirp(_)
-        | MotionConfig::Script(_)
-        | MotionConfig::Calibration(_) => None,
-        MotionConfig::Static(_) | MotionConfig::Rotation(_) => None,
+        MotionClass::General | MotionClass::Campaign(_) => None,
+        MotionClass::Rest | MotionClass::Rotation => None,
     }
 }
 

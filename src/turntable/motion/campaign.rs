@@ -1,10 +1,153 @@
 //! A calibration campaign: constant rates, smooth changes between them, stops to mount anew.
 
-use super::course::Instant;
+use std::sync::Arc;
+
+use super::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
+use super::course::{Course, Instant};
+use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::samples::first_measured_index;
 use super::soft_start::SoftStart;
-use crate::scenario::{CampaignConfig, CaseAxis};
+use crate::turntable::CampaignConfig;
 use crate::units::deg_per_s_to_rad_per_s;
+use crate::vocabulary::CaseAxis;
+use crate::wording::number;
+
+/// Fewest output samples of a group: twenty blocks of two.
+const GROUP_SAMPLES_MIN: f64 = 40.0;
+
+const RATES: &str = "turntable.calibration.rates_deg_per_s";
+
+impl Motion for CampaignConfig {
+    fn class(&self) -> MotionClass<'_> {
+        MotionClass::Campaign(self)
+    }
+
+    fn rate_max_rad_per_s(&self) -> f64 {
+        let rates = self.rates_deg_per_s.iter().copied();
+        rates.fold(0.0, |max, rate| deg_per_s_to_rad_per_s(rate).abs().max(max))
+    }
+
+    fn extremes(&self, surroundings: Surroundings) -> CommandExtremes {
+        let mut extremes = CommandExtremes::default();
+        for ramp in ramps(self, surroundings.warm_up_s) {
+            let rise = (ramp.to - ramp.from).abs();
+            if ramp.length_s > 0.0 {
+                // The slope of a raised cosine is largest in its middle.
+                let slope = std::f64::consts::FRAC_PI_2 * rise / ramp.length_s;
+                extremes.acceleration_rad_per_s2 = extremes.acceleration_rad_per_s2.max(slope);
+            } else {
+                extremes.jump_rad_per_s = extremes.jump_rad_per_s.max(rise);
+            }
+        }
+        extremes
+    }
+
+    /// Refuses groups without an assembly, of unequal counts, that outlast the record or hold no turn.
+    fn check(&self, checks: &mut MotionChecks) {
+        if !checks.has_assembly {
+            let message =
+                "turntable.calibration turns a case with three gyros: give [gyro.assembly]";
+            checks.complain("turntable.calibration", message.to_owned());
+        }
+        let (axes, rates) = (self.axes.len(), self.rates_deg_per_s.len());
+        if axes != rates {
+            let message = format!(
+                "{RATES} has {rates} values, but turntable.calibration.axes has {axes}: give one of \
+                 each for every group"
+            );
+            checks.complain(RATES, message);
+            return;
+        }
+        self.check_length(checks);
+        self.check_pauses(checks);
+        if self.whole_turns {
+            self.check_turns(checks);
+        }
+    }
+
+    fn is_idle(&self, key: &str, _: f64) -> bool {
+        let has_pause = |is_remounting: bool| {
+            let groups = self.groups();
+            let mut later = groups.iter().skip(1);
+            later.any(|group| group.is_remounted == is_remounting)
+        };
+        match key {
+            "turntable.calibration.change_s" => !has_pause(false),
+            "turntable.calibration.remount_s" => !has_pause(true),
+            "turntable.calibration.whole_turns" => {
+                let mut rates = self.rates_deg_per_s.iter();
+                rates.all(|rate| rate.abs() <= 0.0)
+            }
+            _ => false,
+        }
+    }
+
+    fn course(&self, warm_up_s: f64, sample_period_s: f64) -> Arc<dyn Course> {
+        Arc::new(Campaign::new(self, warm_up_s, sample_period_s))
+    }
+}
+
+impl CampaignConfig {
+    fn check_length(&self, checks: &mut MotionChecks) {
+        let duration_s = checks.duration_s;
+        let needed_s = self.length_s();
+        if checks.is_too_long(needed_s) {
+            let message = format!(
+                "duration_s = {duration_s:?} s is too short: the {} groups of turntable.calibration \
+                 with their pauses take {} s",
+                self.axes.len(),
+                number(needed_s)
+            );
+            checks.complain("duration_s", message);
+        }
+        let shortest_s = GROUP_SAMPLES_MIN * checks.sample_period_s;
+        if self.record_s < shortest_s {
+            let key = "turntable.calibration.record_s";
+            let message = format!(
+                "{key} = {:?} s is too short: a mean and its standard error take 40 output samples, \
+                 {shortest_s:.6} s",
+                self.record_s
+            );
+            checks.complain(key, message);
+        }
+    }
+
+    /// Ramps take half of a change and a quarter of a re-mounting.
+    fn check_pauses(&self, checks: &mut MotionChecks) {
+        let groups = self.groups();
+        let is_remounted = groups.iter().any(|group| group.is_remounted);
+        let is_changed = groups.iter().skip(1).any(|group| !group.is_remounted);
+        for (key, pause_s, share, is_used) in [
+            ("change_s", self.change_s, 0.5, is_changed),
+            ("remount_s", self.remount_s, 0.25, is_remounted),
+        ] {
+            let shortest_s = SAMPLES_PER_CYCLE_MIN * checks.sample_period_s / share;
+            if is_used && pause_s < shortest_s {
+                let key = format!("turntable.calibration.{key}");
+                let message = format!(
+                    "{key} = {pause_s:?} s is too short: a ramp takes {share} of it and must span 8 \
+                     output samples, {shortest_s:.6} s"
+                );
+                checks.complain(&key, message);
+            }
+        }
+    }
+
+    fn check_turns(&self, checks: &mut MotionChecks) {
+        for (index, rate) in self.rates_deg_per_s.iter().enumerate() {
+            let turn_s = 360.0 / rate.abs();
+            if turn_s.is_finite() && turn_s > self.record_s * (1.0 + TIME_SLACK) {
+                let key = format!("{RATES}[{index}]");
+                let message = format!(
+                    "{key} = {rate:?} deg/s makes no whole turn in record_s = {:?} s: one takes \
+                     {turn_s:.6} s; record longer or set whole_turns = false",
+                    self.record_s
+                );
+                checks.complain(&key, message);
+            }
+        }
+    }
+}
 
 /// The command of a campaign.
 ///
@@ -13,7 +156,7 @@ use crate::units::deg_per_s_to_rad_per_s;
 /// case anew the table stops in a quarter of the pause, rests for the quarter in its middle and runs
 /// up in another, which leaves an eighth at either end. The first rate is reached inside the warm-up.
 #[derive(Clone, Debug)]
-pub(super) struct Campaign {
+struct Campaign {
     ramps: Vec<Ramp>,
     sample_period_s: f64,
 }
@@ -30,7 +173,7 @@ struct Ramp {
 }
 
 impl Campaign {
-    pub(super) fn new(config: &CampaignConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
+    fn new(config: &CampaignConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         let first = first_measured_index(warm_up_s, sample_period_s) as f64 * sample_period_s;
         let mut ramps = ramps(config, first);
         for ramp in &mut ramps {
@@ -41,9 +184,10 @@ impl Campaign {
             sample_period_s,
         }
     }
+}
 
-    /// Command at `instant` samples from the start.
-    pub(super) fn at(&self, instant: f64) -> Instant {
+impl Course for Campaign {
+    fn at(&self, instant: f64) -> Instant {
         let time_s = instant * self.sample_period_s;
         let begun = self.ramps.partition_point(|ramp| ramp.start_s <= time_s);
         let Some(ramp) = begun.checked_sub(1).map(|last| self.ramps[last]) else {
@@ -112,22 +256,6 @@ pub fn campaign_angles_rad(config: &CampaignConfig, warm_up_s: f64) -> Vec<f64> 
         angle
     };
     groups.iter().map(|group| angle_at(group.start_s)).collect()
-}
-
-/// Largest jump of the rate at the start, rad/s, and largest acceleration of a campaign, rad/s^2.
-pub(super) fn campaign_extremes(config: &CampaignConfig, warm_up_s: f64) -> (f64, f64) {
-    let mut extremes = (0.0_f64, 0.0_f64);
-    for ramp in ramps(config, warm_up_s) {
-        let rise = (ramp.to - ramp.from).abs();
-        if ramp.length_s > 0.0 {
-            // The slope of a raised cosine is largest in its middle.
-            let slope = std::f64::consts::FRAC_PI_2 * rise / ramp.length_s;
-            extremes.1 = extremes.1.max(slope);
-        } else {
-            extremes.0 = extremes.0.max(rise);
-        }
-    }
-    extremes
 }
 
 /// The sample before which each new mounting holds: the middle of its pause.

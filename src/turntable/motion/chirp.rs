@@ -1,12 +1,73 @@
 //! A swing whose frequency sweeps.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::sync::Arc;
 
-use super::course::Instant;
+use super::checks::MotionChecks;
+use super::course::{Course, Instant};
+use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::samples::first_measured_index;
 use super::soft_start::SoftStart;
-use crate::scenario::{ChirpConfig, Progression};
+use crate::turntable::{ChirpConfig, Progression};
 use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
+
+impl Motion for ChirpConfig {
+    fn class(&self) -> MotionClass<'_> {
+        MotionClass::General
+    }
+
+    fn rate_max_rad_per_s(&self) -> f64 {
+        match amplitude(self) {
+            Amplitude::Rate(rate) => rate,
+            Amplitude::Angle(angle) => TAU * frequency_max(self) * angle,
+        }
+    }
+
+    fn extremes(&self, _: Surroundings) -> CommandExtremes {
+        let rate = self.rate_max_rad_per_s();
+        let shortest_s = self.soft_start_s.min(self.soft_stop_s);
+        let is_soft = shortest_s > 0.0;
+        // The steepest envelope and the fastest sine need not meet: their sum is a bound.
+        let envelope = if is_soft { FRAC_PI_2 / shortest_s } else { 0.0 };
+        let turning = TAU * frequency_max(self);
+        CommandExtremes {
+            jump_rad_per_s: if is_soft { 0.0 } else { rate },
+            acceleration_rad_per_s2: rate * (turning + envelope) + widening_max(self),
+        }
+    }
+
+    /// Refuses frequencies that the output cannot follow and a sweep that outlasts the record.
+    fn check(&self, checks: &mut MotionChecks) {
+        checks.soft_start("turntable.chirp.soft_start_s", self.soft_start_s);
+        checks.frequency(
+            "turntable.chirp.start_frequency_hz",
+            self.start_frequency_hz,
+        );
+        checks.frequency("turntable.chirp.end_frequency_hz", self.end_frequency_hz);
+        if checks.is_too_long(self.sweep_s) {
+            let message = format!(
+                "turntable.chirp.sweep_s = {:?} s is too long: allowed up to duration_s = \
+                 {:?} s",
+                self.sweep_s, checks.duration_s
+            );
+            checks.complain("turntable.chirp.sweep_s", message);
+        }
+    }
+
+    fn is_idle(&self, key: &str, duration_s: f64) -> bool {
+        match key {
+            "turntable.chirp.progression" => {
+                (self.end_frequency_hz - self.start_frequency_hz).abs() <= 0.0
+            }
+            "turntable.chirp.soft_stop_s" => self.sweep_s >= duration_s,
+            _ => false,
+        }
+    }
+
+    fn course(&self, warm_up_s: f64, sample_period_s: f64) -> Arc<dyn Course> {
+        Arc::new(Chirp::new(self, warm_up_s, sample_period_s))
+    }
+}
 
 /// Swing at the first frequency, sweep from the start of the record, end at the last frequency.
 ///
@@ -16,7 +77,7 @@ use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
 /// error builds up. The rate is `A sin(phase)`; where the angle amplitude is given `A = 2 pi f(t)
 /// theta`, which makes the angle `theta (1 - cos(phase))` exactly.
 #[derive(Clone, Debug)]
-pub(super) struct Chirp {
+struct Chirp {
     amplitude: Amplitude,
     start_hz: f64,
     end_hz: f64,
@@ -49,7 +110,7 @@ struct Phase {
 }
 
 impl Chirp {
-    pub(super) fn new(config: &ChirpConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
+    fn new(config: &ChirpConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         Self {
             amplitude: amplitude(config),
             start_hz: config.start_frequency_hz,
@@ -60,28 +121,6 @@ impl Chirp {
             soft_stop: SoftStart::of(config.soft_stop_s, sample_period_s),
             first: first_measured_index(warm_up_s, sample_period_s) as f64,
             sample_period_s,
-        }
-    }
-
-    /// Command at `instant` samples from the start.
-    pub(super) fn at(&self, instant: f64) -> Instant {
-        let since = instant - self.first;
-        let phase = self.phase(since * self.sample_period_s);
-        let (envelope, envelope_slope) = self.envelope(instant);
-        let (amplitude, amplitude_slope) = match self.amplitude {
-            Amplitude::Rate(rate) => (rate, 0.0),
-            Amplitude::Angle(angle) => (
-                TAU * phase.frequency * angle,
-                TAU * phase.slope * angle * self.sample_period_s,
-            ),
-        };
-        // Whole cycles are dropped before the sine, which keeps full precision for hours.
-        let (sine, cosine) = (TAU * phase.cycles.fract()).sin_cos();
-        let turning = TAU * phase.frequency * self.sample_period_s;
-        Instant {
-            rate: amplitude * envelope * sine,
-            slope: amplitude * (envelope * turning * cosine + envelope_slope * sine)
-                + amplitude_slope * envelope * sine,
         }
     }
 
@@ -140,6 +179,29 @@ impl Chirp {
     }
 }
 
+impl Course for Chirp {
+    fn at(&self, instant: f64) -> Instant {
+        let since = instant - self.first;
+        let phase = self.phase(since * self.sample_period_s);
+        let (envelope, envelope_slope) = self.envelope(instant);
+        let (amplitude, amplitude_slope) = match self.amplitude {
+            Amplitude::Rate(rate) => (rate, 0.0),
+            Amplitude::Angle(angle) => (
+                TAU * phase.frequency * angle,
+                TAU * phase.slope * angle * self.sample_period_s,
+            ),
+        };
+        // Whole cycles are dropped before the sine, which keeps full precision for hours.
+        let (sine, cosine) = (TAU * phase.cycles.fract()).sin_cos();
+        let turning = TAU * phase.frequency * self.sample_period_s;
+        Instant {
+            rate: amplitude * envelope * sine,
+            slope: amplitude * (envelope * turning * cosine + envelope_slope * sine)
+                + amplitude_slope * envelope * sine,
+        }
+    }
+}
+
 /// The amplitude that is given.
 fn amplitude(config: &ChirpConfig) -> Amplitude {
     match (config.rate_amplitude_deg_per_s, config.angle_amplitude_deg) {
@@ -149,22 +211,14 @@ fn amplitude(config: &ChirpConfig) -> Amplitude {
     }
 }
 
-/// Largest rate amplitude of a chirp, rad/s.
-pub(super) fn chirp_rate_max(config: &ChirpConfig) -> f64 {
-    match amplitude(config) {
-        Amplitude::Rate(rate) => rate,
-        Amplitude::Angle(angle) => TAU * chirp_frequency_max(config) * angle,
-    }
-}
-
 /// Highest frequency of a chirp, Hz.
-pub(super) fn chirp_frequency_max(config: &ChirpConfig) -> f64 {
+fn frequency_max(config: &ChirpConfig) -> f64 {
     config.start_frequency_hz.max(config.end_frequency_hz)
 }
 
 /// Bound on how fast the rate amplitude of a chirp grows, rad/s^2: `2 pi theta |f'|`, where the
 /// frequency moves fastest at its upper end, by at most `f_max / f_min` times its mean.
-pub(super) fn chirp_widening_max(config: &ChirpConfig) -> f64 {
+fn widening_max(config: &ChirpConfig) -> f64 {
     match amplitude(config) {
         Amplitude::Rate(_) => 0.0,
         Amplitude::Angle(angle) => {

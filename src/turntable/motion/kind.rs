@@ -1,15 +1,72 @@
-//! The largest rates a motion is told to reach.
+//! What the bench asks of a motion, whatever its kind.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::sync::Arc;
 
-use super::campaign::campaign_extremes;
-use super::chirp::{chirp_frequency_max, chirp_rate_max, chirp_widening_max};
-use super::script::script_extremes;
-use crate::scenario::{CampaignConfig, MotionConfig, MultiSineConfig, SwingConfig};
-use crate::units::{deg_per_s_to_rad_per_s, deg_to_rad};
+use super::checks::MotionChecks;
+use super::course::Course;
+use crate::turntable::{CampaignConfig, ServoConfig, Stairs};
 
-/// What a trapezoid, chirp or script asks of the table at most; see [`command_extremes`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Kind of motion: implemented by the settings of each.
+pub(in crate::turntable) trait Motion {
+    /// Class by which the motion is measured and shown.
+    fn class(&self) -> MotionClass<'_>;
+
+    /// Largest commanded rate in magnitude, without the Earth's, rad/s; of several sines its bound.
+    fn rate_max_rad_per_s(&self) -> f64;
+
+    /// Largest jump and acceleration in magnitude, the Earth's left out.
+    fn extremes(&self, surroundings: Surroundings) -> CommandExtremes;
+
+    /// Refuses settings that contradict each other or the record.
+    fn check(&self, checks: &mut MotionChecks);
+
+    /// Whether a key of this motion is without effect beside its other settings.
+    fn is_idle(&self, _key: &str, _duration_s: f64) -> bool {
+        false
+    }
+
+    /// Command of the motion: the record begins after `warm_up_s`, one sample lasts `sample_period_s`.
+    fn course(&self, warm_up_s: f64, sample_period_s: f64) -> Arc<dyn Course>;
+}
+
+/// Class of motions that are measured and shown alike.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MotionClass<'a> {
+    /// No motion.
+    Rest,
+    /// One rate for ever.
+    Rotation,
+    /// One sine.
+    Swing {
+        /// Frequency, Hz.
+        frequency_hz: f64,
+        /// Whether it begins with the record.
+        is_from_rest: bool,
+    },
+    /// Several sines at once.
+    MultiSine {
+        /// Frequencies, Hz, ascending.
+        frequencies_hz: &'a [f64],
+    },
+    /// Rates held one after the other.
+    Steps(Stairs),
+    /// Groups of constant rate in changing mountings.
+    Campaign(&'a CampaignConfig),
+    /// Any other course of the rate.
+    General,
+}
+
+/// What the extremes of a command depend on besides the motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a> {
+    /// Length of the warm-up, s.
+    pub warm_up_s: f64,
+    /// Servo, which rounds the steps of a staircase off.
+    pub servo: &'a ServoConfig,
+}
+
+/// What a motion asks of the table at most.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CommandExtremes {
     /// Largest jump of the rate, the one from rest at the start included, rad/s.
     pub jump_rad_per_s: f64,
@@ -17,112 +74,22 @@ pub struct CommandExtremes {
     pub acceleration_rad_per_s2: f64,
 }
 
-/// Jump and acceleration of a motion whose acceleration is its own; `None` for rest, swing,
-/// rotation, campaign and steps, where it depends on the warm-up or the servo.
-///
-/// # Panics
-/// If a chirp has not exactly one amplitude or a script not either rates or angles; the scenario
-/// reader refuses both.
-#[must_use]
-pub fn command_extremes(motion: &MotionConfig) -> Option<CommandExtremes> {
-    let (jump_rad_per_s, acceleration_rad_per_s2) = match motion {
-        MotionConfig::Static(_)
-        | MotionConfig::Swing(_)
-        | MotionConfig::MultiSine(_)
-        | MotionConfig::Rotation(_)
-        | MotionConfig::Calibration(_)
-        | MotionConfig::Steps(_)
-        | MotionConfig::ScaleFactorTest(_) => return None,
-        MotionConfig::Trapezoid(trapezoid) => (
-            0.0,
-            deg_per_s_to_rad_per_s(trapezoid.acceleration_deg_per_s2),
-        ),
-        MotionConfig::Chirp(chirp) => {
-            let rate = chirp_rate_max(chirp);
-            let shortest_s = chirp.soft_start_s.min(chirp.soft_stop_s);
-            let is_soft = shortest_s > 0.0;
-            // The steepest envelope and the fastest sine need not meet: their sum is a bound.
-            let envelope = if is_soft { FRAC_PI_2 / shortest_s } else { 0.0 };
-            let turning = TAU * chirp_frequency_max(chirp);
-            let jump = if is_soft { 0.0 } else { rate };
-            (
-                jump,
-                rate * (turning + envelope) + chirp_widening_max(chirp),
-            )
-        }
-        MotionConfig::Script(script) => {
-            let extremes = script_extremes(&script.points);
-            (extremes.first_rate.abs(), extremes.acceleration)
-        }
-    };
-    Some(CommandExtremes {
-        jump_rad_per_s,
-        acceleration_rad_per_s2,
-    })
-}
-
-/// Jump and acceleration of a campaign after a warm-up of whole samples, s.
-#[must_use]
-pub fn campaign_command_extremes(config: &CampaignConfig, warm_up_s: f64) -> CommandExtremes {
-    let (jump_rad_per_s, acceleration_rad_per_s2) = campaign_extremes(config, warm_up_s);
-    CommandExtremes {
-        jump_rad_per_s,
-        acceleration_rad_per_s2,
-    }
-}
-
-/// Rate amplitude of a swing, rad/s; `A = 2 pi f theta` where the angle amplitude is given.
-///
-/// A swing of 1 deg/s at 5 Hz has an angle amplitude of only 114.6 arcsec.
-///
-/// # Panics
-/// If neither or both amplitudes are set; the scenario reader refuses such a swing.
-#[must_use]
-pub fn swing_rate_amplitude_rad_per_s(swing: &SwingConfig) -> f64 {
-    match (swing.rate_amplitude_deg_per_s, swing.angle_amplitude_deg) {
-        (Some(rate), None) => deg_per_s_to_rad_per_s(rate),
-        (None, Some(angle)) => TAU * swing.frequency_hz * deg_to_rad(angle),
-        (rate, angle) => panic!("a swing has one amplitude, not rate {rate:?} and angle {angle:?}"),
-    }
-}
-
-/// Rate amplitudes of several sines, rad/s.
-fn multi_sine_amplitudes_rad_per_s(config: &MultiSineConfig) -> impl Iterator<Item = f64> {
-    (0..config.frequencies_hz.len())
-        .map(|index| deg_per_s_to_rad_per_s(config.rate_amplitude_deg_per_s(index)))
-}
-
-/// Bound of the acceleration of several sines, rad/s^2: they may all peak at once.
-#[must_use]
-pub fn multi_sine_acceleration_max_rad_per_s2(config: &MultiSineConfig) -> f64 {
-    let amplitudes = multi_sine_amplitudes_rad_per_s(config);
-    amplitudes
-        .zip(&config.frequencies_hz)
-        .map(|(amplitude, frequency_hz)| TAU * frequency_hz * amplitude)
-        .sum()
-}
-
-/// Largest commanded rate in magnitude, without the Earth's, rad/s; of several sines its bound.
-#[must_use]
-pub fn command_rate_max_rad_per_s(motion: &MotionConfig) -> f64 {
-    match motion {
-        MotionConfig::Static(_) => 0.0,
-        MotionConfig::Swing(swing) => swing_rate_amplitude_rad_per_s(swing).abs(),
-        MotionConfig::MultiSine(multi_sine) => multi_sine_amplitudes_rad_per_s(multi_sine).sum(),
-        MotionConfig::Rotation(rotation) => deg_per_s_to_rad_per_s(rotation.rate_deg_per_s).abs(),
-        MotionConfig::Trapezoid(trapezoid) => {
-            deg_per_s_to_rad_per_s(trapezoid.rate_deg_per_s).abs()
-        }
-        MotionConfig::Chirp(chirp) => chirp_rate_max(chirp),
-        MotionConfig::Script(script) => script_extremes(&script.points).rate,
-        MotionConfig::ScaleFactorTest(test) => deg_per_s_to_rad_per_s(test.to_deg_per_s),
-        MotionConfig::Calibration(campaign) => {
-            let rates = campaign.rates_deg_per_s.iter().copied();
-            rates.fold(0.0, |max, rate| deg_per_s_to_rad_per_s(rate).abs().max(max))
-        }
-        MotionConfig::Steps(steps) => {
-            let rates = steps.rates_deg_per_s.iter().copied();
-            rates.fold(0.0, |max, rate| deg_per_s_to_rad_per_s(rate).abs().max(max))
+impl CommandExtremes {
+    /// Extremes of a motion of one amplitude behind a soft start, or of its jump without one.
+    ///
+    /// A raised cosine of length t rises by at most `pi / 2 t` of the amplitude.
+    pub(super) fn soft(rate_max: f64, acceleration: f64, soft_start_s: f64) -> Self {
+        if soft_start_s > 0.0 {
+            let of_start = std::f64::consts::FRAC_PI_2 * rate_max / soft_start_s;
+            Self {
+                jump_rad_per_s: 0.0,
+                acceleration_rad_per_s2: acceleration + of_start,
+            }
+        } else {
+            Self {
+                jump_rad_per_s: rate_max,
+                acceleration_rad_per_s2: acceleration,
+            }
         }
     }
 }

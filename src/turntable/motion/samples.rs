@@ -1,6 +1,6 @@
 //! Counts of samples: where the record begins and where a staircase steps.
 
-use crate::scenario::Stairs;
+use crate::turntable::Stairs;
 
 /// Index of the first measured sample, `ceil(warm_up_s / T)`; the first dwell begins there.
 #[must_use]

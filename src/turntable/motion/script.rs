@@ -1,9 +1,94 @@
 //! A motion that the user tabulates.
 
-use super::course::Instant;
+use std::sync::Arc;
+
+use super::checks::{MotionChecks, TIME_SLACK};
+use super::course::{Course, Instant};
+use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::samples::first_measured_index;
-use crate::scenario::ScriptPoints;
+use crate::turntable::{ScriptConfig, ScriptPoints};
 use crate::units::deg_to_rad;
+use crate::wording::number;
+
+impl Motion for ScriptConfig {
+    fn class(&self) -> MotionClass<'_> {
+        MotionClass::General
+    }
+
+    fn rate_max_rad_per_s(&self) -> f64 {
+        script_extremes(&self.points).rate
+    }
+
+    fn extremes(&self, _: Surroundings) -> CommandExtremes {
+        let extremes = script_extremes(&self.points);
+        CommandExtremes {
+            jump_rad_per_s: extremes.first_rate.abs(),
+            acceleration_rad_per_s2: extremes.acceleration,
+        }
+    }
+
+    /// Refuses columns of different lengths, times that do not increase, and a script that is too
+    /// short or too fine for the record.
+    fn check(&self, checks: &mut MotionChecks) {
+        let times = &self.points.time_s;
+        let path = |index: usize| format!("turntable.script.points.time_s[{index}]");
+        for (name, values) in [
+            ("rate_deg_per_s", &self.points.rate_deg_per_s),
+            ("angle_deg", &self.points.angle_deg),
+        ] {
+            if let Some(values) = values
+                && values.len() != times.len()
+            {
+                let key = format!("turntable.script.points.{name}");
+                let message = format!(
+                    "{key} has {} values, but there are {} times: give one for each",
+                    values.len(),
+                    times.len()
+                );
+                checks.complain(&key, message);
+            }
+        }
+        if let Some(first) = times.first()
+            && first.abs() > 0.0
+        {
+            let message = format!(
+                "{} = {first:?} s: the first time must be 0.0 s, the start of the record",
+                path(0)
+            );
+            checks.complain(&path(0), message);
+        }
+        let period_s = checks.sample_period_s;
+        let close = times
+            .windows(2)
+            .position(|pair| pair[1] - pair[0] < period_s);
+        if let Some(before) = close {
+            let (earlier, later) = (times[before], times[before + 1]);
+            let message = format!(
+                "{} = {later:?} s is too early: allowed from {} s, one output sample after the \
+                 {earlier:?} s before it",
+                path(before + 1),
+                number(earlier + period_s)
+            );
+            checks.complain(&path(before + 1), message);
+        }
+        let duration_s = checks.duration_s;
+        if let Some(last) = times.last()
+            && *last < duration_s * (1.0 - TIME_SLACK)
+        {
+            let index = times.len() - 1;
+            let message = format!(
+                "{} = {last:?} s ends the script too early: expected at least duration_s = \
+                 {duration_s:?} s",
+                path(index)
+            );
+            checks.complain(&path(index), message);
+        }
+    }
+
+    fn course(&self, warm_up_s: f64, sample_period_s: f64) -> Arc<dyn Course> {
+        Arc::new(Script::new(&self.points, warm_up_s, sample_period_s))
+    }
+}
 
 /// Tabulated rates or angles, their time counted from the start of the record.
 ///
@@ -18,7 +103,7 @@ use crate::units::deg_to_rad;
 /// F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, the weighted harmonic
 /// mean of the neighbouring slopes.
 #[derive(Clone, Debug)]
-pub(super) struct Script {
+struct Script {
     /// Times, samples from the start of the warm-up.
     times: Vec<f64>,
     curve: Curve,
@@ -36,17 +121,17 @@ enum Curve {
 
 /// What a script asks for at most.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ScriptExtremes {
+struct ScriptExtremes {
     /// Rate before the record, rad/s.
-    pub(super) first_rate: f64,
+    first_rate: f64,
     /// Largest rate in magnitude, rad/s.
-    pub(super) rate: f64,
+    rate: f64,
     /// Largest acceleration in magnitude, rad/s^2.
-    pub(super) acceleration: f64,
+    acceleration: f64,
 }
 
 impl Script {
-    pub(super) fn new(points: &ScriptPoints, warm_up_s: f64, sample_period_s: f64) -> Self {
+    fn new(points: &ScriptPoints, warm_up_s: f64, sample_period_s: f64) -> Self {
         let first = first_measured_index(warm_up_s, sample_period_s) as f64;
         let times = points.time_s.iter();
         Self {
@@ -57,9 +142,10 @@ impl Script {
             sample_period_s,
         }
     }
+}
 
-    /// Command at `instant` samples from the start.
-    pub(super) fn at(&self, instant: f64) -> Instant {
+impl Course for Script {
+    fn at(&self, instant: f64) -> Instant {
         let after = self.times.partition_point(|time| *time <= instant);
         let last = self.times.len() - 1;
         if after == 0 || after > last {
@@ -147,7 +233,7 @@ fn monotone_slopes(times: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 /// The extremes of a script, found from its closed form.
-pub(super) fn script_extremes(points: &ScriptPoints) -> ScriptExtremes {
+fn script_extremes(points: &ScriptPoints) -> ScriptExtremes {
     let curve = curve(points);
     let mut extremes = ScriptExtremes {
         first_rate: curve.rate_at_point(0),

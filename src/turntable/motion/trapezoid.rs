@@ -1,9 +1,71 @@
 //! Trapezoids of rate: accelerate, hold, decelerate, rest.
 
-use super::course::Instant;
+use std::sync::Arc;
+
+use super::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN};
+use super::course::{Course, Instant};
+use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::samples::first_measured_index;
-use crate::scenario::TrapezoidConfig;
+use crate::turntable::TrapezoidConfig;
 use crate::units::deg_per_s_to_rad_per_s;
+use crate::wording::number;
+
+impl Motion for TrapezoidConfig {
+    fn class(&self) -> MotionClass<'_> {
+        MotionClass::General
+    }
+
+    fn rate_max_rad_per_s(&self) -> f64 {
+        deg_per_s_to_rad_per_s(self.rate_deg_per_s).abs()
+    }
+
+    fn extremes(&self, _: Surroundings) -> CommandExtremes {
+        CommandExtremes {
+            jump_rad_per_s: 0.0,
+            acceleration_rad_per_s2: deg_per_s_to_rad_per_s(self.acceleration_deg_per_s2),
+        }
+    }
+
+    /// Refuses ramps of a few samples and trapezoids that the record cuts off.
+    fn check(&self, checks: &mut MotionChecks) {
+        let rate = self.rate_deg_per_s.abs();
+        let acceleration = self.acceleration_deg_per_s2;
+        if rate <= 0.0 {
+            let message = "turntable.trapezoid.rate_deg_per_s = 0.0 deg/s is no motion: allowed \
+                           [-2000, 2000] deg/s without 0; use [turntable.static]";
+            checks.complain("turntable.trapezoid.rate_deg_per_s", message.to_owned());
+            return;
+        }
+        let acceleration_max = rate / (SAMPLES_PER_CYCLE_MIN * checks.sample_period_s);
+        if acceleration > acceleration_max {
+            let message = format!(
+                "turntable.trapezoid.acceleration_deg_per_s2 = {acceleration:?} deg/s^2 is too \
+                 steep: allowed up to {acceleration_max:.6} deg/s^2, 8 output samples to reach \
+                 {rate:?} deg/s"
+            );
+            checks.complain("turntable.trapezoid.acceleration_deg_per_s2", message);
+        }
+        let needed_s = self.length_s();
+        if checks.is_too_long(needed_s) {
+            let message = format!(
+                "turntable.trapezoid.cycles = {}: the motion takes {} s, but duration_s = \
+                 {:?} s",
+                self.cycles,
+                number(needed_s),
+                checks.duration_s
+            );
+            checks.complain_or("turntable.trapezoid.cycles", "duration_s", message);
+        }
+    }
+
+    fn is_idle(&self, key: &str, _: f64) -> bool {
+        key == "turntable.trapezoid.rest_s" && self.count() < 2
+    }
+
+    fn course(&self, warm_up_s: f64, sample_period_s: f64) -> Arc<dyn Course> {
+        Arc::new(Trapezoids::new(self, warm_up_s, sample_period_s))
+    }
+}
 
 /// Trapezoids in a row, the first of which begins with the record; at rest before and after.
 ///
@@ -11,7 +73,7 @@ use crate::units::deg_per_s_to_rad_per_s;
 /// sample that holds it is the cubic through the rates and slopes at its ends, which there misses
 /// the corner by at most 4/27 of what the rate changes in one sample.
 #[derive(Clone, Debug)]
-pub(super) struct Trapezoids {
+struct Trapezoids {
     /// Rate of the first, rad/s.
     rate: f64,
     /// Length of a ramp, samples.
@@ -28,7 +90,7 @@ pub(super) struct Trapezoids {
 }
 
 impl Trapezoids {
-    pub(super) fn new(config: &TrapezoidConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
+    fn new(config: &TrapezoidConfig, warm_up_s: f64, sample_period_s: f64) -> Self {
         let samples = |time_s: f64| time_s / sample_period_s;
         let ramp = samples(ramp_s(config));
         let hold = samples(config.hold_s);
@@ -42,9 +104,10 @@ impl Trapezoids {
             first: first_measured_index(warm_up_s, sample_period_s) as f64,
         }
     }
+}
 
-    /// Command at `instant` samples from the start.
-    pub(super) fn at(&self, instant: f64) -> Instant {
+impl Course for Trapezoids {
+    fn at(&self, instant: f64) -> Instant {
         let since = instant - self.first;
         let number = (since / self.period).floor();
         if since < 0.0 || number >= self.count {

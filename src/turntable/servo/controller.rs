@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::scenario::DirectDriveServoConfig;
+use crate::turntable::DirectDriveServoConfig;
 
 /// What the axis is told at one instant.
 #[derive(Clone, Copy, Debug)]

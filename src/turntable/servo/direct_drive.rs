@@ -2,9 +2,9 @@
 
 use super::controller::{Controller, Setpoint};
 use super::plant::{Axis, Plant};
-use crate::scenario::{DirectDriveServoConfig, EncoderConfig};
 use crate::signal::MotionSegment;
 use crate::turntable::encoder::Scale;
+use crate::turntable::{DirectDriveServoConfig, EncoderConfig};
 use crate::units::us_to_s;
 
 /// Motor, friction, encoder and controller, each on its own clock.

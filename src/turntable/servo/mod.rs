@@ -5,8 +5,10 @@ mod direct_drive;
 mod plant;
 mod second_order;
 
-use crate::scenario::{EncoderConfig, ServoConfig};
+use std::f64::consts::TAU;
+
 use crate::signal::MotionSegment;
+use crate::turntable::{EncoderConfig, ServoConfig};
 use direct_drive::DirectDrive;
 use second_order::SecondOrder;
 
@@ -51,5 +53,22 @@ impl Servo {
             Self::SecondOrder(second_order) => second_order.follow(command),
             Self::DirectDrive(direct_drive) => direct_drive.follow(&command),
         }
+    }
+}
+
+/// Largest jump, rad/s, and acceleration, rad/s^2, of a table that starts at a rate `first` and is told
+/// to step by at most `rise` and to turn at most at `rate_max`, all rad/s.
+pub(super) fn step_response_extremes(
+    config: &ServoConfig,
+    first: f64,
+    rise: f64,
+    rate_max: f64,
+) -> (f64, f64) {
+    match config {
+        ServoConfig::Ideal(_) => (rise.max(first), 0.0),
+        // The slope of the step response of a second-order servo stays below wn.
+        ServoConfig::SecondOrder(servo) => (first, TAU * servo.natural_frequency_hz * rise),
+        // Whatever its controller demands, the motor is limited.
+        ServoConfig::DirectDrive(servo) => (first, servo.acceleration_max_rad_per_s2(rate_max)),
     }
 }

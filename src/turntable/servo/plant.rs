@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::scenario::DirectDriveServoConfig;
+use crate::turntable::DirectDriveServoConfig;
 use crate::units::deg_to_rad;
 
 /// Steps of the integrator per shortest time constant; see [`Plant::advance`].

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::scenario::SecondOrderServoConfig;
 use crate::signal::MotionSegment;
+use crate::turntable::SecondOrderServoConfig;
 
 /// `H(s) = wn^2 / (s^2 + 2 zeta wn s + wn^2)`, advanced exactly over cubic commands.
 ///

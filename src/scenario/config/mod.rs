@@ -1,0 +1,20 @@
+//! The configuration of one run: the keys of the scenario file that belong to no stage.
+//!
+//! Invariant: declarations only. A value that reaches a stage has been checked by the reader.
+
+mod allan;
+mod comparison;
+mod judging;
+mod output;
+mod run;
+mod trial;
+
+pub use allan::{AllanConfig, AllanEstimatorConfig};
+pub use comparison::{
+    AssumptionConfig, ComparisonColumn, ComparisonConfig, ComparisonKind, ComparisonRowConfig,
+    FigureConfig,
+};
+pub use judging::{GateConfig, GateDecision, InconclusivePolicy, PublishedConfig};
+pub use output::{OutputConfig, SamplesFormat};
+pub use run::Scenario;
+pub use trial::{FilterState, TrialConfig};

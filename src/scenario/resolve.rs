@@ -1,0 +1,152 @@
+//! From merged values to a resolved scenario, or to everything that is wrong with them.
+
+use std::sync::Arc;
+
+use super::check::check_values;
+use super::compensation_source;
+use super::cross;
+use super::defaults::fill;
+use super::draft::{Draft, Recorded, Unsound, UnsoundReading};
+use super::emit::to_toml;
+use super::error::{ScenarioError, in_both};
+use super::faults::Taken;
+use super::numbers;
+use super::presence::check_presence;
+use super::resolved::{Resolved, broken, configuration, digest};
+use super::script;
+use super::stand_in::{Variant, make_whole};
+
+impl Draft {
+    /// Checks every value, fills in the defaults and checks across values.
+    ///
+    /// What is faulty or missing is made up for the later checks, so that all complaints come at once.
+    ///
+    /// # Errors
+    /// Every complaint about the scenario.
+    pub(crate) fn resolve(mut self) -> Result<Resolved, Unsound> {
+        let mut errors = Vec::new();
+        let campaign = self.read_named_files(&mut errors);
+        let faults = check_values(&mut self.root, self.root_mark, &self.sources);
+        errors.extend(faults.errors);
+        if faults.is_other_version || self.is_partial {
+            return Err(errors.into());
+        }
+        numbers::settle(&mut self.root);
+        let mut whole = self.root.clone();
+        fill(&mut whole);
+        let missing = check_presence(&whole, self.root_mark, &self.sources, &faults.taken);
+        errors.extend(missing);
+        if !errors.is_empty() {
+            return Err(self.made_up(&faults.taken, campaign.as_ref(), errors));
+        }
+        self.root = whole;
+        let (resolved, errors) = self.settle(campaign)?;
+        if errors.is_empty() {
+            return Ok(resolved);
+        }
+        let reading = UnsoundReading {
+            variants: vec![resolved],
+            is_contradictory: true,
+        };
+        Err(Unsound {
+            errors,
+            reading: Some(reading),
+        })
+    }
+
+    /// Reads the files that keys name. Without one of them most of the later complaints would follow
+    /// from its lack.
+    fn read_named_files(&mut self, errors: &mut Vec<ScenarioError>) -> Option<Arc<Resolved>> {
+        let sources = Arc::make_mut(&mut self.sources);
+        if let Err(error) = script::read_into(&mut self.root, sources, &mut self.inputs) {
+            errors.push(error);
+            self.is_partial = true;
+        }
+        match compensation_source::read_into(&mut self.root, sources, &mut self.inputs) {
+            Ok(campaign) => campaign,
+            Err(more) => {
+                errors.extend(more);
+                self.is_partial = true;
+                None
+            }
+        }
+    }
+
+    /// The complaints that stand whatever was meant by what is faulty or missing.
+    fn made_up(
+        &self,
+        taken: &[Taken],
+        campaign: Option<&Arc<Resolved>>,
+        mut errors: Vec<ScenarioError>,
+    ) -> Unsound {
+        let mut variants = Vec::new();
+        let mut common: Option<Vec<ScenarioError>> = None;
+        let mut is_contradictory = false;
+        for variant in Variant::ALL {
+            let mut draft = self.clone();
+            make_whole(&mut draft.root, taken, variant);
+            let Ok((resolved, found)) = draft.settle(campaign.cloned()) else {
+                return errors.into();
+            };
+            is_contradictory |= !found.is_empty();
+            variants.push(resolved);
+            common = Some(match common {
+                None => found,
+                Some(common) => in_both(common, &found),
+            });
+        }
+        errors.extend(common.unwrap_or_default());
+        Unsound {
+            errors,
+            reading: Some(UnsoundReading {
+                variants,
+                is_contradictory,
+            }),
+        }
+    }
+
+    /// The configuration of a whole tree, and what is wrong across its values.
+    fn settle(
+        self,
+        campaign: Option<Arc<Resolved>>,
+    ) -> Result<(Resolved, Vec<ScenarioError>), Vec<ScenarioError>> {
+        let scenario = configuration(&self.root, self.root_mark, &self.sources)?;
+        let digest = digest(&to_toml(&self.root, ""));
+        let origin = match self.recorded {
+            Some(recorded)
+                if recorded.digest == digest && recorded.broken_point(&self.root).is_none() =>
+            {
+                recorded
+            }
+            // The record is of another scenario: what was read now is the origin. A sweep point
+            // stays one as long as the swept keys have their values.
+            recorded => Recorded {
+                digest,
+                file: self.file,
+                inputs: self.inputs,
+                sweep: recorded
+                    .and_then(|recorded| recorded.sweep)
+                    .filter(|point| broken(&self.root, point).is_none()),
+                gate_places: Vec::new(),
+            },
+        };
+        let resolved = Resolved {
+            scenario,
+            file: origin.file,
+            digest: origin.digest,
+            inputs: origin.inputs,
+            sweep: origin.sweep,
+            warnings: self.warnings,
+            remarks: self.remarks,
+            is_base_point: false,
+            campaign,
+            gate_places: origin.gate_places,
+            tree: self.root,
+            sources: self.sources,
+            root_mark: self.root_mark,
+            is_record: self.is_record,
+        };
+        let errors = cross::check(&resolved);
+        Ok((resolved, errors))
+    }
+}

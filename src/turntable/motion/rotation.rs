@@ -1,0 +1,58 @@
+//! Constant rate.
+
+use std::sync::Arc;
+
+use super::checks::MotionChecks;
+use super::course::{Course, Instant};
+use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
+use super::soft_start::SoftStart;
+use crate::turntable::RotationConfig;
+use crate::units::deg_per_s_to_rad_per_s;
+
+impl Motion for RotationConfig {
+    fn class(&self) -> MotionClass<'_> {
+        MotionClass::Rotation
+    }
+
+    fn rate_max_rad_per_s(&self) -> f64 {
+        deg_per_s_to_rad_per_s(self.rate_deg_per_s).abs()
+    }
+
+    fn extremes(&self, surroundings: Surroundings) -> CommandExtremes {
+        let soft_start_s = self.soft_start_s.min(surroundings.warm_up_s);
+        CommandExtremes::soft(self.rate_max_rad_per_s(), 0.0, soft_start_s)
+    }
+
+    fn check(&self, checks: &mut MotionChecks) {
+        checks.soft_start("turntable.rotation.soft_start_s", self.soft_start_s);
+    }
+
+    fn is_idle(&self, key: &str, _: f64) -> bool {
+        key == "turntable.rotation.soft_start_s" && self.rate_deg_per_s.abs() <= 0.0
+    }
+
+    fn course(&self, warm_up_s: f64, sample_period_s: f64) -> Arc<dyn Course> {
+        Arc::new(Rotation {
+            rate: deg_per_s_to_rad_per_s(self.rate_deg_per_s),
+            soft_start: SoftStart::new(self.soft_start_s, warm_up_s, sample_period_s),
+        })
+    }
+}
+
+/// Command of a constant rate, ramped.
+#[derive(Clone, Copy, Debug)]
+struct Rotation {
+    /// rad/s.
+    rate: f64,
+    soft_start: SoftStart,
+}
+
+impl Course for Rotation {
+    fn at(&self, instant: f64) -> Instant {
+        let (ramp, ramp_slope) = self.soft_start.at(instant);
+        Instant {
+            rate: self.rate * ramp,
+            slope: self.rate * ramp_slope,
+        }
+    }
+}
