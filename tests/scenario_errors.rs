@@ -743,7 +743,7 @@ fn complaints_show_the_text_that_they_are_about() {
 
 #[test]
 fn a_hint_leads_to_the_filter_that_was_meant_and_a_kind_that_is_replaced_is_said() {
-    let text = "schema = 1\nname = \"x\"\n[[filter]]\nname = \"l\"\n[filter.lms]\n\
+    let text = "schema = 1\nname = \"x\"\nduration_s = 20.0\n[[filter]]\nname = \"l\"\n[filter.lms]\n\
                 [[filter]]\nname = \"r\"\n[filter.rls]\n";
     let suite = Suite::new(&[("x.toml", text)]);
     let refused = |set: &str| {
@@ -786,7 +786,7 @@ fn a_hint_leads_to_the_filter_that_was_meant_and_a_kind_that_is_replaced_is_said
 
 #[test]
 fn a_value_that_is_swept_twice_is_said_once() {
-    let text = "schema = 1\nname = \"x\"\n[matrix]\nseed = [1, 2, 1]\n";
+    let text = "schema = 1\nname = \"x\"\nduration_s = 20.0\n[matrix]\nseed = [1, 2, 1]\n";
     let suite = Suite::new(&[("x.toml", text)]);
     let runs = suite.load(&["x.toml"], &[]).expect("sound");
     let remarks: Vec<&String> = runs.iter().flat_map(|run| &run.remarks).collect();
@@ -803,7 +803,7 @@ fn a_value_that_is_swept_twice_is_said_once() {
 fn a_suggested_metric_is_one_that_the_channel_has() {
     let refused = |metric: &str| {
         let text = format!(
-            "schema = 1\nname = \"x\"\n[[filter]]\nname = \"rls\"\n[filter.rls]\n\
+            "schema = 1\nname = \"x\"\nduration_s = 20.0\n[[filter]]\nname = \"rls\"\n[filter.rls]\n\
              [[gate]]\nmetric = \"{metric}\"\nmax = 1.0\n"
         );
         let suite = Suite::new(&[("x.toml", &text)]);

@@ -116,6 +116,8 @@ fn drop_unlike(error: &mut clap::Error) {
         .is_none_or(|(written, known)| is_misspelling(written, known));
     if !is_slip {
         error.remove(ContextKind::SuggestedArg);
+        // The usage is that of the suggestion.
+        error.remove(ContextKind::Usage);
     }
 }
 

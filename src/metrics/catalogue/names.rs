@@ -20,6 +20,19 @@ pub(crate) fn meant(name: &str) -> Option<&'static MetricKey> {
     }
 }
 
+/// The complaint about a name that is no metric, of a filter or of a raw channel.
+pub(crate) fn unknown_of_channel(name: &str, is_filter: bool) -> Option<String> {
+    let complaint = unknown(name)?;
+    Some(match meant(name) {
+        Some(known) if known.filters_only && !is_filter => format!(
+            "`{name}` is not a metric; `{}`, the nearest, compares a filter with the raw channel, \
+             and raw itself has none",
+            known.name
+        ),
+        _ => complaint,
+    })
+}
+
 /// The complaint about a name, if it is no metric.
 pub(crate) fn unknown(name: &str) -> Option<String> {
     if find(name).is_some() {
