@@ -137,6 +137,10 @@ mod tests {
     #[test]
     fn an_unknown_unit_is_answered_with_the_known_ones() {
         let answer = "dps".parse::<RateUnit>().unwrap_err();
-        assert!(answer.contains("deg/h, deg/s") && answer.contains("urad/sample"));
+        assert_eq!(
+            answer.to_string(),
+            "expected one of deg/h, deg/s, mdeg/s, mdps, arcsec/s, rad/s, rad/h, deg/sample, \
+             arcsec/sample, rad/sample, urad/sample"
+        );
     }
 }

@@ -223,7 +223,13 @@ pub(in crate::scenario) fn apply_sets(
         let source = sources.add_set(argument);
         let mark = Mark { source, start: 0 };
         match apply_set(&mut draft.root, argument, mark) {
-            Ok(path) => paths.push(path),
+            Ok((path, remark)) => {
+                let shown = excerpt(argument);
+                draft
+                    .remarks
+                    .extend(remark.map(|remark| format!("--set {shown}: {remark}")));
+                paths.push(path);
+            }
             Err(error) => errors.push(sources.error(mark, error.to_string())),
         }
     }
@@ -248,8 +254,12 @@ enum SetError {
     Value(String),
 }
 
-/// Applies one `--set` argument.
-fn apply_set(root: &mut Table, argument: &str, mark: Mark) -> Result<Vec<Step>, SetError> {
+/// Applies one `--set` argument; the path it sets, and what is worth saying of it.
+fn apply_set(
+    root: &mut Table,
+    argument: &str,
+    mark: Mark,
+) -> Result<(Vec<Step>, Option<String>), SetError> {
     let (key, value) = argument.split_once('=').ok_or(SetError::NoValue)?;
     let key = key.trim();
     match key.split('.').next() {
@@ -260,8 +270,9 @@ fn apply_set(root: &mut Table, argument: &str, mark: Mark) -> Result<Vec<Step>, 
     let (path, _) = address::resolve(root, key)?;
     let mut node = set_value(value.trim(), mark)?;
     node.remark(Some(mark));
+    let remark = address::kind_replaced(root, &path);
     address::assign(root, &path, node, mark)?;
-    Ok(path)
+    Ok((path, remark))
 }
 
 /// The value of a `--set` argument: TOML, or a bare word as text.
