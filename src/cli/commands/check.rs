@@ -3,14 +3,15 @@
 use std::collections::BTreeSet;
 use std::io;
 
-use super::arguments::SelectOptions;
-use super::exit::Exit;
-use super::{output, select};
+use crate::cli::commands::select;
+use crate::cli::options::arguments::SelectOptions;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
 use crate::experiment::Sound;
 use crate::wording::counted;
 
 /// Says for every run that it is sound, or lists what is wrong.
-pub(super) fn check(options: &SelectOptions) -> io::Result<Exit> {
+pub(in crate::cli) fn check(options: &SelectOptions) -> io::Result<Exit> {
     let runs = match select::sound(options) {
         Ok(runs) => runs,
         Err(exit) => return Ok(exit),

@@ -2,17 +2,18 @@
 
 use std::io;
 
-use super::arguments::BudgetOptions;
-use super::exit::Exit;
-use super::format::Format;
-use super::place::Place;
-use super::{complaint, output};
+use crate::cli::options::arguments::BudgetOptions;
+use crate::cli::options::format::Format;
+use crate::cli::terminal::complaint;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
+use crate::cli::terminal::place::Place;
 use crate::experiment::{GyroBudget, gyro_budget};
 use crate::report::{budget_files, budget_json, budget_text};
 use crate::store::{OutputFolder, StoreError};
 
 /// Prints the budget; with a folder, writes `budget.svg` and `budget.csv` into it as well.
-pub(super) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
+pub(in crate::cli) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
     let place = Place::new(options.output.as_deref(), "budget", options.force);
     if let Err(exit) = place.check(&[&options.path]) {
         return Ok(exit);

@@ -2,12 +2,12 @@
 
 use std::io;
 
-use super::exit::Exit;
-use super::output;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
 use crate::scenario;
 
 /// Prints the schema.
-pub(super) fn schema() -> io::Result<Exit> {
+pub(in crate::cli) fn schema() -> io::Result<Exit> {
     output::data(&format!("{:#}\n", scenario::json_schema()))?;
     Ok(Exit::Success)
 }

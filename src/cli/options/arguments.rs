@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::calibrate_arguments::CalibrateOptions;
-use super::format::Format;
-use super::hardware_arguments::{ExportOptions, TimingOptions};
-use super::log_arguments::{AnalyzeOptions, FilterLogOptions};
+use crate::cli::options::calibrate::CalibrateOptions;
+use crate::cli::options::format::Format;
+use crate::cli::options::hardware::{ExportOptions, TimingOptions};
+use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
 
 /// Version and build of the program.
 const VERSION: &str = concat!(
@@ -30,15 +30,15 @@ const VERSION: &str = concat!(
     propagate_version = true,
     arg_required_else_help = true
 )]
-pub(super) struct Arguments {
+pub(in crate::cli) struct Arguments {
     /// What to do.
     #[command(subcommand)]
-    pub(super) command: Command,
+    pub(in crate::cli) command: Command,
 }
 
 /// Commands.
 #[derive(Debug, Subcommand)]
-pub(super) enum Command {
+pub(in crate::cli) enum Command {
     /// Run scenarios in parallel, write results and evaluate gates
     Run(RunOptions),
     /// Check scenario files without running them
@@ -65,17 +65,17 @@ pub(super) enum Command {
 
 /// Which scenarios.
 #[derive(Args, Debug)]
-pub(super) struct SelectOptions {
+pub(in crate::cli) struct SelectOptions {
     /// Scenario files and folders [default: every folder of scenarios/]
-    pub(super) paths: Vec<PathBuf>,
+    pub(in crate::cli) paths: Vec<PathBuf>,
     /// Override a key of every selected scenario; `filter.<name>.<key>` reaches into a filter
     #[arg(long = "set", value_name = "KEY=VALUE")]
-    pub(super) set: Vec<String>,
+    pub(in crate::cli) set: Vec<String>,
 }
 
 /// Whose results `run --resume` takes over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum ResumeFrom {
+pub(in crate::cli) enum ResumeFrom {
     /// Those of this very build
     SameBuild,
     /// Those of any build of this version
@@ -84,54 +84,54 @@ pub(super) enum ResumeFrom {
 
 /// Options of `budget`.
 #[derive(Args, Debug)]
-pub(super) struct BudgetOptions {
+pub(in crate::cli) struct BudgetOptions {
     /// Scenario file, or a base without a name
-    pub(super) path: PathBuf,
+    pub(in crate::cli) path: PathBuf,
     /// Override a key
     #[arg(long = "set", value_name = "KEY=VALUE")]
-    pub(super) set: Vec<String>,
+    pub(in crate::cli) set: Vec<String>,
     /// Folder for budget.svg and budget.csv [default: neither is written]
     #[arg(short, long, value_name = "DIR")]
-    pub(super) output: Option<PathBuf>,
+    pub(in crate::cli) output: Option<PathBuf>,
     /// Replace files in the folder that fogbench did not write
     #[arg(long, requires = "output")]
-    pub(super) force: bool,
+    pub(in crate::cli) force: bool,
     /// Form of the budget on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(super) format: Format,
+    pub(in crate::cli) format: Format,
 }
 
 /// Options of `list`.
 #[derive(Args, Debug)]
-pub(super) struct ListOptions {
+pub(in crate::cli) struct ListOptions {
     #[command(flatten)]
-    pub(super) select: SelectOptions,
+    pub(in crate::cli) select: SelectOptions,
     /// Form of the list
     #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(super) format: Format,
+    pub(in crate::cli) format: Format,
 }
 
 /// Options of `run`.
 #[derive(Args, Debug)]
-pub(super) struct RunOptions {
+pub(in crate::cli) struct RunOptions {
     #[command(flatten)]
-    pub(super) select: SelectOptions,
+    pub(in crate::cli) select: SelectOptions,
     /// Folder for the results
     #[arg(short, long, value_name = "DIR", default_value = "output")]
-    pub(super) output: PathBuf,
+    pub(in crate::cli) output: PathBuf,
     /// Replace files and folders in it that fogbench did not write, or that were changed since
     #[arg(long)]
-    pub(super) force: bool,
+    pub(in crate::cli) force: bool,
     /// Take over undamaged results of the same build, scenario, seed and inputs; `any-build`: of any
     /// build of this version
     #[arg(long, value_name = "BUILD", num_args = 0..=1, require_equals = true,
           default_missing_value = "same-build")]
-    pub(super) resume: Option<ResumeFrom>,
+    pub(in crate::cli) resume: Option<ResumeFrom>,
     /// Threads, at most 256; 0 = RAYON_NUM_THREADS, else one per core; no result depends on it
     #[arg(short, long, value_name = "N", default_value_t = 0,
           value_parser = clap::value_parser!(u16).range(0..=256))]
-    pub(super) jobs: u16,
+    pub(in crate::cli) jobs: u16,
     /// Form of the results on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(super) format: Format,
+    pub(in crate::cli) format: Format,
 }

@@ -9,10 +9,10 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
 
-use super::arguments::{Arguments, Command};
-use super::calibrate_arguments::CalibrateOptions;
-use super::hardware_arguments::{ExportOptions, FilterOptions, Kind, TimingOptions};
-use super::log_arguments::LogOptions;
+use crate::cli::options::arguments::{Arguments, Command};
+use crate::cli::options::calibrate::CalibrateOptions;
+use crate::cli::options::hardware::{ExportOptions, FilterOptions, Kind, TimingOptions};
+use crate::cli::options::log::LogOptions;
 use crate::experiment::LogMotion;
 use crate::vocabulary::ExportForm;
 
@@ -20,7 +20,7 @@ use crate::vocabulary::ExportForm;
 ///
 /// # Errors
 /// What clap refuses, and options that would do nothing.
-pub(super) fn parse() -> Result<Arguments, clap::Error> {
+pub(in crate::cli) fn parse() -> Result<Arguments, clap::Error> {
     let arguments = std::env::args_os();
     parse_from(arguments.collect())
 }

@@ -5,10 +5,10 @@ use std::io;
 
 use serde_json::{Value, json};
 
-use super::exit::Exit;
-use super::format::Format;
-use super::hardware_arguments::{FilterOptions, TimingOptions};
-use super::output;
+use crate::cli::options::format::Format;
+use crate::cli::options::hardware::{FilterOptions, TimingOptions};
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
 use crate::filters::hardware::PipelineTiming;
 use crate::fpga::FpgaError;
 use crate::fpga::kinds::CoreSettings;
@@ -16,7 +16,7 @@ use crate::fpga::rls::{ScheduleReport, ScheduleSettings, TimingRow, schedule_clo
 use crate::fpga::timing::{check_clock, sample_period_us, sample_rate_max_khz};
 
 /// Prints Table 1, the counted pipeline, and what units with latency do to it.
-pub(super) fn timing(options: &TimingOptions) -> io::Result<Exit> {
+pub(in crate::cli) fn timing(options: &TimingOptions) -> io::Result<Exit> {
     let report = match Report::new(options) {
         Ok(report) => report,
         Err(error) => {

@@ -3,13 +3,13 @@
 use std::panic::{self, PanicHookInfo};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::output;
+use crate::cli::terminal::output;
 
 /// Whether an invariant was broken, on whatever thread and whoever caught the panic.
 static HAPPENED: AtomicBool = AtomicBool::new(false);
 
 /// Makes every panic print one line with its place; with `RUST_BACKTRACE` the way there as well.
-pub(super) fn install() {
+pub(in crate::cli) fn install() {
     let with_backtrace = panic::take_hook();
     let asks = std::env::var_os("RUST_BACKTRACE").is_some_and(|value| value != "0");
     panic::set_hook(Box::new(move |info| {
@@ -22,7 +22,7 @@ pub(super) fn install() {
 }
 
 /// Whether an invariant was broken since the start of the program.
-pub(super) fn happened() -> bool {
+pub(in crate::cli) fn happened() -> bool {
     HAPPENED.load(Ordering::SeqCst)
 }
 

@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::arguments::SelectOptions;
-use super::exit::Exit;
-use super::{complaint, output};
+use crate::cli::options::arguments::SelectOptions;
+use crate::cli::terminal::complaint;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
 use crate::experiment::{Plan, Sound, check_suite, plan_suite};
 use crate::scenario::ScenarioError;
 
@@ -15,7 +16,7 @@ const DEFAULT_FOLDER: &str = "scenarios";
 /// Reads, checks and plans everything that `options` selects.
 ///
 /// Complaints and remarks are printed before it returns.
-pub(super) fn plans(options: &SelectOptions) -> Result<Vec<Plan>, Exit> {
+pub(in crate::cli) fn plans(options: &SelectOptions) -> Result<Vec<Plan>, Exit> {
     let plans = selected(options, plan_suite)?;
     // What is said of a scenario is said once, not for each of its points.
     let mut said = BTreeSet::new();
@@ -27,7 +28,7 @@ pub(super) fn plans(options: &SelectOptions) -> Result<Vec<Plan>, Exit> {
 /// Reads and checks everything that `options` selects.
 ///
 /// Complaints are printed before the exit code is returned.
-pub(super) fn sound(options: &SelectOptions) -> Result<Vec<Sound>, Exit> {
+pub(in crate::cli) fn sound(options: &SelectOptions) -> Result<Vec<Sound>, Exit> {
     selected(options, check_suite)
 }
 

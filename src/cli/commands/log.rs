@@ -3,12 +3,12 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::complaint::{self, Complaint};
-use super::exit::Exit;
-use super::format::Format;
-use super::log_arguments::{AnalyzeOptions, FilterLogOptions, LogOptions};
-use super::output;
-use super::place::Place;
+use crate::cli::options::format::Format;
+use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions, LogOptions};
+use crate::cli::terminal::complaint::{self, Complaint};
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
+use crate::cli::terminal::place::Place;
 use crate::experiment::{
     LogFilters, LogInput, LogSettings, LogTrial, compensate_log, load_log_compensation,
     load_log_filters, try_log,
@@ -18,7 +18,7 @@ use crate::report::{log_json, log_text};
 use crate::scenario::AllanConfig;
 
 /// Measures a log.
-pub(super) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
+pub(in crate::cli) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
     if let Err(exit) = place(&options.log).check(&inputs(&options.log)) {
         return Ok(exit);
     }
@@ -30,7 +30,7 @@ pub(super) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
 }
 
 /// Puts a log through the filters of a scenario and measures what they make of it.
-pub(super) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
+pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
     let mut inputs = inputs(&options.log);
     inputs.push(&options.filters);
     if let Err(exit) = place(&options.log).check(&inputs) {
@@ -105,7 +105,7 @@ fn format(options: &LogOptions) -> LogFormat {
 }
 
 /// Says why a file was not read.
-pub(super) fn unreadable(error: &LogError) -> Exit {
+pub(in crate::cli) fn unreadable(error: &LogError) -> Exit {
     output::talk(&format!("error: {error}"));
     match error {
         LogError::Read { .. } => Exit::Io,

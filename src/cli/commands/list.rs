@@ -5,15 +5,16 @@ use std::io;
 
 use serde_json::json;
 
-use super::arguments::ListOptions;
-use super::exit::Exit;
-use super::format::Format;
-use super::{output, select};
+use crate::cli::commands::select;
+use crate::cli::options::arguments::ListOptions;
+use crate::cli::options::format::Format;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
 use crate::experiment::Plan;
 use crate::wording::printable;
 
 /// Prints folder, length, channels and file of each run.
-pub(super) fn list(options: &ListOptions) -> io::Result<Exit> {
+pub(in crate::cli) fn list(options: &ListOptions) -> io::Result<Exit> {
     let plans = match select::plans(&options.select) {
         Ok(plans) => plans,
         Err(exit) => return Ok(exit),

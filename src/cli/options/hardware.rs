@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::format::Format;
-use super::numbers::{OptionError, count_within, within};
+use crate::cli::options::format::Format;
+use crate::cli::options::numbers::{OptionError, count_within, within};
 use crate::filters::hardware::PipelineSettings;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
@@ -34,7 +34,7 @@ const CLOCKS_MAX: usize = 1000;
 
 /// Kind of filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Kind {
+pub(in crate::cli) enum Kind {
     /// Recursive least squares
     Rls,
     /// Least mean squares
@@ -47,13 +47,13 @@ pub(super) enum Kind {
 
 /// The filter and its constants.
 #[derive(Args, Debug)]
-pub(super) struct FilterOptions {
+pub(in crate::cli) struct FilterOptions {
     /// Kind of filter
     #[arg(long, value_enum, default_value_t = Kind::Rls)]
-    pub(super) kind: Kind,
+    pub(in crate::cli) kind: Kind,
     /// Number of weights, 1 to 64
     #[arg(long, value_name = "P", default_value_t = 4)]
-    pub(super) taps: usize,
+    pub(in crate::cli) taps: usize,
     /// Clock of the hardware, MHz
     #[arg(
         long,
@@ -62,7 +62,7 @@ pub(super) struct FilterOptions {
         default_value_t = 40.0,
         value_parser = within(CLOCK_MHZ.0, CLOCK_MHZ.1, "MHz")
     )]
-    pub(super) clock_mhz: f64,
+    pub(in crate::cli) clock_mhz: f64,
     /// Where recursive least squares divides
     #[arg(long, value_enum, default_value_t = Division::Reciprocal)]
     division: Division,
@@ -83,7 +83,7 @@ pub(super) struct FilterOptions {
         default_value_t = 7.716e-4,
         value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
-    pub(super) initial_inverse_correlation: f64,
+    pub(in crate::cli) initial_inverse_correlation: f64,
     /// Step size of least mean squares; of sign-lms in the words' unit
     #[arg(
         long,
@@ -92,7 +92,7 @@ pub(super) struct FilterOptions {
         default_value_t = 0.8,
         value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
-    pub(super) step_size: f64,
+    pub(in crate::cli) step_size: f64,
     /// Added to the energy of the input (nlms, sign-lms), in the square of the words' unit
     #[arg(
         long,
@@ -101,15 +101,15 @@ pub(super) struct FilterOptions {
         default_value_t = 1.0,
         value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
-    pub(super) regularisation: f64,
+    pub(in crate::cli) regularisation: f64,
     /// Words of the hardware
     #[arg(long, value_enum, default_value_t = NumberFormat::Binary64)]
-    pub(super) number_format: NumberFormat,
+    pub(in crate::cli) number_format: NumberFormat,
 }
 
 impl FilterOptions {
     /// The pipeline: the paper's front end for its kind.
-    pub(super) fn settings(&self) -> PipelineSettings {
+    pub(in crate::cli) fn settings(&self) -> PipelineSettings {
         let update_sign = UpdateSign::Corrected;
         let (core, desired, input_lag_samples) = match self.kind {
             Kind::Rls => {
@@ -159,7 +159,7 @@ impl FilterOptions {
     }
 
     /// Kind of filter, as given.
-    pub(super) fn kind_name(&self) -> String {
+    pub(in crate::cli) fn kind_name(&self) -> String {
         let value = self.kind.to_possible_value();
         value.map_or_else(String::new, |value| value.get_name().to_owned())
     }
@@ -173,9 +173,9 @@ impl FilterOptions {
 
 /// Options of `timing`.
 #[derive(Args, Debug)]
-pub(super) struct TimingOptions {
+pub(in crate::cli) struct TimingOptions {
     #[command(flatten)]
-    pub(super) filter: FilterOptions,
+    pub(in crate::cli) filter: FilterOptions,
     /// Clocks of an addition
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clocks())]
     adder_latency: u64,
@@ -190,10 +190,10 @@ pub(super) struct TimingOptions {
     initiation_interval: u64,
     /// Accesses of each memory per clock in the interleaved model, 1 or 2
     #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(super) ram_ports: u64,
+    pub(in crate::cli) ram_ports: u64,
     /// Form of the result
     #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(super) format: Format,
+    pub(in crate::cli) format: Format,
 }
 
 /// A parser of clocks that an operation may take.
@@ -204,7 +204,7 @@ fn clocks() -> impl Fn(&str) -> Result<u64, OptionError> + Clone + Send + Sync +
 
 impl TimingOptions {
     /// The three units.
-    pub(super) fn units(&self) -> Units {
+    pub(in crate::cli) fn units(&self) -> Units {
         let unit = |latency_clocks: u64| UnitTiming {
             latency_clocks,
             interval_clocks: self.initiation_interval.min(latency_clocks),
@@ -219,19 +219,19 @@ impl TimingOptions {
 
 /// Options of `export`.
 #[derive(Args, Debug)]
-pub(super) struct ExportOptions {
+pub(in crate::cli) struct ExportOptions {
     /// What to write
     #[arg(value_enum)]
-    pub(super) what: ExportForm,
+    pub(in crate::cli) what: ExportForm,
     /// Folder to write into
     #[arg(value_name = "DIR")]
-    pub(super) folder: PathBuf,
+    pub(in crate::cli) folder: PathBuf,
     /// Replace files in the folder that fogbench did not write
     #[arg(long)]
-    pub(super) force: bool,
+    pub(in crate::cli) force: bool,
     /// Scenario whose gyro gives the stimulus
     #[arg(long, value_name = "FILE")]
-    pub(super) scenario: Option<PathBuf>,
+    pub(in crate::cli) scenario: Option<PathBuf>,
     /// Filter of the scenario to export; without it the options below describe one
     #[arg(
         long = "filter",
@@ -239,10 +239,10 @@ pub(super) struct ExportOptions {
         requires = "scenario",
         conflicts_with = "stimulus"
     )]
-    pub(super) name: Option<String>,
+    pub(in crate::cli) name: Option<String>,
     /// Recorded stimulus: one column of numbers, NPY or text
     #[arg(long, value_name = "FILE", conflicts_with = "scenario")]
-    pub(super) stimulus: Option<PathBuf>,
+    pub(in crate::cli) stimulus: Option<PathBuf>,
     /// Column of a text by its heading or number from 1 [default: the only one]
     #[arg(
         long,
@@ -250,15 +250,15 @@ pub(super) struct ExportOptions {
         requires = "stimulus",
         conflicts_with = "scenario"
     )]
-    pub(super) column: Option<String>,
+    pub(in crate::cli) column: Option<String>,
     /// Samples to export [default: 1000, or all of a shorter file]
     #[arg(long, value_name = "N", default_value_t = 1000,
           value_parser = count_within(1, EXPORT_SAMPLES_MAX))]
-    pub(super) samples: usize,
+    pub(in crate::cli) samples: usize,
     /// Samples of which every clock is traced or drawn
     #[arg(long, value_name = "N", default_value_t = 10,
           value_parser = count_within(0, EXPORT_SAMPLES_MAX))]
-    pub(super) trace_samples: usize,
+    pub(in crate::cli) trace_samples: usize,
     #[command(flatten)]
-    pub(super) filter: FilterOptions,
+    pub(in crate::cli) filter: FilterOptions,
 }

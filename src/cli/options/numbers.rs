@@ -4,7 +4,7 @@ use thiserror::Error;
 
 /// A value that its option does not take; clap names the option and the value before it.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub(super) enum OptionError {
+pub(in crate::cli) enum OptionError {
     /// No number, or one outside of a range.
     #[error("expected a number from {} to {}{}", shown(*.least), shown(*.most), behind_blank(.unit))]
     Number {
@@ -42,7 +42,7 @@ pub(super) enum OptionError {
 /// A parser of numbers from `least` to `most`, both allowed, for what `unit` names.
 ///
 /// The least values are those from which reciprocals and squares mean something.
-pub(super) fn within(
+pub(in crate::cli) fn within(
     least: f64,
     most: f64,
     unit: &'static str,
@@ -55,7 +55,7 @@ pub(super) fn within(
 }
 
 /// A parser of whole numbers from `least` to `most`.
-pub(super) fn count_within(
+pub(in crate::cli) fn count_within(
     least: usize,
     most: usize,
 ) -> impl Fn(&str) -> Result<usize, OptionError> + Clone + Send + Sync + 'static {

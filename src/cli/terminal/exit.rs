@@ -6,13 +6,13 @@ use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue};
 
-use super::output;
+use crate::cli::terminal::output;
 use crate::scenario::bounded;
 use crate::wording::is_misspelling;
 
 /// How the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Exit {
+pub(in crate::cli) enum Exit {
     /// All well.
     Success,
     /// A gate failed.
@@ -33,12 +33,12 @@ pub(super) enum Exit {
 
 impl Exit {
     /// The process's exit code.
-    pub(super) fn code(self) -> ExitCode {
+    pub(in crate::cli) fn code(self) -> ExitCode {
         ExitCode::from(self.number())
     }
 
     /// The exit code as a number.
-    pub(super) fn number(self) -> u8 {
+    pub(in crate::cli) fn number(self) -> u8 {
         match self {
             Self::Success => 0,
             Self::GateFailed => 1,
@@ -52,7 +52,7 @@ impl Exit {
     }
 
     /// The one that counts where both apply.
-    pub(super) fn worst(self, other: Self) -> Self {
+    pub(in crate::cli) fn worst(self, other: Self) -> Self {
         if other.rank() > self.rank() {
             other
         } else {
@@ -77,7 +77,7 @@ impl Exit {
 }
 
 /// Prints what clap has to say (help and version are no errors) and gives its exit code.
-pub(super) fn usage(mut error: clap::Error) -> ExitCode {
+pub(in crate::cli) fn usage(mut error: clap::Error) -> ExitCode {
     drop_unlike(&mut error);
     let text = error.render().to_string();
     match bounded(&text) {
@@ -122,7 +122,7 @@ fn drop_unlike(error: &mut clap::Error) {
 }
 
 /// What could not be printed or written, said and as an exit code.
-pub(super) fn io_failure(error: io::Error) -> Exit {
+pub(in crate::cli) fn io_failure(error: io::Error) -> Exit {
     output::talk(&format!("error: {error}"));
     Exit::Io
 }

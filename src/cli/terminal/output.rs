@@ -14,7 +14,7 @@ static READER_IS_GONE: AtomicBool = AtomicBool::new(false);
 ///
 /// # Errors
 /// What the stream says, but for a closed pipe.
-pub(super) fn data(text: &str) -> io::Result<()> {
+pub(in crate::cli) fn data(text: &str) -> io::Result<()> {
     if READER_IS_GONE.load(Ordering::Relaxed) {
         return Ok(());
     }
@@ -32,7 +32,7 @@ pub(super) fn data(text: &str) -> io::Result<()> {
 }
 
 /// Writes a line of talk to stderr. Nobody is left to tell when stderr itself is gone.
-pub(super) fn talk(line: &str) {
+pub(in crate::cli) fn talk(line: &str) {
     let mut stderr = io::stderr().lock();
     drop(writeln!(stderr, "{line}"));
 }
@@ -41,14 +41,17 @@ pub(super) fn talk(line: &str) {
 const LINES_MAX: usize = 50;
 
 /// Writes the first of many lines to stderr, each behind a prefix, and how many more there are.
-pub(super) fn talk_first<L: Display>(prefix: &str, lines: impl Iterator<Item = L>) {
+pub(in crate::cli) fn talk_first<L: Display>(prefix: &str, lines: impl Iterator<Item = L>) {
     talk_first_as(lines, |line| {
         format!("{prefix}{}", bounded(&line.to_string()))
     });
 }
 
 /// Writes the first of many things to stderr in words, and how many more there are.
-pub(super) fn talk_first_as<T>(things: impl Iterator<Item = T>, shown: impl Fn(&T) -> String) {
+pub(in crate::cli) fn talk_first_as<T>(
+    things: impl Iterator<Item = T>,
+    shown: impl Fn(&T) -> String,
+) {
     let mut more = 0_usize;
     for (index, thing) in things.enumerate() {
         if index < LINES_MAX {
@@ -63,17 +66,17 @@ pub(super) fn talk_first_as<T>(things: impl Iterator<Item = T>, shown: impl Fn(&
 }
 
 /// Whether stdout may carry colours: a terminal, and `NO_COLOR` is not set.
-pub(super) fn colour() -> bool {
+pub(in crate::cli) fn colour() -> bool {
     !refuses_colour() && io::stdout().is_terminal()
 }
 
 /// Whether `NO_COLOR` is set.
-pub(super) fn refuses_colour() -> bool {
+pub(in crate::cli) fn refuses_colour() -> bool {
     std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
 /// Width of tables in columns: `COLUMNS` where it is set, else 100.
-pub(super) fn width() -> usize {
+pub(in crate::cli) fn width() -> usize {
     const DEFAULT_COLUMNS: usize = 100;
     std::env::var("COLUMNS")
         .ok()

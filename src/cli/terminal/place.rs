@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use super::exit::Exit;
-use super::output;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
 use crate::store::{OutputFolder, StoreError, StoreOptions, holds_result};
 
 /// The folder of a result, if one is asked for.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place<'a> {
+pub(in crate::cli) struct Place<'a> {
     folder: Option<&'a Path>,
     /// Kind of the result, as the record of the folder says.
     holds: &'static str,
@@ -17,7 +17,7 @@ pub(super) struct Place<'a> {
 
 impl<'a> Place<'a> {
     /// The place of a result of the kind `holds`.
-    pub(super) fn new(folder: Option<&'a Path>, holds: &'static str, force: bool) -> Self {
+    pub(in crate::cli) fn new(folder: Option<&'a Path>, holds: &'static str, force: bool) -> Self {
         let options = StoreOptions {
             force,
             ..StoreOptions::default()
@@ -33,7 +33,7 @@ impl<'a> Place<'a> {
     /// that would be replaced.
     ///
     /// A refusal is printed before its exit code is returned.
-    pub(super) fn check(self, inputs: &[&Path]) -> Result<(), Exit> {
+    pub(in crate::cli) fn check(self, inputs: &[&Path]) -> Result<(), Exit> {
         let Some(folder) = self.folder else {
             return Ok(());
         };
@@ -55,7 +55,7 @@ impl<'a> Place<'a> {
     }
 
     /// Takes the folder, if there is one, and gives it to `write`.
-    pub(super) fn fill(
+    pub(in crate::cli) fn fill(
         self,
         write: impl FnOnce(&OutputFolder) -> Result<(), StoreError>,
     ) -> Result<(), Exit> {
@@ -77,7 +77,7 @@ fn refused(error: &StoreError) -> Exit {
 }
 
 /// The exit code of results that are not written.
-pub(super) fn exit_of(error: &StoreError) -> Exit {
+pub(in crate::cli) fn exit_of(error: &StoreError) -> Exit {
     if error.is_refusal() {
         Exit::Usage
     } else {

@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-use super::exit::Exit;
-use super::output;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
 
 /// Signals that end the program.
 #[cfg(unix)]
@@ -32,7 +32,7 @@ const TICK: Duration = Duration::from_millis(20);
 
 /// What has been received, and what the next signal does.
 #[derive(Clone, Debug)]
-pub(super) struct Interrupt {
+pub(in crate::cli) struct Interrupt {
     /// The handlers read it: whether a signal ends the program at once.
     ends_at_once: Arc<AtomicBool>,
     /// The signal that asked the suite to stop; 0 = none.
@@ -44,7 +44,7 @@ impl Interrupt {
     ///
     /// # Errors
     /// What the system says if it takes no handler.
-    pub(super) fn install() -> io::Result<Self> {
+    pub(in crate::cli) fn install() -> io::Result<Self> {
         let interrupt = Self {
             ends_at_once: Arc::new(AtomicBool::new(true)),
             received: Arc::new(AtomicUsize::new(0)),
@@ -66,7 +66,7 @@ impl Interrupt {
 
     /// From now on the first signal is only noted; the program ends [`DEADLINE`] after it all the
     /// same.
-    pub(super) fn defer(&self) {
+    pub(in crate::cli) fn defer(&self) {
         self.ends_at_once.store(false, Ordering::SeqCst);
         let watched = self.clone();
         // Where the system has no thread left, the program ends when the suite does.
@@ -74,7 +74,7 @@ impl Interrupt {
     }
 
     /// How a program that has been asked to stop ends; none if it has not.
-    pub(super) fn exit(&self) -> Option<Exit> {
+    pub(in crate::cli) fn exit(&self) -> Option<Exit> {
         let received = self.received.load(Ordering::SeqCst);
         let signal = i32::try_from(received).ok().filter(|signal| *signal > 0);
         signal.map(exit)

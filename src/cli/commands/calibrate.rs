@@ -2,17 +2,18 @@
 
 use std::io;
 
-use super::calibrate_arguments::CalibrateOptions;
-use super::exit::Exit;
-use super::format::Format;
-use super::place::Place;
-use super::{complaint, output};
+use crate::cli::options::calibrate::CalibrateOptions;
+use crate::cli::options::format::Format;
+use crate::cli::terminal::complaint;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
+use crate::cli::terminal::place::Place;
 use crate::experiment::{CalibrateError, CalibrationTrial, calibrate_campaign, calibrate_groups};
 use crate::recording::LogError;
 use crate::report::{calibrate_json, calibrate_text};
 
 /// Prints the calibration; with a folder, writes `calibration.toml` and `groups.csv` into it.
-pub(super) fn calibrate(options: &CalibrateOptions) -> io::Result<Exit> {
+pub(in crate::cli) fn calibrate(options: &CalibrateOptions) -> io::Result<Exit> {
     let place = Place::new(options.output.as_deref(), "calibration", options.force);
     if let Err(exit) = place.check(&[&options.path]) {
         return Ok(exit);

@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 /// Form of printed results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Format {
+pub(in crate::cli) enum Format {
     /// Tables for people
     Text,
     /// One JSON document

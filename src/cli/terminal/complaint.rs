@@ -4,12 +4,12 @@ use std::io::{self, IsTerminal};
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-use super::output;
+use crate::cli::terminal::output;
 use crate::experiment::CalibrateError;
 use crate::scenario::{ScenarioError, bounded};
 
 /// Something to complain of.
-pub(super) trait Complaint {
+pub(in crate::cli) trait Complaint {
     /// What is printed of it.
     fn shown(&self, is_coloured: bool) -> String;
 }
@@ -52,7 +52,7 @@ impl Complaint for CalibrateError {
 
 /// Prints complaints to stderr, in colours where that is a terminal: the first of them, and how many
 /// more there are.
-pub(super) fn print<C: Complaint>(errors: &[C]) {
+pub(in crate::cli) fn print<C: Complaint>(errors: &[C]) {
     let is_coloured = io::stderr().is_terminal() && !output::refuses_colour();
     output::talk_first_as(errors.iter(), |error| error.shown(is_coloured));
 }

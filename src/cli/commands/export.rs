@@ -3,12 +3,12 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::complaint;
-use super::exit::Exit;
-use super::hardware_arguments::ExportOptions;
-use super::log::unreadable;
-use super::output;
-use super::place::Place;
+use crate::cli::commands::log::unreadable;
+use crate::cli::options::hardware::ExportOptions;
+use crate::cli::terminal::complaint;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
+use crate::cli::terminal::place::Place;
 use crate::experiment::{plan_suite, scenario_stimulus};
 use crate::filters::FilterConfig;
 use crate::filters::hardware::{
@@ -20,7 +20,7 @@ use crate::vocabulary::ExportForm;
 use crate::wording::{counted, is_misspelling};
 
 /// Writes the folder and says what stands in it.
-pub(super) fn export(options: &ExportOptions) -> io::Result<Exit> {
+pub(in crate::cli) fn export(options: &ExportOptions) -> io::Result<Exit> {
     let (settings, stimulus) = match prepare(options) {
         Ok(prepared) => prepared,
         Err(exit) => return Ok(exit),

@@ -6,11 +6,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::arguments::{ResumeFrom, RunOptions};
-use super::exit::{Exit, io_failure};
-use super::format::Format;
-use super::signals::Interrupt;
-use super::{output, place, select};
+use crate::cli::commands::select;
+use crate::cli::options::arguments::{ResumeFrom, RunOptions};
+use crate::cli::options::format::Format;
+use crate::cli::terminal::exit::{Exit, io_failure};
+use crate::cli::terminal::output;
+use crate::cli::terminal::place;
+use crate::cli::terminal::signals::Interrupt;
 use crate::experiment::{
     self, Observer, Plan, Resume, SuiteError, SuiteOptions, SuiteOutcome, run_suite, thread_count,
 };
@@ -18,7 +20,7 @@ use crate::report::{self, RunOutcome, RunReport, RunStatus};
 use crate::scenario::bounded;
 
 /// Plans, runs, prints and judges.
-pub(super) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exit> {
+pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exit> {
     let plans = match select::plans(&options.select) {
         Ok(plans) => plans,
         Err(exit) => return Ok(exit),

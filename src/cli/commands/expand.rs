@@ -3,13 +3,14 @@
 use std::fmt::Write;
 use std::io;
 
-use super::arguments::SelectOptions;
-use super::exit::Exit;
-use super::{output, select};
+use crate::cli::commands::select;
+use crate::cli::options::arguments::SelectOptions;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
 
 /// Prints each resolved run under a comment that names its folder: a single one as a scenario file,
 /// several as the array of tables `run`.
-pub(super) fn expand(options: &SelectOptions) -> io::Result<Exit> {
+pub(in crate::cli) fn expand(options: &SelectOptions) -> io::Result<Exit> {
     let plans = match select::plans(options) {
         Ok(plans) => plans,
         Err(exit) => return Ok(exit),
