@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use super::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
-use super::course::{Course, Instant};
-use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
-use super::samples::first_measured_index;
-use super::soft_start::SoftStart;
 use crate::declare::table;
+use crate::turntable::motion::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
+use crate::turntable::motion::course::{Course, Instant};
+use crate::turntable::motion::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
+use crate::turntable::motion::samples::first_measured_index;
+use crate::turntable::motion::soft_start::SoftStart;
 use crate::units::deg_per_s_to_rad_per_s;
 use crate::vocabulary::CaseAxis;
 use crate::wording::number;

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::checks::MotionChecks;
-use super::course::{Course, Instant};
-use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use crate::declare::table;
+use crate::turntable::motion::checks::MotionChecks;
+use crate::turntable::motion::course::{Course, Instant};
+use crate::turntable::motion::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 
 table! {
     /// Nothing to set.

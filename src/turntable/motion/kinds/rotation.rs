@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::checks::MotionChecks;
-use super::course::{Course, Instant};
-use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
-use super::soft_start::SoftStart;
 use crate::declare::table;
+use crate::turntable::motion::checks::MotionChecks;
+use crate::turntable::motion::course::{Course, Instant};
+use crate::turntable::motion::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
+use crate::turntable::motion::soft_start::SoftStart;
 use crate::units::deg_per_s_to_rad_per_s;
 
 table! {

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::checks::{MotionChecks, TIME_SLACK};
-use super::course::{Course, Instant};
-use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
-use super::samples::first_measured_index;
 use crate::declare::table;
+use crate::turntable::motion::checks::{MotionChecks, TIME_SLACK};
+use crate::turntable::motion::course::{Course, Instant};
+use crate::turntable::motion::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
+use crate::turntable::motion::samples::first_measured_index;
 use crate::units::deg_to_rad;
 use crate::wording::number;
 

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::checks::MotionChecks;
-use super::course::Course;
-use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
-use super::staircase::{Held, extremes};
 use crate::declare::table;
+use crate::turntable::motion::checks::MotionChecks;
+use crate::turntable::motion::course::Course;
+use crate::turntable::motion::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
+use crate::turntable::motion::staircase::{Held, extremes};
 use crate::turntable::motion::stairs::Stairs;
 use crate::units::deg_per_s_to_rad_per_s;
 use crate::wording::{counted, number};

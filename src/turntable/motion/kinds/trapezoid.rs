@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN};
-use super::course::{Course, Instant};
-use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
-use super::samples::first_measured_index;
 use crate::declare::table;
+use crate::turntable::motion::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN};
+use crate::turntable::motion::course::{Course, Instant};
+use crate::turntable::motion::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
+use crate::turntable::motion::samples::first_measured_index;
 use crate::units::deg_per_s_to_rad_per_s;
 use crate::wording::number;
 
