@@ -4,17 +4,17 @@ use super::axis::Axis;
 use super::picture::{Anchor, BLACK, Colour, PALE, Picture, Point, Shape, Stroke};
 
 /// Width of every picture, pixels.
-pub(super) const WIDTH: f64 = 1200.0;
+pub(in crate::report::plot) const WIDTH: f64 = 1200.0;
 /// Left edge of the frames.
-pub(super) const LEFT: f64 = 90.0;
+pub(in crate::report::plot) const LEFT: f64 = 90.0;
 /// Right edge of the frames; the legend stands to the right of it.
-pub(super) const RIGHT: f64 = 880.0;
+pub(in crate::report::plot) const RIGHT: f64 = 880.0;
 /// Left edge of the legend.
 const LEGEND: f64 = 900.0;
 const SMALL: f64 = 13.0;
 
 /// A frame that maps data to pixels.
-pub(super) struct Panel {
+pub(in crate::report::plot) struct Panel {
     top: f64,
     bottom: f64,
     x: Axis,
@@ -23,7 +23,12 @@ pub(super) struct Panel {
 
 impl Panel {
     /// Draws frame, grid, ticks and titles, and returns the frame.
-    pub(super) fn new(picture: &mut Picture, (top, bottom): (f64, f64), x: Axis, y: Axis) -> Self {
+    pub(in crate::report::plot) fn new(
+        picture: &mut Picture,
+        (top, bottom): (f64, f64),
+        x: Axis,
+        y: Axis,
+    ) -> Self {
         let panel = Self { top, bottom, x, y };
         for (axis, is_x) in [(&panel.x, true), (&panel.y, false)] {
             for value in axis
@@ -76,17 +81,22 @@ impl Panel {
     }
 
     /// Where a point of data stands, pixels.
-    pub(super) fn place(&self, (x, y): (f64, f64)) -> Point {
+    pub(in crate::report::plot) fn place(&self, (x, y): (f64, f64)) -> Point {
         (self.place_x(x), self.place_y(y))
     }
 
     /// Range of the x axis.
-    pub(super) fn x_range(&self) -> (f64, f64) {
+    pub(in crate::report::plot) fn x_range(&self) -> (f64, f64) {
         self.x.range()
     }
 
     /// Draws a line through points of data, cut off at the frame.
-    pub(super) fn line(&self, picture: &mut Picture, data: &[(f64, f64)], stroke: Stroke) {
+    pub(in crate::report::plot) fn line(
+        &self,
+        picture: &mut Picture,
+        data: &[(f64, f64)],
+        stroke: Stroke,
+    ) {
         let mut piece: Vec<Point> = Vec::new();
         for pair in data.windows(2) {
             let Some((start, end)) = self.clipped(self.place(pair[0]), self.place(pair[1])) else {
@@ -106,7 +116,7 @@ impl Panel {
     }
 
     /// Fills between two lines over the same abscissae, cut off at the frame.
-    pub(super) fn band(
+    pub(in crate::report::plot) fn band(
         &self,
         picture: &mut Picture,
         data: &[(f64, f64, f64)],
@@ -125,7 +135,7 @@ impl Panel {
     }
 
     /// Draws a marker if it lies inside the frame.
-    pub(super) fn marker(
+    pub(in crate::report::plot) fn marker(
         &self,
         picture: &mut Picture,
         data: (f64, f64),
@@ -169,18 +179,23 @@ impl Panel {
 }
 
 /// Text and samples to the right of the frames.
-pub(super) struct Legend {
+pub(in crate::report::plot) struct Legend {
     y: f64,
 }
 
 impl Legend {
     /// A legend that starts at a height.
-    pub(super) fn new(top: f64) -> Self {
+    pub(in crate::report::plot) fn new(top: f64) -> Self {
         Self { y: top + 10.0 }
     }
 
     /// A line sample with its name.
-    pub(super) fn line(&mut self, picture: &mut Picture, stroke: Stroke, text: &str) {
+    pub(in crate::report::plot) fn line(
+        &mut self,
+        picture: &mut Picture,
+        stroke: Stroke,
+        text: &str,
+    ) {
         let points = vec![(LEGEND, self.y), (LEGEND + 34.0, self.y)];
         picture.line(
             points,
@@ -193,23 +208,28 @@ impl Legend {
     }
 
     /// A marker with its meaning.
-    pub(super) fn marker(&mut self, picture: &mut Picture, look: (Shape, Colour), text: &str) {
+    pub(in crate::report::plot) fn marker(
+        &mut self,
+        picture: &mut Picture,
+        look: (Shape, Colour),
+        text: &str,
+    ) {
         picture.marker((LEGEND + 17.0, self.y), look.0, look.1);
         self.text_at(picture, LEGEND + 42.0, text, 12.5);
     }
 
     /// A remark.
-    pub(super) fn text(&mut self, picture: &mut Picture, text: &str) {
+    pub(in crate::report::plot) fn text(&mut self, picture: &mut Picture, text: &str) {
         self.text_at(picture, LEGEND, text, 12.5);
     }
 
     /// An indented remark that belongs to the entry above.
-    pub(super) fn detail(&mut self, picture: &mut Picture, text: &str) {
+    pub(in crate::report::plot) fn detail(&mut self, picture: &mut Picture, text: &str) {
         self.text_at(picture, LEGEND + 42.0, text, 12.5);
     }
 
     /// Leaves room.
-    pub(super) fn space(&mut self) {
+    pub(in crate::report::plot) fn space(&mut self) {
         self.y += 10.0;
     }
 

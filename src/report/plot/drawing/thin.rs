@@ -6,7 +6,7 @@ use super::picture::Point;
 ///
 /// # Source
 /// Douglas and Peucker, Cartographica 10 (1973) 112, with a stack in place of the recursion.
-pub(super) fn thinned(points: &[Point], tolerance: f64) -> Vec<Point> {
+pub(in crate::report::plot) fn thinned(points: &[Point], tolerance: f64) -> Vec<Point> {
     let Some(last) = points.len().checked_sub(1) else {
         return Vec::new();
     };

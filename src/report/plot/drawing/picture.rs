@@ -1,7 +1,7 @@
 //! A list of things to draw, and the only code that knows plotters.
 
-use super::SVG_BYTES_MAX;
 use super::thin::thinned;
+use crate::report::plot::SVG_BYTES_MAX;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -14,17 +14,17 @@ const SCALE: f64 = 4.0;
 const FONT_FACTOR: f64 = 1.24;
 
 /// A colour.
-pub(super) type Colour = (u8, u8, u8);
+pub(in crate::report) type Colour = (u8, u8, u8);
 /// Text, frames, truth.
-pub(super) const BLACK: Colour = (0x22, 0x22, 0x22);
+pub(in crate::report) const BLACK: Colour = (0x22, 0x22, 0x22);
 /// Grid lines.
-pub(super) const PALE: Colour = (0xdd, 0xdd, 0xdd);
+pub(in crate::report) const PALE: Colour = (0xdd, 0xdd, 0xdd);
 /// Lines that help the eye.
-pub(super) const GREY: Colour = (0x66, 0x66, 0x66);
+pub(in crate::report) const GREY: Colour = (0x66, 0x66, 0x66);
 
 /// Pattern of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Dash {
+pub(in crate::report) enum Dash {
     Solid = 0,
     Long = 1,
     Mixed = 2,
@@ -45,16 +45,16 @@ impl Dash {
 
 /// How a line looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stroke {
-    pub(super) colour: Colour,
+pub(in crate::report) struct Stroke {
+    pub(in crate::report) colour: Colour,
     /// Pixels, in quarters.
-    pub(super) width: f64,
-    pub(super) dash: Dash,
-    pub(super) opacity: f64,
+    pub(in crate::report) width: f64,
+    pub(in crate::report) dash: Dash,
+    pub(in crate::report) opacity: f64,
 }
 
 impl Stroke {
-    pub(super) fn solid(colour: Colour, width: f64) -> Self {
+    pub(in crate::report) fn solid(colour: Colour, width: f64) -> Self {
         Self {
             colour,
             width,
@@ -66,7 +66,7 @@ impl Stroke {
 
 /// Which end of a text stands at its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub(in crate::report) enum Anchor {
     Start,
     Middle,
     End,
@@ -74,14 +74,14 @@ pub(super) enum Anchor {
 
 /// Shape of a marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shape {
+pub(in crate::report) enum Shape {
     Circle,
     Square,
     Triangle,
 }
 
 /// A point in pixels from the upper left corner.
-pub(super) type Point = (f64, f64);
+pub(in crate::report) type Point = (f64, f64);
 
 enum Item {
     Line(Vec<Point>, Stroke),
@@ -106,46 +106,52 @@ pub(in crate::report) struct Picture {
 
 impl Picture {
     /// An empty picture of a size in pixels.
-    pub(super) fn new(width: f64, height: f64) -> Self {
+    pub(in crate::report) fn new(width: f64, height: f64) -> Self {
         Self {
             size: (width, height),
             items: Vec::new(),
         }
     }
 
-    pub(super) fn line(&mut self, points: Vec<Point>, stroke: Stroke) {
+    pub(in crate::report) fn line(&mut self, points: Vec<Point>, stroke: Stroke) {
         if points.len() > 1 {
             self.items.push(Item::Line(points, stroke));
         }
     }
 
-    pub(super) fn area(&mut self, points: Vec<Point>, colour: Colour, opacity: f64) {
+    pub(in crate::report) fn area(&mut self, points: Vec<Point>, colour: Colour, opacity: f64) {
         if points.len() > 2 {
             self.items.push(Item::Area(points, colour, opacity));
         }
     }
 
-    pub(super) fn marker(&mut self, at: Point, shape: Shape, colour: Colour) {
+    pub(in crate::report) fn marker(&mut self, at: Point, shape: Shape, colour: Colour) {
         self.items.push(Item::Marker(at, shape, colour));
     }
 
     /// Level text of a size in pixels.
-    pub(super) fn text(&mut self, at: Point, text: &str, size: f64, anchor: Anchor) {
+    pub(in crate::report) fn text(&mut self, at: Point, text: &str, size: f64, anchor: Anchor) {
         self.push_text(at, text, size, anchor, (BLACK, false, false));
     }
 
     /// Level text in a colour.
-    pub(super) fn coloured_text(&mut self, at: Point, text: &str, size: f64, colour: Colour) {
+    pub(in crate::report) fn coloured_text(
+        &mut self,
+        at: Point,
+        text: &str,
+        size: f64,
+        colour: Colour,
+    ) {
         self.push_text(at, text, size, Anchor::Start, (colour, false, false));
     }
 
     /// Bold level text.
-    pub(super) fn heading(&mut self, at: Point, text: &str, size: f64) {
+    pub(in crate::report) fn heading(&mut self, at: Point, text: &str, size: f64) {
         self.push_text(at, text, size, Anchor::Start, (BLACK, false, true));
     }
 
     /// Text that reads from bottom to top, centred on its point.
-    pub(super) fn upright_text(&mut self, at: Point, text: &str, size: f64) {
+    pub(in crate::report) fn upright_text(&mut self, at: Point, text: &str, size: f64) {
         self.push_text(at, text, size, Anchor::Middle, (BLACK, true, false));
     }
 
@@ -172,7 +178,7 @@ impl Picture {
     ///
     /// A picture that would be larger is drawn with fewer points: lines and edges stay within a part
     /// of a pixel, at last within one, of where they were.
-    pub(super) fn svg(&self) -> Option<String> {
+    pub(in crate::report) fn svg(&self) -> Option<String> {
         let mut svgs = TOLERANCES
             .into_iter()
             .map(|tolerance| self.drawn(tolerance));

@@ -6,21 +6,25 @@ const LOG_SPAN_MAX: f64 = 1e60;
 
 /// One axis: range, scale, ticks and title.
 #[derive(Clone, Debug)]
-pub(super) struct Axis {
+pub(in crate::report::plot) struct Axis {
     low: f64,
     high: f64,
     is_log: bool,
     /// Title with unit.
-    pub(super) title: String,
+    pub(in crate::report::plot) title: String,
     /// Labelled ticks.
-    pub(super) ticks: Vec<(f64, String)>,
+    pub(in crate::report::plot) ticks: Vec<(f64, String)>,
     /// Ticks without labels.
-    pub(super) minor: Vec<f64>,
+    pub(in crate::report::plot) minor: Vec<f64>,
 }
 
 impl Axis {
     /// A linear axis over at least `[low, high]`, with a margin if asked.
-    pub(super) fn linear((low, high): (f64, f64), margin: f64, title: &str) -> Self {
+    pub(in crate::report::plot) fn linear(
+        (low, high): (f64, f64),
+        margin: f64,
+        title: &str,
+    ) -> Self {
         let (low, high) = widened(low, high);
         let span = high - low;
         let (low, high) = (low - margin * span, high + margin * span);
@@ -38,7 +42,7 @@ impl Axis {
     ///
     /// Every range has at least two labels: decades where there are two, else 1-2-5 steps, else
     /// linear steps.
-    pub(super) fn log((low, high): (f64, f64), margin: f64, title: &str) -> Self {
+    pub(in crate::report::plot) fn log((low, high): (f64, f64), margin: f64, title: &str) -> Self {
         let high = high.clamp(1e-200, 1e200);
         let low = low.clamp(high / LOG_SPAN_MAX, high);
         let factor = (high / low).powf(margin).max(1.02);
@@ -76,7 +80,7 @@ impl Axis {
     }
 
     /// Where a value stands: 0 at the low end, 1 at the high end.
-    pub(super) fn fraction(&self, value: f64) -> f64 {
+    pub(in crate::report::plot) fn fraction(&self, value: f64) -> f64 {
         if self.is_log {
             (value / self.low).ln() / (self.high / self.low).ln()
         } else {
@@ -85,7 +89,7 @@ impl Axis {
     }
 
     /// The range.
-    pub(super) fn range(&self) -> (f64, f64) {
+    pub(in crate::report::plot) fn range(&self) -> (f64, f64) {
         (self.low, self.high)
     }
 }

@@ -25,19 +25,19 @@ const COLOURS: [Colour; 13] = [
 const DASHES: [Dash; 4] = [Dash::Solid, Dash::Long, Dash::Mixed, Dash::Dotted];
 
 /// A channel as it is drawn.
-pub(super) struct Series<'a> {
-    pub(super) name: &'a str,
+pub(in crate::report::plot) struct Series<'a> {
+    pub(in crate::report::plot) name: &'a str,
     /// Whether this is the gyro's own output.
-    pub(super) is_raw: bool,
-    pub(super) metrics: Option<&'a ChannelMetrics>,
-    pub(super) stroke: Stroke,
+    pub(in crate::report::plot) is_raw: bool,
+    pub(in crate::report::plot) metrics: Option<&'a ChannelMetrics>,
+    pub(in crate::report::plot) stroke: Stroke,
     /// Rate words of the measured part, deg/h; none where the channel has no samples or failed.
-    pub(super) samples: &'a [f64],
+    pub(in crate::report::plot) samples: &'a [f64],
 }
 
 impl Series<'_> {
     /// Why the channel is not drawn, if it failed.
-    pub(super) fn failure(&self) -> Option<String> {
+    pub(in crate::report::plot) fn failure(&self) -> Option<String> {
         let error = self.metrics?.error.as_ref()?;
         Some(format!(
             "failed at sample {} ({})",
@@ -47,7 +47,7 @@ impl Series<'_> {
 }
 
 /// Line of channel number `index`: colour and pattern differ from channel to channel.
-pub(super) fn stroke_of(index: usize) -> Stroke {
+pub(in crate::report::plot) fn stroke_of(index: usize) -> Stroke {
     Stroke {
         colour: COLOURS[index % COLOURS.len()],
         width: 1.75,
@@ -57,12 +57,12 @@ pub(super) fn stroke_of(index: usize) -> Stroke {
 }
 
 /// Marker of channel number `index`.
-pub(super) fn shape_of(index: usize) -> Shape {
+pub(in crate::report::plot) fn shape_of(index: usize) -> Shape {
     [Shape::Circle, Shape::Square, Shape::Triangle][index % 3]
 }
 
 /// Line of the true rate.
-pub(super) fn truth_stroke() -> Stroke {
+pub(in crate::report::plot) fn truth_stroke() -> Stroke {
     Stroke {
         dash: Dash::Dotted,
         ..Stroke::solid(BLACK, 1.5)
@@ -70,7 +70,10 @@ pub(super) fn truth_stroke() -> Stroke {
 }
 
 /// The channels of a report with their samples; the first of the signals is raw.
-pub(super) fn series<'a>(report: &Measured<'a>, signals: &RunSignals<'a>) -> Vec<Series<'a>> {
+pub(in crate::report::plot) fn series<'a>(
+    report: &Measured<'a>,
+    signals: &RunSignals<'a>,
+) -> Vec<Series<'a>> {
     report
         .channels
         .iter()
@@ -96,16 +99,16 @@ pub(super) fn series<'a>(report: &Measured<'a>, signals: &RunSignals<'a>) -> Vec
 
 /// A run of samples as one pixel column shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Column {
+pub(in crate::report::plot) struct Column {
     /// Middle of the run, in samples from the first.
-    pub(super) index: f64,
-    pub(super) low: f64,
-    pub(super) high: f64,
-    pub(super) mean: f64,
+    pub(in crate::report::plot) index: f64,
+    pub(in crate::report::plot) low: f64,
+    pub(in crate::report::plot) high: f64,
+    pub(in crate::report::plot) mean: f64,
 }
 
 /// The record cut into at most `columns` runs of equal length (the last may be shorter).
-pub(super) fn columns(values: &[f64], columns: usize) -> Vec<Column> {
+pub(in crate::report::plot) fn columns(values: &[f64], columns: usize) -> Vec<Column> {
     let length = values.len().div_ceil(columns.max(1)).max(1);
     let mut start = 0.0;
     values
@@ -129,7 +132,7 @@ pub(super) fn columns(values: &[f64], columns: usize) -> Vec<Column> {
     clippy::cast_precision_loss,
     reason = "counts of samples lie below 2^53"
 )]
-pub(super) fn real(count: usize) -> f64 {
+pub(in crate::report::plot) fn real(count: usize) -> f64 {
     count as f64
 }
 
@@ -139,12 +142,12 @@ pub(super) fn real(count: usize) -> f64 {
     clippy::cast_sign_loss,
     reason = "a saturating cast to an index that is then checked against the record"
 )]
-pub(super) fn index(position: f64) -> usize {
+pub(in crate::report::plot) fn index(position: f64) -> usize {
     position as usize
 }
 
 /// Smallest and largest of finite values; `None` if there is none.
-pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+pub(in crate::report::plot) fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     values
         .into_iter()
         .filter(|value| value.is_finite())

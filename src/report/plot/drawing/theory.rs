@@ -13,13 +13,16 @@ fn stroke() -> Stroke {
 }
 
 /// The curves of a quantity.
-pub(super) fn curves<'a>(report: &RunReport<'a>, quantity: TheoryQuantity) -> Vec<&'a TheoryCurve> {
+pub(in crate::report::plot) fn curves<'a>(
+    report: &RunReport<'a>,
+    quantity: TheoryQuantity,
+) -> Vec<&'a TheoryCurve> {
     let all = report.theory.iter();
     all.filter(|curve| curve.quantity == quantity).collect()
 }
 
 /// Draws curves, cut off at the frame; `convert_x` turns abscissae into the unit of the axis.
-pub(super) fn draw(
+pub(in crate::report::plot) fn draw(
     picture: &mut Picture,
     panel: &Panel,
     curves: &[&TheoryCurve],
@@ -33,7 +36,7 @@ pub(super) fn draw(
 }
 
 /// Names the curves of a quantity.
-pub(super) fn legend_of(
+pub(in crate::report::plot) fn legend_of(
     picture: &mut Picture,
     legend: &mut Legend,
     report: &RunReport,
