@@ -17,6 +17,8 @@ struct Requested<'a> {
     key: String,
     channel: &'a str,
     metric: &'a str,
+    /// Whether it only stands beside a published figure, which nothing is judged by.
+    is_shown_only: bool,
 }
 
 impl Checker<'_> {
@@ -97,7 +99,7 @@ impl Checker<'_> {
         )
     }
 
-    /// Refuses gates and published figures that this record can never support.
+    /// Refuses gates that this record can never support, and says so of published figures.
     pub(crate) fn metrics(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
         let motion = motion(scenario, 1.0 / facts.output_rate_hz);
@@ -111,12 +113,14 @@ impl Checker<'_> {
                 key,
                 channel,
                 metric,
+                is_shown_only: false,
             });
             if let Some(reference) = &gate.relative_to {
                 requested.push(Requested {
                     key: format!("gate[{index}].relative_to"),
                     channel: reference,
                     metric,
+                    is_shown_only: false,
                 });
             }
         }
@@ -129,6 +133,7 @@ impl Checker<'_> {
                 key,
                 channel,
                 metric,
+                is_shown_only: true,
             });
             if let Some((key, message)) = wrong_unit(index, metric, &figure.unit) {
                 self.complain(&key, message);
@@ -138,6 +143,7 @@ impl Checker<'_> {
             key,
             channel,
             metric: name,
+            is_shown_only,
         } in requested
         {
             // The divergence of a channel may be what the gate expects.
@@ -163,8 +169,16 @@ impl Checker<'_> {
                 scenario.bias_averaging_time_s,
             );
             let lack = || lacks(scenario, channel, known);
-            if let Some(reason) = supported.err().or_else(lack) {
-                self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
+            match supported.err().or_else(lack) {
+                Some(reason) if is_shown_only => {
+                    let warning =
+                        format!("{key}: nothing is simulated beside {channel}.{name}: {reason}");
+                    self.warnings.push(warning);
+                }
+                Some(reason) => {
+                    self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
+                }
+                None => {}
             }
         }
     }
