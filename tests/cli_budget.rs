@@ -152,7 +152,7 @@ fn known_answer_k15_the_searched_optimum_is_the_closed_form_at_any_visibility() 
     }
     // A grid search of the formulae above, 1e-3 rad.
     let optimum = &json("scenarios/base/fog70.toml", &[])["optimum"];
-    let total = |step: u32| walks(0.87, 1e-3 * f64::from(step), 0.0)[6];
+    let total = |step: u32| walks(0.87, 1e-3 * f64::from(step), 0.0)[7];
     let best = (1000..3000_u32)
         .min_by(|a, b| total(*a).total_cmp(&total(*b)))
         .expect("a step");
