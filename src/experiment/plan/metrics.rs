@@ -104,39 +104,10 @@ impl Checker<'_> {
     pub(crate) fn metrics(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
         let motion = motion(scenario, 1.0 / facts.output_rate_hz);
-        let mut requested: Vec<Requested> = Vec::new();
-        for (index, gate) in scenario.gates.iter().enumerate() {
-            let Some((channel, metric)) = gate.metric.rsplit_once('.') else {
-                continue;
-            };
-            let key = format!("gate[{index}].metric");
-            requested.push(Requested {
-                key,
-                channel,
-                metric,
-                is_shown_only: false,
-            });
-            if let Some(reference) = &gate.relative_to {
-                requested.push(Requested {
-                    key: format!("gate[{index}].relative_to"),
-                    channel: reference,
-                    metric,
-                    is_shown_only: false,
-                });
-            }
-        }
         for (index, figure) in scenario.published.iter().enumerate() {
-            let Some((channel, metric)) = figure.metric.rsplit_once('.') else {
-                continue;
-            };
-            let key = format!("published[{index}].metric");
-            requested.push(Requested {
-                key,
-                channel,
-                metric,
-                is_shown_only: true,
-            });
-            if let Some((key, message)) = wrong_unit(index, metric, &figure.unit) {
+            if let Some((_, metric)) = figure.metric.rsplit_once('.')
+                && let Some((key, message)) = wrong_unit(index, metric, &figure.unit)
+            {
                 self.complain(&key, message);
             }
         }
@@ -145,7 +116,7 @@ impl Checker<'_> {
             channel,
             metric: name,
             is_shown_only,
-        } in requested
+        } in requested(scenario)
         {
             // The divergence of a channel may be what the gate expects.
             if name == DIVERGED_AT.name {
@@ -183,6 +154,39 @@ impl Checker<'_> {
             }
         }
     }
+}
+
+/// Every metric that gates and published figures ask for.
+fn requested(scenario: &Scenario) -> Vec<Requested<'_>> {
+    let mut requested = Vec::new();
+    for (index, gate) in scenario.gates.iter().enumerate() {
+        let Some((channel, metric)) = gate.metric.rsplit_once('.') else {
+            continue;
+        };
+        let mut ask = |key: &str, channel| {
+            requested.push(Requested {
+                key: format!("gate[{index}].{key}"),
+                channel,
+                metric,
+                is_shown_only: false,
+            });
+        };
+        ask("metric", channel);
+        if let Some(reference) = &gate.relative_to {
+            ask("relative_to", reference);
+        }
+    }
+    for (index, figure) in scenario.published.iter().enumerate() {
+        if let Some((channel, metric)) = figure.metric.rsplit_once('.') {
+            requested.push(Requested {
+                key: format!("published[{index}].metric"),
+                channel,
+                metric,
+                is_shown_only: true,
+            });
+        }
+    }
+    requested
 }
 
 /// Why a channel of this scenario can never have a metric, whatever the length of its record.
