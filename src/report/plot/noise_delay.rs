@@ -64,7 +64,10 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
         describe(&mut picture, &mut legend, point);
     }
     legend.space();
-    legend.text(&mut picture, "lines: least noise of as many fixed weights");
+    legend.text(
+        &mut picture,
+        "lines: least noise of as many weights in a row",
+    );
     legend.text(&mut picture, "with unit DC gain; dotted: for white noise");
     legend.text(&mut picture, "numbers at the points: DC gain");
     legend.text(&mut picture, "bars: 95 % intervals");
