@@ -138,14 +138,32 @@ impl NoiseDelayBound {
     /// lags of the autocovariance than taps.
     #[must_use]
     pub fn new(taps: usize, register_samples: usize, autocovariance: &[f64]) -> Option<Self> {
+        Self::of(taps, register_samples, |delay| {
+            noise_delay_bound_coloured(taps, 0, delay, autocovariance)
+        })
+    }
+
+    /// The same for white noise.
+    #[must_use]
+    pub fn white(taps: usize, register_samples: usize) -> Option<Self> {
+        Self::of(taps, register_samples, |delay| {
+            noise_delay_bound(taps, 0, delay)
+        })
+    }
+
+    /// The parabola through the least gains of the window of ages from 0 on, in its middle and beside.
+    fn of(
+        taps: usize,
+        register_samples: usize,
+        gain_at: impl Fn(f64) -> Option<f64>,
+    ) -> Option<Self> {
         let middle = (taps as f64 - 1.0) / 2.0;
         let (least, curvature) = match taps {
             0 => return None,
             1 => (1.0, f64::INFINITY),
             _ => {
-                let at = |delay| noise_delay_bound_coloured(taps, 0, delay, autocovariance);
-                let least = at(middle)?;
-                (least, at(middle + 1.0)? - least)
+                let least = gain_at(middle)?;
+                (least, gain_at(middle + 1.0)? - least)
             }
         };
         Some(Self {
@@ -154,14 +172,6 @@ impl NoiseDelayBound {
             least,
             curvature,
         })
-    }
-
-    /// The same for white noise.
-    #[must_use]
-    pub fn white(taps: usize, register_samples: usize) -> Option<Self> {
-        let mut autocovariance = vec![0.0; taps];
-        *autocovariance.first_mut()? = 1.0;
-        Self::new(taps, register_samples, &autocovariance)
     }
 
     /// The least gain at a delay in samples, register included; `None` where no such filter has it: a

@@ -76,6 +76,7 @@ impl Motion for ChirpConfig {
     /// Refuses frequencies that the output cannot follow and a sweep that outlasts the record.
     fn check(&self, checks: &mut MotionChecks) {
         checks.soft_start("turntable.chirp.soft_start_s", self.soft_start_s);
+        checks.ramp("turntable.chirp.soft_stop_s", self.soft_stop_s);
         checks.frequency(
             "turntable.chirp.start_frequency_hz",
             self.start_frequency_hz,
