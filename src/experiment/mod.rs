@@ -9,6 +9,7 @@ mod campaign;
 mod channel_filter;
 #[cfg(feature = "report")]
 mod log;
+mod output_file;
 mod pipeline_metrics;
 mod plan;
 mod run;

@@ -136,7 +136,7 @@ fn measure_motion(
         segment_samples(values.len()),
     );
     put_spectrum(log_binned(&spectrum, SPECTRUM_POINTS_MAX), metrics);
-    put_extremes(values, metrics);
+    put_extremes(record, metrics);
     match &settings.motion {
         Motion::MultiSine { .. } | Motion::General | Motion::Steps { .. }
             if record.truth().is_none() =>

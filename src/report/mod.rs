@@ -34,9 +34,8 @@ mod restore;
 mod text;
 
 pub use artefacts::{
-    Artefact, ENCODER_SAMPLES, JUNIT, Place, SAMPLES, SAMPLES_CSV, SUITE_SUMMARY, TIME_SAMPLES,
-    TRUTH_SAMPLES, artefacts, budget_files, calibration_files, log_files, plots, run_files,
-    run_pictures,
+    Artefact, Contents, JUNIT, OutputFile, Place, SUITE_SUMMARY, artefacts, budget_files,
+    calibration_files, log_files, plots, run_files, run_pictures,
 };
 pub use budget::{budget_json, budget_text};
 pub use calibration::calibrate::{CalibrateReport, calibrate_json, calibrate_text};

@@ -268,6 +268,19 @@ pub struct RunSignals<'a> {
     pub temperature: Option<TemperatureRecord>,
 }
 
+impl RunSignals<'_> {
+    /// Stamps of the samples, s: each at the end of its period.
+    pub fn stamps_s(&self) -> impl Iterator<Item = f64> {
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "sample counts are far below 2^53"
+        )]
+        let stamp_s = |ordinal: usize| ordinal as f64 * self.sample_period_s;
+        let words = self.channels.first().map_or(0, |(_, words)| words.len());
+        (1..=words).map(stamp_s)
+    }
+}
+
 /// What a compensation takes out of the outputs of an assembly, as the report shows it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

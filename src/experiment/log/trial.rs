@@ -8,11 +8,12 @@ use super::compensation::CompensatedLog;
 use super::filters::LogFilters;
 use crate::experiment::build::VERSION;
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
+use crate::experiment::output_file::write_file;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
 use crate::metrics::{ChannelMetrics, Motion, Settings, is_sample_or_longer, record_fit_tau_min_s};
-use crate::recording::{Log, csv_text};
-use crate::report::{LogReport, SAMPLES, SAMPLES_CSV, log_files};
+use crate::recording::Log;
+use crate::report::{LogReport, log_files};
 use crate::scenario::{AllanConfig, MotionConfig, SwingConfig};
 use crate::signal::RunSignals;
 use crate::store::{OutputFolder, StoreError};
@@ -323,20 +324,8 @@ impl LogTrial {
     /// Whatever the file system says, with the path.
     pub fn write(&self, folder: &OutputFolder, as_csv: bool) -> Result<(), StoreError> {
         let staged = folder.stage()?;
-        let files = self.with_report(|report| log_files(report, &self.signals()));
-        for (name, text) in files {
-            staged.write(&name, text.as_bytes())?;
-        }
-        for (name, words) in self
-            .compensated_words()
-            .into_iter()
-            .chain(self.filter_words())
-        {
-            staged.write_npy(&SAMPLES.named(name), words)?;
-            if as_csv {
-                let text = csv_text(words, self.log.sample_period_s());
-                staged.write(&SAMPLES_CSV.named(name), text.as_bytes())?;
-            }
+        for file in self.with_report(|report| log_files(report, &self.signals(), as_csv)) {
+            write_file(&staged, &file)?;
         }
         staged.seal_plainly()?;
         staged.put_files_in_place()

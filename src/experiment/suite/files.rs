@@ -2,14 +2,13 @@
 
 use super::output::SuiteOutput;
 use crate::experiment::build::VERSION;
+use crate::experiment::output_file::write_file;
 use crate::experiment::plan::Plan;
-use crate::experiment::run::{RecordLength, Simulation, stamp_s};
+use crate::experiment::run::{RecordLength, Simulation};
 use crate::gyro::temperature_record;
 use crate::report::{self, Pictures, RunReport};
-use crate::scenario::SamplesFormat;
 use crate::signal::RunSignals;
 use crate::store::{Staged, StoreError};
-use crate::units::rad_to_arcsec;
 
 /// What the report of a run shows of its plan, before anything is measured.
 pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
@@ -48,15 +47,12 @@ pub(crate) fn write_folder<'a>(
     output: &'a SuiteOutput,
 ) -> Result<Staged<'a>, StoreError> {
     let folder = output.stage()?;
-    for (name, text) in report::run_files(report) {
-        folder.write(&name, text.as_bytes())?;
+    let names = Names::of(report);
+    for file in report::run_files(report, &signals(plan, simulation, &names)) {
+        write_file(&folder, &file)?;
     }
     for (name, svg) in &pictures.drawn {
         folder.write(name, svg.as_bytes())?;
-    }
-    if report.scenario.output.samples == SamplesFormat::Npy {
-        let names = Names::of(report);
-        write_samples(&folder, &signals(plan, simulation, &names))?;
     }
     Ok(folder)
 }
@@ -107,26 +103,4 @@ fn signals<'a>(plan: &Plan, simulation: &'a Simulation, names: &'a Names) -> Vec
         }
     });
     signals.collect()
-}
-
-fn write_samples(folder: &Staged, gyros: &[RunSignals]) -> Result<(), StoreError> {
-    for signals in gyros {
-        for (name, words) in &signals.channels {
-            folder.write_npy(&report::SAMPLES.named(name), words)?;
-        }
-        let truth = report::TRUTH_SAMPLES.named(signals.prefix);
-        folder.write_npy(&truth, signals.truth_deg_per_h)?;
-    }
-    let Some(first) = gyros.first() else {
-        return Ok(());
-    };
-    if let Some(readings) = first.encoder_rad {
-        let angles: Vec<f64> = readings.iter().copied().map(rad_to_arcsec).collect();
-        folder.write_npy(report::ENCODER_SAMPLES.name, &angles)?;
-    }
-    let samples = first.truth_deg_per_h.len() as u64;
-    let time_s: Vec<f64> = (0..samples)
-        .map(|index| stamp_s(index, first.sample_period_s))
-        .collect();
-    folder.write_npy(report::TIME_SAMPLES.name, &time_s)
 }

@@ -93,8 +93,9 @@ pub(crate) fn put_mean(
         .insert("averaging_time_s", averaging_time_s);
 }
 
-/// Enters the smallest and the largest sample.
-pub(crate) fn put_extremes(values: &[f64], metrics: &mut ChannelMetrics) {
+/// Enters what every record has, whatever its motion: the smallest and the largest sample.
+pub(crate) fn put_extremes(record: &Record, metrics: &mut ChannelMetrics) {
+    let values = record.channel_deg_per_h;
     let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     metrics.put(&MINIMUM, Estimate::exact(smallest));
