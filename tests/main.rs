@@ -32,6 +32,7 @@ mod determinism;
 mod documents;
 mod encoder;
 mod extremes;
+mod fast_motion;
 mod filters;
 mod fpga_health;
 mod frequency_response;

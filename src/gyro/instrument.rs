@@ -89,9 +89,15 @@ impl Gyro {
     ///
     /// The word is stamped at the end of the segment.
     pub fn next_word(&mut self, segment: &MotionSegment) -> f64 {
+        self.next_word_over(std::slice::from_ref(segment))
+    }
+
+    /// Rate word of the output sample over which the gyro moves as `segments`, which share it equally,
+    /// deg/h: fast motion takes several, see [`cubics_per_word`](crate::signal::cubics_per_word).
+    pub fn next_word_over(&mut self, segments: &[MotionSegment]) -> f64 {
         match &mut self.model {
-            Model::Loop(model) => model.next_word(segment),
-            Model::Rate(model) => model.next_word(segment),
+            Model::Loop(model) => model.next_word_over(segments),
+            Model::Rate(model) => model.next_word_over(segments),
         }
     }
 

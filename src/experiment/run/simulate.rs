@@ -11,6 +11,7 @@ use crate::filters::FilterKind;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
 use crate::scenario::{FilterState, Scenario};
+use crate::signal::{MotionSegment, cubics_per_word};
 use crate::turntable::{InjectedSignal, Turntable, first_measured_index, step_indices};
 use crate::units::rad_per_s_to_deg_per_h;
 
@@ -239,6 +240,8 @@ struct Source {
     sample_period_s: f64,
     /// Rate words in one output sample.
     average_samples: u32,
+    /// Cubics in one rate word.
+    cubics: usize,
     /// Of each gyro.
     truth_deg_per_h: Vec<Vec<f64>>,
     encoder_rad: Option<Vec<f64>>,
@@ -287,13 +290,17 @@ impl Source {
         let sample_period_s = gyro::sample_period_s(&scenario.gyro);
         let word_period_s = gyro::word_period_s(&scenario.gyro);
         let warm_up = RecordLength::new(scenario, sample_period_s).warm_up;
-        let warm_up_s = table_warm_up_s(scenario, warm_up, word_period_s);
+        let sines = scenario.injected_sines();
+        let fastest_hz = scenario.measured_motion().frequency_max_hz();
+        let cubics = cubics_per_word(fastest_hz, word_period_s);
+        let part_s = word_period_s / count(cubics);
+        let parts = cubics * scenario.gyro.output.average_samples as usize;
+        let warm_up_s = table_warm_up_s(scenario, warm_up, (parts, part_s));
         let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
         Ok(Self {
-            table: Turntable::new(&scenario.turntable, warm_up_s, word_period_s),
-            injected: scenario
-                .injected_sines()
-                .map(|sines| InjectedSignal::new(&sines, warm_up_s, word_period_s)),
+            table: Turntable::new(&scenario.turntable, warm_up_s, part_s),
+            injected: sines.map(|sines| InjectedSignal::new(&sines, warm_up_s, part_s)),
+            cubics,
             encoder_rad: has_encoder.then(|| Vec::with_capacity(length.total())),
             gyros: Gyros::new(scenario, repeat)?,
             sample_period_s,
@@ -317,20 +324,24 @@ impl Source {
                 readings.extend(table.encoder_rad());
             }
         };
+        let cubics = self.cubics;
         let left = self.samples - truth[0].len();
-        let block = left.min((BLOCK_SAMPLES / average).max(1));
+        let block = left.min((BLOCK_SAMPLES / (average * cubics)).max(1));
         match &mut self.gyros {
             Gyros::Alone(gyro) => {
                 let mut samples = Vec::with_capacity(block);
+                let mut word = vec![MotionSegment::constant(0.0); cubics];
                 for _ in 0..block {
                     let mut end = 0.0;
                     samples.push(mean(average, || {
-                        let mut segment = table.next_segment();
-                        if let Some(signal) = &mut self.injected {
-                            segment = segment.plus(&signal.next_segment());
+                        for segment in &mut word {
+                            *segment = table.next_segment();
+                            if let Some(signal) = &mut self.injected {
+                                *segment = segment.plus(&signal.next_segment());
+                            }
+                            end = segment.rate_at(1.0);
                         }
-                        end = segment.rate_at(1.0);
-                        gyro.next_word(&segment)
+                        gyro.next_word_over(&word)
                     }));
                     truth[0].push(rad_per_s_to_deg_per_h(end));
                     read(table);
@@ -338,18 +349,20 @@ impl Source {
                 vec![samples]
             }
             Gyros::InCase(gyros) => {
-                let mut case = Vec::with_capacity(block * average);
+                let parts = average * cubics;
+                let mut case = Vec::with_capacity(block * parts);
                 for _ in 0..block {
-                    case.extend((0..average).map(|_| table.next_platform_segments()));
+                    case.extend((0..parts).map(|_| table.next_platform_segments()));
                     read(table);
                 }
                 let gyros = gyros.par_iter_mut().zip(truth).enumerate();
                 gyros
                     .map(|(axis, (gyro, truth))| {
-                        let ends = case.chunks_exact(average).map(|words| &words[average - 1]);
+                        let ends = case.chunks_exact(parts).map(|cubics| &cubics[parts - 1]);
                         let rates = ends.map(|segments| segments[axis].rate_at(1.0));
                         truth.extend(rates.map(rad_per_s_to_deg_per_h));
-                        let mut words = case.iter().map(|segments| gyro.next_word(segments));
+                        let words = case.chunks_exact(cubics);
+                        let mut words = words.map(|segments| gyro.next_word_over(segments));
                         let mut next = || words.next().unwrap_or(f64::NAN);
                         (0..block).map(|_| mean(average, &mut next)).collect()
                     })

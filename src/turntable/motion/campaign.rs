@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
+use super::checks::{MotionChecks, SAMPLES_PER_RAMP_MIN, TIME_SLACK};
 use super::course::{Course, Instant};
 use super::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use super::samples::first_measured_index;
@@ -208,7 +208,7 @@ impl CampaignConfig {
             ("change_s", self.change_s, 0.5, is_changed),
             ("remount_s", self.remount_s, 0.25, is_remounted),
         ] {
-            let shortest_s = SAMPLES_PER_CYCLE_MIN * checks.sample_period_s / share;
+            let shortest_s = SAMPLES_PER_RAMP_MIN * checks.sample_period_s / share;
             if is_used && pause_s < shortest_s {
                 let key = format!("turntable.calibration.{key}");
                 let message = format!(
