@@ -237,6 +237,7 @@ fn record<'a>(channel: &'a [f64], raw: &'a [f64], truth: &'a [f64]) -> Record<'a
         channel_deg_per_h: channel,
         raw_deg_per_h: raw,
         truth_deg_per_h: truth,
+        response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 3.000_1,

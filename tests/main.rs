@@ -59,6 +59,7 @@ mod library;
 mod metrics_intervals;
 mod metrics_records;
 mod metrology;
+mod moving_noise;
 mod mutation;
 mod noise_fit_coverage;
 mod output_folder;

@@ -191,6 +191,7 @@ fn a_general_motion_has_means_and_tracking_error_and_reasons_for_the_rest() {
         channel_deg_per_h: &raw,
         raw_deg_per_h: &raw,
         truth_deg_per_h: &truth,
+        response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: PERIOD_S,

@@ -12,7 +12,9 @@ use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
 use crate::scenario::{FilterState, Scenario};
 use crate::signal::{MotionSegment, cubics_per_word};
-use crate::turntable::{InjectedSignal, Turntable, first_measured_index, step_indices};
+use crate::turntable::{
+    InjectedSignal, MotionClass, ServoConfig, Turntable, first_measured_index, step_indices,
+};
 use crate::units::rad_per_s_to_deg_per_h;
 
 /// Samples of one block: long against the cost of handing it over, short against the caches.
@@ -35,6 +37,9 @@ pub(crate) struct GyroRecord {
     /// Inertial rate of the input axis, or of the case axis of an assembly, at each stamp, with the
     /// rate that an injected signal equals, deg/h; empty for a recorded log.
     pub(crate) truth_deg_per_h: Vec<f64>,
+    /// What the gyro makes of the motion without noise at each stamp, deg/h; absent where nothing moves,
+    /// of an assembly and of a recorded log.
+    pub(crate) response_deg_per_h: Option<Vec<f64>>,
     /// The gyro's rate words, deg/h.
     pub(crate) raw_deg_per_h: Vec<f64>,
     /// The same with the constant errors of the assembly taken out, where that is done, deg/h.
@@ -134,11 +139,13 @@ pub(crate) fn simulate(
         (raw, compensated) = next;
     }
     let faults = source.gyros.faults();
-    let records = source.truth_deg_per_h.into_iter().zip(records);
+    let truth = std::mem::take(&mut source.truth_deg_per_h);
+    let records = truth.into_iter().zip(records);
     Ok(Simulation {
         gyros: records
             .map(|(truth_deg_per_h, words)| GyroRecord {
                 truth_deg_per_h,
+                response_deg_per_h: source.response.take().map(|response| response.words),
                 raw_deg_per_h: words.raw,
                 compensated_deg_per_h: words.compensated,
             })
@@ -242,10 +249,37 @@ struct Source {
     average_samples: u32,
     /// Cubics in one rate word.
     cubics: usize,
+    /// The answer of a single gyro to the motion.
+    response: Option<Response>,
     /// Of each gyro.
     truth_deg_per_h: Vec<Vec<f64>>,
     encoder_rad: Option<Vec<f64>>,
     samples: usize,
+}
+
+/// The linear model of a gyro without noise, and its words, deg/h.
+struct Response {
+    gyro: Gyro,
+    words: Vec<f64>,
+}
+
+impl Response {
+    /// The answer of a gyro alone on a table that moves; nothing where there is none to tell from noise.
+    fn new(scenario: &Scenario, length: RecordLength) -> Option<Self> {
+        let is_still = match scenario.measured_motion().class() {
+            // A servo that is no closed form may shake at rest.
+            MotionClass::Rest => !matches!(scenario.turntable.servo, ServoConfig::DirectDrive(_)),
+            MotionClass::Campaign(_) => true,
+            _ => false,
+        };
+        if is_still || scenario.gyro.assembly.is_some() {
+            return None;
+        }
+        Some(Self {
+            gyro: Gyro::without_noise(&scenario.gyro).ok()?,
+            words: Vec::with_capacity(length.total()),
+        })
+    }
 }
 
 /// What stands on the table.
@@ -305,6 +339,7 @@ impl Source {
             gyros: Gyros::new(scenario, repeat)?,
             sample_period_s,
             average_samples: scenario.gyro.output.average_samples,
+            response: Response::new(scenario, length),
             truth_deg_per_h: scenario
                 .axis_prefixes()
                 .iter()
@@ -319,6 +354,7 @@ impl Source {
         let (table, truth) = (&mut self.table, &mut self.truth_deg_per_h);
         let average = self.average_samples as usize;
         let encoder = &mut self.encoder_rad;
+        let response = &mut self.response;
         let mut read = |table: &Turntable| {
             if let Some(readings) = encoder {
                 readings.extend(table.encoder_rad());
@@ -333,6 +369,7 @@ impl Source {
                 let mut word = vec![MotionSegment::constant(0.0); cubics];
                 for _ in 0..block {
                     let mut end = 0.0;
+                    let mut answer = 0.0;
                     samples.push(mean(average, || {
                         for segment in &mut word {
                             *segment = table.next_segment();
@@ -341,9 +378,15 @@ impl Source {
                             }
                             end = segment.rate_at(1.0);
                         }
+                        if let Some(response) = response {
+                            answer += response.gyro.next_word_over(&word);
+                        }
                         gyro.next_word_over(&word)
                     }));
                     truth[0].push(rad_per_s_to_deg_per_h(end));
+                    if let Some(response) = response {
+                        response.words.push(answer / count(average));
+                    }
                     read(table);
                 }
                 vec![samples]

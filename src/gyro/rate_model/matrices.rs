@@ -103,11 +103,13 @@ impl RateMatrices {
         mut normal: impl FnMut() -> f64,
     ) -> f64 {
         let mut draws = [0.0; JOINT];
-        // The output's draw stands last, behind unused states, whose rows are zero.
-        for draw in &mut draws[..self.state_count] {
-            *draw = noise_rad * normal();
+        if noise_rad > 0.0 {
+            // The output's draw stands last, behind unused states, whose rows are zero.
+            for draw in &mut draws[..self.state_count] {
+                *draw = noise_rad * normal();
+            }
+            draws[STATE] = noise_rad * normal();
         }
-        draws[STATE] = noise_rad * normal();
         let mut joint = [0.0; JOINT];
         for (row, value) in joint.iter_mut().enumerate() {
             let inputs = self.input.iter().zip(phases_rad);
