@@ -32,6 +32,7 @@ fn measured(encoder: EncoderConfig, frequency_hz: f64) -> ChannelMetrics {
         channel_deg_per_h: &gyro[4000..],
         raw_deg_per_h: &gyro[4000..],
         truth_deg_per_h: &truth[4000..],
+        response_deg_per_h: &[],
         encoder_rad: Some(&angles[4000..]),
         sample_period_s: PERIOD_S,
         first_stamp_s: 4001.0 * PERIOD_S,

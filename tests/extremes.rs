@@ -469,6 +469,7 @@ fn measuring_words_whose_squares_overflow_ends_with_reasons() {
             channel_deg_per_h: &values,
             raw_deg_per_h: &values,
             truth_deg_per_h: &truth,
+            response_deg_per_h: &[],
             encoder_rad: None,
             sample_period_s: 1e-3,
             first_stamp_s: 1e-3,

@@ -178,7 +178,7 @@ fn a_signal_needs_a_table_at_rest_one_gyro_and_sines_that_can_be_sampled() {
     for (rest, tone_hz, amplitude) in [
         (swing, 200.0, "0.1"),
         ("[gyro.assembly]\n", 200.0, "0.1"),
-        ("", 9000.0, "0.1"),
+        ("", 17000.0, "0.1"),
         ("", 2.0, "0.1"),
         ("", 7000.0, "500.0"),
     ] {
@@ -324,7 +324,7 @@ fn the_shipped_signal_bends_the_loop_and_is_rectified_as_its_gates_say() {
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let run = summary(&folder.join("out"), "injected-bandwidth");
     let bandwidth_hz = field(&run, "raw.bandwidth_hz", "value");
-    assert_close(bandwidth_hz, bandwidth, 0.0, 0.15);
+    assert_close(bandwidth_hz, bandwidth, 0.0, 0.03);
     let mean_error = field(&run, "raw.mean_error_deg_per_h", "value");
     assert_close(mean_error, mean, 0.0, 0.01);
 }

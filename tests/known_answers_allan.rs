@@ -301,6 +301,7 @@ fn slow_noise_is_fitted_and_its_intervals_cover_the_truth() {
             channel_deg_per_h: &raw,
             raw_deg_per_h: &raw,
             truth_deg_per_h: &zero,
+            response_deg_per_h: &[],
             encoder_rad: None,
             sample_period_s: 1.0,
             first_stamp_s: 0.0,

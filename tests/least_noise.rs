@@ -237,3 +237,38 @@ source = "a paper"
     write(folder.path(), "beside.toml", &gate);
     assert_eq!(code(&fogbench(folder.path(), &set)), 2);
 }
+
+#[test]
+fn the_dc_gain_of_given_weights_leaves_their_start_up_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "name = \"f\"\nduration_s = 1.0\nwarm_up_s = 0.0\n[turntable.static]\n\
+                [[filter]]\nname = \"low\"\n[filter.butterworth]\ncutoff_hz = 30.0\n\
+                [[filter]]\nname = \"mean\"\n[filter.moving_average]\ntaps = 400\n";
+    write(folder.path(), "f.toml", text);
+    let words: String = white(11, 8000, 20.0)
+        .iter()
+        .map(|word| format!("{word}\n"))
+        .collect();
+    write(folder.path(), "log.csv", &words);
+    let arguments = [
+        "filter",
+        "log.csv",
+        "--unit",
+        "deg/h",
+        "--rate-hz",
+        "8000",
+        "--filters",
+        "f.toml",
+        "--format",
+        "json",
+    ];
+    let output = fogbench(folder.path(), &arguments);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    for channel in ["low", "mean"] {
+        for metric in ["dc_gain", "dc_gain_adapted"] {
+            let gain = &report["channels"][channel][metric]["value"];
+            assert_close(gain.as_f64().unwrap(), 1.0, 1e-12, 0.0);
+        }
+    }
+}

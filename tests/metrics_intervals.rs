@@ -40,6 +40,7 @@ fn measured(values: &[f64], period_s: f64) -> ChannelMetrics {
         channel_deg_per_h: values,
         raw_deg_per_h: values,
         truth_deg_per_h: &truth,
+        response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: period_s,
         first_stamp_s: 0.0,

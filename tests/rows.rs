@@ -191,6 +191,7 @@ fn measured(case: &Case, seed: u64) -> [ChannelMetrics; 2] {
             channel_deg_per_h: channel,
             raw_deg_per_h: &raw,
             truth_deg_per_h: &case.truth,
+            response_deg_per_h: &[],
             encoder_rad: Some(&angles),
             sample_period_s: PERIOD_S,
             first_stamp_s: PERIOD_S,

@@ -9,7 +9,7 @@ use crate::experiment::run::{RateTwins, RecordLength};
 use crate::filters::hardware::{HardwareFilter, HealthSummary, PipelineSettings, PipelineTiming};
 use crate::filters::{Divergence, Filter, FilterKind, Output};
 use crate::metrics::RateGain;
-use crate::signal::{FilterShape, WeightRule};
+use crate::signal::{FilterShape, Section, WeightRule};
 
 /// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
 pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
@@ -161,15 +161,17 @@ impl ChannelFilter {
     ) -> Self {
         let arithmetic = || Arithmetic::new(kind, length, sample_period_s);
         let filter = arithmetic();
+        let shape = filter.as_filter().shape();
+        let adapts = matches!(shape.rule, WeightRule::Adaptive { .. });
         Self {
             name,
             settings: kind.settings().hardware(),
-            shape: filter.as_filter().shape(),
+            shape,
             weight_totals: std::array::from_fn(|_| vec![0.0; filter.as_filter().weights().len()]),
             weight_counts: [0; WEIGHT_BLOCKS],
             measured_samples: length.measured.max(1),
             filter,
-            twin: Some(arithmetic()),
+            twin: adapts.then(arithmetic),
             rate_twins: rate_gain.then(|| RateTwins::new(length, arithmetic)),
             output_deg_per_h: Vec::with_capacity(length.total()),
             warm_up_samples: length.warm_up,
@@ -252,7 +254,12 @@ impl ChannelFilter {
         let words = match self.failure {
             Some(divergence) => Err(divergence),
             None => Ok(FilterWords {
-                dc_gain: mean(self.weight_sum_total),
+                dc_gain: match &self.shape.rule {
+                    // Given weights have the gain that they settle on; their sum starts from nothing.
+                    WeightRule::Fixed(weights) => Some(weights.iter().sum()),
+                    WeightRule::Sections(sections) => Some(settled_gain(sections)),
+                    WeightRule::Adaptive { .. } => mean(self.weight_sum_total),
+                },
                 rate_gains: self
                     .rate_twins
                     .as_ref()
@@ -268,9 +275,13 @@ impl ChannelFilter {
                     WeightRule::Adaptive { .. } => self.block_weights(),
                     WeightRule::Fixed(_) | WeightRule::Sections(_) => Vec::new(),
                 },
-                dc_gain_adapted: self.twin.as_ref().and_then(|_| {
-                    mean(self.twin_difference_total).map(|gain| gain / ADDED_RATE_DEG_PER_H)
-                }),
+                dc_gain_adapted: match &self.shape.rule {
+                    WeightRule::Fixed(weights) => Some(weights.iter().sum()),
+                    WeightRule::Sections(sections) => Some(settled_gain(sections)),
+                    WeightRule::Adaptive { .. } => self.twin.as_ref().and_then(|_| {
+                        mean(self.twin_difference_total).map(|gain| gain / ADDED_RATE_DEG_PER_H)
+                    }),
+                },
                 output_deg_per_h: self.output_deg_per_h,
             }),
         };
@@ -308,4 +319,15 @@ impl ChannelFilter {
             wind_up: filter.wind_up().map(|warning| warning.to_string()),
         })
     }
+}
+
+/// Gain of a cascade for a rate that never changes.
+fn settled_gain(sections: &[Section]) -> f64 {
+    sections
+        .iter()
+        .map(|section| {
+            let [a1, a2] = section.denominator;
+            section.numerator.iter().sum::<f64>() / (1.0 + a1 + a2)
+        })
+        .product()
 }

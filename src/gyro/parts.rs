@@ -144,3 +144,9 @@ pub(super) fn half_period_s(config: &GyroConfig) -> f64 {
     let coil = Coil::new(&config.coil, &config.source);
     coil.transit_time_s * (1.0 + config.modulator.half_period_mismatch)
 }
+
+/// The cubic that an instant of a sample falls into, and its normalised time there.
+pub(super) fn place_in_cubics(instant: usize, instants: usize, cubics: usize) -> (usize, f64) {
+    let within = (instant * cubics % instants) as f64;
+    (instant * cubics / instants, within / instants as f64)
+}

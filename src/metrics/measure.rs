@@ -46,7 +46,8 @@ const SPECTRUM_POINTS_MAX: usize = 400;
 /// knows the hardware. Intervals are 95 %.
 ///
 /// # Panics
-/// If the slices of the record differ in length, an empty truth excepted.
+/// If the slices of the record differ in length, an empty truth excepted, or the response of the gyro is
+/// shorter than the record without being empty.
 ///
 /// ```
 /// use fogbench::metrics::catalogue::{DC_GAIN, MEAN, NOISE_STD};
@@ -57,6 +58,7 @@ const SPECTRUM_POINTS_MAX: usize = 400;
 ///     channel_deg_per_h: &words,
 ///     raw_deg_per_h: &words,
 ///     truth_deg_per_h: &[],
+///     response_deg_per_h: &[],
 ///     encoder_rad: None,
 ///     sample_period_s: 0.01,
 ///     first_stamp_s: 0.01,
@@ -85,6 +87,11 @@ pub fn measure(
         record.raw_deg_per_h.len() == samples && truths == samples,
         "channel, raw and truth hold {samples}, {} and {truths} samples",
         record.raw_deg_per_h.len()
+    );
+    let answers = record.response_deg_per_h.len();
+    assert!(
+        answers == 0 || answers >= samples,
+        "channel and response of the gyro hold {samples} and {answers} samples"
     );
     let readings = record.encoder_rad.map_or(samples, <[f64]>::len);
     assert!(

@@ -15,11 +15,34 @@ pub use calibration::{
 /// A cubic in normalised time `u`, 0 at the start of the interval and 1 at its end:
 /// `rate(u) = c0 + c1 u + c2 u^2 + c3 u^3`, inertial rate about the input axis (table motion plus
 /// the projection of Earth rate), rad/s. For a sine of angular frequency w the cubic through the
-/// end rates and slopes errs by at most `(w T)^4 / 384` of the amplitude: 2e-10 at 10 Hz, 4 kHz.
+/// end rates and slopes errs by at most `(w T)^4 / 384` of the amplitude, and has `(w T)^4 / 720` less of
+/// it: 2e-10 at 10 Hz, 4 kHz. Faster motion comes as several cubics of equal length a word, see
+/// [`cubics_per_word`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionSegment {
     /// Polynomial coefficients `c0..c3`, rad/s.
     pub rate_rad_per_s: [f64; 4],
+}
+
+/// Part of the amplitude of a sine that cubics may lose.
+const CUBIC_LOSS_MAX: f64 = 5e-6;
+
+/// Cubics into which a rate word is to be split, so that the fastest sine of the motion keeps its
+/// amplitude to 5 ppm: one up to a 25th of the word rate, seven at a quarter of it.
+///
+/// Source: derived; the cubic through both ends of a part of length h has the mean gain
+/// `1 - (w h)^4 / 720`, and its images about the rate of the parts are of the same order.
+#[must_use]
+pub fn cubics_per_word(frequency_hz: f64, word_period_s: f64) -> usize {
+    let angle = std::f64::consts::TAU * frequency_hz * word_period_s;
+    let most = (720.0 * CUBIC_LOSS_MAX).sqrt().sqrt();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small whole number; the cast saturates"
+    )]
+    let cubics = (angle / most).ceil().max(1.0) as usize;
+    cubics
 }
 
 impl MotionSegment {

@@ -144,6 +144,7 @@ pub fn try_log(
     let length = record_length(&log, settings)?;
     let record = GyroRecord {
         truth_deg_per_h: Vec::new(),
+        response_deg_per_h: None,
         raw_deg_per_h: std::mem::take(&mut log.rate_deg_per_h),
         compensated_deg_per_h: compensated,
     };

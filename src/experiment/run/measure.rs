@@ -117,6 +117,7 @@ impl Cut<'_> {
             raw_deg_per_h: &input_deg_per_h[first..],
             // A recorded log has none.
             truth_deg_per_h: self.record.truth_deg_per_h.get(first..).unwrap_or(&[]),
+            response_deg_per_h: self.record.response_deg_per_h.as_deref().unwrap_or(&[]),
             encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
             sample_period_s: self.sample_period_s,
             first_stamp_s: stamp_s(first as u64, self.sample_period_s),

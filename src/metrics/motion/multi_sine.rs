@@ -13,7 +13,7 @@ use crate::metrics::key::curve::CurveKey;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
-use crate::metrics::noise::truth_response::{reach, remove_response};
+use crate::metrics::noise::truth_response::{Shown, shown};
 use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::sine::tones::{
     RESPONSE_COLUMNS, ToneClock, ToneFits, ToneResponse, fit_tones, put_responses,
@@ -54,6 +54,20 @@ const CHANNEL: usize = 0;
 const TRUTH: usize = 1;
 const RAW: usize = 2;
 
+/// What channel and raw show of the true rate, and the place of the first in the joint fit.
+struct Motion {
+    channel: Option<Shown>,
+    raw: Option<Shown>,
+    first: usize,
+}
+
+impl Motion {
+    fn series(&self) -> impl Iterator<Item = &[f64]> {
+        let shown = self.channel.iter().chain(&self.raw);
+        shown.map(|shown| shown.series.as_slice())
+    }
+}
+
 /// Measures everything a record of several sines supports.
 ///
 /// # Errors
@@ -73,6 +87,12 @@ pub(crate) fn measure_multi_sine(
     if filter.is_some() {
         series.push(record.raw_deg_per_h);
     }
+    let motion = Motion {
+        channel: shown(record, filter),
+        raw: filter.and_then(|_| shown(record, None)),
+        first: series.len(),
+    };
+    series.extend(motion.series());
     let fits = fit_tones(&series, &clock)?;
     let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
     let truth_offset = fits.offset(TRUTH).value;
@@ -105,7 +125,7 @@ pub(crate) fn measure_multi_sine(
         Err(reason) => metrics.miss(&BANDWIDTH, reason),
     }
     measure_tracking(record, metrics);
-    measure_noise(record, &fits, filter, metrics);
+    measure_noise(record, &fits, &motion, filter, metrics);
     Ok(())
 }
 
@@ -161,17 +181,20 @@ fn measure_tracking(record: &Record, metrics: &mut ChannelMetrics) {
 fn measure_noise(
     record: &Record,
     fits: &ToneFits,
+    motion: &Motion,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
     let tones = fits.response(CHANNEL, TRUTH).len();
-    let motion = fits.residuals(TRUTH, record.truth_deg_per_h);
-    let products = |series: usize, values: &[f64], of: Option<&FilterFacts>| {
+    let products = |series: usize, values: &[f64], shown: Option<&Shown>, place: usize| {
         let mut residuals = fits.residuals(series, values);
-        remove_response(&mut residuals, &motion, reach(of));
+        if let Some(shown) = shown {
+            shown.remove_from(&mut residuals, &fits.residuals(place, &shown.series));
+        }
         LaggedProducts::new(&residuals, 0.0, LAGS_MIN, RATIO_BLOCKS)
     };
-    let channel = products(CHANNEL, record.channel_deg_per_h, filter);
+    let own = motion.channel.as_ref();
+    let channel = products(CHANNEL, record.channel_deg_per_h, own, motion.first);
     put_noise_std(
         &channel,
         (record.channel_deg_per_h.len(), 2 * tones + 1),
@@ -181,7 +204,8 @@ fn measure_noise(
     if filter.is_some() {
         let raw = record.raw_deg_per_h;
         let level = raw.iter().fold(0.0_f64, |max, rate| max.max(rate.abs()));
-        put_noise_gain(&channel, &products(RAW, raw, None), level, metrics);
+        let of_raw = products(RAW, raw, motion.raw.as_ref(), motion.first + 1);
+        put_noise_gain(&channel, &of_raw, level, metrics);
         let offset = fits.offset(RAW);
         if let Some(reason) = ratio_of_means_lack(&offset) {
             metrics.miss(&MEAN_RATIO, reason);

@@ -46,7 +46,7 @@ pub(crate) fn measure_steady(
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
-    let still = without_motion(record, filter);
+    let still = without_motion(record, 0, filter);
     let record = &still.as_ref().map_or(*record, |(channel, raw)| Record {
         channel_deg_per_h: channel,
         raw_deg_per_h: raw,

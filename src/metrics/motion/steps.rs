@@ -10,6 +10,7 @@ use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Needs, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
+use crate::metrics::noise::truth_response::without_motion;
 use crate::metrics::record::{FilterFacts, Record, SAMPLES_MIN};
 use crate::metrics::steps::settling::{SETTLING_TIME, settling, tail_start};
 use crate::metrics::steps::shape::{OVERSHOOT, RISE_TIME, Step, put_step_shape};
@@ -70,11 +71,15 @@ pub(crate) fn measure_steps(
     if values.len() - start < SAMPLES_MIN {
         return;
     }
-    let products = |series: &[f64]| {
-        let tail = &series[start..];
-        LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS)
-    };
-    let channel = products(values);
+    let products =
+        |tail: &[f64]| LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS);
+    // The table may shake at its rate.
+    let still = without_motion(record, start, filter);
+    let (own_tail, raw_tail) = still.as_ref().map_or_else(
+        || (&values[start..], &record.raw_deg_per_h[start..]),
+        |(own, raw)| (own.as_slice(), raw.as_slice()),
+    );
+    let channel = products(own_tail);
     put_noise_std(
         &channel,
         (values.len() - start, 1),
@@ -83,7 +88,7 @@ pub(crate) fn measure_steps(
     );
     if let Some(facts) = filter {
         let level = interval::mean(&record.raw_deg_per_h[start..]).abs();
-        put_noise_gain(&channel, &products(record.raw_deg_per_h), level, metrics);
+        put_noise_gain(&channel, &products(raw_tail), level, metrics);
         measure_mean_ratio(record, metrics);
         let own = equal_block_means(&values[start..], RATIO_BLOCKS);
         let raw = equal_block_means(&record.raw_deg_per_h[start..], RATIO_BLOCKS);

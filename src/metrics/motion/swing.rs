@@ -12,7 +12,7 @@ use crate::metrics::estimate::value::{Estimate, Metric};
 use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
-use crate::metrics::noise::truth_response::{reach, remove_response};
+use crate::metrics::noise::truth_response::shown;
 use crate::metrics::pipeline::LATENCY;
 use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::sine::correlation::correlation_delay_s;
@@ -168,11 +168,13 @@ pub(crate) fn measure_swing(
         fits.channel.harmonic_distortion_percent(&residuals),
     );
     let blocks = fits.channel.block_count();
-    let motion = fits.truth.as_ref().zip(record.truth());
-    let motion = motion.map_or_else(Vec::new, |(fit, truth)| fit.residuals(truth));
     // The table's own harmonics are known, and no noise.
     let noise = |mut residuals: Vec<f64>, of: Option<&FilterFacts>| {
-        remove_response(&mut residuals, &motion, reach(of));
+        if let Some(shown) = shown(record, of)
+            && let Ok(fit) = fit_swing(&shown.series, &clock)
+        {
+            shown.remove_from(&mut residuals, &fit.residuals(&shown.series));
+        }
         LaggedProducts::new(&residuals, 0.0, lags, blocks)
     };
     let channel = noise(residuals, filter);

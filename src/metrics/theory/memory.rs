@@ -38,22 +38,36 @@ fn memory_of(response: &[f64]) -> usize {
     usize::from(!response.is_empty())
 }
 
+/// Output of a cascade that starts empty.
+pub(crate) fn cascade(sections: &[Section], input: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut states = vec![[0.0; 2]; sections.len()];
+    input
+        .map(|value| step(sections, &mut states, value))
+        .collect()
+}
+
+/// One sample through a cascade; transposed direct form II, two states a section.
+fn step(sections: &[Section], states: &mut [[f64; 2]], input: f64) -> f64 {
+    let mut value = input;
+    for (section, state) in sections.iter().zip(states) {
+        let [b0, b1, b2] = section.numerator;
+        let [a1, a2] = section.denominator;
+        let output = b0 * value + state[0];
+        state[0] = b1 * value - a1 * output + state[1];
+        state[1] = b2 * value - a2 * output;
+        value = output;
+    }
+    value
+}
+
 /// Impulse response of a cascade until it has died out.
 fn impulse_response(sections: &[Section]) -> Vec<f64> {
-    // Transposed direct form II: two states a section.
     let mut states = vec![[0.0; 2]; sections.len()];
     let mut response = Vec::new();
     let (mut moment, mut of_half, mut half_end) = (0.0, 0.0, 64);
     while response.len() < RESPONSE_MAX {
-        let mut value = if response.is_empty() { 1.0 } else { 0.0 };
-        for (section, state) in sections.iter().zip(&mut states) {
-            let [b0, b1, b2] = section.numerator;
-            let [a1, a2] = section.denominator;
-            let output = b0 * value + state[0];
-            state[0] = b1 * value - a1 * output + state[1];
-            state[1] = b2 * value - a2 * output;
-            value = output;
-        }
+        let impulse = if response.is_empty() { 1.0 } else { 0.0 };
+        let value = step(sections, &mut states, impulse);
         of_half += response.len() as f64 * value.abs();
         response.push(value);
         if response.len() == half_end {

@@ -1,7 +1,10 @@
 //! Checks of a motion against the record: what all kinds share.
 
 /// Fewest output samples per cycle of a swing.
-pub(super) const SAMPLES_PER_CYCLE_MIN: f64 = 8.0;
+pub(super) const SAMPLES_PER_CYCLE_MIN: f64 = 4.0;
+
+/// Fewest output samples of a ramp between two rates.
+pub(super) const SAMPLES_PER_RAMP_MIN: f64 = 8.0;
 
 /// Shortest ramp, s: 0 is a jump, and between the two lie lengths whose reciprocals are no numbers.
 const RAMP_MIN_S: f64 = 1e-9;
@@ -67,14 +70,14 @@ impl MotionChecks<'_> {
         }
     }
 
-    /// Refuses a frequency that the cubics between samples cannot follow.
+    /// Refuses a frequency that the output samples cannot show.
     pub(super) fn frequency(&mut self, key: &str, frequency_hz: f64) {
         let output_rate_hz = 1.0 / self.sample_period_s;
         let frequency_hz_max = output_rate_hz / SAMPLES_PER_CYCLE_MIN;
         if frequency_hz > frequency_hz_max {
             let message = format!(
                 "{key} = {frequency_hz:?} Hz is too fast: allowed up to \
-                 {frequency_hz_max:.6} Hz, 8 samples a cycle at the output rate of {output_rate_hz:.6} Hz"
+                 {frequency_hz_max:.6} Hz, {SAMPLES_PER_CYCLE_MIN} samples a cycle at the output rate of {output_rate_hz:.6} Hz"
             );
             self.complain(key, message);
         }

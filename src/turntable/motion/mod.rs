@@ -102,6 +102,12 @@ impl MotionConfig {
         self.kind().rate_max_rad_per_s()
     }
 
+    /// Highest frequency of the sines that the command is made of, Hz; 0 where it is made of none.
+    #[must_use]
+    pub fn frequency_max_hz(&self) -> f64 {
+        self.kind().frequency_max_hz()
+    }
+
     /// Largest jump and acceleration of the command.
     ///
     /// # Panics

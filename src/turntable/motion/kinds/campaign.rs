@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::declare::table;
-use crate::turntable::motion::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN, TIME_SLACK};
+use crate::turntable::motion::checks::{MotionChecks, SAMPLES_PER_RAMP_MIN, TIME_SLACK};
 use crate::turntable::motion::course::{Course, Instant};
 use crate::turntable::motion::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use crate::turntable::motion::samples::first_measured_index;
@@ -208,7 +208,7 @@ impl CampaignConfig {
             ("change_s", self.change_s, 0.5, is_changed),
             ("remount_s", self.remount_s, 0.25, is_remounted),
         ] {
-            let shortest_s = SAMPLES_PER_CYCLE_MIN * checks.sample_period_s / share;
+            let shortest_s = SAMPLES_PER_RAMP_MIN * checks.sample_period_s / share;
             if is_used && pause_s < shortest_s {
                 let key = format!("turntable.calibration.{key}");
                 let message = format!(

@@ -24,7 +24,7 @@ table! {
         angle_amplitude_deg: Option<f64>, example 0.01, in 1e-9..=360.0, "deg";
         /// Frequency through the warm-up and at the start of the sweep.
         start_frequency_hz: f64, example 1.0, in 1e-6..=1000.0, "Hz";
-        /// Frequency at the end of the sweep; a cycle must span at least 8 output samples.
+        /// Frequency at the end of the sweep; a cycle must span at least 4 output samples.
         end_frequency_hz: f64, example 50.0, in 1e-6..=1000.0, "Hz";
         /// Length of the sweep; it must fit into the duration.
         sweep_s: f64, example 20.0, in 1e-6..=1e7, "s";
@@ -51,6 +51,10 @@ words! {
 impl Motion for ChirpConfig {
     fn class(&self) -> MotionClass<'_> {
         MotionClass::General
+    }
+
+    fn frequency_max_hz(&self) -> f64 {
+        frequency_max(self)
     }
 
     fn rate_max_rad_per_s(&self) -> f64 {

@@ -14,7 +14,7 @@ use crate::vocabulary::PhaseRule;
 table! {
     /// Several sines of rate at once, for a frequency response from one record.
     pub struct MultiSineConfig {
-        /// Frequencies, ascending, at most 64; a cycle must span at least 8 output samples, and the record
+        /// Frequencies, ascending, at most 64; a cycle must span at least 4 output samples, and the record
         /// three cycles of the lowest and one of each difference.
         frequencies_hz: Vec<f64>, example [5.0, 20.0, 80.0, 320.0], in 1e-6..=100_000.0, "Hz";
         /// Rate amplitudes: one for all frequencies, or one for each.
@@ -140,6 +140,10 @@ impl Motion for MultiSineConfig {
 
     fn rate_max_rad_per_s(&self) -> f64 {
         self.amplitudes_rad_per_s().sum()
+    }
+
+    fn frequency_max_hz(&self) -> f64 {
+        self.frequencies_hz.iter().copied().fold(0.0, f64::max)
     }
 
     fn extremes(&self, surroundings: Surroundings) -> CommandExtremes {

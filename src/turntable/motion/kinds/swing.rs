@@ -20,7 +20,7 @@ table! {
         rate_amplitude_deg_per_s: Option<f64>, example 1.0, in 1e-9..=2000.0, "deg/s";
         /// Angle amplitude; the rate amplitude is 2 pi f times this.
         angle_amplitude_deg: Option<f64>, example 1.0, in 1e-9..=360.0, "deg";
-        /// Swing frequency; a cycle must span at least 8 output samples.
+        /// Swing frequency; a cycle must span at least 4 output samples.
         frequency_hz: f64, example 5.0, in 1e-6..=1000.0, "Hz";
         /// Raised-cosine start of the motion, inside the warm-up. Source of the default: assumed.
         soft_start_s: f64 = 1.0, in 0.0..=1.0, "s";
@@ -59,6 +59,10 @@ impl Motion for SwingConfig {
 
     fn rate_max_rad_per_s(&self) -> f64 {
         self.rate_amplitude_rad_per_s().abs()
+    }
+
+    fn frequency_max_hz(&self) -> f64 {
+        self.frequency_hz
     }
 
     fn extremes(&self, _: Surroundings) -> CommandExtremes {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::declare::table;
-use crate::turntable::motion::checks::{MotionChecks, SAMPLES_PER_CYCLE_MIN};
+use crate::turntable::motion::checks::{MotionChecks, SAMPLES_PER_RAMP_MIN};
 use crate::turntable::motion::course::{Course, Instant};
 use crate::turntable::motion::kind::{CommandExtremes, Motion, MotionClass, Surroundings};
 use crate::turntable::motion::samples::first_measured_index;
@@ -70,7 +70,7 @@ impl Motion for TrapezoidConfig {
             checks.complain("turntable.trapezoid.rate_deg_per_s", message.to_owned());
             return;
         }
-        let acceleration_max = rate / (SAMPLES_PER_CYCLE_MIN * checks.sample_period_s);
+        let acceleration_max = rate / (SAMPLES_PER_RAMP_MIN * checks.sample_period_s);
         if acceleration > acceleration_max {
             let message = format!(
                 "turntable.trapezoid.acceleration_deg_per_s2 = {acceleration:?} deg/s^2 is too \
