@@ -54,11 +54,11 @@ pub(crate) fn pool_allan(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics
 fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<NoiseFit> {
     let points = pooled_points(repeats, &ALLAN_FIT)?;
     let count = repeats.len() as f64;
-    let range = FIT_METRICS.into_iter().find_map(|key| {
-        let fields = &pooled.get(key)?.fields;
+    let range = repeats.iter().find_map(|repeat| {
+        let sheet = repeat.noise_fit.as_ref()?;
         Some(FitRange {
-            tau_min_s: *fields.get("tau_min_s")?,
-            tau_max_s: *fields.get("tau_max_s")?,
+            tau_min_s: sheet.number("tau_min_s")?,
+            tau_max_s: sheet.number("tau_max_s")?,
         })
     });
     let Some(Ok(fit)) = range.map(|range| fit_pooled_noise(&points, range, count)) else {
