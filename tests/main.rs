@@ -58,6 +58,7 @@ mod metrics_records;
 mod metrology;
 mod mutation;
 mod noise_fit_coverage;
+mod noise_fit_judged;
 mod output_folder;
 mod packages;
 mod patent_calibration;

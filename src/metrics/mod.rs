@@ -47,8 +47,10 @@ mod verdict;
 pub use allan::coefficients::{NoiseCoefficients, mixed_degrees_of_freedom};
 pub use allan::covariance::FLICKER_ALLAN_VARIANCE;
 pub use allan::judge::goodness::Goodness;
+pub use allan::least_squares::correlated_allan_variance;
 pub use allan::noise_fit::{
-    CorrelatedNoise, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise, fit_pooled_noise,
+    CorrelatedNoise, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Sine, Term, fit_noise,
+    fit_pooled_noise, sine_allan_variance,
 };
 pub use allan::noise_identification::PowerLaw;
 pub use allan::overlapping::{

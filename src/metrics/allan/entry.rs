@@ -1,6 +1,7 @@
 //! Entering a noise fit into a channel's table: coefficients, or the reasons for their absence.
 
 use super::curves::put_fit_curve;
+use super::extra_terms::{add_to_sheet, put_extra_terms};
 use super::noise_fit::{
     ANGLE_RANDOM_WALK, BIAS_INSTABILITY, NoiseFit, QUANTISATION, RATE_RAMP, RATE_RANDOM_WALK, Term,
 };
@@ -62,6 +63,7 @@ pub(crate) fn enter_fit(
             metrics.miss(key, unbounded(key, fit));
         }
     }
+    put_extra_terms(fit, metrics);
     metrics.noise_fit = Some(sheet(fit));
     put_fit_curve(points, Some(fit), metrics);
 }
@@ -153,7 +155,7 @@ fn sheet(fit: &NoiseFit) -> FitSheet {
         ("tau_min_s", fit.tau_range_s[0]),
         ("tau_max_s", fit.tau_range_s[1]),
     ];
-    FitSheet {
+    let mut sheet = FitSheet {
         is_adequate: goodness.is_adequate(),
         numbers: numbers
             .into_iter()
@@ -161,5 +163,7 @@ fn sheet(fit: &NoiseFit) -> FitSheet {
             .collect(),
         missed_tau_s: goodness.missed_tau_s.clone(),
         terms: terms(fit).into_iter().map(record).collect(),
-    }
+    };
+    add_to_sheet(fit, &mut sheet);
+    sheet
 }

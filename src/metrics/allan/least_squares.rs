@@ -36,12 +36,13 @@ pub(crate) fn basis(term: usize, tau_s: f64) -> f64 {
     }
 }
 
-/// Allan variance of exponentially correlated noise of unit variance.
+/// Allan variance of exponentially correlated (Gauss-Markov) noise of unit variance.
 ///
 /// `(2 T/tau) (1 - (T / 2 tau) (3 - 4 exp(-tau/T) + exp(-2 tau/T)))`.
 ///
 /// Source: IEEE Std 952-1997 annex C.
-pub(crate) fn correlated_variance(tau: f64, correlation_time: f64) -> f64 {
+#[must_use]
+pub fn correlated_allan_variance(tau: f64, correlation_time: f64) -> f64 {
     let x = tau / correlation_time;
     if x < 0.01 {
         return 2.0 * x / 3.0 * (1.0 - 0.75 * x * (1.0 - 7.0 * x / 15.0));
@@ -71,7 +72,7 @@ impl Mix {
 /// Allan variance of a unit coefficient.
 pub(crate) fn column(term: usize, tau: f64, correlation_time: Option<f64>) -> f64 {
     match (term, correlation_time) {
-        (CORRELATED, Some(time)) => correlated_variance(tau, time),
+        (CORRELATED, Some(time)) => correlated_allan_variance(tau, time),
         (CORRELATED, None) => 0.0,
         _ => basis(term, tau),
     }
@@ -450,12 +451,20 @@ mod tests {
             assert!((got / wanted - 1.0).abs() < rtol, "{got} {wanted}");
         };
         // K^2 = 2 / T, N^2 = 2 T; the series meets the closed form.
-        close(correlated_variance(1e-3, 1.0), 2e-3 / 3.0, 1e-3);
-        close(correlated_variance(1e4, 1.0), 2e-4, 2e-4);
+        close(correlated_allan_variance(1e-3, 1.0), 2e-3 / 3.0, 1e-3);
+        close(correlated_allan_variance(1e4, 1.0), 2e-4, 2e-4);
         let closed =
             |x: f64| 2.0 / x * (1.0 - (3.0 - 4.0 * (-x).exp() + (-2.0 * x).exp()) / (2.0 * x));
-        close(correlated_variance(0.00999, 1.0), closed(0.00999), 1e-6);
+        close(
+            correlated_allan_variance(0.00999, 1.0),
+            closed(0.00999),
+            1e-6,
+        );
         // Its largest deviation, 0.437 q sqrt(T) at 1.89 T, q^2 T = 2.
-        close(correlated_variance(1.89, 1.0), 2.0 * 0.437 * 0.437, 2e-3);
+        close(
+            correlated_allan_variance(1.89, 1.0),
+            2.0 * 0.437 * 0.437,
+            2e-3,
+        );
     }
 }

@@ -6,6 +6,7 @@ pub(super) mod combined_freedom;
 pub(super) mod covariance;
 pub(super) mod curves;
 pub(super) mod entry;
+pub(super) mod extra_terms;
 pub(super) mod judge;
 pub(super) mod least_squares;
 mod limits;

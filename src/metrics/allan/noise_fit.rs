@@ -158,6 +158,37 @@ pub struct CorrelatedNoise {
     pub correlation_time_s: Estimate,
 }
 
+/// A sine in the words.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Sine {
+    /// Its amplitude, deg/h.
+    pub amplitude_deg_per_h: Estimate,
+    /// Its period, s.
+    pub period_s: Estimate,
+    /// Independent frequencies among which it was found.
+    pub frequencies_tried: usize,
+}
+
+impl Sine {
+    /// Allan variance, (deg/h)^2.
+    #[must_use]
+    pub fn allan_variance(&self, tau_s: f64) -> f64 {
+        let amplitude = self.amplitude_deg_per_h.value;
+        amplitude * amplitude * sine_allan_variance(tau_s, self.period_s.value)
+    }
+}
+
+/// Allan variance of a sine of unit amplitude: `(sin^2(pi tau/P) / (pi tau/P))^2`.
+///
+/// Source: IEEE Std 952-1997 annex C.
+#[must_use]
+pub fn sine_allan_variance(tau_s: f64, period_s: f64) -> f64 {
+    let turn = std::f64::consts::PI * tau_s / period_s;
+    let sine = turn.sin();
+    (sine * sine / turn).powi(2)
+}
+
 /// A fitted noise model.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -174,6 +205,8 @@ pub struct NoiseFit {
     pub rate_ramp_deg_per_h_per_s: Term,
     /// Exponentially correlated noise, where the curve asks for it.
     pub correlated: Option<CorrelatedNoise>,
+    /// A sine that was taken out of the words before the rest was fitted.
+    pub sine: Option<Sine>,
     /// Whether the curve asks for a ramp; without one the others are fitted as if there were none.
     pub has_ramp: bool,
     /// How well the terms describe the curve.
@@ -234,13 +267,39 @@ impl NoiseFit {
     pub fn shows_white_noise(&self) -> bool {
         self.goodness.is_adequate()
             && self.correlated.is_none()
+            && self.sine.is_none()
             && self.settled.squares[WHITE] > 0.0
     }
 
     /// Fitted Allan deviation, deg/h, with its signed terms; never below zero.
     #[must_use]
     pub fn deviation_deg_per_h(&self, tau_s: f64) -> f64 {
-        self.mix.variance(tau_s).max(0.0).sqrt()
+        let sine = self.sine.map_or(0.0, |sine| sine.allan_variance(tau_s));
+        (self.mix.variance(tau_s).max(0.0) + sine).sqrt()
+    }
+
+    /// The fit of a record from which a sine was taken.
+    pub(crate) fn beside(self, sine: Sine) -> Self {
+        Self {
+            sine: Some(sine),
+            ..self
+        }
+    }
+
+    /// Two-sided density of the fitted noise, (deg/h)^2/Hz, that of the slow terms raised by two
+    /// standard errors: a line must stand above noise that the record does not rule out.
+    pub(crate) fn cautious_density(&self, frequency_hz: f64) -> f64 {
+        let angular = std::f64::consts::TAU * frequency_hz;
+        let raised = |term: &Term| term.square.max(0.0) + 2.0 * term.standard_error;
+        let correlated = self.correlated.map_or(0.0, |noise| {
+            let time = noise.correlation_time_s.value;
+            let turn = angular * time;
+            2.0 * raised(&noise.deviation_deg_per_h) * time / (1.0 + turn * turn)
+        });
+        self.angle_random_walk_deg_per_h_sqrt_s.square.max(0.0)
+            + raised(&self.bias_instability_deg_per_h) / angular
+            + raised(&self.rate_random_walk_deg_per_h_per_sqrt_s) / (angular * angular)
+            + correlated
     }
 }
 
@@ -268,6 +327,7 @@ pub struct FitRange {
 /// Q, N, B and K are always fitted. A ramp, and exponentially correlated noise with a correlation
 /// time from five shortest averaging times to a tenth of the record, join them where the curve asks
 /// for them (criterion of Bayes and Schwarz). R has otherwise the value that it has beside the others.
+/// A sine is sought in the words, not here.
 ///
 /// Intervals hold all true values, none negative, under which the estimate lies between its
 /// quantiles 0.025 and 0.975. No end of one lies where the term alone would exceed the curve at
@@ -357,6 +417,7 @@ fn report(points: &[AllanPoint], choice: &Choice) -> NoiseFit {
         rate_random_walk_deg_per_h_per_sqrt_s: term(WALK),
         rate_ramp_deg_per_h_per_s: term(RAMP),
         correlated,
+        sine: None,
         has_ramp: choice.allowed[RAMP],
         goodness: Goodness::of(points, choice),
         tau_range_s: [points[0].tau_s, points[points.len() - 1].tau_s],

@@ -22,6 +22,7 @@ use crate::metrics::noise::bias_stability::{
     averaging_lack,
 };
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
+use crate::metrics::noise::line::fit_beside_sine;
 use crate::metrics::noise::memory::fit_tau_min_s;
 use crate::metrics::noise::truth_response::without_motion;
 use crate::metrics::record::{FilterFacts, Record, Settings};
@@ -99,7 +100,9 @@ fn measure_allan(
         .any(|two| two[0] < two[1] || two[1] < two[0]);
     let constant = || Err("the output does not vary over the record".into());
     let fitted = if varies {
-        fit_noise(&points, range)
+        let values = record.channel_deg_per_h;
+        fit_beside_sine(values, record.sample_period_s, range)
+            .map_or_else(|| fit_noise(&points, range), Ok)
     } else {
         constant()
     };

@@ -6,7 +6,7 @@ use super::scatter::Scatter;
 use crate::metrics::allan::covariance::{
     CORRELATED, FLICKER, INVERSE_SQUARE, RAMP, TERMS, WALK, WHITE,
 };
-use crate::metrics::allan::least_squares::{Problem, correlated_variance};
+use crate::metrics::allan::least_squares::{Problem, correlated_allan_variance};
 use crate::metrics::allan::overlapping::AllanPoint;
 
 /// Terms that every fit has: a bound on one, or its absence, would pull the others.
@@ -180,7 +180,11 @@ impl Search<'_> {
         if least >= most {
             return None;
         }
-        let gain = |time: f64| space.gain(&fit.scatter, |row| correlated_variance(tau[row], time));
+        let gain = |time: f64| {
+            space.gain(&fit.scatter, |row| {
+                correlated_allan_variance(tau[row], time)
+            })
+        };
         let mut best = (least, gain(least));
         let mut time = least;
         while time < most {
