@@ -22,7 +22,7 @@ pub(crate) const BASE: [bool; TERMS] = {
 /// Deviance that a ramp must save at least, three standard errors, and a correlated term, whose
 /// correlation time is sought: one record in a hundred without it would ask for less.
 const RAMP_GAIN_MIN: f64 = 9.0;
-const CORRELATED_GAIN_MIN: f64 = 12.0;
+const CORRELATED_GAIN_MIN: f64 = 10.0;
 
 /// Correlation times looked at: from so many shortest averaging times to such a part of the record.
 const CORRELATION_PER_TAU_MIN: f64 = 5.0;
