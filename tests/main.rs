@@ -53,6 +53,7 @@ mod known_answers_slow_noise;
 mod known_answers_swing;
 mod known_answers_thermal;
 mod known_answers_turntable;
+mod least_noise;
 mod library;
 mod metrics_intervals;
 mod metrics_records;

@@ -6,6 +6,7 @@ use crate::gyro::error::GyroError;
 use crate::gyro::loop_model::LoopModel;
 use crate::gyro::loop_model::faults::LoopFaults;
 use crate::gyro::noise::budget::NoiseBudget;
+use crate::gyro::noise::budget_sheet::with_rate_word;
 use crate::gyro::parts::{Parts, half_period_s};
 use crate::gyro::rate_model::RateModel;
 use crate::gyro::{Fidelity, GyroConfig};
@@ -199,6 +200,10 @@ pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
             controller.bandwidth_hz()
         },
         delay_ms: s_to_ms(controller.word_delay_s(periods)),
-        angle_random_walk_budget_deg_per_sqrt_h: NoiseBudget::new(&detector, &coil).entries(),
+        angle_random_walk_budget_deg_per_sqrt_h: with_rate_word(
+            NoiseBudget::new(&detector, &coil),
+            config,
+        )
+        .entries(),
     })
 }

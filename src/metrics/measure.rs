@@ -1,6 +1,6 @@
 //! From a record to the table of everything it supports.
 
-use super::catalogue::support::{encoder_lack, support, truth_lack};
+use super::catalogue::support::{check_motion, encoder_lack, support, truth_lack};
 use super::estimate::reason::{NO_TRUTH, Unavailable};
 use super::estimate::table::ChannelMetrics;
 use super::key::metric::{Applies, MetricKey, Needs};
@@ -18,7 +18,9 @@ use super::steps::staircase::measure_scale_factor;
 use super::trial::dc_gain::put_dc_gains;
 use super::trial::frozen_response::put_frozen_response;
 use super::trial::rate_gain::put_rate_gains;
-use super::trial::readaptation::{READAPTATION_TIME, measure_after_step, onset};
+use super::trial::readaptation::{
+    READAPTATION_TIME, adapts, measure_after_step, onset, put_memory,
+};
 use crate::metrics::catalogue::known_metrics;
 use crate::wording::counted;
 
@@ -90,8 +92,16 @@ pub fn measure(
         "channel and encoder hold {samples} and {readings} samples"
     );
     let mut metrics = ChannelMetrics::default();
-    if let Err(reason) = measure_motion(record, settings, filter, &mut metrics) {
-        refuse_rest(&reason, &mut metrics);
+    match measure_motion(record, settings, filter, &mut metrics) {
+        Err(reason) => refuse_rest(&reason, &mut metrics),
+        Ok(()) => {
+            let fixed = filter.filter(|facts| !adapts(&facts.shape));
+            if let Some(facts) =
+                fixed.filter(|_| check_motion(&READAPTATION_TIME, &settings.motion).is_ok())
+            {
+                put_memory(facts, record.sample_period_s, &mut metrics);
+            }
+        }
     }
     if let Some(facts) = filter {
         put_dc_gains(facts, &mut metrics);

@@ -79,7 +79,7 @@ pub use noise::autocovariance::autocovariance;
 pub use noise::bias_stability::{
     effective_degrees_of_freedom, expected_bias_stability, paired_ratio,
 };
-pub use noise::memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
+pub use noise::memory::{correlation_length_samples, record_fit_tau_min_s};
 pub use noise::spectrum::{Spectrum, log_binned, segment_samples, welch};
 pub use pool::aggregate::aggregate;
 pub use pool::repeatability::repeats_lack;
@@ -98,7 +98,11 @@ pub use steps::scale_factor::{
 pub use steps::settling::{Settling, settling};
 pub use steps::shape::Step;
 pub use steps::small_input::smallest_answered;
-pub use theory::bound::{noise_delay_bound, noise_delay_bound_coloured, noise_power_gain};
+pub use theory::bound::{
+    LeastNoise, NoiseDelayBound, bound_taps, noise_delay_bound, noise_delay_bound_coloured,
+    noise_power_gain,
+};
+pub use theory::memory::memory_samples;
 pub use theory::prediction::{Prediction, lags_needed, predict};
 pub use trial::readaptation::{GainUnits, Readaptation};
 pub use verdict::{AgainstOne, Deed, FilterVerdict, Finding, filter_verdict};

@@ -188,7 +188,7 @@ fn matrices(parts: &Parts) -> RateMatrices {
 /// reach the integrator alone.
 fn noise_rad(parts: &Parts) -> f64 {
     let (signal_share, update_share) = shares(parts);
-    let budget = NoiseBudget::new(&parts.detector, &parts.coil).total_deg_per_sqrt_h();
+    let budget = NoiseBudget::new(&parts.detector, &parts.coil).detection_deg_per_sqrt_h();
     let random_walk = deg_per_sqrt_h_to_rad_per_sqrt_s(budget);
     let error_rad = random_walk * parts.coil.scale_factor_s / parts.controller.loop_period_s.sqrt();
     error_rad / (signal_share * update_share.sqrt())

@@ -164,6 +164,7 @@ fn measure_noise(
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
+    let tones = fits.response(CHANNEL, TRUTH).len();
     let motion = fits.residuals(TRUTH, record.truth_deg_per_h);
     let products = |series: usize, values: &[f64], of: Option<&FilterFacts>| {
         let mut residuals = fits.residuals(series, values);
@@ -173,7 +174,7 @@ fn measure_noise(
     let channel = products(CHANNEL, record.channel_deg_per_h, filter);
     put_noise_std(
         &channel,
-        record.channel_deg_per_h.len(),
+        (record.channel_deg_per_h.len(), 2 * tones + 1),
         record.sample_period_s,
         metrics,
     );

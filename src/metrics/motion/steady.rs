@@ -59,7 +59,7 @@ pub(crate) fn measure_steady(
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let products = products_about_mean(record.channel_deg_per_h, lags);
     let samples = record.channel_deg_per_h.len();
-    put_noise_std(&products, samples, record.sample_period_s, metrics);
+    put_noise_std(&products, (samples, 1), record.sample_period_s, metrics);
     if let Some(facts) = filter {
         let raw = products_about_mean(record.raw_deg_per_h, lags);
         let level = interval::mean(record.raw_deg_per_h).abs();

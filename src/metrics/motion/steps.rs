@@ -77,7 +77,7 @@ pub(crate) fn measure_steps(
     let channel = products(values);
     put_noise_std(
         &channel,
-        values.len() - start,
+        (values.len() - start, 1),
         record.sample_period_s,
         metrics,
     );

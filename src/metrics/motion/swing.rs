@@ -17,14 +17,14 @@ use crate::metrics::pipeline::LATENCY;
 use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::sine::correlation::correlation_delay_s;
 use crate::metrics::sine::fit::{SwingClock, SwingFit, fit_swing};
-use crate::metrics::theory::bound::filter_bound;
+use crate::metrics::theory::bound::{LeastNoise, filter_bound_at};
 use crate::metrics::theory::prediction::{lags_needed, predict};
 use crate::metrics::trial::noise_delay::{
     NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve, put_over_bound,
 };
 use crate::metrics::trial::predicted::DC_GAIN_PREDICTED;
 use crate::metrics::trial::readaptation;
-use crate::metrics::trial::readaptation::GainUnits;
+use crate::metrics::trial::readaptation::{GainUnits, adapts};
 use crate::units;
 
 /// Delay vs raw.
@@ -178,7 +178,7 @@ pub(crate) fn measure_swing(
     let channel = noise(residuals, filter);
     put_noise_std(
         &channel,
-        fits.channel.samples(),
+        (fits.channel.samples(), 3),
         record.sample_period_s,
         metrics,
     );
@@ -191,7 +191,7 @@ pub(crate) fn measure_swing(
         measure_bound(&fits, &clock, facts, (&channel, &raw), metrics);
         let predicted = metrics.get(&DELAY_PREDICTED);
         let final_gain = predicted.and_then(|metric| metric.fields.get(AMPLITUDE_RATIO.name));
-        if let Some(&final_gain) = final_gain.filter(|_| is_from_rest) {
+        if let Some(&final_gain) = final_gain.filter(|_| is_from_rest && adapts(&facts.shape)) {
             let (own, other) = (record.channel_deg_per_h, record.raw_deg_per_h);
             let units = GainUnits::of_swing(own, other, &clock);
             readaptation::put(&units, final_gain, metrics);
@@ -363,26 +363,33 @@ fn measure_bound(
         .delay_behind_s(&fits.raw)
         .scaled(1.0 / clock.sample_period_s);
     let at = |delay_samples: f64, autocovariance: &[f64]| {
-        filter_bound(&facts.shape, delay_samples, autocovariance)
+        filter_bound_at(&facts.shape, delay_samples, autocovariance)
     };
     let autocovariance = raw.autocovariance();
-    let without: Vec<Result<f64, Unavailable>> = (0..raw.blocks())
+    let without: Vec<Result<LeastNoise, Unavailable>> = (0..raw.blocks())
         .map(|block| at(delay.value, &raw.autocovariance_without(block)))
         .collect();
-    let left_out: Vec<f64> = without.iter().flatten().copied().collect();
-    // The bound is a parabola in the delay: its extremes over the interval are at the ends unless
-    // the lowest point lies inside, which the value in the middle stands for. The scatter of the
+    let left_out: Vec<f64> = without
+        .iter()
+        .flatten()
+        .map(|least| least.noise_gain)
+        .collect();
+    // The bound is made of parabolas in the delay: its extremes over the short interval are at the ends
+    // unless the lowest point lies inside, which the value in the middle stands for. The scatter of the
     // autocovariance adds in quadrature; the two are nearly independent.
     let bound = at(delay.value, &autocovariance);
     put_over_bound(channel, raw, &bound, &without, metrics);
-    let bound = bound.map(|value| {
-        let ends = [delay.low, delay.high].map(|end| at(end, &autocovariance).unwrap_or(value));
+    let bound = bound.map(|least| {
+        let value = least.noise_gain;
+        let ends = [delay.low, delay.high]
+            .map(|end| at(end, &autocovariance).map_or(value, |least| least.noise_gain));
         let colour = interval::jackknife(value, &left_out).high - value;
         let below = (value - ends[0].min(ends[1])).max(0.0).hypot(colour);
         let above = (ends[0].max(ends[1]) - value).max(0.0).hypot(colour);
-        Estimate::with_interval(value, (value - below).max(0.0), value + above)
+        let estimate = Estimate::with_interval(value, (value - below).max(0.0), value + above);
+        (estimate, least)
     });
-    if let Ok(bound) = &bound {
+    if let Ok((bound, _)) = &bound {
         widen_over_bound(bound, &left_out, metrics);
     }
     put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);

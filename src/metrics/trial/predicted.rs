@@ -8,7 +8,7 @@ use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::{FilterFacts, Record};
-use crate::metrics::theory::bound::{NO_DELAY_AT_DC, filter_bound};
+use crate::metrics::theory::bound::{NO_DELAY_AT_DC, filter_bound_at};
 use crate::metrics::theory::prediction::predict;
 use crate::units;
 
@@ -51,7 +51,7 @@ pub(crate) fn measure_predictions(
             .collect();
         let prediction = predict(&facts.shape, &second_moment)?;
         let delay_samples = ran.unwrap_or_else(|| prediction.delay_at_dc_samples());
-        let bound = filter_bound(&facts.shape, delay_samples, autocovariance);
+        let bound = filter_bound_at(&facts.shape, delay_samples, autocovariance);
         Some((prediction.dc_gain(), delay_samples, bound))
     };
     let parts: Vec<_> = (0..raw.blocks())
@@ -91,10 +91,10 @@ pub(crate) fn measure_predictions(
     );
     let bounds: Vec<f64> = without
         .iter()
-        .filter_map(|bound| bound.as_ref().ok().copied())
+        .filter_map(|bound| Some(bound.as_ref().ok()?.noise_gain))
         .collect();
     put_bound(
-        bound.map(|bound| interval::jackknife(bound, &bounds)),
+        bound.map(|least| (interval::jackknife(least.noise_gain, &bounds), least)),
         facts,
         delay_samples,
         record.sample_period_s,

@@ -7,8 +7,8 @@ use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
-use crate::metrics::noise::memory::memory_samples;
 use crate::metrics::record::{FilterFacts, Record};
+use crate::metrics::theory::memory::memory_samples;
 
 /// Weight noise.
 pub static WEIGHT_NOISE_RATIO: MetricKey = MetricKey::of_filters(
