@@ -212,7 +212,7 @@ fn a_sine_is_found_removed_and_the_white_noise_beside_it_kept() {
 fn noise_with_a_correlation_time_is_fitted_as_such() {
     // 0.3 deg/h over 30 s beside the white noise of 0.006 deg/sqrt(h), an hour at 10 Hz.
     let runs = 40;
-    let (mut found, mut held) = (0, [0; 3]);
+    let (mut found, mut held) = (0, [0_u64; 3]);
     for seed in 0..runs {
         let mut values = normals(seed, "white", 36_000);
         let decay = (-0.1_f64 / 30.0).exp();
@@ -233,15 +233,15 @@ fn noise_with_a_correlation_time_is_fitted_as_such() {
         let walk = metrics.get(&ANGLE_RANDOM_WALK).expect("adequate").estimate;
         let holds =
             |it: &fogbench::metrics::Estimate, truth: f64| it.low <= truth && truth <= it.high;
-        held[0] += usize::from(holds(&level.estimate, 0.3));
-        held[1] += usize::from(holds(&time, 30.0));
-        held[2] += usize::from(holds(&walk, 0.006));
+        held[0] += u64::from(holds(&level.estimate, 0.3));
+        held[1] += u64::from(holds(&time, 30.0));
+        held[2] += u64::from(holds(&walk, 0.006));
         let floor = metrics.get(&BIAS_INSTABILITY).expect("adequate").estimate;
         assert!(floor.low < 0.2, "{floor:?}");
     }
     assert!(found * 100 >= runs * 95, "{found} of {runs}");
     assert!(
-        held.iter().all(|held| held * 100 >= found as usize * 85),
+        held.iter().all(|held| held * 100 >= found * 85),
         "{held:?} of {found}"
     );
 }

@@ -182,7 +182,8 @@ impl BlockMeans {
             }
         };
         let mut best = (0.0, None);
-        for bin in edge(lowest)..=edge(highest) {
+        let (first, last) = (edge(lowest), edge(highest));
+        for (bin, own_power) in power.iter().enumerate().take(last + 1).skip(first) {
             let centre = bin as f64;
             let least = NEIGHBOURS_MIN * width;
             let from = edge((centre / NEIGHBOUR_RATIO).min(centre - least) * step_hz);
@@ -193,7 +194,7 @@ impl BlockMeans {
             let total = sum(from, left) + sum(right, to);
             let count = left.saturating_sub(from) + to.saturating_sub(right);
             let level = total / count.max(1) as f64;
-            let ratio = power[bin] / level.max(f64::MIN_POSITIVE);
+            let ratio = own_power / level.max(f64::MIN_POSITIVE);
             if count > 0 && ratio > best.0 {
                 best = (ratio, Some(centre * step_hz));
             }

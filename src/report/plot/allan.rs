@@ -60,12 +60,7 @@ pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
     let positive = |value: &f64| *value > 0.0;
     let tau = tables().flat_map(|(.., tau, _)| tau.iter().copied());
     let read_at = tables().flat_map(|(_, _, metrics, ..)| readings(metrics));
-    let mut names = report.channels.iter();
-    let estimator = names.find_map(|(_, metrics)| {
-        let words = metrics.words(&ALLAN, &column::ESTIMATOR);
-        words.first().copied()
-    });
-    let estimator = estimator.unwrap_or(OVERLAPPING);
+    let estimator = estimator_of(report);
     // The terms are read off the Allan deviation; the lines of the others lie elsewhere.
     let is_read = matches!(estimator, OVERLAPPING | "plain");
     let x = extent(
@@ -107,13 +102,7 @@ pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
         }
         for (curve, text) in extra_terms(metrics, tau) {
             if is_read {
-                let mixed = Stroke {
-                    width: 1.0,
-                    dash: Dash::Mixed,
-                    opacity: 0.8,
-                    ..stroke
-                };
-                panel.line(&mut picture, &curve, mixed);
+                panel.line(&mut picture, &curve, mixed(stroke));
             }
             legend.text(&mut picture, &text);
         }
@@ -121,6 +110,16 @@ pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
     }
     notes(&mut legend, &mut picture, is_read);
     Some(picture)
+}
+
+/// The estimator of the curves.
+fn estimator_of<'a>(report: &Measured<'a>) -> &'a str {
+    let mut channels = report.channels.iter();
+    let estimator = channels.find_map(|(_, metrics)| {
+        let words = metrics.words(&ALLAN, &column::ESTIMATOR);
+        words.first().copied()
+    });
+    estimator.unwrap_or(OVERLAPPING)
 }
 
 /// A deviation in full.
@@ -250,6 +249,16 @@ fn extra_terms(metrics: &ChannelMetrics, tau: &[f64]) -> Vec<(Vec<(f64, f64)>, S
         (curve(&variance), text("sine", &level, &period))
     });
     correlated.into_iter().chain(sine).collect()
+}
+
+/// The stroke of a term's curve that is no straight line.
+fn mixed(stroke: Stroke) -> Stroke {
+    Stroke {
+        width: 1.0,
+        dash: Dash::Mixed,
+        opacity: 0.8,
+        ..stroke
+    }
 }
 
 /// The line of a term over the whole frame, and its marker.
