@@ -18,7 +18,10 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("fpga", &[]),
     ("filters", &["units", "signal"]),
     ("filters/hardware", &["units", "signal", "filters", "fpga"]),
-    ("metrics", &["units", "linear_algebra", "signal", "wording"]),
+    (
+        "metrics",
+        &["units", "random", "linear_algebra", "signal", "wording"],
+    ),
     ("calibration", &["units", "linear_algebra", "signal"]),
     ("recording", &["units", "signal", "wording"]),
     (

@@ -62,6 +62,7 @@ mod metrology;
 mod moving_noise;
 mod mutation;
 mod noise_fit_coverage;
+mod noise_fit_judged;
 mod output_folder;
 mod packages;
 mod patent_calibration;

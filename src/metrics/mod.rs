@@ -44,10 +44,13 @@ mod theory;
 mod trial;
 mod verdict;
 
+pub use allan::coefficients::{NoiseCoefficients, mixed_degrees_of_freedom};
 pub use allan::covariance::FLICKER_ALLAN_VARIANCE;
+pub use allan::judge::goodness::Goodness;
+pub use allan::least_squares::correlated_allan_variance;
 pub use allan::noise_fit::{
-    FIT_TAU_PER_RECORD_MAX, FitRange, NoiseCoefficients, NoiseFit, Term, fit_noise,
-    fit_pooled_noise, mixed_degrees_of_freedom,
+    CorrelatedNoise, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Sine, Term, fit_noise,
+    fit_pooled_noise, sine_allan_variance,
 };
 pub use allan::noise_identification::PowerLaw;
 pub use allan::overlapping::{
@@ -61,6 +64,7 @@ pub(crate) use catalogue::names::{meant, unknown, unknown_of_channel};
 pub use catalogue::support::{encoder_lack, requirement, support, truth_lack};
 pub use catalogue::{columns, find, known_curves, known_metrics, repeated_metrics};
 pub use estimate::blocks::{block_label_s, block_means, is_sample_or_longer, samples_in};
+pub use estimate::fit_sheet::{FitSheet, FitTerm};
 pub use estimate::missing::MissingMetric;
 pub use estimate::reason::Unavailable;
 pub use estimate::repeat_statistics::RepeatStatistics;

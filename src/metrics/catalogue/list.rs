@@ -26,6 +26,10 @@ rows! {
     allan::noise_fit::RATE_RANDOM_WALK,
     allan::noise_fit::RATE_RAMP,
     allan::noise_fit::QUANTISATION,
+    allan::extra_terms::CORRELATED_NOISE,
+    allan::extra_terms::CORRELATION_TIME,
+    allan::extra_terms::SINE_AMPLITUDE,
+    allan::extra_terms::SINE_PERIOD,
     pool::repeatability::BIAS_REPEATABILITY,
     steps::settling::SETTLING_TIME,
     steps::shape::RISE_TIME,
@@ -164,7 +168,10 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/metrics");
         for room in fs::read_dir(folder).unwrap().flatten() {
             match fs::read_dir(room.path()) {
-                Ok(files) => sources.extend(files.flatten().map(|file| file.path())),
+                Ok(files) => {
+                    let files = files.flatten().map(|file| file.path());
+                    sources.extend(files.filter(|path| path.is_file()));
+                }
                 Err(_) => sources.push(room.path()),
             }
         }

@@ -1,11 +1,11 @@
 //! Metrics of a record at rest or at constant rate.
 
 use super::mean::{MEAN, MEAN_ERROR, measure_mean_ratio, put_mean};
+use crate::metrics::allan::coefficients::mixed_degrees_of_freedom;
 use crate::metrics::allan::curves::{put_allan_curve, put_fit_curve};
 use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
 use crate::metrics::allan::noise_fit::{
-    ANGLE_RANDOM_WALK, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise,
-    mixed_degrees_of_freedom,
+    ANGLE_RANDOM_WALK, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, fit_noise,
 };
 use crate::metrics::allan::overlapping::overlapping_allan;
 use crate::metrics::allan::variants::allan_variant;
@@ -22,6 +22,7 @@ use crate::metrics::noise::bias_stability::{
     averaging_lack,
 };
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
+use crate::metrics::noise::line::fit_beside_sine;
 use crate::metrics::noise::memory::fit_tau_min_s;
 use crate::metrics::noise::truth_response::without_motion;
 use crate::metrics::record::{FilterFacts, Record, Settings};
@@ -99,7 +100,9 @@ fn measure_allan(
         .any(|two| two[0] < two[1] || two[1] < two[0]);
     let constant = || Err("the output does not vary over the record".into());
     let fitted = if varies {
-        fit_noise(&points, range)
+        let values = record.channel_deg_per_h;
+        fit_beside_sine(values, record.sample_period_s, range)
+            .map_or_else(|| fit_noise(&points, range), Ok)
     } else {
         constant()
     };
@@ -196,7 +199,7 @@ fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMe
     let mean = interval::mean(values);
     let duration_s = values.len() as f64 * record.sample_period_s;
     let estimate = match fit {
-        Some(fit) if matches!(fit.angle_random_walk_deg_per_h_sqrt_s, Term::Found(_)) => {
+        Some(fit) if fit.shows_white_noise() => {
             let variance = fit.mean_variance(duration_s);
             Estimate::symmetric(mean, interval::NORMAL_QUANTILE * variance.sqrt())
         }

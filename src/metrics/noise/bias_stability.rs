@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use crate::metrics::allan::noise_fit::NoiseCoefficients;
+use crate::metrics::allan::coefficients::NoiseCoefficients;
 use crate::metrics::estimate::blocks::is_sample_or_longer;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;

@@ -98,10 +98,9 @@ pub fn correlation_length_samples(values: &[f64]) -> Option<usize> {
 }
 
 /// Shortest averaging time of a fit to a record that nothing is known of, s: four correlation
-/// lengths, ten samples at least.
+/// lengths, so that white noise is fitted from four samples on.
 #[must_use]
 pub fn record_fit_tau_min_s(values: &[f64], sample_period_s: f64) -> f64 {
-    const SAMPLES_MIN: f64 = 10.0;
     let length = correlation_length_samples(values).unwrap_or(1) as f64;
-    (FIT_TAU_PER_LENGTH * length).max(SAMPLES_MIN) * sample_period_s
+    FIT_TAU_PER_LENGTH * length * sample_period_s
 }
