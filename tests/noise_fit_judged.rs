@@ -55,6 +55,7 @@ fn measured(values: &[f64], sample_period_s: f64, tau_min_s: f64) -> ChannelMetr
         channel_deg_per_h: values,
         raw_deg_per_h: values,
         truth_deg_per_h: &[],
+        response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s,
         first_stamp_s: 0.0,
