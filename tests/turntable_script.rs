@@ -219,8 +219,10 @@ fn a_general_motion_has_means_and_tracking_error_and_reasons_for_the_rest() {
         let is_elsewhere = known.name == "diverged_at_s" || known.applies == Applies::Pipeline;
         assert!(is_elsewhere || supported == is_given, "{}", known.name);
     }
-    let reason = metrics.unavailable["noise_std_deg_per_h"].as_str();
-    assert!(reason.contains("noise can be told from motion"), "{reason}");
+    let mut transcript = Transcript::of("metrics", "Noise during a script");
+    let reason = &metrics.unavailable["noise_std_deg_per_h"];
+    transcript.case("noise_std_deg_per_h", reason.as_str());
+    transcript.check();
 }
 
 #[test]

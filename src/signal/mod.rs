@@ -163,8 +163,8 @@ pub struct GyroFacts {
     pub loop_bandwidth_hz: f64,
     /// Delay of the rate word behind the motion at low frequency, ms.
     pub delay_ms: f64,
-    /// Angle random walk by source (`shot`, `thermal`, `amplifier`, `rin`, `adc`, `technical`,
-    /// `total`), deg/sqrt(h).
+    /// Angle random walk by source of the detector, in the order of the gyro's list, and `total`;
+    /// deg/sqrt(h).
     pub angle_random_walk_budget_deg_per_sqrt_h: Vec<(&'static str, f64)>,
 }
 

@@ -34,6 +34,13 @@ pub(crate) fn plain(value: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
+/// A number as it was written, without the `.0` of a whole one: what is compared with the end of a
+/// range must not be rounded to it.
+pub(crate) fn exact(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
 /// A free text as it may stand on a terminal: what is no character that is seen, and would move the
 /// cursor, colour or turn round the text behind it, is written out.
 pub(crate) fn printable(text: &str) -> String {

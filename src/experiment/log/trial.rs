@@ -54,8 +54,17 @@ pub enum LogMotion {
     },
 }
 
+/// A motion of a log that nobody knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "expected `static`, or `swing:F` with a frequency F from {:e} to {:e} Hz",
+    SWING_HZ.0,
+    SWING_HZ.1
+)]
+pub struct UnknownLogMotion;
+
 impl FromStr for LogMotion {
-    type Err = String;
+    type Err = UnknownLogMotion;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let (least, most) = SWING_HZ;
@@ -67,9 +76,7 @@ impl FromStr for LogMotion {
             Some(Ok(frequency_hz)) if (least..=most).contains(&frequency_hz) => {
                 Ok(Self::Swing { frequency_hz })
             }
-            _ => Err(format!(
-                "expected `static`, or `swing:F` with a frequency F from {least:e} to {most:e} Hz"
-            )),
+            _ => Err(UnknownLogMotion),
         }
     }
 }

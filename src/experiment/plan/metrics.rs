@@ -62,9 +62,7 @@ impl Checker<'_> {
             for column in columns.filter_map(|text| ComparisonColumn::parse(text)) {
                 if let Some(complaint) = metrics::unknown(column.metric) {
                     let key = format!("comparison[{index}].columns");
-                    let message =
-                        format!("{key}: there is no metric {}: {complaint}", column.metric);
-                    self.complain(&key, message);
+                    self.complain(&key, format!("{key}: {complaint}"));
                 }
             }
         }

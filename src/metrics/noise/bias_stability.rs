@@ -1,4 +1,5 @@
-//! Bias stability: the scatter of non-overlapping block means.
+//! Bias stability: the scatter of non-overlapping block means. Bias instability is another quantity,
+//! the flicker coefficient B of `metrics/allan/noise_fit.rs`.
 
 use std::f64::consts::PI;
 

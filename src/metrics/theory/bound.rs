@@ -1,6 +1,6 @@
 //! Noise-delay bound: the least noise gain of consecutive taps with unit DC gain at a given delay.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
@@ -68,29 +68,57 @@ pub fn noise_delay_bound_coloured(
     if taps < 2 {
         return noise_delay_bound(taps, newest_age_samples, delay_samples);
     }
-    let power = *autocovariance.first()?;
-    if power <= 0.0 || autocovariance.len() < taps {
-        return None;
-    }
-    // Ages from the middle of the window keep the equations well scaled.
-    let middle = (taps as f64 - 1.0) / 2.0;
-    let centred = |tap: usize| tap as f64 - middle;
-    let matrix = DMatrix::from_fn(taps + 2, taps + 2, |row, column| {
-        match (row < taps, column < taps) {
-            (true, true) => autocovariance[row.abs_diff(column)] / power,
-            (true, false) if column == taps => 1.0,
-            (true, false) => centred(row),
-            (false, true) if row == taps => 1.0,
-            (false, true) => centred(column),
-            (false, false) => 0.0,
+    Equations::new(taps, autocovariance)?.least_gain(newest_age_samples, delay_samples)
+}
+
+/// The Karush-Kuhn-Tucker equations of [`noise_delay_bound_coloured`], which hold the delay on their
+/// right side alone: factored once for all delays.
+struct Equations<'a> {
+    taps: usize,
+    factors: LU<f64, Dyn, Dyn>,
+    autocovariance: &'a [f64],
+}
+
+impl<'a> Equations<'a> {
+    /// The equations of two taps or more; `None` without power or with fewer lags than taps.
+    fn new(taps: usize, autocovariance: &'a [f64]) -> Option<Self> {
+        let power = *autocovariance.first()?;
+        if power <= 0.0 || autocovariance.len() < taps {
+            return None;
         }
-    });
-    let mut right = DVector::zeros(taps + 2);
-    right[taps] = 1.0;
-    right[taps + 1] = delay_samples - newest_age_samples as f64 - middle;
-    let solved = matrix.lu().solve(&right)?;
-    let gain = noise_power_gain(&solved.as_slice()[..taps], autocovariance);
-    gain.is_finite().then_some(gain)
+        // Ages from the middle of the window keep the equations well scaled.
+        let centred = |tap: usize| tap as f64 - middle_of(taps);
+        let matrix = DMatrix::from_fn(taps + 2, taps + 2, |row, column| {
+            match (row < taps, column < taps) {
+                (true, true) => autocovariance[row.abs_diff(column)] / power,
+                (true, false) if column == taps => 1.0,
+                (true, false) => centred(row),
+                (false, true) if row == taps => 1.0,
+                (false, true) => centred(column),
+                (false, false) => 0.0,
+            }
+        });
+        Some(Self {
+            taps,
+            factors: matrix.lu(),
+            autocovariance,
+        })
+    }
+
+    fn least_gain(&self, newest_age_samples: usize, delay_samples: f64) -> Option<f64> {
+        let taps = self.taps;
+        let mut right = DVector::zeros(taps + 2);
+        right[taps] = 1.0;
+        right[taps + 1] = delay_samples - newest_age_samples as f64 - middle_of(taps);
+        let solved = self.factors.solve(&right)?;
+        let gain = noise_power_gain(&solved.as_slice()[..taps], self.autocovariance);
+        gain.is_finite().then_some(gain)
+    }
+}
+
+/// Distance from the newest of a number of consecutive taps to their middle, samples.
+fn middle_of(taps: usize) -> f64 {
+    (taps as f64 - 1.0) / 2.0
 }
 
 /// Most taps for which the bound and the autocovariance it needs are computed.
@@ -138,14 +166,36 @@ impl NoiseDelayBound {
     /// lags of the autocovariance than taps.
     #[must_use]
     pub fn new(taps: usize, register_samples: usize, autocovariance: &[f64]) -> Option<Self> {
-        let middle = (taps as f64 - 1.0) / 2.0;
+        if taps < 2 {
+            return Self::white(taps, register_samples);
+        }
+        let equations = Equations::new(taps, autocovariance)?;
+        Self::of(taps, register_samples, |delay| {
+            equations.least_gain(0, delay)
+        })
+    }
+
+    /// The same for white noise.
+    #[must_use]
+    pub fn white(taps: usize, register_samples: usize) -> Option<Self> {
+        Self::of(taps, register_samples, |delay| {
+            noise_delay_bound(taps, 0, delay)
+        })
+    }
+
+    /// The parabola through the least gains of the window of ages from 0 on, in its middle and beside.
+    fn of(
+        taps: usize,
+        register_samples: usize,
+        gain_at: impl Fn(f64) -> Option<f64>,
+    ) -> Option<Self> {
+        let middle = middle_of(taps);
         let (least, curvature) = match taps {
             0 => return None,
             1 => (1.0, f64::INFINITY),
             _ => {
-                let at = |delay| noise_delay_bound_coloured(taps, 0, delay, autocovariance);
-                let least = at(middle)?;
-                (least, at(middle + 1.0)? - least)
+                let least = gain_at(middle)?;
+                (least, gain_at(middle + 1.0)? - least)
             }
         };
         Some(Self {
@@ -156,19 +206,11 @@ impl NoiseDelayBound {
         })
     }
 
-    /// The same for white noise.
-    #[must_use]
-    pub fn white(taps: usize, register_samples: usize) -> Option<Self> {
-        let mut autocovariance = vec![0.0; taps];
-        *autocovariance.first_mut()? = 1.0;
-        Self::new(taps, register_samples, &autocovariance)
-    }
-
     /// The least gain at a delay in samples, register included; `None` where no such filter has it: a
     /// single tap delays by whole samples only.
     #[must_use]
     pub fn at(&self, delay_samples: f64) -> Option<LeastNoise> {
-        let middle = self.register_samples as f64 + (self.taps as f64 - 1.0) / 2.0;
+        let middle = self.register_samples as f64 + middle_of(self.taps);
         let first_age_samples = interval::round_to_count((delay_samples - middle).max(0.0));
         let off_middle = delay_samples - middle - first_age_samples as f64;
         if self.taps == 1 {

@@ -1,9 +1,9 @@
 //! `allan.svg`: the Allan deviation, or another of its family, with intervals, fitted lines and labelled markers.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Dash, Picture, Shape, Stroke};
-use super::series::{extent, stroke_of};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Dash, Picture, Shape, Stroke};
+use super::drawing::series::{extent, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::ChannelMetrics;
 use crate::metrics::MetricKey;

@@ -1,10 +1,10 @@
 //! `noise-delay.svg`: what every filter leaves of the noise against what it delays, each beside the
 //! least noise that its taps allow with unit DC gain.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Anchor, Picture, Stroke};
-use super::series::{extent, real, shape_of, stroke_of};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Anchor, Picture, Stroke};
+use super::drawing::series::{extent, real, shape_of, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::catalogue::NOISE_DELAY_BOUND;
 use crate::metrics::columns::noise_delay::{DELAY, LEAST_NOISE_GAIN, LEAST_WHITE_NOISE_GAIN};
@@ -108,7 +108,7 @@ fn draw_bounds(picture: &mut Picture, panel: &Panel, point: &Point) {
     panel.line(picture, &point.bound, stroke);
     let dotted = Stroke {
         opacity: 0.5,
-        dash: super::series::truth_stroke().dash,
+        dash: super::drawing::series::truth_stroke().dash,
         ..stroke
     };
     panel.line(picture, &point.white, dotted);

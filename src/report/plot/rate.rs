@@ -1,9 +1,9 @@
 //! `rate.svg`: the rate of every channel against time.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Picture, Point};
-use super::series::{Series, columns, extent, index, real, series, truth_stroke};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Picture, Point};
+use super::drawing::series::{Series, columns, extent, index, real, series, truth_stroke};
 use crate::report::record::measured::Measured;
 use crate::scenario::{MotionClass, MotionConfig};
 use crate::signal::RunSignals;
@@ -234,7 +234,7 @@ impl Drawing<'_> {
 }
 
 /// Range of a cut record.
-fn panel_span(columns: &[super::series::Column]) -> f64 {
+fn panel_span(columns: &[super::drawing::series::Column]) -> f64 {
     extent(columns.iter().flat_map(|column| [column.low, column.high]))
         .map_or(0.0, |(low, high)| (high - low).max(f64::MIN_POSITIVE))
 }

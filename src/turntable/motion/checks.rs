@@ -6,6 +6,9 @@ pub(super) const SAMPLES_PER_CYCLE_MIN: f64 = 4.0;
 /// Fewest output samples of a ramp between two rates.
 pub(super) const SAMPLES_PER_RAMP_MIN: f64 = 8.0;
 
+/// Shortest ramp, s: 0 is a jump, and between the two lie lengths whose reciprocals are no numbers.
+const RAMP_MIN_S: f64 = 1e-9;
+
 /// Relative slack when times are compared, so that `3 x 0.1 s` fits into 0.3 s.
 pub(super) const TIME_SLACK: f64 = 1e-9;
 
@@ -52,6 +55,18 @@ impl MotionChecks<'_> {
                 "{key} = {soft_start_s:?} s is longer than the warm-up: allowed [0, warm_up_s = {warm_up_s:?}] s"
             );
             self.complain_or(key, "warm_up_s", message);
+        } else {
+            self.ramp(key, soft_start_s);
+        }
+    }
+
+    /// Refuses a ramp so short that its acceleration is no number.
+    pub(super) fn ramp(&mut self, key: &str, length_s: f64) {
+        if length_s > 0.0 && length_s < RAMP_MIN_S {
+            let message = format!(
+                "{key} = {length_s:?} s is out of range: allowed 0 s, a jump, or {RAMP_MIN_S:?} s and more"
+            );
+            self.complain(key, message);
         }
     }
 

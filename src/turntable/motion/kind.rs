@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::checks::MotionChecks;
 use super::course::Course;
-use crate::turntable::motion::campaign::CampaignConfig;
+use crate::turntable::motion::kinds::campaign::CampaignConfig;
 use crate::turntable::motion::stairs::Stairs;
 use crate::turntable::servo::ServoConfig;
 
