@@ -31,7 +31,8 @@ fn measured(gyro: &GyroConfig, fidelity: Fidelity, frequency_hz: f64, cubics: us
         0.0,
         period_s / cubics as f64,
     );
-    let mut gyro = Gyro::new(gyro, fidelity, 1.0, &Streams::new(1, 0)).unwrap();
+    let mut gyro =
+        Gyro::new(gyro, fidelity, 1.0, &Streams::new(1, 0)).expect("a gyro of the reference");
     // Normal equations of sine, cosine and mean.
     let (mut normal, mut right) = (nalgebra::Matrix3::zeros(), nalgebra::Vector3::zeros());
     let mut record = Vec::new();
@@ -46,7 +47,7 @@ fn measured(gyro: &GyroConfig, fidelity: Fidelity, frequency_hz: f64, cubics: us
             record.push((row, rate));
         }
     }
-    let fit = normal.lu().solve(&right).unwrap();
+    let fit = normal.lu().solve(&right).expect("a sine beside a mean");
     let squares: f64 = record
         .iter()
         .map(|(row, rate)| (rate - fit.dot(row)).powi(2))

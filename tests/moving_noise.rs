@@ -55,8 +55,8 @@ fn printed_and_of_two_seeds(folder: &Path, name: &str, motion: &str) -> Vec<(Str
                 |seed: u32| npy(&folder.join(format!("out{seed}/{name}/samples/{channel}.npy")));
             let (one, two) = (words(1), words(2));
             // Of steps the last quarter after the last of them counts.
-            let tail = if name == "steps" { 1.25 } else { 10.0 };
-            let first = one.len() - one.len() * (100.0 * tail) as usize / 1200;
+            let tail_percent = if name == "steps" { 125 } else { 1000 };
+            let first = one.len() - one.len() * tail_percent / 1200;
             let differences: Vec<f64> = one[first..]
                 .iter()
                 .zip(&two[first..])
