@@ -62,6 +62,19 @@ fn devices_and_pipes_are_refused_wherever_a_file_is_named() {
     transcript.check();
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_stream_that_passes_for_a_regular_file_is_refused_without_waiting() {
+    // The messages of the kernel; who may not read them has nothing to wait for.
+    let stream = "/proc/kmsg";
+    let folder = scratch();
+    let said = refusal(folder.path(), &format!("extends = \"{stream}\"\n{SOUND}"));
+    match std::fs::File::open(stream) {
+        Ok(_) => assert!(said.contains("it is a stream of the system"), "{said}"),
+        Err(_) => assert!(said.contains(stream), "{said}"),
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_link_to_a_regular_file_is_as_good_as_the_file() {
