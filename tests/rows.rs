@@ -71,10 +71,10 @@ fn rounded_ramp(seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// White noise, noise correlated over 30 s, and a sine of 4 s.
+/// White noise, noise correlated over 6 s, and a sine of 4 s.
 fn correlated_beside_sine(seed: u64) -> Vec<f64> {
     let mut sum = white(seed, SAMPLES, 1.0);
-    let decay = (-PERIOD_S / 30.0).exp();
+    let decay = (-PERIOD_S / 6.0).exp();
     let mut state = 0.0;
     for (index, (value, drive)) in sum
         .iter_mut()

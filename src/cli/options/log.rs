@@ -90,7 +90,7 @@ pub(in crate::cli) struct LogOptions {
           value_parser = within(TIME_MIN_S, TIME_MAX_S, "s"))]
     pub(in crate::cli) bias_averaging_time_s: f64,
     /// Shortest averaging time of the noise fit, s: longer than the noise is correlated
-    /// [default: what the correlation of the log asks for, four samples at least]
+    /// [default: what the correlation of the log asks for, and ten samples at least unless the words are white]
     #[arg(long, value_name = "S", allow_negative_numbers = true,
           value_parser = within(TIME_MIN_S, TIME_MAX_S, "s"))]
     pub(in crate::cli) fit_tau_min_s: Option<f64>,

@@ -92,7 +92,7 @@ pub struct LogSettings {
     /// Averaging time of the plain `bias_stability_deg_per_h`, s.
     pub bias_averaging_time_s: f64,
     /// Shortest averaging time of the noise fit, s; none: four times as long as the fast noise is
-    /// correlated, four samples at least.
+    /// correlated, and ten samples at least unless the words are white.
     pub fit_tau_min_s: Option<f64>,
     /// Estimator and averaging times of the Allan curve.
     pub allan: AllanConfig,

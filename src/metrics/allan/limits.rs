@@ -10,6 +10,10 @@ use crate::metrics::estimate::value::Estimate;
 /// Probability with which the band lies above the true curve at all averaging times of the fit.
 const BAND_CONFIDENCE: f64 = 0.99;
 
+/// Standard errors by which what a response takes from the curve may be more than fitted: quantile
+/// 0.995 of the normal distribution.
+const RESPONSE_QUANTILE: f64 = 2.576;
+
 /// Rise of the sum of squares at the ends of a 95 % interval, quantile of chi-square with one degree
 /// of freedom.
 const RISE: f64 = 3.841_459;
@@ -33,7 +37,10 @@ impl<'a> Limits<'a> {
         let points = problem.points();
         // Bonferroni: each point gets its part of the probability, all of it above.
         let tail = (1.0 - BAND_CONFIDENCE) / points as f64;
-        let taken = choice.squares[INVERSE_SQUARE].min(0.0);
+        // The response is known as well as the record shows it: its error would else cut N short.
+        let response = solution.square(INVERSE_SQUARE);
+        let error = problem.standard_error(&solution, INVERSE_SQUARE);
+        let taken = (response - RESPONSE_QUANTILE * error).min(0.0);
         let band = (0..points).map(|row| {
             let freedom = choice.scatter.freedom()[row];
             let deviation = problem.variance[row].sqrt();

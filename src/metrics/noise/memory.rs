@@ -98,9 +98,16 @@ pub fn correlation_length_samples(values: &[f64]) -> Option<usize> {
 }
 
 /// Shortest averaging time of a fit to a record that nothing is known of, s: four correlation
-/// lengths, so that white noise is fitted from four samples on.
+/// lengths, and ten samples at least where successive words are correlated, as behind the loop of a
+/// gyro. White words are fitted from four samples on.
 #[must_use]
 pub fn record_fit_tau_min_s(values: &[f64], sample_period_s: f64) -> f64 {
-    let length = correlation_length_samples(values).unwrap_or(1) as f64;
-    FIT_TAU_PER_LENGTH * length * sample_period_s
+    const CORRELATED_SAMPLES_MIN: f64 = 10.0;
+    let length = correlation_length_samples(values).unwrap_or(1);
+    let least = if length > 1 {
+        CORRELATED_SAMPLES_MIN
+    } else {
+        0.0
+    };
+    (FIT_TAU_PER_LENGTH * length as f64).max(least) * sample_period_s
 }

@@ -22,7 +22,7 @@ pub(crate) const BASE: [bool; TERMS] = {
 /// Deviance that a ramp must save at least, three standard errors, and a correlated term, whose
 /// correlation time is sought: one record in a hundred without it would ask for less.
 const RAMP_GAIN_MIN: f64 = 9.0;
-const CORRELATED_GAIN_MIN: f64 = 10.0;
+const CORRELATED_GAIN_MIN: f64 = 8.5;
 
 /// Correlation times looked at: from so many shortest averaging times to such a part of the record.
 const CORRELATION_PER_TAU_MIN: f64 = 5.0;
@@ -166,7 +166,8 @@ impl Search<'_> {
         if !fit.allowed[CORRELATED]
             && let Some((time, gain)) = self.best_correlation(fit, &space)
         {
-            let price = self.price(2.0, time, CORRELATED_GAIN_MIN);
+            // Means over two correlation times are independent.
+            let price = self.price(2.0, 2.0 * time, CORRELATED_GAIN_MIN);
             offer(CORRELATED, Some(time), gain, price);
         }
         best
