@@ -49,8 +49,9 @@ pub(crate) fn enter_fit(
         if let Some(refusal) = &refusal {
             metrics.miss(key, refusal.clone());
         } else if let Some(lack) = slow_noise_lack(key, duration_s) {
-            let bound = if term.is_bounded() {
-                format!("; it is {:.2e} {} at most", estimate.high, key.unit)
+            let bound = if term.is_bounded() && estimate.high > 0.0 {
+                let most = plain(two_digits(estimate.high));
+                format!("; it is {most} {} at most", key.unit)
             } else {
                 String::new()
             };
@@ -66,6 +67,11 @@ pub(crate) fn enter_fit(
     put_extra_terms(fit, metrics);
     metrics.noise_fit = Some(sheet(fit));
     put_fit_curve(points, Some(fit), metrics);
+}
+
+/// A limit to as many digits as it deserves.
+fn two_digits(limit: f64) -> f64 {
+    format!("{limit:.1e}").parse().unwrap_or(limit)
 }
 
 /// The terms that are metrics, each with the factor that takes it from deg/h and s to its unit.
