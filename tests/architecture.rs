@@ -76,6 +76,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
             "units",
             "experiment",
             "filters",
+            "metrics",
             "gate",
             "recording",
             "report",
