@@ -79,6 +79,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
             "units",
             "experiment",
             "filters",
+            "metrics",
             "gate",
             "recording",
             "report",

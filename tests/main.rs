@@ -20,6 +20,7 @@ mod circles;
 mod cli;
 mod cli_analyze;
 mod cli_budget;
+mod cli_claim;
 mod cli_fpga;
 mod cli_words;
 mod closed_loop;

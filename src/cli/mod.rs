@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use crate::experiment::start_threads;
-use commands::{budget, calibrate, check, expand, export, list, log, run, schema, timing};
+use commands::{budget, calibrate, check, claim, expand, export, list, log, run, schema, timing};
 use options::arguments::{Arguments, Command};
 use options::idle;
 use terminal::exit::{self, Exit};
@@ -50,6 +50,7 @@ fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
         Command::Budget(options) => budget::budget(options),
         Command::Analyze(options) => log::analyze(options),
         Command::Filter(options) => log::filter(options),
+        Command::Claim(options) => claim::claim(options),
         Command::Calibrate(options) => calibrate::calibrate(options),
         Command::Timing(options) => timing::timing(options),
         Command::Export(options) => export::export(options),

@@ -14,7 +14,7 @@
 //! |---|---|
 //! | `key` | what a metric and a curve declare of themselves |
 //! | `estimate` | numbers with intervals, reasons, the table of one channel |
-//! | `theory` | what a filter will do to a record, and the least noise at a delay |
+//! | `theory` | what a filter will do to a record, the least noise at a delay, what reads like less noise |
 //! | `allan` | Allan variances and the noise terms fitted to them: random walk, bias instability, ramp |
 //! | `record` | what a measurement is given |
 //! | `steps` | settling, overshoot, scale factor, threshold, dead band |
@@ -102,6 +102,7 @@ pub use theory::bound::{
     LeastNoise, NoiseDelayBound, bound_taps, noise_delay_bound, noise_delay_bound_coloured,
     noise_power_gain,
 };
+pub use theory::claim::{Claim, ClaimedFigure, Lookalikes};
 pub use theory::memory::memory_samples;
 pub use theory::prediction::{Prediction, lags_needed, predict};
 pub use trial::readaptation::{GainUnits, Readaptation};

@@ -22,6 +22,7 @@
 mod artefacts;
 mod budget;
 mod calibration;
+mod claim;
 mod comparison;
 mod csv;
 mod json;
@@ -41,6 +42,7 @@ pub use budget::{budget_json, budget_text};
 pub use calibration::calibrate::{CalibrateReport, calibrate_json, calibrate_text};
 pub use calibration::documents::{CalibrationProvenance, calibration_json};
 pub use calibration::text::calibration_text;
+pub use claim::{claim_json, claim_text};
 pub use comparison::files::{comparison_file_names, comparison_files};
 pub use comparison::text::comparison_text;
 pub use csv::curves::curve_csv;

@@ -3,6 +3,7 @@
 pub(in crate::cli) mod budget;
 pub(in crate::cli) mod calibrate;
 pub(in crate::cli) mod check;
+pub(in crate::cli) mod claim;
 pub(in crate::cli) mod expand;
 pub(in crate::cli) mod export;
 pub(in crate::cli) mod list;

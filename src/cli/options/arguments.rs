@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::cli::options::calibrate::CalibrateOptions;
+use crate::cli::options::claim::ClaimOptions;
 use crate::cli::options::format::Format;
 use crate::cli::options::hardware::{ExportOptions, TimingOptions};
 use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
@@ -55,6 +56,8 @@ pub(in crate::cli) enum Command {
     Analyze(AnalyzeOptions),
     /// Replay a recorded log through the filters of a scenario and measure what they make of it
     Filter(FilterLogOptions),
+    /// Say what else would read the same as a claimed reduction of noise
+    Claim(ClaimOptions),
     /// Find the errors of a three-axis assembly from group means or a simulated campaign
     Calibrate(CalibrateOptions),
     /// Print clocks, units and sample rates of a filter in hardware

@@ -57,7 +57,8 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
         | Command::Expand(_)
         | Command::List(_)
         | Command::Schema
-        | Command::Budget(_) => Vec::new(),
+        | Command::Budget(_)
+        | Command::Claim(_) => Vec::new(),
     }
 }
 

@@ -3,6 +3,7 @@
 
 pub(in crate::cli) mod arguments;
 pub(in crate::cli) mod calibrate;
+pub(in crate::cli) mod claim;
 pub(in crate::cli) mod format;
 pub(in crate::cli) mod hardware;
 pub(in crate::cli) mod idle;

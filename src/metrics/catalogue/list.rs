@@ -17,6 +17,7 @@ rows! {
     allan::noise_fit::ANGLE_RANDOM_WALK,
     trial::dc_gain::ANGLE_RANDOM_WALK_OVER_DC_GAIN,
     trial::weight_noise::WEIGHT_NOISE_RATIO,
+    trial::weight_noise::ALLAN_RATIO_INSIDE_MEMORY,
     noise::bias_stability::BIAS_STABILITY_1S,
     noise::bias_stability::BIAS_STABILITY_10S,
     noise::bias_stability::BIAS_STABILITY_100S,

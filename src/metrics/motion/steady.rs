@@ -31,7 +31,7 @@ use crate::metrics::trial::dc_gain::{
     ANGLE_RANDOM_WALK_OVER_DC_GAIN, BIAS_STABILITY_OVER_DC_GAIN, put_over_dc_gain,
 };
 use crate::metrics::trial::predicted::measure_predictions;
-use crate::metrics::trial::weight_noise::measure_weight_noise;
+use crate::metrics::trial::weight_noise::{measure_inside_memory, measure_weight_noise};
 use crate::wording::{counted, plain};
 
 /// Lags of the autocovariance, at least; correlation beyond counts as slow noise.
@@ -66,6 +66,7 @@ pub(crate) fn measure_steady(
         put_noise_gain(&products, &raw, level, metrics);
         measure_mean_ratio(record, metrics);
         measure_weight_noise(record, facts, metrics);
+        measure_inside_memory(record, facts, metrics);
         measure_predictions(record, facts, (&products, &raw), metrics);
         for (key, over) in [
             (&ANGLE_RANDOM_WALK, &ANGLE_RANDOM_WALK_OVER_DC_GAIN),

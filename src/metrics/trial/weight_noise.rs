@@ -1,4 +1,5 @@
-//! How much noise the wandering of a filter's weights adds.
+//! Allan deviation of a filter's output over raw's: well beyond its memory, where only the wandering of its
+//! weights changes it, and inside, where smoothing does.
 
 use super::dc_gain::{DC_GAIN, dc_gain_lack};
 use crate::metrics::allan::overlapping::{NoiseType, degrees_of_freedom};
@@ -19,6 +20,19 @@ pub static WEIGHT_NOISE_RATIO: MetricKey = MetricKey::of_filters(
 )
 .heading("weight noise")
 .tables(&[Table::Rest]);
+
+/// Allan deviation inside the memory.
+pub static ALLAN_RATIO_INSIDE_MEMORY: MetricKey = MetricKey::of_filters(
+    "allan_ratio_inside_memory",
+    "1",
+    Applies::Steady,
+    "Allan deviation at 1 s over DC gain times raw's, if the filter reaches into it: no less noise beyond",
+)
+.heading("inside memory");
+
+/// Reasons that both ratios have.
+const NO_GAIN: &str = "the DC gain of this filter is not known";
+const NO_NOISE: &str = "the raw channel has no noise";
 
 /// Averaging time at which the ratio is taken, s, if the record supports it.
 const AVERAGING_TIME_S: f64 = 1.0;
@@ -52,11 +66,7 @@ pub(crate) fn measure_weight_noise(
     metrics: &mut ChannelMetrics,
 ) {
     let Some(dc_gain) = facts.dc_gain else {
-        metrics.miss(
-            &WEIGHT_NOISE_RATIO,
-            "the DC gain of this filter is not known",
-        );
-        return;
+        return metrics.miss(&WEIGHT_NOISE_RATIO, NO_GAIN);
     };
     if dc_gain <= 1e-6 || !dc_gain.is_finite() {
         return metrics.miss(&WEIGHT_NOISE_RATIO, dc_gain_lack(dc_gain));
@@ -82,26 +92,11 @@ pub(crate) fn measure_weight_noise(
         );
         return;
     }
-    let blocks = (count / (AVERAGING_TIMES_PER_BLOCK * m)).clamp(BLOCKS_MIN, BLOCKS_MAX);
-    let own = second_difference_squares(record.channel_deg_per_h, m, blocks);
-    let raw = second_difference_squares(record.raw_deg_per_h, m, blocks);
-    let (own_sum, raw_sum): (f64, f64) = (own.iter().sum(), raw.iter().sum());
-    let scatter = (raw_sum / count as f64).sqrt() / m as f64;
-    if scatter <= 1e-12 * interval::mean(record.raw_deg_per_h).abs() || raw_sum <= 0.0 {
-        metrics.miss(&WEIGHT_NOISE_RATIO, "the raw channel has no noise");
+    let Some(ratio) = restored_ratio(record, dc_gain, m) else {
+        metrics.miss(&WEIGHT_NOISE_RATIO, NO_NOISE);
         return;
-    }
-    let ratio = |own: f64, raw: f64| (own / raw).max(0.0).sqrt() / dc_gain;
-    let left_out: Vec<f64> = own
-        .iter()
-        .zip(&raw)
-        .map(|(own, raw)| ratio(own_sum - own, raw_sum - raw))
-        .collect();
-    let estimate = interval::jackknife(ratio(own_sum, raw_sum), &left_out);
-    let metric = metrics.put(
-        &WEIGHT_NOISE_RATIO,
-        Estimate::with_interval(estimate.value, estimate.low.max(0.0), estimate.high),
-    );
+    };
+    let metric = metrics.put(&WEIGHT_NOISE_RATIO, ratio);
     // The time asked for where it is the nearest whole number of samples.
     let averaging_time_s = if m == samples_in(AVERAGING_TIME_S, record.sample_period_s) {
         AVERAGING_TIME_S
@@ -110,6 +105,70 @@ pub(crate) fn measure_weight_noise(
     };
     metric.fields.insert("averaging_time_s", averaging_time_s);
     metric.fields.insert(DC_GAIN.name, dc_gain);
+}
+
+/// Enters `allan_ratio_inside_memory`: the same ratio at 1 s, where the filter reaches into it.
+///
+/// White noise through a low pass has less of an Allan deviation there, as `Claim` has it in closed form:
+/// an angle random walk read off at 1 s seems to gain what `weight_noise_ratio` does not show.
+pub(crate) fn measure_inside_memory(
+    record: &Record,
+    facts: &FilterFacts,
+    metrics: &mut ChannelMetrics,
+) {
+    let Some(dc_gain) = facts.dc_gain else {
+        return metrics.miss(&ALLAN_RATIO_INSIDE_MEMORY, NO_GAIN);
+    };
+    if dc_gain <= 1e-6 || !dc_gain.is_finite() {
+        return metrics.miss(&ALLAN_RATIO_INSIDE_MEMORY, dc_gain_lack(dc_gain));
+    }
+    let m = samples_in(AVERAGING_TIME_S, record.sample_period_s);
+    let reach = memory_samples(&facts.shape) + facts.shape.newest_age_samples;
+    if m >= REACHES * reach {
+        return metrics.miss(
+            &ALLAN_RATIO_INSIDE_MEMORY,
+            format!("1 s is well beyond the {reach} samples that the filter reaches back"),
+        );
+    }
+    let count = record.raw_deg_per_h.len();
+    let is_supported = (1..=count / 4).contains(&m)
+        && degrees_of_freedom(NoiseType::White, count + 1, m) >= FREEDOM_MIN;
+    if !is_supported {
+        return metrics.miss(
+            &ALLAN_RATIO_INSIDE_MEMORY,
+            format!("an averaging time of 1 s has no {FREEDOM_MIN} degrees of freedom"),
+        );
+    }
+    let Some(ratio) = restored_ratio(record, dc_gain, m) else {
+        return metrics.miss(&ALLAN_RATIO_INSIDE_MEMORY, NO_NOISE);
+    };
+    let metric = metrics.put(&ALLAN_RATIO_INSIDE_MEMORY, ratio);
+    metric
+        .fields
+        .insert("averaging_time_s", m as f64 * record.sample_period_s);
+    metric.fields.insert("reach_samples", reach as f64);
+}
+
+/// `ADEV(output) / (DC gain ADEV(raw))` at `m` samples; `None` if the raw channel has no noise.
+fn restored_ratio(record: &Record, dc_gain: f64, m: usize) -> Option<Estimate> {
+    let count = record.raw_deg_per_h.len();
+    let blocks = (count / (AVERAGING_TIMES_PER_BLOCK * m)).clamp(BLOCKS_MIN, BLOCKS_MAX);
+    let own = second_difference_squares(record.channel_deg_per_h, m, blocks);
+    let raw = second_difference_squares(record.raw_deg_per_h, m, blocks);
+    let (own_sum, raw_sum): (f64, f64) = (own.iter().sum(), raw.iter().sum());
+    let scatter = (raw_sum / count as f64).sqrt() / m as f64;
+    if scatter <= 1e-12 * interval::mean(record.raw_deg_per_h).abs() || raw_sum <= 0.0 {
+        return None;
+    }
+    let ratio = |own: f64, raw: f64| (own / raw).max(0.0).sqrt() / dc_gain;
+    let left_out: Vec<f64> = own
+        .iter()
+        .zip(&raw)
+        .map(|(own, raw)| ratio(own_sum - own, raw_sum - raw))
+        .collect();
+    let estimate = interval::jackknife(ratio(own_sum, raw_sum), &left_out);
+    let low = estimate.low.max(0.0);
+    Some(Estimate::with_interval(estimate.value, low, estimate.high))
 }
 
 /// Sums, block by block of their first sample, of the squared differences between the sums of `m`

@@ -23,6 +23,7 @@ pub(crate) fn verdict_text(channel: &ChannelMetrics) -> Option<String> {
         Some(head(&verdict)),
         first,
         second,
+        inside_memory(&verdict),
         verdict.delay_ms.as_ref().map(delay),
         bound(channel, &verdict),
         readaptation(channel, &verdict),
@@ -135,6 +136,30 @@ fn slow_noise(verdict: &FilterVerdict) -> Option<String> {
     Some(format!("{what} (Allan deviation{at} over raw's: {ratio})"))
 }
 
+/// What an angle random walk read at 1 s would seem to gain, in the words of `claim`.
+fn inside_memory(verdict: &FilterVerdict) -> Option<String> {
+    let ratio = verdict.inside_memory?;
+    let scale = if is_scaled(verdict) {
+        " at restored scale"
+    } else {
+        ""
+    };
+    // What wandering weights or attenuation change beyond the memory, the slow noise says.
+    let beyond =
+        if is(verdict.slow_noise, AgainstOne::Below) || is(verdict.slow_noise, AgainstOne::Above) {
+            ""
+        } else {
+            "; none of it is gained if the ARW is fitted well beyond the memory"
+        };
+    (ratio.against_one == AgainstOne::Below).then(|| {
+        format!(
+            "read at 1 s, inside its memory, ARW{scale} is {} of raw's, and a DC gain of that reads the \
+             same{beyond}",
+            text(&ratio.estimate)
+        )
+    })
+}
+
 fn delay(delay_ms: &Estimate) -> String {
     if delay_ms.high < 0.0 {
         let lead = Estimate::with_interval(-delay_ms.value, -delay_ms.high, -delay_ms.low);
@@ -236,6 +261,25 @@ mod tests {
              allow at this delay with unit DC gain (sparse ones may do better): signal was removed with \
              it"
         );
+    }
+
+    #[test]
+    fn what_is_read_inside_the_memory_is_no_gain() {
+        let said = words(&[
+            ("dc_gain", 1.0, 1.0),
+            ("noise_gain", 0.1, 0.12),
+            ("weight_noise_ratio", 0.99, 1.01),
+            ("allan_ratio_inside_memory", 0.69, 0.73),
+        ]);
+        let words_of_claim = "; read at 1 s, inside its memory, ARW is 0.710 ±0.020 of raw's, and a DC \
+                              gain of that reads the same; none of it is gained if the ARW is fitted \
+                              well beyond the memory";
+        assert!(said.contains(words_of_claim), "{said}");
+        let open = words(&[
+            ("dc_gain", 1.0, 1.0),
+            ("allan_ratio_inside_memory", 0.9, 1.1),
+        ]);
+        assert!(!open.contains("inside its memory"), "{open}");
     }
 
     #[test]
