@@ -69,8 +69,10 @@ fn measured(values: &[f64], sample_period_s: f64, tau_min_s: f64) -> ChannelMetr
     measure(&record, &settings, None)
 }
 
-/// Measured with 1000 records each, 28 November 2026: 0.6, 1.2, 1.0 % (walk of 0.02 to 0.1), none of
-/// which asks for a further term more often than one in a thousand.
+/// Measured on 28 November 2026, p < 0.01 in % of 200 to 600 records of each: white noise of 300 words
+/// 0.5, of 1000 1.0; with flicker 0.5, with a walk 1.0 to 1.8 (3000 words); of 300 000 words white 1.5, with
+/// flicker 1.0, with a walk 2.0. Correlated noise is asked for by 0 to 0.8 % of them (of the long white
+/// ones by 1.5 %), and by 96 % of the records that have it below.
 #[test]
 fn records_of_the_terms_are_rejected_as_often_as_stated() {
     let runs = records();
@@ -136,7 +138,12 @@ fn squares_are_unbiased_and_limits_are_bounded() {
             (found - truth).abs() < 4.0 * error + 0.02 * truth,
             "{found} {truth} {error}"
         );
-        assert!((stated / scatter - 1.0).abs() < 0.25, "{stated} {scatter}");
+        // A square fitted below zero adds no scatter, one above does: where the true one is zero the
+        // mean of the stated errors is too large, for K by a third.
+        assert!(
+            (0.75..1.5).contains(&(stated / scatter)),
+            "{stated} {scatter}"
+        );
     }
     for fit in &fits {
         let walk = fit.angle_random_walk_deg_per_h_sqrt_s;

@@ -22,7 +22,11 @@ pub(crate) const BASE: [bool; TERMS] = {
 /// Deviance that a ramp must save at least, three standard errors, and a correlated term, whose
 /// correlation time is sought: one record in a hundred without it would ask for less.
 const RAMP_GAIN_MIN: f64 = 9.0;
-const CORRELATED_GAIN_MIN: f64 = 8.5;
+const CORRELATED_GAIN_MIN: f64 = 9.0;
+
+/// Logarithm of the range of correlation times up to which that holds; over a wider one, as of a long
+/// record, chance has more to choose from.
+const CORRELATION_LOG_RANGE: f64 = 4.0;
 
 /// Correlation times looked at: from so many shortest averaging times to such a part of the record.
 const CORRELATION_PER_TAU_MIN: f64 = 5.0;
@@ -167,17 +171,30 @@ impl Search<'_> {
             && let Some((time, gain)) = self.best_correlation(fit, &space)
         {
             // Means over two correlation times are independent.
-            let price = self.price(2.0, 2.0 * time, CORRELATED_GAIN_MIN);
+            let price = self.price(2.0, 2.0 * time, self.correlated_gain_min(&fit.problem));
             offer(CORRELATED, Some(time), gain, price);
         }
         best
     }
 
+    /// Shortest and longest correlation time looked at, samples.
+    fn correlation_range(&self, problem: &Problem) -> [f64; 2] {
+        let shortest = CORRELATION_PER_TAU_MIN * problem.tau()[0];
+        [shortest, CORRELATION_PER_RECORD * self.samples()]
+    }
+
+    /// Deviance that a correlated term must save at least, the correlation times tried counted: the
+    /// probability that chance saves so much halves with every `2 ln 2`.
+    fn correlated_gain_min(&self, problem: &Problem) -> f64 {
+        let [shortest, longest] = self.correlation_range(problem);
+        let range = (longest / shortest).ln() / CORRELATION_LOG_RANGE;
+        CORRELATED_GAIN_MIN + 2.0 * range.max(1.0).ln()
+    }
+
     /// Correlation time, samples, whose column takes most out of the residuals.
     fn best_correlation(&self, fit: &Choice, space: &Residuals) -> Option<(f64, f64)> {
         let tau = fit.problem.tau();
-        let least = CORRELATION_PER_TAU_MIN * tau[0];
-        let most = CORRELATION_PER_RECORD * self.samples();
+        let [least, most] = self.correlation_range(&fit.problem);
         if least >= most {
             return None;
         }
