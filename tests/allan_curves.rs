@@ -184,7 +184,7 @@ fn a_one_pole_filter_of_a_hundred_samples_leaves_the_fitted_angle_random_walk_al
 fn the_fit_of_a_log_begins_beyond_the_correlation_it_shows() {
     let samples = |values: &[f64]| record_fit_tau_min_s(values, 0.5) / 0.5;
     let (smooth, raw) = one_pole(4, 200_000);
-    assert!((samples(&raw) - 10.0).abs() < 1e-9);
+    assert!((samples(&raw) - 4.0).abs() < 1e-9);
     let of_pole = samples(&smooth) / POLE_SAMPLES;
     assert!((8.0..20.0).contains(&of_pole), "{of_pole} time constants");
     let average: Vec<f64> = raw

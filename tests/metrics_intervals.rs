@@ -112,9 +112,10 @@ fn mean_error_intervals_hold_the_true_rate_with_flicker_and_without() {
         );
         assert!(10 * trial.covered >= 9 * RUNS, "{text}");
         assert!(trial.width < widest, "{text}");
-        // Neither a walk nor a ramp is there; the tail below a 95 % interval holds one in 40.
-        assert!(trial.found[1] <= RUNS / 40, "{text}");
-        assert!(trial.found[2] <= RUNS / 40, "{text}");
+        // Neither a walk nor a ramp is there; the tail below a 95 % interval holds one in 40, of 300
+        // up to 15 with a probability of 99.6 %.
+        assert!(trial.found[1] <= RUNS / 20, "{text}");
+        assert!(trial.found[2] <= RUNS / 20, "{text}");
         if flicker <= 0.0 {
             assert!(trial.found[0] <= RUNS / 20, "{text}");
         }

@@ -10,7 +10,7 @@ use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::sine::fit::SwingClock;
-use crate::metrics::sine::free_frequency::{FreeSineFit, fit_sine_free_frequency};
+use crate::metrics::sine::free_frequency::{FreeSineFit, fit_sine_to};
 
 /// Most means that the spectrum is made of.
 const MEANS_MAX: usize = 1 << 17;
@@ -24,6 +24,10 @@ const FALSE_ALARM: f64 = 0.002;
 
 /// Coefficients of a sine: amplitude, phase, frequency.
 const COEFFICIENTS: f64 = 3.0;
+
+/// Change of the phase at the ends of the record below which a fitted sine stands, rad: a thousandth of
+/// its standard error where a line just passes.
+const PHASE_TOLERANCE_RAD: f64 = 3e-4;
 
 /// Part of what a line must have that a peak over its neighbours must have to be looked at.
 const WORTH_A_LOOK: f64 = 0.7;
@@ -55,7 +59,7 @@ pub(crate) fn fit_beside_sine(
         sample_period_s: means.period_s,
         first_stamp_s: 0.0,
     };
-    let found = fit_sine_free_frequency(&means.values, &clock)?;
+    let found = fit_sine_to(&means.values, &clock, PHASE_TOLERANCE_RAD)?;
     if found.frequency_hz < band[0] || found.frequency_hz > band[1] {
         return None;
     }
