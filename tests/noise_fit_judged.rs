@@ -145,10 +145,19 @@ fn squares_are_unbiased_and_limits_are_bounded() {
             "{stated} {scatter}"
         );
     }
+    // Four signed terms share a curve of a decade and a half: hardly ever is nothing left for N.
+    let lost = fits
+        .iter()
+        .filter(|fit| fit.angle_random_walk_deg_per_h_sqrt_s.square <= 0.0);
+    let lost = lost.count();
+    assert!(
+        100 * lost <= fits.len(),
+        "{lost} of {} without N",
+        fits.len()
+    );
     for fit in &fits {
         let walk = fit.angle_random_walk_deg_per_h_sqrt_s;
         assert!(walk.is_bounded() && walk.estimate().high < 2.5, "{walk:?}");
-        assert!(walk.value() > 0.0);
         for term in [
             fit.bias_instability_deg_per_h,
             fit.rate_random_walk_deg_per_h_per_sqrt_s,
