@@ -54,6 +54,21 @@ impl<'a> Limits<'a> {
         }
     }
 
+    /// The fit of the chosen terms.
+    pub(crate) fn solution(&self) -> &Solution {
+        &self.solution
+    }
+
+    /// Square of a term of the fit and its standard error, in deg/h and s.
+    pub(crate) fn square(&self, index: usize) -> [f64; 2] {
+        let problem = &self.choice.problem;
+        let unit = problem.in_seconds(index, 1.0);
+        [
+            self.solution.square(index) * unit,
+            problem.standard_error(&self.solution, index) * unit,
+        ]
+    }
+
     /// A term, its square times `factor`, in deg/h and s.
     ///
     /// Below a `1/tau^2` term that is negative beyond chance, the mark of a loop or a filter, a

@@ -4,7 +4,7 @@ use super::coefficients::NoiseCoefficients;
 use super::covariance::{CORRELATED, FLICKER, INVERSE_SQUARE, RAMP, TERMS, WALK, WHITE};
 use super::judge::choice::{Choice, Search};
 use super::judge::goodness::Goodness;
-use super::least_squares::{Mix, Problem};
+use super::least_squares::{Mix, Problem, Solution};
 use super::limits::Limits;
 use super::overlapping::AllanPoint;
 use crate::metrics::estimate::reason::Unavailable;
@@ -280,22 +280,6 @@ impl NoiseFit {
             ..self
         }
     }
-
-    /// Two-sided density of the fitted noise, (deg/h)^2/Hz, that of the slow terms raised by two
-    /// standard errors: a line must stand above noise that the record does not rule out.
-    pub(crate) fn cautious_density(&self, frequency_hz: f64) -> f64 {
-        let angular = std::f64::consts::TAU * frequency_hz;
-        let raised = |term: &Term| term.square.max(0.0) + 2.0 * term.standard_error;
-        let correlated = self.correlated.map_or(0.0, |noise| {
-            let time = noise.correlation_time_s.value;
-            let turn = angular * time;
-            2.0 * raised(&noise.deviation_deg_per_h) * time / (1.0 + turn * turn)
-        });
-        self.angle_random_walk_deg_per_h_sqrt_s.square.max(0.0)
-            + raised(&self.bias_instability_deg_per_h) / angular
-            + raised(&self.rate_random_walk_deg_per_h_per_sqrt_s) / (angular * angular)
-            + correlated
-    }
 }
 
 /// Averaging times a fit uses: from `tau_min_s` to a ninth of the record.
@@ -347,6 +331,67 @@ pub fn fit_pooled_noise(
     range: FitRange,
     records: f64,
 ) -> Result<NoiseFit, Unavailable> {
+    ChosenFit::new(points, range, records).map(|chosen| chosen.judged())
+}
+
+/// A fit of the terms that a curve asks for, not judged yet: that takes most of the time.
+pub(crate) struct ChosenFit {
+    points: Vec<AllanPoint>,
+    choice: Choice,
+}
+
+impl ChosenFit {
+    /// Chooses the terms of a curve, the mean of so many independent records.
+    ///
+    /// # Errors
+    /// As for [`fit_noise`].
+    pub(crate) fn new(
+        points: &[AllanPoint],
+        range: FitRange,
+        records: f64,
+    ) -> Result<Self, Unavailable> {
+        let points = usable(points, range)?;
+        let problem = Problem::new(&points, records);
+        let search = Search {
+            points: &points,
+            near: None,
+        };
+        match search.choose(&problem) {
+            Some(choice) => Ok(Self { points, choice }),
+            None => Err("the scatter of the Allan variances cannot be worked out".into()),
+        }
+    }
+
+    /// Two-sided density of the fitted noise, (deg/h)^2/Hz, that of the slow terms raised by two
+    /// standard errors: a line must stand above noise that the record does not rule out.
+    pub(crate) fn cautious_density(&self, frequency_hz: f64) -> f64 {
+        let angular = std::f64::consts::TAU * frequency_hz;
+        let limits = Limits::new(&self.choice);
+        let raised = |term: usize| {
+            let [square, error] = limits.square(term);
+            square.max(0.0) + 2.0 * error
+        };
+        let problem = &self.choice.problem;
+        let correlated = self.choice.allowed[CORRELATED].then(|| {
+            let time = problem.correlation().unwrap_or(0.0) * problem.sample_period_s();
+            let turn = angular * time;
+            2.0 * raised(CORRELATED) * time / (1.0 + turn * turn)
+        });
+        let [white, _] = limits.square(WHITE);
+        white.max(0.0)
+            + raised(FLICKER) / angular
+            + raised(WALK) / (angular * angular)
+            + correlated.unwrap_or(0.0)
+    }
+
+    /// The fit in coefficients and intervals, judged.
+    pub(crate) fn judged(&self) -> NoiseFit {
+        report(&self.points, &self.choice)
+    }
+}
+
+/// The points of a curve that a fit uses, if they are enough.
+fn usable(points: &[AllanPoint], range: FitRange) -> Result<Vec<AllanPoint>, Unavailable> {
     // A hair of slack keeps a point whose tau equals the limit up to rounding.
     let used: Vec<AllanPoint> = points
         .iter()
@@ -371,16 +416,7 @@ pub fn fit_pooled_noise(
         )
         .into());
     }
-    let used = thinned(used);
-    let problem = Problem::new(&used, records);
-    let search = Search {
-        points: &used,
-        near: None,
-    };
-    let Some(choice) = search.choose(&problem) else {
-        return Err("the scatter of the Allan variances cannot be worked out".into());
-    };
-    Ok(report(&used, &choice))
+    Ok(thinned(used))
 }
 
 /// Every second point and the last of a dense curve: neighbours a fifth of tau apart correlate by 0.9
@@ -404,7 +440,7 @@ fn report(points: &[AllanPoint], choice: &Choice) -> NoiseFit {
         deviation_deg_per_h: term(CORRELATED),
         correlation_time_s: limits.correlation_time_s(),
     });
-    let (settled, settled_errors) = settled(choice);
+    let (settled, settled_errors) = settled(choice, limits.solution());
     NoiseFit {
         quantisation_arcsec: limits.term(INVERSE_SQUARE, 1.0 / 3.0),
         angle_random_walk_deg_per_h_sqrt_s: term(WHITE),
@@ -431,18 +467,19 @@ fn in_seconds(problem: &Problem, squares: &[f64; TERMS]) -> Mix {
 }
 
 /// The fit that predictions rest on, and its standard errors.
-fn settled(choice: &Choice) -> (Mix, [f64; TERMS]) {
+///
+/// * `whole`: the fit of all chosen terms.
+fn settled(choice: &Choice, whole: &Solution) -> (Mix, [f64; TERMS]) {
     let problem = &choice.problem;
     let mut allowed = choice.allowed;
-    let whole = problem.solve(&allowed);
-    allowed[WALK] = problem.significance(&whole, WALK) >= WALK_SIGNIFICANCE;
+    allowed[WALK] = problem.significance(whole, WALK) >= WALK_SIGNIFICANCE;
     let solution = if allowed[WALK] {
         whole
     } else {
-        problem.solve(&allowed)
+        &problem.solve(&allowed)
     };
     let errors = std::array::from_fn(|term| {
-        problem.in_seconds(term, problem.standard_error(&solution, term))
+        problem.in_seconds(term, problem.standard_error(solution, term))
     });
     (in_seconds(problem, &solution.squares), errors)
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use realfft::RealFftPlanner;
 
-use crate::metrics::allan::noise_fit::{FitRange, NoiseFit, Sine, fit_noise};
+use crate::metrics::allan::noise_fit::{ChosenFit, FitRange, NoiseFit, Sine};
 use crate::metrics::allan::overlapping::overlapping_allan;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
@@ -65,9 +65,9 @@ pub(crate) fn fit_beside_sine(
     }
     let amplitude = found.amplitude / means.gain(found.frequency_hz);
     let rest = without(words_deg_per_h, sample_period_s, &found, amplitude, &means);
-    let fit = fit_noise(&overlapping_allan(&rest, sample_period_s), range).ok()?;
+    let chosen = ChosenFit::new(&overlapping_allan(&rest, sample_period_s), range, 1.0).ok()?;
     let duration_s = words_deg_per_h.len() as f64 * sample_period_s;
-    let density = fit.cautious_density(found.frequency_hz);
+    let density = chosen.cautious_density(found.frequency_hz);
     let power = amplitude * amplitude * duration_s / 4.0;
     if power < threshold * density {
         return None;
@@ -86,7 +86,7 @@ pub(crate) fn fit_beside_sine(
         ),
         frequencies_tried: interval::round_to_count(means.tried(band)),
     };
-    Some(fit.beside(sine))
+    Some(chosen.judged().beside(sine))
 }
 
 /// The words without the sine, whose phase counts from the middle of the means.
