@@ -5,6 +5,7 @@ use super::dc_gain::{DC_GAIN, dc_gain_lack};
 use crate::metrics::allan::overlapping::{NoiseType, degrees_of_freedom};
 use crate::metrics::estimate::blocks::samples_in;
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
@@ -29,10 +30,6 @@ pub static ALLAN_RATIO_INSIDE_MEMORY: MetricKey = MetricKey::of_filters(
     "Allan deviation at 1 s over DC gain times raw's, if the filter reaches into it: no less noise beyond",
 )
 .heading("inside memory");
-
-/// Reasons that both ratios have.
-const NO_GAIN: &str = "the DC gain of this filter is not known";
-const NO_NOISE: &str = "the raw channel has no noise";
 
 /// Averaging time at which the ratio is taken, s, if the record supports it.
 const AVERAGING_TIME_S: f64 = 1.0;
@@ -65,36 +62,9 @@ pub(crate) fn measure_weight_noise(
     facts: &FilterFacts,
     metrics: &mut ChannelMetrics,
 ) {
-    let Some(dc_gain) = facts.dc_gain else {
-        return metrics.miss(&WEIGHT_NOISE_RATIO, NO_GAIN);
-    };
-    if dc_gain <= 1e-6 || !dc_gain.is_finite() {
-        return metrics.miss(&WEIGHT_NOISE_RATIO, dc_gain_lack(dc_gain));
-    }
-    let count = record.raw_deg_per_h.len();
-    let reach = memory_samples(&facts.shape) + facts.shape.newest_age_samples;
-    let asked = samples_in(AVERAGING_TIME_S, record.sample_period_s).max(REACHES * reach);
-    let longest = asked.min(count / 4);
-    let supported = |m: &usize| degrees_of_freedom(NoiseType::White, count + 1, *m) >= FREEDOM_MIN;
-    let Some(m) = (1..=longest).rev().find(supported) else {
-        metrics.miss(
-            &WEIGHT_NOISE_RATIO,
-            format!("no averaging time has {FREEDOM_MIN} degrees of freedom"),
-        );
-        return;
-    };
-    if m < REACHES_MIN * reach {
-        metrics.miss(
-            &WEIGHT_NOISE_RATIO,
-            format!(
-                "no averaging time long against the {reach} samples that the filter reaches back"
-            ),
-        );
-        return;
-    }
-    let Some(ratio) = restored_ratio(record, dc_gain, m) else {
-        metrics.miss(&WEIGHT_NOISE_RATIO, NO_NOISE);
-        return;
+    let (dc_gain, m, ratio) = match beyond_memory(record, facts) {
+        Ok(found) => found,
+        Err(reason) => return metrics.miss(&WEIGHT_NOISE_RATIO, reason),
     };
     let metric = metrics.put(&WEIGHT_NOISE_RATIO, ratio);
     // The time asked for where it is the nearest whole number of samples.
@@ -107,6 +77,28 @@ pub(crate) fn measure_weight_noise(
     metric.fields.insert(DC_GAIN.name, dc_gain);
 }
 
+/// DC gain, averaging time in samples, and the ratio there, or why there is none.
+fn beyond_memory(
+    record: &Record,
+    facts: &FilterFacts,
+) -> Result<(f64, usize, Estimate), Unavailable> {
+    let dc_gain = restorable_gain(facts)?;
+    let count = record.raw_deg_per_h.len();
+    let reach = reach_samples(facts);
+    let asked = samples_in(AVERAGING_TIME_S, record.sample_period_s).max(REACHES * reach);
+    let longest = asked.min(count / 4);
+    let Some(m) = (1..=longest).rev().find(|m| is_supported(count, *m)) else {
+        return Err(format!("no averaging time has {FREEDOM_MIN} degrees of freedom").into());
+    };
+    if m < REACHES_MIN * reach {
+        return Err(format!(
+            "no averaging time long against the {reach} samples that the filter reaches back"
+        )
+        .into());
+    }
+    Ok((dc_gain, m, restored_ratio(record, dc_gain, m)?))
+}
+
 /// Enters `allan_ratio_inside_memory`: the same ratio at 1 s, where the filter reaches into it.
 ///
 /// White noise through a low pass has less of an Allan deviation there, as `Claim` has it in closed form:
@@ -116,41 +108,63 @@ pub(crate) fn measure_inside_memory(
     facts: &FilterFacts,
     metrics: &mut ChannelMetrics,
 ) {
-    let Some(dc_gain) = facts.dc_gain else {
-        return metrics.miss(&ALLAN_RATIO_INSIDE_MEMORY, NO_GAIN);
-    };
-    if dc_gain <= 1e-6 || !dc_gain.is_finite() {
-        return metrics.miss(&ALLAN_RATIO_INSIDE_MEMORY, dc_gain_lack(dc_gain));
-    }
     let m = samples_in(AVERAGING_TIME_S, record.sample_period_s);
-    let reach = memory_samples(&facts.shape) + facts.shape.newest_age_samples;
+    let reach = reach_samples(facts);
+    match inside_memory(record, facts, m, reach) {
+        Ok(ratio) => {
+            let fields = &mut metrics.put(&ALLAN_RATIO_INSIDE_MEMORY, ratio).fields;
+            fields.insert("averaging_time_s", m as f64 * record.sample_period_s);
+            fields.insert("reach_samples", reach as f64);
+        }
+        Err(reason) => metrics.miss(&ALLAN_RATIO_INSIDE_MEMORY, reason),
+    }
+}
+
+/// The ratio at `m` samples, of a filter that reaches so many back, or why there is none.
+fn inside_memory(
+    record: &Record,
+    facts: &FilterFacts,
+    m: usize,
+    reach: usize,
+) -> Result<Estimate, Unavailable> {
+    let dc_gain = restorable_gain(facts)?;
     if m >= REACHES * reach {
-        return metrics.miss(
-            &ALLAN_RATIO_INSIDE_MEMORY,
-            format!("1 s is well beyond the {reach} samples that the filter reaches back"),
+        return Err(
+            format!("1 s is well beyond the {reach} samples that the filter reaches back").into(),
         );
     }
     let count = record.raw_deg_per_h.len();
-    let is_supported = (1..=count / 4).contains(&m)
-        && degrees_of_freedom(NoiseType::White, count + 1, m) >= FREEDOM_MIN;
-    if !is_supported {
-        return metrics.miss(
-            &ALLAN_RATIO_INSIDE_MEMORY,
-            format!("an averaging time of 1 s has no {FREEDOM_MIN} degrees of freedom"),
+    if !(1..=count / 4).contains(&m) || !is_supported(count, m) {
+        return Err(
+            format!("an averaging time of 1 s has no {FREEDOM_MIN} degrees of freedom").into(),
         );
     }
-    let Some(ratio) = restored_ratio(record, dc_gain, m) else {
-        return metrics.miss(&ALLAN_RATIO_INSIDE_MEMORY, NO_NOISE);
-    };
-    let metric = metrics.put(&ALLAN_RATIO_INSIDE_MEMORY, ratio);
-    metric
-        .fields
-        .insert("averaging_time_s", m as f64 * record.sample_period_s);
-    metric.fields.insert("reach_samples", reach as f64);
+    restored_ratio(record, dc_gain, m)
 }
 
-/// `ADEV(output) / (DC gain ADEV(raw))` at `m` samples; `None` if the raw channel has no noise.
-fn restored_ratio(record: &Record, dc_gain: f64, m: usize) -> Option<Estimate> {
+/// DC gain by which an output can be restored.
+fn restorable_gain(facts: &FilterFacts) -> Result<f64, Unavailable> {
+    let dc_gain = facts
+        .dc_gain
+        .ok_or("the DC gain of this filter is not known")?;
+    if dc_gain <= 1e-6 || !dc_gain.is_finite() {
+        return Err(dc_gain_lack(dc_gain));
+    }
+    Ok(dc_gain)
+}
+
+/// Samples that a filter reaches back.
+fn reach_samples(facts: &FilterFacts) -> usize {
+    memory_samples(&facts.shape) + facts.shape.newest_age_samples
+}
+
+/// Whether so many samples have degrees of freedom enough at an averaging time of `m`.
+fn is_supported(count: usize, m: usize) -> bool {
+    degrees_of_freedom(NoiseType::White, count + 1, m) >= FREEDOM_MIN
+}
+
+/// `ADEV(output) / (DC gain ADEV(raw))` at `m` samples, or that the raw channel has no noise.
+fn restored_ratio(record: &Record, dc_gain: f64, m: usize) -> Result<Estimate, Unavailable> {
     let count = record.raw_deg_per_h.len();
     let blocks = (count / (AVERAGING_TIMES_PER_BLOCK * m)).clamp(BLOCKS_MIN, BLOCKS_MAX);
     let own = second_difference_squares(record.channel_deg_per_h, m, blocks);
@@ -158,7 +172,7 @@ fn restored_ratio(record: &Record, dc_gain: f64, m: usize) -> Option<Estimate> {
     let (own_sum, raw_sum): (f64, f64) = (own.iter().sum(), raw.iter().sum());
     let scatter = (raw_sum / count as f64).sqrt() / m as f64;
     if scatter <= 1e-12 * interval::mean(record.raw_deg_per_h).abs() || raw_sum <= 0.0 {
-        return None;
+        return Err("the raw channel has no noise".into());
     }
     let ratio = |own: f64, raw: f64| (own / raw).max(0.0).sqrt() / dc_gain;
     let left_out: Vec<f64> = own
@@ -168,7 +182,7 @@ fn restored_ratio(record: &Record, dc_gain: f64, m: usize) -> Option<Estimate> {
         .collect();
     let estimate = interval::jackknife(ratio(own_sum, raw_sum), &left_out);
     let low = estimate.low.max(0.0);
-    Some(Estimate::with_interval(estimate.value, low, estimate.high))
+    Ok(Estimate::with_interval(estimate.value, low, estimate.high))
 }
 
 /// Sums, block by block of their first sample, of the squared differences between the sums of `m`
