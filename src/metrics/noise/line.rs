@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use realfft::RealFftPlanner;
 
 use crate::metrics::allan::noise_fit::{ChosenFit, FitRange, NoiseFit, Sine};
+use crate::metrics::allan::noise_identification::remove_line;
 use crate::metrics::allan::overlapping::overlapping_allan;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
@@ -222,21 +223,5 @@ impl BlockMeans {
             output.clear();
         }
         output.iter().map(|bin| bin.norm_sqr()).collect()
-    }
-}
-
-/// Takes the straight line of least squares away.
-fn remove_line(values: &mut [f64]) {
-    let middle = (values.len() as f64 - 1.0) / 2.0;
-    let mean = interval::mean(values);
-    let (mut along, mut square) = (0.0, 0.0);
-    for (index, value) in values.iter().enumerate() {
-        let time = index as f64 - middle;
-        along += time * (value - mean);
-        square += time * time;
-    }
-    let slope = along / f64::max(square, f64::MIN_POSITIVE);
-    for (index, value) in values.iter_mut().enumerate() {
-        *value -= mean + slope * (index as f64 - middle);
     }
 }
