@@ -254,12 +254,8 @@ impl ChannelFilter {
         let words = match self.failure {
             Some(divergence) => Err(divergence),
             None => Ok(FilterWords {
-                dc_gain: match &self.shape.rule {
-                    // Given weights have the gain that they settle on; their sum starts from nothing.
-                    WeightRule::Fixed(weights) => Some(weights.iter().sum()),
-                    WeightRule::Sections(sections) => Some(settled_gain(sections)),
-                    WeightRule::Adaptive { .. } => mean(self.weight_sum_total),
-                },
+                // Given weights have the gain that they settle on; their sum starts from nothing.
+                dc_gain: given_gain(&self.shape.rule).or_else(|| mean(self.weight_sum_total)),
                 rate_gains: self
                     .rate_twins
                     .as_ref()
@@ -275,13 +271,11 @@ impl ChannelFilter {
                     WeightRule::Adaptive { .. } => self.block_weights(),
                     WeightRule::Fixed(_) | WeightRule::Sections(_) => Vec::new(),
                 },
-                dc_gain_adapted: match &self.shape.rule {
-                    WeightRule::Fixed(weights) => Some(weights.iter().sum()),
-                    WeightRule::Sections(sections) => Some(settled_gain(sections)),
-                    WeightRule::Adaptive { .. } => self.twin.as_ref().and_then(|_| {
+                dc_gain_adapted: given_gain(&self.shape.rule).or_else(|| {
+                    self.twin.as_ref().and_then(|_| {
                         mean(self.twin_difference_total).map(|gain| gain / ADDED_RATE_DEG_PER_H)
-                    }),
-                },
+                    })
+                }),
                 output_deg_per_h: self.output_deg_per_h,
             }),
         };
@@ -321,13 +315,15 @@ impl ChannelFilter {
     }
 }
 
-/// Gain of a cascade for a rate that never changes.
-fn settled_gain(sections: &[Section]) -> f64 {
-    sections
-        .iter()
-        .map(|section| {
-            let [a1, a2] = section.denominator;
-            section.numerator.iter().sum::<f64>() / (1.0 + a1 + a2)
-        })
-        .product()
+/// Gain of given weights for a rate that never changes; none of weights that adapt.
+fn given_gain(rule: &WeightRule) -> Option<f64> {
+    let of_section = |section: &Section| {
+        let [a1, a2] = section.denominator;
+        section.numerator.iter().sum::<f64>() / (1.0 + a1 + a2)
+    };
+    match rule {
+        WeightRule::Fixed(weights) => Some(weights.iter().sum()),
+        WeightRule::Sections(sections) => Some(sections.iter().map(of_section).product()),
+        WeightRule::Adaptive { .. } => None,
+    }
 }
