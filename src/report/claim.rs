@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::json;
 
-use crate::gate::plain;
+use crate::gate::{plain, three_digits};
 use crate::metrics::{Claim, ClaimedFigure, Lookalikes};
 use crate::report::layout::json::pretty;
 use crate::report::layout::text::wrapped;
@@ -33,7 +33,7 @@ pub fn claim_text(claim: &Claim, rate_hz: Option<f64>) -> String {
     let _ = writeln!(
         text,
         ": {} % of it is left. This reads the same:",
-        rounded(100.0 * claim.ratio())
+        three_digits(100.0 * claim.ratio())
     );
     for line in lines(claim.figure, &found, rate_hz) {
         text.push_str(&wrapped(&line, "  ", WIDTH));
@@ -59,27 +59,22 @@ fn lines(figure: ClaimedFigure, found: &Lookalikes, rate_hz: Option<f64>) -> [St
     [
         format!(
             "a DC gain of {}: every rate is lowered with the noise",
-            rounded(found.dc_gain)
+            three_digits(found.dc_gain)
         ),
         format!(
             "on white noise, a one-pole low pass with a time constant of {} s (half power at {} Hz), \
              delay {} s",
-            rounded(found.one_pole_time_constant_s),
-            rounded(found.one_pole_cutoff_hz()),
-            rounded(found.one_pole_time_constant_s)
+            three_digits(found.one_pole_time_constant_s),
+            three_digits(found.one_pole_cutoff_hz()),
+            three_digits(found.one_pole_time_constant_s)
         ),
         format!(
             "on white noise, a mean over {} s{taps}, delay {} s",
-            rounded(found.mean_length_s),
-            rounded(found.mean_delay_s(rate_hz))
+            three_digits(found.mean_length_s),
+            three_digits(found.mean_delay_s(rate_hz))
         ),
         format!("none, {none}: a low pass of unit DC gain leaves it as it was"),
     ]
-}
-
-/// A number to three digits.
-fn rounded(value: f64) -> String {
-    plain(format!("{value:.2e}").parse().unwrap_or(value))
 }
 
 /// A claim as JSON; without `lookalikes` where nothing is lower than before.

@@ -11,7 +11,7 @@ use crate::metrics::estimate::reason::{Unavailable, too_short};
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::key::metric::{MetricKey, Needs};
 use crate::units;
-use crate::wording::plain;
+use crate::wording::{plain, to_digits};
 
 /// Metrics that the fit gives.
 pub(crate) const FIT_METRICS: [&MetricKey; 5] = [
@@ -50,7 +50,7 @@ pub(crate) fn enter_fit(
             metrics.miss(key, refusal.clone());
         } else if let Some(lack) = slow_noise_lack(key, duration_s) {
             let bound = if term.is_bounded() && estimate.high > 0.0 {
-                let most = plain(two_digits(estimate.high));
+                let most = plain(to_digits(estimate.high, 2));
                 format!("; it is {most} {} at most", key.unit)
             } else {
                 String::new()
@@ -67,11 +67,6 @@ pub(crate) fn enter_fit(
     put_extra_terms(fit, metrics);
     metrics.noise_fit = Some(sheet(fit));
     put_fit_curve(points, Some(fit), metrics);
-}
-
-/// A limit to as many digits as it deserves.
-fn two_digits(limit: f64) -> f64 {
-    format!("{limit:.1e}").parse().unwrap_or(limit)
 }
 
 /// The terms that are metrics, each with the factor that takes it from deg/h and s to its unit.
