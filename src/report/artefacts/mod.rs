@@ -203,18 +203,28 @@ pub fn run_files<'a>(report: &RunReport, gyros: &[RunSignals<'a>]) -> Vec<Output
         as_npy: report.scenario.output.samples == SamplesFormat::Npy,
         as_csv: false,
     };
-    let files = |artefact: Artefact| {
-        let text = match artefact.made {
-            Made::Run(text) => text(report),
-            Made::Curve(key) => curve_csv(key, report.channels),
-            Made::Sheet(text) => report.calibration.map(|sheet| text(sheet, &provenance)),
-            Made::Samples(files) => return files(&artefact, &samples),
-            _ => None,
-        };
-        let file = text.map(|text| OutputFile::text(artefact.name, text));
-        file.into_iter().collect()
+    files_of(Place::Run, &samples, |made| match made {
+        Made::Run(text) => text(report),
+        Made::Curve(key) => curve_csv(key, report.channels),
+        Made::Sheet(text) => report.calibration.map(|sheet| text(sheet, &provenance)),
+        _ => None,
+    })
+}
+
+/// Samples and texts of a folder, in the order of the rows.
+fn files_of<'a>(
+    place: Place,
+    samples: &Samples<'a, '_>,
+    text: impl Fn(&Made) -> Option<String>,
+) -> Vec<OutputFile<'a>> {
+    let files = |artefact: Artefact| match artefact.made {
+        Made::Samples(files) => files(&artefact, samples),
+        ref made => {
+            let text = text(made).map(|text| OutputFile::text(artefact.name, text));
+            text.into_iter().collect()
+        }
     };
-    of(Place::Run).flat_map(files).collect()
+    of(place).flat_map(files).collect()
 }
 
 /// Files and pictures of a log's folder, the samples as NPY, with `as_csv` as CSV as well. A picture
@@ -241,19 +251,14 @@ pub fn log_files<'a>(
         as_npy: true,
         as_csv,
     };
-    let files = |artefact: Artefact| {
-        let text = match artefact.made {
-            Made::Log(text) => text(report),
-            Made::Curve(key) => curve_csv(key, report.channels),
-            Made::Samples(files) => return files(&artefact, &samples),
-            _ => None,
-        };
-        let file = text.map(|text| OutputFile::text(artefact.name, text));
-        file.into_iter().collect()
-    };
+    let mut files = files_of(Place::Log, &samples, |made| match made {
+        Made::Log(text) => text(report),
+        Made::Curve(key) => curve_csv(key, report.channels),
+        _ => None,
+    });
     let pictures = pictures.drawn.into_iter();
-    let pictures = pictures.map(|(name, svg)| OutputFile::text(&name, svg));
-    of(Place::Log).flat_map(files).chain(pictures).collect()
+    files.extend(pictures.map(|(name, svg)| OutputFile::text(&name, svg)));
+    files
 }
 
 /// Files of a calibration: name and text.

@@ -36,10 +36,7 @@ fn npy<'a>(name: String, values: impl Into<Cow<'a, [f64]>>) -> OutputFile<'a> {
 
 /// Every channel of every gyro.
 pub(super) fn channels<'a>(row: &Artefact, samples: &Samples<'a, '_>) -> Vec<OutputFile<'a>> {
-    let channels = samples.npy().iter().flat_map(|gyro| &gyro.channels);
-    channels
-        .map(|&(name, words)| npy(row.named(name), words))
-        .collect()
+    channels_from(0, row, samples)
 }
 
 /// Every channel but the raw one, which a log already is.
@@ -47,8 +44,18 @@ pub(super) fn channels_behind_raw<'a>(
     row: &Artefact,
     samples: &Samples<'a, '_>,
 ) -> Vec<OutputFile<'a>> {
-    let channels = samples.npy().iter().flat_map(|gyro| &gyro.channels[1..]);
+    channels_from(1, row, samples)
+}
+
+/// The channels of every gyro from one on, raw being the first.
+fn channels_from<'a>(
+    first: usize,
+    row: &Artefact,
+    samples: &Samples<'a, '_>,
+) -> Vec<OutputFile<'a>> {
+    let channels = samples.npy().iter();
     channels
+        .flat_map(|gyro| &gyro.channels[first..])
         .map(|&(name, words)| npy(row.named(name), words))
         .collect()
 }
