@@ -32,23 +32,15 @@ pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
     }
 }
 
-/// The pictures of one run, and what to say of those that are left out.
-pub(crate) fn draw(plan: &Plan, report: &RunReport, simulation: &Simulation) -> Pictures {
-    let names = Names::of(report);
-    report::run_pictures(report, &signals(plan, simulation, &names))
-}
-
 /// Writes everything of one run beside its place, to be swapped in whole.
 pub(crate) fn write_folder<'a>(
-    plan: &Plan,
     report: &RunReport,
-    simulation: &Simulation,
+    signals: &[RunSignals],
     pictures: &Pictures,
     output: &'a SuiteOutput,
 ) -> Result<Staged<'a>, StoreError> {
     let folder = output.stage()?;
-    let names = Names::of(report);
-    for file in report::run_files(report, &signals(plan, simulation, &names)) {
+    for file in report::run_files(report, signals) {
         write_file(&folder, &file)?;
     }
     for (name, svg) in &pictures.drawn {
@@ -58,13 +50,13 @@ pub(crate) fn write_folder<'a>(
 }
 
 /// Names of the channels of the gyros.
-struct Names {
+pub(super) struct Names {
     raw: Vec<String>,
     compensated: Vec<String>,
 }
 
 impl Names {
-    fn of(report: &RunReport) -> Self {
+    pub(super) fn of(report: &RunReport) -> Self {
         Self {
             raw: report.scenario.raw_channels(),
             compensated: report.scenario.compensated_channels(),
@@ -73,7 +65,11 @@ impl Names {
 }
 
 /// The samples of each gyro.
-fn signals<'a>(plan: &Plan, simulation: &'a Simulation, names: &'a Names) -> Vec<RunSignals<'a>> {
+pub(super) fn signals<'a>(
+    plan: &Plan,
+    simulation: &'a Simulation,
+    names: &'a Names,
+) -> Vec<RunSignals<'a>> {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
     let first_measured = RecordLength::new(scenario, sample_period_s).warm_up;
