@@ -10,7 +10,7 @@ use crate::scenario::document::tree::{Node, Table};
 use crate::scenario::keys::schema::{children, groups, join, keys};
 use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::message::synonyms::{Meaning, meaning};
-use crate::wording::{Likeness, Name, Vocabulary, conversion, likeness};
+use crate::wording::{Likeness, Name, Vocabulary, conversion, likeness, words_of};
 
 /// Most keys that are suggested at once, equally like.
 const SUGGESTIONS_MAX: usize = 3;
@@ -118,7 +118,10 @@ pub(crate) fn suggestions(schema_path: &str, name: &str) -> Vec<&'static str> {
     let written = Name::of(name);
     let scored = names().iter().filter_map(|(known, path)| {
         let likeness = likeness(&written, known, vocabulary())?;
-        path_is_open(schema_path, path).then(|| (rank(likeness, schema_path, path), *path))
+        let is_meant = is_related(schema_path, parent(path))
+            || likeness == Likeness::Same && is_the_only_one(path);
+        let is_meant = is_meant && path_is_open(schema_path, path);
+        is_meant.then(|| (rank(likeness, schema_path, path), *path))
     });
     let mut scored: Vec<((Likeness, usize), &'static str)> = scored.collect();
     scored.sort_by_key(|(rank, _)| *rank);
@@ -134,6 +137,26 @@ pub(crate) fn suggestions(schema_path: &str, name: &str) -> Vec<&'static str> {
         return Vec::new();
     }
     equal
+}
+
+/// Whether one table is the other or holds it: what stands elsewhere is most often another thing of that
+/// name, as the bits of another converter.
+fn is_related(one: &str, other: &str) -> bool {
+    let holds = |outer: &str, inner: &str| {
+        inner
+            .strip_prefix(outer)
+            .is_some_and(|rest| outer.is_empty() || rest.is_empty() || rest.starts_with('.'))
+    };
+    holds(one, other) || holds(other, one)
+}
+
+/// Whether no other key is of the same sort, as the bits of a converter and those of a step are: it can be
+/// meant from anywhere.
+fn is_the_only_one(path: &str) -> bool {
+    let is_key = keys().any(|key| key.path == path);
+    let name = last_name(path);
+    let mut others = paths().iter().filter(|other| **other != path);
+    is_key && !others.any(|other| last_name(other).ends_with(name))
 }
 
 /// Likeness, then the way from one table to the other; a slip in the same table beats the very name
@@ -344,10 +367,7 @@ mod tests {
             for (known, other) in names() {
                 let (one, other) = (last_name(one), last_name(other));
                 if let Some(found) = likeness(own, known, vocabulary()) {
-                    let words = (
-                        crate::wording::words_of(one),
-                        crate::wording::words_of(other),
-                    );
+                    let words = (words_of(one), words_of(other));
                     assert_eq!(words.0, words.1, "{one} stands for {other}: {found:?}");
                 }
             }
@@ -379,6 +399,25 @@ mod tests {
             "unknown key gyro.coil.length_km: did you mean gyro.coil.length_m? (1 km is \
              1000 m)"
         );
+        // A thing of the same name elsewhere is another thing; one that has no like is meant.
+        for (table, name) in [
+            ("turntable.encoder", "bits"),
+            ("gyro.source", "drift_ppm"),
+            ("gyro.modulator", "frequency_hz"),
+            ("gyro.adc", "offset"),
+            ("gyro.detector", "temperature_k"),
+            ("turntable.encoder", "noise"),
+            ("turntable.site", "temperature"),
+        ] {
+            let found = unknown(table, table, name);
+            assert!(!found.contains("did you mean"), "{found}");
+        }
+        let moved = unknown("gyro.coil", "gyro.coil", "wavelength_nm");
+        assert!(
+            moved.ends_with("did you mean gyro.source.wavelength_nm?"),
+            "{moved}"
+        );
+        assert!(unknown("", "", "sweep").contains("[matrix]"));
         // Another motion would contradict the one at hand.
         let swing = unknown("turntable.swing", "turntable.swing", "rate_deg_per_s");
         assert!(
