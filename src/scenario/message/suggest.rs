@@ -10,7 +10,7 @@ use crate::scenario::document::tree::{Node, Table};
 use crate::scenario::keys::schema::{children, groups, join, keys};
 use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::message::synonyms::{Meaning, meaning};
-use crate::wording::{Likeness, Name, Vocabulary, conversion, likeness, words_of};
+use crate::wording::{Likeness, Name, Vocabulary, conversion, likeness};
 
 /// Most keys that are suggested at once, equally like.
 const SUGGESTIONS_MAX: usize = 3;
@@ -114,6 +114,19 @@ fn parent(path: &str) -> &str {
 pub(crate) fn suggestions(schema_path: &str, name: &str) -> Vec<&'static str> {
     if name.len() > KNOWN_LENGTH_MAX {
         return Vec::new();
+    }
+    // The table as a word of the name, `coil_length_m` for `coil.length_m`.
+    let joined = |path: &&&str| {
+        let inner = if schema_path.is_empty() {
+            Some(**path)
+        } else {
+            path.strip_prefix(schema_path)
+                .and_then(|rest| rest.strip_prefix('.'))
+        };
+        inner.is_some_and(|inner| inner.contains('.') && inner.replace('.', "_") == name)
+    };
+    if let Some(path) = paths().iter().find(joined) {
+        return vec![path];
     }
     let written = Name::of(name);
     let scored = names().iter().filter_map(|(known, path)| {
@@ -305,6 +318,7 @@ fn listed(place: Place<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wording::words_of;
 
     fn unknown(schema_path: &str, shown: &str, name: &str) -> String {
         let place = Place {
@@ -418,6 +432,7 @@ mod tests {
             "{moved}"
         );
         assert!(unknown("", "", "sweep").contains("[matrix]"));
+        assert!(unknown("gyro", "gyro", "coil_length_m").ends_with("mean gyro.coil.length_m?"));
         // Another motion would contradict the one at hand.
         let swing = unknown("turntable.swing", "turntable.swing", "rate_deg_per_s");
         assert!(
