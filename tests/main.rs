@@ -70,6 +70,7 @@ mod patent_calibration;
 mod patent_filter;
 mod patent_known_answers;
 mod pipeline;
+mod pulse_words;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
 mod properties;

@@ -53,6 +53,7 @@ pub use allan::noise_fit::{
     fit_pooled_noise, sine_allan_variance,
 };
 pub use allan::noise_identification::PowerLaw;
+pub use allan::pulses::answer::{PulseAnswer, PulseMethod};
 pub use allan::overlapping::{
     AllanPoint, NoiseType, degrees_of_freedom, overlapping_allan, overlapping_allan_at,
 };

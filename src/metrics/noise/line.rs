@@ -46,10 +46,13 @@ const HANN: f64 = 2.0 / 3.0;
 ///
 /// Nothing if no frequency stands out, with periods from
 /// four shortest averaging times to a third of the record.
+///
+/// * `inverse_square`: `tau^2` times the Allan variance of a known quantisation, arcsec^2.
 pub(crate) fn fit_beside_sine(
     words_deg_per_h: &[f64],
     sample_period_s: f64,
     range: FitRange,
+    inverse_square: Option<f64>,
 ) -> Option<NoiseFit> {
     let means = BlockMeans::new(words_deg_per_h, sample_period_s, range.tau_min_s);
     let band = means.band(range.tau_min_s)?;
@@ -66,7 +69,8 @@ pub(crate) fn fit_beside_sine(
     }
     let amplitude = found.amplitude / means.gain(found.frequency_hz);
     let rest = without(words_deg_per_h, sample_period_s, &found, amplitude, &means);
-    let chosen = ChosenFit::new(&overlapping_allan(&rest, sample_period_s), range, 1.0).ok()?;
+    let points = overlapping_allan(&rest, sample_period_s);
+    let chosen = ChosenFit::new(&points, range, 1.0, inverse_square).ok()?;
     let duration_s = words_deg_per_h.len() as f64 * sample_period_s;
     let density = chosen.cautious_density(found.frequency_hz);
     let power = amplitude * amplitude * duration_s / 4.0;

@@ -115,7 +115,9 @@ impl Search<'_> {
     ///
     /// Source: Schwarz, Annals of Statistics 6 (1978) 461.
     pub(crate) fn choose(&self, problem: &Problem) -> Option<Choice> {
-        let mut best = Choice::of(problem.clone(), BASE, self.solve(problem, &BASE), 0.0)?;
+        let mut base = BASE;
+        base[INVERSE_SQUARE] = !problem.knows_inverse_square();
+        let mut best = Choice::of(problem.clone(), base, self.solve(problem, &base), 0.0)?;
         let mut penalty = 0.0;
         for _ in 0..2 {
             let Some(found) = self.best_addition(&best) else {

@@ -1,0 +1,10 @@
+//! Words that count pulses of angle: what their quantisation does to the Allan variance, and how the
+//! noise below it is found.
+
+pub(crate) mod answer;
+pub(crate) mod entry;
+pub(super) mod passage;
+pub(crate) mod recognition;
+pub(super) mod sawtooth;
+pub(super) mod step;
+pub(crate) mod substitute;
