@@ -82,7 +82,7 @@ fn table() {
     let log = std::env::var("LOG").is_ok();
     for hz in rates {
         for rate in [0.0, 8.47] {
-            for step in [0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0] {
+            for step in std::env::var("STEPS").unwrap_or("0.02,0.05,0.1,0.2,0.5,1,2,5,10,20".into()).split(',').map(|x| x.parse::<f64>().unwrap()) {
                 for seed in seed0..seed0 + seeds {
                     let period = 1.0 / hz;
                     let values = words(seed, step, rate, period, 3600.0);
@@ -90,7 +90,7 @@ fn table() {
                     let start = std::time::Instant::now();
                     let m = measured(&values, period, tau);
                     let show = |key| match m.metric(key) {
-                        Ok(x) => format!("{:.5} [{:.5} {:.5}]", x.estimate.value, x.estimate.low, x.estimate.high),
+                        Ok(x) => format!("{:.5} [{:.5} {:.5}]", x.value, x.low, x.high),
                         Err(e) => format!("- {e}"),
                     };
                     let sheet = m.noise_fit.as_ref();

@@ -67,7 +67,7 @@ impl PulseAnswer {
 /// How the curve agrees with the sawtooth of the pulses where that is a good part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Agreement {
-    /// Mean ratio of the Allan deviations found and predicted.
+    /// Root of the ratio of Allan variances found and predicted.
     pub(crate) ratio: f64,
     /// Shortest and longest of these averaging times, s.
     pub(crate) tau_range_s: [f64; 2],

@@ -54,15 +54,14 @@ fn quantisation_words(pulses: &PulseAnswer) -> String {
 
 /// Says what is known without a fit: the quantisation, and what the angle random walk is at most.
 pub(crate) fn enter_lack(pulses: &PulseWords, range: FitRange, metrics: &mut ChannelMetrics) {
-    let step_arcsec = pulses.sawtooth.step_arcsec;
-    put_quantisation(
-        Estimate::exact(step_arcsec / 12.0_f64.sqrt()),
-        step_arcsec,
-        metrics,
-    );
-    let step = plain(to_digits(step_arcsec, 6));
-    let words = format!("from the step of {step} arcsec, over sqrt(12)");
-    metrics.pulse_words.insert(QUANTISATION.name.to_owned(), words);
+    if pulses.carries {
+        let step_arcsec = pulses.sawtooth.step_arcsec;
+        let quantisation = Estimate::exact(step_arcsec / 12.0_f64.sqrt());
+        put_quantisation(quantisation, step_arcsec, metrics);
+        let step = plain(to_digits(step_arcsec, 6));
+        let words = format!("from the step of {step} arcsec, over sqrt(12)");
+        metrics.pulse_words.insert(QUANTISATION.name.to_owned(), words);
+    }
     let most = units::deg_per_h_sqrt_s_to_deg_per_sqrt_h(pulses.walk_at_most(range));
     let reason = metrics.why_unavailable(&ANGLE_RANDOM_WALK);
     if let Some(reason) = reason.filter(|_| most.is_finite()) {

@@ -23,14 +23,21 @@ const FINER: f64 = 4.0;
 /// Part of the Allan variance that the pulses must have to be compared with it.
 const SHARE: f64 = 0.2;
 
+/// They are compared up to such a part of the time in which they lose their phase, and at least up to so
+/// many shortest averaging times: further on slow noise adds to them.
+const COMPARED_PER_DEPHASING: f64 = 0.125;
+const COMPARED_TAU_RATIO: f64 = 4.0;
+
 /// Logarithm of the ratio of variances up to which the curve is that of the pulses, and its scatter in
 /// standard errors of as many draws as there are phases.
 const DISAGREEMENT: f64 = 0.2;
 const SCATTER: f64 = 4.0;
 
-/// Largest Allan variance of pulses without any walk, in squares of pulse over averaging time, with half as
-/// much again for chance: 1/2 of the sawtooth and 0.3 of a walk that does not dephase it.
-const UNMOVED: f64 = 1.2;
+/// Largest Allan variance of pulses, in squares of pulse over averaging time, without any walk; what a walk
+/// adds that just does not dephase them; and a factor for chance.
+const UNMOVED: f64 = 0.5;
+const UNDEPHASED: f64 = 0.3;
+const CHANCE: f64 = 2.0;
 
 /// Fall of `tau AVAR` that no rounding of words makes.
 const FALL: f64 = 10.0;
@@ -42,6 +49,8 @@ pub(crate) struct PulseWords {
     pub(crate) sawtooth: Sawtooth,
     /// How the curve agrees with it; none where the walk is not known.
     pub(crate) agreement: Option<Agreement>,
+    /// Whether the words show that they carry their remainder; few of them cannot.
+    pub(crate) carries: bool,
     /// Curve of the words.
     pub(crate) points: Vec<AllanPoint>,
     /// Intervals between pulses, where they tell more than the curve.
@@ -80,12 +89,15 @@ impl PulseWords {
         let best = passages.as_ref().map(|it| sawtooth(it.white)).or(curve);
         match best {
             Some(sawtooth) => {
-                let looked_at = used.iter().filter(|it| it.tau_s >= tau_min_s * (1.0 - 1e-9));
-                let agreement = agreement(looked_at, &sawtooth)?;
+                let last_s = (COMPARED_PER_DEPHASING * sawtooth.dephasing_time_s())
+                    .max(COMPARED_TAU_RATIO * tau_min_s);
+                let from = used.iter().filter(|it| it.tau_s >= tau_min_s * (1.0 - 1e-9));
+                let agreement = agreement(from.filter(|it| it.tau_s <= last_s), &sawtooth)?;
                 let duration_s = words.len() as f64 * sample_period_s;
                 agreement.holds(sawtooth.phases(duration_s)).then_some(Self {
                     sawtooth,
                     agreement: Some(agreement.told),
+                    carries: true,
                     points,
                     passages,
                 })
@@ -93,6 +105,7 @@ impl PulseWords {
             None => hardly_moves(&used, step_arcsec).then(|| Self {
                 sawtooth: sawtooth(0.0),
                 agreement: None,
+                carries: carries(&used),
                 points,
                 passages: None,
             }),
@@ -135,21 +148,32 @@ fn walk_of_curve(points: &[AllanPoint], step_arcsec: f64) -> Option<f64> {
 
 /// Whether a curve is that of pulses that an unknown walk does not dephase: of an angle that hardly
 /// moves from one pulse to the next.
+///
+/// What the pulses make is half a square of them over `tau^2` at most; a walk that does not dephase
+/// them over the longest time that a fit may begin with adds three tenths of one at that time.
 fn hardly_moves(points: &[AllanPoint], step_arcsec: f64) -> bool {
+    let Some(longest) = points.last() else {
+        return false;
+    };
     let square = step_arcsec * step_arcsec;
+    points.iter().all(|point| {
+        let walked = UNDEPHASED * TAU_RATIO_MIN * point.tau_s / longest.tau_s;
+        let most = CHANCE * (UNMOVED + walked) * square;
+        point.variance() * point.tau_s * point.tau_s <= most
+    })
+}
+
+/// Whether `tau AVAR` falls as no rounding of words makes it: of counts that carry their remainder.
+fn carries(points: &[AllanPoint]) -> bool {
     let level = |point: &AllanPoint| point.tau_s * point.variance();
-    let largest = points.iter().map(level).fold(0.0, f64::max);
-    let least = points.iter().map(level).fold(f64::INFINITY, f64::min);
-    largest >= FALL * least
-        && points
-            .iter()
-            .all(|point| point.variance() * point.tau_s * point.tau_s <= UNMOVED * square)
+    let first = points.first().map_or(0.0, level);
+    points.iter().map(level).any(|it| it * FALL <= first)
 }
 
 /// An agreement that is to be judged.
 struct Compared {
     told: Agreement,
-    /// Mean logarithm of the ratio of Allan variances found and predicted.
+    /// Logarithm of the ratio of Allan variances found and predicted.
     off: f64,
     /// The same of predicted and of the noise alone.
     of_pulses: f64,
@@ -168,27 +192,28 @@ fn agreement<'a>(
     points: impl Iterator<Item = &'a AllanPoint>,
     sawtooth: &Sawtooth,
 ) -> Option<Compared> {
-    let (mut off, mut of_pulses, mut count) = (0.0, 0.0, 0.0);
+    // Times the square of the averaging time the pulses weigh the same at all of them, and the depth of
+    // the dips at whole numbers of them does not matter.
+    let (mut found, mut predicted, mut of_noise) = (0.0, 0.0, 0.0);
     let mut tau_range_s = [f64::INFINITY, 0.0];
     for point in points {
         let noise = sawtooth.white / point.tau_s;
         let pulses = sawtooth.allan_variance(point.tau_s);
-        let predicted = noise + pulses;
-        if pulses < SHARE * predicted || point.variance() <= 0.0 {
+        if pulses < SHARE * (noise + pulses) {
             continue;
         }
-        off += (point.variance() / predicted).ln();
-        of_pulses += (predicted / noise).ln();
-        count += 1.0;
+        let weight = point.tau_s * point.tau_s;
+        found += weight * point.variance();
+        predicted += weight * (noise + pulses);
+        of_noise += weight * noise;
         tau_range_s = [tau_range_s[0].min(point.tau_s), tau_range_s[1].max(point.tau_s)];
     }
-    let [off, of_pulses] = [off, of_pulses].map(|sum| sum / count);
-    (count > 0.0).then(|| Compared {
+    (found > 0.0).then(|| Compared {
         told: Agreement {
-            ratio: (off / 2.0).exp(),
+            ratio: (found / predicted).sqrt(),
             tau_range_s,
         },
-        off,
-        of_pulses,
+        off: (found / predicted).ln(),
+        of_pulses: (predicted / of_noise).ln(),
     })
 }
