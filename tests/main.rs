@@ -70,10 +70,10 @@ mod patent_calibration;
 mod patent_filter;
 mod patent_known_answers;
 mod pipeline;
-mod pulse_words;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
 mod properties;
+mod pulse_words;
 mod readers;
 mod recording;
 mod registry;

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::covariance::{
-    CORRELATED, FLICKER, FLICKER_ALLAN_VARIANCE, INVERSE_SQUARE, RAMP, Structure, TERMS, WALK, WHITE,
+    CORRELATED, FLICKER, FLICKER_ALLAN_VARIANCE, INVERSE_SQUARE, RAMP, Structure, TERMS, WALK,
+    WHITE,
 };
 use super::overlapping::AllanPoint;
 use super::sampling::{Sampling, THIRD_AT};

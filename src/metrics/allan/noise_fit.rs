@@ -72,7 +72,7 @@ pub static QUANTISATION: MetricKey = MetricKey::new(
     "quantisation_arcsec",
     "arcsec",
     Applies::Steady,
-    "Q of the fit to the overlapping Allan variance, 3 Q^2/tau^2",
+    "Q of the fit to the overlapping Allan variance, 3 Q^2/tau^2; of counted pulses their step over sqrt(12)",
 )
 .synonyms(&["q", "quantisation", "quantisation_noise"])
 .heading("quantisation")

@@ -7,10 +7,10 @@ use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
 use crate::metrics::allan::noise_fit::{
     ANGLE_RANDOM_WALK, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, fit_noise,
 };
+use crate::metrics::allan::overlapping::overlapping_allan;
 use crate::metrics::allan::pulses::entry::{enter_lack, enter_pulses};
 use crate::metrics::allan::pulses::recognition::PulseWords;
 use crate::metrics::allan::pulses::substitute::RecordFit;
-use crate::metrics::allan::overlapping::overlapping_allan;
 use crate::metrics::allan::variants::allan_variant;
 use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
 use crate::metrics::estimate::table::{

@@ -115,7 +115,11 @@ fn pool_pulses(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
             continue;
         }
         let square = interval::from_parts(interval::mean(&squares), &squares);
-        let term = Term::new(square.value, 0.0, [square.low.max(0.0), square.high.max(0.0)]);
+        let term = Term::new(
+            square.value,
+            0.0,
+            [square.low.max(0.0), square.high.max(0.0)],
+        );
         if let Some(metric) = pooled.get_mut(key) {
             metric.estimate = term.estimate();
             metric.fields.insert("repeats", squares.len() as f64);

@@ -33,9 +33,15 @@ pub(crate) fn enter_pulses(fit: &NoiseFit, metrics: &mut ChannelMetrics) {
         }
     }
     if pulses.counts {
-        put_quantisation(fit.quantisation_arcsec.estimate(), pulses.step_arcsec(), metrics);
+        put_quantisation(
+            fit.quantisation_arcsec.estimate(),
+            pulses.step_arcsec(),
+            metrics,
+        );
         let words = quantisation_words(pulses);
-        metrics.pulse_words.insert(QUANTISATION.name.to_owned(), words);
+        metrics
+            .pulse_words
+            .insert(QUANTISATION.name.to_owned(), words);
     }
 }
 
@@ -60,7 +66,9 @@ pub(crate) fn enter_lack(pulses: &PulseWords, range: FitRange, metrics: &mut Cha
         put_quantisation(quantisation, step_arcsec, metrics);
         let step = plain(to_digits(step_arcsec, 6));
         let words = format!("from the step of {step} arcsec, over sqrt(12)");
-        metrics.pulse_words.insert(QUANTISATION.name.to_owned(), words);
+        metrics
+            .pulse_words
+            .insert(QUANTISATION.name.to_owned(), words);
     }
     let most = units::deg_per_h_sqrt_s_to_deg_per_sqrt_h(pulses.walk_at_most(range));
     let reason = metrics.why_unavailable(&ANGLE_RANDOM_WALK);
@@ -71,7 +79,9 @@ pub(crate) fn enter_lack(pulses: &PulseWords, range: FitRange, metrics: &mut Cha
             ANGLE_RANDOM_WALK.unit
         );
         metrics.miss(&ANGLE_RANDOM_WALK, reason.clone());
-        metrics.pulse_words.insert(ANGLE_RANDOM_WALK.name.to_owned(), reason);
+        metrics
+            .pulse_words
+            .insert(ANGLE_RANDOM_WALK.name.to_owned(), reason);
     }
 }
 

@@ -56,14 +56,20 @@ impl Passages {
         let step_arcsec = step * sample_period_s;
         let mean = interval::mean(words);
         let per_word = mean.abs() / step;
-        if per_word > PULSES_PER_WORD_MAX || per_word * (words.len() as f64) < INTERVALS_MIN as f64 {
+        if per_word > PULSES_PER_WORD_MAX || per_word * (words.len() as f64) < INTERVALS_MIN as f64
+        {
             return None;
         }
         let firsts = first_words(words, step * mean.signum());
         let mut pulses = 1;
         let mut found = None;
         for _ in 0..ROUNDS {
-            let passages = Self::every(pulses, &firsts, mean.signum() * step_arcsec, sample_period_s)?;
+            let passages = Self::every(
+                pulses,
+                &firsts,
+                mean.signum() * step_arcsec,
+                sample_period_s,
+            )?;
             let rate = passages.rate_deg_per_h.abs();
             let white = passages.white.max(f64::MIN_POSITIVE);
             let needed = [
@@ -101,7 +107,10 @@ impl Passages {
         }
         let angle = pulses as f64 * step;
         let rate = angle / period_s;
-        let squares: f64 = intervals.windows(2).map(|two| (two[1] - two[0]).powi(2)).sum();
+        let squares: f64 = intervals
+            .windows(2)
+            .map(|two| (two[1] - two[0]).powi(2))
+            .sum();
         let half = squares / (2.0 * (intervals.len() - 1) as f64);
         // Passages are stamped at the end of their word: a second difference of stamps has half a
         // square of its period more.

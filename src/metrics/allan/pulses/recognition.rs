@@ -91,16 +91,20 @@ impl PulseWords {
             Some(sawtooth) => {
                 let last_s = (COMPARED_PER_DEPHASING * sawtooth.dephasing_time_s())
                     .max(COMPARED_TAU_RATIO * tau_min_s);
-                let from = used.iter().filter(|it| it.tau_s >= tau_min_s * (1.0 - 1e-9));
+                let from = used
+                    .iter()
+                    .filter(|it| it.tau_s >= tau_min_s * (1.0 - 1e-9));
                 let agreement = agreement(from.filter(|it| it.tau_s <= last_s), &sawtooth)?;
                 let duration_s = words.len() as f64 * sample_period_s;
-                agreement.holds(sawtooth.phases(duration_s)).then_some(Self {
-                    sawtooth,
-                    agreement: Some(agreement.told),
-                    carries: true,
-                    points,
-                    passages,
-                })
+                agreement
+                    .holds(sawtooth.phases(duration_s))
+                    .then_some(Self {
+                        sawtooth,
+                        agreement: Some(agreement.told),
+                        carries: true,
+                        points,
+                        passages,
+                    })
             }
             None => hardly_moves(&used, step_arcsec).then(|| Self {
                 sawtooth: sawtooth(0.0),
@@ -206,7 +210,10 @@ fn agreement<'a>(
         found += weight * point.variance();
         predicted += weight * (noise + pulses);
         of_noise += weight * noise;
-        tau_range_s = [tau_range_s[0].min(point.tau_s), tau_range_s[1].max(point.tau_s)];
+        tau_range_s = [
+            tau_range_s[0].min(point.tau_s),
+            tau_range_s[1].max(point.tau_s),
+        ];
     }
     (found > 0.0).then(|| Compared {
         told: Agreement {

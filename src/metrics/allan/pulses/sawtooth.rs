@@ -114,7 +114,8 @@ mod tests {
     #[test]
     fn the_closed_form_meets_the_series() {
         for turns in [0.0, 0.1, 0.37, 0.5] {
-            let [below, above] = [1.0 - 1e-9, 1.0].map(|part| autocorrelation(turns, CLOSED_FORM_BELOW * part));
+            let [below, above] =
+                [1.0 - 1e-9, 1.0].map(|part| autocorrelation(turns, CLOSED_FORM_BELOW * part));
             assert!((below - above).abs() < 1e-5, "{turns}: {below} {above}");
         }
     }
