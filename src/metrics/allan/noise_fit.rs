@@ -372,8 +372,7 @@ pub fn fit_pooled_noise(
     range: FitRange,
     records: f64,
 ) -> Result<NoiseFit, Unavailable> {
-    let chosen = ChosenFit::new(points, range, records, None)?;
-    Ok(chosen.judged())
+    ChosenFit::new(points, range, records).map(|chosen| chosen.judged())
 }
 
 /// As [`fit_noise`] where the `1/tau^2` term is known, arcsec^2 (AVAR times `tau^2`).
@@ -382,8 +381,7 @@ pub(crate) fn fit_beside_known(
     range: FitRange,
     inverse_square: Option<f64>,
 ) -> Result<NoiseFit, Unavailable> {
-    let chosen = ChosenFit::new(points, range, 1.0, inverse_square)?;
-    Ok(chosen.judged())
+    ChosenFit::beside_known(points, range, inverse_square).map(|chosen| chosen.judged())
 }
 
 /// A fit of the terms that a curve asks for, not judged yet: that takes most of the time.
@@ -393,8 +391,7 @@ pub(crate) struct ChosenFit {
 }
 
 impl ChosenFit {
-    /// Chooses the terms of a curve, the mean of so many independent records; the `1/tau^2` term may be
-    /// known.
+    /// Chooses the terms of a curve, the mean of so many independent records.
     ///
     /// # Errors
     /// As for [`fit_noise`].
@@ -402,15 +399,32 @@ impl ChosenFit {
         points: &[AllanPoint],
         range: FitRange,
         records: f64,
+    ) -> Result<Self, Unavailable> {
+        let points = usable(points, range)?;
+        let problem = Problem::new(&points, records);
+        Self::of(points, &problem)
+    }
+
+    /// As [`new`](Self::new) of one record, whose `1/tau^2` term may be known, arcsec^2.
+    ///
+    /// # Errors
+    /// As for [`fit_noise`].
+    pub(crate) fn beside_known(
+        points: &[AllanPoint],
+        range: FitRange,
         inverse_square: Option<f64>,
     ) -> Result<Self, Unavailable> {
         let points = usable(points, range)?;
-        let problem = Problem::new(&points, records).with_inverse_square(inverse_square);
+        let problem = Problem::new(&points, 1.0).with_inverse_square(inverse_square);
+        Self::of(points, &problem)
+    }
+
+    fn of(points: Vec<AllanPoint>, problem: &Problem) -> Result<Self, Unavailable> {
         let search = Search {
             points: &points,
             near: None,
         };
-        match search.choose(&problem) {
+        match search.choose(problem) {
             Some(choice) => Ok(Self { points, choice }),
             None => Err("the scatter of the Allan variances cannot be worked out".into()),
         }
@@ -436,6 +450,29 @@ impl ChosenFit {
             + raised(FLICKER) / angular
             + raised(WALK) / (angular * angular)
             + correlated.unwrap_or(0.0)
+    }
+
+    /// The terms as noise can have them, s: without those whose square came out negative, the others
+    /// fitted again; the `1/tau^2` term may be of either sign beside white noise.
+    pub(crate) fn non_negative(&self) -> Mix {
+        let problem = &self.choice.problem;
+        let mut allowed = self.choice.allowed;
+        loop {
+            let solution = problem.solve(&allowed);
+            let is_impossible = |term: usize| {
+                let is_smooth = term == INVERSE_SQUARE && solution.squares[WHITE] > 0.0;
+                allowed[term] && solution.squares[term] < 0.0 && !is_smooth
+            };
+            let excess =
+                |term: usize| solution.squares[term] / problem.standard_error(&solution, term);
+            let worst = (0..TERMS)
+                .filter(|&term| is_impossible(term))
+                .min_by(|&a, &b| excess(a).total_cmp(&excess(b)));
+            match worst {
+                Some(term) => allowed[term] = false,
+                None => return in_seconds(problem, &solution.squares),
+            }
+        }
     }
 
     /// The fit in coefficients and intervals, judged.

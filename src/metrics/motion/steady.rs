@@ -112,7 +112,7 @@ fn measure_allan(
     } else if let Some(pulses) = pulses {
         pulses.fit(words, sample_period_s, range, filter.is_none())
     } else {
-        let fit = fit_beside_sine(words, sample_period_s, range, None)
+        let fit = fit_beside_sine(words, sample_period_s, &points, range, None)
             .map_or_else(|| fit_noise(&points, range), Ok);
         fit.map(|fit| RecordFit {
             fit,

@@ -56,7 +56,7 @@ impl PulseWords {
         };
         let rates = &record.rates_deg_per_h;
         let points = overlapping_allan(rates, record.period_s);
-        let fit = fit_beside_sine(rates, record.period_s, range, record.known)
+        let fit = fit_beside_sine(rates, record.period_s, &points, range, record.known)
             .map_or_else(|| fit_beside_known(&points, range, record.known), Ok)?;
         let sawtooth = Sawtooth {
             white: fit.angle_random_walk_deg_per_h_sqrt_s.square.max(0.0),
