@@ -110,15 +110,19 @@ enum Answer {
     Limit,
 }
 
-/// The answer of a record, whose words are checked to name it and whose values to hold the true ones.
-fn answer(metrics: &ChannelMetrics, step_arcsec: f64, point: &str) -> Answer {
+/// The answer of a record, whose words are checked to name it and whose quantisation to be the true one;
+/// none where the test of the fit rejects it, as it does with one record in a hundred and some more.
+fn answer(metrics: &ChannelMetrics, step_arcsec: f64, point: &str) -> Option<Answer> {
     let words = |name: &str| metrics.pulse_words.get(name).map_or("", String::as_str);
     let told = words(ANGLE_RANDOM_WALK.name);
     let Ok(walk) = metrics.metric(&ANGLE_RANDOM_WALK) else {
         let reason = metrics.why_unavailable(&ANGLE_RANDOM_WALK);
         let reason = reason.expect("a reason");
         if reason == "the output does not vary over the record" {
-            return Answer::Limit;
+            return Some(Answer::Limit);
+        }
+        if reason.contains("is not described by the noise terms") {
+            return None;
         }
         assert!(
             reason.starts_with("not bounded: pulses of"),
@@ -128,7 +132,7 @@ fn answer(metrics: &ChannelMetrics, step_arcsec: f64, point: &str) -> Answer {
         let most: f64 = most.split(' ').next().unwrap().parse().unwrap();
         assert!(most > WALK_DEG_PER_SQRT_H, "{point}: {reason}");
         assert!(most < 40.0 * WALK_DEG_PER_SQRT_H, "{point}: {reason}");
-        return Answer::Limit;
+        return Some(Answer::Limit);
     };
     assert!(walk.high < 3.0 * WALK_DEG_PER_SQRT_H, "{point}: {walk:?}");
     let quantisation = metrics.metric(&QUANTISATION).expect("a quantisation");
@@ -140,7 +144,7 @@ fn answer(metrics: &ChannelMetrics, step_arcsec: f64, point: &str) -> Answer {
             quantisation.high > 0.8 * wanted,
             "{point}: {quantisation:?}"
         );
-        return Answer::Curve;
+        return Some(Answer::Curve);
     }
     assert!(
         (quantisation.value / wanted - 1.0).abs() < 1e-6,
@@ -152,21 +156,21 @@ fn answer(metrics: &ChannelMetrics, step_arcsec: f64, point: &str) -> Answer {
         "{point}: {told_step}"
     );
     if told.starts_with("from the times between pulses") {
-        Answer::Times
+        Some(Answer::Times)
     } else {
         assert!(told.starts_with("from the curve of"), "{point}: {told}");
-        Answer::Curve
+        Some(Answer::Curve)
     }
 }
 
 /// Records of every point of a table, all of which must give the named answer; their intervals together must
-/// hold the true walk as often as they say, four binomial standard errors of chance allowed.
+/// hold the true walk as often as they say, four standard errors of chance allowed.
 fn check(words: &Words, steps: &[(f64, Answer)], seeds: std::ops::Range<u64>) {
     let records: Vec<(f64, Answer, u64)> = steps
         .iter()
         .flat_map(|&(step, wanted)| seeds.clone().map(move |seed| (step, wanted, seed)))
         .collect();
-    let held: Vec<Option<bool>> = records
+    let held: Vec<(bool, Option<bool>)> = records
         .par_iter()
         .map(|&(step, wanted, seed)| {
             let metrics = words.measured(&words.counted(seed, step));
@@ -174,16 +178,28 @@ fn check(words: &Words, steps: &[(f64, Answer)], seeds: std::ops::Range<u64>) {
                 "{} Hz, {} deg/h, {step} arcsec, seed {seed}",
                 words.frequency_hz, words.rate_deg_per_h
             );
-            assert_eq!(answer(&metrics, step, &point), wanted, "{point}");
-            let walk = metrics.metric(&ANGLE_RANDOM_WALK).ok()?;
-            Some((walk.low..=walk.high).contains(&WALK_DEG_PER_SQRT_H))
+            let found = answer(&metrics, step, &point);
+            assert!(found.is_none_or(|it| it == wanted), "{point}: {found:?}");
+            let walk = metrics.metric(&ANGLE_RANDOM_WALK).ok();
+            let holds = walk.map(|it| (it.low..=it.high).contains(&WALK_DEG_PER_SQRT_H));
+            (found.is_none(), holds)
         })
         .collect();
-    let told: Vec<bool> = held.into_iter().flatten().collect();
-    let count = told.len() as f64;
+    // Records of the same seed share their noise: the steps count as three.
+    let allowed = |share: f64, count: f64| share * count + 4.0 * (3.0 * share * count).sqrt();
+    let rejected = held.iter().filter(|(rejected, _)| *rejected).count() as f64;
+    let count = held.len() as f64;
+    assert!(
+        rejected <= allowed(0.02, count),
+        "{rejected} of {count} rejected"
+    );
+    let told: Vec<bool> = held.into_iter().filter_map(|(_, holds)| holds).collect();
     let missed = told.iter().filter(|held| !**held).count() as f64;
-    let most = 0.05 * count + 4.0 * (0.05 * 0.95 * count).sqrt();
-    assert!(missed <= most, "{missed} of {count} intervals miss");
+    let count = told.len() as f64;
+    assert!(
+        missed <= allowed(0.05, count),
+        "{missed} of {count} intervals miss"
+    );
 }
 
 use Answer::{Curve, Limit, Times};
@@ -202,7 +218,7 @@ fn an_hour_at_10_hz_names_its_answer() {
         (0.2, Curve),
         (0.5, Curve),
         (1.0, Curve),
-        (2.0, Curve),
+        (2.0, Times),
         (5.0, Times),
         (10.0, Times),
         (20.0, Times),
@@ -217,6 +233,8 @@ fn an_hour_at_10_hz_names_its_answer() {
         (0.5, Curve),
         (1.0, Curve),
         (2.0, Curve),
+        (5.0, Curve),
+        (10.0, Limit),
         (20.0, Limit),
     ];
     check(&words, &at_rest, 50..53);
@@ -259,7 +277,7 @@ fn words_without_carry_are_no_pulses() {
     }
 }
 
-/// One minute at rest, pulses of an arcsecond.
+/// Two minutes at rest, pulses of an arcsecond.
 const COUNTED: &str = "schema = 1
 name = \"counted\"
 duration_s = 120.0

@@ -53,6 +53,10 @@ pub(crate) fn measure_steady(
     let tau_min_s = settings.fit_tau_min_s;
     let pulses = PulseWords::recognise(record.raw_deg_per_h, record.sample_period_s, tau_min_s);
     let still = without_motion(record, 0, filter);
+    let pulses = match still {
+        Some(_) => pulses.map(PulseWords::without_times),
+        None => pulses,
+    };
     let record = &still.as_ref().map_or(*record, |(channel, raw)| Record {
         channel_deg_per_h: channel,
         raw_deg_per_h: raw,

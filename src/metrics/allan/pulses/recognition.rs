@@ -18,7 +18,7 @@ const MARGIN: f64 = 1.3;
 pub(super) const TAU_RATIO_MIN: f64 = 8.0;
 
 /// How much finer the times between pulses must be than the curve: else the curve tells.
-const FINER: f64 = 4.0;
+const FINER: f64 = 3.0;
 
 /// Part of the Allan variance that the pulses must have to be compared with it.
 const SHARE: f64 = 0.2;
@@ -87,32 +87,42 @@ impl PulseWords {
             .filter(|it| it.period_s * TAU_RATIO_MIN <= tau_max_s)
             .filter(|it| it.period_s * FINER <= resolution_s);
         let best = passages.as_ref().map(|it| sawtooth(it.white)).or(curve);
-        match best {
-            Some(sawtooth) => {
-                let last_s = (COMPARED_PER_DEPHASING * sawtooth.dephasing_time_s())
-                    .max(COMPARED_TAU_RATIO * tau_min_s);
-                let from = used
-                    .iter()
-                    .filter(|it| it.tau_s >= tau_min_s * (1.0 - 1e-9));
-                let agreement = agreement(from.filter(|it| it.tau_s <= last_s), &sawtooth)?;
-                let duration_s = words.len() as f64 * sample_period_s;
-                agreement
-                    .holds(sawtooth.phases(duration_s))
-                    .then_some(Self {
-                        sawtooth,
-                        agreement: Some(agreement.told),
-                        carries: true,
-                        points,
-                        passages,
-                    })
-            }
-            None => hardly_moves(&used, step_arcsec).then(|| Self {
-                sawtooth: sawtooth(0.0),
-                agreement: None,
-                carries: carries(&used),
+        let duration_s = words.len() as f64 * sample_period_s;
+        let agreement = best.and_then(|sawtooth| {
+            let last_s = (COMPARED_PER_DEPHASING * sawtooth.dephasing_time_s())
+                .max(COMPARED_TAU_RATIO * tau_min_s);
+            let from = used
+                .iter()
+                .filter(|it| it.tau_s >= tau_min_s * (1.0 - 1e-9));
+            let found = agreement(from.filter(|it| it.tau_s <= last_s), &sawtooth)?;
+            let holds = found.holds(sawtooth.phases(duration_s));
+            holds.then_some((sawtooth, found.told))
+        });
+        if let Some((sawtooth, agreement)) = agreement {
+            return Some(Self {
+                sawtooth,
+                agreement: Some(agreement),
+                carries: true,
                 points,
-                passages: None,
-            }),
+                passages,
+            });
+        }
+        let carries = carries(&used);
+        let is_told = best.is_none() || carries;
+        (is_told && hardly_moves(&used, step_arcsec)).then(|| Self {
+            sawtooth: sawtooth(0.0),
+            agreement: None,
+            carries,
+            points,
+            passages: None,
+        })
+    }
+
+    /// The same for a channel from which motion was taken: the times between pulses still have it.
+    pub(crate) fn without_times(self) -> Self {
+        Self {
+            passages: None,
+            ..self
         }
     }
 

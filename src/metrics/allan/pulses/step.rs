@@ -8,7 +8,7 @@ const PER_DEVIATION_MIN: f64 = 0.2;
 const ROUNDING: f64 = 1e-9;
 
 /// Part of a step by which a word may miss its multiple: the last digit of a printed one.
-const MISS_MAX: f64 = 0.2;
+const MISS_MAX: f64 = 0.1;
 
 /// Multiples up to which a step is refined, one after the other.
 const REFINED_TO: [f64; 5] = [8.0, 64.0, 512.0, 4096.0, f64::INFINITY];
@@ -82,7 +82,10 @@ mod tests {
         // Large multiples, small differences.
         let words: Vec<f64> = multiples.clone().map(|it| (it + 9000.0) * 0.25).collect();
         assert!((common_step(&words).expect("a step") - 0.25).abs() < 1e-12);
-        let uneven: Vec<f64> = multiples.map(|it| it + 0.3 * (it * 1.7).sin()).collect();
+        let uneven = multiples.zip(0_u32..);
+        let uneven: Vec<f64> = uneven
+            .map(|(it, k)| it + 0.3 * f64::from(k).sin())
+            .collect();
         assert_eq!(common_step(&uneven), None);
         assert_eq!(common_step(&[2.0; 100]), None);
     }
