@@ -146,3 +146,49 @@ fn first_words(words: &[f64], step: f64) -> Vec<usize> {
     }
     firsts
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Streams;
+
+    /// Words of a walk of N^2 = 0.1296 at this rate, counted in pulses of `step` arcsec.
+    fn counted(step: f64, rate: f64, period_s: f64, count: usize) -> Vec<f64> {
+        let mut words = vec![0.0; count];
+        Streams::new(7, 0).stream("walk").fill_normal(&mut words);
+        let mut left = 0.0;
+        for word in &mut words {
+            let angle = rate * period_s + 0.36 * period_s.sqrt() * *word + left;
+            let pulses = (angle / step).round();
+            left = angle - pulses * step;
+            *word = pulses * step / period_s;
+        }
+        words
+    }
+
+    #[test]
+    fn times_between_pulses_tell_the_walk_in_either_sense() {
+        let period_s = 0.01;
+        for (step, rate) in [(5.0, 8.47), (5.0, -8.47), (1.0, 20.0)] {
+            let words = counted(step, rate, period_s, 400_000);
+            let passages = Passages::new(&words, step / period_s, period_s).expect("a record");
+            let intervals = passages.rates_deg_per_h.len() as f64;
+            // The square of neighbours' differences has two thirds of the information.
+            let error = (3.0 / intervals).sqrt();
+            let ratio = passages.white / 0.1296;
+            assert!((ratio - 1.0).abs() < 4.0 * error, "{step} {rate}: {ratio}");
+            assert!((passages.rate_deg_per_h / rate - 1.0).abs() < 0.01);
+            let mean = interval::mean(&passages.rates_deg_per_h);
+            assert!((mean / passages.rate_deg_per_h - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_rate_of_zero_or_too_few_pulses_have_no_times() {
+        let period_s = 0.01;
+        for (step, rate) in [(1.0, 0.0), (200.0, 8.47)] {
+            let words = counted(step, rate, period_s, 100_000);
+            assert!(Passages::new(&words, step / period_s, period_s).is_none());
+        }
+    }
+}

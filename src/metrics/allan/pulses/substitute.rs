@@ -100,7 +100,7 @@ impl PulseWords {
         is_raw: bool,
     ) -> Result<Substitute, Unavailable> {
         let time_s = self.resolution_s();
-        if !(time_s * TAU_RATIO_MIN <= range.tau_max_s) {
+        if time_s * TAU_RATIO_MIN > range.tau_max_s {
             return Err(self.lack(range));
         }
         let block = interval::round_to_count((time_s / sample_period_s).ceil()).max(1);
