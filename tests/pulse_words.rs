@@ -47,19 +47,23 @@ fn flicker(seed: u64, seconds: usize) -> Vec<f64> {
 /// Words of a gyro of this mean rate, deg/h.
 struct Words {
     rate_deg_per_h: f64,
-    frequency_hz: f64,
+    per_second: u32,
     seconds: usize,
 }
 
 impl Words {
+    fn frequency_hz(&self) -> f64 {
+        f64::from(self.per_second)
+    }
+
     /// Mean rate over every word.
     fn rates(&self, seed: u64) -> Vec<f64> {
-        let per_second = self.frequency_hz as usize;
+        let per_second = self.per_second as usize;
         let mut values = normals(seed, "walk", per_second * self.seconds);
         let slow = flicker(seed, self.seconds);
         for (second, slow) in values.chunks_mut(per_second).zip(slow) {
             for value in second {
-                *value = self.rate_deg_per_h + slow + WALK * self.frequency_hz.sqrt() * *value;
+                *value = self.rate_deg_per_h + slow + WALK * self.frequency_hz().sqrt() * *value;
             }
         }
         values
@@ -71,10 +75,10 @@ impl Words {
         let start = 10.0 * normals(seed, "start", 1)[0];
         let mut left = step_arcsec * (start.rem_euclid(1.0) - 0.5);
         for value in &mut values {
-            let angle = *value / self.frequency_hz + left;
+            let angle = *value / self.frequency_hz() + left;
             let pulses = (angle / step_arcsec).round();
             left = angle - pulses * step_arcsec;
-            *value = pulses * step_arcsec * self.frequency_hz;
+            *value = pulses * step_arcsec * self.frequency_hz();
         }
         values
     }
@@ -86,13 +90,13 @@ impl Words {
             truth_deg_per_h: &[],
             response_deg_per_h: &[],
             encoder_rad: None,
-            sample_period_s: 1.0 / self.frequency_hz,
+            sample_period_s: 1.0 / self.frequency_hz(),
             first_stamp_s: 0.0,
         };
         let settings = Settings {
             motion: Motion::Steady,
             bias_averaging_time_s: 10.0,
-            fit_tau_min_s: record_fit_tau_min_s(values, 1.0 / self.frequency_hz),
+            fit_tau_min_s: record_fit_tau_min_s(values, 1.0 / self.frequency_hz()),
             allan: AllanOptions::default(),
         };
         measure(&record, &settings, None)
@@ -129,7 +133,8 @@ fn answer(metrics: &ChannelMetrics, step_arcsec: f64, point: &str) -> Option<Ans
             "{point}: {reason}"
         );
         let (_, most) = reason.split_once("it is ").expect("a limit");
-        let most: f64 = most.split(' ').next().unwrap().parse().unwrap();
+        let most = most.split(' ').next().expect("a number");
+        let most: f64 = most.parse().expect("a number");
         assert!(most > WALK_DEG_PER_SQRT_H, "{point}: {reason}");
         assert!(most < 40.0 * WALK_DEG_PER_SQRT_H, "{point}: {reason}");
         return Some(Answer::Limit);
@@ -176,7 +181,7 @@ fn check(words: &Words, steps: &[(f64, Answer)], seeds: std::ops::Range<u64>) {
             let metrics = words.measured(&words.counted(seed, step));
             let point = format!(
                 "{} Hz, {} deg/h, {step} arcsec, seed {seed}",
-                words.frequency_hz, words.rate_deg_per_h
+                words.per_second, words.rate_deg_per_h
             );
             let found = answer(&metrics, step, &point);
             assert!(found.is_none_or(|it| it == wanted), "{point}: {found:?}");
@@ -208,7 +213,7 @@ use Answer::{Curve, Limit, Times};
 fn an_hour_at_10_hz_names_its_answer() {
     let mut words = Words {
         rate_deg_per_h: 8.47,
-        frequency_hz: 10.0,
+        per_second: 10,
         seconds: 3600,
     };
     let turning = [
@@ -245,7 +250,7 @@ fn an_hour_at_10_hz_names_its_answer() {
 fn minutes_at_4_khz_name_their_answer() {
     let mut words = Words {
         rate_deg_per_h: 8.47,
-        frequency_hz: 4000.0,
+        per_second: 4000,
         seconds: 120,
     };
     let turning = [(0.02, Curve), (0.1, Curve), (1.0, Times), (5.0, Times)];
@@ -259,7 +264,7 @@ fn minutes_at_4_khz_name_their_answer() {
 fn words_without_carry_are_no_pulses() {
     let words = Words {
         rate_deg_per_h: 8.47,
-        frequency_hz: 10.0,
+        per_second: 10,
         seconds: 3600,
     };
     for step in [0.5, 1.0, 2.0] {
