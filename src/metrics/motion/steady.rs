@@ -10,7 +10,6 @@ use crate::metrics::allan::noise_fit::{
 use crate::metrics::allan::overlapping::overlapping_allan;
 use crate::metrics::allan::pulses::entry::{enter_lack, enter_pulses};
 use crate::metrics::allan::pulses::recognition::PulseWords;
-use crate::metrics::allan::pulses::substitute::RecordFit;
 use crate::metrics::allan::variants::allan_variant;
 use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
 use crate::metrics::estimate::table::{
@@ -27,6 +26,7 @@ use crate::metrics::noise::bias_stability::{
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::line::fit_beside_sine;
 use crate::metrics::noise::memory::fit_tau_min_s;
+use crate::metrics::noise::pulse_fit::RecordFit;
 use crate::metrics::noise::truth_response::without_motion;
 use crate::metrics::record::{FilterFacts, Record, Settings};
 use crate::metrics::theory::prediction::lags_needed;

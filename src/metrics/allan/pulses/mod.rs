@@ -5,6 +5,5 @@ pub(crate) mod answer;
 pub(crate) mod entry;
 pub(super) mod passage;
 pub(crate) mod recognition;
-pub(super) mod sawtooth;
+pub(crate) mod sawtooth;
 pub(super) mod step;
-pub(crate) mod substitute;

@@ -15,7 +15,7 @@ const AGREEING_TAU_RATIO: f64 = 10.0;
 const MARGIN: f64 = 1.3;
 
 /// Longest over shortest averaging time of a fit, at least.
-pub(super) const TAU_RATIO_MIN: f64 = 8.0;
+pub(crate) const TAU_RATIO_MIN: f64 = 8.0;
 
 /// How much finer the times between pulses must be than the curve: else the curve tells.
 const FINER: f64 = 3.0;

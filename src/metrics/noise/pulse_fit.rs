@@ -1,13 +1,13 @@
 //! The record without pulses that the noise terms are fitted to in the place of words that count them.
 
-use super::answer::{PulseAnswer, PulseMethod};
-use super::recognition::{PulseWords, TAU_RATIO_MIN};
-use super::sawtooth::Sawtooth;
+use super::line::fit_beside_sine;
 use crate::metrics::allan::noise_fit::{FitRange, NoiseFit, fit_beside_known};
 use crate::metrics::allan::overlapping::{AllanPoint, overlapping_allan};
+use crate::metrics::allan::pulses::answer::{PulseAnswer, PulseMethod};
+use crate::metrics::allan::pulses::recognition::{PulseWords, TAU_RATIO_MIN};
+use crate::metrics::allan::pulses::sawtooth::Sawtooth;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
-use crate::metrics::noise::line::fit_beside_sine;
 use crate::wording::{plain, to_digits};
 
 /// Shortest averaging times that a mean must last for what a loop takes from the shortest of the curve to be
