@@ -74,6 +74,7 @@ mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
 mod properties;
+mod pulse_words;
 mod readers;
 mod recording;
 mod registry;

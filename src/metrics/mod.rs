@@ -57,6 +57,7 @@ pub use allan::noise_identification::PowerLaw;
 pub use allan::overlapping::{
     AllanPoint, NoiseType, degrees_of_freedom, overlapping_allan, overlapping_allan_at,
 };
+pub use allan::pulses::answer::{PulseAnswer, PulseMethod};
 pub use allan::stream::AllanStream;
 pub use allan::variants::{
     AllanEstimator, AllanOptions, AllanVariantPoint, allan_variant, allan_variant_at,

@@ -13,6 +13,7 @@ mod limits;
 pub(super) mod noise_fit;
 pub(super) mod noise_identification;
 pub(super) mod overlapping;
+pub(super) mod pulses;
 pub(super) mod sampling;
 pub(super) mod stream;
 pub(super) mod sums;

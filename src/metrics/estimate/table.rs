@@ -49,6 +49,8 @@ pub struct ChannelMetrics {
     pub curve_labels: BTreeMap<String, BTreeMap<String, Vec<&'static str>>>,
     /// Fit of the noise terms and how well they describe the Allan variance; none without a fit.
     pub noise_fit: Option<FitSheet>,
+    /// How noise terms were found where the words of the gyro count pulses, by metric; else empty.
+    pub pulse_words: BTreeMap<String, String>,
     /// Set when the channel failed; its metrics are then empty but for `diverged_at_s`.
     pub error: Option<ChannelFailure>,
 }

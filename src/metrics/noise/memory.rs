@@ -5,6 +5,7 @@
 use rayon::prelude::*;
 
 use super::autocovariance::dot;
+use crate::metrics::allan::pulses::recognition::PulseWords;
 use crate::metrics::estimate::interval;
 use crate::metrics::theory::memory::memory_samples;
 use crate::signal::FilterShape;
@@ -99,10 +100,15 @@ pub fn correlation_length_samples(values: &[f64]) -> Option<usize> {
 
 /// Shortest averaging time of a fit to a record that nothing is known of, s: four correlation
 /// lengths, and ten samples at least where successive words are correlated, as behind the loop of a
-/// gyro. White words are fitted from four samples on.
+/// gyro. White words are fitted from four samples on; of words that count pulses, whose correlation is that
+/// of the pulses, ten samples are taken.
 #[must_use]
 pub fn record_fit_tau_min_s(values: &[f64], sample_period_s: f64) -> f64 {
     const CORRELATED_SAMPLES_MIN: f64 = 10.0;
+    let of_correlated_s = CORRELATED_SAMPLES_MIN * sample_period_s;
+    if PulseWords::recognise(values, sample_period_s, of_correlated_s).is_some() {
+        return of_correlated_s;
+    }
     let length = correlation_length_samples(values).unwrap_or(1);
     let least = if length > 1 {
         CORRELATED_SAMPLES_MIN

@@ -19,6 +19,13 @@ pub(crate) fn channel(metrics: &ChannelMetrics) -> Value {
     if let Some(sheet) = &metrics.noise_fit {
         record.insert("noise_fit".to_owned(), noise_fit(sheet));
     }
+    if !metrics.pulse_words.is_empty() {
+        let words = metrics.pulse_words.iter();
+        let words: Map<String, Value> = words
+            .map(|(key, words)| (key.clone(), words.as_str().into()))
+            .collect();
+        record.insert("pulse_words".to_owned(), words.into());
+    }
     if !metrics.repeats.is_empty() {
         record.insert("repeats".to_owned(), repeats_json(metrics));
     }
