@@ -11,7 +11,9 @@ use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
 use crate::experiment::output_file::write_file;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
-use crate::metrics::{ChannelMetrics, Motion, Settings, is_sample_or_longer, record_fit_tau_min_s};
+use crate::metrics::{
+    ChannelMetrics, Motion, Settings, examine_log, is_sample_or_longer, record_fit_tau_min_s,
+};
 use crate::recording::Log;
 use crate::report::{LogReport, log_files};
 use crate::scenario::{AllanConfig, MotionConfig, SwingConfig};
@@ -22,6 +24,8 @@ use crate::wording::{counted, plain};
 
 /// Name of the log's own channel.
 const RAW: &str = "raw";
+/// What stands behind the name of a channel whose outliers are left out.
+const WITHOUT_OUTLIERS: &str = "_without_outliers";
 /// Name of the channel without the constant errors of its assembly.
 const COMPENSATED: &str = "compensated";
 
@@ -176,8 +180,12 @@ pub fn try_log(
         sample_period_s,
         settings: &metric_settings,
     };
+    let is_tau_given = settings.fit_tau_min_s.is_some();
     let (raw, others): (_, Vec<_>) = rayon::join(
-        || cut.measure_raw(),
+        || {
+            let words = &record.raw_deg_per_h;
+            examined(RAW, cut.measure_raw(), words, &cut, is_tau_given)
+        },
         || {
             let filters = finished.par_iter();
             filters
@@ -192,11 +200,14 @@ pub fn try_log(
         notes.extend(of_pipelines.flat_map(|it| pipeline_metrics::notes(it, sample_period_s)));
     }
     let is_compensated = record.compensated_deg_per_h.is_some();
-    let compensated = is_compensated.then(|| (COMPENSATED.to_owned(), cut.measure_compensated()));
-    let own = std::iter::once((RAW.to_owned(), raw)).chain(compensated);
-    let channels = own.chain(others);
+    let compensated = is_compensated.then(|| {
+        let measured = cut.measure_compensated();
+        examined(COMPENSATED, measured, words, &cut, is_tau_given)
+    });
+    let own = raw.into_iter().chain(compensated.into_iter().flatten());
+    let channels: Vec<_> = own.chain(others).collect();
     Ok(LogTrial {
-        channels: channels.collect(),
+        channels,
         motion: report_motion(settings.motion),
         source: filters.map(LogFilters::source),
         filters: finished,
@@ -205,6 +216,23 @@ pub fn try_log(
         length,
         notes,
     })
+}
+
+/// A measured channel, and beside it what it measures without its outliers, if it has any.
+fn examined(
+    name: &str,
+    mut metrics: ChannelMetrics,
+    words: &[f64],
+    cut: &Cut,
+    is_tau_given: bool,
+) -> Vec<(String, ChannelMetrics)> {
+    let (first, settings) = (cut.length.warm_up, cut.settings);
+    let record = cut.of(words, words);
+    let rest = examine_log(&record, settings, is_tau_given, first, &mut metrics);
+    let rest = rest.map(|rest| (format!("{name}{WITHOUT_OUTLIERS}"), rest));
+    std::iter::once((name.to_owned(), metrics))
+        .chain(rest)
+        .collect()
 }
 
 /// Every filter over the whole log.

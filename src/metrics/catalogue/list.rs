@@ -69,6 +69,7 @@ rows! {
     motion::steps::SETTLED_GAIN,
     trial::readaptation::READAPTATION_TIME,
     pipeline::PREDICTED_FAILURE,
+    quality::outliers::OUTLIERS,
     measure::DIVERGED_AT,
     pipeline::LATENCY,
     pipeline::SAMPLE_PERIOD,

@@ -1,0 +1,6 @@
+//! What is the matter with the words of a recorded log: outliers, and noise that was smoothed away.
+
+pub(crate) mod coarse;
+pub(crate) mod examine;
+pub(crate) mod outliers;
+pub(crate) mod sides;
