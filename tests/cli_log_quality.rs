@@ -105,7 +105,7 @@ fn two_spikes_in_a_static_log_are_listed_and_the_figures_without_them_stand_besi
         text.contains("outliers of raw: 2 of 2 words beyond "),
         "{text}"
     );
-    assert!(text.contains("word 1000 at 10.010 s (+144"), "{text}");
+    assert!(text.contains("word 1000 at 10.010 s (+14"), "{text}");
     assert!(text.contains("raw_without_outliers"), "{text}");
     assert!(none.contains("outliers of raw: none beyond "), "{none}");
     assert!(wanted["channels"]["raw_without_outliers"].is_null());
