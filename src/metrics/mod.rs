@@ -89,6 +89,7 @@ pub use pool::repeatability::repeats_lack;
 pub use pool::sensitivity::{ConditionPoint, change_divisor, largest_change_per_unit};
 pub use quality::examine::examine_log;
 pub use quality::outliers::{Outlier, Outliers, find_outliers};
+pub use quality::smoothing::{Smoothed, Smoothing, find_smoothing};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
 pub use sine::correlation::correlation_delay_s;
 pub use sine::fit::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};

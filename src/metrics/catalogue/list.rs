@@ -70,6 +70,7 @@ rows! {
     trial::readaptation::READAPTATION_TIME,
     pipeline::PREDICTED_FAILURE,
     quality::outliers::OUTLIERS,
+    quality::smoothing::SMOOTHING_TIME,
     measure::DIVERGED_AT,
     pipeline::LATENCY,
     pipeline::SAMPLE_PERIOD,

@@ -1,0 +1,366 @@
+//! A log that was smoothed: white noise that falls off inside an averaging time.
+
+use std::f64::consts::PI;
+
+use super::coarse::smallest_change;
+use super::density::{Bin, Density};
+use crate::metrics::estimate::interval::round_to_count;
+use crate::metrics::estimate::reason::Unavailable;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::metric::{Applies, MetricKey, Needs};
+use crate::wording::plain;
+
+/// Averaging time of a smoothed log.
+pub static SMOOTHING_TIME: MetricKey = MetricKey::new(
+    "smoothing_averaging_time_s",
+    "s",
+    Applies::Log,
+    "averaging time 1/(2 B) that the log's noise falls off inside, B its noise bandwidth: of a mean its length, of one pole two time constants",
+)
+.synonyms(&["smoothing", "averaging"])
+.needs(Needs::Samples);
+
+/// Least averaging time that counts as smoothing, words: what is shorter may be the loop of the gyro.
+const WORDS_MIN: f64 = 10.0;
+
+/// Largest part of the record that such a time is.
+const PART_MAX: f64 = 1.0 / 50.0;
+
+/// Frequency, in reciprocals of the averaging time, beyond which a smoothing leaves next to nothing, and the
+/// largest part of its power that may lie there: a mean leaves 1.3 % of it, one pole 2.5 %.
+const TAIL_FROM: f64 = 8.0;
+const TAIL_MAX: f64 = 0.05;
+
+/// Part of the smoothed density that is added to words and fits alike: how a low pass looks beyond that
+/// does not count.
+const DEPTH: f64 = 0.01;
+
+/// Gain in twice the logarithm of the likelihood that smoothing must bring.
+const GAIN_MIN: f64 = 50.0;
+
+/// The same by which the interval of the averaging time is bounded: quantile 0.95 of chi-square with one
+/// degree of freedom.
+const GAIN_95: f64 = 3.841_458_820_694_124;
+
+/// Factor by which the density of the pass band may lie off the fit, beyond its scatter.
+const MISFIT_MAX: f64 = 2.0;
+
+/// Averaging times tried per factor of two.
+const PER_OCTAVE: f64 = 6.0;
+
+/// Steps of the multiplicative fit.
+const STEPS: usize = 60;
+
+/// A low pass as its power response shows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smoothing {
+    /// Mean over a time.
+    Mean,
+    /// Mean of such means.
+    MeanOfMeans,
+    /// Low pass without overshoot or with that of Butterworth: so many poles.
+    Poles(u32),
+}
+
+impl Smoothing {
+    /// Those that are tried.
+    const ALL: [Self; 6] = [
+        Self::Mean,
+        Self::MeanOfMeans,
+        Self::Poles(1),
+        Self::Poles(2),
+        Self::Poles(3),
+        Self::Poles(4),
+    ];
+
+    /// Power response at a frequency, both in units of the words' rate, the averaging time `1/(2 B)` in
+    /// words.
+    fn power(self, frequency: f64, words: f64) -> f64 {
+        match self {
+            Self::Mean => mean_power(frequency, words),
+            // Noise bandwidth of a triangle of length 2 L: two thirds of that of a mean of L.
+            Self::MeanOfMeans => mean_power(frequency, words / 1.5).powi(2),
+            Self::Poles(order) => {
+                let poles = f64::from(order);
+                // B of a Butterworth low pass: fc (pi/2n) / sin(pi/2n), in tangents of half the angle.
+                let quarter = PI / (2.0 * poles);
+                let cutoff = 0.5 / words * quarter.sin() / quarter;
+                let ratio = warped(frequency) / warped(cutoff.min(0.49));
+                1.0 / (1.0 + ratio.powf(2.0 * poles))
+            }
+        }
+    }
+
+    /// In words, of an averaging time and the like.
+    #[must_use]
+    pub fn words(self) -> String {
+        match self {
+            Self::Mean => "a mean".to_owned(),
+            Self::MeanOfMeans => "a mean of means".to_owned(),
+            Self::Poles(1) => "a one-pole low pass".to_owned(),
+            Self::Poles(order) => format!("a low pass of {order} poles"),
+        }
+    }
+}
+
+/// Frequency of an analogue filter that the sampled one has in its place: `sin` for one pole is within
+/// a hundredth of it over the band that counts.
+fn warped(frequency: f64) -> f64 {
+    (PI * frequency).sin()
+}
+
+/// Power response of a mean of words.
+fn mean_power(frequency: f64, words: f64) -> f64 {
+    let turn = PI * frequency;
+    if turn * words < 1e-4 {
+        return 1.0;
+    }
+    let ratio = (turn * words).sin() / (words * turn.sin());
+    ratio * ratio
+}
+
+/// How a log was smoothed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Smoothed {
+    /// Averaging time `1/(2 B)`, s.
+    pub averaging_time_s: Estimate,
+    /// What it looks like.
+    pub like: Smoothing,
+    /// Gain in twice the logarithm of the likelihood over a record that was not.
+    pub gain: f64,
+}
+
+/// Terms of a density: smoothed white noise, flicker and walk, and what lies under all frequencies.
+const TERMS: usize = 4;
+const WHITE: usize = 0;
+
+/// Finds out whether the white noise of a record falls off inside an averaging time.
+///
+/// The density of the words is fitted by likelihood (Whittle) with white noise, flicker and walk behind a
+/// low pass, mean or mean of means, and a floor beside it; and without one. Smoothed is a log whose
+/// likelihood asks for the low pass, whose floor has no more than a fiftieth of the power of the words
+/// (rounding excepted), whose pass band is described, and whose white noise stands above the slow noise
+/// there. A sine, a walk and a rounding are none of that; the loop of a gyro, whose response lies within a
+/// few words, is below the ten words from which on an averaging time counts.
+///
+/// * `words_deg_per_h`: missing ones are NaN.
+/// * `sample_period_s`: s, > 0.
+///
+/// # Errors
+/// Why nothing is said: nothing shows, or too short a record.
+pub fn find_smoothing(
+    words_deg_per_h: &[f64],
+    sample_period_s: f64,
+) -> Result<Smoothed, Unavailable> {
+    let Some(density) = Density::new(words_deg_per_h) else {
+        return Err("the record is too short to show an averaging".into());
+    };
+    let none = || {
+        Err(format!(
+            "no averaging shows: the noise does not fall off inside averaging times of {} s and more",
+            plain(WORDS_MIN * sample_period_s)
+        )
+        .into())
+    };
+    if !density.may_fall_off() {
+        return none();
+    }
+    let most = PART_MAX * words_deg_per_h.len() as f64;
+    let Some(first) = Search::new(&density.bins, 0.0).best(&[Smoothing::Mean], most) else {
+        return none();
+    };
+    let search = Search::new(&density.bins, DEPTH * first.squares[WHITE]);
+    let Some(best) = search.best(&Smoothing::ALL, most) else {
+        return none();
+    };
+    let gain = search.without() - best.deviance;
+    let step = smallest_change(words_deg_per_h);
+    let rounding = if step.is_finite() {
+        step * step / 8.0
+    } else {
+        0.0
+    };
+    let stands = gain >= GAIN_MIN
+        && (WORDS_MIN..=most).contains(&best.words)
+        && search.is_sound(&best, rounding);
+    if !stands {
+        return none();
+    }
+    let [low, high] = search.interval(&best, most);
+    let value = best.words * sample_period_s;
+    Ok(Smoothed {
+        averaging_time_s: Estimate::with_interval(
+            value,
+            (low * sample_period_s).min(value),
+            (high * sample_period_s).max(value),
+        ),
+        like: best.like,
+        gain,
+    })
+}
+
+/// A fitted density.
+#[derive(Clone, Copy, Debug)]
+struct Fit {
+    like: Smoothing,
+    /// Averaging time, words.
+    words: f64,
+    squares: [f64; TERMS],
+    deviance: f64,
+}
+
+/// The density of a record to be fitted.
+struct Search<'a> {
+    bins: &'a [Bin],
+    /// What is added to the density of words and fits alike.
+    depth: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(bins: &'a [Bin], depth: f64) -> Self {
+        Self { bins, depth }
+    }
+
+    /// Fits the terms with a response over the bins: twice the negative logarithm of the likelihood and
+    /// the squares.
+    ///
+    /// Multiplicative steps keep them above zero and never worsen the likelihood. Source: Févotte, Idier,
+    /// Neural Computation 23 (2011) 2421.
+    fn fit(&self, response: &[f64]) -> ([f64; TERMS], f64) {
+        let basis: Vec<[f64; TERMS]> = self
+            .bins
+            .iter()
+            .zip(response)
+            .map(|(bin, power)| {
+                let slow = power / bin.frequency;
+                [*power, slow, slow / bin.frequency, 1.0]
+            })
+            .collect();
+        let mut squares = [0.0; TERMS];
+        for (term, square) in squares.iter_mut().enumerate() {
+            // Each begins where it would take a quarter of the density in the middle.
+            let ratios = self.bins.iter().zip(&basis);
+            let sum: f64 = ratios
+                .map(|(bin, basis)| (bin.density / basis[term].max(1e-300)).ln())
+                .sum();
+            *square = 0.25 * (sum / self.bins.len() as f64).exp();
+        }
+        let model = |squares: &[f64; TERMS], basis: &[f64; TERMS]| {
+            let sum: f64 = squares.iter().zip(basis).map(|(a, b)| a * b).sum();
+            (sum + self.depth).max(f64::MIN_POSITIVE)
+        };
+        for _ in 0..STEPS {
+            let (mut up, mut down) = ([0.0; TERMS], [0.0; TERMS]);
+            for (bin, basis) in self.bins.iter().zip(&basis) {
+                let density = model(&squares, basis);
+                for term in 0..TERMS {
+                    up[term] +=
+                        bin.count * basis[term] * (bin.density + self.depth) / (density * density);
+                    down[term] += bin.count * basis[term] / density;
+                }
+            }
+            for term in 0..TERMS {
+                squares[term] *= (up[term] / down[term]).sqrt();
+            }
+        }
+        let deviance = self
+            .bins
+            .iter()
+            .zip(&basis)
+            .map(|(bin, basis)| {
+                let density = model(&squares, basis);
+                2.0 * bin.count * (density.ln() + (bin.density + self.depth) / density)
+            })
+            .sum();
+        (squares, deviance)
+    }
+
+    fn response(&self, like: Smoothing, words: f64) -> Vec<f64> {
+        let of = |bin: &Bin| bin.mean(|frequency| like.power(frequency, words));
+        self.bins.iter().map(of).collect()
+    }
+
+    /// The likelihood of a record that was not smoothed.
+    fn without(&self) -> f64 {
+        self.fit(&vec![1.0; self.bins.len()]).1
+    }
+
+    fn at(&self, like: Smoothing, words: f64) -> Fit {
+        let (squares, deviance) = self.fit(&self.response(like, words));
+        Fit {
+            like,
+            words,
+            squares,
+            deviance,
+        }
+    }
+
+    /// The likeliest smoothing of up to so many words.
+    fn best(&self, kinds: &[Smoothing], most: f64) -> Option<Fit> {
+        let steps = ((most / 2.0).log2() * PER_OCTAVE).floor().max(0.0);
+        let count = round_to_count(steps);
+        let times = (0..=count).map(|step| 2.0 * (step as f64 / PER_OCTAVE).exp2());
+        let times: Vec<f64> = times.collect();
+        let fits = kinds
+            .iter()
+            .flat_map(|like| times.iter().map(|words| self.at(*like, *words)));
+        let best = fits.min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
+        Some(self.refined(best))
+    }
+
+    /// The best averaging time near one, by bisection of the interval about it.
+    fn refined(&self, mut best: Fit) -> Fit {
+        let mut ratio = (1.0 / PER_OCTAVE).exp2();
+        for _ in 0..8 {
+            ratio = ratio.sqrt();
+            for words in [best.words / ratio, best.words * ratio] {
+                let other = self.at(best.like, words);
+                if other.deviance < best.deviance {
+                    best = other;
+                }
+            }
+        }
+        best
+    }
+
+    /// Averaging times on either side at which the likelihood has fallen to the limit, words.
+    fn interval(&self, best: &Fit, most: f64) -> [f64; 2] {
+        [-1.0, 1.0].map(|side: f64| {
+            let (mut inside, mut outside) = (0.0, 2.0_f64.ln());
+            for _ in 0..12 {
+                let middle = 0.5 * (inside + outside);
+                let words = best.words * (side * middle).exp();
+                if self.at(best.like, words).deviance - best.deviance < GAIN_95 {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+            }
+            (best.words * (side * outside).exp()).min(2.0 * most)
+        })
+    }
+
+    /// Whether floor, pass band and slow noise are as behind a smoothing.
+    fn is_sound(&self, fit: &Fit, rounding: f64) -> bool {
+        let response = self.response(fit.like, fit.words);
+        let [white, flicker, walk, floor] = fit.squares;
+        let smoothed = white * 0.5 / fit.words;
+        let beyond = self.bins.iter();
+        let beyond = beyond.filter(|bin| bin.frequency * fit.words > TAIL_FROM);
+        let is_bare = beyond.map(Bin::power).sum::<f64>() <= TAIL_MAX * smoothed + rounding;
+        let corner = 0.25 / fit.words;
+        let is_white = white >= flicker / corner + walk / (corner * corner);
+        let passes = self.bins.iter().zip(&response);
+        let is_described = passes
+            .filter(|(_, power)| **power > 0.2)
+            .all(|(bin, power)| {
+                let slow = power / bin.frequency;
+                let density = white * power + flicker * slow + walk * slow / bin.frequency + floor;
+                let ratio = (bin.density / density).ln().abs();
+                // The logarithm of a mean of n exponential variables scatters by 1/sqrt(n).
+                ratio <= MISFIT_MAX.ln() + 4.0 / bin.count.max(1.0).sqrt()
+            });
+        is_bare && is_white && is_described
+    }
+}
