@@ -12,10 +12,11 @@ use crate::experiment::output_file::write_file;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
 use crate::metrics::{
-    ChannelMetrics, Motion, Settings, examine_log, is_sample_or_longer, record_fit_tau_min_s,
+    ChannelMetrics, Motion, Settings, Unavailable, examine_log, is_sample_or_longer,
+    noise_state_space, record_fit_tau_min_s,
 };
 use crate::recording::Log;
-use crate::report::{LogReport, log_files};
+use crate::report::{KalmanReport, LogReport, kalman_json, log_files};
 use crate::scenario::{AllanConfig, MotionConfig, SwingConfig};
 use crate::signal::RunSignals;
 use crate::store::{OutputFolder, StoreError};
@@ -344,6 +345,23 @@ impl LogTrial {
             channels: &self.channels,
             notes: &self.notes,
         })
+    }
+
+    /// The noise of the words as a linear system, JSON; that without outliers where there are any.
+    ///
+    /// # Errors
+    /// Why the words have no fit of noise terms.
+    pub fn kalman(&self) -> Result<String, Unavailable> {
+        let clean = format!("{RAW}{WITHOUT_OUTLIERS}");
+        let mut channels = self.channels.iter();
+        let clean = channels.find(|(name, _)| *name == clean);
+        let (_, raw) = clean.unwrap_or(&self.channels[0]);
+        let system = noise_state_space(raw)?;
+        Ok(kalman_json(&KalmanReport {
+            tool_version: VERSION,
+            file: &self.log.file,
+            system: &system,
+        }))
     }
 
     /// Writes `summary.json`, curves and pictures into `folder`, and the words of every filter

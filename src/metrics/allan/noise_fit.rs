@@ -384,6 +384,29 @@ impl ChosenFit {
             + correlated.unwrap_or(0.0)
     }
 
+    /// The terms as noise can have them, s: without those whose square came out negative, the others
+    /// fitted again; the `1/tau^2` term may be of either sign beside white noise.
+    pub(crate) fn non_negative(&self) -> Mix {
+        let problem = &self.choice.problem;
+        let mut allowed = self.choice.allowed;
+        loop {
+            let solution = problem.solve(&allowed);
+            let is_impossible = |term: usize| {
+                let is_smooth = term == INVERSE_SQUARE && solution.squares[WHITE] > 0.0;
+                allowed[term] && solution.squares[term] < 0.0 && !is_smooth
+            };
+            let excess =
+                |term: usize| solution.squares[term] / problem.standard_error(&solution, term);
+            let worst = (0..TERMS)
+                .filter(|&term| is_impossible(term))
+                .min_by(|&a, &b| excess(a).total_cmp(&excess(b)));
+            match worst {
+                Some(term) => allowed[term] = false,
+                None => return in_seconds(problem, &solution.squares),
+            }
+        }
+    }
+
     /// The fit in coefficients and intervals, judged.
     pub(crate) fn judged(&self) -> NoiseFit {
         report(&self.points, &self.choice)

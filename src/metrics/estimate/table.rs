@@ -52,6 +52,8 @@ pub struct ChannelMetrics {
     pub noise_fit: Option<FitSheet>,
     /// Outliers in the order of time; looked for in the words of logs.
     pub outliers: Vec<OutlierEntry>,
+    /// What the smoothing of a log looks like, in words; none where none shows.
+    pub smoothing: Option<String>,
     /// Set when the channel failed; its metrics are then empty but for `diverged_at_s`.
     pub error: Option<ChannelFailure>,
 }

@@ -1,6 +1,7 @@
 //! A recorded log examined: its outliers, and what it measures without them.
 
 use super::outliers::{OUTLIERS, Outliers, find_outliers};
+use super::smoothing::{SMOOTHING_TIME, find_smoothing};
 use crate::metrics::estimate::outlier_sheet::OutlierEntry;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
@@ -26,28 +27,32 @@ pub fn examine_log(
 ) -> Option<ChannelMetrics> {
     let words = record.channel_deg_per_h;
     if words.len() < SAMPLES_MIN || metrics.error.is_some() {
-        metrics.miss(&OUTLIERS, "the record is too short for it");
+        for key in [&OUTLIERS, &SMOOTHING_TIME] {
+            metrics.miss(key, "the record is too short for it");
+        }
         return None;
     }
     let residuals = about_motion(record, &settings.motion);
-    let outliers = match find_outliers(residuals.as_deref().unwrap_or(words)) {
+    let mut still = residuals.unwrap_or_else(|| words.to_vec());
+    let found = find_outliers(&still);
+    if let Ok(outliers) = &found {
+        outliers.leave_out(&mut still);
+    }
+    put_smoothing(&still, record.sample_period_s, metrics);
+    drop(still);
+    let outliers = match found {
         Ok(outliers) => outliers,
         Err(reason) => {
             metrics.miss(&OUTLIERS, reason);
             return None;
         }
     };
-    drop(residuals);
     put_outliers(&outliers, record, first_index, metrics);
     if outliers.events.is_empty() {
         return None;
     }
-    let rest = outliers.without(words);
-    let rest_record = Record {
-        channel_deg_per_h: &rest,
-        raw_deg_per_h: &rest,
-        ..*record
-    };
+    let mut rest = words.to_vec();
+    outliers.leave_out(&mut rest);
     let fit_tau_min_s = if is_fit_tau_min_given {
         settings.fit_tau_min_s
     } else {
@@ -56,6 +61,11 @@ pub fn examine_log(
     let settings = Settings {
         fit_tau_min_s,
         ..settings.clone()
+    };
+    let rest_record = Record {
+        channel_deg_per_h: &rest,
+        raw_deg_per_h: &rest,
+        ..*record
     };
     Some(measure_present(&rest_record, &settings))
 }
@@ -73,6 +83,17 @@ fn about_motion(record: &Record, motion: &Motion) -> Option<Vec<f64>> {
     let words = record.channel_deg_per_h;
     let fit = fit_swing(words, &clock).ok()?;
     Some(fit.residuals(words))
+}
+
+/// Enters the averaging time of a log that was smoothed, words about the motion and without outliers.
+fn put_smoothing(words: &[f64], sample_period_s: f64, metrics: &mut ChannelMetrics) {
+    match find_smoothing(words, sample_period_s) {
+        Ok(found) => {
+            metrics.put(&SMOOTHING_TIME, found.averaging_time_s);
+            metrics.smoothing = Some(found.like.words());
+        }
+        Err(reason) => metrics.miss(&SMOOTHING_TIME, reason),
+    }
 }
 
 fn put_outliers(

@@ -87,13 +87,11 @@ impl Outliers {
         self.events.iter().map(|event| event.words).sum()
     }
 
-    /// The record with its outliers missing (NaN).
-    pub(crate) fn without(&self, words: &[f64]) -> Vec<f64> {
-        let mut rest = words.to_vec();
+    /// Makes the outliers of a record missing (NaN).
+    pub(crate) fn leave_out(&self, words: &mut [f64]) {
         for event in &self.events {
-            rest[event.first..event.first + event.words].fill(f64::NAN);
+            words[event.first..event.first + event.words].fill(f64::NAN);
         }
-        rest
     }
 }
 

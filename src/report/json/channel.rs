@@ -4,6 +4,7 @@ use serde_json::{Map, Value};
 
 use crate::metrics::{ChannelMetrics, FitSheet, FitTerm, OutlierEntry, RepeatStatistics};
 use crate::report::layout::json::{array, estimate, numbers, object, put, put_array};
+use crate::report::text::quality::smoothing_words;
 use crate::report::text::verdict::verdict_text;
 
 /// One channel of `channels`.
@@ -18,6 +19,9 @@ pub(crate) fn channel(metrics: &ChannelMetrics) -> Value {
     }
     if let Some(sheet) = &metrics.noise_fit {
         record.insert("noise_fit".to_owned(), noise_fit(sheet));
+    }
+    if let Some(words) = smoothing_words(metrics) {
+        record.insert("smoothing".to_owned(), words.into());
     }
     if !metrics.outliers.is_empty() {
         let list: Vec<Value> = metrics.outliers.iter().map(outlier).collect();

@@ -1,24 +1,22 @@
-//! Outliers of a log in words.
+//! What is the matter with the words of a log, in words: outliers, smoothing.
 
-use crate::gate::three_digits;
-use crate::metrics::catalogue::OUTLIERS;
+use crate::gate::{plain, three_digits};
+use crate::metrics::catalogue::{OUTLIERS, SMOOTHING_TIME};
 use crate::metrics::{ChannelMetrics, OutlierEntry};
 use crate::report::layout::text::wrapped;
-use crate::wording::counted;
+use crate::wording::{counted, to_digits};
 
 /// Outliers that are listed, the largest; the JSON has all.
 const LISTED_MAX: usize = 8;
 
-/// A line on the outliers of every channel in which they were looked for.
-pub(crate) fn outliers_text(channels: &[(String, ChannelMetrics)], width: usize) -> String {
+/// Lines on outliers and smoothing of every channel in which they were looked for.
+pub(crate) fn quality_text(channels: &[(String, ChannelMetrics)], width: usize) -> String {
     let mut text = String::new();
     for (name, metrics) in channels {
-        if let Some(line) = line(metrics) {
-            text.push_str(&wrapped(
-                &format!("outliers of {name}: {line}"),
-                "  ",
-                width,
-            ));
+        let outliers = line(metrics).map(|line| format!("outliers of {name}: {line}"));
+        let smoothing = smoothing_words(metrics).map(|words| format!("{name} {words}"));
+        for line in outliers.into_iter().chain(smoothing) {
+            text.push_str(&wrapped(&line, "  ", width));
         }
     }
     if text.is_empty() {
@@ -59,6 +57,19 @@ fn line(metrics: &ChannelMetrics) -> Option<String> {
         found.len(),
         counted(words, "word"),
         listed.join(", ")
+    ))
+}
+
+/// What a log that was smoothed is told; nothing of others.
+pub(crate) fn smoothing_words(metrics: &ChannelMetrics) -> Option<String> {
+    let like = metrics.smoothing.as_deref()?;
+    let time = metrics.get(&SMOOTHING_TIME)?.estimate;
+    Some(format!(
+        "behaves as if averaged over about {} s ({} s to {} s, as behind {like}); noise inside that time \
+         is not the gyro's",
+        plain(to_digits(time.value, 2)),
+        three_digits(time.low),
+        three_digits(time.high)
     ))
 }
 
