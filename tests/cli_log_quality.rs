@@ -172,3 +172,35 @@ fn a_step_is_no_outlier_and_coarse_words_are_not_judged() {
         "{text}"
     );
 }
+
+#[test]
+fn a_log_that_was_smoothed_is_named_and_one_that_was_not_is_not() {
+    let clean = white(14, 20_000, WORD_STD_DEG_PER_S);
+    let smooth: Vec<f64> = clean
+        .windows(200)
+        .map(|window| window.iter().sum::<f64>() / 200.0)
+        .collect();
+    let (json, text) = analysed(&smooth, &[]);
+    let time = value(&json, "raw", "smoothing_averaging_time_s");
+    assert!((time / 2.0 - 1.0).abs() < 0.1, "{time}");
+    assert!(
+        text.contains("raw behaves as if averaged over about 2 s ("),
+        "{text}"
+    );
+    let words = json["channels"]["raw"]["smoothing"]
+        .as_str()
+        .expect("words");
+    assert!(
+        words.ends_with("as behind a mean); noise inside that time is not the gyro's"),
+        "{words}"
+    );
+    let (json, text) = analysed(&clean, &[]);
+    let reason = &json["channels"]["raw"]["unavailable"]["smoothing_averaging_time_s"];
+    assert!(
+        reason
+            .as_str()
+            .is_some_and(|it| it.starts_with("no averaging shows")),
+        "{reason}"
+    );
+    assert!(!text.contains("behaves as if averaged"), "{text}");
+}

@@ -104,9 +104,14 @@ impl Density {
         (bins.len() >= BINS_MIN).then_some(Self { bins })
     }
 
+    /// Largest density of a bin.
+    pub(crate) fn largest(&self) -> f64 {
+        self.bins.iter().map(|bin| bin.density).fold(0.0, f64::max)
+    }
+
     /// Whether the highest frequencies have so little that the rest may have been smoothed.
     pub(crate) fn may_fall_off(&self) -> bool {
-        let largest = self.bins.iter().map(|bin| bin.density).fold(0.0, f64::max);
+        let largest = self.largest();
         let high = self.bins.iter().filter(|bin| bin.frequency > 0.25);
         let (sum, count) = high.fold((0.0, 0.0), |(sum, count), bin| {
             (sum + bin.density * bin.count, count + bin.count)

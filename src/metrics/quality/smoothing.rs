@@ -33,10 +33,13 @@ const TAIL_MAX: f64 = 0.05;
 
 /// Part of the smoothed density that is added to words and fits alike: how a low pass looks beyond that
 /// does not count.
-const DEPTH: f64 = 0.01;
+const DEPTH: f64 = 0.003;
+
+/// Fits after the first, each with the depth that the one before says.
+const REFINEMENTS: usize = 2;
 
 /// Gain in twice the logarithm of the likelihood that smoothing must bring.
-const GAIN_MIN: f64 = 50.0;
+const GAIN_MIN: f64 = 20.0;
 
 /// The same by which the interval of the averaging time is bounded: quantile 0.95 of chi-square with one
 /// degree of freedom.
@@ -45,11 +48,17 @@ const GAIN_95: f64 = 3.841_458_820_694_124;
 /// Factor by which the density of the pass band may lie off the fit, beyond its scatter.
 const MISFIT_MAX: f64 = 2.0;
 
+/// Frequency, in reciprocals of the averaging time, at which white noise must stand above the slow.
+const CORNER: f64 = 0.25;
+
 /// Averaging times tried per factor of two.
 const PER_OCTAVE: f64 = 6.0;
 
-/// Steps of the multiplicative fit.
-const STEPS: usize = 60;
+/// Steps of the fit of either kind.
+const STEPS: usize = 8;
+
+/// Sweeps of a least squares.
+const SWEEPS: usize = 60;
 
 /// A low pass as its power response shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,7 +83,7 @@ impl Smoothing {
     ];
 
     /// Power response at a frequency, both in units of the words' rate, the averaging time `1/(2 B)` in
-    /// words.
+    /// words. One pole is the recursive one; more are those of the bilinear transform.
     fn power(self, frequency: f64, words: f64) -> f64 {
         match self {
             Self::Mean => mean_power(frequency, words),
@@ -85,7 +94,11 @@ impl Smoothing {
                 // B of a Butterworth low pass: fc (pi/2n) / sin(pi/2n), in tangents of half the angle.
                 let quarter = PI / (2.0 * poles);
                 let cutoff = 0.5 / words * quarter.sin() / quarter;
-                let ratio = warped(frequency) / warped(cutoff.min(0.49));
+                let warped = |frequency: f64| {
+                    let half = PI * frequency.min(0.499);
+                    if order == 1 { half.sin() } else { half.tan() }
+                };
+                let ratio = warped(frequency) / warped(cutoff);
                 1.0 / (1.0 + ratio.powf(2.0 * poles))
             }
         }
@@ -101,12 +114,6 @@ impl Smoothing {
             Self::Poles(order) => format!("a low pass of {order} poles"),
         }
     }
-}
-
-/// Frequency of an analogue filter that the sampled one has in its place: `sin` for one pole is within
-/// a hundredth of it over the band that counts.
-fn warped(frequency: f64) -> f64 {
-    (PI * frequency).sin()
 }
 
 /// Power response of a mean of words.
@@ -133,7 +140,6 @@ pub struct Smoothed {
 
 /// Terms of a density: smoothed white noise, flicker and walk, and what lies under all frequencies.
 const TERMS: usize = 4;
-const WHITE: usize = 0;
 
 /// Finds out whether the white noise of a record falls off inside an averaging time.
 ///
@@ -167,11 +173,14 @@ pub fn find_smoothing(
         return none();
     }
     let most = PART_MAX * words_deg_per_h.len() as f64;
-    let Some(first) = Search::new(&density.bins, 0.0).best(&[Smoothing::Mean], most) else {
-        return none();
-    };
-    let search = Search::new(&density.bins, DEPTH * first.squares[WHITE]);
-    let Some(best) = search.best(&Smoothing::ALL, most) else {
+    let mut search = Search::new(&density.bins, DEPTH * density.largest());
+    let mut best = search.best(most);
+    for _ in 0..REFINEMENTS {
+        // The depth follows the white noise found; drift may have made the largest density.
+        search.depth = DEPTH * best.as_ref().map_or(0.0, Fit::plateau);
+        best = search.best(most);
+    }
+    let Some(best) = best else {
         return none();
     };
     let gain = search.without() - best.deviance;
@@ -181,12 +190,6 @@ pub fn find_smoothing(
     } else {
         0.0
     };
-    let stands = gain >= GAIN_MIN
-        && (WORDS_MIN..=most).contains(&best.words)
-        && search.is_sound(&best, rounding);
-    if !stands {
-        return none();
-    }
     let [low, high] = search.interval(&best, most);
     let value = best.words * sample_period_s;
     Ok(Smoothed {
@@ -210,6 +213,33 @@ struct Fit {
     deviance: f64,
 }
 
+impl Fit {
+    /// Density of white and slow noise at a quarter of the reciprocal averaging time.
+    fn plateau(&self) -> f64 {
+        let [white, flicker, walk, _] = self.squares;
+        let corner = CORNER / self.words;
+        white + flicker / corner + walk / (corner * corner)
+    }
+}
+
+/// Least squares with no coefficient below zero, one after another from a start.
+fn least_squares(
+    normal: &[[f64; TERMS]; TERMS],
+    right: &[f64; TERMS],
+    mut squares: [f64; TERMS],
+) -> [f64; TERMS] {
+    for _ in 0..SWEEPS {
+        for term in 0..TERMS {
+            let others = (0..TERMS).filter(|other| *other != term);
+            let taken: f64 = others
+                .map(|other| normal[term][other] * squares[other])
+                .sum();
+            squares[term] = ((right[term] - taken) / normal[term][term]).max(0.0);
+        }
+    }
+    squares
+}
+
 /// The density of a record to be fitted.
 struct Search<'a> {
     bins: &'a [Bin],
@@ -225,8 +255,8 @@ impl<'a> Search<'a> {
     /// Fits the terms with a response over the bins: twice the negative logarithm of the likelihood and
     /// the squares.
     ///
-    /// Multiplicative steps keep them above zero and never worsen the likelihood. Source: Févotte, Idier,
-    /// Neural Computation 23 (2011) 2421.
+    /// The first steps are multiplicative, which come near from anywhere (Févotte, Idier, Neural Computation
+    /// 23 (2011) 2421), the last are weighted least squares with none below zero (scoring).
     fn fit(&self, response: &[f64]) -> ([f64; TERMS], f64) {
         let basis: Vec<[f64; TERMS]> = self
             .bins
@@ -250,18 +280,26 @@ impl<'a> Search<'a> {
             let sum: f64 = squares.iter().zip(basis).map(|(a, b)| a * b).sum();
             (sum + self.depth).max(f64::MIN_POSITIVE)
         };
-        for _ in 0..STEPS {
-            let (mut up, mut down) = ([0.0; TERMS], [0.0; TERMS]);
+        for step in 0..2 * STEPS {
+            let (mut normal, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
+            let mut down = [0.0; TERMS];
             for (bin, basis) in self.bins.iter().zip(&basis) {
                 let density = model(&squares, basis);
+                let weight = bin.count / (density * density);
                 for term in 0..TERMS {
-                    up[term] +=
-                        bin.count * basis[term] * (bin.density + self.depth) / (density * density);
-                    down[term] += bin.count * basis[term] / density;
+                    right[term] += weight * basis[term] * bin.density;
+                    down[term] += weight * basis[term] * (density - self.depth);
+                    for other in 0..TERMS {
+                        normal[term][other] += weight * basis[term] * basis[other];
+                    }
                 }
             }
-            for term in 0..TERMS {
-                squares[term] *= (up[term] / down[term]).sqrt();
+            if step < STEPS {
+                for term in 0..TERMS {
+                    squares[term] *= (right[term] / down[term].max(f64::MIN_POSITIVE)).sqrt();
+                }
+            } else {
+                squares = least_squares(&normal, &right, squares);
             }
         }
         let deviance = self
@@ -297,12 +335,12 @@ impl<'a> Search<'a> {
     }
 
     /// The likeliest smoothing of up to so many words.
-    fn best(&self, kinds: &[Smoothing], most: f64) -> Option<Fit> {
+    fn best(&self, most: f64) -> Option<Fit> {
         let steps = ((most / 2.0).log2() * PER_OCTAVE).floor().max(0.0);
         let count = round_to_count(steps);
         let times = (0..=count).map(|step| 2.0 * (step as f64 / PER_OCTAVE).exp2());
         let times: Vec<f64> = times.collect();
-        let fits = kinds
+        let fits = Smoothing::ALL
             .iter()
             .flat_map(|like| times.iter().map(|words| self.at(*like, *words)));
         let best = fits.min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
@@ -349,8 +387,7 @@ impl<'a> Search<'a> {
         let beyond = self.bins.iter();
         let beyond = beyond.filter(|bin| bin.frequency * fit.words > TAIL_FROM);
         let is_bare = beyond.map(Bin::power).sum::<f64>() <= TAIL_MAX * smoothed + rounding;
-        let corner = 0.25 / fit.words;
-        let is_white = white >= flicker / corner + walk / (corner * corner);
+        let is_white = 2.0 * white >= fit.plateau();
         let passes = self.bins.iter().zip(&response);
         let is_described = passes
             .filter(|(_, power)| **power > 0.2)
@@ -362,5 +399,172 @@ impl<'a> Search<'a> {
                 ratio <= MISFIT_MAX.ln() + 4.0 / bin.count.max(1.0).sqrt()
             });
         is_bare && is_white && is_described
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Streams;
+
+    fn white(seed: u64, count: usize) -> Vec<f64> {
+        let mut words = vec![0.0; count];
+        Streams::new(seed, 0)
+            .stream("words")
+            .fill_normal(&mut words);
+        words
+    }
+
+    fn walk(words: &[f64]) -> Vec<f64> {
+        let mut sum = 0.0;
+        let add = |word: &f64| {
+            sum += word;
+            sum
+        };
+        words.iter().map(add).collect()
+    }
+
+    fn mean(words: &[f64], length: usize) -> Vec<f64> {
+        let windows = words.windows(length);
+        windows
+            .map(|window| window.iter().sum::<f64>() / length as f64)
+            .collect()
+    }
+
+    fn one_pole(words: &[f64], samples: f64) -> Vec<f64> {
+        let decay = (-1.0 / samples).exp();
+        let mut state = 0.0;
+        let of = |word: &f64| {
+            state = decay * state + (1.0 - decay) * word;
+            state
+        };
+        let all: Vec<f64> = words.iter().map(of).collect();
+        all[round_to_count(10.0 * samples)..].to_vec()
+    }
+
+    /// Second order low pass of Butterworth by the bilinear transform.
+    fn butterworth(words: &[f64], cutoff: f64) -> Vec<f64> {
+        let k = (PI * cutoff).tan();
+        let norm = 1.0 / (1.0 + 2.0_f64.sqrt() * k + k * k);
+        let (b, a1) = (k * k * norm, 2.0 * (k * k - 1.0) * norm);
+        let a2 = (1.0 - 2.0_f64.sqrt() * k + k * k) * norm;
+        let (mut x, mut y) = ([0.0; 2], [0.0; 2]);
+        let of = |word: &f64| {
+            let out = b * (word + 2.0 * x[0] + x[1]) - a1 * y[0] - a2 * y[1];
+            (x, y) = ([*word, x[0]], [out, y[0]]);
+            out
+        };
+        let all: Vec<f64> = words.iter().map(of).collect();
+        all[round_to_count(3.0 / cutoff)..].to_vec()
+    }
+
+    /// White noise with flicker and walk, which rule from some 2000 words on.
+    fn gyro(seed: u64, count: usize) -> Vec<f64> {
+        let slow = walk(&white(seed + 1, count));
+        let mut words = white(seed, count);
+        for (word, slow) in words.iter_mut().zip(slow) {
+            *word += 3e-4 * slow;
+        }
+        for octave in 0..6 {
+            let time = 4.0_f64.powi(octave + 2);
+            let decay = (-1.0 / time).exp();
+            let mut state = 0.0;
+            let drive = white(seed + 10 + u64::from(octave.unsigned_abs()), count);
+            for (word, drive) in words.iter_mut().zip(drive) {
+                state = decay * state + (1.0 - decay * decay).sqrt() * drive;
+                *word += 0.01 * state;
+            }
+        }
+        words
+    }
+
+    #[test]
+    fn a_smoothed_record_is_named_with_its_averaging_time() {
+        const PERIOD_S: f64 = 0.01;
+        let words = gyro(100, 60_000);
+        let rounded = |words: Vec<f64>| {
+            let round = |word: f64| (word * 40.0).round() / 40.0;
+            words.into_iter().map(round).collect::<Vec<f64>>()
+        };
+        // Time constants and cutoffs in words; 1/(2 B) is 2 T of one pole, 0.45 over the cutoff of two.
+        let cases = [
+            (mean(&words, 200), 2.0),
+            (rounded(mean(&words, 200)), 2.0),
+            (mean(&words, 16), 0.16),
+            (mean(&mean(&words, 60), 60), 0.9),
+            (one_pole(&words, 50.0), 1.0),
+            (butterworth(&words, 0.002), 0.01 / (2.0 * 1.110_72 * 0.002)),
+        ];
+        for (case, (smooth, wanted)) in cases.into_iter().enumerate() {
+            let found =
+                find_smoothing(&smooth, PERIOD_S).unwrap_or_else(|it| panic!("{case}: {it}"));
+            let Estimate {
+                value, low, high, ..
+            } = found.averaging_time_s;
+            assert!((value / wanted - 1.0).abs() < 0.15, "{case}: {found:?}");
+            assert!(low < value && value < high, "{case}: {found:?}");
+            assert!(
+                low / 1.05 < wanted && wanted < high * 1.05,
+                "{case}: {found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_no_filter_made_is_not_named() {
+        let words = gyro(200, 30_000);
+        let sine = |amplitude: f64| {
+            let at = |index: usize| amplitude * (PI * index as f64 / 400.0).sin();
+            let sum = words
+                .iter()
+                .enumerate()
+                .map(|(index, word)| word + at(index));
+            sum.collect::<Vec<f64>>()
+        };
+        // A Gauss-Markov noise well above the white one, which goes on inside its correlation time.
+        let correlated: Vec<f64> = one_pole(&white(300, 33_000), 300.0)
+            .iter()
+            .zip(&words)
+            .map(|(slow, word)| 20.0 * slow + word)
+            .collect();
+        let cases = [
+            words.clone(),
+            one_pole(&words, 3.0),
+            walk(&words),
+            sine(1.0),
+            sine(100.0),
+            words.windows(2).map(|two| two[1] - two[0]).collect(),
+            correlated,
+            words.iter().map(|word| (word / 4.0).round()).collect(),
+            vec![3.0; 5000],
+        ];
+        for (case, words) in cases.into_iter().enumerate() {
+            let found = find_smoothing(&words, 0.01);
+            assert!(found.is_err(), "{case}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn records_that_were_not_smoothed_are_hardly_ever_named() {
+        let named =
+            (0..20).filter(|seed| find_smoothing(&gyro(1000 + 100 * seed, 4000), 1.0).is_ok());
+        assert_eq!(named.count(), 0);
+    }
+
+    #[test]
+    fn the_noise_bandwidth_of_every_response_is_that_of_its_averaging_time() {
+        for like in Smoothing::ALL {
+            for words in [20.0, 200.0] {
+                let step = 1e-5;
+                let band: f64 = (0..50_000)
+                    .map(|index| step * like.power((f64::from(index) + 0.5) * step, words))
+                    .sum();
+                let found = 0.5 / band;
+                assert!(
+                    (found / words - 1.0).abs() < 0.02,
+                    "{like:?} {words} {found}"
+                );
+            }
+        }
     }
 }
