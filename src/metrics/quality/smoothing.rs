@@ -190,6 +190,12 @@ pub fn find_smoothing(
     } else {
         0.0
     };
+    let stands = gain >= GAIN_MIN
+        && (WORDS_MIN..=most).contains(&best.words)
+        && search.is_sound(&best, rounding);
+    if !stands {
+        return none();
+    }
     let [low, high] = search.interval(&best, most);
     let value = best.words * sample_period_s;
     Ok(Smoothed {
@@ -387,6 +393,7 @@ impl<'a> Search<'a> {
         let beyond = self.bins.iter();
         let beyond = beyond.filter(|bin| bin.frequency * fit.words > TAIL_FROM);
         let is_bare = beyond.map(Bin::power).sum::<f64>() <= TAIL_MAX * smoothed + rounding;
+        // White noise has at least half of the density where the fall begins.
         let is_white = 2.0 * white >= fit.plateau();
         let passes = self.bins.iter().zip(&response);
         let is_described = passes
