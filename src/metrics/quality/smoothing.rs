@@ -48,6 +48,9 @@ const GAIN_95: f64 = 3.841_458_820_694_124;
 /// Factor by which the density of the pass band may lie off the fit, beyond its scatter.
 const MISFIT_MAX: f64 = 2.0;
 
+/// Independent ordinates that are compared with the fit together, at least.
+const TOGETHER_MIN: f64 = 8.0;
+
 /// Frequency, in reciprocals of the averaging time, at which white noise must stand above the slow.
 const CORNER: f64 = 0.25;
 
@@ -396,15 +399,21 @@ impl<'a> Search<'a> {
         // White noise has at least half of the density where the fall begins.
         let is_white = 2.0 * white >= fit.plateau();
         let passes = self.bins.iter().zip(&response);
-        let is_described = passes
-            .filter(|(_, power)| **power > 0.2)
-            .all(|(bin, power)| {
-                let slow = power / bin.frequency;
-                let density = white * power + flicker * slow + walk * slow / bin.frequency + floor;
-                let ratio = (bin.density / density).ln().abs();
+        let mut is_described = true;
+        // Single ordinates may be next to nothing: as many are taken together as say something.
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (bin, power) in passes.filter(|(_, power)| **power > 0.2) {
+            let slow = power / bin.frequency;
+            let density = white * power + flicker * slow + walk * slow / bin.frequency + floor;
+            sum += bin.count * bin.density / density;
+            count += bin.count;
+            if count >= TOGETHER_MIN {
                 // The logarithm of a mean of n exponential variables scatters by 1/sqrt(n).
-                ratio <= MISFIT_MAX.ln() + 4.0 / bin.count.max(1.0).sqrt()
-            });
+                let most = MISFIT_MAX.ln() + 4.0 / count.sqrt();
+                is_described &= (sum / count).ln().abs() <= most;
+                (sum, count) = (0.0, 0.0);
+            }
+        }
         is_bare && is_white && is_described
     }
 }
