@@ -22,6 +22,7 @@ mod cli_analyze;
 mod cli_budget;
 mod cli_claim;
 mod cli_fpga;
+mod cli_log_quality;
 mod cli_words;
 mod closed_loop;
 mod comparison;

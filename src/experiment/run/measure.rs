@@ -111,8 +111,18 @@ impl Cut<'_> {
         input_deg_per_h: &[f64],
         filter: Option<&FilterFacts>,
     ) -> ChannelMetrics {
+        let record = self.of(channel_deg_per_h, input_deg_per_h);
+        measure(&record, self.settings, filter)
+    }
+
+    /// The measured part of a channel and of what it was made from.
+    pub(crate) fn of<'b>(
+        &'b self,
+        channel_deg_per_h: &'b [f64],
+        input_deg_per_h: &'b [f64],
+    ) -> Record<'b> {
         let first = self.length.warm_up;
-        let record = Record {
+        Record {
             channel_deg_per_h: &channel_deg_per_h[first..],
             raw_deg_per_h: &input_deg_per_h[first..],
             // A recorded log has none.
@@ -121,8 +131,7 @@ impl Cut<'_> {
             encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
             sample_period_s: self.sample_period_s,
             first_stamp_s: stamp_s(first as u64, self.sample_period_s),
-        };
-        measure(&record, self.settings, filter)
+        }
     }
 
     pub(crate) fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {

@@ -7,6 +7,7 @@ pub(super) mod covariance;
 pub(super) mod curves;
 pub(super) mod entry;
 pub(super) mod extra_terms;
+pub(super) mod gaps;
 pub(super) mod judge;
 pub(super) mod least_squares;
 mod limits;

@@ -67,7 +67,8 @@ pub(crate) fn measure_steady(
     measure_mean(record, fit.as_ref(), metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let products = products_about_mean(record.channel_deg_per_h, lags);
-    let samples = record.channel_deg_per_h.len();
+    let words = record.channel_deg_per_h.iter();
+    let samples = words.filter(|word| !word.is_nan()).count();
     put_noise_std(&products, (samples, 1), record.sample_period_s, metrics);
     if let Some(facts) = filter {
         let raw = products_about_mean(record.raw_deg_per_h, lags);
@@ -221,7 +222,7 @@ fn measure_bias(
 /// it does not vanish with T for slow noise. Without one, Student's t on ten block means.
 fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMetrics) {
     let values = record.channel_deg_per_h;
-    let mean = interval::mean(values);
+    let mean = interval::mean_of_present(values);
     let duration_s = values.len() as f64 * record.sample_period_s;
     let estimate = match fit {
         Some(fit) if fit.shows_white_noise() => {
@@ -240,5 +241,10 @@ fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMe
 }
 
 fn products_about_mean(values: &[f64], lags: usize) -> LaggedProducts {
-    LaggedProducts::new(values, interval::mean(values), lags, RATIO_BLOCKS)
+    LaggedProducts::new(
+        values,
+        interval::mean_of_present(values),
+        lags,
+        RATIO_BLOCKS,
+    )
 }

@@ -178,12 +178,9 @@ pub(crate) fn measure_swing(
         LaggedProducts::new(&residuals, 0.0, lags, blocks)
     };
     let channel = noise(residuals, filter);
-    put_noise_std(
-        &channel,
-        (fits.channel.samples(), 3),
-        record.sample_period_s,
-        metrics,
-    );
+    let words = record.channel_deg_per_h[..fits.channel.samples()].iter();
+    let count = words.filter(|word| !word.is_nan()).count();
+    put_noise_std(&channel, (count, 3), record.sample_period_s, metrics);
     if let Some(facts) = filter {
         let raw = noise(fits.raw.residuals(record.raw_deg_per_h), None);
         let level = fits.raw.whole.amplitude + fits.raw.whole.offset.abs();

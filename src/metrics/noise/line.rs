@@ -168,8 +168,13 @@ impl BlockMeans {
         let half = (tau_min_s / sample_period_s / 2.0 + 1e-9).floor();
         let least = words.len().div_ceil(MEANS_MAX);
         let block = interval::round_to_count(half).max(least).max(1);
-        let mut values: Vec<f64> = words.chunks_exact(block).map(interval::mean).collect();
+        let means = words.chunks_exact(block).map(interval::mean_of_present);
+        let mut values: Vec<f64> = means.collect();
         remove_line(&mut values);
+        // A mean that is missing says nothing of a line: it gets what its neighbours have in common.
+        for value in values.iter_mut().filter(|value| value.is_nan()) {
+            *value = 0.0;
+        }
         Self {
             values,
             block,
