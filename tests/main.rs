@@ -84,6 +84,7 @@ mod rows;
 mod rtl;
 mod scale_factor_test;
 mod scenario_errors;
+mod selection;
 mod sign_lms_hardware;
 mod small_inputs_and_steps;
 mod suite;

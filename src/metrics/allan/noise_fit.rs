@@ -60,7 +60,7 @@ pub static RATE_RAMP: MetricKey = MetricKey::new(
     Applies::Steady,
     "R of the fit to the overlapping Allan variance, R^2 tau^2/2",
 )
-.synonyms(&["r", "rate_ramp", "drift", "drift_rate"])
+.synonyms(&["r", "rate_ramp", "drift_rate"])
 .heading("rate ramp")
 .needs(Needs::SlowNoiseFit)
 .pooled(Pool::AllanFit)
