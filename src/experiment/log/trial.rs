@@ -153,27 +153,19 @@ pub fn try_log(
         raw_deg_per_h: std::mem::take(&mut log.rate_deg_per_h),
         compensated_deg_per_h: compensated,
     };
-    let clashes = |filters: &LogFilters| filters.configs().iter().any(|it| it.name == COMPENSATED);
-    if record.compensated_deg_per_h.is_some() && filters.is_some_and(clashes) {
+    let is_compensated = record.compensated_deg_per_h.is_some();
+    if let Some(message) = filters.and_then(|filters| clash(filters, is_compensated)) {
         return Err(LogTrialError {
             file: log.file,
-            message: format!("a filter is named `{COMPENSATED}`, as is the channel it is given"),
+            message,
         });
     }
     let words = record.filter_input_deg_per_h();
     let finished = filters.map_or_else(Vec::new, |filters| {
         run(filters, length, sample_period_s, words)
     });
-    let fit_tau_min_s = settings.fit_tau_min_s.unwrap_or_else(|| {
-        let measured = &record.raw_deg_per_h[length.warm_up..];
-        record_fit_tau_min_s(measured, sample_period_s)
-    });
-    let metric_settings = Settings {
-        motion: metric_motion(settings.motion),
-        bias_averaging_time_s: settings.bias_averaging_time_s,
-        fit_tau_min_s,
-        allan: allan_options(settings.allan),
-    };
+    let measured = &record.raw_deg_per_h[length.warm_up..];
+    let metric_settings = metric_settings(settings, measured, sample_period_s);
     let cut = Cut {
         record: &record,
         encoder_rad: None,
@@ -200,7 +192,6 @@ pub fn try_log(
         let of_pipelines = finished.iter();
         notes.extend(of_pipelines.flat_map(|it| pipeline_metrics::notes(it, sample_period_s)));
     }
-    let is_compensated = record.compensated_deg_per_h.is_some();
     let compensated = is_compensated.then(|| {
         let measured = cut.measure_compensated();
         examined(COMPENSATED, measured, words, &cut, is_tau_given)
@@ -217,6 +208,33 @@ pub fn try_log(
         length,
         notes,
     })
+}
+
+/// What is wrong with the name of a filter that a channel of the log has.
+fn clash(filters: &LogFilters, is_compensated: bool) -> Option<String> {
+    let own = [(RAW, true), (COMPENSATED, is_compensated)];
+    let own: Vec<String> = own
+        .into_iter()
+        .filter(|(_, is_there)| *is_there)
+        .flat_map(|(name, _)| [name.to_owned(), format!("{name}{WITHOUT_OUTLIERS}")])
+        .collect();
+    let mut names = filters.configs().iter().map(|it| &it.name);
+    let taken = names.find(|name| own.contains(name))?;
+    Some(format!(
+        "a filter is named `{taken}`, as is a channel of the log"
+    ))
+}
+
+/// How the words of a log, those behind the warm-up, are measured.
+fn metric_settings(settings: &LogSettings, measured: &[f64], sample_period_s: f64) -> Settings {
+    let fit_tau_min_s = settings.fit_tau_min_s;
+    Settings {
+        motion: metric_motion(settings.motion),
+        bias_averaging_time_s: settings.bias_averaging_time_s,
+        fit_tau_min_s: fit_tau_min_s
+            .unwrap_or_else(|| record_fit_tau_min_s(measured, sample_period_s)),
+        allan: allan_options(settings.allan),
+    }
 }
 
 /// A measured channel, and beside it what it measures without its outliers, if it has any.
