@@ -25,7 +25,8 @@ fn log(folder: &Path, angle_step: Option<f64>) {
             let rounded = (angle / step).round() * step;
             let word = (rounded - before) * RATE_HZ;
             before = rounded;
-            word
+            // A little noise behind it: what counts pulses is another matter.
+            word + 1e-3 * random.normal()
         } else {
             smooth + bias
         };
