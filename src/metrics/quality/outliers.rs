@@ -319,15 +319,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::random::Streams;
-
-    fn white(seed: u64, count: usize) -> Vec<f64> {
-        let mut words = vec![0.0; count];
-        Streams::new(seed, 0)
-            .stream("words")
-            .fill_normal(&mut words);
-        words
-    }
+    use crate::metrics::quality::white;
 
     /// First words and lengths of what is found.
     fn found(words: &[f64]) -> Vec<(usize, usize)> {
