@@ -36,6 +36,7 @@ mod encoder;
 mod extremes;
 mod fast_motion;
 mod filters;
+mod flush_order;
 mod fpga_health;
 mod frequency_response;
 mod generated;
