@@ -36,6 +36,7 @@ fn steady(seed: u64, samples: usize) -> [ChannelMetrics; 2] {
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 1.0,
+        drift: None,
     };
     let settings = settings(Motion::Steady);
     [
@@ -128,6 +129,7 @@ fn a_swing_record_is_measured_as_theory_says() {
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 20.0,
+        drift: None,
     };
     let settings = settings(Motion::Swing { frequency_hz: 5.0 });
     let of_raw = measure(&record(&raw[..]), &settings, None);
@@ -196,6 +198,7 @@ fn a_record_too_short_or_not_finite_gives_reasons_and_no_numbers() {
             encoder_rad: None,
             sample_period_s: PERIOD_S,
             first_stamp_s: 0.0,
+            drift: None,
         };
         let metrics = measure(&record, &settings(Motion::Steady), None);
         assert!(metrics.metrics.is_empty());
@@ -225,6 +228,7 @@ fn a_noise_free_record_has_no_noise_gain_and_no_false_numbers() {
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 0.0,
+        drift: None,
     };
     let metrics = measure(&record, &settings(Motion::Steady), Some(&facts()));
     every_metric_is_answered(&metrics);

@@ -43,6 +43,7 @@ fn measured(values: &[f64], period_s: f64) -> ChannelMetrics {
         encoder_rad: None,
         sample_period_s: period_s,
         first_stamp_s: 0.0,
+        drift: None,
     };
     let settings = Settings {
         motion: Motion::Steady,

@@ -166,6 +166,7 @@ pub fn try_log(
         length,
         sample_period_s,
         settings: &metric_settings,
+        drift: None,
     };
     let (raw, others): (_, Vec<_>) = rayon::join(
         || cut.measure_raw(),

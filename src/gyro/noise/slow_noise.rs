@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use crate::declare::table;
 use crate::random::{Stream, Streams};
+use crate::signal::SlowDrift;
 use crate::units::{
     deg_per_h_per_h_to_deg_per_h_per_s, deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s,
     deg_per_h_to_rad_per_s,
@@ -215,6 +216,43 @@ impl SlowNoise {
     }
 }
 
+/// How the slow noise scatters over seeds, for output samples of `sample_period_s` over
+/// `simulated_time_s`.
+#[must_use]
+pub fn slow_drift(
+    config: &SlowNoiseConfig,
+    sample_period_s: f64,
+    simulated_time_s: f64,
+) -> SlowDrift {
+    let interval_s = f64::from(samples_per_update(sample_period_s)) * sample_period_s;
+    let longest_s = LONGEST_CORRELATION_RECORDS * simulated_time_s.max(interval_s);
+    let instability = config.bias_instability_deg_per_h;
+    let of_flicker = instability * instability * RATIO.ln() / PI;
+    let flicker =
+        flicker_correlation_times_s(interval_s, longest_s).map(|time_s| (of_flicker, time_s));
+    let correlated = (
+        config.gauss_markov_deg_per_h.powi(2),
+        config.gauss_markov_correlation_time_s,
+    );
+    let turn_on = (config.turn_on_bias_deg_per_h.powi(2), f64::INFINITY);
+    let walk =
+        deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(config.rate_random_walk_deg_per_h_per_sqrt_h);
+    SlowDrift {
+        processes: flicker
+            .chain([correlated, turn_on])
+            .filter(|(variance, _)| *variance > 0.0)
+            .collect(),
+        walk_deg2_per_h2_per_s: walk * walk,
+    }
+}
+
+/// Correlation times of the processes that make the flicker, from below the interval to `longest_s`.
+fn flicker_correlation_times_s(interval_s: f64, longest_s: f64) -> impl Iterator<Item = f64> {
+    let first = SHORTEST_CORRELATION_INTERVALS * interval_s;
+    let next = move |time_s: &f64| (*time_s < longest_s).then_some(time_s * RATIO);
+    std::iter::successors(Some(first), next)
+}
+
 /// Output samples between updates: as many as fit the update interval, one to four.
 fn samples_per_update(sample_period_s: f64) -> u32 {
     #[expect(
@@ -236,22 +274,13 @@ fn gauss_markov_ladder(
     stream: &mut Stream,
 ) -> Vec<GaussMarkov> {
     let deviation = instability * (RATIO.ln() / PI).sqrt();
-    let mut processes = Vec::new();
-    let mut correlation_s = SHORTEST_CORRELATION_INTERVALS * interval_s;
-    loop {
-        let hold_updates = hold_updates(correlation_s / interval_s);
-        let exponent = f64::from(hold_updates) * interval_s / correlation_s;
-        processes.push(GaussMarkov::stationary(
-            deviation,
-            exponent,
-            hold_updates,
-            stream,
-        ));
-        if correlation_s >= longest_s {
-            return processes;
-        }
-        correlation_s *= RATIO;
-    }
+    flicker_correlation_times_s(interval_s, longest_s)
+        .map(|correlation_s| {
+            let hold_updates = hold_updates(correlation_s / interval_s);
+            let exponent = f64::from(hold_updates) * interval_s / correlation_s;
+            GaussMarkov::stationary(deviation, exponent, hold_updates, stream)
+        })
+        .collect()
 }
 
 /// Updates over which a process of a correlation time (in updates) is held.

@@ -5,7 +5,11 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
+use super::influence::{Spread, resampled};
 use super::value::Estimate;
+
+/// Why a record gives no interval where it holds no two blocks.
+pub(crate) const TOO_FEW_BLOCKS: &str = "the record is too short for an interval";
 
 /// Quantile 0.975 of the standard normal distribution.
 pub(crate) const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
@@ -64,11 +68,10 @@ pub(crate) fn deviation_at(value: f64, degrees_of_freedom: f64, confidence: f64)
     let normal_quantile = Normal::standard().inverse_cdf(1.0 - tail);
     let freedom = degrees_of_freedom.max(0.1);
     let (low, high) = chi_square_quantiles(freedom, tail, normal_quantile);
+    let (low, high) = ((freedom / high).sqrt(), (freedom / low).sqrt());
     Estimate {
-        value,
-        low: value * (freedom / high).sqrt(),
-        high: value * (freedom / low).sqrt(),
         confidence,
+        ..Estimate::with_interval(value, value * low, value * high)
     }
 }
 
@@ -120,11 +123,14 @@ pub(crate) fn sample_variance(values: &[f64]) -> f64 {
 /// scatter the parts reveal. Fewer than two parts give no interval.
 pub(crate) fn from_parts(value: f64, parts: &[f64]) -> Estimate {
     if parts.len() < 2 {
-        return Estimate::exact(value);
+        return Estimate::without_interval(value, TOO_FEW_BLOCKS);
     }
     let count = parts.len() as f64;
-    let error = (sample_variance(parts) / count).sqrt();
-    Estimate::symmetric(value, student_quantile(count - 1.0) * error)
+    let spread = Spread {
+        variance: sample_variance(parts) / count,
+        freedom: count - 1.0,
+    };
+    spread.about(value)
 }
 
 /// `value` with the jackknife interval of its leave-one-block-out versions.
@@ -134,12 +140,7 @@ pub(crate) fn from_parts(value: f64, parts: &[f64]) -> Estimate {
 ///
 /// Source: Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM 1982, chapter 3.
 pub(crate) fn jackknife(value: f64, left_out: &[f64]) -> Estimate {
-    if left_out.len() < 2 {
-        return Estimate::exact(value);
-    }
-    let count = left_out.len() as f64;
-    let error = (sample_variance(left_out) * (count - 1.0) * (count - 1.0) / count).sqrt();
-    Estimate::symmetric(value, student_quantile(count - 1.0) * error)
+    resampled(value, left_out, None)
 }
 
 /// Rounds a non-negative number to a count.

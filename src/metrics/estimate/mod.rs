@@ -1,8 +1,10 @@
 //! Numbers with their intervals, and the table of one channel that holds them.
 
 pub(super) mod blocks;
+pub(super) mod influence;
 pub(super) mod interval;
 pub(super) mod missing;
+pub(super) mod paired;
 pub(super) mod reason;
 pub(super) mod repeat_statistics;
 pub(super) mod table;

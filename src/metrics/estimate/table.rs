@@ -152,6 +152,7 @@ impl ChannelMetrics {
                 low,
                 high,
                 confidence,
+                ..
             } = *estimate;
             [value, low, high, confidence]
                 .iter()

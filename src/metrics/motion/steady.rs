@@ -1,6 +1,6 @@
 //! Metrics of a record at rest or at constant rate.
 
-use super::mean::{MEAN, MEAN_ERROR, measure_mean_ratio, put_mean};
+use super::mean::{MEAN, MEAN_ERROR, mean_spread_of, measure_mean_ratio, put_mean};
 use crate::metrics::allan::curves::{put_allan_curve, put_fit_curve};
 use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
 use crate::metrics::allan::noise_fit::{
@@ -9,7 +9,8 @@ use crate::metrics::allan::noise_fit::{
 };
 use crate::metrics::allan::overlapping::overlapping_allan;
 use crate::metrics::allan::variants::allan_variant;
-use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
+use crate::metrics::estimate::blocks::RATIO_BLOCKS;
+use crate::metrics::estimate::influence::Spread;
 use crate::metrics::estimate::table::{
     ChannelMetrics, DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION,
 };
@@ -21,6 +22,7 @@ use crate::metrics::noise::bias_stability::{
     BIAS_STABILITY, BIAS_STABILITY_1S, BIAS_STABILITY_10S, BIAS_STABILITY_100S, BLOCKS_MIN,
     averaging_lack,
 };
+use crate::metrics::noise::by_weights::NoiseByWeights;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::memory::fit_tau_min_s;
 use crate::metrics::noise::truth_response::without_motion;
@@ -54,16 +56,27 @@ pub(crate) fn measure_steady(
     });
     let fit = measure_allan(record, settings, filter, metrics);
     measure_bias(record, settings, fit.as_ref(), metrics);
-    measure_mean(record, fit.as_ref(), metrics);
+    measure_mean(record, fit.as_ref(), filter, metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
-    let products = products_about_mean(record.channel_deg_per_h, lags);
+    let blocks = filter.map_or(RATIO_BLOCKS, FilterFacts::blocks);
+    let products = products_about_mean(record.channel_deg_per_h, lags, blocks);
     let samples = record.channel_deg_per_h.len();
-    put_noise_std(&products, samples, record.sample_period_s, metrics);
-    if let Some(facts) = filter {
-        let raw = products_about_mean(record.raw_deg_per_h, lags);
+    let raw = filter.map(|_| products_about_mean(record.raw_deg_per_h, lags, blocks));
+    let by_weights = match (filter, &raw) {
+        (Some(facts), Some(raw)) => NoiseByWeights::new(facts, raw, samples, 0.0),
+        _ => NoiseByWeights::none(),
+    };
+    put_noise_std(
+        &products,
+        &by_weights,
+        samples,
+        record.sample_period_s,
+        metrics,
+    );
+    if let (Some(facts), Some(raw)) = (filter, raw) {
         let level = interval::mean(record.raw_deg_per_h).abs();
-        put_noise_gain(&products, &raw, level, metrics);
-        measure_mean_ratio(record, metrics);
+        put_noise_gain(&products, &raw, &by_weights, level, metrics);
+        measure_mean_ratio(record, 0..samples, facts, metrics);
         measure_weight_noise(record, facts, metrics);
         measure_predictions(record, facts, (&products, &raw), metrics);
         for (key, over) in [
@@ -188,19 +201,24 @@ fn measure_bias(
 
 /// Mean and its error.
 ///
-/// With a fit, the variance of the mean over T is the fitted Allan variance at T (half the mean
-/// square difference between the means of two such records in a row): `N^2/T` for white noise, and
-/// it does not vanish with T for slow noise. Without one, Student's t on ten block means.
-fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMetrics) {
+/// Where the slow noise of the gyro is not known, as of a log, the interval is about the process that
+/// the fit found: its white noise, and those slow terms that the record tells from nothing.
+fn measure_mean(
+    record: &Record,
+    fit: Option<&NoiseFit>,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
     let values = record.channel_deg_per_h;
     let mean = interval::mean(values);
     let duration_s = values.len() as f64 * record.sample_period_s;
-    let estimate = match fit {
-        Some(fit) if matches!(fit.angle_random_walk_deg_per_h_sqrt_s, Term::Found(_)) => {
-            let variance = fit.mean_variance(duration_s);
-            Estimate::symmetric(mean, interval::NORMAL_QUANTILE * variance.sqrt())
-        }
-        _ => interval::from_parts(mean, &equal_block_means(values, 10)),
+    let slow = match (record.drift, fit) {
+        (None, Some(fit)) => slow_mean_variance(fit, duration_s),
+        _ => 0.0,
+    };
+    let estimate = match mean_spread_of(record, values, filter, true) {
+        Ok(spread) => spread.plus(Spread::known(slow)).about(mean),
+        Err(reason) => Estimate::without_interval(mean, reason),
     };
     put_mean(
         estimate,
@@ -208,9 +226,33 @@ fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMe
         duration_s,
         metrics,
     );
+    let drift = record.drift_variance() + slow;
+    if let Some(metric) = metrics.get_mut(&MEAN).filter(|_| drift > 0.0) {
+        metric.fields.insert(SLOW_NOISE, drift.sqrt());
+    }
     metrics.mark_exact(&[&MEAN, &MEAN_ERROR]);
 }
 
-fn products_about_mean(values: &[f64], lags: usize) -> LaggedProducts {
-    LaggedProducts::new(values, interval::mean(values), lags, RATIO_BLOCKS)
+/// Field of a mean: standard deviation, in its interval, of the input's slow noise in the mean.
+const SLOW_NOISE: &str = "slow_noise_deg_per_h";
+
+/// Variance of the mean of flicker with correlation times up to a hundred records over `B^2`:
+/// `(ln 100 + 3/2 - gamma) / pi`.
+const FLICKER_MEAN_VARIANCE: f64 = 1.760;
+
+/// Variance of the mean by the slow terms of a fit whose intervals do not begin at zero, (deg/h)^2.
+///
+/// Walk and ramp start at zero with the record. Source: derived; van der Ziel, Physica 16 (1950).
+fn slow_mean_variance(fit: &NoiseFit, duration_s: f64) -> f64 {
+    let square = |term: &Term| match term {
+        Term::Found(estimate) if estimate.low > 0.0 => estimate.value * estimate.value,
+        _ => 0.0,
+    };
+    FLICKER_MEAN_VARIANCE * square(&fit.bias_instability_deg_per_h)
+        + square(&fit.rate_random_walk_deg_per_h_per_sqrt_s) * duration_s / 3.0
+        + square(&fit.rate_ramp_deg_per_h_per_s) * duration_s * duration_s / 4.0
+}
+
+fn products_about_mean(values: &[f64], lags: usize, blocks: usize) -> LaggedProducts {
+    LaggedProducts::new(values, interval::mean(values), lags, blocks)
 }

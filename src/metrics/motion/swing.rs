@@ -2,22 +2,27 @@
 
 use std::f64::consts::TAU;
 
-use super::mean::{MEAN_RATIO, put_mean, ratio_of_means_lack};
+use super::mean::{MEAN_RATIO, filter_reach, mean_spread_of, put_mean, ratio_of_means_lack};
 use super::steady::LAGS_MIN;
+use super::swing_response::{Against, Fits, Response};
 use super::tracking::TRACKING_ERROR_RMS;
+use crate::metrics::estimate::influence::Spread;
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::paired::{MeanScatter, mean_spread};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::{Estimate, Metric};
-use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Table};
+use crate::metrics::key::metric::{Against as Compared, Applies, Headline, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
+use crate::metrics::noise::by_weights::NoiseByWeights;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::truth_response::{reach, remove_response};
 use crate::metrics::pipeline::LATENCY;
-use crate::metrics::record::{FilterFacts, Record};
+use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::sine::correlation::correlation_delay_s;
 use crate::metrics::sine::fit::{SwingClock, SwingFit, fit_swing};
 use crate::metrics::theory::bound::filter_bound;
+use crate::metrics::theory::learning::{Learning, NOT_FROM_ONE_RECORD};
 use crate::metrics::theory::prediction::{lags_needed, predict};
 use crate::metrics::trial::noise_delay::{
     NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve, put_over_bound,
@@ -57,7 +62,7 @@ pub static DELAY_VS_TRUTH: MetricKey = MetricKey::new(
     "phase delay behind the true rate at the swing frequency; of several sines the lowest",
 )
 .heading("delay vs truth")
-.against(Against::Truth)
+.against(Compared::Truth)
 .of_turned_axis()
 .tables(&[Table::Swing, Table::MultiSine])
 .headlines(&[Headline::MultiSine]);
@@ -70,7 +75,7 @@ pub static DELAY_VS_ENCODER: MetricKey = MetricKey::new(
     "phase delay behind the rate implied by a sine fit of the encoder's angle",
 )
 .heading("delay vs encoder")
-.against(Against::Encoder)
+.against(Compared::Encoder)
 .of_turned_axis()
 .by_choice()
 .tables(&[Table::Swing]);
@@ -82,7 +87,7 @@ pub static DELAY_BY_CORRELATION: MetricKey = MetricKey::new(
     Applies::Swing,
     "delay behind the true rate again, by the peak of their correlation: a check of the sine fit",
 )
-.against(Against::Truth)
+.against(Compared::Truth)
 .of_turned_axis();
 
 /// Amplitude ratio.
@@ -93,7 +98,7 @@ pub static AMPLITUDE_RATIO: MetricKey = MetricKey::new(
     "fitted amplitude over raw's, for raw itself over the true rate's; of several sines the lowest",
 )
 .heading("amplitude ratio")
-.against(Against::TruthForRaw)
+.against(Compared::TruthForRaw)
 .run_column(10)
 .tables(&[Table::Swing, Table::MultiSine])
 .headlines(&[Headline::Swing]);
@@ -108,16 +113,6 @@ pub static HARMONIC_DISTORTION: MetricKey = MetricKey::new(
 .synonyms(&["thd", "distortion"])
 .heading("harmonic distortion")
 .tables(&[Table::Swing]);
-
-/// The sine fits of one swing record.
-struct Fits {
-    channel: SwingFit,
-    raw: SwingFit,
-    /// The true rate, if it is known.
-    truth: Option<SwingFit>,
-    /// Rate implied by the encoder's angle, if there is an encoder.
-    encoder: Option<SwingFit>,
-}
 
 /// Measures everything a swing record supports.
 ///
@@ -150,24 +145,32 @@ pub(crate) fn measure_swing(
         },
     };
     let duration_s = fits.channel.samples() as f64 * record.sample_period_s;
+    let residuals = fits.channel.residuals(record.channel_deg_per_h);
+    let offset = fits.channel.whole.offset;
+    let mean = match mean_spread_of(record, &residuals, filter, false) {
+        Ok(spread) => spread.about(offset),
+        Err(reason) => Estimate::without_interval(offset, reason),
+    };
     put_mean(
-        fits.channel.offset(),
+        mean,
         fits.truth.as_ref().map(|truth| truth.whole.offset),
         duration_s,
         metrics,
     );
-    measure_sines(&fits, &clock, filter, metrics);
+    let response = Response::new(record, &fits, &clock, filter);
+    measure_sines(&fits, &response, &clock, filter, metrics);
     if let Some(truth) = record.truth() {
-        measure_correlation(truth, record, &clock, filter, metrics);
+        measure_correlation(truth, record, &response, filter, metrics);
         measure_tracking(truth, record, &fits, metrics);
     }
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
-    let residuals = fits.channel.residuals(record.channel_deg_per_h);
     metrics.put(
         &HARMONIC_DISTORTION,
         fits.channel.harmonic_distortion_percent(&residuals),
     );
-    let blocks = fits.channel.block_count();
+    let blocks = filter
+        .and_then(|facts| facts.learning.as_ref())
+        .map_or(fits.channel.block_count(), Learning::stretches);
     let motion = fits.truth.as_ref().zip(record.truth());
     let motion = motion.map_or_else(Vec::new, |(fit, truth)| fit.residuals(truth));
     // The table's own harmonics are known, and no noise.
@@ -176,17 +179,24 @@ pub(crate) fn measure_swing(
         LaggedProducts::new(&residuals, 0.0, lags, blocks)
     };
     let channel = noise(residuals, filter);
+    let raw = filter.map(|_| noise(fits.raw.residuals(record.raw_deg_per_h), None));
+    let by_weights = match (filter, &raw) {
+        (Some(facts), Some(raw)) => {
+            NoiseByWeights::new(facts, raw, record.raw_deg_per_h.len(), 0.0)
+        }
+        _ => NoiseByWeights::none(),
+    };
     put_noise_std(
         &channel,
+        &by_weights,
         fits.channel.samples(),
         record.sample_period_s,
         metrics,
     );
-    if let Some(facts) = filter {
-        let raw = noise(fits.raw.residuals(record.raw_deg_per_h), None);
+    if let (Some(facts), Some(raw)) = (filter, raw) {
         let level = fits.raw.whole.amplitude + fits.raw.whole.offset.abs();
-        put_noise_gain(&channel, &raw, level, metrics);
-        measure_mean_ratio(&fits, metrics);
+        put_noise_gain(&channel, &raw, &by_weights, level, metrics);
+        measure_mean_ratio(record, &fits, facts, metrics);
         measure_predictions(&fits, &clock, facts, &raw, metrics);
         measure_bound(&fits, &clock, facts, (&channel, &raw), metrics);
         let predicted = metrics.get(&DELAY_PREDICTED);
@@ -203,6 +213,7 @@ pub(crate) fn measure_swing(
 /// Delays and amplitude ratio. A pipeline's latency is part of its delays.
 fn measure_sines(
     fits: &Fits,
+    response: &Response,
     clock: &SwingClock,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
@@ -215,8 +226,9 @@ fn measure_sines(
         let start_s = (clock.first_stamp_s - clock.sample_period_s).max(0.0);
         metric.fields.insert("excluded_s", start_s);
     };
-    let mut put_delay = |key: &MetricKey, reference| {
-        let delay_s = later(fits.channel.delay_behind_s(reference), latency_s);
+    let mut put_delay = |key: &MetricKey, reference: &SwingFit, against: Against| {
+        let delay_s = fits.channel.delay_behind_s(reference);
+        let delay_s = response.delay(delay_s, against).shifted(latency_s);
         let metric = metrics.put(key, delay_s.scaled(units::s_to_ms(1.0)));
         describe(metric);
         if latency_s > 0.0 {
@@ -225,17 +237,18 @@ fn measure_sines(
         }
     };
     if let Some(truth) = &fits.truth {
-        put_delay(&DELAY_VS_TRUTH, truth);
+        put_delay(&DELAY_VS_TRUTH, truth, Against::Truth);
     }
     if let Some(encoder) = &fits.encoder {
-        put_delay(&DELAY_VS_ENCODER, encoder);
+        put_delay(&DELAY_VS_ENCODER, encoder, Against::Truth);
     }
     if filter.is_some() {
-        put_delay(&DELAY_VS_RAW, &fits.raw);
+        put_delay(&DELAY_VS_RAW, &fits.raw, Against::Raw);
     }
     let reference = filter.map_or(fits.truth.as_ref(), |_| Some(&fits.raw));
     if let Some(reference) = reference {
-        describe(metrics.put(&AMPLITUDE_RATIO, fits.channel.amplitude_over(reference)));
+        let ratio = fits.channel.amplitude_over(reference);
+        describe(metrics.put(&AMPLITUDE_RATIO, response.amplitude(ratio)));
     }
 }
 
@@ -246,28 +259,20 @@ fn measure_sines(
 fn measure_correlation(
     truth_deg_per_h: &[f64],
     record: &Record,
-    clock: &SwingClock,
+    response: &Response,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
     let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
-    match correlation_delay_s(truth_deg_per_h, record.channel_deg_per_h, clock) {
+    let clock = response.clock;
+    match correlation_delay_s(truth_deg_per_h, record.channel_deg_per_h, &clock) {
         Ok(delay_s) => {
-            let delay_ms = later(delay_s, latency_s).scaled(units::s_to_ms(1.0));
+            let delay_ms = response.with_weights(delay_s);
+            let delay_ms = delay_ms.shifted(latency_s).scaled(units::s_to_ms(1.0));
             let metric = metrics.put(&DELAY_BY_CORRELATION, delay_ms);
             metric.fields.insert("frequency_hz", clock.frequency_hz);
         }
         Err(reason) => metrics.miss(&DELAY_BY_CORRELATION, reason),
-    }
-}
-
-/// A delay and the known time after it at which the value appears.
-fn later(delay_s: Estimate, latency_s: f64) -> Estimate {
-    Estimate {
-        value: delay_s.value + latency_s,
-        low: delay_s.low + latency_s,
-        high: delay_s.high + latency_s,
-        confidence: delay_s.confidence,
     }
 }
 
@@ -294,12 +299,46 @@ fn measure_tracking(
 }
 
 /// Ratio of the offsets, if raw's offset can be told from zero.
-fn measure_mean_ratio(fits: &Fits, metrics: &mut ChannelMetrics) {
-    if let Some(reason) = ratio_of_means_lack(&fits.raw.offset()) {
-        metrics.miss(&MEAN_RATIO, reason);
-    } else {
-        metrics.put(&MEAN_RATIO, fits.channel.offset_ratio(&fits.raw));
+fn measure_mean_ratio(
+    record: &Record,
+    fits: &Fits,
+    facts: &FilterFacts,
+    metrics: &mut ChannelMetrics,
+) {
+    let raw = fits.raw.residuals(record.raw_deg_per_h);
+    let offset = fits.raw.whole.offset;
+    let fast = mean_spread(&raw, filter_reach(None));
+    let raw_mean = fast
+        .plus(Spread::known(record.drift_variance()))
+        .about(offset);
+    if let Some(reason) = ratio_of_means_lack(&raw_mean) {
+        return metrics.miss(&MEAN_RATIO, reason);
     }
+    let ratio = fits.channel.whole.offset / offset;
+    let own = fits.channel.residuals(record.channel_deg_per_h);
+    let differences: Vec<f64> = own
+        .iter()
+        .zip(&raw)
+        .map(|(own, raw)| own - ratio * raw)
+        .collect();
+    let scatter = MeanScatter::of(&differences, filter_reach(Some(facts)));
+    let samples = differences.len();
+    let learned = facts
+        .learning
+        .as_ref()
+        .and_then(|learning| learning.mean_ratio(offset));
+    let estimate = match (
+        facts.weight_scatter(record.raw_deg_per_h.len(), 0.0),
+        learned,
+    ) {
+        (WeightScatter::Blocks, _) => scatter.over(samples).scaled(1.0 / offset).about(ratio),
+        (WeightScatter::Learned(_), Some(learned)) => {
+            let ends = scatter.ends_over(samples).scaled(1.0 / offset);
+            learned.spread().plus(ends).about(ratio)
+        }
+        _ => Estimate::without_interval(ratio, NOT_FROM_ONE_RECORD),
+    };
+    metrics.put(&MEAN_RATIO, estimate);
 }
 
 /// Wiener prediction for the fitted sine plus the measured noise: delay behind raw and DC gain.

@@ -1,9 +1,10 @@
 //! Noise about the signal, and what a filter leaves of noise and mean.
 
 use super::autocovariance::{LaggedProducts, independent_samples, put_autocovariance};
+use super::by_weights::NoiseByWeights;
+use crate::metrics::estimate::influence::resampled;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::{ChannelMetrics, DEGREES_OF_FREEDOM};
-use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
 
 /// Standard deviation of the noise.
@@ -40,20 +41,24 @@ pub static NOISE_GAIN: MetricKey = MetricKey::of_filters(
 /// curve of the autocovariance go with it.
 pub(crate) fn put_noise_std(
     products: &LaggedProducts,
+    by_weights: &NoiseByWeights,
     count: usize,
     sample_period_s: f64,
     metrics: &mut ChannelMetrics,
 ) {
-    put_autocovariance(products, sample_period_s, metrics);
+    put_autocovariance(products, by_weights, sample_period_s, metrics);
     let autocovariance = products.autocovariance();
     let of_lags = (independent_samples(&autocovariance, count) - 1.0).max(1.0);
-    let freedom = products.variance_freedom().unwrap_or(of_lags);
-    let metric = metrics.put(
-        &NOISE_STD,
-        interval::deviation(autocovariance[0].sqrt(), freedom),
-    );
+    let freedom = match by_weights.of(|noise| noise[0]) {
+        Some(learned) => products.learned_freedom(&learned),
+        None => products.variance_freedom().unwrap_or(of_lags),
+    };
+    let deviation = interval::deviation(autocovariance[0].sqrt(), freedom);
+    let metric = metrics.put(&NOISE_STD, by_weights.unless_unknown(deviation));
     metric.fields.insert("count", count as f64);
-    metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
+    if metric.estimate.has_interval() {
+        metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
+    }
 }
 
 /// Ratio of the variances about the signal; blocks leave numerator and denominator together.
@@ -62,6 +67,7 @@ pub(crate) fn put_noise_std(
 pub(crate) fn put_noise_gain(
     channel: &LaggedProducts,
     raw: &LaggedProducts,
+    by_weights: &NoiseByWeights,
     raw_level_deg_per_h: f64,
     metrics: &mut ChannelMetrics,
 ) {
@@ -76,8 +82,8 @@ pub(crate) fn put_noise_gain(
         })
         .collect();
     let value = channel.autocovariance()[0] / raw_variance;
-    let gain = interval::jackknife(value, &left_out);
+    let learned = by_weights.of(|noise| noise[0] / by_weights.raw_power());
     // A power is never negative.
-    let gain = Estimate::with_interval(gain.value, gain.low.max(0.0), gain.high);
-    metrics.put(&NOISE_GAIN, gain);
+    let gain = resampled(value, &left_out, learned.as_ref()).clamped(0.0, f64::INFINITY);
+    metrics.put(&NOISE_GAIN, by_weights.unless_unknown(gain));
 }

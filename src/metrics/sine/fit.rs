@@ -43,7 +43,7 @@ pub struct SineFit {
 
 impl SwingClock {
     /// Angular phase of sample `index`, reduced to one turn before it loses digits, rad.
-    fn phase_rad(&self, index: usize) -> f64 {
+    pub(crate) fn phase_rad(&self, index: usize) -> f64 {
         let time_s = self.first_stamp_s + index as f64 * self.sample_period_s;
         (time_s * self.frequency_hz).fract() * TAU
     }

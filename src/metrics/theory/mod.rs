@@ -1,4 +1,5 @@
 //! What theory says a filter will do, before anything is measured.
 
 pub(super) mod bound;
+pub(super) mod learning;
 pub(super) mod prediction;

@@ -1,0 +1,445 @@
+//! What a least-squares filter has learned from each stretch of its words: the seeds' scatter of
+//! weights that forget nothing, from one record.
+//!
+//! With `R_c`, `p_c` the sums of products up to a checkpoint c, its weights are
+//! `w_c = R_c^-1 p_c = w + R_c^-1 sum_(f <= c) s_f` exactly, for any w, with the score
+//! `s_f = p_f - R_f w` of each stretch f. The scores of long stretches are independent and of mean 0
+//! at the weights that many records have in common, so that each stretch adds `A_f s_f` of its own to
+//! the mean weights of the record, `A_f` the mean of `R_c^-1` over the checkpoints from f on. Stretches
+//! of the warm-up add theirs. This is the sandwich covariance of least squares; leaving blocks of the
+//! output out instead holds the weights of this record for given, and misses nearly all of it.
+//!
+//! Source: derived; White, Econometrica 48 (1980), for the sandwich.
+
+use nalgebra::{DMatrix, DVector, DVectorView};
+
+use crate::metrics::estimate::influence::Learned;
+use crate::signal::{FilterShape, WeightRule};
+
+/// Stretches of the record; those of the warm-up are as long.
+const STRETCHES: usize = 160;
+
+/// Fewest of them.
+const STRETCHES_MIN: usize = 20;
+
+/// Shortest stretch, in words that the filter reaches back: scores correlate over as many.
+const REACHES_MIN: usize = 16;
+
+/// Part of the record that a memory may span for its blocks to tell how it scatters.
+const MEMORY_PER_RECORD: f64 = 0.1;
+
+/// Why a record does not tell how far it is from the ensemble.
+pub(crate) const NOT_FROM_ONE_RECORD: &str =
+    "not from one record: the filter remembers more than a tenth of it; repeats gives it";
+
+/// Sums of products of a least-squares filter, stretch by stretch of all its words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Learning {
+    taps: usize,
+    is_dc_gain_one: bool,
+    /// What a stretch counts for once the next has come.
+    kept: f64,
+    /// Stretches before the record.
+    warm_up: usize,
+    /// Standard deviation over seeds of a rate that all words share: the slow noise in their mean.
+    drift_deg_per_h: f64,
+    /// Sums of products of `[x_0 ... x_(p-1), d, 1]`: regressors, desired signal, number.
+    moments: Vec<DMatrix<f64>>,
+}
+
+/// What each stretch adds to the mean weights over a part of the record.
+#[derive(Clone, Debug)]
+pub(crate) struct LearnedWeights {
+    /// By stretch, those of the warm-up first; newest sample first.
+    pub(crate) parts: Vec<DVector<f64>>,
+    /// Stretches before the record.
+    pub(crate) warm_up: usize,
+    /// Degrees of freedom of the scatter of the parts, of which the first count for more.
+    pub(crate) freedom: f64,
+}
+
+/// Whether the weights of a filter remember more than a tenth of a record.
+pub(crate) fn remembers_the_record(shape: &FilterShape, samples: usize) -> bool {
+    let memory = match shape.rule {
+        WeightRule::Adaptive {
+            forgetting_factor: Some(factor),
+            ..
+        } => 1.0 / (1.0 - factor),
+        _ => 0.0,
+    };
+    memory > MEMORY_PER_RECORD * samples as f64
+}
+
+impl Learning {
+    /// Sums of a filter over all its words, of which the record begins at `first`.
+    ///
+    /// None for a filter that forgets within a tenth of the record, whose own blocks tell its
+    /// scatter, and for a record of too few stretches.
+    #[must_use]
+    pub fn of(shape: &FilterShape, words: &[f64], first: usize) -> Option<Self> {
+        let WeightRule::Adaptive {
+            desired_weights,
+            is_dc_gain_one,
+            forgetting_factor: Some(factor),
+        } = &shape.rule
+        else {
+            return None;
+        };
+        let record = words.len().checked_sub(first)?;
+        let taps = shape.taps?;
+        let lag = shape.newest_age_samples - shape.register_samples;
+        let reach = (lag + taps).max(desired_weights.len());
+        let count = STRETCHES.min(record / (REACHES_MIN * reach));
+        if count < STRETCHES_MIN || !remembers_the_record(shape, record) {
+            return None;
+        }
+        let length = record / count;
+        let warm_up = first.saturating_sub(reach).div_ceil(length);
+        let border = |stretch: usize| match stretch.checked_sub(warm_up) {
+            Some(own) => first + record * own / count,
+            None => reach + (first - reach) * stretch / warm_up,
+        };
+        let moments = (0..warm_up + count)
+            .map(|stretch| {
+                let range = border(stretch).max(reach)..border(stretch + 1);
+                products(words, range, lag, taps, desired_weights)
+            })
+            .collect();
+        Some(Self {
+            taps,
+            is_dc_gain_one: *is_dc_gain_one,
+            kept: factor.powf(length as f64),
+            warm_up,
+            drift_deg_per_h: 0.0,
+            moments,
+        })
+    }
+
+    /// The same of words whose mean scatters from seed to seed by slow noise of this variance,
+    /// (deg/h)^2, of which one record shows next to nothing.
+    #[must_use]
+    pub fn with_drift(self, variance_deg2_per_h2: f64) -> Self {
+        Self {
+            drift_deg_per_h: variance_deg2_per_h2.sqrt(),
+            ..self
+        }
+    }
+
+    /// Number of stretches of the record.
+    #[must_use]
+    pub(crate) fn stretches(&self) -> usize {
+        self.moments.len() - self.warm_up
+    }
+
+    /// What each stretch adds to the mean weights from the stretch `from` of the record on.
+    ///
+    /// None where the words do not determine the weights.
+    pub(crate) fn weights_from(&self, from: usize) -> Option<LearnedWeights> {
+        let solved = Solved::of(self, 0.0)?;
+        let (parts, freedom) = solved.weight_parts(self, from);
+        let shift = self.drift_deg_per_h;
+        let drift = if shift > 0.0 {
+            Solved::of(self, shift)?.last - &solved.last
+        } else {
+            DVector::zeros(solved.last.len())
+        };
+        let drift = self.unfolded(drift);
+        Some(LearnedWeights {
+            parts: std::iter::once(drift).chain(parts).collect(),
+            warm_up: self.warm_up + 1,
+            freedom,
+        })
+    }
+
+    /// What each stretch adds to the gain for a constant rate that is there from the first word on,
+    /// the filter free to adapt to it: `(G' (m + r) - G m) / r` with the gains G without and G' with
+    /// the rate r, and the mean m of the record.
+    pub(crate) fn adapted_gain(&self, rate: f64) -> Option<Learned> {
+        let (without, with) = (Solved::of(self, 0.0)?, Solved::of(self, rate)?);
+        let (parts, freedom) = without.weight_parts(self, 0);
+        let (moved, _) = with.weight_parts(self, 0);
+        let means = self.mean_parts();
+        let mean = self.mean();
+        let gain = |solved: &Solved| self.gain(&solved.last);
+        let by_mean = gain(&with) - gain(&without);
+        let stretches = parts.iter().zip(&moved).zip(&means);
+        let stretches = stretches.map(|((own, moved), part)| {
+            let by_weights = moved.sum() * (mean + rate) - own.sum() * mean;
+            (by_weights + part * by_mean) / rate
+        });
+        // The gain at another mean, which differs by the slow noise.
+        let drift = self.drift_deg_per_h;
+        let adapted = |shift: f64| {
+            let (own, other) = (Solved::of(self, shift)?, Solved::of(self, shift + rate)?);
+            let moved = mean + shift;
+            Some((gain(&other) * (moved + rate) - gain(&own) * moved) / rate)
+        };
+        let by_drift = adapted(drift)? - adapted(0.0)?;
+        Some(Learned {
+            parts: std::iter::once(by_drift).chain(stretches).collect(),
+            warm_up: self.warm_up + 1,
+            freedom,
+        })
+    }
+
+    /// What each stretch adds to the mean output of the filter over the record, through its weights
+    /// and through the mean of its input.
+    ///
+    /// * `with_input`: whether the input is at rest, so that its mean is noise and no motion.
+    pub(crate) fn output_mean(&self, with_input: bool) -> Option<Learned> {
+        let solved = Solved::of(self, 0.0)?;
+        let last = self.taps + 1;
+        let count = self.moments.len();
+        let record = self.warm_up..count;
+        let total: f64 = self.moments[record].iter().map(|it| it[(last, last)]).sum();
+        let sums = |stretch: usize| {
+            let moments = &self.moments[stretch];
+            let sums = DVector::from_fn(self.taps, |tap, _| moments[(tap, last)] / total);
+            if self.is_dc_gain_one {
+                fold(self.taps).transpose() * sums
+            } else {
+                sums
+            }
+        };
+        // The weights of a stretch are the mean of those at its ends.
+        let mut inputs = vec![DVector::zeros(solved.last.len()); count];
+        for stretch in self.warm_up..count {
+            let before = solved.before(stretch);
+            let half = sums(stretch) * 0.5;
+            inputs[before] += &half;
+            inputs[stretch] += half;
+        }
+        let gain = self.gain(&solved.last);
+        let means = self.mean_parts();
+        let mut reach = DVector::zeros(solved.last.len());
+        let mut parts = vec![0.0; count];
+        for stretch in (0..count).rev() {
+            reach *= self.kept;
+            if let Some(inverse) = &solved.inverses[stretch] {
+                reach += inverse * &inputs[stretch];
+            }
+            let by_input = if with_input {
+                gain * means[stretch]
+            } else {
+                0.0
+            };
+            parts[stretch] = reach.dot(&solved.scores[stretch]) + by_input;
+        }
+        let (_, freedom) = solved.weight_parts(self, 0);
+        Some(Learned {
+            parts,
+            warm_up: self.warm_up,
+            freedom,
+        })
+    }
+
+    /// What each stretch adds to the mean output over the mean input of the record.
+    ///
+    /// Output and input share the noise of the input, which cancels; of the weights the part remains.
+    pub(crate) fn mean_ratio(&self, mean: f64) -> Option<Learned> {
+        let mut learned = self.output_mean(false)?.scaled(1.0 / mean);
+        // A rate that all words share by slow noise moves the weights as well.
+        let drift = self.drift_deg_per_h;
+        let gains = [0.0, drift].map(|shift| Some(self.gain(&Solved::of(self, shift)?.last)));
+        if let [Some(own), Some(moved)] = gains {
+            learned.parts.insert(0, (moved - own) * self.mean() / mean);
+            learned.warm_up += 1;
+        }
+        Some(learned)
+    }
+
+    /// Mean of the newest regressor over the record.
+    fn mean(&self) -> f64 {
+        let last = self.taps + 1;
+        let record = &self.moments[self.warm_up..];
+        let sum = |column: usize| record.iter().map(|it| it[(column, last)]).sum::<f64>();
+        sum(0) / sum(last)
+    }
+
+    /// What each stretch adds to that mean.
+    fn mean_parts(&self) -> Vec<f64> {
+        let last = self.taps + 1;
+        let mean = self.mean();
+        let record = &self.moments[self.warm_up..];
+        let total: f64 = record.iter().map(|it| it[(last, last)]).sum();
+        let parts = self.moments.iter().enumerate().map(|(stretch, moments)| {
+            let own = (moments[(0, last)] - mean * moments[(last, last)]) / total;
+            if stretch < self.warm_up { 0.0 } else { own }
+        });
+        parts.collect()
+    }
+
+    /// Sum of the weights of these free ones.
+    fn gain(&self, free: &DVector<f64>) -> f64 {
+        let base = if self.is_dc_gain_one { 1.0 } else { 0.0 };
+        base + self.unfolded(free.clone()).sum()
+    }
+
+    /// Normal equations of a stretch in the free weights, with `shift` added to every word.
+    fn problem(&self, moments: &DMatrix<f64>, shift: f64) -> (DMatrix<f64>, DVector<f64>) {
+        let p = self.taps;
+        let number = moments[(p + 1, p + 1)];
+        let sum = |row: usize| moments[(row, p + 1)];
+        let moved = |row: usize, column: usize| {
+            moments[(row, column)] + shift * (sum(row) + sum(column)) + shift * shift * number
+        };
+        let normal = DMatrix::from_fn(p, p, moved);
+        let right = DVector::from_fn(p, |row, _| moved(row, p));
+        if !self.is_dc_gain_one {
+            return (normal, right);
+        }
+        // w = 1/p + T v: the free weights v act on differences of neighbours.
+        let fold = fold(p);
+        let right = right - &normal * DVector::from_element(p, 1.0 / p as f64);
+        (fold.transpose() * normal * &fold, fold.transpose() * right)
+    }
+
+    fn unfolded(&self, free: DVector<f64>) -> DVector<f64> {
+        if self.is_dc_gain_one {
+            fold(self.taps) * free
+        } else {
+            free
+        }
+    }
+}
+
+/// The weights of a filter at the end of every stretch, in the free ones.
+struct Solved {
+    /// `R_c^-1`; none before the words determine the weights.
+    inverses: Vec<Option<DMatrix<f64>>>,
+    /// Number of stretches that count.
+    numbers: Vec<f64>,
+    /// `s_f` at the weights of all words.
+    scores: Vec<DVector<f64>>,
+    /// These weights.
+    last: DVector<f64>,
+}
+
+impl Solved {
+    /// With `shift` added to every word.
+    fn of(learning: &Learning, shift: f64) -> Option<Self> {
+        let moments = learning.moments.iter();
+        let problems: Vec<(DMatrix<f64>, DVector<f64>)> = moments
+            .map(|moments| learning.problem(moments, shift))
+            .collect();
+        let free = problems[0].1.len();
+        let (mut normal, mut right) = (DMatrix::zeros(free, free), DVector::zeros(free));
+        let (mut inverses, mut numbers) = (Vec::new(), Vec::new());
+        let mut number = 0.0;
+        for (own, product) in &problems {
+            normal = normal * learning.kept + own;
+            right = right * learning.kept + product;
+            number = number * learning.kept + 1.0;
+            inverses.push(normal.clone().cholesky().map(|factors| factors.inverse()));
+            numbers.push(number);
+        }
+        let last = inverses.last()?.as_ref()? * &right;
+        let scores = problems
+            .iter()
+            .map(|(normal, right)| right - normal * &last);
+        Some(Self {
+            scores: scores.collect(),
+            inverses,
+            numbers,
+            last,
+        })
+    }
+
+    /// The checkpoint at the start of a stretch, or its end where there is none.
+    fn before(&self, stretch: usize) -> usize {
+        let before = stretch.checked_sub(1);
+        before
+            .filter(|&at| self.inverses[at].is_some())
+            .unwrap_or(stretch)
+    }
+
+    /// What each stretch adds to the mean weights from the stretch `from` of the record on, and the
+    /// degrees of freedom of their scatter.
+    fn weight_parts(&self, learning: &Learning, from: usize) -> (Vec<DVector<f64>>, f64) {
+        let count = self.inverses.len();
+        let first = learning.warm_up + from;
+        let mut share = vec![0.0; count];
+        for stretch in first..count {
+            share[stretch] += 0.5;
+            share[self.before(stretch)] += 0.5;
+        }
+        let total: f64 = share.iter().sum();
+        let free = self.last.len();
+        let mut mean = DMatrix::zeros(free, free);
+        let (mut profile, mut squares, mut fourths) = (0.0_f64, 0.0, 0.0);
+        let mut parts = vec![DVector::zeros(learning.taps); count];
+        for stretch in (0..count).rev() {
+            mean *= learning.kept;
+            profile *= learning.kept;
+            if let Some(inverse) = &self.inverses[stretch] {
+                mean += inverse * (share[stretch] / total);
+                profile += share[stretch] / total / self.numbers[stretch];
+            }
+            squares += profile.powi(2);
+            fourths += profile.powi(4);
+            parts[stretch] = learning.unfolded(&mean * &self.scores[stretch]);
+        }
+        let freedom = squares * squares / fourths - free as f64;
+        (parts, freedom.max(1.0))
+    }
+}
+
+/// `T` with `(T v)_i = v_i - v_(i-1)`: weights that sum to nothing.
+fn fold(taps: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(taps, taps - 1, |row, column| {
+        f64::from(u8::from(row == column)) - f64::from(u8::from(row == column + 1))
+    })
+}
+
+/// Sums of products of regressors, desired signal and 1 over the words of a range.
+fn products(
+    words: &[f64],
+    range: std::ops::Range<usize>,
+    lag: usize,
+    taps: usize,
+    desired_weights: &[f64],
+) -> DMatrix<f64> {
+    let aged = |age: usize| &words[range.start - age..range.end - age];
+    let mut desired = vec![0.0; range.len()];
+    for (age, weight) in desired_weights.iter().enumerate() {
+        for (sum, word) in desired.iter_mut().zip(aged(age)) {
+            *sum += weight * word;
+        }
+    }
+    let ones = vec![1.0; range.len()];
+    let column = |index: usize| match index.checked_sub(taps) {
+        None => aged(lag + index),
+        Some(0) => desired.as_slice(),
+        Some(_) => ones.as_slice(),
+    };
+    let mut moments = DMatrix::zeros(taps + 2, taps + 2);
+    for row in 0..taps + 2 {
+        for other in row..taps + 2 {
+            let view = |index| DVectorView::from_slice(column(index), range.len());
+            let sum = view(row).dot(&view(other));
+            moments[(row, other)] = sum;
+            moments[(other, row)] = sum;
+        }
+    }
+    moments
+}
+
+impl LearnedWeights {
+    /// What each stretch adds to a function of the mean weights, whose value at them is `of(weights)`.
+    pub(crate) fn scatter(&self, weights: &[f64], of: impl Fn(&[f64]) -> f64) -> Learned {
+        let value = of(weights);
+        let parts = self.parts.iter().map(|part| {
+            let moved: Vec<f64> = weights
+                .iter()
+                .zip(part.iter())
+                .map(|(w, d)| w + d)
+                .collect();
+            of(&moved) - value
+        });
+        Learned {
+            parts: parts.collect(),
+            warm_up: self.warm_up,
+            freedom: self.freedom,
+        }
+    }
+}
