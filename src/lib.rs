@@ -75,6 +75,8 @@
 pub mod declare;
 mod linear_algebra;
 pub mod random;
+#[cfg(feature = "scenario")]
+mod seal;
 pub mod signal;
 pub mod units;
 pub mod vocabulary;

@@ -9,6 +9,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("vocabulary", &[]),
     ("declare", &[]),
     ("wording", &[]),
+    ("seal", &[]),
     ("linear_algebra", &[]),
     ("random", &["units"]),
     ("signal", &["units"]),
@@ -25,6 +26,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
         &[
             "units",
             "wording",
+            "seal",
             "recording",
             "turntable",
             "gyro",
@@ -34,7 +36,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ),
     ("gate", &["metrics", "scenario"]),
     ("comparison", &["metrics", "gate", "scenario"]),
-    ("store", &[]),
+    ("store", &["seal"]),
     (
         "report",
         &[

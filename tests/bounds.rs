@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use fogbench::scenario::{load_suite, manifest_toml};
+use fogbench::scenario::{Resolved, load_suite, manifest_toml};
 
 use crate::support::transcript::Transcript;
 use crate::support::{code, fogbench, stderr, stdout, write};
@@ -218,11 +218,55 @@ fn said_about_manifest(from: &str, to: &str) -> (i32, String) {
     let sweep = "[matrix]\nseed = [5, 6]\n";
     let file = write(folder.path(), "s/x.toml", &format!("{SOUND}{sweep}"));
     let run = load_suite(&[file], &[]).expect("a sound sweep").remove(1);
-    let manifest = manifest_toml(&run, env!("CARGO_PKG_VERSION"), "unknown");
+    let manifest = unrecorded(&run);
     assert!(manifest.contains(from), "{manifest}");
     write(folder.path(), "m.toml", &manifest.replace(from, to));
     let output = fogbench(folder.path(), &["check", "m.toml"]);
     (code(&output), stderr(&output))
+}
+
+/// A manifest as 0.1.0 wrote it: without the record of its folder, and so without a seal of its own.
+fn unrecorded(run: &Resolved) -> String {
+    let manifest = manifest_toml(run, env!("CARGO_PKG_VERSION"), "unknown");
+    manifest.replacen("build = \"unknown\"\n", "", 1)
+}
+
+#[test]
+fn any_change_of_a_manifest_in_a_folder_of_results_is_said() {
+    let folder = scratch();
+    let sweep = "fidelity = \"rate\"\n[matrix]\nseed = [5, 6]\n";
+    write(folder.path(), "x.toml", &format!("{SOUND}{sweep}"));
+    let run = |words: &[&str]| fogbench(folder.path(), &[&["run"], words].concat());
+    assert_eq!(code(&run(&["x.toml", "-o", "a"])), 0);
+    let manifest = folder.path().join("a/x/0001/manifest.toml");
+    let text = fs::read_to_string(manifest).expect("written");
+    let said = |text: &str| {
+        write(folder.path(), "m.toml", text);
+        let output = fogbench(folder.path(), &["check", "m.toml"]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        stderr(&output)
+    };
+    assert_eq!(said(&text), "");
+    let build = text
+        .lines()
+        .find(|line| line.starts_with("build = "))
+        .expect("a build");
+    assert_eq!(said(&text.replace(build, "build = \"another\"")), "");
+    let record = text.find("\n[record]\n").expect("a record");
+    for changed in [
+        text.replace("\nindex = 1", "\nindex = 0"),
+        text.replace("version = \"", "version = \"9"),
+        text.replace("file = \"x.toml\"", "file = \"y.toml\""),
+        text[..record].to_owned(),
+        format!("{text}\n[more]\nkey = 1\n"),
+    ] {
+        assert!(changed != text);
+        let words = said(&changed);
+        assert!(
+            words.contains("this manifest was changed"),
+            "{words}: {changed}"
+        );
+    }
 }
 
 #[test]
@@ -294,11 +338,7 @@ fn an_input_beside_a_manifest_that_is_another_file_now_is_named() {
     let folder = scratch();
     let file = write(folder.path(), "x.toml", SOUND);
     let run = load_suite(&[file], &[]).expect("sound").remove(0);
-    write(
-        folder.path(),
-        "m.toml",
-        &manifest_toml(&run, env!("CARGO_PKG_VERSION"), "unknown"),
-    );
+    write(folder.path(), "m.toml", &unrecorded(&run));
     let check = || stderr(&fogbench(folder.path(), &["check", "m.toml"]));
     assert_eq!(check(), "");
     write(folder.path(), "x.toml", &format!("{SOUND}seed = 3\n"));

@@ -21,6 +21,7 @@ mod cli;
 mod cli_analyze;
 mod cli_budget;
 mod cli_fpga;
+mod cli_words;
 mod closed_loop;
 mod comparison;
 mod comparison_change;

@@ -724,3 +724,21 @@ fn a_calibration_file_is_read_with_a_byte_order_mark_and_crlf() {
     write(folder.path(), "f.toml", filters);
     assert_eq!(compensated("bom.toml"), compensated("out/calibration.toml"));
 }
+
+#[test]
+fn a_decimal_comma_is_named_where_it_makes_two_columns() {
+    let folder = scratch();
+    let said = |text: &str| {
+        write(folder.path(), "log.csv", text);
+        let read = read_log(&folder.path().join("log.csv"), &format(None));
+        read.expect_err("two columns").to_string()
+    };
+    let comma = said("9,12\n9,13\n-8,9\n");
+    assert!(
+        comma.contains("if `9,12` is one number, write its decimal comma as a point"),
+        "{comma}"
+    );
+    for text in ["9.5,12\n", "9, 12\n", "t,x\n9,12\n", "9;12\n"] {
+        assert!(!said(text).contains("comma"), "{text}");
+    }
+}

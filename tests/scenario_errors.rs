@@ -740,3 +740,82 @@ fn complaints_show_the_text_that_they_are_about() {
         "{errors:?}"
     );
 }
+
+#[test]
+fn a_hint_leads_to_the_filter_that_was_meant_and_a_kind_that_is_replaced_is_said() {
+    let text = "schema = 1\nname = \"x\"\nduration_s = 20.0\n[[filter]]\nname = \"l\"\n[filter.lms]\n\
+                [[filter]]\nname = \"r\"\n[filter.rls]\n";
+    let suite = Suite::new(&[("x.toml", text)]);
+    let refused = |set: &str| {
+        let errors = suite.load(&["x.toml"], &[set]).expect_err("refused");
+        errors[0].to_string()
+    };
+    let hint = refused("filter[].rls.taps=5");
+    assert!(
+        hint.contains("as in filter[1].rls.taps, or its name, as in filter.r.taps"),
+        "{hint}"
+    );
+    let hint = refused("filter[].lms.taps=5");
+    assert!(
+        hint.contains("as in filter[0].lms.taps, or its name, as in filter.l.taps"),
+        "{hint}"
+    );
+    let hint = refused("filter[].sign_lms.taps=5");
+    assert!(
+        hint.contains("no [[filter]] with a table [filter.sign_lms]"),
+        "{hint}"
+    );
+    let remarks = |set: &str| {
+        let runs = suite.load(&["x.toml"], &[set]).expect("sound");
+        runs[0].remarks.concat()
+    };
+    for set in ["filter[0].rls.taps=5", "filter.l.rls.taps=5"] {
+        let said = remarks(set);
+        assert!(
+            said.contains("filter \"l\", of the kind lms, is of the kind rls"),
+            "{said}"
+        );
+    }
+    assert_eq!(remarks("filter[1].rls.taps=5"), "");
+    assert_eq!(remarks("filter.l.taps=5"), "");
+    let swept = format!("{text}[matrix]\n\"filter.l.rls.taps\" = [3, 4]\n");
+    let suite = Suite::new(&[("x.toml", &swept)]);
+    let runs = suite.load(&["x.toml"], &[]).expect("sound");
+    assert!(runs[0].remarks.concat().contains("is of the kind rls"));
+}
+
+#[test]
+fn a_value_that_is_swept_twice_is_said_once() {
+    let text = "schema = 1\nname = \"x\"\nduration_s = 20.0\n[matrix]\nseed = [1, 2, 1]\n";
+    let suite = Suite::new(&[("x.toml", text)]);
+    let runs = suite.load(&["x.toml"], &[]).expect("sound");
+    let remarks: Vec<&String> = runs.iter().flat_map(|run| &run.remarks).collect();
+    let [remark] = &remarks[..] else {
+        panic!("{remarks:?}");
+    };
+    assert!(
+        remark.contains("seed = 1 stands more than once"),
+        "{remark}"
+    );
+}
+
+#[test]
+fn a_suggested_metric_is_one_that_the_channel_has() {
+    let refused = |metric: &str| {
+        let text = format!(
+            "schema = 1\nname = \"x\"\nduration_s = 20.0\n[[filter]]\nname = \"rls\"\n[filter.rls]\n\
+             [[gate]]\nmetric = \"{metric}\"\nmax = 1.0\n"
+        );
+        let suite = Suite::new(&[("x.toml", &text)]);
+        let plans = fogbench::experiment::plan_suite(&[suite.path("x.toml")], &[]);
+        plans.expect_err("refused")[0].to_string()
+    };
+    for metric in ["raw.gain", "raw.latency"] {
+        let said = refused(metric);
+        assert!(!said.contains("did you mean"), "{said}");
+    }
+    let said = refused("rls.mean_deg_per_s");
+    assert!(said.contains("1 deg/s is 3600 deg/h"), "{said}");
+    let said = refused("raw.bias");
+    assert!(!said.contains("`mean_deg_per_h`"), "{said}");
+}

@@ -4,8 +4,11 @@ use std::borrow::Cow;
 use std::io;
 use std::process::ExitCode;
 
+use clap::error::{ContextKind, ContextValue};
+
 use super::output;
 use crate::scenario::bounded;
+use crate::wording::is_misspelling;
 
 /// How the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,18 +77,47 @@ impl Exit {
 }
 
 /// Prints what clap has to say (help and version are no errors) and gives its exit code.
-pub(super) fn usage(error: &clap::Error) -> ExitCode {
+pub(super) fn usage(mut error: clap::Error) -> ExitCode {
+    drop_unlike(&mut error);
     let text = error.render().to_string();
     match bounded(&text) {
         // An argument of many kilobytes is not echoed whole.
         Cow::Owned(short) if error.use_stderr() => output::talk(&short),
-        // Whoever closed the stream does not want to read it; the code stays what it is.
-        _ => drop(error.print()),
+        _ => {
+            if let Err(failure) = error.print()
+                && failure.kind() != io::ErrorKind::BrokenPipe
+                && !error.use_stderr()
+            {
+                return io_failure(failure).code();
+            }
+            // Whoever closed the stream does not want to read it; the code stays what it is.
+        }
     }
     if error.use_stderr() {
         Exit::Usage.code()
     } else {
         Exit::Success.code()
+    }
+}
+
+/// Takes out a suggestion that is no slip of the pen: clap finds `--initial-inverse-correlation` like
+/// `--initiation-interval`.
+fn drop_unlike(error: &mut clap::Error) {
+    let text = |kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.as_str()),
+        _ => None,
+    };
+    let (written, known) = (
+        text(ContextKind::InvalidArg),
+        text(ContextKind::SuggestedArg),
+    );
+    let is_slip = written
+        .zip(known)
+        .is_none_or(|(written, known)| is_misspelling(written, known));
+    if !is_slip {
+        error.remove(ContextKind::SuggestedArg);
+        // The usage is that of the suggestion.
+        error.remove(ContextKind::Usage);
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::format::Format;
-use super::numbers::{count_within, within};
+use super::numbers::{OptionError, count_within, within};
 use crate::filters::hardware::PipelineSettings;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
@@ -28,6 +28,9 @@ const CLOCK_MHZ: (f64, f64) = (1e-3, 1e4);
 const CONSTANT: (f64, f64) = (1e-30, 1e30);
 /// Most samples of an export: an hour at 2.8 kHz.
 const EXPORT_SAMPLES_MAX: usize = 10_000_000;
+
+/// Most clocks of one operation.
+const CLOCKS_MAX: usize = 1000;
 
 /// Kind of filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -174,16 +177,16 @@ pub(super) struct TimingOptions {
     #[command(flatten)]
     pub(super) filter: FilterOptions,
     /// Clocks of an addition
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clocks())]
     adder_latency: u64,
     /// Clocks of a multiplication
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clocks())]
     multiplier_latency: u64,
     /// Clocks of a division
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clocks())]
     divider_latency: u64,
     /// Clocks between two operations of a unit; at most its latency counts
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clocks())]
     initiation_interval: u64,
     /// Accesses of each memory per clock in the interleaved model, 1 or 2
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -191,6 +194,12 @@ pub(super) struct TimingOptions {
     /// Form of the result
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(super) format: Format,
+}
+
+/// A parser of clocks that an operation may take.
+fn clocks() -> impl Fn(&str) -> Result<u64, OptionError> + Clone + Send + Sync + 'static {
+    let parse = count_within(1, CLOCKS_MAX);
+    move |text| parse(text).map(|clocks| clocks as u64)
 }
 
 impl TimingOptions {
@@ -221,7 +230,7 @@ pub(super) struct ExportOptions {
     #[arg(long)]
     pub(super) force: bool,
     /// Scenario whose gyro gives the stimulus
-    #[arg(long, value_name = "FILE", required_unless_present = "stimulus")]
+    #[arg(long, value_name = "FILE")]
     pub(super) scenario: Option<PathBuf>,
     /// Filter of the scenario to export; without it the options below describe one
     #[arg(

@@ -10,6 +10,7 @@ use super::exit::Exit;
 use super::format::Format;
 use super::{output, select};
 use crate::experiment::Plan;
+use crate::wording::printable;
 
 /// Prints folder, length, channels and file of each run.
 pub(super) fn list(options: &ListOptions) -> io::Result<Exit> {
@@ -68,7 +69,7 @@ fn text(plans: &[Plan]) -> String {
             "{:width$}  {repeats}{} s  {}",
             resolved.folder(),
             scenario.duration_s,
-            scenario.description.as_deref().unwrap_or(&file),
+            printable(scenario.description.as_deref().unwrap_or(&file)),
         );
     }
     text

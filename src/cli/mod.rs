@@ -46,7 +46,7 @@ pub fn main() -> ExitCode {
     };
     let arguments = match idle::parse() {
         Ok(arguments) => arguments,
-        Err(error) => return exit::usage(&error),
+        Err(error) => return exit::usage(error),
     };
     // The panic hook has already printed what broke, and may have done so on another thread.
     let outcome = catch_unwind(AssertUnwindSafe(|| dispatch(&arguments, &interrupt)));

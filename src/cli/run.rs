@@ -15,6 +15,7 @@ use crate::experiment::{
     self, Observer, Plan, Resume, SuiteError, SuiteOptions, SuiteOutcome, run_suite, thread_count,
 };
 use crate::report::{self, RunOutcome, RunReport, RunStatus};
+use crate::scenario::bounded;
 
 /// Plans, runs, prints and judges.
 pub(super) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exit> {
@@ -29,9 +30,22 @@ pub(super) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exi
         ..SuiteOptions::new(options.output.clone())
     };
     let progress = Progress::new(&plans, options, interrupt);
+    if let Some(text) = senseless_threads(options) {
+        output::talk(&format!(
+            "warning: RAYON_NUM_THREADS = `{}` is no number of threads: one per core",
+            bounded(&text)
+        ));
+    }
     interrupt.defer();
     let result = run_suite(&plans, &suite, &progress);
     Ok(progress.conclude(&result))
+}
+
+/// What the variable for the number of threads says in vain; none if it is not asked, or a number.
+fn senseless_threads(options: &RunOptions) -> Option<String> {
+    let text = std::env::var("RAYON_NUM_THREADS").ok()?;
+    let is_idle = options.jobs > 0 || text.is_empty() || text.parse::<usize>().is_ok();
+    (!is_idle).then_some(text)
 }
 
 /// Whose results the suite takes over.

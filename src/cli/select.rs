@@ -1,5 +1,6 @@
 //! From paths and `--set` to checked plans, or to printed complaints and an exit code.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::arguments::SelectOptions;
@@ -16,8 +17,10 @@ const DEFAULT_FOLDER: &str = "scenarios";
 /// Complaints and remarks are printed before it returns.
 pub(super) fn plans(options: &SelectOptions) -> Result<Vec<Plan>, Exit> {
     let plans = selected(options, plan_suite)?;
+    // What is said of a scenario is said once, not for each of its points.
+    let mut said = BTreeSet::new();
     let remarks = plans.iter().flat_map(|plan| &plan.resolved().remarks);
-    output::talk_first("warning: ", remarks);
+    output::talk_first("warning: ", remarks.filter(|remark| said.insert(*remark)));
     Ok(plans)
 }
 

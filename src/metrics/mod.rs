@@ -57,7 +57,7 @@ pub use allan::stream::AllanStream;
 pub use allan::variants::{
     AllanEstimator, AllanOptions, AllanVariantPoint, allan_variant, allan_variant_at,
 };
-pub(crate) use catalogue::names::{meant, unknown};
+pub(crate) use catalogue::names::{meant, unknown, unknown_of_channel};
 pub use catalogue::support::{encoder_lack, requirement, support, truth_lack};
 pub use catalogue::{columns, find, known_curves, known_metrics, repeated_metrics};
 pub use estimate::blocks::{block_label_s, block_means, is_sample_or_longer, samples_in};

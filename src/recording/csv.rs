@@ -26,6 +26,8 @@ struct Layout {
     cells: usize,
     /// Names of the columns; empty without a heading.
     names: Vec<String>,
+    /// The first row, if it may be one number with a decimal comma.
+    decimal_comma: Option<String>,
 }
 
 impl Layout {
@@ -41,8 +43,15 @@ impl Layout {
         {
             cells = vec![line.trim()];
         }
+        let is_number = |cell: &str| cell.parse::<i64>().is_ok();
+        let is_fraction =
+            |cell: &str| !cell.is_empty() && cell.bytes().all(|it| it.is_ascii_digit());
+        let may_be_one = !is_heading
+            && matches!(line.split(',').collect::<Vec<_>>()[..], [whole, fraction]
+                if is_number(whole.trim_start()) && is_fraction(fraction.trim_end()));
         Ok(Self {
             delimiter,
+            decimal_comma: may_be_one.then(|| line.trim().to_owned()),
             cells: cells.len(),
             names: if is_heading {
                 cells.into_iter().map(str::to_owned).collect()
@@ -79,7 +88,17 @@ impl Layout {
         match (others.next(), others.next()) {
             (Some(index), None) => Ok(index),
             (None, _) => Err("there is no column beside the time".to_owned()),
-            _ => Err(format!("name one column with --column: {}", self.listed())),
+            _ => {
+                let comma = self.decimal_comma.as_deref().map(|row| {
+                    format!(
+                        "; if `{}` is one number, write its decimal comma as a point",
+                        shown(row)
+                    )
+                });
+                let comma = comma.unwrap_or_default();
+                let listed = self.listed();
+                Err(format!("name one column with --column: {listed}{comma}"))
+            }
         }
     }
 

@@ -126,11 +126,13 @@ pub(super) fn refuse_inside_held(output: &Path) -> Result<(), StoreError> {
     let Ok(absolute) = std::path::absolute(output) else {
         return Ok(());
     };
-    let existing = absolute.ancestors().skip(1).find(|path| path.is_dir());
-    let Some(Ok(above)) = existing.map(fs::canonicalize) else {
+    let existing = absolute.ancestors().find(|path| path.is_dir());
+    let Some(Ok(found)) = existing.map(fs::canonicalize) else {
         return Ok(());
     };
-    for folder in above.ancestors() {
+    // Its own lock is taken, not asked.
+    let is_itself = existing == Some(absolute.as_path());
+    for folder in found.ancestors().skip(usize::from(is_itself)) {
         let path = folder.join(super::WORKSHOP).join(FILE);
         if !matches!(foreign_file(&path), Ok(None)) {
             continue;

@@ -5,7 +5,7 @@
 //! of the user's is replaced unless asked for. What is being written, the lock of the writer and the
 //! journals of what a kill may cut short stand in `.fogbench/` of the output folder, and nowhere else.
 //!
-//! Invariant: knows files and digests, not what they mean; imports nothing of the crate.
+//! Invariant: knows files and digests, not what they mean; imports nothing of the crate but `seal`.
 
 mod error;
 mod files;

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use super::WORKSHOP;
 use super::files::read_text;
+use crate::seal;
 
 /// File that records a folder with the origin of a run.
 pub const MANIFEST_FILE: &str = "manifest.toml";
@@ -14,9 +15,8 @@ pub const MANIFEST_FILE: &str = "manifest.toml";
 pub const RECORD_FILE: &str = ".fogbench.toml";
 
 const FIRST_FILE: &str = "\n[[file]]\n";
-const SEAL: &str = "\n[record]\n";
-/// The one line of a record that its own digest leaves out: two builds of one version give the same.
-const BUILD_LINE: &str = "build = ";
+/// How the line begins that says what a folder holds.
+const HOLDS: &str = "holds = \"";
 
 /// Files of a folder, `/` between the parts of a name, with their BLAKE3 digests in hexadecimal.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -90,12 +90,7 @@ impl Record {
             let name = toml::Value::from(name.as_str());
             text.push_str(&format!("name = {name}\nblake3 = \"{digest}\"\n"));
         }
-        let digest = digest_of_text(&text);
-        text.push_str(SEAL);
-        text.push_str(&format!(
-            "# Of the text above, less its line `build`.\nblake3 = \"{digest}\"\n"
-        ));
-        text
+        seal::seal(&text)
     }
 
     /// Reads the record of a file; see [`Record::sealed`].
@@ -107,22 +102,16 @@ impl Record {
     }
 
     pub(super) fn parse(text: &str) -> Sealed {
-        let Some(end) = text.rfind(SEAL) else {
-            return Sealed::Absent;
+        let sealed = match seal::open(text) {
+            seal::Sealed::Whole(sealed) => sealed,
+            seal::Sealed::Broken => return Sealed::Changed,
+            seal::Sealed::Absent => return Sealed::Absent,
         };
-        let (sealed, seal) = text.split_at(end);
-        let digest = format!("blake3 = \"{}\"\n", digest_of_text(sealed));
-        let comment_and_digest = seal.trim_start_matches(SEAL).split_once('\n');
-        if comment_and_digest.is_none_or(|(_, found)| found != digest) {
-            return Sealed::Changed;
-        }
-        let Ok(mut head) = head_of(text).parse::<toml::Table>() else {
-            return Sealed::Changed;
-        };
-        let holds = match head.remove("holds") {
-            Some(toml::Value::String(holds)) => Some(holds),
-            _ => None,
-        };
+        let mut above_tables = sealed.lines().take_while(|line| !line.starts_with('['));
+        let holds = above_tables.find_map(|line| {
+            let word = line.strip_prefix(HOLDS)?.strip_suffix('"')?;
+            Some(word.to_owned())
+        });
         let Some(start) = sealed.find(FIRST_FILE) else {
             let files = BTreeMap::new();
             return Sealed::Whole(Self { files, holds });
@@ -155,7 +144,7 @@ impl Head {
     #[must_use]
     pub fn of(text: &str) -> Self {
         let head = head_of(text);
-        let [before, after] = without_build(head);
+        let [before, after] = seal::without_build(head);
         let build = &head[before.len()..head.len() - after.len()];
         Self {
             text: [before, after].concat(),
@@ -166,7 +155,7 @@ impl Head {
 
 /// What stands above the record in a sealed text; all of a text without one.
 pub(super) fn head_of(text: &str) -> &str {
-    let sealed = text.rfind(SEAL).map_or(text, |end| &text[..end]);
+    let sealed = seal::above(text);
     let start = sealed.find(FIRST_FILE);
     start.map_or(sealed, |start| &sealed[..start])
 }
@@ -176,30 +165,6 @@ pub(super) fn digest_of(path: &Path) -> io::Result<String> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(File::open(path)?)?;
     Ok(hasher.finalize().to_hex().to_string())
-}
-
-/// BLAKE3 of a text less its line `build` above the first table.
-fn digest_of_text(text: &str) -> String {
-    let mut hasher = blake3::Hasher::new();
-    for part in without_build(text) {
-        hasher.update(part.as_bytes());
-    }
-    hasher.finalize().to_hex().to_string()
-}
-
-/// A text in the parts before and after its line `build` above the first table.
-pub(super) fn without_build(text: &str) -> [&str; 2] {
-    let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        if line.starts_with('[') {
-            break;
-        }
-        if line.starts_with(BUILD_LINE) {
-            return [&text[..start], &text[start + line.len()..]];
-        }
-        start += line.len();
-    }
-    [text, ""]
 }
 
 #[cfg(test)]

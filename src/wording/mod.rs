@@ -7,5 +7,5 @@ mod quantity;
 mod text;
 
 pub(crate) use likeness::{Likeness, Name, Vocabulary, is_misspelling, likeness};
-pub(crate) use quantity::words_of;
-pub(crate) use text::{counted, decimals, number, plain};
+pub(crate) use quantity::{conversion, words_of};
+pub(crate) use text::{counted, decimals, number, plain, printable};

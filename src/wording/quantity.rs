@@ -3,6 +3,8 @@
 //! `rate_random_walk_deg_per_h_per_sqrt_h` is *rate random walk* in `deg/h/sqrt(h)`. Two names stand
 //! for one quantity if their words agree, in any order, and their units measure the same.
 
+use super::text::plain;
+
 /// Words that stand for others, in any name.
 const ABBREVIATIONS: &[(&str, &[&str])] = &[
     ("arw", &["angle", "random", "walk"]),
@@ -91,11 +93,89 @@ fn base(word: &str) -> Option<(usize, i8)> {
     })
 }
 
+/// How many of the base unit a unit's word stands for; see [`base`].
+fn scale(word: &str) -> f64 {
+    match word {
+        "rad" => 180.0 / std::f64::consts::PI,
+        "mrad" => 0.18 / std::f64::consts::PI,
+        "urad" => 0.18e-3 / std::f64::consts::PI,
+        "arcmin" => 1.0 / 60.0,
+        "arcsec" => 1.0 / 3600.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        "km" | "khz" | "kohm" => 1e3,
+        "mhz" => 1e6,
+        "ghz" => 1e9,
+        "cm" | "percent" => 1e-2,
+        "ms" | "mm" | "mw" | "mv" | "ma" | "mg" | "mohm" => 1e-3,
+        "us" | "um" | "uw" | "uv" | "ua" | "ppm" => 1e-6,
+        "ns" | "nm" | "nw" | "nv" | "na" => 1e-9,
+        "pa" => 1e-12,
+        _ => 1.0,
+    }
+}
+
+/// What one of the unit of a written name is in that of a known one, as in `1 deg/s is 3600 deg/h`; none
+/// where they are the same, measure something else or are not there.
+pub(crate) fn conversion(written: &str, known: &str) -> Option<String> {
+    let (own, other) = (Quantity::of(written).unit?, Quantity::of(known).unit?);
+    let factor = own.scale() / other.scale();
+    let is_same = (factor - 1.0).abs() < 1e-9;
+    (own.dimension == other.dimension && !is_same)
+        .then(|| format!("1 {} is {} {}", own.shown(), plain(factor), other.shown()))
+}
+
 /// A unit: its words, and what it measures.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Unit {
     words: Vec<String>,
     pub(super) dimension: Dimension,
+}
+
+impl Unit {
+    /// How many of the base units it stands for.
+    fn scale(&self) -> f64 {
+        let mut scale_of_all = 1.0;
+        let (mut is_divisor, mut is_root) = (false, false);
+        for word in &self.words {
+            match word.as_str() {
+                "per" => is_divisor = true,
+                "sqrt" => is_root = true,
+                word => {
+                    let power = word.chars().last().and_then(|last| last.to_digit(10));
+                    let name = word.trim_end_matches(|c: char| c.is_ascii_digit());
+                    let power = f64::from(power.unwrap_or(1)) * if is_root { 0.5 } else { 1.0 };
+                    let factor = scale(name).powf(power);
+                    scale_of_all *= if is_divisor { 1.0 / factor } else { factor };
+                    (is_divisor, is_root) = (false, false);
+                }
+            }
+        }
+        scale_of_all
+    }
+
+    /// The unit as people write it: `deg/h/sqrt(h)`.
+    fn shown(&self) -> String {
+        let mut text = String::new();
+        let mut is_root = false;
+        for word in &self.words {
+            match word.as_str() {
+                "per" => text.push('/'),
+                "sqrt" => is_root = true,
+                word if is_root => {
+                    text.push_str(&format!("sqrt({word})"));
+                    is_root = false;
+                }
+                word => {
+                    if !text.is_empty() && !text.ends_with('/') {
+                        text.push(' ');
+                    }
+                    text.push_str(word);
+                }
+            }
+        }
+        text
+    }
 }
 
 /// A name taken apart.
@@ -215,6 +295,25 @@ mod tests {
         assert_eq!(Quantity::of("gate_duty").words, ["duty", "gate"]);
         assert_eq!(Quantity::of("index_per_k").words, ["index"]);
         assert_eq!(Quantity::of("max").words, ["max"], "a name is no unit");
+    }
+
+    #[test]
+    fn one_unit_is_told_in_another() {
+        let told = |one, other| conversion(one, other).unwrap_or_default();
+        assert_eq!(
+            told("mean_deg_per_s", "mean_deg_per_h"),
+            "1 deg/s is 3600 deg/h"
+        );
+        assert_eq!(told("delay_ms", "delay_s"), "1 ms is 0.001 s");
+        assert_eq!(told("length_km", "length_m"), "1 km is 1000 m");
+        assert_eq!(
+            told("walk_deg_per_sqrt_h", "walk_deg_per_h_per_sqrt_hz"),
+            "1 deg/sqrt(h) is 60 deg/h/sqrt(hz)"
+        );
+        assert_eq!(told("clock_khz", "clock_mhz"), "1 khz is 0.001 mhz");
+        assert_eq!(conversion("bias_dph", "bias_deg_per_h"), None);
+        assert_eq!(conversion("start_s", "start_m"), None);
+        assert_eq!(conversion("gain", "gain_percent"), None);
     }
 
     #[test]

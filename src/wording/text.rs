@@ -34,6 +34,24 @@ pub(crate) fn plain(value: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
+/// A free text as it may stand on a terminal: what is no character that is seen, and would move the
+/// cursor, colour or turn round the text behind it, is written out.
+pub(crate) fn printable(text: &str) -> String {
+    let is_plain = |c: char| {
+        let turns_round = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        !turns_round && (!c.is_control() || matches!(c, '\n' | '\t'))
+    };
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if is_plain(c) {
+            shown.push(c);
+        } else {
+            shown.extend(c.escape_unicode());
+        }
+    }
+    shown
+}
+
 /// Sizes beyond which a number in fixed decimals would be a row of digits that nobody reads.
 const FIXED_MAX: f64 = 1e9;
 

@@ -37,7 +37,8 @@ impl Checker<'_> {
             match written.rsplit_once('.') {
                 Some((channel, name)) if !channel.is_empty() && !name.is_empty() => {
                     let is_campaign = campaign::estimator_of(scenario, channel).is_some();
-                    if let Some(complaint) = metrics::unknown(name)
+                    let is_filter = !scenario.raw_channels().iter().any(|raw| raw == channel);
+                    if let Some(complaint) = metrics::unknown_of_channel(name, is_filter)
                         && !is_campaign
                     {
                         self.complain(&key, format!("{key}: {channel}.{name}: {complaint}"));

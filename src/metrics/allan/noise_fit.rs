@@ -14,12 +14,7 @@ pub static ANGLE_RANDOM_WALK: MetricKey = MetricKey::new(
     Applies::Steady,
     "N of the fit to the overlapping Allan variance, N^2/tau",
 )
-.synonyms(&[
-    "n",
-    "angle_random_walk",
-    "angular_random_walk",
-    "random_walk",
-])
+.synonyms(&["n", "angle_random_walk", "angular_random_walk"])
 .heading("ARW")
 .slow_noise()
 .needs(Needs::AllanFit)

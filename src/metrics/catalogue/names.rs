@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use super::list::{find, known_metrics};
 use crate::metrics::key::metric::MetricKey;
-use crate::wording::{Likeness, Name, Vocabulary, likeness, words_of};
+use crate::wording::{Likeness, Name, Vocabulary, conversion, likeness, words_of};
 
 /// Most metrics that are named at once.
 const NAMED_MAX: usize = 8;
@@ -18,6 +18,19 @@ pub(crate) fn meant(name: &str) -> Option<&'static MetricKey> {
         [only] => find(only),
         _ => None,
     }
+}
+
+/// The complaint about a name that is no metric, of a filter or of a raw channel.
+pub(crate) fn unknown_of_channel(name: &str, is_filter: bool) -> Option<String> {
+    let complaint = unknown(name)?;
+    Some(match meant(name) {
+        Some(known) if known.filters_only && !is_filter => format!(
+            "`{name}` is not a metric; `{}`, the nearest, compares a filter with the raw channel, \
+             and raw itself has none",
+            known.name
+        ),
+        _ => complaint,
+    })
 }
 
 /// The complaint about a name, if it is no metric.
@@ -37,8 +50,13 @@ pub(crate) fn unknown(name: &str) -> Option<String> {
             )
         });
     }
+    let unit = match names[..] {
+        [known] => conversion(name, known),
+        _ => None,
+    };
+    let unit = unit.map_or_else(String::new, |unit| format!(" ({unit})"));
     Some(format!(
-        "`{name}` is not a metric; did you mean `{}`?",
+        "`{name}` is not a metric; did you mean `{}`?{unit}",
         names.join("` or `")
     ))
 }
@@ -150,6 +168,15 @@ mod tests {
         assert!(said("rrw_deg_per_h_per_rt_hr").contains("rate_random_walk"));
         assert!(said("noise_std_dph").contains("`noise_std_deg_per_h`"));
         assert!(said("delay_ms").contains("`delay_vs_raw_ms`"));
+        assert!(said("mean_deg_per_s").ends_with("`mean_deg_per_h`? (1 deg/s is 3600 deg/h)"));
+        assert!(
+            said("arw_deg_per_h_per_sqrt_hz")
+                .contains("per_sqrt_h`? (1 deg/h/sqrt(hz) is 0.0166667")
+        );
+        // Two quantities, or one that is none of these: all that have the words are named.
+        let walks = said("random_walk");
+        assert!(walks.contains("angle_random_walk") && walks.contains("rate_random_walk"));
+        assert!(!said("bias").contains("`mean_deg_per_h`"));
         assert!(said("zebra").contains("summary.json"));
         assert_eq!(unknown("noise_gain"), None);
     }

@@ -1,7 +1,7 @@
 //! Whether a record of given length and motion can support a metric at all.
 
 use super::list::find;
-use super::names::unknown;
+use super::names::unknown_of_channel;
 use crate::metrics::allan::entry::SLOW_NOISE_DURATION_MIN_S;
 use crate::metrics::estimate::interval::round_to_count;
 use crate::metrics::estimate::reason::{NO_TRUTH, Unavailable, too_short};
@@ -33,7 +33,8 @@ pub fn support(
     bias_averaging_time_s: f64,
 ) -> Result<(), Unavailable> {
     let Some(known) = find(metric) else {
-        return Err(unknown(metric).unwrap_or_default().into());
+        let complaint = unknown_of_channel(metric, is_filter);
+        return Err(complaint.unwrap_or_default().into());
     };
     if known.filters_only && !is_filter {
         return Err(format!(

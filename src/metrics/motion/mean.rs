@@ -21,7 +21,7 @@ pub static MEAN: MetricKey = MetricKey::new(
     Applies::Always,
     "mean over the record; in a swing the offset of the sine fit over whole cycles",
 )
-.synonyms(&["bias", "average", "offset"])
+.synonyms(&["average"])
 .heading("mean")
 .run_column(1)
 .of_one_motion()

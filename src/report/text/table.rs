@@ -15,6 +15,7 @@ use crate::report::text::repeats::repeats_text;
 use crate::report::text::scale_factor::scale_factor_text;
 use crate::report::text::verdict::verdict_text;
 use crate::scenario::{Fidelity, PublishedConfig};
+use crate::wording::printable;
 
 /// What stands where there is no number.
 const NOTHING: &str = "-";
@@ -67,7 +68,7 @@ fn heading(report: &RunReport, width: usize, colour: bool) -> String {
         report.file,
     );
     if let Some(description) = &scenario.description {
-        text.push_str(&wrapped(description, INDENT, width));
+        text.push_str(&wrapped(&printable(description), INDENT, width));
     }
     if let Some((index, point)) = &report.sweep {
         let point: Vec<String> = point

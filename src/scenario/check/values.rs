@@ -234,8 +234,13 @@ impl Checker<'_> {
 
     /// Complains of a value that is no table.
     fn not_a_table(&mut self, place: Place<'_>, value: &Value, header: &str) {
+        let wanted = if header.starts_with("[[") {
+            "an array of tables"
+        } else {
+            "a table"
+        };
         let message = format!(
-            "{} has the wrong type: expected a table, written {header}, got {}",
+            "{} has the wrong type: expected {wanted}, written {header}, got {}",
             place.shown_path,
             value.type_name()
         );

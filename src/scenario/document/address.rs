@@ -47,11 +47,8 @@ pub(crate) fn parse(path: &str) -> Result<Vec<Step>, String> {
         match index {
             Some(index) => steps.push(Step::Index(index)),
             None if indices == "[]" => {
-                let numbered = path.replacen("[]", "[0]", 1);
-                return Err(format!(
-                    "`{path}` does not say which {name}: give its index, as in {numbered}, or the name of \
-                     a filter, as in filter.rls.taps"
-                ));
+                let path = excerpt(path);
+                return Err(format!("`{path}` does not say which {name}"));
             }
             None => {
                 let path = excerpt(path);
@@ -85,7 +82,13 @@ pub(crate) fn resolve(
     root: &Table,
     written: &str,
 ) -> Result<(Vec<Step>, Option<&'static Key>), String> {
-    let mut rest = parse(written)?.into_iter().peekable();
+    let steps = parse(written).map_err(|message| match written.split_once("[]") {
+        Some((array, rest)) if !array.contains('[') => {
+            format!("{message}: {}", which_element(root, array, rest))
+        }
+        _ => message,
+    })?;
+    let mut rest = steps.into_iter().peekable();
     let mut path: Vec<Step> = Vec::new();
     let mut schema_path = String::new();
     let mut key = None;
@@ -135,6 +138,56 @@ pub(crate) fn resolve(
         }
     }
     Ok((path, key))
+}
+
+/// How to say which element of an array is meant by a path with `[]`, or that there is none.
+fn which_element(root: &Table, array: &str, rest: &str) -> String {
+    let elements = root.get(array).and_then(Node::as_array).unwrap_or_default();
+    let kinds = schema::group_of(&format!("{array}[]")).map(|group| group.alternatives);
+    let kind = rest.trim_start_matches('.').split(['.', '[']).next();
+    let kind = kind.filter(|kind| kinds.is_some_and(|kinds| kinds.contains(kind)));
+    let is_meant = |node: &Node| {
+        let table = node.as_table();
+        table.is_some_and(|table| kind.is_none_or(|kind| table.contains_key(kind)))
+    };
+    let Some(index) = elements.iter().position(is_meant) else {
+        let of_kind = kind.map_or_else(String::new, |kind| {
+            format!(" with a table [{array}.{kind}]")
+        });
+        return format!("the scenario has no [[{array}]]{of_kind}");
+    };
+    let by_index = format!("give its index, as in {array}[{index}]{}", excerpt(rest));
+    let name = elements[index]
+        .as_table()
+        .and_then(|table| table.get("name"));
+    let Some(name) = name.and_then(Node::as_text) else {
+        return by_index;
+    };
+    let own_kind = kind.map_or_else(String::new, |kind| format!(".{kind}"));
+    let key = rest.strip_prefix(own_kind.as_str()).unwrap_or(rest);
+    format!(
+        "{by_index}, or its name, as in {array}.{name}{}",
+        excerpt(key)
+    )
+}
+
+/// What a value at a resolved path does to the element that it is put into, if it makes that another
+/// kind.
+pub(crate) fn kind_replaced(root: &Table, path: &[Step]) -> Option<String> {
+    let [Step::Key(array), Step::Index(index), Step::Key(kind), ..] = path else {
+        return None;
+    };
+    let schema_path = format!("{array}[]");
+    let group = schema::group_of(&schema_path)?;
+    let element = root.get(array)?.as_array()?.get(*index)?.as_table()?;
+    let had = kind_of(&schema_path, element)?;
+    let is_other = group.alternatives.contains(&kind.as_str()) && had != kind;
+    let name = element.get("name").and_then(Node::as_text);
+    let shown = name.map_or_else(
+        || format!("[{index}]"),
+        |name| format!(" \"{}\"", excerpt(name)),
+    );
+    is_other.then(|| format!("{array}{shown}, of the kind {had}, is of the kind {kind} by this"))
 }
 
 /// The table of an unknown key as it was written.

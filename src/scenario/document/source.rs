@@ -114,6 +114,11 @@ impl Sources {
         }
     }
 
+    /// The whole text that a mark lies in.
+    pub(crate) fn text_of(&self, mark: Mark) -> &str {
+        &self.0[mark.source].text
+    }
+
     /// Whether a mark lies in a `--set` argument.
     pub(crate) fn is_set_argument(&self, mark: Mark) -> bool {
         self.0[mark.source].label.is_none()

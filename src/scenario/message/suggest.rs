@@ -10,7 +10,7 @@ use crate::scenario::document::tree::{Node, Table};
 use crate::scenario::keys::schema::{children, groups, join, keys};
 use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::message::synonyms::{Meaning, meaning};
-use crate::wording::{Likeness, Name, Vocabulary, likeness};
+use crate::wording::{Likeness, Name, Vocabulary, conversion, likeness};
 
 /// Most keys that are suggested at once, equally like.
 const SUGGESTIONS_MAX: usize = 3;
@@ -43,7 +43,11 @@ pub(crate) fn unknown_key(place: Place<'_>, name: &str) -> String {
     let shown: Vec<String> = meant.iter().map(|path| present(place, path)).collect();
     match shown.split_last() {
         None => format!("{unknown}: {}", listed(place)),
-        Some((one, [])) => format!("{unknown}: did you mean {one}?"),
+        Some((one, [])) => {
+            let unit = conversion(name, last_name(meant[0]));
+            let unit = unit.map_or_else(String::new, |unit| format!(" ({unit})"));
+            format!("{unknown}: did you mean {one}?{unit}")
+        }
         Some((last, more)) => format!("{unknown}: did you mean {} or {last}?", more.join(", ")),
     }
 }
@@ -372,7 +376,8 @@ mod tests {
         );
         assert_eq!(
             unknown("gyro.coil", "gyro.coil", "length_km"),
-            "unknown key gyro.coil.length_km: did you mean gyro.coil.length_m?"
+            "unknown key gyro.coil.length_km: did you mean gyro.coil.length_m? (1 km is \
+             1000 m)"
         );
         // Another motion would contradict the one at hand.
         let swing = unknown("turntable.swing", "turntable.swing", "rate_deg_per_s");

@@ -129,7 +129,7 @@ impl Chain {
             let location = Location::of_file(shown.clone());
             vec![match extends {
                 // The text itself is at fault, not the key that names it.
-                Some(mark) if !matches!(error, InputError::NotText) => self
+                Some(mark) if !matches!(error, InputError::NotText { .. }) => self
                     .sources
                     .error(mark, format!("extends {shown}: {error}")),
                 _ => ScenarioError::at(location, error.to_string()),
@@ -171,7 +171,8 @@ impl Chain {
         source: usize,
     ) -> Result<(Draft, Vec<ScenarioError>), Vec<ScenarioError>> {
         if manifest::is_manifest(&root) {
-            let draft = manifest::read(root, source, self.sources, self.inputs)?;
+            let is_file = file != Path::new(TEXT);
+            let draft = manifest::read(root, source, self.sources, self.inputs, is_file)?;
             return Ok((draft, Vec::new()));
         }
         let root = self.merge_bases(file, label, root, source);

@@ -37,8 +37,11 @@ pub(crate) enum InputError {
     )]
     TooLongTogether,
     /// Bytes that are no text.
-    #[error("the file is not UTF-8 text")]
-    NotText,
+    #[error("the file is not UTF-8 text: line {line} holds other bytes")]
+    NotText {
+        /// The first line that is none, from 1.
+        line: usize,
+    },
     /// What the system said.
     #[error("cannot read the file: {0}")]
     System(io::Error),
@@ -68,7 +71,12 @@ pub(crate) fn of_text(text: &str) -> Result<Input, InputError> {
 pub(crate) fn read(path: &Path) -> Result<Input, InputError> {
     let bytes = read_bytes(path)?;
     let digest = blake3::hash(&bytes).to_hex().to_string();
-    let text = String::from_utf8(bytes).map_err(|_| InputError::NotText)?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let sound = error.utf8_error().valid_up_to();
+        let ends = error.as_bytes()[..sound].iter();
+        let line = 1 + ends.filter(|byte| **byte == b'\n').count();
+        InputError::NotText { line }
+    })?;
     Ok(Input { text, digest })
 }
 

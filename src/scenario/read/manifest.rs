@@ -10,6 +10,7 @@ use crate::scenario::read::discover::identity;
 use crate::scenario::read::draft::{Draft, Recorded};
 use crate::scenario::read::input;
 use crate::scenario::read::resolved::{InputFile, Resolved, SweepPoint};
+use crate::seal::{self, Sealed};
 
 /// The version of the manifest this build reads and writes.
 const MANIFEST_VERSION: i64 = 1;
@@ -72,6 +73,8 @@ pub fn manifest_toml(resolved: &Resolved, tool_version: &str, build: &str) -> St
 
 /// The run that a manifest records.
 ///
+/// * `is_file`: whether it was read from a file, which ends with the record of its folder.
+///
 /// # Errors
 /// What the manifest lacks, or the version this build does not read.
 pub(crate) fn read(
@@ -79,6 +82,7 @@ pub(crate) fn read(
     source: usize,
     sources: Sources,
     inputs: Vec<InputFile>,
+    is_file: bool,
 ) -> Result<Draft, Vec<ScenarioError>> {
     let start = Mark { source, start: 0 };
     let fail = |mark: Option<Mark>, message: String| {
@@ -129,12 +133,26 @@ pub(crate) fn read(
         is_record: true,
         is_partial: false,
     };
-    draft.remarks = changes(&draft, start, version == TOOL_VERSION);
+    let is_sealed = is_as_sealed(draft.sources.text_of(start), is_file);
+    draft.remarks = changes(&draft, start, version == TOOL_VERSION, is_sealed);
     Ok(draft)
 }
 
+/// Whether the text of a manifest is as it was written, as far as its seal tells: 0.1.0 gave it none, and
+/// no line `build` either.
+fn is_as_sealed(text: &str, is_file: bool) -> bool {
+    match seal::open(text) {
+        Sealed::Whole(_) => true,
+        Sealed::Broken => false,
+        Sealed::Absent => {
+            let [before, after] = seal::without_build(text);
+            !is_file || before.len() + after.len() == text.len()
+        }
+    }
+}
+
 /// What a manifest says about itself and its inputs that is not, or no longer, true.
-fn changes(draft: &Draft, start: Mark, is_own_version: bool) -> Vec<String> {
+fn changes(draft: &Draft, start: Mark, is_own_version: bool, is_sealed: bool) -> Vec<String> {
     let (Some(recorded), Ok(resolved)) = (&draft.recorded, draft.clone().resolve()) else {
         // What is wrong with it is said when it is resolved.
         return Vec::new();
@@ -170,6 +188,9 @@ fn changes(draft: &Draft, start: Mark, is_own_version: bool) -> Vec<String> {
         ));
     }
     let mut remarks = Vec::new();
+    if found.is_empty() && !is_sealed {
+        found.push("its text is not the one that its [record] is of".to_owned());
+    }
     if !found.is_empty() {
         remarks.push(format!(
             "{shown}: this manifest was changed: {}; the run is that of the file as it is now",

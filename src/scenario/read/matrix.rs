@@ -1,6 +1,7 @@
 //! Sweeps: the Cartesian product of the arrays in `[matrix]`.
 
 use std::cmp::Reverse;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::scenario::document::address::{self, Step};
@@ -8,6 +9,7 @@ use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::keys::schema::Key;
 use crate::scenario::message::error::ScenarioError;
+use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::read::draft::Draft;
 use crate::scenario::read::resolve::Unsound;
 use crate::scenario::read::resolved::{Resolved, SweepPoint};
@@ -83,6 +85,9 @@ pub(in crate::scenario) fn expand(
                     check_size(&resolved, matrix, count).map_err(|error| vec![error])?;
                 }
                 resolved.sweep = Some(sweep_point(&resolved, &axes, index, count));
+                if index == 0 {
+                    resolved.remarks.extend(remarks(draft, &axes));
+                }
                 resolved.is_base_point = base.is_some() && base == values(&resolved, &axes);
                 visit(resolved, &swept);
             }
@@ -101,6 +106,36 @@ pub(in crate::scenario) fn expand(
     } else {
         Err(unsound)
     }
+}
+
+/// What is worth saying of a sweep: values that stand twice, and a kind that is replaced.
+fn remarks(draft: &Draft, axes: &[Axis]) -> Vec<String> {
+    let mut found = Vec::new();
+    for axis in axes {
+        let mut seen = BTreeSet::new();
+        let texts = axis.values.iter().map(|value| value.value.to_toml());
+        let twice = texts.filter(|text| !seen.insert(text.clone()));
+        let twice: BTreeSet<String> = twice.collect();
+        if let Some(first) = twice.first() {
+            let more = match twice.len() - 1 {
+                0 => String::new(),
+                more => format!(", as do {more} more"),
+            };
+            found.push(format!(
+                "{}: matrix: {} = {} stands more than once{more}: such points are the same run",
+                draft.file,
+                axis.written,
+                excerpt(first)
+            ));
+        }
+        if let Some(remark) = address::kind_replaced(&draft.root, &axis.path) {
+            found.push(format!(
+                "{}: matrix: {}: {remark}",
+                draft.file, axis.written
+            ));
+        }
+    }
+    found
 }
 
 /// The points of a sweep, resolved by the pattern of the first sound one.

@@ -223,7 +223,13 @@ pub(in crate::scenario) fn apply_sets(
         let source = sources.add_set(argument);
         let mark = Mark { source, start: 0 };
         match apply_set(&mut draft.root, argument, mark) {
-            Ok(path) => paths.push(path),
+            Ok((path, remark)) => {
+                let shown = excerpt(argument);
+                draft
+                    .remarks
+                    .extend(remark.map(|remark| format!("--set {shown}: {remark}")));
+                paths.push(path);
+            }
             Err(message) => errors.push(sources.error(mark, message)),
         }
     }
@@ -232,8 +238,12 @@ pub(in crate::scenario) fn apply_sets(
     paths
 }
 
-/// Applies one `--set` argument.
-fn apply_set(root: &mut Table, argument: &str, mark: Mark) -> Result<Vec<Step>, String> {
+/// Applies one `--set` argument; the path it sets, and what is worth saying of it.
+fn apply_set(
+    root: &mut Table,
+    argument: &str,
+    mark: Mark,
+) -> Result<(Vec<Step>, Option<String>), String> {
     let Some((key, value)) = argument.split_once('=') else {
         return Err("expected key=value, as in gyro.coil.length_m=800".to_owned());
     };
@@ -251,8 +261,9 @@ fn apply_set(root: &mut Table, argument: &str, mark: Mark) -> Result<Vec<Step>, 
     let (path, _) = address::resolve(root, key)?;
     let mut node = set_value(value.trim(), mark)?;
     node.remark(Some(mark));
+    let remark = address::kind_replaced(root, &path);
     address::assign(root, &path, node, mark)?;
-    Ok(path)
+    Ok((path, remark))
 }
 
 /// The value of a `--set` argument: TOML, or a bare word as text.
