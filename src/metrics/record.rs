@@ -245,6 +245,12 @@ impl FilterFacts {
         }
     }
 
+    /// Delay at DC of the filter frozen, samples; 0 where it has none.
+    pub(crate) fn delay_at_dc_samples(&self) -> f64 {
+        let delay = self.frozen().map(|frozen| frozen.delay_at_dc_samples());
+        delay.filter(|delay| delay.is_finite()).unwrap_or(0.0)
+    }
+
     /// Delay at DC of the mean weights, samples: `sum age w / sum w`, the register included; `None`
     /// without weights or DC gain.
     #[must_use]

@@ -61,7 +61,11 @@ impl Cell {
             let found = row.iter().flatten();
             found.filter(|estimate| wanted(estimate.interval)).count()
         };
-        let held: Vec<&Estimate> = row.iter().flatten().filter(|it| it.has_interval()).collect();
+        let held: Vec<&Estimate> = row
+            .iter()
+            .flatten()
+            .filter(|it| it.has_interval())
+            .collect();
         let count = held.len().max(1) as f64;
         let mean = held.iter().map(|it| it.value).sum::<f64>() / count;
         let square: f64 = held.iter().map(|it| (it.value - mean).powi(2)).sum();
@@ -71,7 +75,10 @@ impl Cell {
         let robust = 1.4826 * distances.get(distances.len() / 2).copied().unwrap_or(0.0);
         let halves = held.iter().map(|it| 0.5 * (it.high - it.low) / 1.96);
         let half = halves.sum::<f64>() / count;
-        let inside = held.iter().filter(|it| it.low <= mean && mean <= it.high).count();
+        let inside = held
+            .iter()
+            .filter(|it| it.low <= mean && mean <= it.high)
+            .count();
         let is = |names: &[&str]| names.iter().any(|name| metric.starts_with(name));
         Self {
             name: format!("{} {channel} {metric}", motion.name()),
@@ -90,8 +97,16 @@ impl Cell {
         let n = self.intervals as f64;
         let inside = (self.coverage * n).round();
         let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).expect("counts").inverse_cdf(p);
-        let low = if inside > 0.0 { quantile(inside, n - inside + 1.0, TAIL) } else { 0.0 };
-        let high = if inside < n { quantile(inside + 1.0, n - inside, 1.0 - TAIL) } else { 1.0 };
+        let low = if inside > 0.0 {
+            quantile(inside, n - inside + 1.0, TAIL)
+        } else {
+            0.0
+        };
+        let high = if inside < n {
+            quantile(inside + 1.0, n - inside, 1.0 - TAIL)
+        } else {
+            1.0
+        };
         [low, high]
     }
 
@@ -156,5 +171,9 @@ fn intervals_hold_the_mean_over_seeds_nineteen_times_in_twenty() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
     // Cells without an interval are few.
     let absent = all.iter().filter(|cell| cell.absent > 0).count();
-    assert!(absent as f64 <= ABSENT_MAX * all.len() as f64, "{absent} of {}", all.len());
+    assert!(
+        absent as f64 <= ABSENT_MAX * all.len() as f64,
+        "{absent} of {}",
+        all.len()
+    );
 }

@@ -94,7 +94,9 @@ pub(crate) fn run(motion: Motion, duration_s: f64, first: u64, seeds: u64) -> Re
     let records: Vec<BTreeMap<Key, Estimate>> = (first..first + seeds)
         .into_par_iter()
         .map(|seed| {
-            let seeded = scenario.clone().set("seed", i64::try_from(seed).expect("a seed"));
+            let seeded = scenario
+                .clone()
+                .set("seed", i64::try_from(seed).expect("a seed"));
             let run = seeded.expect("a seed").run().expect("a run");
             let mut record = BTreeMap::new();
             for (channel, metrics) in run.channels() {

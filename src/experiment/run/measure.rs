@@ -16,7 +16,8 @@ use crate::experiment::plan::Plan;
 use crate::filters::Divergence;
 use crate::gyro::{self, slow_drift};
 use crate::metrics::{
-    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Learning, Record, Settings, measure,
+    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Learning, Motion, Record, Settings,
+    known_motion, measure,
 };
 use crate::signal::SlowDrift;
 
@@ -136,6 +137,21 @@ impl Cut<'_> {
         measure(&record, self.settings, filter)
     }
 
+    /// What a filter has learned from its input; none where its motion is not known.
+    fn learning(&self, filter: &FinishedFilter, input: &[f64]) -> Option<Learning> {
+        let first = self.length.warm_up;
+        if !Learning::is_of(&filter.shape, input.len() - first) {
+            return None;
+        }
+        let truth = &self.record.truth_deg_per_h;
+        let is_at_rest = self.settings.motion == Motion::Steady;
+        if truth.is_empty() && !is_at_rest {
+            return None;
+        }
+        let motion = (!truth.is_empty()).then(|| known_motion(input, truth));
+        Learning::of(&filter.shape, input, motion.as_deref(), first)
+    }
+
     /// Variance over seeds of the slow noise in the mean of the record, (deg/h)^2.
     fn drift_variance(&self) -> f64 {
         let first = self.length.warm_up as u64;
@@ -153,7 +169,7 @@ impl Cut<'_> {
                 let facts = FilterFacts {
                     // What a filter learned before it started afresh is gone.
                     learning: (!filter.restarts)
-                        .then(|| Learning::of(&filter.shape, input, self.length.warm_up))
+                        .then(|| self.learning(filter, input))
                         .flatten()
                         .map(|learning| learning.with_drift(self.drift_variance())),
                     ..filter_facts(filter, words)

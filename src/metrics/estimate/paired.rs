@@ -51,18 +51,44 @@ impl MeanScatter {
             };
         }
         let density = tapered_density(values, long);
-        let short = (REACHES_PER_BLOCK * reach.max(1))
-            .max(count / SHORT_BLOCKS_MAX)
-            .min(long);
-        let means: Vec<f64> = values.chunks_exact(short).map(interval::mean).collect();
-        let length = short as f64;
-        let beyond = interval::sample_variance(&means) - density.variance / length;
         Self {
             density,
-            ends: Spread {
-                variance: (beyond * length * length).max(0.0),
-                freedom: means.len() as f64 - 1.0,
-            },
+            ends: ends(
+                values,
+                density,
+                whole(reach, None)
+                    .max(count as f64 / SHORT_BLOCKS_MAX as f64)
+                    .min(long as f64),
+            ),
+        }
+    }
+
+    /// Of the differences between a channel and the response to its input.
+    ///
+    /// * `differences`: channel minus response times input, whose mean is asked for.
+    /// * `aligned`: the same with the input delayed as the channel is, which leaves the density at
+    ///   zero frequency and takes what is near it: a delay of D samples has `(2 pi f D)^2` there, which
+    ///   windows do not tell from it.
+    /// * `cycle`: samples of a swing, whose phase the ends of all blocks share.
+    pub(crate) fn of_paired(
+        differences: &[f64],
+        aligned: &[f64],
+        reach: usize,
+        cycle: Option<f64>,
+    ) -> Self {
+        let long = aligned.len() / LONG_BLOCKS;
+        if long < SAMPLES_MIN {
+            return Self::of(differences, reach);
+        }
+        let density = tapered_density(aligned, long);
+        let short = whole(reach, cycle).max(differences.len() as f64 / SHORT_BLOCKS_MAX as f64);
+        Self {
+            density,
+            ends: ends(
+                differences,
+                density,
+                short.min(differences.len() as f64 / 2.0),
+            ),
         }
     }
 
@@ -85,6 +111,45 @@ impl MeanScatter {
 /// Spread of the mean of values whose ends reach over `reach` samples.
 pub(crate) fn mean_spread(values: &[f64], reach: usize) -> Spread {
     MeanScatter::of(values, reach).over(values.len())
+}
+
+/// Shortest block of a filter's reach, in whole cycles of a swing, samples.
+fn whole(reach: usize, cycle: Option<f64>) -> f64 {
+    let least = (REACHES_PER_BLOCK * reach.max(1)) as f64;
+    cycle.map_or(least, |cycle| (least / cycle).ceil() * cycle)
+}
+
+/// E of plain blocks of so many samples: what their means have beyond the density.
+fn ends(values: &[f64], density: Spread, length: f64) -> Spread {
+    let blocks = interval::round_to_count((values.len() as f64 / length).floor());
+    let border = |block: usize| interval::round_to_count(block as f64 * length);
+    let means: Vec<f64> = (0..blocks)
+        .map(|block| interval::mean(&values[border(block)..border(block + 1).min(values.len())]))
+        .collect();
+    let beyond = interval::sample_variance(&means) - density.variance / length;
+    Spread {
+        variance: (beyond * length * length).max(0.0),
+        freedom: means.len() as f64 - 1.0,
+    }
+}
+
+/// Values delayed by a number of samples that need not be whole, linear between two.
+///
+/// The first ones, for which there is no earlier sample, stay as they are.
+pub(crate) fn delayed(values: &[f64], samples: f64) -> Vec<f64> {
+    let samples = samples.clamp(0.0, values.len() as f64 / 4.0);
+    let whole = interval::round_to_count(samples.floor());
+    let part = samples - samples.floor();
+    let at = |index: usize| {
+        let newer = index
+            .checked_sub(whole)
+            .map_or(values[index], |index| values[index]);
+        let older = index
+            .checked_sub(whole + 1)
+            .map_or(values[index], |index| values[index]);
+        (1.0 - part) * newer + part * older
+    };
+    (0..values.len()).map(at).collect()
 }
 
 /// Spectral density at zero frequency: variance of a mean times its length, from Hann windows.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::metrics::estimate::influence::{Learned, Spread};
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::paired::MeanScatter;
+use crate::metrics::estimate::paired::{MeanScatter, delayed};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
@@ -222,6 +222,26 @@ pub(crate) fn paired_ratio(
         }
         _ => Estimate::without_interval(of.ratio, NOT_FROM_ONE_RECORD),
     }
+}
+
+/// How the mean of a channel minus its gain times raw scatters, both without motion.
+pub(crate) fn paired_scatter(
+    (own, raw): (&[f64], &[f64]),
+    gain: f64,
+    facts: &FilterFacts,
+) -> MeanScatter {
+    let minus = |raw: &[f64]| -> Vec<f64> {
+        own.iter()
+            .zip(raw)
+            .map(|(own, raw)| own - gain * raw)
+            .collect()
+    };
+    let reach = filter_reach(Some(facts));
+    let delay = facts.delay_at_dc_samples();
+    // Delayed, the first samples have no input.
+    let aligned = minus(&delayed(raw, delay));
+    let whole = reach.min(aligned.len() / 2);
+    MeanScatter::of_paired(&minus(raw), &aligned[whole..], reach, None)
 }
 
 /// Why nothing can be divided by raw's mean; nothing if it can be told from zero.

@@ -2,13 +2,15 @@
 
 use std::f64::consts::TAU;
 
-use super::mean::{MEAN_RATIO, filter_reach, mean_spread_of, put_mean, ratio_of_means_lack};
+use super::mean::{
+    MEAN_RATIO, filter_reach, mean_spread_of, paired_scatter, put_mean, ratio_of_means_lack,
+};
 use super::steady::LAGS_MIN;
 use super::swing_response::{Against, Fits, Response};
-use super::tracking::TRACKING_ERROR_RMS;
-use crate::metrics::estimate::influence::Spread;
+use super::tracking::{TRACKING_ERROR_RMS, root};
+use crate::metrics::estimate::influence::{Learned, Spread};
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::paired::{MeanScatter, mean_spread};
+use crate::metrics::estimate::paired::mean_spread;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::{Estimate, Metric};
@@ -161,7 +163,8 @@ pub(crate) fn measure_swing(
     measure_sines(&fits, &response, &clock, filter, metrics);
     if let Some(truth) = record.truth() {
         measure_correlation(truth, record, &response, filter, metrics);
-        measure_tracking(truth, record, &fits, metrics);
+        let by_weights = response.tracking_by_weights(&fits, filter);
+        measure_tracking(truth, record, &fits, by_weights, metrics);
     }
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     metrics.put(
@@ -276,11 +279,15 @@ fn measure_correlation(
     }
 }
 
-/// Root mean square difference from the truth, with Student's t on the sub-blocks' squares.
+/// Root mean square difference from the truth, by the squares of blocks of whole cycles.
+///
+/// Weights that forget nothing are still on their way in the record, which many blocks show less of,
+/// and scatter from seed to seed, by which response and noise differ.
 fn measure_tracking(
     truth_deg_per_h: &[f64],
     record: &Record,
     fits: &Fits,
+    by_weights: Option<Learned>,
     metrics: &mut ChannelMetrics,
 ) {
     let errors: Vec<f64> = record.channel_deg_per_h[..fits.channel.samples()]
@@ -288,15 +295,22 @@ fn measure_tracking(
         .zip(truth_deg_per_h)
         .map(|(rate, truth)| rate - truth)
         .collect();
-    let mean_squares = fits.channel.block_mean_squares(&errors);
-    let square = interval::from_parts(interval::mean(&mean_squares), &mean_squares);
-    let estimate = Estimate::with_interval(
-        square.value.sqrt(),
-        square.low.max(0.0).sqrt(),
-        square.high.sqrt(),
-    );
-    metrics.put(&TRACKING_ERROR_RMS, estimate);
+    let blocks = by_weights
+        .as_ref()
+        .map_or(fits.channel.block_count(), |_| TRACKING_BLOCKS);
+    let mean_squares = fits.channel.block_mean_squares(&errors, blocks);
+    let square = interval::mean(&mean_squares);
+    let count = mean_squares.len() as f64;
+    let spread = Spread {
+        variance: interval::sample_variance(&mean_squares) / count,
+        freedom: count - 1.0,
+    };
+    let spread = by_weights.map_or(spread, |learned| spread.plus(learned.spread()));
+    metrics.put(&TRACKING_ERROR_RMS, root(square, spread));
 }
+
+/// Blocks of the squared differences from the truth of a filter that forgets nothing.
+const TRACKING_BLOCKS: usize = 150;
 
 /// Ratio of the offsets, if raw's offset can be told from zero.
 fn measure_mean_ratio(
@@ -316,13 +330,8 @@ fn measure_mean_ratio(
     }
     let ratio = fits.channel.whole.offset / offset;
     let own = fits.channel.residuals(record.channel_deg_per_h);
-    let differences: Vec<f64> = own
-        .iter()
-        .zip(&raw)
-        .map(|(own, raw)| own - ratio * raw)
-        .collect();
-    let scatter = MeanScatter::of(&differences, filter_reach(Some(facts)));
-    let samples = differences.len();
+    let scatter = paired_scatter((&own, &raw), ratio, facts);
+    let samples = own.len();
     let learned = facts
         .learning
         .as_ref()

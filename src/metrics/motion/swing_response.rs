@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::mean::filter_reach;
 use crate::metrics::estimate::influence::{Learned, Spread};
-use crate::metrics::estimate::paired::MeanScatter;
+use crate::metrics::estimate::paired::{MeanScatter, delayed};
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::sine::fit::{SwingClock, SwingFit};
@@ -120,6 +120,30 @@ impl Response {
         spread.about(delay_s.value)
     }
 
+    /// What learned weights add to the mean square difference from the truth: through the response
+    /// to the swing, as their delay and amplitude differ.
+    pub(super) fn tracking_by_weights(
+        &self,
+        fits: &Fits,
+        filter: Option<&FilterFacts>,
+    ) -> Option<Learned> {
+        let (facts, truth) = (filter?, fits.truth.as_ref()?);
+        let clock = self.clock;
+        let newest = facts.shape.newest_age_samples;
+        let raw = &fits.raw.whole;
+        let behind_truth = raw.phase_rad - truth.whole.phase_rad;
+        let square = |weights: &[f64]| {
+            let frozen = Prediction::of_weights(weights.to_vec(), newest);
+            let amplitude =
+                raw.amplitude * frozen.amplitude(clock.frequency_hz, clock.sample_period_s);
+            let delay_s = frozen.delay_s(clock.frequency_hz, clock.sample_period_s);
+            let phase = behind_truth - TAU * clock.frequency_hz * delay_s;
+            let own = truth.whole.amplitude;
+            0.5 * (amplitude * amplitude + own * own - 2.0 * amplitude * own * phase.cos())
+        };
+        self.scatter.of(facts.mean_weights.as_deref(), square)
+    }
+
     /// The amplitude ratio with the interval of its noise: of raw to the truth by its blocks.
     pub(super) fn amplitude(&self, ratio: Estimate) -> Estimate {
         if !self.is_filter {
@@ -152,21 +176,27 @@ fn paired_scatter(
     let (channel, reference) = (&fits.channel.whole, &fits.raw.whole);
     let gain = channel.amplitude / reference.amplitude;
     let turned = channel.phase_rad - reference.phase_rad;
-    let (sine, cosine) = turned.sin_cos();
     let scale = 2.0 / channel.amplitude;
-    let moved: Vec<[f64; 2]> = own
-        .iter()
-        .zip(&raw)
-        .enumerate()
-        .map(|(index, (own, raw))| {
+    // With the input turned by `turned`, and then by what a delay leaves of that.
+    let parts = |input: &[f64], turned: f64| -> [Vec<f64>; 2] {
+        let (sine, cosine) = turned.sin_cos();
+        let (mut real, mut imaginary) = (Vec::new(), Vec::new());
+        for (index, (own, raw)) in own.iter().zip(input).enumerate() {
             let (re, im) = (own - gain * cosine * raw, -gain * sine * raw);
             let (s, c) = (clock.phase_rad(index) + channel.phase_rad).sin_cos();
-            [scale * (re * c + im * s), scale * (im * c - re * s)]
-        })
-        .collect();
+            real.push(scale * (re * c + im * s));
+            imaginary.push(scale * (im * c - re * s));
+        }
+        [real, imaginary]
+    };
     let reach = filter_reach(filter);
+    let angular = TAU * clock.frequency_hz * clock.sample_period_s;
+    let delay = filter.map_or(0.0, FilterFacts::delay_at_dc_samples);
+    let plain = parts(&raw, turned);
+    let aligned = parts(&delayed(&raw, delay), turned + angular * delay);
+    let first = reach.min(own.len() / 2);
+    let cycle = 1.0 / (clock.frequency_hz * clock.sample_period_s);
     [0, 1].map(|part| {
-        let values: Vec<f64> = moved.iter().map(|pair| pair[part]).collect();
-        MeanScatter::of(&values, reach)
+        MeanScatter::of_paired(&plain[part], &aligned[part][first..], reach, Some(cycle))
     })
 }

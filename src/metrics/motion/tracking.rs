@@ -7,6 +7,7 @@ use crate::metrics::estimate::paired::MeanScatter;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Pool, Table};
+use crate::metrics::noise::autocovariance::autocovariance;
 use crate::metrics::record::{FilterFacts, Record};
 
 /// Tracking error rms.
@@ -61,29 +62,56 @@ pub(crate) fn measure_tracking(
     let square = errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
     let estimate = match settled {
         None => Estimate::without_interval(square.sqrt(), FEW_TRANSIENTS),
-        Some(_) => root(square, square_spread(square, noise, errors.len(), filter)),
+        Some(settled) => root(square, square_spread(record, &errors, settled, filter)),
     };
     metrics.put(&TRACKING_ERROR_RMS, estimate);
 }
 
-/// Spread of the mean square of so many differences, of which `noise` is the settled part.
+/// Spread of the mean square of the differences, of which those from `settled` on are noise.
 ///
-/// That of the noise's square, and of twice the noise times what the transients leave: a pulse of
-/// energy P moves the sum of squares by a deviation of `2 sqrt(P S)`.
+/// That of the noise's square, and of twice the noise times what the transients p leave: `2 sum p n`
+/// has the variance `4 sum_l R(l) sum_k p_k p_(k+l)`.
 fn square_spread(
-    square: f64,
-    noise: &[f64],
-    samples: usize,
+    record: &Record,
+    errors: &[f64],
+    settled: usize,
     filter: Option<&FilterFacts>,
 ) -> Spread {
     let reach = filter_reach(filter);
+    let noise = &errors[settled..];
     let squares: Vec<f64> = noise.iter().map(|error| error * error).collect();
-    let transients = samples as f64 * (square - interval::mean(&squares)).max(0.0);
-    let density = MeanScatter::of(noise, reach).over(1).variance;
-    let n = samples as f64;
-    let of_noise = MeanScatter::of(&squares, reach).over(samples);
-    of_noise.plus(Spread::known(4.0 * transients * density / (n * n)))
+    let lags = reach.min(noise.len() / LAGS_PER_TAIL);
+    let colour = autocovariance(noise, lags);
+    let mut cross = 0.0;
+    let changes = record.truth_deg_per_h.windows(2).enumerate();
+    let changes = changes.filter(|(_, two)| two[0] < two[1] || two[1] < two[0]);
+    let mut end = 0;
+    for (change, _) in changes {
+        // A sample of a transient counts once, however many changes follow each other.
+        let start = change.max(end);
+        end = (change + 1 + reach).min(errors.len());
+        let transient = &errors[start.min(end)..end];
+        cross += colour
+            .iter()
+            .enumerate()
+            .map(|(lag, covariance)| {
+                let pairs = transient.iter().zip(transient.iter().skip(lag));
+                let product: f64 = pairs.map(|(one, other)| one * other).sum();
+                if lag == 0 {
+                    covariance * product
+                } else {
+                    2.0 * covariance * product
+                }
+            })
+            .sum::<f64>();
+    }
+    let n = errors.len() as f64;
+    let of_noise = MeanScatter::of(&squares, reach).density_over(errors.len());
+    of_noise.plus(Spread::known(4.0 * cross.max(0.0) / (n * n)))
 }
+
+/// Settled samples for each lag of their autocovariance.
+const LAGS_PER_TAIL: usize = 8;
 
 /// Root of a mean square with the interval of its spread, cut at zero.
 pub(crate) fn root(square: f64, spread: Spread) -> Estimate {

@@ -33,6 +33,22 @@ pub(crate) fn reach(filter: Option<&FilterFacts>) -> usize {
     (GYRO_LAGS + of_filter).min(LAGS_MAX)
 }
 
+/// Words without their noise: what a finite impulse response to the truth explains, mean included.
+///
+/// Both series have the same length.
+#[must_use]
+pub fn known_motion(words: &[f64], truth: &[f64]) -> Vec<f64> {
+    let (mean, mean_truth) = (interval::mean(words), interval::mean(truth));
+    let mut noise: Vec<f64> = words.iter().map(|word| word - mean).collect();
+    let about: Vec<f64> = truth.iter().map(|rate| rate - mean_truth).collect();
+    remove_response(&mut noise, &about, reach(None));
+    words
+        .iter()
+        .zip(noise)
+        .map(|(word, noise)| word - noise)
+        .collect()
+}
+
 /// Takes out of `values` what a finite impulse response of length `reach` to `truth` explains.
 ///
 /// Both are about their means or fitted sines. The harmonics that friction puts into a table's

@@ -106,9 +106,16 @@ pub fn settling(
     Ok(Settling {
         settling_time_s: {
             let reach = interval::NORMAL_QUANTILE * noise;
+            let entered = |band: f64| {
+                let inside = |rate: &f64| (rate - target).abs() <= band;
+                rate_deg_per_h[step_index..]
+                    .iter()
+                    .position(inside)
+                    .unwrap_or(settled)
+            };
             let ends = [
-                settled_within(band + reach),
-                settled_within(band - reach) + 2,
+                entered(band + reach).min(settled),
+                (entered(band - reach) + 2).max(settled + 2),
             ];
             let [value, low, high] =
                 [settled + 1, ends[0], ends[1]].map(|samples| samples as f64 * sample_period_s);

@@ -1,6 +1,7 @@
 //! Overshoot and rise time of the last step of a record.
 
 use super::settling::{Settling, tail_start};
+use crate::metrics::estimate::influence::Spread;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
 use crate::metrics::estimate::paired::mean_spread;
 use crate::metrics::estimate::reason::Unavailable;
@@ -122,12 +123,9 @@ impl Step<'_> {
             return Err("no sample precedes the step".into());
         };
         let value = (end.at() - start.at()) * self.sample_period_s;
-        let half_width = NORMAL_QUANTILE * self.rise_deviation(&start, &end) * self.sample_period_s;
-        Ok(Estimate::with_interval(
-            value,
-            (value - half_width).max(0.0),
-            value + half_width,
-        ))
+        let deviation = self.rise_deviation(&start, &end) * self.sample_period_s;
+        let rise = Spread::known(deviation * deviation).about(value);
+        Ok(rise.clamped(0.0, f64::INFINITY))
     }
 
     /// Standard deviation of the time between two crossings by the noise, samples.

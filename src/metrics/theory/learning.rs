@@ -6,7 +6,8 @@
 //! `s_f = p_f - R_f w` of each stretch f. The scores of long stretches are independent and of mean 0
 //! at the weights that many records have in common, so that each stretch adds `A_f s_f` of its own to
 //! the mean weights of the record, `A_f` the mean of `R_c^-1` over the checkpoints from f on. Stretches
-//! of the warm-up add theirs. This is the sandwich covariance of least squares; leaving blocks of the
+//! of the warm-up add theirs. What the known motion puts into a score is the same in every record and
+//! taken off: it is the score of the words without their noise. This is the sandwich covariance of least squares; leaving blocks of the
 //! output out instead holds the weights of this record for given, and misses nearly all of it.
 //!
 //! Source: derived; White, Econometrica 48 (1980), for the sandwich.
@@ -45,6 +46,8 @@ pub struct Learning {
     drift_deg_per_h: f64,
     /// Sums of products of `[x_0 ... x_(p-1), d, 1]`: regressors, desired signal, number.
     moments: Vec<DMatrix<f64>>,
+    /// What noise makes of them: less those of the motion and the mean of the rest.
+    deviations: Vec<DMatrix<f64>>,
 }
 
 /// What each stretch adds to the mean weights over a part of the record.
@@ -71,12 +74,26 @@ pub(crate) fn remembers_the_record(shape: &FilterShape, samples: usize) -> bool 
 }
 
 impl Learning {
+    /// Whether a filter forgets so little that blocks of a record of so many samples do not tell how
+    /// its weights scatter.
+    #[must_use]
+    pub fn is_of(shape: &FilterShape, samples: usize) -> bool {
+        remembers_the_record(shape, samples)
+    }
+
     /// Sums of a filter over all its words, of which the record begins at `first`.
+    ///
+    /// * `motion`: the words without their noise; none at rest.
     ///
     /// None for a filter that forgets within a tenth of the record, whose own blocks tell its
     /// scatter, and for a record of too few stretches.
     #[must_use]
-    pub fn of(shape: &FilterShape, words: &[f64], first: usize) -> Option<Self> {
+    pub fn of(
+        shape: &FilterShape,
+        words: &[f64],
+        motion: Option<&[f64]>,
+        first: usize,
+    ) -> Option<Self> {
         let WeightRule::Adaptive {
             desired_weights,
             is_dc_gain_one,
@@ -99,18 +116,22 @@ impl Learning {
             Some(own) => first + record * own / count,
             None => reach + (first - reach) * stretch / warm_up,
         };
-        let moments = (0..warm_up + count)
-            .map(|stretch| {
-                let range = border(stretch).max(reach)..border(stretch + 1);
-                products(words, range, lag, taps, desired_weights)
-            })
-            .collect();
+        let sums = |words: &[f64]| -> Vec<DMatrix<f64>> {
+            (0..warm_up + count)
+                .map(|stretch| {
+                    let range = border(stretch).max(reach)..border(stretch + 1);
+                    products(words, range, lag, taps, desired_weights)
+                })
+                .collect()
+        };
+        let moments = sums(words);
         Some(Self {
             taps,
             is_dc_gain_one: *is_dc_gain_one,
             kept: factor.powf(length as f64),
             warm_up,
             drift_deg_per_h: 0.0,
+            deviations: deviations(&moments, motion.map(sums)),
             moments,
         })
     }
@@ -259,13 +280,16 @@ impl Learning {
     /// What each stretch adds to that mean.
     fn mean_parts(&self) -> Vec<f64> {
         let last = self.taps + 1;
-        let mean = self.mean();
         let record = &self.moments[self.warm_up..];
         let total: f64 = record.iter().map(|it| it[(last, last)]).sum();
-        let parts = self.moments.iter().enumerate().map(|(stretch, moments)| {
-            let own = (moments[(0, last)] - mean * moments[(last, last)]) / total;
-            if stretch < self.warm_up { 0.0 } else { own }
-        });
+        let parts = self
+            .deviations
+            .iter()
+            .enumerate()
+            .map(|(stretch, deviations)| {
+                let own = deviations[(0, last)] / total;
+                if stretch < self.warm_up { 0.0 } else { own }
+            });
         parts.collect()
     }
 
@@ -382,6 +406,25 @@ impl Solved {
         let freedom = squares * squares / fourths - free as f64;
         (parts, freedom.max(1.0))
     }
+}
+
+/// Moments less those of the motion, and less the mean of what then is left per word.
+fn deviations(moments: &[DMatrix<f64>], motion: Option<Vec<DMatrix<f64>>>) -> Vec<DMatrix<f64>> {
+    let number = |moments: &DMatrix<f64>| moments[(moments.nrows() - 1, moments.nrows() - 1)];
+    let noise: Vec<DMatrix<f64>> = match motion {
+        None => moments.to_vec(),
+        Some(motion) => moments
+            .iter()
+            .zip(motion)
+            .map(|(own, motion)| own - motion)
+            .collect(),
+    };
+    let total: f64 = moments.iter().map(number).sum();
+    let mean = noise.iter().sum::<DMatrix<f64>>() / total;
+    let parts = noise.iter().zip(moments);
+    parts
+        .map(|(noise, moments)| noise - &mean * number(moments))
+        .collect()
 }
 
 /// `T` with `(T v)_i = v_i - v_(i-1)`: weights that sum to nothing.
