@@ -4,6 +4,7 @@
 //! names another.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
+use statrs::function::gamma::ln_gamma;
 
 use super::influence::{Spread, resampled};
 use super::value::Estimate;
@@ -59,6 +60,25 @@ pub(crate) fn variance(value: f64, degrees_of_freedom: f64) -> Estimate {
 pub(crate) fn deviation(value: f64, degrees_of_freedom: f64) -> Estimate {
     let square = variance(value * value, degrees_of_freedom);
     Estimate::with_interval(value, square.low.sqrt(), square.high.sqrt())
+}
+
+/// Interval of the mean over records of a sample standard deviation.
+///
+/// That is `c4 = sqrt(2 / nu) Gamma((nu + 1) / 2) / Gamma(nu / 2)` times the root of the variance: of
+/// six values 5 % below it.
+pub(crate) fn sample_deviation(value: f64, degrees_of_freedom: f64) -> Estimate {
+    let of_root = deviation(value, degrees_of_freedom);
+    let freedom = degrees_of_freedom.max(0.1);
+    let c4 = if freedom < EXACT_DEGREES_OF_FREEDOM_MAX {
+        (2.0 / freedom).sqrt() * (ln_gamma(0.5 * freedom + 0.5) - ln_gamma(0.5 * freedom)).exp()
+    } else {
+        1.0
+    };
+    Estimate {
+        low: c4 * of_root.low,
+        high: c4 * of_root.high,
+        ..of_root
+    }
 }
 
 /// As [`deviation`] at another two-sided confidence, between 0 and 1 and kept short of both.

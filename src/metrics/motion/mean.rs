@@ -204,12 +204,7 @@ pub(crate) fn paired_ratio(
     let own = &record.channel_deg_per_h[settled.clone()];
     let raw = &record.raw_deg_per_h[settled];
     let gain = interval::mean(own) / interval::mean(raw);
-    let differences: Vec<f64> = own
-        .iter()
-        .zip(raw)
-        .map(|(own, raw)| own - gain * raw)
-        .collect();
-    let scatter = MeanScatter::of(&differences, filter_reach(Some(facts)));
+    let scatter = paired_scatter((own, raw), gain, facts);
     let over_level = 1.0 / of.raw_deg_per_h;
     match (
         facts.weight_scatter(record.raw_deg_per_h.len(), 0.0),

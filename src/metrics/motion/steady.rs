@@ -178,7 +178,7 @@ fn measure_bias(
             )
         });
         let deviation = interval::sample_variance(&means).sqrt();
-        let metric = metrics.put(name, interval::deviation(deviation, freedom));
+        let metric = metrics.put(name, interval::sample_deviation(deviation, freedom));
         metric.fields.insert("averaging_time_s", averaging_time_s);
         metric.fields.insert("block_samples", block as f64);
         metric.fields.insert("count", means.len() as f64);

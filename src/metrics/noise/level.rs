@@ -5,7 +5,7 @@ use super::by_weights::NoiseByWeights;
 use crate::metrics::estimate::influence::resampled;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::{ChannelMetrics, DEGREES_OF_FREEDOM};
-use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
+use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Pool, Table};
 
 /// Standard deviation of the noise.
 pub static NOISE_STD: MetricKey = MetricKey::new(
@@ -16,6 +16,7 @@ pub static NOISE_STD: MetricKey = MetricKey::new(
 )
 .synonyms(&["std", "noise", "rms", "noise_rms", "standard_deviation"])
 .heading("noise std")
+.pooled(Pool::RootMeanSquare)
 .needs(Needs::SettledStep)
 .run_column(3)
 .tables(&[Table::Rest, Table::Swing, Table::MultiSine, Table::Steps])
@@ -53,7 +54,7 @@ pub(crate) fn put_noise_std(
         Some(learned) => products.learned_freedom(&learned),
         None => products.variance_freedom().unwrap_or(of_lags),
     };
-    let deviation = interval::deviation(autocovariance[0].sqrt(), freedom);
+    let deviation = interval::sample_deviation(autocovariance[0].sqrt(), freedom);
     let metric = metrics.put(&NOISE_STD, by_weights.unless_unknown(deviation));
     metric.fields.insert("count", count as f64);
     if metric.estimate.has_interval() {

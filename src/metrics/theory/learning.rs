@@ -358,9 +358,10 @@ impl Solved {
             numbers.push(number);
         }
         let last = inverses.last()?.as_ref()? * &right;
-        let scores = problems
-            .iter()
-            .map(|(normal, right)| right - normal * &last);
+        let scores = learning.deviations.iter().map(|deviations| {
+            let (normal, right) = learning.problem(deviations, shift);
+            right - normal * &last
+        });
         Some(Self {
             scores: scores.collect(),
             inverses,
