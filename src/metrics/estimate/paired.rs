@@ -108,6 +108,19 @@ impl MeanScatter {
     }
 }
 
+/// Autocovariance of values about their mean at lags from 0 on.
+pub(crate) fn covariance_at_lags(values: &[f64], largest_lag: usize) -> Vec<f64> {
+    let mean = interval::mean(values);
+    let at = |lag: usize| {
+        let pairs = values.iter().zip(values.iter().skip(lag));
+        let sum: f64 = pairs
+            .map(|(one, other)| (one - mean) * (other - mean))
+            .sum();
+        sum / values.len().saturating_sub(lag).max(1) as f64
+    };
+    (0..=largest_lag).map(at).collect()
+}
+
 /// Spread of the mean of values whose ends reach over `reach` samples.
 pub(crate) fn mean_spread(values: &[f64], reach: usize) -> Spread {
     MeanScatter::of(values, reach).over(values.len())

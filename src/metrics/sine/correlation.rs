@@ -3,10 +3,9 @@
 use super::fit::{CYCLES_MIN, SwingClock, fit_sine};
 use crate::metrics::estimate::influence::Spread;
 use crate::metrics::estimate::interval::round_to_count;
-use crate::metrics::estimate::paired::MeanScatter;
+use crate::metrics::estimate::paired::{MeanScatter, covariance_at_lags};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
-use crate::metrics::noise::autocovariance::autocovariance;
 
 /// The correlation's window and the two series about their means.
 struct Window<'a> {
@@ -57,7 +56,7 @@ impl Window<'_> {
         let inner = MeanScatter::of(&inner, 1)
             .density_over(inner.len())
             .scaled(count);
-        let correlation = autocovariance(noise, 1);
+        let correlation = covariance_at_lags(noise, 1);
         let ends: f64 = [(first, first + 1), (last - 1, last)]
             .map(|(one, other)| {
                 let (one, other) = (reference(one), reference(other));

@@ -3,12 +3,11 @@
 use super::settling::{Settling, tail_start};
 use crate::metrics::estimate::influence::Spread;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
-use crate::metrics::estimate::paired::mean_spread;
+use crate::metrics::estimate::paired::{covariance_at_lags, mean_spread};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Needs, Table};
-use crate::metrics::noise::autocovariance::autocovariance;
 use crate::wording::decimals;
 
 /// Rise time.
@@ -137,7 +136,7 @@ impl Step<'_> {
             .collect();
         let lags = end.before + 1 - start.before;
         let tail = &self.rate_deg_per_h[tail_start(self.rate_deg_per_h.len(), self.index)..];
-        let noise = autocovariance(tail, lags.min(tail.len() / LAGS_PER_TAIL));
+        let noise = covariance_at_lags(tail, lags.min(tail.len() / LAGS_PER_TAIL));
         let covariance = |lag: usize| noise.get(lag).copied().unwrap_or(0.0);
         let variance: f64 = slopes
             .iter()
