@@ -158,7 +158,7 @@ fn a_one_pole_filter_of_a_hundred_samples_leaves_the_fitted_angle_random_walk_al
     let wanted = fogbench::units::deg_per_h_sqrt_s_to_deg_per_sqrt_h(PERIOD_S.sqrt());
     let (mut sum, mut blind, mut covered) = (0.0, 0.0, 0);
     for seed in 0..RUNS {
-        let (smooth, raw) = one_pole(seed, 150_000);
+        let (smooth, raw) = one_pole(seed, 600_000);
         let mut record = raw_record(&raw, &[]);
         record.channel_deg_per_h = &smooth;
         let name = "angle_random_walk_deg_per_sqrt_h";
@@ -166,7 +166,9 @@ fn a_one_pole_filter_of_a_hundred_samples_leaves_the_fitted_angle_random_walk_al
         let found = of(&known).metrics[name].clone();
         assert!(found.fields["tau_min_s"] > 13.0 * POLE_SAMPLES * PERIOD_S);
         let estimate = found.estimate;
-        sum += estimate.value / wanted;
+        // The square is what is unbiased; its root is zero where the square comes out below it.
+        let fit = of(&known).noise_fit.expect("a fit");
+        sum += fit.terms[name].square / (wanted * wanted);
         covered += u32::from(estimate.low <= wanted && wanted <= estimate.high);
         blind += of(&unknown)
             .metrics
@@ -174,8 +176,9 @@ fn a_one_pole_filter_of_a_hundred_samples_leaves_the_fitted_angle_random_walk_al
             .map_or(0.0, |metric| metric.estimate.value / wanted);
     }
     let (mean, blind) = (sum / RUNS as f64, blind / RUNS as f64);
-    // From 1300 samples to a ninth N has a standard error of some 6 %, 2 % in the mean of eight.
-    assert!((mean - 1.0).abs() < 0.07, "{mean}");
+    // Beside signed terms of slow noise the square of N has a standard error of some 20 % from 1300
+    // samples to a ninth, 7 % in the mean of eight.
+    assert!((mean - 1.0).abs() < 0.2, "{mean}");
     assert!(covered >= 6, "{covered} of {RUNS}");
     assert!((blind - 1.0).abs() > 0.15, "{blind}");
 }
@@ -184,7 +187,7 @@ fn a_one_pole_filter_of_a_hundred_samples_leaves_the_fitted_angle_random_walk_al
 fn the_fit_of_a_log_begins_beyond_the_correlation_it_shows() {
     let samples = |values: &[f64]| record_fit_tau_min_s(values, 0.5) / 0.5;
     let (smooth, raw) = one_pole(4, 200_000);
-    assert!((samples(&raw) - 10.0).abs() < 1e-9);
+    assert!((samples(&raw) - 4.0).abs() < 1e-9);
     let of_pole = samples(&smooth) / POLE_SAMPLES;
     assert!((8.0..20.0).contains(&of_pole), "{of_pole} time constants");
     let average: Vec<f64> = raw
@@ -207,9 +210,9 @@ fn the_fit_of_a_log_begins_beyond_the_correlation_it_shows() {
         .zip(&raw)
         .map(|(slow, fast)| slow + fast)
         .collect();
-    assert!((samples(&drift) - 10.0).abs() < 1e-9);
-    assert!((samples(&sum) - 10.0).abs() < 1e-9);
-    assert!((samples(&raw[..100]) - 10.0).abs() < 1e-9);
+    assert!((samples(&drift) - 4.0).abs() < 1e-9);
+    assert!((samples(&sum) - 4.0).abs() < 1e-9);
+    assert!((samples(&raw[..100]) - 4.0).abs() < 1e-9);
 }
 
 #[test]

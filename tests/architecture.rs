@@ -18,7 +18,10 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("fpga", &[]),
     ("filters", &["units", "signal"]),
     ("filters/hardware", &["units", "signal", "filters", "fpga"]),
-    ("metrics", &["units", "linear_algebra", "signal", "wording"]),
+    (
+        "metrics",
+        &["units", "random", "linear_algebra", "signal", "wording"],
+    ),
     ("calibration", &["units", "linear_algebra", "signal"]),
     ("recording", &["units", "signal", "wording"]),
     (
@@ -76,6 +79,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
             "units",
             "experiment",
             "filters",
+            "metrics",
             "gate",
             "recording",
             "report",
@@ -365,6 +369,51 @@ fn the_model_of_the_hardware_computes_with_nothing_but_its_units() {
         }
     }
     assert!(seen > 20, "the model of the hardware has moved");
+}
+
+/// The types of the errors of a text's `Result`s, without blanks; none where an alias gives it.
+fn error_types(text: &str) -> Vec<String> {
+    let code: String = text.split_whitespace().collect();
+    let results = code.match_indices("Result<");
+    results
+        .filter_map(|(start, name)| {
+            let inside = &code[start + name.len()..];
+            let (mut depth, mut error) = (0_usize, None);
+            for (at, c) in inside.char_indices() {
+                match c {
+                    '<' | '(' | '[' => depth += 1,
+                    '>' if inside[..at].ends_with('-') => {}
+                    '>' if depth == 0 => {
+                        return error.map(|from: usize| inside[from..at].to_owned());
+                    }
+                    '>' | ')' | ']' => depth = depth.checked_sub(1)?,
+                    ',' if depth == 0 => error = Some(at + 1),
+                    _ => {}
+                }
+            }
+            None
+        })
+        .collect()
+}
+
+#[test]
+fn errors_are_types() {
+    let found =
+        error_types("fn f() -> Result<Vec<(u8, String)>,\n String> {} Result<A, B> io::Result<C>");
+    assert_eq!(found, ["String", "B"]);
+    let mut violations = Vec::new();
+    for path in sources() {
+        let text = fs::read_to_string(&path).expect("source is readable");
+        let is_text = |error: &String| error.trim_matches(['(', ')']).ends_with("String");
+        if error_types(&text).iter().any(is_text) || text.contains("type Err = String;") {
+            violations.push(path.display().to_string());
+        }
+    }
+    assert!(
+        violations.is_empty(),
+        "a text is no error: {}",
+        violations.join(", ")
+    );
 }
 
 /// A file has one subject, whatever its length: this guards only against files that nobody reads whole.

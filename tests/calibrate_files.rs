@@ -243,12 +243,11 @@ fn three_columns_of_a_log_are_compensated_before_the_filters() {
     // Half of the words are 0.5 deg/h too large; the form takes D of that out as well.
     let warm = 0.25 * (1.0 - deviation[0][0]);
     assert_close(mean - true_rate, left + warm, 0.0, 1e-6);
-    let notes = report["notes"].to_string();
-    assert!(
-        notes.contains("first-order form with calibration.toml"),
-        "{notes}"
-    );
-    assert!(notes.contains("--temperature-column"), "{notes}");
+    let notes = report["notes"].as_array().expect("notes");
+    let notes: Vec<&str> = notes.iter().filter_map(Value::as_str).collect();
+    let mut transcript = Transcript::of(CALIBRATE, "Notes on a log that was compensated");
+    transcript.case("--compensation-form first-order", notes.join("\n"));
+    transcript.check();
 }
 
 #[test]

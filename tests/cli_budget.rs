@@ -38,8 +38,8 @@ fn number(value: &serde_json::Value) -> f64 {
 }
 
 /// The default electronics and coil at a power (uW), depth (rad) and technical phase noise
-/// (urad/sqrt(Hz)): shot, thermal, amplifier, rin, adc, technical, total, deg/sqrt(h).
-fn walks(power_uw: f64, depth_rad: f64, technical: f64) -> [f64; 7] {
+/// (urad/sqrt(Hz)): shot, thermal, amplifier, rin, adc, technical, rate word, total, deg/sqrt(h).
+fn walks(power_uw: f64, depth_rad: f64, technical: f64) -> [f64; 8] {
     let (light, visibility, gate_duty, ohm) = (299_792_458.0, 0.95, 0.7, 20e3);
     let scale_s = 2.0 * PI * 800.0 * 0.07 / (1310e-9 * light);
     let transit_s = 1.4677 * 800.0 / light;
@@ -58,19 +58,22 @@ fn walks(power_uw: f64, depth_rad: f64, technical: f64) -> [f64; 7] {
         white(rin * bias_a * bias_a),
         unit * (transit_s / (12.0 * 8.0)).sqrt() * step_a / slope,
         unit * technical * 1e-6 / 2.0_f64.sqrt(),
+        // Words of 64 half periods in steps of 1e-4 deg/s.
+        60.0 * 1e-4 * (64.0 * transit_s / 12.0).sqrt(),
     ];
     let total = parts.iter().map(|part| part * part).sum::<f64>().sqrt();
-    let [a, b, c, d, e, f] = parts;
-    [a, b, c, d, e, f, total]
+    let [a, b, c, d, e, f, g] = parts;
+    [a, b, c, d, e, f, g, total]
 }
 
-const SOURCES: [&str; 7] = [
+const SOURCES: [&str; 8] = [
     "shot",
     "thermal",
     "amplifier",
     "rin",
     "adc",
     "technical",
+    "rate_word",
     "total",
 ];
 
@@ -84,13 +87,13 @@ fn the_budget_of_two_bases_is_that_of_the_formulae() {
         assert_close(number(&report["power_uw"]), power_uw, 0.0, 0.0);
         let want = walks(power_uw, depth_deg.to_radians(), technical);
         // Both readings make the 0.0060 deg/sqrt(h) that the defaults are chosen for.
-        assert_close(want[6], 0.0060, 0.0, 2e-5);
+        assert_close(want[7], 0.0060, 0.0, 2e-5);
         for (source, want_walk) in SOURCES.iter().zip(want) {
             let entry = &report["sources"][source];
             let walk = number(&entry["angle_random_walk_deg_per_sqrt_h"]);
             assert_close(walk, want_walk, 1e-9, 0.0);
             let share = number(&entry["power_share"]);
-            assert_close(share, (want_walk / want[6]).powi(2), 1e-9, 0.0);
+            assert_close(share, (want_walk / want[7]).powi(2), 1e-9, 0.0);
         }
         let phase = &report["sources"]["technical"]["phase_noise_urad_per_sqrt_hz"];
         assert_close(number(phase), technical, 1e-9, 0.0);
@@ -149,7 +152,7 @@ fn known_answer_k15_the_searched_optimum_is_the_closed_form_at_any_visibility() 
     }
     // A grid search of the formulae above, 1e-3 rad.
     let optimum = &json("scenarios/base/fog70.toml", &[])["optimum"];
-    let total = |step: u32| walks(0.87, 1e-3 * f64::from(step), 0.0)[6];
+    let total = |step: u32| walks(0.87, 1e-3 * f64::from(step), 0.0)[7];
     let best = (1000..3000_u32)
         .min_by(|a, b| total(*a).total_cmp(&total(*b)))
         .expect("a step");

@@ -9,6 +9,7 @@ use fogbench::units::{deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h, rad_per_s_
 
 use crate::support::records::{settings, value};
 use crate::support::tables::{PERIOD_S, ideal_encoder, record, rotation, swing, table};
+use crate::support::transcript::said_to_each;
 use crate::support::{assert_close, code, field, fogbench, stderr, stdout, summary, write};
 
 fn ideal_table(motion: MotionConfig, encoder: EncoderConfig, count: usize) -> (Vec<f64>, Vec<f64>) {
@@ -31,6 +32,7 @@ fn measured(encoder: EncoderConfig, frequency_hz: f64) -> ChannelMetrics {
         channel_deg_per_h: &gyro[4000..],
         raw_deg_per_h: &gyro[4000..],
         truth_deg_per_h: &truth[4000..],
+        response_deg_per_h: &[],
         encoder_rad: Some(&angles[4000..]),
         sample_period_s: PERIOD_S,
         first_stamp_s: 4001.0 * PERIOD_S,
@@ -177,39 +179,21 @@ fn what_makes_no_sense_of_servo_and_encoder_is_refused_with_the_reason() {
     let encoder = "[turntable.encoder]\nresolution_arcsec = 0.0\n";
     assert_eq!(refusals(&format!("{encoder}{gate}")), Vec::<String>::new());
     let drive = "[turntable.servo.direct_drive]\n";
-    for (more, part) in [
-        (gate.to_owned(), "the table has no encoder"),
-        (
-            "[turntable.encoder]\nlatency_us = 20.0\n".to_owned(),
-            "latency_us = 20.0 has no effect: the table has no encoder",
-        ),
-        (
-            format!("{encoder}latency_us = 251.0\n{drive}"),
-            "latency_us = 251.0 us is longer than a tick",
-        ),
-        (
-            format!("{drive}static_n_m = 0.04\n"),
-            "friction at rest is the larger",
-        ),
-        (
-            format!("{drive}friction_smoothing_rad_per_s = 1e-6\n"),
-            "friction would settle in 7.143e-1 us, allowed from 1 us",
-        ),
-        (
-            format!("{drive}controller_rate_hz = 399.0\n"),
-            "is too slow",
-        ),
-        (
-            format!("{drive}integral_ratio = 1.4\n"),
-            "must stay below 2 damping_ratio",
-        ),
-    ] {
-        let found = refusals(&more);
-        assert!(
-            found.len() == 1 && found[0].contains(part),
-            "{part}: {found:?}"
-        );
-    }
+    let refused = [
+        gate.to_owned(),
+        "[turntable.encoder]\nlatency_us = 20.0\n".to_owned(),
+        format!("{encoder}latency_us = 251.0\n{drive}"),
+        format!("{drive}static_n_m = 0.04\n"),
+        format!("{drive}friction_smoothing_rad_per_s = 1e-6\n"),
+        format!("{drive}controller_rate_hz = 399.0\n"),
+        format!("{drive}integral_ratio = 1.4\n"),
+    ];
+    said_to_each(
+        "motion",
+        "Servos and encoders that make no sense",
+        refused,
+        |more| refusals(more).join("\n"),
+    );
 }
 
 #[test]

@@ -12,8 +12,8 @@ use crate::support::write;
 /// What a finished program took.
 #[derive(Clone, Copy, Debug)]
 struct Cost {
-    /// Time of the processor, clock ticks of 10 ms.
-    ticks: u64,
+    /// Time of the processor, us.
+    time_us: u64,
     /// Largest memory, kB.
     memory_kb: u64,
 }
@@ -29,8 +29,10 @@ fn cost_of_check(folder: &Path, path: &str) -> Cost {
         .expect("the program starts");
     let process = format!("/proc/{}", child.id());
     let mut memory_kb = 0;
-    // It is not waited for before it has been asked: what has ended still tells its time.
-    let ticks = loop {
+    // It is not waited for before it has been asked: what has ended still tells its time. `check`
+    // works in one thread, whose time the scheduler counts in ns; the ticks of the whole process are
+    // too coarse for the short runs.
+    let time_us = loop {
         let status = fs::read_to_string(format!("{process}/status")).expect("it is there");
         let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
         let peak = peak.and_then(|rest| rest.split_whitespace().next()?.parse().ok());
@@ -39,20 +41,21 @@ fn cost_of_check(folder: &Path, path: &str) -> Cost {
         let (_, fields) = stat.rsplit_once(')').expect("the name ends with a bracket");
         let fields: Vec<&str> = fields.split_whitespace().collect();
         if fields[0] == "Z" {
-            let ticks = |index: usize| fields[index].parse::<u64>().expect("a number");
-            break ticks(11) + ticks(12);
+            let times = fs::read_to_string(format!("{process}/schedstat")).expect("it is there");
+            let time_ns = times.split_whitespace().next().expect("three fields");
+            break time_ns.parse::<u64>().expect("a number") / 1000;
         }
         std::thread::sleep(Duration::from_millis(2));
     };
     child.wait().expect("it has ended");
-    Cost { ticks, memory_kb }
+    Cost { time_us, memory_kb }
 }
 
 /// The least cost of a few runs: what else the machine does only adds.
 fn least_cost(folder: &Path, path: &str, runs: usize) -> Cost {
     let costs = (0..runs).map(|_| cost_of_check(folder, path));
     let least = costs.reduce(|one, other| Cost {
-        ticks: one.ticks.min(other.ticks),
+        time_us: one.time_us.min(other.time_us),
         memory_kb: one.memory_kb.min(other.memory_kb),
     });
     least.expect("at least one run")
@@ -60,30 +63,30 @@ fn least_cost(folder: &Path, path: &str, runs: usize) -> Cost {
 
 /// Asserts that ten times as much takes up to 13 times the time and 10 times the memory.
 ///
-/// The short run takes a few clock ticks only, so that many of them are added up.
+/// Whatever else the machine does only adds to the time of a run, and to that of the short one by the
+/// same part: both are run in turn until the least times of both are within the bound, or so often
+/// that they would be.
 #[track_caller]
-fn assert_growth(folder: &Path, small: &str, large_path: &str) {
+fn assert_growth(folder: &Path, small_path: &str, large_path: &str) {
     const MEMORY_KB_MAX: u64 = 300_000;
-    const SMALL_RUNS: u64 = 12;
-    let small: Vec<Cost> = (0..SMALL_RUNS)
-        .map(|_| cost_of_check(folder, small))
-        .collect();
-    let small_ticks: u64 = small.iter().map(|cost| cost.ticks).sum();
-    let small_kb = small.iter().map(|cost| cost.memory_kb).min();
-    let small_kb = small_kb.expect("a run");
-    let mut large = cost_of_check(folder, large_path);
-    for _ in 0..3 {
-        if SMALL_RUNS * large.ticks > 13 * small_ticks {
-            large.ticks = large.ticks.min(cost_of_check(folder, large_path).ticks);
+    const ROUNDS_MAX: usize = 8;
+    let (mut small, mut large) = (Vec::new(), Vec::new());
+    let least = |costs: &[Cost], of: fn(&Cost) -> u64| costs.iter().map(of).min().expect("a run");
+    let ratio = loop {
+        small.push(least_cost(folder, small_path, 3));
+        large.push(cost_of_check(folder, large_path));
+        let time = |costs: &[Cost]| least(costs, |cost| cost.time_us);
+        let ratio = time(&large) as f64 / time(&small) as f64;
+        if ratio <= 13.0 || small.len() == ROUNDS_MAX {
+            break ratio;
         }
-    }
-    assert!(small_ticks >= 12, "too short to be measured: {small:?}");
+    };
+    assert!(ratio <= 13.0, "{ratio:.1} times: {small:?}, {large:?}");
+    let memory = |costs: &[Cost]| least(costs, |cost| cost.memory_kb);
     assert!(
-        SMALL_RUNS * large.ticks <= 13 * small_ticks,
+        memory(&large) <= (10 * memory(&small)).min(MEMORY_KB_MAX),
         "{small:?}, {large:?}"
     );
-    assert!(large.memory_kb <= 10 * small_kb, "{small:?}, {large:?}");
-    assert!(large.memory_kb <= MEMORY_KB_MAX, "{large:?}");
 }
 
 /// A sweep of so many points over a gyro with filters and gates.
@@ -152,7 +155,7 @@ fn unknown_keys_cost_as_much_as_their_number() {
     let lines = least_cost(folder.path(), "small.toml", 2);
     let line = least_cost(folder.path(), "line.toml", 2);
     assert!(
-        line.ticks <= 2 * lines.ticks + 2,
+        line.time_us <= 2 * lines.time_us,
         "on one line: {line:?}, on many: {lines:?}"
     );
 }

@@ -341,6 +341,26 @@ fn the_second_loop_of_four_states_stays_bounded_under_noise_at_rest() {
     }
 }
 
+/// Out of lock the estimates of the second loop mean nothing; multiplied up they once reached infinity.
+#[test]
+fn the_second_loop_stays_in_its_range_where_lock_is_lost() {
+    let mut config = reference_gyro();
+    config.source.power_uw = 1e5;
+    config.detector.transimpedance_kohm = 0.0028;
+    config.modulator.depth_deg = 179.0;
+    config.adc.samples_per_half_period = 1;
+    config.controller.second_loop_gain = 1.0;
+    config.noise.technical_phase_urad_per_sqrt_hz = 26_000.0;
+    let mut model = loop_model(&config);
+    for _ in 0..1000 {
+        let word = model.next_word(&MotionSegment::constant(0.0));
+        assert!(word.is_finite(), "{word}");
+        let error = model.modulator_gain_error();
+        assert!((-0.5..=1.0).contains(&error), "{error}");
+    }
+    assert!(model.unlocked_half_periods() > 0, "the loop is out of lock");
+}
+
 // --- Both models -------------------------------------------------------------------------------
 
 /// Words of both models under a motion of all four coefficients, from rest.

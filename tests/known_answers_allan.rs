@@ -1,8 +1,8 @@
 //! Closed-form and published answers for the Allan variance, its fit and the spectrum.
 
 use fogbench::metrics::{
-    AllanOptions, FitRange, Motion, NoiseCoefficients, Record, Settings, Term, aggregate,
-    block_means, expected_bias_stability, fit_noise, fit_pooled_noise, measure, overlapping_allan,
+    AllanOptions, FitRange, Motion, NoiseCoefficients, Record, Settings, aggregate, block_means,
+    expected_bias_stability, fit_noise, fit_pooled_noise, measure, overlapping_allan,
     overlapping_allan_at, welch,
 };
 use fogbench::units;
@@ -100,9 +100,7 @@ fn fitted_angle_random_walk_interval_covers_the_truth_as_often_as_it_says() {
             tau_max_s: 120.0 / 9.0,
         };
         let fit = fit_noise(&overlapping_allan(&values, 0.01), range).unwrap();
-        let Term::Found(estimate) = fit.angle_random_walk_deg_per_h_sqrt_s else {
-            panic!("white noise has an angle random walk");
-        };
+        let estimate = fit.angle_random_walk_deg_per_h_sqrt_s.estimate();
         sum += estimate.value / truth;
         width += (estimate.high - estimate.low) / truth;
         covered += i32::from(estimate.low <= truth && truth <= estimate.high);
@@ -301,6 +299,7 @@ fn slow_noise_is_fitted_and_its_intervals_cover_the_truth() {
             channel_deg_per_h: &raw,
             raw_deg_per_h: &raw,
             truth_deg_per_h: &zero,
+            response_deg_per_h: &[],
             encoder_rad: None,
             sample_period_s: 1.0,
             first_stamp_s: 0.0,

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 use crate::support::gyro_cases::silent_gyro;
 use crate::support::reference_gyro::reference_gyro;
+use crate::support::transcript::Transcript;
 use crate::support::{assert_close, code, fogbench, stderr, stdout, write};
 
 /// Motion of one rate, reached slowly.
@@ -67,6 +68,7 @@ fn the_rate_model_refuses_rates_beyond_the_single_fringe() {
 #[test]
 fn the_loop_settles_on_the_right_fringe_up_to_pi_and_on_the_next_one_beyond() {
     let config = silent_gyro();
+    let mut transcript = Transcript::of("gyro", "Steps of the phase around pi");
     for (phase, fringe) in [(3.0, 0.0), (3.3, 2.0 * PI), (-3.3, -2.0 * PI)] {
         let mut model = loop_model(&config);
         for _ in 0..2000 {
@@ -75,8 +77,9 @@ fn the_loop_settles_on_the_right_fringe_up_to_pi_and_on_the_next_one_beyond() {
         assert_close(model.register_rad(), phase - fringe, 1e-9, 0.0);
         assert!(cautions(&config, Fidelity::Rate, &jump(&config, phase.abs())).is_err());
         let said = cautions(&config, Fidelity::Loop, &jump(&config, phase.abs())).unwrap();
-        assert_eq!(said[0].contains("wrong fringe"), fringe != 0.0, "{said:?}");
+        transcript.case(format!("a step of {phase} rad"), said.join("\n"));
     }
+    transcript.check();
     assert!(cautions(&config, Fidelity::Rate, &jump(&config, 1.56)).is_ok());
     assert!(cautions(&config, Fidelity::Rate, &jump(&config, 1.58)).is_err());
 }
@@ -263,36 +266,24 @@ fn check_points_at_the_key_that_breaks_the_rate_model_and_tells_of_a_caution() {
     let head = "schema = 1\nname = \"x\"\nduration_s = 20.0\n";
     let coarse = "[gyro.adc]\nbits = 10\n";
     let cases = [
-        ("rate", coarse, 2, "x.toml:6:1", "0.129 LSB"),
-        ("loop", coarse, 0, "", "0.129 LSB"),
-        (
-            "rate",
-            "[turntable.rotation]\nrate_deg_per_s = 210.0\n",
-            2,
-            "x.toml:5:",
-            "+-200.908",
-        ),
-        (
-            "rate",
-            "[gyro.modulator]\ndac_bits = 4\n",
-            2,
-            "x.toml:6:1",
-            "ramp converter",
-        ),
+        ("rate", coarse, 2),
+        ("loop", coarse, 0),
+        ("rate", "[turntable.rotation]\nrate_deg_per_s = 210.0\n", 2),
+        ("rate", "[gyro.modulator]\ndac_bits = 4\n", 2),
         (
             "rate",
             "[turntable.steps]\nrates_deg_per_s = [-125.0, 125.0]\ndwell_s = 10.0\n",
             2,
-            "x.toml:5:",
-            "phase error",
         ),
     ];
-    for (fidelity, more, want, place, words) in cases {
+    let mut transcript = Transcript::of("gyro", "Gyros and motions beyond the rate model");
+    for (fidelity, more, want) in cases {
         let text = format!("{head}fidelity = \"{fidelity}\"\n{more}");
         write(folder.path(), "x.toml", &text);
         let output = fogbench(folder.path(), &["check", "x.toml"]);
         let all = format!("{}{}", stdout(&output), stderr(&output));
         assert_eq!(code(&output), want, "{all}");
-        assert!(all.contains(place) && all.contains(words), "{all}");
+        transcript.case(format!("fidelity = \"{fidelity}\"\n{more}"), all);
     }
+    transcript.check();
 }

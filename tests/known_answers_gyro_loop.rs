@@ -14,6 +14,7 @@ use fogbench::units::{deg_per_h_to_rad_per_s, deg_per_s_to_rad_per_s, rad_per_s_
 use crate::support::assert_close;
 use crate::support::gyro_cases::{allan_deviation, budget_of, silent_gyro};
 use crate::support::reference_gyro::reference_gyro;
+use crate::support::transcript::Transcript;
 
 fn loop_model(config: &GyroConfig) -> LoopModel {
     LoopModel::new(config, 10.0, &Streams::new(1, 0)).expect("the gyro is sound")
@@ -269,11 +270,10 @@ fn four_states_have_the_budget_of_two() {
 fn a_word_of_four_states_is_whole_loop_periods() {
     let mut config = four_state(ModulationScheme::FourState, 120.0);
     config.output.half_periods_per_sample = 62;
-    let message = facts(&config).unwrap_err().to_string();
-    assert!(
-        message.contains("62 half periods") && message.contains("multiple"),
-        "{message}"
-    );
+    let mut transcript = Transcript::of("gyro", "A word of 62 half periods of four states");
+    let error = facts(&config).unwrap_err();
+    transcript.case("half_periods_per_sample = 62", error);
+    transcript.check();
     config.modulator.scheme = ModulationScheme::FourStateHalf;
     assert!(facts(&config).is_ok());
 }
@@ -514,7 +514,9 @@ fn a_step_limit_holds_the_register_and_is_counted() {
     assert_close(held, FRAC_PI_2, 1e-12, 0.0);
     let faults = model.loop_faults();
     assert!(faults.saturated_steps > 1000);
-    assert!(faults.notes()[0].contains("step_limit_deg"));
+    let mut transcript = Transcript::of("gyro", "A register at its limit");
+    transcript.case("step_limit_deg = 90.0, 2 rad", faults.notes().join("\n"));
+    transcript.check();
     let motion = MotionExtremes {
         rate_rad_per_s: 2.0 / scale_factor_s(),
         ..MotionExtremes::default()
@@ -527,6 +529,7 @@ fn a_step_limit_holds_the_register_and_is_counted() {
 fn a_wrong_fringe_is_reported_as_a_multiple_of_two_pi() {
     let config = silent_gyro();
     let two_fringes = TAU / scale_factor_s();
+    let mut transcript = Transcript::of("gyro", "Words of a wrong fringe");
     for (rate_deg_per_s, turns) in [(250.0, -1.0), (-250.0, 1.0), (650.0, -2.0)] {
         let mut model = loop_model(&config);
         let rate = deg_per_s_to_rad_per_s(rate_deg_per_s);
@@ -540,8 +543,10 @@ fn a_wrong_fringe_is_reported_as_a_multiple_of_two_pi() {
             1e-12,
             0.0,
         );
-        assert!(faults.notes()[0].contains("wrong fringe"));
+        let given = format!("a turn at {rate_deg_per_s} deg/s");
+        transcript.case(given, faults.notes().join("\n"));
     }
+    transcript.check();
     let mut model = loop_model(&config);
     mean_word(|segment| model.next_word(segment), 3.0, 50, 5);
     assert_eq!(model.loop_faults().wrong_fringe_words, 0);

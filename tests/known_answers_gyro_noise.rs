@@ -118,7 +118,7 @@ fn each_source_is_switched_by_its_key_and_counts_once_in_the_total() {
     let full = budget(&all);
     let names: Vec<&str> = NOISE_SOURCES.iter().map(|source| source.name()).collect();
     let shown: Vec<&str> = full.iter().map(|(name, _)| *name).collect();
-    assert_eq!(shown, [names.as_slice(), &["total"]].concat());
+    assert_eq!(shown, [names.as_slice(), &["rate_word", "total"]].concat());
     for (index, source) in NOISE_SOURCES.iter().enumerate() {
         let mut settings = all.clone();
         settings[index] = off(source);
@@ -130,8 +130,10 @@ fn each_source_is_switched_by_its_key_and_counts_once_in_the_total() {
             assert_close(*after, want, 1e-12, 0.0);
             squares += after * after;
         }
-        let (_, total) = without[names.len()];
-        assert_close(total, squares.sqrt(), 1e-12, 0.0);
+        // The words round to a step of their own, which no source of the detector touches.
+        let (_, rounding) = without[names.len()];
+        let (_, total) = without[names.len() + 1];
+        assert_close(total, squares.sqrt().hypot(rounding), 1e-12, 0.0);
     }
 }
 
@@ -430,4 +432,38 @@ fn streams_decide_the_words() {
     let first = loop_words(&config, 1, 0.01);
     assert_eq!(first, loop_words(&config, 1, 0.01));
     assert_ne!(first, loop_words(&config, 2, 0.01));
+}
+
+#[test]
+fn the_rounding_of_the_words_stands_in_the_budget() {
+    // A coil of 5 km has so little noise that steps of 4e-4 deg/s count; in steps of 2e-3 deg/s few words
+    // move at all.
+    for (lsb_deg_per_s, seed) in [(4e-4, 1), (2e-3, 2)] {
+        let mut config = gyro(&[
+            "coil.length_m = 5000.0".to_owned(),
+            "coil.diameter_mm = 200.0".to_owned(),
+            "source.wavelength_nm = 1550.0".to_owned(),
+            "controller.loop_bandwidth_hz = 2000.0".to_owned(),
+            "modulator.dac_bits = 0".to_owned(),
+            format!("output.rate_lsb_deg_per_s = {lsb_deg_per_s}"),
+        ]);
+        config.slow_noise.bias_instability_deg_per_h = 0.0;
+        config.slow_noise.rate_random_walk_deg_per_h_per_sqrt_h = 0.0;
+        let (total, rounding) = (budget_of(&config, "total"), budget_of(&config, "rate_word"));
+        let detection = (total * total - rounding * rounding).sqrt();
+        // The rates that the words round stand anywhere between two steps.
+        let mut model = RateModel::new(&config, 400.0, &Streams::new(seed, 0)).unwrap();
+        let step = fogbench::units::deg_per_s_to_rad_per_s(lsb_deg_per_s);
+        let mut variances = Vec::new();
+        for place in 0..8 {
+            let rest = MotionSegment::constant(step * f64::from(place) / 8.0);
+            let words: Vec<f64> = (0..20_050).map(|_| model.next_word(&rest)).collect();
+            let (walk, _) = random_walk(&config, &words[50..], 20);
+            variances.push(walk * walk);
+        }
+        let measured = (variances.iter().sum::<f64>() / 8.0).sqrt();
+        // 160 000 words in twenties: 1.0 %.
+        assert_close(measured, total, 0.03, 0.0);
+        assert!(total > 1.05 * detection, "{total} {detection}");
+    }
 }

@@ -112,12 +112,12 @@ fn three_rates_make_a_scale_factor_and_two_of_each_sense_an_asymmetry() {
         fit_scale_factor(&points, StaticZero::default())
     };
     assert!(fit(&[]).is_err());
-    assert!(
-        fit(&[1.0, 2.0, 1.0, 2.0])
-            .unwrap_err()
-            .as_str()
-            .contains("there are 2")
+    let mut transcript = Transcript::of("metrics", "Rates too few for a scale factor");
+    transcript.case(
+        "four dwells at two rates",
+        fit(&[1.0, 2.0, 1.0, 2.0]).unwrap_err(),
     );
+    transcript.check();
     assert!(fit(&[1.0, 2.0, 3.0]).unwrap().asymmetry.is_none());
     // A table at rest belongs to neither sense.
     assert!(fit(&[-1.0, 0.0, 1.0, 2.0]).unwrap().asymmetry.is_none());

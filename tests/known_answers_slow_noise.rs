@@ -235,8 +235,9 @@ fn gauss_markov_noise_has_the_allan_variance_of_its_closed_form() {
 }
 
 #[test]
-fn gauss_markov_noise_is_exact_at_any_sample_period_and_has_a_stream_of_its_own() {
-    // A correlation time per sample: correlation exp(-1), variance 1 from the first sample on.
+fn gauss_markov_noise_is_averaged_over_any_sample_period_and_has_a_stream_of_its_own() {
+    // A correlation time per sample: the mean over it has the variance 2 (a - 1 + exp(-a)) / a^2 =
+    // 0.736 and the covariance (1 - exp(-1))^2 = 0.400 with its neighbour, from the first sample on.
     let words = gauss_markov(0.0, 1.0, 1.0, 7);
     let count = words.len() as f64;
     let products = |lag: usize| {
@@ -244,8 +245,10 @@ fn gauss_markov_noise_is_exact_at_any_sample_period_and_has_a_stream_of_its_own(
         pairs.map(|(a, b)| a * b).sum::<f64>() / count
     };
     let error = (2.0 / count * (1.0 + 2.0 / (2.0_f64.exp() - 1.0))).sqrt();
-    assert_close(products(0), 1.0, 0.0, 4.0 * error);
-    assert_close(products(1), (-1.0_f64).exp(), 0.0, 4.0 * error);
+    let end = (-1.0_f64).exp();
+    assert_close(products(0), 2.0 * end, 0.0, 4.0 * error);
+    assert_close(products(1), (1.0 - end).powi(2), 0.0, 4.0 * error);
+    assert_close(products(2), end * (1.0 - end).powi(2), 0.0, 4.0 * error);
     let first = (0..2000).map(|seed| gauss_markov_first(seed).powi(2));
     assert_close(
         first.sum::<f64>() / 2000.0,
@@ -255,8 +258,39 @@ fn gauss_markov_noise_is_exact_at_any_sample_period_and_has_a_stream_of_its_own(
     );
     let flicker = gauss_markov(1.0, 0.0, 1.0, 7);
     let both = gauss_markov(1.0, 1.0, 1.0, 7);
-    for ((sum, flicker), correlated) in both.iter().zip(&flicker).zip(&words) {
+    // The first values share the stream of starts.
+    let later = both.iter().zip(&flicker).zip(&words).skip(2000);
+    for ((sum, flicker), correlated) in later {
         assert_close(*sum, flicker + correlated, 0.0, 1e-9);
+    }
+}
+
+#[test]
+fn gauss_markov_noise_far_faster_than_a_word_is_what_its_density_leaves_of_it() {
+    // A hundredth of a word: the mean over a word scatters by sqrt(2 Tc / T) of the deviation (it
+    // scattered by all of it while it was drawn at the stamp).
+    let words = gauss_markov(0.0, 1.0, 100.0, 3);
+    let variance = words.iter().map(|word| word * word).sum::<f64>() / words.len() as f64;
+    assert_close(variance, 2.0 * (100.0 - 1.0) / 1e4, 0.03, 0.0);
+}
+
+#[test]
+fn flicker_and_walk_of_long_words_are_means_over_them() {
+    const RUNS: u64 = 20;
+    // Words of 10 ms: from the first averaging time on flicker is flat (1.3 % low at one word) ...
+    let variance_at = |coefficients: [f64; 3], factor: usize| {
+        let runs = (0..RUNS).map(|seed| slow_noise(coefficients, 0.01, 1 << 15, 400 + seed));
+        let variances = runs.map(|run| allan_deviation(&run, factor).powi(2));
+        variances.sum::<f64>() / RUNS as f64
+    };
+    let flat = (2.0 * 2.0_f64.ln() / PI).sqrt();
+    for factor in [1, 2, 3] {
+        assert_close(variance_at([1.0, 0.0, 0.0], factor).sqrt(), flat, 0.02, 0.0);
+    }
+    // ... and the Allan variance of the walk is K^2 tau / 3, where values at the stamps give a half.
+    for factor in [1, 2, 4] {
+        let want = 0.1_f64.powi(2) * 0.01 * factor as f64 / 3.0;
+        assert_close(variance_at([0.0, 6.0, 0.0], factor), want, 0.03, 0.0);
     }
 }
 

@@ -56,6 +56,7 @@ fn measured_with(values: &[f64], period_s: f64, drift: Option<&SlowDrift>) -> Ch
         channel_deg_per_h: values,
         raw_deg_per_h: values,
         truth_deg_per_h: &truth,
+        response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: period_s,
         first_stamp_s: 0.0,
@@ -129,9 +130,10 @@ fn mean_error_intervals_hold_the_true_rate_with_flicker_and_without() {
         assert!(10 * trial.covered >= 9 * RUNS, "{text}");
         // Mean half width in units of 1.96 standard deviations that 300 runs show, good to 4 %.
         assert!((0.85..1.2).contains(&trial.width), "{text}");
-        // Neither a walk nor a ramp is there; the tail below a 95 % interval holds one in 40.
-        assert!(trial.found[1] <= RUNS / 40, "{text}");
-        assert!(trial.found[2] <= RUNS / 40, "{text}");
+        // Neither a walk nor a ramp is there; the tail below a 95 % interval holds one in 40, of 300
+        // up to 15 with a probability of 99.6 %.
+        assert!(trial.found[1] <= RUNS / 20, "{text}");
+        assert!(trial.found[2] <= RUNS / 20, "{text}");
         if flicker <= 0.0 {
             assert!(trial.found[0] <= RUNS / 20, "{text}");
         }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use fogbench::metrics::{
-    ChannelMetrics, FilterFacts, Motion, Record, Settings, known_metrics, measure,
+    ChannelMetrics, FilterFacts, Motion, NoiseDelayBound, Record, Settings, known_metrics, measure,
     noise_delay_bound, support,
 };
 
@@ -24,6 +24,7 @@ fn measured(
         channel_deg_per_h: channel,
         raw_deg_per_h: raw,
         truth_deg_per_h: &truth,
+        response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 1.0,
@@ -94,7 +95,7 @@ fn a_constant_output_is_said_not_to_vary() {
     let metrics = measured(&raw, &constant, &settings(Motion::Steady), Some(&facts()));
     every_metric_is_answered(&metrics);
     let reason = metrics.unavailable["angle_random_walk_deg_per_sqrt_h"].as_str();
-    assert!(reason.contains("does not vary"), "{reason}");
+    assert_eq!(reason, "the output does not vary over the record");
 }
 
 /// White noise of 3.6 deg/h about 8.47 deg/h at 100 Hz through a gain that is redrawn about one half
@@ -115,6 +116,7 @@ fn through_a_wandering_gain(deviation: f64) -> ChannelMetrics {
         channel_deg_per_h: &output,
         raw_deg_per_h: &raw,
         truth_deg_per_h: &truth,
+        response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: 0.01,
         first_stamp_s: 0.0,
@@ -183,7 +185,7 @@ fn the_bound_stands_at_the_delay_of_the_weights_that_ran() {
     // Ages 2 to 5: (2 x 0.3 + 3 x 0.1) / 0.4 = 2.25 samples.
     let ran = of(Some(vec![0.3, 0.1, 0.0, 0.0]));
     let name = "noise_delay_bound_noise_gain";
-    let wanted = noise_delay_bound(4, 2, 2.25).unwrap();
+    let wanted = noise_delay_bound(4, 1, 2.25).unwrap();
     assert_close(value(&ran, name), wanted, 0.03, 0.0);
     assert_close(
         ran.metrics[name].fields["delay_ms"],
@@ -195,11 +197,13 @@ fn the_bound_stands_at_the_delay_of_the_weights_that_ran() {
     // The output is raw itself: its noise over the bound is one over the bound.
     let over = value(&ran, "noise_gain_over_bound");
     assert_close(over, 1.0 / value(&ran, name), 1e-9, 0.0);
-    // The curve of three solutions is the bound at every delay: about 3 % of colour in white noise.
+    assert_close(ran.metrics[name].fields["first_age_samples"], 0.0, 0.0, 0.0);
+    // The curve is the bound at every delay: about 3 % of colour in white noise.
     let curve = &ran.curves["noise_delay_bound"];
     for (index, delay_ms) in curve["delay_ms"].iter().enumerate() {
         let delay = delay_ms / 1e3 / PERIOD_S;
-        let wanted = noise_delay_bound(4, 2, delay).unwrap();
+        let wanted = NoiseDelayBound::white(4, 1).unwrap().at(delay).unwrap();
+        let wanted = wanted.noise_gain;
         assert_close(curve["white_noise_gain"][index], wanted, 1e-9, 0.0);
         assert_close(curve["noise_gain"][index], wanted, 0.05, 0.0);
     }

@@ -8,6 +8,7 @@ use fogbench::metrics::{
 use fogbench::signal::{FilterShape, Section, WeightRule};
 
 use crate::support::records::{PERIOD_S, facts, raw_record, settings, sine, value, white};
+use crate::support::transcript::Transcript;
 use crate::support::{assert_close, code, field, fogbench, repository, stderr, stdout, summary};
 
 /// A filter of given rule on samples of age 1 and older.
@@ -216,11 +217,9 @@ fn a_swing_from_rest_must_start_at_once() {
     let arguments = ["check", path.to_str().unwrap(), "--set", set];
     let run = fogbench(folder.path(), &arguments);
     assert_eq!(code(&run), 2);
-    assert!(
-        stderr(&run).contains("turntable.swing.from_rest = true"),
-        "{}",
-        stderr(&run)
-    );
+    let mut transcript = Transcript::of("motion", "A swing from rest with a soft start");
+    transcript.case(format!("--set {set}"), stderr(&run));
+    transcript.check();
 }
 
 fn add(values: &mut [f64], others: &[f64]) {

@@ -275,7 +275,9 @@ fn a_time_column_gives_the_rate_and_its_jitter() {
         "{timing:?}"
     );
     assert_close(log.rate_deg_per_h[7], 7.0, 0.0, 0.0);
-    assert!(log.notes()[0].contains("no gap"), "{:?}", log.notes());
+    let mut transcript = Transcript::of(LOGS, "Notes on a time column without a gap");
+    transcript.case("stamps with jitter", log.notes().join("\n"));
+    transcript.check();
 
     let milliseconds = LogFormat {
         time_unit: TimeUnit::Milliseconds,

@@ -71,6 +71,22 @@ fn rounded_ramp(seed: u64) -> Vec<f64> {
         .collect()
 }
 
+/// White noise, noise correlated over 6 s, and a sine of 4 s.
+fn correlated_beside_sine(seed: u64) -> Vec<f64> {
+    let mut sum = white(seed, SAMPLES, 1.0);
+    let decay = (-PERIOD_S / 6.0).exp();
+    let mut state = 0.0;
+    for (index, (value, drive)) in sum
+        .iter_mut()
+        .zip(white(seed + 900, SAMPLES, 1.0))
+        .enumerate()
+    {
+        state = decay * state + (1.0 - decay * decay).sqrt() * drive;
+        *value += 2.0 * state + 3.0 * (TAU * index as f64 * PERIOD_S / 4.0).sin();
+    }
+    sum
+}
+
 fn sines(frequencies_hz: &[f64]) -> Vec<f64> {
     let at = |index: usize| {
         let time_s = (index + 1) as f64 * PERIOD_S;
@@ -119,6 +135,7 @@ fn cases() -> Vec<Case> {
     vec![
         case(Motion::Steady, still(), coloured_noise),
         case(Motion::Steady, still(), rounded_ramp),
+        case(Motion::Steady, still(), correlated_beside_sine),
         case(Motion::Swing { frequency_hz: 1.0 }, swing(), small_noise),
         case(
             Motion::SwingFromRest { frequency_hz: 1.0 },
@@ -193,6 +210,7 @@ fn measured(case: &Case, seed: u64) -> [ChannelMetrics; 2] {
             channel_deg_per_h: channel,
             raw_deg_per_h: &raw,
             truth_deg_per_h: &case.truth,
+            response_deg_per_h: &[],
             encoder_rad: Some(&angles),
             sample_period_s: PERIOD_S,
             first_stamp_s: PERIOD_S,

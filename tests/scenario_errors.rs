@@ -330,7 +330,7 @@ fn times_that_do_not_fit_are_refused() {
         [
             "[turntable.steps]\nrates_deg_per_s = [0.0, 1.0, 2.0]\ndwell_s = 7.0\n",
             "warm_up_s = 0.5\n[turntable.rotation]\nrate_deg_per_s = 1.0\n",
-            "[turntable.swing]\nfrequency_hz = 500.0\nangle_amplitude_deg = 1e-3\n",
+            "[turntable.swing]\nfrequency_hz = 999.0\nangle_amplitude_deg = 1e-3\n",
         ],
     );
 }

@@ -1,40 +1,21 @@
-//! The command line: one file per command, exit codes, and the only code that prints.
+//! The command line: options, commands, and the only code that prints.
 //!
 //! Data goes to stdout, talk and progress to stderr. A progress bar is drawn on a terminal only.
 
-mod arguments;
-mod budget;
-mod calibrate;
-mod calibrate_arguments;
-mod check;
-mod complaint;
-mod exit;
-mod expand;
-mod export;
-mod format;
-mod hardware_arguments;
-mod idle;
-mod list;
-mod log;
-mod log_arguments;
-mod numbers;
-mod output;
-mod panics;
-mod place;
-mod run;
-mod schema;
-mod select;
-mod signals;
-mod timing;
-mod words;
+mod commands;
+mod options;
+mod terminal;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use crate::experiment::start_threads;
-use arguments::{Arguments, Command};
-use exit::Exit;
-use signals::Interrupt;
+use commands::{budget, calibrate, check, claim, expand, export, list, log, run, schema, timing};
+use options::arguments::{Arguments, Command};
+use options::idle;
+use terminal::exit::{self, Exit};
+use terminal::panics;
+use terminal::signals::Interrupt;
 
 /// Runs the program: parses the arguments, dispatches the command and returns the exit code.
 #[must_use]
@@ -69,6 +50,7 @@ fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
         Command::Budget(options) => budget::budget(options),
         Command::Analyze(options) => log::analyze(options),
         Command::Filter(options) => log::filter(options),
+        Command::Claim(options) => claim::claim(options),
         Command::Calibrate(options) => calibrate::calibrate(options),
         Command::Timing(options) => timing::timing(options),
         Command::Export(options) => export::export(options),

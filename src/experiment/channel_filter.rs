@@ -9,7 +9,7 @@ use crate::experiment::run::{RateTwins, RecordLength};
 use crate::filters::hardware::{HardwareFilter, HealthSummary, PipelineSettings, PipelineTiming};
 use crate::filters::{Divergence, Filter, FilterKind, Output};
 use crate::metrics::RateGain;
-use crate::signal::{FilterShape, WeightRule};
+use crate::signal::{FilterShape, Section, WeightRule};
 
 /// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
 pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
@@ -168,17 +168,19 @@ impl ChannelFilter {
     ) -> Self {
         let arithmetic = || Arithmetic::new(kind, length, sample_period_s);
         let filter = arithmetic();
+        let shape = filter.as_filter().shape();
+        let adapts = matches!(shape.rule, WeightRule::Adaptive { .. });
         Self {
             name,
             settings: kind.settings().hardware(),
-            shape: filter.as_filter().shape(),
+            shape,
             weight_totals: std::array::from_fn(|_| vec![0.0; filter.as_filter().weights().len()]),
             weight_counts: [0; WEIGHT_BLOCKS],
             twin_differences: [0.0; WEIGHT_BLOCKS],
             twin_counts: [0; WEIGHT_BLOCKS],
             measured_samples: length.measured.max(1),
             filter,
-            twin: Some(arithmetic()),
+            twin: adapts.then(arithmetic),
             rate_twins: rate_gain.then(|| RateTwins::new(length, arithmetic)),
             output_deg_per_h: Vec::with_capacity(length.total()),
             warm_up_samples: length.warm_up,
@@ -269,7 +271,8 @@ impl ChannelFilter {
         let words = match self.failure {
             Some(divergence) => Err(divergence),
             None => Ok(FilterWords {
-                dc_gain: mean(self.weight_sum_total),
+                // Given weights have the gain that they settle on; their sum starts from nothing.
+                dc_gain: given_gain(&self.shape.rule).or_else(|| mean(self.weight_sum_total)),
                 rate_gains: self
                     .rate_twins
                     .as_ref()
@@ -285,8 +288,10 @@ impl ChannelFilter {
                     WeightRule::Adaptive { .. } => self.block_weights(),
                     WeightRule::Fixed(_) | WeightRule::Sections(_) => Vec::new(),
                 },
-                dc_gain_adapted: self.twin.as_ref().and_then(|_| {
-                    mean(self.twin_difference_total).map(|gain| gain / ADDED_RATE_DEG_PER_H)
+                dc_gain_adapted: given_gain(&self.shape.rule).or_else(|| {
+                    self.twin.as_ref().and_then(|_| {
+                        mean(self.twin_difference_total).map(|gain| gain / ADDED_RATE_DEG_PER_H)
+                    })
                 }),
                 block_dc_gains_adapted: self.block_dc_gains_adapted(),
                 output_deg_per_h: self.output_deg_per_h,
@@ -335,5 +340,18 @@ impl ChannelFilter {
             health: filter.health(),
             wind_up: filter.wind_up().map(|warning| warning.to_string()),
         })
+    }
+}
+
+/// Gain of given weights for a rate that never changes; none of weights that adapt.
+fn given_gain(rule: &WeightRule) -> Option<f64> {
+    let of_section = |section: &Section| {
+        let [a1, a2] = section.denominator;
+        section.numerator.iter().sum::<f64>() / (1.0 + a1 + a2)
+    };
+    match rule {
+        WeightRule::Fixed(weights) => Some(weights.iter().sum()),
+        WeightRule::Sections(sections) => Some(sections.iter().map(of_section).product()),
+        WeightRule::Adaptive { .. } => None,
     }
 }

@@ -9,6 +9,8 @@ mod campaign;
 mod channel_filter;
 #[cfg(feature = "report")]
 mod log;
+#[cfg(feature = "report")]
+mod output_file;
 mod pipeline_metrics;
 mod plan;
 mod run;

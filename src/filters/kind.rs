@@ -1,4 +1,4 @@
-//! What each kind of filter says of itself. The list of the kinds stands in the module.
+//! What each kind of filter says of itself. The list of the kinds, `kinds!`, stands in `mod.rs`.
 
 use super::FilterKind;
 use super::common::{Complaint, Complaints, Filter};

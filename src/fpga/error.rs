@@ -13,7 +13,7 @@ pub enum FpgaError {
         value: usize,
     },
     /// A numeric setting lies outside its range, or leaves it when rounded to the word format.
-    #[error("{name} = {value} is out of range: expected {range} in {format}")]
+    #[error("{name} = {} is out of range: expected {range} in {format}", shown(*value))]
     OutOfRange {
         /// Setting.
         name: &'static str,
@@ -62,6 +62,14 @@ pub enum FpgaError {
         /// Cause.
         message: String,
     },
+}
+
+/// A number as messages show it: exact, a tiny or huge one with its power of ten.
+fn shown(value: f64) -> String {
+    let exact = format!("{value:?}");
+    exact
+        .strip_suffix(".0")
+        .map_or(exact.clone(), str::to_owned)
 }
 
 impl FpgaError {

@@ -1,6 +1,6 @@
 //! Bit- and clock-exact models of the filter pipelines in the FPGA.
 //!
-//! Bits in, bits out: this module imports nothing of the crate, converts no units and knows no
+//! Bits in, bits out: this module imports nothing of the crate but its words, converts no units and knows no
 //! gyro. Each filter exists twice, as a pipeline that advances clock by clock over explicit
 //! memories and registers, and as a clock-less engine with the same words. They share neither
 //! control nor storage, and the tests hold them together to the last bit.

@@ -7,7 +7,7 @@ mod judge;
 mod number;
 mod verdict;
 
-pub(crate) use crate::metrics::{estimate_text, plain};
+pub(crate) use crate::metrics::{estimate_text, plain, three_digits};
 pub use judge::{expects_failure, judge, quotient};
 pub(crate) use number::limits_text;
 pub use verdict::{Verdict, VerdictKind};

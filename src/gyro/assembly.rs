@@ -30,6 +30,8 @@ fn with_own_temperature(config: &GyroConfig, assembly: &AssemblyConfig, axis: us
 pub struct CaseGyro {
     input_axis: InputAxis,
     gyro: Gyro,
+    /// What the input axis sensed of the last word.
+    sensed: Vec<MotionSegment>,
 }
 
 impl CaseGyro {
@@ -57,7 +59,11 @@ impl CaseGyro {
                 let streams = streams.scoped(axis);
                 let own = with_own_temperature(config, assembly, index);
                 let gyro = Gyro::new(&own, fidelity, simulated_time_s, &streams)?;
-                Ok(Self { input_axis, gyro })
+                Ok(Self {
+                    input_axis,
+                    gyro,
+                    sensed: Vec::new(),
+                })
             })
             .collect()
     }
@@ -65,6 +71,15 @@ impl CaseGyro {
     /// Rate word of the output sample over which the case moves as `case`, deg/h.
     pub fn next_word(&mut self, case: &[MotionSegment; 3]) -> f64 {
         self.gyro.next_word(&self.input_axis.sensed(case))
+    }
+
+    /// Rate word of the output sample over which the case moves as `cases`, which share it equally,
+    /// deg/h.
+    pub fn next_word_over(&mut self, cases: &[[MotionSegment; 3]]) -> f64 {
+        self.sensed.clear();
+        let sensed = cases.iter().map(|case| self.input_axis.sensed(case));
+        self.sensed.extend(sensed);
+        self.gyro.next_word_over(&self.sensed)
     }
 
     /// The gyro behind the input axis.

@@ -16,7 +16,8 @@ table! {
         /// Whether the loop gain is held against changes of the detected power; if not, bandwidth and delay
         /// change with it. Source of the default: assumed, a plain integrator.
         automatic_gain_control: bool = false;
-        /// Gain of the second loop, which corrects the modulator's gain; 0 is off. Source of the default: none.
+        /// Gain of the second loop, which sets the modulator's gain between half and twice the nominal one;
+        /// 0 is off. Source of the default: none.
         second_loop_gain: f64 = 0.0, in 0.0..=1.0;
         /// Bits of the ramp's step over 2 pi, the rest cut off; 0 is ideal. Source of the default: none.
         step_bits: u32 = 0, in 0..=48;

@@ -10,7 +10,7 @@ table! {
     /// the metrics and in samples/, is then the Earth's rate plus the equivalent rate, and the record is
     /// measured as one of several sines. Absent is the gyro at work.
     pub struct InjectionConfig {
-        /// Frequencies, ascending, at most 64; a cycle must span at least 8 output samples, and the record
+        /// Frequencies, ascending, at most 64; a cycle must span at least 4 output samples, and the record
         /// three cycles of the lowest and one of each difference. A smaller
         /// gyro.output.half_periods_per_sample reaches further.
         frequencies_hz: Vec<f64>, example [5.0, 20.0, 80.0, 320.0], in 1e-6..=100_000.0, "Hz";

@@ -5,9 +5,13 @@ use std::f64::consts::TAU;
 use crate::gyro::error::GyroError;
 use crate::gyro::loop_model::LoopModel;
 use crate::gyro::loop_model::faults::LoopFaults;
+use crate::gyro::noise::NoiseConfig;
 use crate::gyro::noise::budget::NoiseBudget;
+use crate::gyro::noise::budget_sheet::with_rate_word;
+use crate::gyro::noise::slow_noise::SlowNoiseConfig;
 use crate::gyro::parts::{Parts, half_period_s};
 use crate::gyro::rate_model::RateModel;
+use crate::gyro::rate_word::OutputQuantisation;
 use crate::gyro::{Fidelity, GyroConfig};
 use crate::random::Streams;
 use crate::signal::{GyroFacts, MotionSegment};
@@ -75,6 +79,34 @@ impl Gyro {
         Ok(Self { model })
     }
 
+    /// What the linear model of a gyro makes of motion alone: no noise, no rounding, no vibration.
+    ///
+    /// # Errors
+    /// Any [`GyroError`], as [`Gyro::new`].
+    pub fn without_noise(config: &GyroConfig) -> Result<Self, GyroError> {
+        let mut quiet = config.clone();
+        let reference = GyroConfig::reference();
+        quiet.noise = NoiseConfig {
+            shot: false,
+            thermal: false,
+            amplifier: false,
+            rin: false,
+            technical_phase_urad_per_sqrt_hz: 0.0,
+            ..quiet.noise
+        };
+        quiet.adc.bits = 0;
+        quiet.modulator.dac_bits = 0;
+        quiet.slow_noise = SlowNoiseConfig {
+            bias_instability_deg_per_h: 0.0,
+            rate_random_walk_deg_per_h_per_sqrt_h: 0.0,
+            ..reference.slow_noise
+        };
+        quiet.output.quantisation = OutputQuantisation::RateWord;
+        quiet.output.rate_lsb_deg_per_s = 0.0;
+        quiet.vibration = reference.vibration;
+        Self::new(&quiet, Fidelity::Rate, 1.0, &Streams::new(0, 0))
+    }
+
     /// Time between rate words, s.
     #[must_use]
     pub fn sample_period_s(&self) -> f64 {
@@ -88,9 +120,15 @@ impl Gyro {
     ///
     /// The word is stamped at the end of the segment.
     pub fn next_word(&mut self, segment: &MotionSegment) -> f64 {
+        self.next_word_over(std::slice::from_ref(segment))
+    }
+
+    /// Rate word of the output sample over which the gyro moves as `segments`, which share it equally,
+    /// deg/h: fast motion takes several, see [`cubics_per_word`](crate::signal::cubics_per_word).
+    pub fn next_word_over(&mut self, segments: &[MotionSegment]) -> f64 {
         match &mut self.model {
-            Model::Loop(model) => model.next_word(segment),
-            Model::Rate(model) => model.next_word(segment),
+            Model::Loop(model) => model.next_word_over(segments),
+            Model::Rate(model) => model.next_word_over(segments),
         }
     }
 
@@ -199,6 +237,10 @@ pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
             controller.bandwidth_hz()
         },
         delay_ms: s_to_ms(controller.word_delay_s(periods)),
-        angle_random_walk_budget_deg_per_sqrt_h: NoiseBudget::new(&detector, &coil).entries(),
+        angle_random_walk_budget_deg_per_sqrt_h: with_rate_word(
+            NoiseBudget::new(&detector, &coil),
+            config,
+        )
+        .entries(),
     })
 }

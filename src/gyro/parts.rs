@@ -119,7 +119,7 @@ impl Parts {
 
     /// Refuses noise beside which nothing shows, and which ends in numbers that are not finite.
     fn noise_within_fringe(&self) -> Result<(), GyroError> {
-        let budget = NoiseBudget::new(&self.detector, &self.coil).total_deg_per_sqrt_h();
+        let budget = NoiseBudget::new(&self.detector, &self.coil).detection_deg_per_sqrt_h();
         let word_s = f64::from(self.half_periods) * self.half_period_s;
         let noise = deg_per_sqrt_h_to_rad_per_sqrt_s(budget) / word_s.sqrt();
         let limit = self.coil.single_fringe_rate_rad_per_s();
@@ -143,4 +143,10 @@ impl Parts {
 pub(super) fn half_period_s(config: &GyroConfig) -> f64 {
     let coil = Coil::new(&config.coil, &config.source);
     coil.transit_time_s * (1.0 + config.modulator.half_period_mismatch)
+}
+
+/// The cubic that an instant of a sample falls into, and its normalised time there.
+pub(super) fn place_in_cubics(instant: usize, instants: usize, cubics: usize) -> (usize, f64) {
+    let within = (instant * cubics % instants) as f64;
+    (instant * cubics / instants, within / instants as f64)
 }

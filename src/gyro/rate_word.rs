@@ -40,6 +40,16 @@ words! {
     }
 }
 
+impl RateOutputConfig {
+    /// Step to which each word is rounded, its remainder thrown away, deg/h; 0 if none is.
+    pub(super) fn word_step_deg_per_h(&self) -> f64 {
+        match self.quantisation {
+            OutputQuantisation::RateWord => deg_per_s_to_deg_per_h(self.rate_lsb_deg_per_s),
+            OutputQuantisation::AngleCarry => 0.0,
+        }
+    }
+}
+
 /// Turns the mean register of an output sample into its rate word.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RateWord {

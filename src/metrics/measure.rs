@@ -1,6 +1,6 @@
 //! From a record to the table of everything it supports.
 
-use super::catalogue::support::{encoder_lack, support, truth_lack};
+use super::catalogue::support::{check_motion, encoder_lack, support, truth_lack};
 use super::estimate::reason::{NO_TRUTH, Unavailable};
 use super::estimate::table::ChannelMetrics;
 use super::key::metric::{Applies, MetricKey, Needs};
@@ -18,7 +18,9 @@ use super::steps::staircase::measure_scale_factor;
 use super::trial::dc_gain::put_dc_gains;
 use super::trial::frozen_response::put_frozen_response;
 use super::trial::rate_gain::put_rate_gains;
-use super::trial::readaptation::{READAPTATION_TIME, measure_after_step, onset};
+use super::trial::readaptation::{
+    READAPTATION_TIME, adapts, measure_after_step, onset, put_memory,
+};
 use crate::metrics::catalogue::known_metrics;
 use crate::wording::counted;
 
@@ -44,7 +46,8 @@ const SPECTRUM_POINTS_MAX: usize = 400;
 /// knows the hardware. Intervals are 95 %.
 ///
 /// # Panics
-/// If the slices of the record differ in length, an empty truth excepted.
+/// If the slices of the record differ in length, an empty truth excepted, or the response of the gyro is
+/// shorter than the record without being empty.
 ///
 /// ```
 /// use fogbench::metrics::catalogue::{DC_GAIN, MEAN, NOISE_STD};
@@ -55,6 +58,7 @@ const SPECTRUM_POINTS_MAX: usize = 400;
 ///     channel_deg_per_h: &words,
 ///     raw_deg_per_h: &words,
 ///     truth_deg_per_h: &[],
+///     response_deg_per_h: &[],
 ///     encoder_rad: None,
 ///     sample_period_s: 0.01,
 ///     first_stamp_s: 0.01,
@@ -85,14 +89,27 @@ pub fn measure(
         "channel, raw and truth hold {samples}, {} and {truths} samples",
         record.raw_deg_per_h.len()
     );
+    let answers = record.response_deg_per_h.len();
+    assert!(
+        answers == 0 || answers >= samples,
+        "channel and response of the gyro hold {samples} and {answers} samples"
+    );
     let readings = record.encoder_rad.map_or(samples, <[f64]>::len);
     assert!(
         readings == samples,
         "channel and encoder hold {samples} and {readings} samples"
     );
     let mut metrics = ChannelMetrics::default();
-    if let Err(reason) = measure_motion(record, settings, filter, &mut metrics) {
-        refuse_rest(&reason, &mut metrics);
+    match measure_motion(record, settings, filter, &mut metrics) {
+        Err(reason) => refuse_rest(&reason, &mut metrics),
+        Ok(()) => {
+            let fixed = filter.filter(|facts| !adapts(&facts.shape));
+            if let Some(facts) =
+                fixed.filter(|_| check_motion(&READAPTATION_TIME, &settings.motion).is_ok())
+            {
+                put_memory(facts, record.sample_period_s, &mut metrics);
+            }
+        }
     }
     if let Some(facts) = filter {
         put_dc_gains(record, facts, &mut metrics);
@@ -127,7 +144,7 @@ fn measure_motion(
         segment_samples(values.len()),
     );
     put_spectrum(log_binned(&spectrum, SPECTRUM_POINTS_MAX), metrics);
-    put_extremes(values, metrics);
+    put_extremes(record, metrics);
     match &settings.motion {
         Motion::MultiSine { .. } | Motion::General | Motion::Steps { .. }
             if record.truth().is_none() =>

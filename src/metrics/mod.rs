@@ -14,7 +14,7 @@
 //! |---|---|
 //! | `key` | what a metric and a curve declare of themselves |
 //! | `estimate` | numbers with intervals, reasons, the table of one channel |
-//! | `theory` | what a filter will do to a record, and the least noise at a delay |
+//! | `theory` | what a filter will do to a record, the least noise at a delay, what reads like less noise |
 //! | `allan` | Allan variances and the noise terms fitted to them: random walk, bias instability, ramp |
 //! | `record` | what a measurement is given |
 //! | `steps` | settling, overshoot, scale factor, threshold, dead band |
@@ -44,10 +44,13 @@ mod theory;
 mod trial;
 mod verdict;
 
+pub use allan::coefficients::{NoiseCoefficients, mixed_degrees_of_freedom};
 pub use allan::covariance::FLICKER_ALLAN_VARIANCE;
+pub use allan::judge::goodness::Goodness;
+pub use allan::least_squares::correlated_allan_variance;
 pub use allan::noise_fit::{
-    FIT_TAU_PER_RECORD_MAX, FitRange, NoiseCoefficients, NoiseFit, Term, fit_noise,
-    fit_pooled_noise, mixed_degrees_of_freedom,
+    CorrelatedNoise, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Sine, Term, fit_noise,
+    fit_pooled_noise, sine_allan_variance,
 };
 pub use allan::noise_identification::PowerLaw;
 pub use allan::overlapping::{
@@ -61,11 +64,12 @@ pub(crate) use catalogue::names::{meant, unknown, unknown_of_channel};
 pub use catalogue::support::{encoder_lack, requirement, support, truth_lack};
 pub use catalogue::{columns, find, known_curves, known_metrics, repeated_metrics};
 pub use estimate::blocks::{block_label_s, block_means, is_sample_or_longer, samples_in};
+pub use estimate::fit_sheet::{FitSheet, FitTerm};
 pub use estimate::missing::MissingMetric;
 pub use estimate::reason::Unavailable;
 pub use estimate::repeat_statistics::RepeatStatistics;
 pub use estimate::table::{ChannelFailure, ChannelMetrics};
-pub(crate) use estimate::text::{estimate_text, is_exact, plain, wants_exponent};
+pub(crate) use estimate::text::{estimate_text, is_exact, plain, three_digits, wants_exponent};
 pub use estimate::value::{Estimate, IntervalKind, Metric};
 pub use key::curve::{Column, Curve, CurveKey};
 pub(crate) use key::metric::{Against, Headline, Table};
@@ -75,7 +79,7 @@ pub use noise::autocovariance::autocovariance;
 pub use noise::bias_stability::{
     effective_degrees_of_freedom, expected_bias_stability, paired_ratio,
 };
-pub use noise::memory::{correlation_length_samples, memory_samples, record_fit_tau_min_s};
+pub use noise::memory::{correlation_length_samples, record_fit_tau_min_s};
 pub use noise::spectrum::{Spectrum, log_binned, segment_samples, welch};
 pub use noise::truth_response::known_motion;
 pub use pool::aggregate::aggregate;
@@ -95,8 +99,13 @@ pub use steps::scale_factor::{
 pub use steps::settling::{Settling, settling};
 pub use steps::shape::Step;
 pub use steps::small_input::smallest_answered;
-pub use theory::bound::{noise_delay_bound, noise_delay_bound_coloured, noise_power_gain};
+pub use theory::bound::{
+    LeastNoise, NoiseDelayBound, bound_taps, noise_delay_bound, noise_delay_bound_coloured,
+    noise_power_gain,
+};
+pub use theory::claim::{Claim, ClaimedFigure, Lookalikes};
 pub use theory::learning::Learning;
+pub use theory::memory::memory_samples;
 pub use theory::prediction::{Prediction, lags_needed, predict};
 pub use trial::readaptation::{GainUnits, Readaptation};
 pub use verdict::{AgainstOne, Deed, FilterVerdict, Finding, filter_verdict};

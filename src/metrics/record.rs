@@ -27,6 +27,9 @@ pub struct Record<'a> {
     pub raw_deg_per_h: &'a [f64],
     /// The true rate at the stamps, deg/h; empty where nobody knows it, as of a recorded log.
     pub truth_deg_per_h: &'a [f64],
+    /// What the gyro makes of the motion without noise, deg/h: it ends with the record and may begin
+    /// before it, by what the filters saw; empty where nobody knows it.
+    pub response_deg_per_h: &'a [f64],
     /// What the table's encoder shows at the stamps, rad; none if the table has none.
     pub encoder_rad: Option<&'a [f64]>,
     /// Sample period, s.

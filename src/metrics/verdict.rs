@@ -11,7 +11,7 @@ use super::trial::dc_gain::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, DC_GAIN};
 use super::trial::noise_delay::NOISE_GAIN_OVER_BOUND;
 use super::trial::predicted::DELAY_AT_DC;
 use super::trial::readaptation::READAPTATION_TIME;
-use super::trial::weight_noise::WEIGHT_NOISE_RATIO;
+use super::trial::weight_noise::{ALLAN_RATIO_INSIDE_MEMORY, WEIGHT_NOISE_RATIO};
 use crate::units::MICRO;
 
 /// Distance of a gain from 1 that counts as none.
@@ -109,6 +109,8 @@ pub struct FilterVerdict {
     pub slow_noise: Option<Finding>,
     /// Averaging time of that Allan deviation, s.
     pub slow_noise_averaging_time_s: Option<f64>,
+    /// The same at 1 s, where the filter reaches into it.
+    pub inside_memory: Option<Finding>,
     /// Angle random walk once the scale factor is restored, deg/sqrt(h).
     pub walk_restored_deg_per_sqrt_h: Option<Estimate>,
     /// Delay behind raw: of the motion, or at DC where there is none, ms.
@@ -160,6 +162,7 @@ pub fn filter_verdict(channel: &ChannelMetrics) -> Option<FilterVerdict> {
         slow_noise: estimate(&WEIGHT_NOISE_RATIO).map(noise),
         slow_noise_averaging_time_s: metric(&WEIGHT_NOISE_RATIO)
             .and_then(|metric| metric.fields.get("averaging_time_s").copied()),
+        inside_memory: estimate(&ALLAN_RATIO_INSIDE_MEMORY).map(noise),
         walk_restored_deg_per_sqrt_h: estimate(&ANGLE_RANDOM_WALK_OVER_DC_GAIN),
         delay_ms: estimate(&DELAY_VS_RAW).or_else(|| estimate(&DELAY_AT_DC)),
         over_bound: estimate(&NOISE_GAIN_OVER_BOUND).map(noise),

@@ -18,46 +18,66 @@ pub const SAMPLE_RATE_HZ: (f64, f64) = (1e-6, 1e9);
 /// Temperatures that a gyro works at, deg C: those that a compensation takes as its reference.
 pub const TEMPERATURE_C: (f64, f64) = (-100.0, 150.0);
 
+/// A number of a record beyond what it can mean.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum OutOfBounds {
+    /// A rate, deg/h.
+    #[error(
+        "a rate of {0:e} deg/h is out of range: allowed [-{RATE_MAX_DEG_PER_H:e}, \
+         {RATE_MAX_DEG_PER_H:e}] deg/h"
+    )]
+    Rate(f64),
+    /// A sample rate, Hz.
+    #[error(
+        "a sample rate of {rate_hz:e} Hz is out of range: allowed [{least:e}, {most:e}] Hz",
+        rate_hz = .0,
+        least = SAMPLE_RATE_HZ.0,
+        most = SAMPLE_RATE_HZ.1
+    )]
+    SampleRate(f64),
+    /// A temperature, deg C.
+    #[error(
+        "a temperature of {temperature_c:?} deg C is out of range: expected {least} to {most} deg C",
+        temperature_c = .0,
+        least = TEMPERATURE_C.0,
+        most = TEMPERATURE_C.1
+    )]
+    Temperature(f64),
+}
+
 /// Checks a rate.
 ///
 /// # Errors
-/// In words, without its place: what the rate is and what is allowed.
-pub fn check_rate(rate_deg_per_h: f64) -> Result<(), String> {
+/// [`OutOfBounds::Rate`].
+pub fn check_rate(rate_deg_per_h: f64) -> Result<(), OutOfBounds> {
     if rate_deg_per_h.abs() <= RATE_MAX_DEG_PER_H {
         return Ok(());
     }
-    Err(format!(
-        "a rate of {rate_deg_per_h:e} deg/h is out of range: allowed [-{RATE_MAX_DEG_PER_H:e}, \
-         {RATE_MAX_DEG_PER_H:e}] deg/h"
-    ))
+    Err(OutOfBounds::Rate(rate_deg_per_h))
 }
 
 /// Checks a sample rate.
 ///
 /// # Errors
-/// As [`check_rate`].
-pub fn check_sample_rate(sample_rate_hz: f64) -> Result<(), String> {
+/// [`OutOfBounds::SampleRate`].
+pub fn check_sample_rate(sample_rate_hz: f64) -> Result<(), OutOfBounds> {
     let (least, most) = SAMPLE_RATE_HZ;
     if (least..=most).contains(&sample_rate_hz) {
         return Ok(());
     }
-    Err(format!(
-        "a sample rate of {sample_rate_hz:e} Hz is out of range: allowed [{least:e}, {most:e}] Hz"
-    ))
+    Err(OutOfBounds::SampleRate(sample_rate_hz))
 }
 
 /// Checks a temperature.
 ///
 /// # Errors
-/// As [`check_rate`].
-pub fn check_temperature(temperature_c: f64) -> Result<(), String> {
+/// [`OutOfBounds::Temperature`].
+pub fn check_temperature(temperature_c: f64) -> Result<(), OutOfBounds> {
     let (least, most) = TEMPERATURE_C;
     if (least..=most).contains(&temperature_c) {
         return Ok(());
     }
-    Err(format!(
-        "a temperature of {temperature_c} deg C is out of range: allowed [{least}, {most}] deg C"
-    ))
+    Err(OutOfBounds::Temperature(temperature_c))
 }
 
 #[cfg(test)]
@@ -69,7 +89,7 @@ mod tests {
         assert!(check_rate(-1e12).is_ok() && check_sample_rate(1e-6).is_ok());
         let refused = check_rate(1e153).unwrap_err();
         assert_eq!(
-            refused,
+            refused.to_string(),
             "a rate of 1e153 deg/h is out of range: allowed [-1e12, 1e12] deg/h"
         );
         for broken in [f64::NAN, f64::INFINITY, 5e-324] {

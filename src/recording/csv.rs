@@ -7,7 +7,7 @@ use std::path::Path;
 use super::column::{Column, Columns, RowLines};
 use super::error::{LogError, Place};
 use super::input::{failure, push};
-use super::text::{Delimiter, Lines, TextError, finite, is_heading, listed, shown};
+use super::text::{Delimiter, FirstLineError, Lines, TextError, finite, is_heading, listed, shown};
 
 /// What is read from a file.
 #[derive(Clone, Debug)]
@@ -18,6 +18,34 @@ pub(super) struct Wanted<'a> {
     pub(super) time: Option<&'a str>,
     /// Samples after which reading ends.
     pub(super) samples_max: usize,
+}
+
+/// What is wrong with the first line of a file, with what is asked of it, or with the cells of a row.
+#[derive(Debug, thiserror::Error)]
+enum TableError {
+    #[error(transparent)]
+    FirstLine(#[from] FirstLineError),
+    #[error("{count} columns are named `{wanted}`: name one by its number, from 1")]
+    Ambiguous { wanted: String, count: usize },
+    /// With what there is.
+    #[error("there is no column `{wanted}`: {listed}")]
+    NoColumn { wanted: String, listed: String },
+    #[error("there is no column beside the time")]
+    TimeAlone,
+    /// With what there is.
+    #[error("name one column with --column: {0}")]
+    SeveralColumns(String),
+    #[error("the column of the data is that of the time")]
+    DataIsTime,
+    #[error("column {0} is named for two quantities: expected another for each")]
+    NamedTwice(String),
+    #[error("{got} cells where the first line has {expected}")]
+    Width { got: usize, expected: usize },
+    #[error(
+        "column {column} has a number where the first row has `{word}`: expected a heading without \
+         numbers, or a first row like this one"
+    )]
+    WordInFirstRow { column: usize, word: String },
 }
 
 /// How the lines of a file are cut.
@@ -32,7 +60,7 @@ struct Layout {
 
 impl Layout {
     /// The layout that a first line, heading or not, has above the first row.
-    fn of(line: &str, first_row: &str) -> Result<Self, String> {
+    fn of(line: &str, first_row: &str) -> Result<Self, TableError> {
         let delimiter = Delimiter::of(line);
         let mut cells = delimiter.first_cells(line);
         let is_heading = is_heading(&cells)?;
@@ -62,32 +90,35 @@ impl Layout {
     }
 
     /// Index of the column that was asked for by name or by number from 1.
-    fn find(&self, wanted: &str) -> Result<usize, String> {
+    fn find(&self, wanted: &str) -> Result<usize, TableError> {
         let same: Vec<usize> = (0..self.names.len())
             .filter(|&index| self.names[index] == wanted)
             .collect();
         match same[..] {
             [index] => return Ok(index),
             [_, _, ..] => {
-                return Err(format!(
-                    "{} columns are named `{wanted}`: name one by its number, from 1",
-                    same.len()
-                ));
+                return Err(TableError::Ambiguous {
+                    wanted: wanted.to_owned(),
+                    count: same.len(),
+                });
             }
             [] => {}
         }
         match wanted.parse::<usize>() {
             Ok(number) if (1..=self.cells).contains(&number) => Ok(number - 1),
-            _ => Err(format!("there is no column `{wanted}`: {}", self.listed())),
+            _ => Err(TableError::NoColumn {
+                wanted: wanted.to_owned(),
+                listed: self.listed(),
+            }),
         }
     }
 
     /// The column of the data where none was named: the only one beside the time.
-    fn only(&self, time: Option<usize>) -> Result<usize, String> {
+    fn only(&self, time: Option<usize>) -> Result<usize, TableError> {
         let mut others = (0..self.cells).filter(|index| Some(*index) != time);
         match (others.next(), others.next()) {
             (Some(index), None) => Ok(index),
-            (None, _) => Err("there is no column beside the time".to_owned()),
+            (None, _) => Err(TableError::TimeAlone),
             _ => {
                 let comma = self.decimal_comma.as_deref().map(|row| {
                     format!(
@@ -95,9 +126,8 @@ impl Layout {
                         shown(row)
                     )
                 });
-                let comma = comma.unwrap_or_default();
-                let listed = self.listed();
-                Err(format!("name one column with --column: {listed}{comma}"))
+                let listed = self.listed() + &comma.unwrap_or_default();
+                Err(TableError::SeveralColumns(listed))
             }
         }
     }
@@ -138,7 +168,8 @@ pub(super) fn read(
     let mut heading: Option<(String, usize)> = None;
     let mut table: Option<Table> = None;
     while let Some(line) = lines.next_line().map_err(|error| fault(path, error))? {
-        let at = |number: usize| move |text| LogError::at(path, Place::Line(number), text);
+        let at =
+            |number: usize| move |error: TableError| LogError::at(path, Place::Line(number), error);
         let table = match &mut table {
             Some(table) => table,
             None => {
@@ -183,24 +214,21 @@ struct Table {
 }
 
 impl Table {
-    fn new(layout: Layout, wanted: &Wanted<'_>) -> Result<Self, String> {
+    fn new(layout: Layout, wanted: &Wanted<'_>) -> Result<Self, TableError> {
         let time = wanted.time.map(|name| layout.find(name)).transpose()?;
         let columns = wanted.columns.iter();
         let data = columns.map(|column| match column {
             Some(name) => layout.find(name),
             None => layout.only(time),
         });
-        let data = data.collect::<Result<Vec<usize>, String>>()?;
+        let data = data.collect::<Result<Vec<usize>, TableError>>()?;
         for (position, index) in data.iter().enumerate() {
             if time == Some(*index) {
-                return Err("the column of the data is that of the time".to_owned());
+                return Err(TableError::DataIsTime);
             }
             if data[..position].contains(index) {
                 let name = layout.name(*index).unwrap_or_default();
-                return Err(format!(
-                    "column {} is named for two quantities: expected another for each",
-                    shown(&name)
-                ));
+                return Err(TableError::NamedTwice(shown(&name)));
             }
         }
         let named = |index: usize| Column {
@@ -221,12 +249,14 @@ impl Table {
     }
 
     /// The cells of a row, as many as the first line has.
-    fn row<'a>(&mut self, line: &'a str) -> Result<Vec<&'a str>, String> {
+    fn row<'a>(&mut self, line: &'a str) -> Result<Vec<&'a str>, TableError> {
         let width = self.layout.cells;
         let cells = self.layout.delimiter.cells_up_to(line, width);
         if cells.len() != width {
-            let got = cells.len();
-            return Err(format!("{got} cells where the first line has {width}"));
+            return Err(TableError::Width {
+                got: cells.len(),
+                expected: width,
+            });
         }
         if self.layout.names.is_empty() && self.columns.rows() < 2 {
             self.hold_against_first(&cells)?;
@@ -236,7 +266,7 @@ impl Table {
 
     /// Refuses a first row that may be a heading some of whose names are numbers: one that has words
     /// where the second has numbers. It would be taken for a sample.
-    fn hold_against_first(&mut self, cells: &[&str]) -> Result<(), String> {
+    fn hold_against_first(&mut self, cells: &[&str]) -> Result<(), TableError> {
         let is_number = |cell: &str| cell.parse::<f64>().is_ok();
         if self.columns.rows() == 0 {
             let words = cells.iter().enumerate();
@@ -249,11 +279,10 @@ impl Table {
             .into_iter()
             .find(|(index, _)| is_number(cells[*index]));
         found.map_or(Ok(()), |(index, word)| {
-            Err(format!(
-                "column {} has a number where the first row has `{word}`: expected a heading without \
-                 numbers, or a first row like this one",
-                index + 1,
-            ))
+            Err(TableError::WordInFirstRow {
+                column: index + 1,
+                word,
+            })
         })
     }
 
@@ -263,9 +292,12 @@ impl Table {
         let indices = self.data.iter().chain(&self.time);
         let columns = self.columns.data.iter_mut().chain(&mut self.columns.time);
         for (index, column) in indices.zip(columns) {
-            let value = finite(cells[*index], None)
-                .or_else(|_| finite(cells[*index], column.name.as_deref()))
-                .map_err(|message| LogError::at(path, Place::Line(line), message))?;
+            let value = finite(cells[*index]).map_err(|error| {
+                let name = column.name.as_deref();
+                let column = name.map(|name| format!("column {}: ", shown(name)));
+                let message = column.unwrap_or_default() + &error.to_string();
+                LogError::at(path, Place::Line(line), message)
+            })?;
             push(&mut column.values, value).map_err(|error| failure(path, error))?;
         }
         match &mut self.columns.lines {

@@ -1,5 +1,6 @@
 //! What can be wrong with a log.
 
+use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -27,22 +28,22 @@ pub enum LogError {
 
 impl LogError {
     /// A complaint about a file as a whole.
-    pub fn of_file(path: &Path, message: impl Into<String>) -> Self {
+    pub fn of_file(path: &Path, message: impl fmt::Display) -> Self {
         Self::Content {
             place: path.display().to_string(),
-            message: message.into(),
+            message: message.to_string(),
         }
     }
 
     /// A complaint about a line, counted from 1, or about an element of an array.
-    pub(crate) fn at(path: &Path, place: Place, message: impl Into<String>) -> Self {
+    pub(crate) fn at(path: &Path, place: Place, message: impl fmt::Display) -> Self {
         let path = path.display();
         Self::Content {
             place: match place {
                 Place::Line(line) => format!("{path}:{line}"),
                 Place::Index(index) => format!("{path}: index {index}"),
             },
-            message: message.into(),
+            message: message.to_string(),
         }
     }
 

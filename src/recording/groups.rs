@@ -7,9 +7,10 @@ use super::csv::fault;
 use super::error::{LogError, Place};
 use super::groups_heading::{Heading, Quantity};
 use super::input::read_whole;
-use super::text::{Lines, finite, shown};
+use super::text::{Lines, NumberError, finite, shown};
 use super::unit::RateUnit;
 use crate::units::deg_per_h_to_deg_per_s;
+use crate::wording::exact;
 
 /// Fastest rate of a table that is believed, deg/s.
 const TABLE_RATE_MAX_DEG_PER_S: f64 = 2000.0;
@@ -142,41 +143,42 @@ fn bits(group: &RecordedGroup) -> impl Iterator<Item = u64> {
 pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
     let bytes = read_whole(path)?;
     let mut lines = Lines::new(&bytes[..], "no text in UTF-8");
-    let complain = |number, message| LogError::at(path, Place::Line(number), message);
+    let complain = |number, error: GroupError| LogError::at(path, Place::Line(number), error);
     let first = lines.next_line().map_err(|error| fault(path, error))?;
     let Some(first) = first else {
         return Err(LogError::of_file(path, "holds no group"));
     };
-    let heading = Heading::of(first.text).map_err(|message| complain(first.number, message))?;
+    let heading = Heading::of(first.text)
+        .map_err(|error| LogError::at(path, Place::Line(first.number), error))?;
     let mut groups: Vec<RecordedGroup> = Vec::new();
     while let Some(line) = lines.next_line().map_err(|error| fault(path, error))? {
         let number = line.number;
         if groups.len() == GROUPS_MAX {
-            let message = format!("more than {GROUPS_MAX} groups, the most that a file may have");
-            return Err(complain(number, message));
+            return Err(complain(number, GroupError::TooMany));
         }
         let width = heading.columns.len();
         let cells = heading.delimiter.cells_up_to(line.text, width);
         let group = Line::new(&heading, &cells)
             .and_then(|line| line.group(number))
-            .map_err(|message| complain(number, message))?;
+            .map_err(|error| complain(number, error))?;
         let same = groups
             .iter()
             .find(|other| other.name.is_some() && other.name == group.name);
         if let Some(other) = same {
-            let name = shown(other.name.as_deref().unwrap_or_default());
-            let message = format!(
-                "column group: `{name}` is the group of line {} too",
-                other.line
-            );
-            return Err(complain(number, message));
+            let error = GroupError::NamedTwice {
+                name: shown(other.name.as_deref().unwrap_or_default()),
+                line: other.line,
+            };
+            return Err(complain(number, error));
         }
         groups.push(group);
     }
     if groups.is_empty() {
         return Err(LogError::of_file(path, "holds no group"));
     }
-    check_standard_errors(&groups).map_err(|(number, message)| complain(number, message))?;
+    if let Some((number, error)) = wrong_standard_error(&groups) {
+        return Err(complain(number, error));
+    }
     let unit = |quantity| heading.unit(quantity).unwrap_or(RateUnit::DegPerH);
     Ok(RecordedGroups {
         file: path
@@ -191,13 +193,66 @@ pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
     })
 }
 
-/// Refuses standard errors that no mean has: the covariance and the weighted residuals rest on their
-/// ratios. Noise-free data have 0 in every line of a gyro.
-///
-/// # Errors
-/// Line and complaint.
-fn check_standard_errors(groups: &[RecordedGroup]) -> Result<(), (usize, String)> {
-    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+/// What is wrong with a line, or with the lines together.
+#[derive(Debug, thiserror::Error)]
+enum GroupError {
+    #[error("more than {GROUPS_MAX} groups, the most that a file may have")]
+    TooMany,
+    #[error("column group: `{name}` is the group of line {line} too")]
+    NamedTwice {
+        name: String,
+        /// Line of the other.
+        line: usize,
+    },
+    #[error(
+        "the standard error of {gyro}, {error_deg_per_h:?} deg/h, is out of range: allowed from \
+         {STANDARD_ERROR_MIN_DEG_PER_H:e} deg/h on, or 0 in every line of {gyro} for data without \
+         noise"
+    )]
+    StandardError {
+        gyro: &'static str,
+        error_deg_per_h: f64,
+    },
+    #[error("{got} cells where the heading has {expected}")]
+    Width { got: usize, expected: usize },
+    #[error("column {column}: {error}")]
+    Cell { column: String, error: CellError },
+    /// What is wrong with a rate.
+    #[error("{0} (the unit is what the column's name ends with)")]
+    Rate(Box<GroupError>),
+    #[error("one of the gyros x, y, z has a value where another has an empty cell")]
+    SomeOfThree,
+    #[error("an empty cell where a value is needed")]
+    Empty,
+}
+
+/// What is wrong with a cell.
+#[derive(Debug, thiserror::Error)]
+enum CellError {
+    #[error("the cell is empty: expected {unit}")]
+    Empty { unit: String },
+    #[error("{error}: expected {unit}")]
+    NotANumber { error: NumberError, unit: String },
+    #[error("{} {unit} is out of range: expected {min} to {max} {unit}", exact(*value))]
+    OutOfRange {
+        value: f64,
+        min: f64,
+        max: f64,
+        unit: String,
+    },
+    #[error("`{0}` is no count: expected a whole number, 0 or more")]
+    NotACount(String),
+    #[error(
+        "`{0}` is no mounting: expected the case axis along the table axis, x, y or z, as `-x` or \
+         `x down` where it points down"
+    )]
+    NotAMounting(String),
+}
+
+/// A standard error that no mean has, with its line: the covariance and the weighted residuals rest
+/// on their ratios. Noise-free data have 0 in every line of a gyro.
+fn wrong_standard_error(groups: &[RecordedGroup]) -> Option<(usize, GroupError)> {
+    for (axis, gyro) in ["x", "y", "z"].into_iter().enumerate() {
         let errors = || {
             let lines = groups.iter();
             lines.filter_map(|group| Some((group.line, group.standard_error_deg_per_h?[axis])))
@@ -206,16 +261,15 @@ fn check_standard_errors(groups: &[RecordedGroup]) -> Result<(), (usize, String)
             continue;
         }
         let small = errors().find(|(_, error)| *error < STANDARD_ERROR_MIN_DEG_PER_H);
-        if let Some((line, error)) = small {
-            let message = format!(
-                "the standard error of {name}, {error:?} deg/h, is out of range: allowed from \
-                 {STANDARD_ERROR_MIN_DEG_PER_H:e} deg/h on, or 0 in every line of {name} for data \
-                 without noise"
-            );
-            return Err((line, message));
+        if let Some((line, error_deg_per_h)) = small {
+            let error = GroupError::StandardError {
+                gyro,
+                error_deg_per_h,
+            };
+            return Some((line, error));
         }
     }
-    Ok(())
+    None
 }
 
 /// One line under its heading.
@@ -225,16 +279,18 @@ struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    fn new(heading: &'a Heading, cells: &'a [&'a str]) -> Result<Self, String> {
+    fn new(heading: &'a Heading, cells: &'a [&'a str]) -> Result<Self, GroupError> {
         let expected = heading.columns.len();
         if cells.len() != expected {
-            let got = cells.len();
-            return Err(format!("{got} cells where the heading has {expected}"));
+            return Err(GroupError::Width {
+                got: cells.len(),
+                expected,
+            });
         }
         Ok(Self { heading, cells })
     }
 
-    fn group(&self, line: usize) -> Result<RecordedGroup, String> {
+    fn group(&self, line: usize) -> Result<RecordedGroup, GroupError> {
         let table = (-TABLE_RATE_MAX_DEG_PER_S, TABLE_RATE_MAX_DEG_PER_S);
         let table_rate = |quantity| self.rate(quantity, table);
         let any = (-RATE_MAX_DEG_PER_S, RATE_MAX_DEG_PER_S);
@@ -279,25 +335,31 @@ impl<'a> Line<'a> {
         quantity: Quantity,
         (min, max): (f64, f64),
         unit: &str,
-    ) -> Result<Option<f64>, String> {
+    ) -> Result<Option<f64>, GroupError> {
         let Some((name, cell)) = self.cell(quantity) else {
             return Ok(None);
         };
+        let unit = unit.to_owned();
         if cell.is_empty() {
-            return Err(format!("column {name}: the cell is empty: expected {unit}"));
+            return Err(of_cell(name, CellError::Empty { unit }));
         }
-        let value =
-            finite(cell, Some(name)).map_err(|message| format!("{message}: expected {unit}"))?;
-        if (min..=max).contains(&value) {
-            return Ok(Some(value));
+        match finite(cell) {
+            Ok(value) if (min..=max).contains(&value) => Ok(Some(value)),
+            Ok(value) => Err(of_cell(
+                name,
+                CellError::OutOfRange {
+                    value,
+                    min,
+                    max,
+                    unit,
+                },
+            )),
+            Err(error) => Err(of_cell(name, CellError::NotANumber { error, unit })),
         }
-        Err(format!(
-            "column {name}: {value} {unit} is out of range: expected {min} to {max} {unit}"
-        ))
     }
 
     /// A rate, deg/h; its range is in deg/s.
-    fn rate(&self, quantity: Quantity, range: (f64, f64)) -> Result<Option<f64>, String> {
+    fn rate(&self, quantity: Quantity, range: (f64, f64)) -> Result<Option<f64>, GroupError> {
         let Some(unit) = self.heading.unit(quantity) else {
             return Ok(None);
         };
@@ -308,10 +370,7 @@ impl<'a> Line<'a> {
         };
         let range = (in_unit(range.0), in_unit(range.1));
         let value = self.number(quantity, range, &unit.to_string());
-        let value = value.map_err(|message| {
-            let hint = "the unit is what the column's name ends with";
-            format!("{message} ({hint})")
-        })?;
+        let value = value.map_err(|error| GroupError::Rate(Box::new(error)))?;
         Ok(value.map(|value| unit.to_deg_per_h(value, 1.0)))
     }
 
@@ -321,27 +380,24 @@ impl<'a> Line<'a> {
         quantity: fn(Option<usize>) -> Quantity,
         range: (f64, f64),
         unit: &str,
-    ) -> Result<Option<[f64; 3]>, String> {
+    ) -> Result<Option<[f64; 3]>, GroupError> {
         match self.number(quantity(None), range, unit)? {
             Some(value) => Ok(Some([value; 3])),
             None => three(|axis| self.number(quantity(Some(axis)), range, unit)),
         }
     }
 
-    fn count(&self, quantity: Quantity) -> Result<Option<usize>, String> {
+    fn count(&self, quantity: Quantity) -> Result<Option<usize>, GroupError> {
         let Some((name, cell)) = self.cell(quantity) else {
             return Ok(None);
         };
         let count = cell.parse();
-        count.map(Some).map_err(|_| {
-            format!(
-                "column {name}: `{}` is no count: expected a whole number, 0 or more",
-                shown(cell)
-            )
-        })
+        count
+            .map(Some)
+            .map_err(|_| of_cell(name, CellError::NotACount(shown(cell))))
     }
 
-    fn mounting(&self) -> Result<Mounting, String> {
+    fn mounting(&self) -> Result<Mounting, GroupError> {
         let (name, cell) = present(self.cell(Quantity::Mounting))?;
         let (sign, rest) = match cell.strip_prefix(['+', '-']) {
             Some(rest) => (Some(!cell.starts_with('-')), rest),
@@ -362,25 +418,30 @@ impl<'a> Line<'a> {
         };
         match (axis, sense, words.next()) {
             (Some(axis), Some(is_up), None) => Ok(Mounting { axis, is_up }),
-            _ => Err(format!(
-                "column {name}: `{}` is no mounting: expected the case axis along the table axis, \
-                 x, y or z, as `-x` or `x down` where it points down",
-                shown(cell)
-            )),
+            _ => Err(of_cell(name, CellError::NotAMounting(shown(cell)))),
         }
     }
 }
 
+fn of_cell(column: &str, error: CellError) -> GroupError {
+    GroupError::Cell {
+        column: shown(column),
+        error,
+    }
+}
+
 /// Three values of which all or none are there.
-fn three<T>(of: impl Fn(usize) -> Result<Option<T>, String>) -> Result<Option<[T; 3]>, String> {
+fn three<T>(
+    of: impl Fn(usize) -> Result<Option<T>, GroupError>,
+) -> Result<Option<[T; 3]>, GroupError> {
     match (of(0)?, of(1)?, of(2)?) {
         (Some(x), Some(y), Some(z)) => Ok(Some([x, y, z])),
         (None, None, None) => Ok(None),
-        _ => Err("one of the gyros x, y, z has a value where another has an empty cell".to_owned()),
+        _ => Err(GroupError::SomeOfThree),
     }
 }
 
 /// A value whose column the heading was checked for.
-fn present<T>(value: Option<T>) -> Result<T, String> {
-    value.ok_or_else(|| "an empty cell where a value is needed".to_owned())
+fn present<T>(value: Option<T>) -> Result<T, GroupError> {
+    value.ok_or(GroupError::Empty)
 }

@@ -48,6 +48,16 @@ pub(super) struct HeadedColumn {
     pub(super) unit: Option<RateUnit>,
 }
 
+/// What is wrong with a heading.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum GroupsHeadingError {
+    #[error("{0} columns: expected at most {COLUMNS_MAX}")]
+    TooMany(usize),
+    /// Columns that are unknown, there twice or missing, all of them.
+    #[error("{}", .0.join("; "))]
+    Columns(Vec<String>),
+}
+
 /// The heading of a file.
 #[derive(Clone, Debug)]
 pub(super) struct Heading {
@@ -60,15 +70,14 @@ impl Heading {
     ///
     /// # Errors
     /// Unknown, repeated and missing columns, all of them in one message.
-    pub(super) fn of(line: &str) -> Result<Self, String> {
+    pub(super) fn of(line: &str) -> Result<Self, GroupsHeadingError> {
         let delimiter = Delimiter::of(line);
         let known = known();
         let mut columns: Vec<HeadedColumn> = Vec::new();
         let mut complaints = Vec::new();
         let cells = delimiter.first_cells(line);
         if cells.len() > COLUMNS_MAX {
-            let got = cells.len();
-            return Err(format!("{got} columns: expected at most {COLUMNS_MAX}"));
+            return Err(GroupsHeadingError::TooMany(cells.len()));
         }
         for cell in cells {
             match known.iter().find(|column| column.name == cell) {
@@ -87,7 +96,7 @@ impl Heading {
         if complaints.is_empty() {
             Ok(Self { delimiter, columns })
         } else {
-            Err(complaints.join("; "))
+            Err(GroupsHeadingError::Columns(complaints))
         }
     }
 

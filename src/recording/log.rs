@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::bounds::{TEMPERATURE_C, check_rate, check_sample_rate};
+use super::bounds::{check_rate, check_sample_rate, check_temperature};
 use super::column::Columns;
 use super::csv::{self, Wanted};
 use super::error::LogError;
@@ -115,15 +115,8 @@ pub fn read_assembly_log(
     let gyro = |index: usize| log(path, &columns, index, format, spacing);
     let gyros = [gyro(0)?, gyro(1)?, gyro(2)?];
     let temperature_c = columns.data.get(3).map(|column| column.values.clone());
-    let (low, high) = TEMPERATURE_C;
-    let is_far = |warmth: &f64| !(low..=high).contains(warmth);
-    let far = temperature_c.as_deref().unwrap_or_default();
-    if let Some(row) = far.iter().position(is_far) {
-        let message = format!(
-            "a temperature of {:?} deg C is out of range: expected {low} to {high} deg C",
-            far[row]
-        );
-        return Err(LogError::at(path, columns.place(row), message));
+    for (row, &warmth) in temperature_c.iter().flatten().enumerate() {
+        check_temperature(warmth).map_err(|error| LogError::at(path, columns.place(row), error))?;
     }
     Ok(AssemblyLog {
         gyros,
@@ -192,7 +185,7 @@ fn spacing(
         let message = "the sample rate is not known: give --rate-hz, or a time column with --time";
         return Err(LogError::of_file(path, message));
     };
-    check_sample_rate(sample_rate_hz).map_err(|message| LogError::of_file(path, message))?;
+    check_sample_rate(sample_rate_hz).map_err(|error| LogError::of_file(path, error))?;
     Ok((timing, sample_rate_hz))
 }
 
@@ -231,7 +224,7 @@ fn rates(
         let unit = format.unit;
         let message = match check_rate(rate) {
             Ok(()) => return Ok(rate),
-            Err(message) if rate.is_finite() => format!("{value:?} {unit}: {message}"),
+            Err(error) if rate.is_finite() => format!("{value:?} {unit}: {error}"),
             Err(_) => format!("{value:?} {unit} is not a finite rate in deg/h"),
         };
         Err(LogError::at(path, columns.place(row), message))

@@ -20,8 +20,8 @@ mod timing;
 mod unit;
 
 pub use bounds::{
-    RATE_MAX_DEG_PER_H, SAMPLE_RATE_HZ, STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C, check_rate,
-    check_sample_rate, check_temperature,
+    OutOfBounds, RATE_MAX_DEG_PER_H, SAMPLE_RATE_HZ, STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C,
+    check_rate, check_sample_rate, check_temperature,
 };
 pub use csv::csv_text;
 pub use error::LogError;
@@ -30,5 +30,5 @@ pub use log::{
     AssemblyColumns, AssemblyLog, Log, LogFormat, read_assembly_log, read_log, read_stimulus,
 };
 pub use text::{Delimiter, Line, Lines, TextError};
-pub use timing::{TimeUnit, Timing};
-pub use unit::RateUnit;
+pub use timing::{TimeUnit, Timing, UnknownTimeUnit};
+pub use unit::{RateUnit, UnknownRateUnit};

@@ -21,10 +21,10 @@ const CHUNK_BYTES: usize = 1 << 16;
 pub(super) fn read(path: &Path, mut input: Input, samples_max: usize) -> Result<Columns, LogError> {
     let heading = npy_heading::read(&mut input).map_err(|error| match error {
         HeadingError::Io(error) => failure(path, error),
-        HeadingError::Content(message) => LogError::of_file(path, message),
+        error => LogError::of_file(path, error),
     })?;
     if let Some(length) = input.length() {
-        check_length(&heading, length).map_err(|message| LogError::of_file(path, message))?;
+        check_length(&heading, length).map_err(|error| LogError::of_file(path, error))?;
     }
     let mut values = Vec::new();
     let mut chunk = vec![0; CHUNK_BYTES];
@@ -38,19 +38,22 @@ pub(super) fn read(path: &Path, mut input: Input, samples_max: usize) -> Result<
         input
             .read_exact(bytes)
             .map_err(|error| match error.kind() {
-                std::io::ErrorKind::UnexpectedEof => LogError::of_file(path, cut_short(&heading)),
+                std::io::ErrorKind::UnexpectedEof => {
+                    LogError::of_file(path, LengthError::CutShort(heading))
+                }
                 _ => failure(path, error),
             })?;
         for word in bytes.chunks_exact(heading.word_bytes) {
             let value = number(&heading, word)
-                .map_err(|message| LogError::at(path, Place::Index(values.len()), message))?;
+                .map_err(|error| LogError::at(path, Place::Index(values.len()), error))?;
             push(&mut values, value).map_err(|error| failure(path, error))?;
         }
     }
     if wanted == heading.count {
         let more = input.read(&mut [0]).map_err(|error| failure(path, error))?;
         if more > 0 {
-            return Err(LogError::of_file(path, too_long(&heading, "more bytes")));
+            let there_is_more = LengthError::More(heading, None);
+            return Err(LogError::of_file(path, there_is_more));
         }
     }
     Ok(Columns {
@@ -59,47 +62,59 @@ pub(super) fn read(path: &Path, mut input: Input, samples_max: usize) -> Result<
     })
 }
 
-/// Holds the bytes of a file against those its heading asks for.
-fn check_length(heading: &NpyHeading, length: u64) -> Result<(), String> {
+/// Why a file does not hold what its heading names.
+#[derive(Debug, thiserror::Error)]
+enum LengthError {
+    /// With the bytes behind the heading.
+    #[error(
+        "not a whole NPY file: its {}, the file has {there} bytes for them",
+        named(heading)
+    )]
+    TooShort { heading: NpyHeading, there: u64 },
+    #[error("not a whole NPY file: its {}, and it ends before them", named(.0))]
+    CutShort(NpyHeading),
+    /// With the number of bytes where it is known.
+    #[error(
+        "its NPY {}, and {}more bytes follow them: expected one array and nothing behind it",
+        named(.0),
+        .1.map(|left| format!("{left} ")).unwrap_or_default()
+    )]
+    More(NpyHeading, Option<u64>),
+}
+
+fn named(heading: &NpyHeading) -> String {
     let NpyHeading {
         count, word_bytes, ..
     } = heading;
+    format!("heading names {count} numbers of {word_bytes} bytes")
+}
+
+/// Holds the bytes of a file against those its heading asks for.
+fn check_length(heading: &NpyHeading, length: u64) -> Result<(), LengthError> {
     let there = length.saturating_sub(heading.bytes);
-    match count.checked_mul(*word_bytes as u64) {
+    match heading.count.checked_mul(heading.word_bytes as u64) {
         Some(expected) if expected == there => Ok(()),
         Some(expected) if expected < there => {
-            let left = there - expected;
-            Err(too_long(heading, &format!("{left} more bytes")))
+            Err(LengthError::More(*heading, Some(there - expected)))
         }
-        _ => Err(format!(
-            "not a whole NPY file: its heading names {count} numbers of {word_bytes} bytes, the file \
-             has {there} bytes for them"
-        )),
+        _ => Err(LengthError::TooShort {
+            heading: *heading,
+            there,
+        }),
     }
 }
 
-fn cut_short(heading: &NpyHeading) -> String {
-    let NpyHeading {
-        count, word_bytes, ..
-    } = heading;
-    format!(
-        "not a whole NPY file: its heading names {count} numbers of {word_bytes} bytes, and it ends \
-         before them"
-    )
-}
-
-fn too_long(heading: &NpyHeading, more: &str) -> String {
-    let NpyHeading {
-        count, word_bytes, ..
-    } = heading;
-    format!(
-        "its NPY heading names {count} numbers of {word_bytes} bytes, and {more} follow them: expected \
-         one array and nothing behind it"
-    )
+/// Why a word is no number of a record.
+#[derive(Debug, thiserror::Error)]
+enum WordError {
+    #[error("{0} is not a finite number")]
+    NotFinite(f64),
+    #[error("{0} lies beyond 2^53, the largest count that is kept exactly")]
+    Inexact(i128),
 }
 
 /// The number that the bytes of a word are.
-fn number(heading: &NpyHeading, bytes: &[u8]) -> Result<f64, String> {
+fn number(heading: &NpyHeading, bytes: &[u8]) -> Result<f64, WordError> {
     let mut word = [0; 8];
     for (position, byte) in bytes.iter().enumerate() {
         // From the least significant byte on.
@@ -126,17 +141,15 @@ fn number(heading: &NpyHeading, bytes: &[u8]) -> Result<f64, String> {
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(format!("{value} is not a finite number"))
+        Err(WordError::NotFinite(value))
     }
 }
 
 /// An integer that binary64 holds exactly.
-fn integer(word: impl Into<i128>) -> Result<f64, String> {
+fn integer(word: impl Into<i128>) -> Result<f64, WordError> {
     let word = word.into();
     if word.unsigned_abs() > u128::from(INTEGER_MAX) {
-        return Err(format!(
-            "{word} lies beyond 2^53, the largest count that is kept exactly"
-        ));
+        return Err(WordError::Inexact(word));
     }
     #[expect(clippy::cast_precision_loss, reason = "checked to lie within 2^53")]
     let value = word as f64;

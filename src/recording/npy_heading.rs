@@ -54,23 +54,38 @@ pub(super) struct NpyHeading {
 }
 
 /// Why there is no heading.
+#[derive(Debug, thiserror::Error)]
 pub(super) enum HeadingError {
+    #[error("{0}")]
     Io(io::Error),
-    Content(String),
+    #[error("not a whole NPY file: its heading is cut short")]
+    CutShort,
+    #[error("an NPY file of version {0}: expected 1, 2 or 3")]
+    Version(u8),
+    #[error("its NPY heading has {0} bytes: allowed up to {HEADING_BYTES_MAX}")]
+    TooLong(u32),
+    #[error("its NPY heading is no text in UTF-8")]
+    NotText,
+    #[error(
+        "its NPY heading is not the dictionary of an array of plain numbers: expected descr, \
+         fortran_order and shape"
+    )]
+    NotADictionary,
+    #[error(
+        "holds numbers of type '{0}': expected binary64 (f8), binary32 (f4), or integers i1 to i8 or \
+         u1 to u8, little- or big-endian"
+    )]
+    Word(String),
+    #[error("holds an array of shape {0}: expected one dimension, one number a sample")]
+    Shape(String),
 }
 
 impl From<io::Error> for HeadingError {
     fn from(error: io::Error) -> Self {
         if error.kind() == io::ErrorKind::UnexpectedEof {
-            return Self::Content("not a whole NPY file: its heading is cut short".to_owned());
+            return Self::CutShort;
         }
         Self::Io(error)
-    }
-}
-
-impl From<String> for HeadingError {
-    fn from(message: String) -> Self {
-        Self::Content(message)
     }
 }
 
@@ -92,33 +107,18 @@ pub(super) fn read(reader: &mut impl Read) -> Result<NpyHeading, HeadingError> {
             reader.read_exact(&mut length)?;
             (u32::from_le_bytes(length), 12)
         }
-        version => {
-            let message = format!("an NPY file of version {version}: expected 1, 2 or 3");
-            return Err(message.into());
-        }
+        version => return Err(HeadingError::Version(version)),
     };
     if length > HEADING_BYTES_MAX {
-        return Err(format!(
-            "its NPY heading has {length} bytes: allowed up to {HEADING_BYTES_MAX}"
-        )
-        .into());
+        return Err(HeadingError::TooLong(length));
     }
     let mut text = vec![0; length as usize];
     reader.read_exact(&mut text)?;
-    let text =
-        std::str::from_utf8(&text).map_err(|_| "its NPY heading is no text in UTF-8".to_owned())?;
-    let found = Dictionary::of(text).ok_or_else(|| {
-        "its NPY heading is not the dictionary of an array of plain numbers: expected descr, \
-         fortran_order and shape"
-            .to_owned()
-    })?;
+    let text = std::str::from_utf8(&text).map_err(|_| HeadingError::NotText)?;
+    let found = Dictionary::of(text).ok_or(HeadingError::NotADictionary)?;
     let (word, word_bytes, is_big_endian) = word_of(&found.descr)?;
     let [count] = found.shape[..] else {
-        return Err(format!(
-            "holds an array of shape {}: expected one dimension, one number a sample",
-            shape_text(&found.shape)
-        )
-        .into());
+        return Err(HeadingError::Shape(shape_text(&found.shape)));
     };
     Ok(NpyHeading {
         word,
@@ -130,7 +130,7 @@ pub(super) fn read(reader: &mut impl Read) -> Result<NpyHeading, HeadingError> {
 }
 
 /// Kind, bytes and byte order of a type such as `<f8`.
-fn word_of(descr: &str) -> Result<(Word, usize, bool), String> {
+fn word_of(descr: &str) -> Result<(Word, usize, bool), HeadingError> {
     let found = descr.get(1..).and_then(|name| {
         let (_, word, bytes) = WORDS.iter().find(|(known, _, _)| *known == name)?;
         let is_big_endian = match &descr[..1] {
@@ -141,13 +141,7 @@ fn word_of(descr: &str) -> Result<(Word, usize, bool), String> {
         };
         Some((*word, *bytes, is_big_endian))
     });
-    found.ok_or_else(|| {
-        format!(
-            "holds numbers of type '{}': expected binary64 (f8), binary32 (f4), or integers i1 to \
-             i8 or u1 to u8, little- or big-endian",
-            super::text::shown(descr)
-        )
-    })
+    found.ok_or_else(|| HeadingError::Word(super::text::shown(descr)))
 }
 
 /// A shape as Python writes it; of a long one the beginning.

@@ -273,23 +273,33 @@ fn unquoted(cell: &str) -> &str {
         .map_or(cell, str::trim)
 }
 
+/// Why a first line is neither a heading nor numbers.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum FirstLineError {
+    #[error("holds separators alone: expected a heading or numbers")]
+    Separators,
+    #[error(
+        "`{0}` begins like a number and is none: expected a number with a decimal point, or a \
+         heading that begins with a letter"
+    )]
+    BeginsLikeNumber(String),
+    #[error("`{0}` is neither a number nor a heading")]
+    Neither(String),
+}
+
 /// Whether the first line is a heading rather than numbers.
 ///
 /// # Errors
-/// In words: a line without a number in which a cell begins like one, or that holds no word either.
-pub(super) fn is_heading(cells: &[&str]) -> Result<bool, String> {
+/// A line without a number in which a cell begins like one, or that holds no word either.
+pub(super) fn is_heading(cells: &[&str]) -> Result<bool, FirstLineError> {
     if cells.is_empty() {
-        return Err("holds separators alone: expected a heading or numbers".to_owned());
+        return Err(FirstLineError::Separators);
     }
     if cells.iter().any(|cell| cell.parse::<f64>().is_ok()) {
         return Ok(false);
     }
     if let Some(cell) = cells.iter().find(|cell| begins_like_number(cell)) {
-        return Err(format!(
-            "`{}` begins like a number and is none: expected a number with a decimal point, or a \
-             heading that begins with a letter",
-            shown(cell)
-        ));
+        return Err(FirstLineError::BeginsLikeNumber(shown(cell)));
     }
     if cells
         .iter()
@@ -297,10 +307,7 @@ pub(super) fn is_heading(cells: &[&str]) -> Result<bool, String> {
     {
         return Ok(true);
     }
-    Err(format!(
-        "`{}` is neither a number nor a heading",
-        shown(cells[0])
-    ))
+    Err(FirstLineError::Neither(shown(cells[0])))
 }
 
 /// Whether a digit comes before any letter.
@@ -334,25 +341,31 @@ pub(super) fn listed(names: &[String]) -> String {
     first.join(", ") + &rest
 }
 
+/// Why a cell is no number of a record.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum NumberError {
+    #[error("{0} is beyond the largest number, 1.8e308")]
+    TooLarge(String),
+    #[error("{0} is not a finite number")]
+    NotFinite(f64),
+    #[error("`{0}` is not a number: expected a decimal point")]
+    DecimalComma(String),
+    #[error("`{0}` is not a number")]
+    Word(String),
+}
+
 /// The number of a cell.
 ///
 /// # Errors
-/// In words: no number, or none that is finite.
-pub(super) fn finite(cell: &str, name: Option<&str>) -> Result<f64, String> {
-    let column = || name.map_or_else(String::new, |name| format!("column {}: ", shown(name)));
+/// No number, or none that is finite.
+pub(super) fn finite(cell: &str) -> Result<f64, NumberError> {
     match cell.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
-        Ok(_) if cell.contains(|c: char| c.is_ascii_digit()) => Err(format!(
-            "{}{} is beyond the largest number, 1.8e308",
-            column(),
-            shown(cell)
-        )),
-        Ok(number) => Err(format!("{}{number} is not a finite number", column())),
-        Err(_) if cell.contains(',') => Err(format!(
-            "{}`{}` is not a number: expected a decimal point",
-            column(),
-            shown(cell)
-        )),
-        Err(_) => Err(format!("{}`{}` is not a number", column(), shown(cell))),
+        Ok(_) if cell.contains(|c: char| c.is_ascii_digit()) => {
+            Err(NumberError::TooLarge(shown(cell)))
+        }
+        Ok(number) => Err(NumberError::NotFinite(number)),
+        Err(_) if cell.contains(',') => Err(NumberError::DecimalComma(shown(cell))),
+        Err(_) => Err(NumberError::Word(shown(cell))),
     }
 }

@@ -38,8 +38,13 @@ impl TimeUnit {
     }
 }
 
+/// A unit of times that nobody knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected one of s, ms, us, ns")]
+pub struct UnknownTimeUnit;
+
 impl FromStr for TimeUnit {
-    type Err = String;
+    type Err = UnknownTimeUnit;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match text {
@@ -47,7 +52,7 @@ impl FromStr for TimeUnit {
             "ms" => Ok(Self::Milliseconds),
             "us" => Ok(Self::Microseconds),
             "ns" => Ok(Self::Nanoseconds),
-            _ => Err("expected one of s, ms, us, ns".to_owned()),
+            _ => Err(UnknownTimeUnit),
         }
     }
 }
@@ -137,25 +142,36 @@ fn median_step(stamps_s: &[f64]) -> f64 {
     *median
 }
 
-fn check_step(step_s: f64, period_s: f64) -> Result<(), String> {
+/// What speaks against equal spacing between two stamps.
+#[derive(Debug, thiserror::Error)]
+enum StepError {
+    #[error(
+        "the time goes from one stamp to the next by {step_s:.9} s: stamps must ascend; if they are \
+         rounded too coarsely, leave the time column out and give --rate-hz"
+    )]
+    Descent { step_s: f64 },
+    #[error(
+        "gap of {step_s:.9} s where samples are {period_s:.9} s apart ({:.0} missing): gaps are not \
+         filled, cut the log there",
+        (step_s / period_s - 1.0).max(1.0)
+    )]
+    Gap { step_s: f64, period_s: f64 },
+    #[error(
+        "the stamp is {step_s:.9} s after the one before where samples are {period_s:.9} s apart: \
+         spacing must be equal within half of that"
+    )]
+    Crowd { step_s: f64, period_s: f64 },
+}
+
+fn check_step(step_s: f64, period_s: f64) -> Result<(), StepError> {
     if step_s <= 0.0 {
-        return Err(format!(
-            "the time goes from one stamp to the next by {step_s:.9} s: stamps must ascend; if \
-             they are rounded too coarsely, leave the time column out and give --rate-hz"
-        ));
+        return Err(StepError::Descent { step_s });
     }
     if step_s > (1.0 + STEP_TOLERANCE) * period_s {
-        return Err(format!(
-            "gap of {step_s:.9} s where samples are {period_s:.9} s apart ({:.0} missing): gaps \
-             are not filled, cut the log there",
-            (step_s / period_s - 1.0).max(1.0)
-        ));
+        return Err(StepError::Gap { step_s, period_s });
     }
     if step_s < (1.0 - STEP_TOLERANCE) * period_s {
-        return Err(format!(
-            "the stamp is {step_s:.9} s after the one before where samples are {period_s:.9} s \
-             apart: spacing must be equal within half of that"
-        ));
+        return Err(StepError::Crowd { step_s, period_s });
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value};
 
-use crate::gate::plain;
+use crate::gate::{plain, three_digits};
 use crate::report::layout::json::{number, numbers, object, pretty, put};
 use crate::report::layout::text::Grid;
 use crate::signal::{BudgetPoint, BudgetSheet};
@@ -99,7 +99,7 @@ fn curve(
     grid.row(std::iter::once(unit.to_owned()).chain(titles));
     for point in points.iter().step_by(step) {
         let walks = names.iter().map(|name| walk_text(point.walk(name)));
-        grid.row(std::iter::once(short(abscissa(point))).chain(walks));
+        grid.row(std::iter::once(three_digits(abscissa(point))).chain(walks));
     }
     let mut text = grid.lines("  ");
     let beyond = |point: &BudgetPoint| point.angle_random_walk_deg_per_sqrt_h.is_none();
@@ -118,8 +118,8 @@ fn largest(points: &[BudgetPoint], unit: &str, abscissa: impl Fn(&BudgetPoint) -
             let (first, last) = (abscissa(&run[0]), abscissa(&run[run.len() - 1]));
             Some(format!(
                 "{source} from {} to {} {unit}",
-                short(first),
-                short(last)
+                three_digits(first),
+                three_digits(last)
             ))
         })
         .collect();
@@ -146,12 +146,6 @@ pub(crate) fn sources(points: &[BudgetPoint]) -> Vec<&'static str> {
         .find_map(|point| point.angle_random_walk_deg_per_sqrt_h.as_ref())
         .map(|walks| walks.iter().map(|(name, _)| *name).collect())
         .unwrap_or_default()
-}
-
-/// Three significant digits.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    plain(rounded)
 }
 
 /// A walk to three significant digits, trailing zeros kept, so that columns compare; a source that

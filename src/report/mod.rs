@@ -22,6 +22,7 @@
 mod artefacts;
 mod budget;
 mod calibration;
+mod claim;
 mod comparison;
 mod csv;
 mod json;
@@ -34,14 +35,14 @@ mod restore;
 mod text;
 
 pub use artefacts::{
-    Artefact, ENCODER_SAMPLES, JUNIT, Place, SAMPLES, SAMPLES_CSV, SUITE_SUMMARY, TIME_SAMPLES,
-    TRUTH_SAMPLES, artefacts, budget_files, calibration_files, log_files, plots, run_files,
-    run_pictures,
+    Artefact, Contents, JUNIT, OutputFile, Place, SUITE_SUMMARY, artefacts, budget_files,
+    calibration_files, log_files, plots, run_files, run_pictures,
 };
 pub use budget::{budget_json, budget_text};
 pub use calibration::calibrate::{CalibrateReport, calibrate_json, calibrate_text};
 pub use calibration::documents::{CalibrationProvenance, calibration_json};
 pub use calibration::text::calibration_text;
+pub use claim::{claim_json, claim_text};
 pub use comparison::files::{comparison_file_names, comparison_files};
 pub use comparison::text::comparison_text;
 pub use csv::curves::curve_csv;

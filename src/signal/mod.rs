@@ -17,11 +17,34 @@ pub use slow_drift::SlowDrift;
 /// A cubic in normalised time `u`, 0 at the start of the interval and 1 at its end:
 /// `rate(u) = c0 + c1 u + c2 u^2 + c3 u^3`, inertial rate about the input axis (table motion plus
 /// the projection of Earth rate), rad/s. For a sine of angular frequency w the cubic through the
-/// end rates and slopes errs by at most `(w T)^4 / 384` of the amplitude: 2e-10 at 10 Hz, 4 kHz.
+/// end rates and slopes errs by at most `(w T)^4 / 384` of the amplitude, and has `(w T)^4 / 720` less of
+/// it: 2e-10 at 10 Hz, 4 kHz. Faster motion comes as several cubics of equal length a word, see
+/// [`cubics_per_word`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionSegment {
     /// Polynomial coefficients `c0..c3`, rad/s.
     pub rate_rad_per_s: [f64; 4],
+}
+
+/// Part of the amplitude of a sine that cubics may lose.
+const CUBIC_LOSS_MAX: f64 = 5e-6;
+
+/// Cubics into which a rate word is to be split, so that the fastest sine of the motion keeps its
+/// amplitude to 5 ppm: one up to a 25th of the word rate, seven at a quarter of it.
+///
+/// Source: derived; the cubic through both ends of a part of length h has the mean gain
+/// `1 - (w h)^4 / 720`, and its images about the rate of the parts are of the same order.
+#[must_use]
+pub fn cubics_per_word(frequency_hz: f64, word_period_s: f64) -> usize {
+    let angle = std::f64::consts::TAU * frequency_hz * word_period_s;
+    let most = (720.0 * CUBIC_LOSS_MAX).sqrt().sqrt();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small whole number; the cast saturates"
+    )]
+    let cubics = (angle / most).ceil().max(1.0) as usize;
+    cubics
 }
 
 impl MotionSegment {
@@ -145,8 +168,8 @@ pub struct GyroFacts {
     pub loop_bandwidth_hz: f64,
     /// Delay of the rate word behind the motion at low frequency, ms.
     pub delay_ms: f64,
-    /// Angle random walk by source (`shot`, `thermal`, `amplifier`, `rin`, `adc`, `technical`,
-    /// `total`), deg/sqrt(h).
+    /// Angle random walk by source of the detector, in the order of the gyro's list, and `total`;
+    /// deg/sqrt(h).
     pub angle_random_walk_budget_deg_per_sqrt_h: Vec<(&'static str, f64)>,
 }
 
@@ -271,6 +294,19 @@ pub struct RunSignals<'a> {
     pub channels: Vec<(&'a str, &'a [f64])>,
     /// Temperatures over the measured part; `None` where they never change.
     pub temperature: Option<TemperatureRecord>,
+}
+
+impl RunSignals<'_> {
+    /// Stamps of the samples, s: each at the end of its period.
+    pub fn stamps_s(&self) -> impl Iterator<Item = f64> {
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "sample counts are far below 2^53"
+        )]
+        let stamp_s = |ordinal: usize| ordinal as f64 * self.sample_period_s;
+        let words = self.channels.first().map_or(0, |(_, words)| words.len());
+        (1..=words).map(stamp_s)
+    }
 }
 
 /// What a compensation takes out of the outputs of an assembly, as the report shows it.

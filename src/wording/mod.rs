@@ -8,4 +8,4 @@ mod text;
 
 pub(crate) use likeness::{Likeness, Name, Vocabulary, is_misspelling, likeness};
 pub(crate) use quantity::{conversion, words_of};
-pub(crate) use text::{counted, decimals, number, plain, printable};
+pub(crate) use text::{counted, decimals, exact, number, plain, printable, to_digits};

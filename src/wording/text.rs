@@ -23,14 +23,26 @@ pub(crate) fn number(value: f64) -> String {
     if count <= DIGITS_MAX || is_whole || !value.is_finite() {
         return exact;
     }
-    format!("{value:.5e}")
-        .parse::<f64>()
-        .map_or(exact, |rounded| format!("{rounded:?}"))
+    format!("{:?}", to_digits(value, 6))
+}
+
+/// A number rounded to so many significant digits, one at least.
+pub(crate) fn to_digits(value: f64, digits: usize) -> f64 {
+    let rounded = format!("{value:.*e}", digits - 1);
+    // What was printed is a number.
+    rounded.parse().unwrap_or(value)
 }
 
 /// As [`number`], a whole one without its `.0`.
 pub(crate) fn plain(value: f64) -> String {
     let text = number(value);
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// A number as it was written, without the `.0` of a whole one: what is compared with the end of a
+/// range must not be rounded to it.
+pub(crate) fn exact(value: f64) -> String {
+    let text = format!("{value:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 

@@ -79,6 +79,7 @@ pub(crate) fn raw_record<'a>(raw: &'a [f64], truth: &'a [f64]) -> Record<'a> {
         channel_deg_per_h: raw,
         raw_deg_per_h: raw,
         truth_deg_per_h: truth,
+        response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 0.0,

@@ -155,7 +155,12 @@ fn as_anywhere(line: &str) -> String {
         let slash = usize::from(name[length..].starts_with('/'));
         line.replace_range(from..from + scratch.len() + length + slash, "");
     }
-    let is_digest = |word: &&str| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
+    // Whole, or the beginning of one as reports show it.
+    let is_digest = |word: &&str| {
+        [16, 64].contains(&word.len())
+            && word.bytes().all(|c| c.is_ascii_hexdigit())
+            && word.bytes().any(|c| c.is_ascii_alphabetic())
+    };
     let mut words = line.split(|c: char| !c.is_ascii_alphanumeric());
     match words.find(is_digest) {
         Some(digest) => as_anywhere(&line.replace(digest, "[digest]")),

@@ -99,19 +99,48 @@ fn planned(scenario: &Scenario, campaign: &CampaignConfig) -> Vec<GroupDesign> {
     designs.collect()
 }
 
-/// What is wrong with a plan: the key to blame, and why.
-pub(crate) type Complaint = (&'static str, String);
+/// Why a plan determines less than is asked of it.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum PlanError {
+    /// Motions are missing.
+    #[error("{key}: the plan cannot be calibrated: {error}")]
+    Undetermined {
+        /// Key to blame.
+        key: &'static str,
+        /// What is missing.
+        error: CalibrationError,
+    },
+    /// The temperature is the same in every group.
+    #[error("{key} = \"{estimator}\" fits a coefficient of temperature: {error}")]
+    OneTemperature {
+        /// Key to blame.
+        key: &'static str,
+        /// The estimator that is asked for.
+        estimator: &'static str,
+        /// What is missing.
+        error: CalibrationError,
+    },
+}
+
+impl PlanError {
+    /// The key to blame.
+    pub(crate) fn key(&self) -> &'static str {
+        match self {
+            Self::Undetermined { key, .. } | Self::OneTemperature { key, .. } => key,
+        }
+    }
+}
 
 /// Checks whether a campaign can determine what is asked of it, before it runs.
 ///
 /// Returns what a sound plan can determine, in a sentence, and what is worth saying of it.
 ///
 /// # Errors
-/// The key to blame and the missing motion in words.
+/// [`PlanError`]: what is missing.
 pub(crate) fn check_campaign(
     scenario: &Scenario,
     campaign: &CampaignConfig,
-) -> Result<(String, Vec<String>), Complaint> {
+) -> Result<(String, Vec<String>), PlanError> {
     let designs = planned(scenario, campaign);
     let reference = [scenario.gyro.thermal.reference_c; 3];
     let plan = check_plan(&designs, TemperatureColumns::NONE, reference).map_err(|error| {
@@ -125,10 +154,7 @@ pub(crate) fn check_campaign(
         } else {
             "turntable.calibration.rates_deg_per_s"
         };
-        (
-            key,
-            format!("{key}: the plan cannot be calibrated: {error}"),
-        )
+        PlanError::Undetermined { key, error }
     })?;
     let condition = plan.axes.iter().map(|axis| axis.condition_number);
     let summary = format!(
@@ -150,12 +176,11 @@ pub(crate) fn check_campaign(
         && let Err(error) = check_plan(&designs, TemperatureColumns::BIAS, reference)
     {
         if scenario.calibration.apply.fits_temperature() {
-            let key = "calibration.apply";
-            let message = format!(
-                "{key} = \"{}\" fits a coefficient of temperature: {error}",
-                scenario.calibration.apply.word()
-            );
-            return Err((key, message));
+            return Err(PlanError::OneTemperature {
+                key: "calibration.apply",
+                estimator: scenario.calibration.apply.word(),
+                error,
+            });
         }
         notes.push(format!(
             "estimators that fit a coefficient of temperature are left out: {error}"

@@ -36,18 +36,35 @@ pub(crate) fn estimator_of(scenario: &Scenario, channel: &str) -> Option<&'stati
     Some(kind.word())
 }
 
-/// Whether the estimate of an estimator has a metric.
-pub(crate) fn supports(estimator: &str, metric: &str) -> Result<(), String> {
+/// Why the estimate of an estimator never has a metric.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum UnsupportedMetric {
+    /// A metric of channels.
+    #[error("an estimate has {} only", own.join(", "))]
+    OfChannels {
+        /// Metrics of an estimate.
+        own: Vec<&'static str>,
+    },
+    /// A metric of the covariance recursion.
+    #[error("only the covariance recursion loses digits")]
+    OfCovariance,
+}
+
+/// Checks that the estimate of an estimator has a metric.
+///
+/// # Errors
+/// [`UnsupportedMetric`]: why it never has it.
+pub(crate) fn supports(estimator: &str, metric: &str) -> Result<(), UnsupportedMetric> {
     let known = known_metrics().iter();
     let own: Vec<&str> = known
         .filter(|known| known.applies == Applies::Calibration)
         .map(|known| known.name)
         .collect();
     if !own.contains(&metric) {
-        return Err(format!("an estimate has {} only", own.join(", ")));
+        return Err(UnsupportedMetric::OfChannels { own });
     }
     if metric == ROUNDING_LOSS.name && estimator != "arls-covariance" {
-        return Err("only the covariance recursion loses digits".to_owned());
+        return Err(UnsupportedMetric::OfCovariance);
     }
     Ok(())
 }

@@ -86,10 +86,10 @@ pub enum CalibrateError {
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// The groups do not fit the motion that they state, or do not determine the parameters.
-    #[error("{file}: {message}")]
+    #[error("{place}: {message}")]
     Refused {
-        /// Name of the file.
-        file: String,
+        /// Name of the file, with the line where one is to blame.
+        place: String,
         /// What is wrong.
         message: String,
     },
@@ -120,7 +120,7 @@ pub fn calibrate_groups(
 ) -> Result<CalibrationTrial, Vec<CalibrateError>> {
     let recorded = read_groups(path).map_err(|error| vec![error.into()])?;
     let refuse = |message: String| CalibrateError::Refused {
-        file: recorded.file.clone(),
+        place: recorded.file.clone(),
         message,
     };
     check_latitude(&recorded, settings).map_err(|error| vec![error])?;
@@ -187,8 +187,8 @@ pub fn calibrate_campaign(
             .collect::<Vec<_>>()
     })?;
     let refuse = |message: String| {
-        let file = path.display().to_string();
-        vec![CalibrateError::Refused { file, message }]
+        let place = path.display().to_string();
+        vec![CalibrateError::Refused { place, message }]
     };
     let [plan] = &plans[..] else {
         let count = plans.len();
@@ -290,23 +290,24 @@ fn check_latitude(
 ) -> Result<(), CalibrateError> {
     let lacks = |group: &&RecordedGroup| group.reference_rate_deg_per_s.is_none();
     let lacking = recorded.groups.iter().find(lacks);
-    let message = match (lacking, settings.latitude_deg) {
-        (Some(group), None) => format!(
-            "line {}: the Earth rate about the table axis is not known: give --latitude-deg, or the \
-             rates about the case axes with the Earth rate in them as reference_x_deg_per_s, \
+    let file = &recorded.file;
+    let (place, message) = match (lacking, settings.latitude_deg) {
+        (Some(group), None) => (
+            format!("{file}:{}", group.line),
+            "the Earth rate about the table axis is not known: give --latitude-deg, or the rates \
+             about the case axes with the Earth rate in them as reference_x_deg_per_s, \
              reference_y_deg_per_s and reference_z_deg_per_s",
-            group.line
         ),
-        (None, Some(_)) => {
+        (None, Some(_)) => (
+            file.clone(),
             "--latitude-deg has no effect where every line gives reference_x, reference_y and \
-             reference_z: leave it out"
-                .to_owned()
-        }
+             reference_z: leave it out",
+        ),
         _ => return Ok(()),
     };
     Err(CalibrateError::Refused {
-        file: recorded.file.clone(),
-        message,
+        place,
+        message: message.to_owned(),
     })
 }
 

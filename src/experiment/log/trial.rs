@@ -8,11 +8,12 @@ use super::compensation::CompensatedLog;
 use super::filters::LogFilters;
 use crate::experiment::build::VERSION;
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
+use crate::experiment::output_file::write_file;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
 use crate::metrics::{ChannelMetrics, Motion, Settings, is_sample_or_longer, record_fit_tau_min_s};
-use crate::recording::{Log, csv_text};
-use crate::report::{LogReport, SAMPLES, SAMPLES_CSV, log_files};
+use crate::recording::Log;
+use crate::report::{LogReport, log_files};
 use crate::scenario::{AllanConfig, MotionConfig, SwingConfig};
 use crate::signal::RunSignals;
 use crate::store::{OutputFolder, StoreError};
@@ -54,8 +55,17 @@ pub enum LogMotion {
     },
 }
 
+/// A motion of a log that nobody knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "expected `static`, or `swing:F` with a frequency F from {:e} to {:e} Hz",
+    SWING_HZ.0,
+    SWING_HZ.1
+)]
+pub struct UnknownLogMotion;
+
 impl FromStr for LogMotion {
-    type Err = String;
+    type Err = UnknownLogMotion;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let (least, most) = SWING_HZ;
@@ -67,9 +77,7 @@ impl FromStr for LogMotion {
             Some(Ok(frequency_hz)) if (least..=most).contains(&frequency_hz) => {
                 Ok(Self::Swing { frequency_hz })
             }
-            _ => Err(format!(
-                "expected `static`, or `swing:F` with a frequency F from {least:e} to {most:e} Hz"
-            )),
+            _ => Err(UnknownLogMotion),
         }
     }
 }
@@ -84,7 +92,7 @@ pub struct LogSettings {
     /// Averaging time of the plain `bias_stability_deg_per_h`, s.
     pub bias_averaging_time_s: f64,
     /// Shortest averaging time of the noise fit, s; none: four times as long as the fast noise is
-    /// correlated, ten samples at least.
+    /// correlated, and ten samples at least unless the words are white.
     pub fit_tau_min_s: Option<f64>,
     /// Estimator and averaging times of the Allan curve.
     pub allan: AllanConfig,
@@ -136,6 +144,7 @@ pub fn try_log(
     let length = record_length(&log, settings)?;
     let record = GyroRecord {
         truth_deg_per_h: Vec::new(),
+        response_deg_per_h: None,
         raw_deg_per_h: std::mem::take(&mut log.rate_deg_per_h),
         compensated_deg_per_h: compensated,
     };
@@ -317,20 +326,8 @@ impl LogTrial {
     /// Whatever the file system says, with the path.
     pub fn write(&self, folder: &OutputFolder, as_csv: bool) -> Result<(), StoreError> {
         let staged = folder.stage()?;
-        let files = self.with_report(|report| log_files(report, &self.signals()));
-        for (name, text) in files {
-            staged.write(&name, text.as_bytes())?;
-        }
-        for (name, words) in self
-            .compensated_words()
-            .into_iter()
-            .chain(self.filter_words())
-        {
-            staged.write_npy(&SAMPLES.named(name), words)?;
-            if as_csv {
-                let text = csv_text(words, self.log.sample_period_s());
-                staged.write(&SAMPLES_CSV.named(name), text.as_bytes())?;
-            }
+        for file in self.with_report(|report| log_files(report, &self.signals(), as_csv)) {
+            write_file(&staged, &file)?;
         }
         staged.seal_plainly()?;
         staged.put_files_in_place()

@@ -135,7 +135,7 @@ impl Checker<'_> {
                 self.calibration = Some(summary);
                 self.warnings.extend(notes);
             }
-            Err((key, message)) => self.complain(key, message),
+            Err(error) => self.complain(error.key(), error.to_string()),
         }
     }
 }

@@ -17,6 +17,8 @@ struct Requested<'a> {
     key: String,
     channel: &'a str,
     metric: &'a str,
+    /// Whether it only stands beside a published figure, which nothing is judged by.
+    is_shown_only: bool,
 }
 
 impl Checker<'_> {
@@ -60,9 +62,7 @@ impl Checker<'_> {
             for column in columns.filter_map(|text| ComparisonColumn::parse(text)) {
                 if let Some(complaint) = metrics::unknown(column.metric) {
                     let key = format!("comparison[{index}].columns");
-                    let message =
-                        format!("{key}: there is no metric {}: {complaint}", column.metric);
-                    self.complain(&key, message);
+                    self.complain(&key, format!("{key}: {complaint}"));
                 }
             }
         }
@@ -98,40 +98,14 @@ impl Checker<'_> {
         )
     }
 
-    /// Refuses gates and published figures that this record can never support.
+    /// Refuses gates that this record can never support, and says so of published figures.
     pub(crate) fn metrics(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;
         let motion = motion(scenario, 1.0 / facts.output_rate_hz);
-        let mut requested: Vec<Requested> = Vec::new();
-        for (index, gate) in scenario.gates.iter().enumerate() {
-            let Some((channel, metric)) = gate.metric.rsplit_once('.') else {
-                continue;
-            };
-            let key = format!("gate[{index}].metric");
-            requested.push(Requested {
-                key,
-                channel,
-                metric,
-            });
-            if let Some(reference) = &gate.relative_to {
-                requested.push(Requested {
-                    key: format!("gate[{index}].relative_to"),
-                    channel: reference,
-                    metric,
-                });
-            }
-        }
         for (index, figure) in scenario.published.iter().enumerate() {
-            let Some((channel, metric)) = figure.metric.rsplit_once('.') else {
-                continue;
-            };
-            let key = format!("published[{index}].metric");
-            requested.push(Requested {
-                key,
-                channel,
-                metric,
-            });
-            if let Some((key, message)) = wrong_unit(index, metric, &figure.unit) {
+            if let Some((_, metric)) = figure.metric.rsplit_once('.')
+                && let Some((key, message)) = wrong_unit(index, metric, &figure.unit)
+            {
                 self.complain(&key, message);
             }
         }
@@ -139,7 +113,8 @@ impl Checker<'_> {
             key,
             channel,
             metric: name,
-        } in requested
+            is_shown_only,
+        } in requested(scenario)
         {
             // The divergence of a channel may be what the gate expects.
             if name == DIVERGED_AT.name {
@@ -164,11 +139,52 @@ impl Checker<'_> {
                 scenario.bias_averaging_time_s,
             );
             let lack = || lacks(scenario, channel, known);
-            if let Some(reason) = supported.err().or_else(lack) {
-                self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
+            match supported.err().or_else(lack) {
+                Some(reason) if is_shown_only => {
+                    let warning =
+                        format!("{key}: nothing is simulated beside {channel}.{name}: {reason}");
+                    self.warnings.push(warning);
+                }
+                Some(reason) => {
+                    self.complain(&key, format!("{key}: {channel}.{name}: {reason}"));
+                }
+                None => {}
             }
         }
     }
+}
+
+/// Every metric that gates and published figures ask for.
+fn requested(scenario: &Scenario) -> Vec<Requested<'_>> {
+    let mut requested = Vec::new();
+    for (index, gate) in scenario.gates.iter().enumerate() {
+        let Some((channel, metric)) = gate.metric.rsplit_once('.') else {
+            continue;
+        };
+        let mut ask = |key: &str, channel| {
+            requested.push(Requested {
+                key: format!("gate[{index}].{key}"),
+                channel,
+                metric,
+                is_shown_only: false,
+            });
+        };
+        ask("metric", channel);
+        if let Some(reference) = &gate.relative_to {
+            ask("relative_to", reference);
+        }
+    }
+    for (index, figure) in scenario.published.iter().enumerate() {
+        if let Some((channel, metric)) = figure.metric.rsplit_once('.') {
+            requested.push(Requested {
+                key: format!("published[{index}].metric"),
+                channel,
+                metric,
+                is_shown_only: true,
+            });
+        }
+    }
+    requested
 }
 
 /// Why a channel of this scenario can never have a metric, whatever the length of its record.

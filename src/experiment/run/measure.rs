@@ -129,6 +129,7 @@ impl Cut<'_> {
             raw_deg_per_h: &input_deg_per_h[first..],
             // A recorded log has none.
             truth_deg_per_h: self.record.truth_deg_per_h.get(first..).unwrap_or(&[]),
+            response_deg_per_h: self.record.response_deg_per_h.as_deref().unwrap_or(&[]),
             encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
             sample_period_s: self.sample_period_s,
             first_stamp_s: stamp_s(first as u64, self.sample_period_s),
@@ -148,7 +149,11 @@ impl Cut<'_> {
         if truth.is_empty() && !is_at_rest {
             return None;
         }
-        let motion = (!truth.is_empty()).then(|| known_motion(input, truth));
+        let moves = truth
+            .windows(2)
+            .any(|two| two[0] < two[1] || two[1] < two[0]);
+        let response = self.record.response_deg_per_h.as_deref();
+        let motion = moves.then(|| known_motion(input, response, truth));
         Learning::of(&filter.shape, input, motion.as_deref(), first)
     }
 

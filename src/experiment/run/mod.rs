@@ -21,6 +21,6 @@ pub(crate) use motion::{motion, motion_extremes, rate_deg_per_h_max};
 pub use progress::Progress;
 pub(crate) use progress::Unfinished;
 pub(crate) use rate_twins::RateTwins;
-pub(crate) use records::{RecordLength, count, stamp_s};
+pub(crate) use records::{RecordLength, count};
 pub(crate) use results::{Results, run_plan};
 pub(crate) use simulate::{GyroRecord, Simulation, first_words, simulate};

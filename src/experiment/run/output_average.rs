@@ -19,15 +19,15 @@ pub(crate) fn mean(count: usize, mut next_word: impl FnMut() -> f64) -> f64 {
 
 /// Warm-up as the table counts it, s: its record begins with the first measured output sample.
 ///
-/// Half a word less than whole words, so that the table's rounding up to whole words cannot go astray.
+/// The table makes `parts` segments of `part_s` an output sample. Half a segment less than whole ones, so
+/// that the table's rounding up to whole ones cannot go astray.
 pub(crate) fn table_warm_up_s(
     scenario: &Scenario,
     warm_up_samples: usize,
-    word_period_s: f64,
+    (parts, part_s): (usize, f64),
 ) -> f64 {
-    if scenario.gyro.output.average_samples == 1 || warm_up_samples == 0 {
+    if parts == 1 || warm_up_samples == 0 {
         return scenario.warm_up_s;
     }
-    let words = count(warm_up_samples) * f64::from(scenario.gyro.output.average_samples);
-    (words - 0.5) * word_period_s
+    (count(warm_up_samples * parts) - 0.5) * part_s
 }

@@ -11,7 +11,10 @@ use crate::filters::FilterKind;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
 use crate::scenario::{FilterState, Scenario};
-use crate::turntable::{InjectedSignal, Turntable, first_measured_index, step_indices};
+use crate::signal::{MotionSegment, cubics_per_word};
+use crate::turntable::{
+    InjectedSignal, MotionClass, ServoConfig, Turntable, first_measured_index, step_indices,
+};
 use crate::units::rad_per_s_to_deg_per_h;
 
 /// Samples of one block: long against the cost of handing it over, short against the caches.
@@ -34,6 +37,9 @@ pub(crate) struct GyroRecord {
     /// Inertial rate of the input axis, or of the case axis of an assembly, at each stamp, with the
     /// rate that an injected signal equals, deg/h; empty for a recorded log.
     pub(crate) truth_deg_per_h: Vec<f64>,
+    /// What the gyro makes of the motion without noise at each stamp, deg/h; absent where nothing moves,
+    /// of an assembly and of a recorded log.
+    pub(crate) response_deg_per_h: Option<Vec<f64>>,
     /// The gyro's rate words, deg/h.
     pub(crate) raw_deg_per_h: Vec<f64>,
     /// The same with the constant errors of the assembly taken out, where that is done, deg/h.
@@ -133,11 +139,13 @@ pub(crate) fn simulate(
         (raw, compensated) = next;
     }
     let faults = source.gyros.faults();
-    let records = source.truth_deg_per_h.into_iter().zip(records);
+    let truth = std::mem::take(&mut source.truth_deg_per_h);
+    let records = truth.into_iter().zip(records);
     Ok(Simulation {
         gyros: records
             .map(|(truth_deg_per_h, words)| GyroRecord {
                 truth_deg_per_h,
+                response_deg_per_h: source.response.take().map(|response| response.words),
                 raw_deg_per_h: words.raw,
                 compensated_deg_per_h: words.compensated,
             })
@@ -239,10 +247,39 @@ struct Source {
     sample_period_s: f64,
     /// Rate words in one output sample.
     average_samples: u32,
+    /// Cubics in one rate word.
+    cubics: usize,
+    /// The answer of a single gyro to the motion.
+    response: Option<Response>,
     /// Of each gyro.
     truth_deg_per_h: Vec<Vec<f64>>,
     encoder_rad: Option<Vec<f64>>,
     samples: usize,
+}
+
+/// The linear model of a gyro without noise, and its words, deg/h.
+struct Response {
+    gyro: Gyro,
+    words: Vec<f64>,
+}
+
+impl Response {
+    /// The answer of a gyro alone on a table that moves; nothing where there is none to tell from noise.
+    fn new(scenario: &Scenario, length: RecordLength) -> Option<Self> {
+        let is_still = match scenario.measured_motion().class() {
+            // A servo that is no closed form may shake at rest.
+            MotionClass::Rest => !matches!(scenario.turntable.servo, ServoConfig::DirectDrive(_)),
+            MotionClass::Campaign(_) => true,
+            _ => false,
+        };
+        if is_still || scenario.gyro.assembly.is_some() {
+            return None;
+        }
+        Some(Self {
+            gyro: Gyro::without_noise(&scenario.gyro).ok()?,
+            words: Vec::with_capacity(length.total()),
+        })
+    }
 }
 
 /// What stands on the table.
@@ -287,17 +324,22 @@ impl Source {
         let sample_period_s = gyro::sample_period_s(&scenario.gyro);
         let word_period_s = gyro::word_period_s(&scenario.gyro);
         let warm_up = RecordLength::new(scenario, sample_period_s).warm_up;
-        let warm_up_s = table_warm_up_s(scenario, warm_up, word_period_s);
+        let sines = scenario.injected_sines();
+        let fastest_hz = scenario.measured_motion().frequency_max_hz();
+        let cubics = cubics_per_word(fastest_hz, word_period_s);
+        let part_s = word_period_s / count(cubics);
+        let parts = cubics * scenario.gyro.output.average_samples as usize;
+        let warm_up_s = table_warm_up_s(scenario, warm_up, (parts, part_s));
         let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
         Ok(Self {
-            table: Turntable::new(&scenario.turntable, warm_up_s, word_period_s),
-            injected: scenario
-                .injected_sines()
-                .map(|sines| InjectedSignal::new(&sines, warm_up_s, word_period_s)),
+            table: Turntable::new(&scenario.turntable, warm_up_s, part_s),
+            injected: sines.map(|sines| InjectedSignal::new(&sines, warm_up_s, part_s)),
+            cubics,
             encoder_rad: has_encoder.then(|| Vec::with_capacity(length.total())),
             gyros: Gyros::new(scenario, repeat)?,
             sample_period_s,
             average_samples: scenario.gyro.output.average_samples,
+            response: Response::new(scenario, length),
             truth_deg_per_h: scenario
                 .axis_prefixes()
                 .iter()
@@ -312,44 +354,58 @@ impl Source {
         let (table, truth) = (&mut self.table, &mut self.truth_deg_per_h);
         let average = self.average_samples as usize;
         let encoder = &mut self.encoder_rad;
+        let response = &mut self.response;
         let mut read = |table: &Turntable| {
             if let Some(readings) = encoder {
                 readings.extend(table.encoder_rad());
             }
         };
+        let cubics = self.cubics;
         let left = self.samples - truth[0].len();
-        let block = left.min((BLOCK_SAMPLES / average).max(1));
+        let block = left.min((BLOCK_SAMPLES / (average * cubics)).max(1));
         match &mut self.gyros {
             Gyros::Alone(gyro) => {
                 let mut samples = Vec::with_capacity(block);
+                let mut word = vec![MotionSegment::constant(0.0); cubics];
                 for _ in 0..block {
                     let mut end = 0.0;
+                    let mut answer = 0.0;
                     samples.push(mean(average, || {
-                        let mut segment = table.next_segment();
-                        if let Some(signal) = &mut self.injected {
-                            segment = segment.plus(&signal.next_segment());
+                        for segment in &mut word {
+                            *segment = table.next_segment();
+                            if let Some(signal) = &mut self.injected {
+                                *segment = segment.plus(&signal.next_segment());
+                            }
+                            end = segment.rate_at(1.0);
                         }
-                        end = segment.rate_at(1.0);
-                        gyro.next_word(&segment)
+                        if let Some(response) = response {
+                            answer += response.gyro.next_word_over(&word);
+                        }
+                        gyro.next_word_over(&word)
                     }));
                     truth[0].push(rad_per_s_to_deg_per_h(end));
+                    if let Some(response) = response {
+                        response.words.push(answer / count(average));
+                    }
                     read(table);
                 }
                 vec![samples]
             }
             Gyros::InCase(gyros) => {
-                let mut case = Vec::with_capacity(block * average);
+                let parts = average * cubics;
+                let mut case = Vec::with_capacity(block * parts);
                 for _ in 0..block {
-                    case.extend((0..average).map(|_| table.next_platform_segments()));
+                    case.extend((0..parts).map(|_| table.next_platform_segments()));
                     read(table);
                 }
                 let gyros = gyros.par_iter_mut().zip(truth).enumerate();
                 gyros
                     .map(|(axis, (gyro, truth))| {
-                        let ends = case.chunks_exact(average).map(|words| &words[average - 1]);
+                        let ends = case.chunks_exact(parts).map(|cubics| &cubics[parts - 1]);
                         let rates = ends.map(|segments| segments[axis].rate_at(1.0));
                         truth.extend(rates.map(rad_per_s_to_deg_per_h));
-                        let mut words = case.iter().map(|segments| gyro.next_word(segments));
+                        let words = case.chunks_exact(cubics);
+                        let mut words = words.map(|segments| gyro.next_word_over(segments));
                         let mut next = || words.next().unwrap_or(f64::NAN);
                         (0..block).map(|_| mean(average, &mut next)).collect()
                     })

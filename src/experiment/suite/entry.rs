@@ -1,6 +1,6 @@
 //! One run of a suite: its result or an earlier one, its files and its entry in the ledger.
 
-use super::files;
+use super::files::{self, Names};
 use super::ledger::Ledger;
 use super::options::Resume;
 use super::outcome::Observer;
@@ -9,7 +9,7 @@ use super::resume::take_over;
 use crate::comparison::Layout;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{Results, Unfinished, run_plan};
-use crate::report::{RunOutcome, RunReport};
+use crate::report::{RunOutcome, RunReport, run_pictures};
 use crate::store::StoreError;
 
 /// What the runs of a suite share.
@@ -73,13 +73,15 @@ pub(crate) fn enter_result(
 ) -> Result<Option<RunOutcome>, StoreError> {
     let output = suite.output;
     let report = report(plan, results);
-    let pictures = files::draw(plan, &report, &results.simulation);
+    let names = Names::of(&report);
+    let signals = files::signals(plan, &results.simulation, &names);
+    let pictures = run_pictures(&report, &signals);
     let notes = [report.notes, &pictures.notes].concat();
     let report = &RunReport {
         notes: &notes,
         ..report
     };
-    let written = files::write_folder(plan, report, &results.simulation, &pictures, output)?;
+    let written = files::write_folder(report, &signals, &pictures, output)?;
     let outcome = RunOutcome::from_report(report, &plan.resolved().folder());
     let pictures = pictures.drawn.into_iter().map(|(name, _)| name).collect();
     let outcome = RunOutcome {

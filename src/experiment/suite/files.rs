@@ -2,14 +2,13 @@
 
 use super::output::SuiteOutput;
 use crate::experiment::build::VERSION;
+use crate::experiment::output_file::write_file;
 use crate::experiment::plan::Plan;
-use crate::experiment::run::{RecordLength, Simulation, stamp_s};
+use crate::experiment::run::{RecordLength, Simulation};
 use crate::gyro::temperature_record;
 use crate::report::{self, Pictures, RunReport};
-use crate::scenario::SamplesFormat;
 use crate::signal::RunSignals;
 use crate::store::{Staged, StoreError};
-use crate::units::rad_to_arcsec;
 
 /// What the report of a run shows of its plan, before anything is measured.
 pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
@@ -33,42 +32,31 @@ pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
     }
 }
 
-/// The pictures of one run, and what to say of those that are left out.
-pub(crate) fn draw(plan: &Plan, report: &RunReport, simulation: &Simulation) -> Pictures {
-    let names = Names::of(report);
-    report::run_pictures(report, &signals(plan, simulation, &names))
-}
-
 /// Writes everything of one run beside its place, to be swapped in whole.
 pub(crate) fn write_folder<'a>(
-    plan: &Plan,
     report: &RunReport,
-    simulation: &Simulation,
+    signals: &[RunSignals],
     pictures: &Pictures,
     output: &'a SuiteOutput,
 ) -> Result<Staged<'a>, StoreError> {
     let folder = output.stage()?;
-    for (name, text) in report::run_files(report) {
-        folder.write(&name, text.as_bytes())?;
+    for file in report::run_files(report, signals) {
+        write_file(&folder, &file)?;
     }
     for (name, svg) in &pictures.drawn {
         folder.write(name, svg.as_bytes())?;
-    }
-    if report.scenario.output.samples == SamplesFormat::Npy {
-        let names = Names::of(report);
-        write_samples(&folder, &signals(plan, simulation, &names))?;
     }
     Ok(folder)
 }
 
 /// Names of the channels of the gyros.
-struct Names {
+pub(super) struct Names {
     raw: Vec<String>,
     compensated: Vec<String>,
 }
 
 impl Names {
-    fn of(report: &RunReport) -> Self {
+    pub(super) fn of(report: &RunReport) -> Self {
         Self {
             raw: report.scenario.raw_channels(),
             compensated: report.scenario.compensated_channels(),
@@ -77,7 +65,11 @@ impl Names {
 }
 
 /// The samples of each gyro.
-fn signals<'a>(plan: &Plan, simulation: &'a Simulation, names: &'a Names) -> Vec<RunSignals<'a>> {
+pub(super) fn signals<'a>(
+    plan: &Plan,
+    simulation: &'a Simulation,
+    names: &'a Names,
+) -> Vec<RunSignals<'a>> {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
     let first_measured = RecordLength::new(scenario, sample_period_s).warm_up;
@@ -107,26 +99,4 @@ fn signals<'a>(plan: &Plan, simulation: &'a Simulation, names: &'a Names) -> Vec
         }
     });
     signals.collect()
-}
-
-fn write_samples(folder: &Staged, gyros: &[RunSignals]) -> Result<(), StoreError> {
-    for signals in gyros {
-        for (name, words) in &signals.channels {
-            folder.write_npy(&report::SAMPLES.named(name), words)?;
-        }
-        let truth = report::TRUTH_SAMPLES.named(signals.prefix);
-        folder.write_npy(&truth, signals.truth_deg_per_h)?;
-    }
-    let Some(first) = gyros.first() else {
-        return Ok(());
-    };
-    if let Some(readings) = first.encoder_rad {
-        let angles: Vec<f64> = readings.iter().copied().map(rad_to_arcsec).collect();
-        folder.write_npy(report::ENCODER_SAMPLES.name, &angles)?;
-    }
-    let samples = first.truth_deg_per_h.len() as u64;
-    let time_s: Vec<f64> = (0..samples)
-        .map(|index| stamp_s(index, first.sample_period_s))
-        .collect();
-    folder.write_npy(report::TIME_SAMPLES.name, &time_s)
 }

@@ -1,5 +1,5 @@
 //! Clocks of the RLS pipeline: per sample, to the result, and with units that take more
-//! than one.
+//! than one. The table of states and their clocks stands in `mod.rs`.
 
 use crate::fpga::check::check_tap_count;
 use crate::fpga::error::FpgaError;

@@ -245,8 +245,9 @@ fn ramp(
     let step_rad = TAU / modulator.codes_per_turn;
     let half_periods = f64::from(config.output.half_periods_per_sample);
     let period_s = half_periods * coil.transit_time_s;
-    let walk =
-        deg_per_sqrt_h_to_rad_per_sqrt_s(NoiseBudget::new(detector, coil).total_deg_per_sqrt_h());
+    let walk = deg_per_sqrt_h_to_rad_per_sqrt_s(
+        NoiseBudget::new(detector, coil).detection_deg_per_sqrt_h(),
+    );
     let rounding = step_rad / (6.0_f64.sqrt() * half_periods * coil.scale_factor_s);
     let noise = walk / period_s.sqrt();
     let (rounding_deg_per_h, noise_deg_per_h) = (

@@ -49,7 +49,7 @@ pub(in crate::gyro) fn optics(
 /// The register's noise must carry it across the bits of the step.
 fn step_noise(parts: &Parts) -> Result<(), GyroError> {
     let lsb_rad = parts.optics.step_lsb_rad;
-    let budget = NoiseBudget::new(&parts.detector, &parts.coil).total_deg_per_sqrt_h();
+    let budget = NoiseBudget::new(&parts.detector, &parts.coil).detection_deg_per_sqrt_h();
     let walk = deg_per_sqrt_h_to_rad_per_sqrt_s(budget) * parts.coil.scale_factor_s;
     let error_rad = walk / parts.controller.loop_period_s.sqrt();
     // r[m+1] = (1 - g) r[m] + g e[m]; a latency only adds to it.

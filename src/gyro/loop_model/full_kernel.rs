@@ -10,6 +10,11 @@ use crate::gyro::optics::second_order::Optics;
 use crate::gyro::parts::Parts;
 use crate::random::{Stream, Streams};
 
+/// Range in which the second loop sets the gain of the ramp converter, over the nominal gain: that of
+/// a multiplying converter, and far beyond the error of any modulator.
+const CORRECTION_MIN: f64 = 0.5;
+const CORRECTION_MAX: f64 = 2.0;
+
 /// Configuration and state of the effects; the registers are those of the plain kernel.
 ///
 /// Invariant: with every effect neutral it does the arithmetic of the plain kernel, operation by
@@ -176,8 +181,11 @@ impl FullLoop {
     }
 
     /// Second loop: takes its share of an estimated gain error off the ramp converter.
+    ///
+    /// Out of lock the estimates mean nothing; the range of the converter holds what they do.
     fn correct(&mut self, estimate: f64) {
-        self.correction *= 1.0 - self.optics.second_loop_gain * estimate;
+        let wanted = self.correction * (1.0 - self.optics.second_loop_gain * estimate);
+        self.correction = wanted.clamp(CORRECTION_MIN, CORRECTION_MAX);
     }
 
     /// Advances the ramp by one half period; whether it was reset.

@@ -18,7 +18,7 @@ use crate::gyro::loop_model::plain_kernel::{LoopConstants, Registers};
 use crate::gyro::noise::slow_noise::SlowNoise;
 use crate::gyro::optics::coil::Coil;
 use crate::gyro::optics::modulation::Timing;
-use crate::gyro::parts::Parts;
+use crate::gyro::parts::{Parts, place_in_cubics};
 use crate::gyro::rate_word::RateWord;
 use crate::gyro::thermal::condition::{Condition, Schedule};
 use crate::gyro::vibration::Vibration;
@@ -58,8 +58,10 @@ pub struct LoopModel {
     codes_per_rad: f64,
     /// Demodulated levels per radian of phase error, slope times states (`2 slope` for a pair).
     levels_per_rad: f64,
-    /// Start of each state (two-state: half period) in normalised time of the output sample.
-    times: Vec<f64>,
+    /// Start of each state (two-state: half period): cubic of the output sample, normalised time there.
+    times: Vec<(usize, f64)>,
+    /// Cubics of an output sample.
+    cubics: usize,
     phases_codes: Vec<f64>,
     /// Vibration and the detected power of each state over its mean, if it is on.
     vibration: Option<(Vibration, Vec<f64>)>,
@@ -99,7 +101,6 @@ impl LoopModel {
         let parts = Parts::new(config)?;
         let (half_periods, timing) = (parts.half_periods, parts.timing);
         let states = half_periods * timing.states_per_half_period;
-        let count = f64::from(states);
         let sample_period_s = f64::from(half_periods) * parts.half_period_s;
         let levels_per_rad = levels_per_rad(&parts);
         let mut model = Self {
@@ -114,7 +115,8 @@ impl LoopModel {
             is_ramp_rounded: parts.modulator.is_quantised,
             codes_per_rad: parts.modulator.codes_per_rad(),
             levels_per_rad,
-            times: (0..states).map(|state| f64::from(state) / count).collect(),
+            times: times(states as usize, 1),
+            cubics: 1,
             phases_codes: (0..states).map(|_| 0.0).collect(),
             vibration: Vibration::new(&config.vibration, parts.half_period_s, streams)
                 .map(|vibration| (vibration, (0..states).map(|_| 1.0).collect())),
@@ -249,11 +251,21 @@ impl LoopModel {
 
     /// Rate word of the output sample over which the gyro moves as `segment`, deg/h.
     pub fn next_word(&mut self, segment: &MotionSegment) -> f64 {
+        self.next_word_over(std::slice::from_ref(segment))
+    }
+
+    /// Rate word of the output sample over which the gyro moves as `segments`, which share it equally,
+    /// deg/h.
+    pub fn next_word_over(&mut self, segments: &[MotionSegment]) -> f64 {
+        if segments.len() != self.cubics {
+            self.cubics = segments.len();
+            self.times = times(self.times.len(), self.cubics);
+        }
         if let Some(condition) = self.next_condition() {
             self.enter(condition);
         }
         let slow_rad_per_s = self.slow_noise.next_rate_rad_per_s() + self.condition.bias_rad_per_s;
-        self.fill_phases(segment, slow_rad_per_s);
+        self.fill_phases(segments, slow_rad_per_s);
         let mut phases_codes = std::mem::take(&mut self.phases_codes);
         let mut vibration = self.vibration.take();
         let powers = vibration.as_mut().map(|(vibration, factors)| {
@@ -266,7 +278,7 @@ impl LoopModel {
         self.phases_codes = phases_codes;
         let periods = self.phases_codes.len() as f64 / f64::from(self.timing.states);
         let mean_rad = sum_codes / (periods * self.codes_per_rad);
-        self.watch_fringe(segment, mean_rad);
+        self.watch_fringe(segments, mean_rad);
         self.rate_word.deg_per_h(mean_rad)
     }
 
@@ -308,9 +320,12 @@ impl LoopModel {
     }
 
     /// Counts a word that is nearer to another fringe than to the motion's own.
-    fn watch_fringe(&mut self, segment: &MotionSegment, mean_rad: f64) {
-        let [c0, c1, c2, c3] = segment.rate_rad_per_s;
-        let phase_rad = self.coil.scale_factor_s * (c0 + c1 / 2.0 + c2 / 3.0 + c3 / 4.0);
+    fn watch_fringe(&mut self, segments: &[MotionSegment], mean_rad: f64) {
+        let turned: f64 = segments
+            .iter()
+            .map(|segment| segment.angle_at(1.0, 1.0))
+            .sum();
+        let phase_rad = self.coil.scale_factor_s * turned / segments.len() as f64;
         let error_rad = mean_rad - phase_rad;
         if error_rad.abs() > PI {
             self.wrong_fringe_words += 1;
@@ -319,14 +334,24 @@ impl LoopModel {
     }
 
     /// Sagnac phase at the start of each state, codes.
-    fn fill_phases(&mut self, segment: &MotionSegment, slow_rad_per_s: f64) {
+    fn fill_phases(&mut self, segments: &[MotionSegment], slow_rad_per_s: f64) {
         let scale = self.coil.scale_factor_s * self.condition.scale_ratio * self.codes_per_rad;
-        let [c0, c1, c2, c3] = segment
-            .rate_rad_per_s
-            .map(|coefficient| scale * coefficient);
-        let c0 = c0 + scale * slow_rad_per_s;
-        for (phase, &u) in self.phases_codes.iter_mut().zip(&self.times) {
-            *phase = ((c3 * u + c2) * u + c1) * u + c0;
+        let mut places = self.times.iter().zip(&mut self.phases_codes).peekable();
+        for (cubic, segment) in segments.iter().enumerate() {
+            let [c0, c1, c2, c3] = segment
+                .rate_rad_per_s
+                .map(|coefficient| scale * coefficient);
+            let c0 = c0 + scale * slow_rad_per_s;
+            while let Some(((_, u), phase)) = places.next_if(|((own, _), _)| *own == cubic) {
+                *phase = ((c3 * u + c2) * u + c1) * u + c0;
+            }
         }
     }
+}
+
+/// Start of each state: cubic of the output sample, and normalised time there.
+fn times(states: usize, cubics: usize) -> Vec<(usize, f64)> {
+    (0..states)
+        .map(|state| place_in_cubics(state, states, cubics))
+        .collect()
 }

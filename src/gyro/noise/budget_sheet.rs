@@ -1,6 +1,9 @@
 //! The noise budget over modulation depth and power, and the depth of least noise.
 
+use std::f64::consts::TAU;
+
 use crate::gyro::error::GyroError;
+use crate::gyro::instrument::word_period_s;
 use crate::gyro::limits::{MotionExtremes, cautions};
 use crate::gyro::noise::budget::NoiseBudget;
 use crate::gyro::noise::law::Density;
@@ -39,10 +42,14 @@ pub fn budget_at(
     config.modulator.depth_deg = depth_deg;
     let modulator = Modulator::new(&config.modulator);
     let detector = Detector::new(&config, &modulator, &Condition::at_start(&config))?;
-    Ok(NoiseBudget::new(
-        &detector,
-        &Coil::new(&config.coil, &config.source),
-    ))
+    let coil = Coil::new(&config.coil, &config.source);
+    Ok(with_rate_word(NoiseBudget::new(&detector, &coil), &config))
+}
+
+/// A budget with the rounding of the words of a configuration, at the bandwidth it asks for.
+pub(in crate::gyro) fn with_rate_word(budget: NoiseBudget, config: &GyroConfig) -> NoiseBudget {
+    let time_constant_s = 1.0 / (TAU * config.controller.loop_bandwidth_hz);
+    budget.with_rate_word(&config.output, word_period_s(config), time_constant_s)
 }
 
 /// Noise that does not go with the light over noise that does, `beta` of the best depth.
@@ -88,7 +95,7 @@ pub fn power_independent_ratio(detector: &Detector, coil: &Coil) -> f64 {
 pub fn budget_sheet(config: &GyroConfig) -> Result<BudgetSheet, GyroError> {
     let Parts { coil, detector, .. } = Parts::new(config)?;
     let (power_uw, depth_deg) = (config.source.power_uw, config.modulator.depth_deg);
-    let budget = NoiseBudget::new(&detector, &coil);
+    let budget = with_rate_word(NoiseBudget::new(&detector, &coil), config);
     let ratio = power_independent_ratio(&detector, &coil);
     // NaN: no source depends on the depth.
     let closed_form = (!ratio.is_nan()).then(|| rad_to_deg(optimum_depth_rad(ratio)));

@@ -7,6 +7,7 @@
 
 mod adc;
 mod amplifier;
+mod gauss_markov;
 mod rin;
 mod shot;
 mod technical;

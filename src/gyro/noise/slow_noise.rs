@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::gauss_markov::GaussMarkov;
 use crate::declare::table;
 use crate::random::{Stream, Streams};
 use crate::signal::SlowDrift;
@@ -35,13 +36,12 @@ table! {
 
 /// Ratio of neighbouring correlation times of the flicker.
 const RATIO: f64 = 4.0;
-/// Shortest correlation time of the flicker in update intervals.
-///
-/// Sampling folds the spectrum above half the update rate down: a process of correlation time T
-/// sampled every D has the density `s^2 D coth(D / 2T)` at DC instead of `2 s^2 T`. With this
-/// value the folded excess of all processes equals what the left-out, shorter ones would have
-/// added, so that no white residue is left beside the flicker.
-const SHORTEST_CORRELATION_INTERVALS: f64 = 0.57;
+/// Shortest correlation time of the flicker in update intervals: from two intervals on the Allan
+/// deviation is flat to 0.2 %, at one it is 1.3 % low.
+const SHORTEST_CORRELATION_INTERVALS: f64 = 0.1425;
+/// Variance of the shortest process over that of the others. Over an interval the still shorter ones
+/// are white as it is, and its density stands for theirs: `1 + 1/4 + 1/16 + ... = 4/3`.
+const SHORTEST_VARIANCE_RATIO: f64 = 4.0 / 3.0;
 /// Longest correlation time of the flicker over the simulated time, at least.
 const LONGEST_CORRELATION_RECORDS: f64 = 10.0;
 /// Longest time between updates, s; one output sample if that is longer.
@@ -56,28 +56,27 @@ const HOLDS_PER_CORRELATION: f64 = 8.0;
 /// Most updates over which a process is held, so that no slow one makes visible steps.
 const HOLD_UPDATES_MAX: u32 = 256;
 
-/// Generator of the slow noise, one value per output sample, in constant memory.
+/// Generator of the slow noise, its mean over each rate word, in constant memory.
 ///
 /// * Flicker of coefficient B (two-sided density `B^2 / (2 pi f)`, Allan deviation
 ///   `B sqrt(2 ln 2 / pi) = 0.664 B`): a sum of Gauss-Markov processes with correlation times in
 ///   the ratio `a = 4` and equal variances `B^2 ln(a) / pi`. Summing their densities
 ///   `2 s^2 T / (1 + (2 pi f T)^2)` over all T gives `B^2 / (2 pi f)` with a ripple of
-///   `2 sech(pi^2 / ln a)` = 0.3 %. Each process starts from its stationary distribution and
-///   advances exactly over the updates it is held: all at every update for the fast ones, an
-///   eighth of the correlation time or less for the slow ones, so that an update takes 3.4 normals
-///   however long the record.
-/// * Rate random walk of coefficient K: a sum of independent normals of variance `K^2 D` per
-///   update interval D, from 0.
-/// * Gauss-Markov: standard deviation s and correlation time Tc, from its stationary distribution,
-///   drawn anew for every output sample: `b <- exp(-T / Tc) b + s sqrt(1 - exp(-2 T / Tc)) n`, exact
-///   for any Tc (white beneath an output sample). Two-sided density
+///   `2 sech(pi^2 / ln a)` = 0.3 %. Each process starts from its stationary distribution. The fast
+///   ones are drawn as their means over every update, slow ones every eighth of their correlation
+///   time or more often, so that an update takes 4.4 normals however long the record.
+/// * Rate random walk of coefficient K, from 0: a sum of independent normals of variance `K^2 D` per
+///   update interval D; its mean over an interval lies half-way, give or take a normal of variance
+///   `K^2 D / 12`.
+/// * Gauss-Markov: standard deviation s and correlation time Tc, from its stationary distribution, as
+///   its mean over every word, exact for any Tc. Two-sided density
 ///   `2 s^2 Tc / (1 + (2 pi f Tc)^2)`, Allan variance
 ///   `(2 s^2 Tc / tau) (1 - (Tc / 2 tau) (3 - 4 exp(-tau / Tc) + exp(-2 tau / Tc)))`.
-/// * Ramp: `R t`, taken at the middle of an output sample. Bias: a constant, and a normal
+/// * Ramp: `R t`, taken at the middle of a word. Bias: a constant, and a normal
 ///   deviate drawn once at the start.
 ///
-/// Flicker and walk are held between updates: four output samples, fewer where these are longer
-/// than a millisecond. The Allan deviation of the flicker is flat from 16 samples on.
+/// Flicker and walk are held between updates: four words, fewer where these are longer than a
+/// millisecond. The Allan deviation of the flicker is flat from an update on.
 ///
 /// # Source
 /// Terms as in IEEE Std 952, annex C. Superposition: derived; van der Ziel, Physica 16 (1950).
@@ -85,10 +84,14 @@ const HOLD_UPDATES_MAX: u32 = 256;
 pub struct SlowNoise {
     bias_rad_per_s: f64,
     ramp_rad_per_s_per_sample: f64,
-    flicker: Vec<GaussMarkov>,
+    flicker: Vec<Held>,
     flicker_stream: Stream,
+    /// The process of the flicker that stands for all still shorter ones.
+    shortest: GaussMarkov,
+    shortest_stream: Stream,
     walk_step_rad_per_s: f64,
     walk_stream: Stream,
+    walk_mean_stream: Stream,
     correlated: GaussMarkov,
     correlated_stream: Stream,
     samples_per_update: u32,
@@ -96,34 +99,17 @@ pub struct SlowNoise {
     updates_done: u32,
     samples_done: u64,
     flicker_rad_per_s: f64,
+    /// At the end of the present interval.
     walk_rad_per_s: f64,
+    walk_mean_rad_per_s: f64,
 }
 
-/// One Gauss-Markov process, exact at the instants at which it is redrawn.
-#[derive(Clone, Copy, Debug, Default)]
-struct GaussMarkov {
-    value: f64,
-    decay: f64,
-    innovation: f64,
+/// A process of the flicker.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    process: GaussMarkov,
     /// Updates over which the value is held, a power of two.
     hold_updates: u32,
-}
-
-impl GaussMarkov {
-    /// A process in its stationary distribution; `exponent` is the time between two draws over the
-    /// correlation time.
-    fn stationary(deviation: f64, exponent: f64, hold_updates: u32, stream: &mut Stream) -> Self {
-        Self {
-            value: deviation * stream.normal(),
-            decay: (-exponent).exp(),
-            innovation: deviation * (-(-2.0 * exponent).exp_m1()).sqrt(),
-            hold_updates,
-        }
-    }
-
-    fn redraw(&mut self, stream: &mut Stream) {
-        self.value = self.decay * self.value + self.innovation * stream.normal();
-    }
 }
 
 impl SlowNoise {
@@ -138,18 +124,35 @@ impl SlowNoise {
         let samples_per_update = samples_per_update(sample_period_s);
         let interval_s = f64::from(samples_per_update) * sample_period_s;
         let mut flicker_stream = streams.stream("flicker");
+        let mut start_stream = streams.stream("slow_noise_start");
         let instability = deg_per_h_to_rad_per_s(config.bias_instability_deg_per_h);
-        let flicker = if instability > 0.0 {
+        let mut shortest_stream = streams.stream("flicker_shortest");
+        let (shortest, flicker) = if instability > 0.0 {
+            let deviation = instability * (RATIO.ln() / PI).sqrt();
+            let shortest = GaussMarkov::mean_over(
+                deviation * SHORTEST_VARIANCE_RATIO.sqrt(),
+                1.0 / SHORTEST_CORRELATION_INTERVALS,
+                &mut shortest_stream,
+                &mut start_stream,
+            );
             let longest_s = LONGEST_CORRELATION_RECORDS * simulated_time_s.max(interval_s);
-            gauss_markov_ladder(instability, interval_s, longest_s, &mut flicker_stream)
+            let longest = longest_s / interval_s;
+            let others =
+                gauss_markov_ladder(deviation, longest, &mut flicker_stream, &mut start_stream);
+            (shortest, others)
         } else {
-            Vec::new()
+            (GaussMarkov::default(), Vec::new())
         };
         let mut correlated_stream = streams.stream("gauss_markov");
         let deviation = deg_per_h_to_rad_per_s(config.gauss_markov_deg_per_h);
         let correlated = if deviation > 0.0 {
             let exponent = sample_period_s / config.gauss_markov_correlation_time_s;
-            GaussMarkov::stationary(deviation, exponent, 1, &mut correlated_stream)
+            GaussMarkov::mean_over(
+                deviation,
+                exponent,
+                &mut correlated_stream,
+                &mut start_stream,
+            )
         } else {
             GaussMarkov::default()
         };
@@ -162,14 +165,18 @@ impl SlowNoise {
         let ramp_rad_per_s_per_s = deg_per_h_to_rad_per_s(deg_per_h_per_h_to_deg_per_h_per_s(
             config.rate_ramp_deg_per_h_per_h,
         ));
-        Self {
+        let mut noise = Self {
             bias_rad_per_s: deg_per_h_to_rad_per_s(config.bias_deg_per_h) + turn_on_bias,
             ramp_rad_per_s_per_sample: ramp_rad_per_s_per_s * sample_period_s,
-            flicker_rad_per_s: flicker.iter().map(|process| process.value).sum(),
+            flicker_rad_per_s: shortest.value()
+                + flicker.iter().map(|held| held.process.value()).sum::<f64>(),
             flicker,
             flicker_stream,
+            shortest,
+            shortest_stream,
             walk_step_rad_per_s: walk_coefficient * interval_s.sqrt(),
             walk_stream: streams.stream("rate_random_walk"),
+            walk_mean_stream: streams.stream("rate_random_walk_mean"),
             correlated,
             correlated_stream,
             samples_per_update,
@@ -177,10 +184,13 @@ impl SlowNoise {
             updates_done: 0,
             samples_done: 0,
             walk_rad_per_s: 0.0,
-        }
+            walk_mean_rad_per_s: 0.0,
+        };
+        noise.walk();
+        noise
     }
 
-    /// Slow noise over the next output sample, an equivalent input rate, rad/s.
+    /// Mean of the slow noise over the next rate word, an equivalent input rate, rad/s.
     pub fn next_rate_rad_per_s(&mut self) -> f64 {
         if self.samples_to_update == 0 {
             self.update();
@@ -188,30 +198,46 @@ impl SlowNoise {
         }
         self.samples_to_update -= 1;
         let middle = self.samples_done as f64 + 0.5;
-        if self.samples_done > 0 && self.correlated.innovation > 0.0 {
+        if self.samples_done > 0 && self.correlated.is_on() {
             self.correlated.redraw(&mut self.correlated_stream);
         }
         self.samples_done += 1;
         self.bias_rad_per_s
             + self.ramp_rad_per_s_per_sample * middle
             + self.flicker_rad_per_s
-            + self.walk_rad_per_s
-            + self.correlated.value
+            + self.walk_mean_rad_per_s
+            + self.correlated.value()
     }
 
     fn update(&mut self) {
         // All holds divide the longest, a power of two: the count may wrap.
         self.updates_done = self.updates_done.wrapping_add(1);
-        let mut sum = 0.0;
-        for process in &mut self.flicker {
-            if self.updates_done.is_multiple_of(process.hold_updates) {
+        if self.shortest.is_on() {
+            self.shortest.redraw(&mut self.shortest_stream);
+        }
+        let mut sum = self.shortest.value();
+        for Held {
+            process,
+            hold_updates,
+        } in &mut self.flicker
+        {
+            if self.updates_done.is_multiple_of(*hold_updates) {
                 process.redraw(&mut self.flicker_stream);
             }
-            sum += process.value;
+            sum += process.value();
         }
         self.flicker_rad_per_s = sum;
-        if self.walk_step_rad_per_s > 0.0 {
-            self.walk_rad_per_s += self.walk_step_rad_per_s * self.walk_stream.normal();
+        self.walk();
+    }
+
+    /// Lets the random walk go on over an interval.
+    fn walk(&mut self) {
+        let step = self.walk_step_rad_per_s;
+        if step > 0.0 {
+            let start = self.walk_rad_per_s;
+            self.walk_rad_per_s += step * self.walk_stream.normal();
+            let about = (step / 12.0_f64.sqrt()) * self.walk_mean_stream.normal();
+            self.walk_mean_rad_per_s = 0.5 * (start + self.walk_rad_per_s) + about;
         }
     }
 }
@@ -225,11 +251,15 @@ pub fn slow_drift(
     simulated_time_s: f64,
 ) -> SlowDrift {
     let interval_s = f64::from(samples_per_update(sample_period_s)) * sample_period_s;
-    let longest_s = LONGEST_CORRELATION_RECORDS * simulated_time_s.max(interval_s);
+    let longest = LONGEST_CORRELATION_RECORDS * simulated_time_s.max(interval_s) / interval_s;
     let instability = config.bias_instability_deg_per_h;
     let of_flicker = instability * instability * RATIO.ln() / PI;
-    let flicker =
-        flicker_correlation_times_s(interval_s, longest_s).map(|time_s| (of_flicker, time_s));
+    let shortest = (
+        SHORTEST_VARIANCE_RATIO * of_flicker,
+        SHORTEST_CORRELATION_INTERVALS * interval_s,
+    );
+    let others =
+        flicker_correlations(longest).map(|correlation| (of_flicker, correlation * interval_s));
     let correlated = (
         config.gauss_markov_deg_per_h.powi(2),
         config.gauss_markov_correlation_time_s,
@@ -238,7 +268,8 @@ pub fn slow_drift(
     let walk =
         deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(config.rate_random_walk_deg_per_h_per_sqrt_h);
     SlowDrift {
-        processes: flicker
+        processes: std::iter::once(shortest)
+            .chain(others)
             .chain([correlated, turn_on])
             .filter(|(variance, _)| *variance > 0.0)
             .collect(),
@@ -246,11 +277,11 @@ pub fn slow_drift(
     }
 }
 
-/// Correlation times of the processes that make the flicker, from below the interval to `longest_s`.
-fn flicker_correlation_times_s(interval_s: f64, longest_s: f64) -> impl Iterator<Item = f64> {
-    let first = SHORTEST_CORRELATION_INTERVALS * interval_s;
-    let next = move |time_s: &f64| (*time_s < longest_s).then_some(time_s * RATIO);
-    std::iter::successors(Some(first), next)
+/// Correlation times, in updates, of the processes of the flicker but the shortest, until one is no less
+/// than `longest`.
+fn flicker_correlations(longest: f64) -> impl Iterator<Item = f64> {
+    let next = move |correlation: &f64| (*correlation < longest).then_some(correlation * RATIO);
+    std::iter::successors(Some(SHORTEST_CORRELATION_INTERVALS), next).skip(1)
 }
 
 /// Output samples between updates: as many as fit the update interval, one to four.
@@ -266,19 +297,25 @@ fn samples_per_update(sample_period_s: f64) -> u32 {
     samples
 }
 
-/// Processes of one variance with correlation times from below the interval to `longest_s`.
+/// The other processes, of one variance, with correlation times (in updates) up to `longest`.
 fn gauss_markov_ladder(
-    instability: f64,
-    interval_s: f64,
-    longest_s: f64,
+    deviation: f64,
+    longest: f64,
     stream: &mut Stream,
-) -> Vec<GaussMarkov> {
-    let deviation = instability * (RATIO.ln() / PI).sqrt();
-    flicker_correlation_times_s(interval_s, longest_s)
-        .map(|correlation_s| {
-            let hold_updates = hold_updates(correlation_s / interval_s);
-            let exponent = f64::from(hold_updates) * interval_s / correlation_s;
-            GaussMarkov::stationary(deviation, exponent, hold_updates, stream)
+    start: &mut Stream,
+) -> Vec<Held> {
+    flicker_correlations(longest)
+        .map(|correlation| {
+            let hold_updates = hold_updates(correlation);
+            let exponent = f64::from(hold_updates) / correlation;
+            let process = match hold_updates {
+                1 => GaussMarkov::mean_over(deviation, exponent, stream, start),
+                _ => GaussMarkov::at_instants(deviation, exponent, stream),
+            };
+            Held {
+                process,
+                hold_updates,
+            }
         })
         .collect()
 }

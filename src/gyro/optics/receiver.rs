@@ -1,4 +1,4 @@
-//! Photodetector and transimpedance amplifier in SI units.
+//! Settings of photodetector and transimpedance amplifier, in SI units.
 
 use crate::declare::table;
 use crate::units::{KILO, NANO};

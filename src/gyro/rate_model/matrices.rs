@@ -1,6 +1,7 @@
 //! The linear loop over a whole output sample, as matrices.
 
 use crate::gyro::controller::Controller;
+use crate::gyro::parts::place_in_cubics;
 
 /// Largest state: register and three delayed errors.
 const STATE: usize = 4;
@@ -13,10 +14,10 @@ const JOINT: usize = STATE + 1;
 /// `periods` of an output sample, with input polynomial c (rad) and unit white noise per period,
 ///
 /// ```text
-/// (state', y) = transition state + input c + innovation z,      z: independent unit normals
+/// (state', y) = transition state + sum input c + innovation z,      z: independent unit normals
 /// ```
 ///
-/// where y is the mean of the register over the periods, taken after each update. Every column is
+/// the sum being over the cubics of the sample, of equal length, where y is the mean of the register over the periods, taken after each update. Every column is
 /// found by running the recursion itself once; `innovation` is the Cholesky factor of the noise
 /// covariance `sum_k v_k v_k^T`, `v_k` being state and mean at the sample's end after a unit
 /// impulse k periods before its last.
@@ -27,13 +28,17 @@ const JOINT: usize = STATE + 1;
 pub(super) struct RateMatrices {
     state_count: usize,
     transition: [[f64; STATE]; JOINT],
-    input: [[f64; 4]; JOINT],
+    /// For each cubic of the sample.
+    input: Vec<[[f64; 4]; JOINT]>,
     innovation: [[f64; JOINT]; JOINT],
+    controller: Controller,
+    periods: u32,
 }
 
 impl RateMatrices {
-    /// The matrices of a loop averaged over `periods` loop periods.
-    pub(super) fn new(controller: &Controller, periods: u32) -> Self {
+    /// The matrices of a loop averaged over `periods` loop periods, its input given as `cubics` cubics
+    /// of equal length.
+    pub(super) fn new(controller: &Controller, periods: u32, cubics: usize) -> Self {
         let latency = controller.latency_periods as usize;
         let state_count = latency + 1;
         let recursion = Recursion {
@@ -49,51 +54,68 @@ impl RateMatrices {
                 row[column] = value;
             }
         }
-        let mut input = [[0.0; 4]; JOINT];
-        let states = f64::from(controller.states_per_period);
-        let instants = states * f64::from(periods);
-        for power in 0..4_i32 {
-            let end = recursion.run([0.0; STATE], periods, |period| {
-                let start = states * f64::from(period);
-                let sum: f64 = (0..controller.states_per_period)
-                    .map(|state| ((start + f64::from(state)) / instants).powi(power))
-                    .sum();
-                states.recip() * sum
-            });
-            for (row, value) in input.iter_mut().zip(end) {
-                row[power.unsigned_abs() as usize] = value;
+        let input = (0..cubics).map(|cubic| {
+            let mut input = [[0.0; 4]; JOINT];
+            let states = controller.states_per_period;
+            let instants = (states * periods) as usize;
+            for power in 0..4_i32 {
+                let end = recursion.run([0.0; STATE], periods, |period| {
+                    let within = (0..states).map(|state| {
+                        let place =
+                            place_in_cubics((states * period + state) as usize, instants, cubics);
+                        match place {
+                            (own, u) if own == cubic => u.powi(power),
+                            _ => 0.0,
+                        }
+                    });
+                    f64::from(states).recip() * within.sum::<f64>()
+                });
+                for (row, value) in input.iter_mut().zip(end) {
+                    row[power.unsigned_abs() as usize] = value;
+                }
             }
-        }
+            input
+        });
         Self {
             state_count,
             transition,
-            input,
+            input: input.collect(),
             innovation: cholesky(&recursion.noise_covariance(periods)),
+            controller: *controller,
+            periods,
         }
+    }
+
+    /// The same for an input of another number of cubics.
+    pub(super) fn with_cubics(&self, cubics: usize) -> Self {
+        Self::new(&self.controller, self.periods, cubics)
     }
 
     /// Advances the state by one output sample and returns the mean register, rad.
     ///
-    /// `phase_rad`: coefficients of the Sagnac phase in normalised time; `noise_rad`: standard
-    /// deviation of the error noise per loop period; `normal` draws a unit normal.
+    /// `phases_rad`: coefficients of the Sagnac phase in normalised time, for each cubic; `noise_rad`:
+    /// standard deviation of the error noise per loop period; `normal` draws a unit normal.
     pub(super) fn advance(
         &self,
         state: &mut [f64; STATE],
-        phase_rad: &[f64; 4],
+        phases_rad: &[[f64; 4]],
         noise_rad: f64,
         mut normal: impl FnMut() -> f64,
     ) -> f64 {
         let mut draws = [0.0; JOINT];
-        // The output's draw stands last, behind unused states, whose rows are zero.
-        for draw in &mut draws[..self.state_count] {
-            *draw = noise_rad * normal();
+        if noise_rad > 0.0 {
+            // The output's draw stands last, behind unused states, whose rows are zero.
+            for draw in &mut draws[..self.state_count] {
+                *draw = noise_rad * normal();
+            }
+            draws[STATE] = noise_rad * normal();
         }
-        draws[STATE] = noise_rad * normal();
         let mut joint = [0.0; JOINT];
         for (row, value) in joint.iter_mut().enumerate() {
-            *value = dot(&self.transition[row], state)
-                + dot(&self.input[row], phase_rad)
-                + dot(&self.innovation[row], &draws);
+            let inputs = self.input.iter().zip(phases_rad);
+            let driven: f64 = inputs.map(|(input, phase)| dot(&input[row], phase)).sum();
+            *value =
+                dot(&self.transition[row], state) + driven + dot(&self.innovation[row], &draws);
         }
         state.copy_from_slice(&joint[..STATE]);
         joint[STATE]

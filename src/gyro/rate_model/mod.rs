@@ -34,6 +34,8 @@ pub struct RateModel {
     coil: Coil,
     controller: Controller,
     matrices: RateMatrices,
+    /// Sagnac phases of the cubics of a word, rad.
+    phases_rad: Vec<[f64; 4]>,
     state_rad: [f64; 4],
     noise_rad: f64,
     sample_period_s: f64,
@@ -74,7 +76,8 @@ impl RateModel {
         Ok(Self {
             coil: parts.coil,
             controller: parts.controller,
-            matrices: matrices(&parts),
+            matrices: matrices(&parts, 1),
+            phases_rad: vec![[0.0; 4]],
             state_rad: [0.0; 4],
             noise_rad: noise_rad(&parts),
             sample_period_s,
@@ -124,26 +127,46 @@ impl RateModel {
 
     /// Rate word of the output sample over which the gyro moves as `segment`, deg/h.
     pub fn next_word(&mut self, segment: &MotionSegment) -> f64 {
+        self.next_word_over(std::slice::from_ref(segment))
+    }
+
+    /// Rate word of the output sample over which the gyro moves as `segments`, which share it equally,
+    /// deg/h.
+    ///
+    /// A change of their number costs as much as a thousand words.
+    pub fn next_word_over(&mut self, segments: &[MotionSegment]) -> f64 {
+        if segments.len() != self.phases_rad.len() {
+            self.split_words(segments.len());
+        }
         if let Some(condition) = self.next_condition() {
             self.enter(condition);
         }
         let scale = self.coil.scale_factor_s * self.condition.scale_ratio;
-        let mut phase_rad = segment
-            .rate_rad_per_s
-            .map(|coefficient| scale * coefficient);
         let slow_rad_per_s = self.slow_noise.next_rate_rad_per_s() + self.condition.bias_rad_per_s;
-        phase_rad[0] += scale * slow_rad_per_s;
-        self.optics.distort(&mut phase_rad);
-        let mut mean_rad =
-            self.matrices
-                .advance(&mut self.state_rad, &phase_rad, self.noise_rad, || {
-                    self.stream.normal()
-                });
+        for (phase_rad, segment) in self.phases_rad.iter_mut().zip(segments) {
+            *phase_rad = segment
+                .rate_rad_per_s
+                .map(|coefficient| scale * coefficient);
+            phase_rad[0] += scale * slow_rad_per_s;
+        }
+        self.optics.distort(&mut self.phases_rad);
+        let mut mean_rad = self.matrices.advance(
+            &mut self.state_rad,
+            &self.phases_rad,
+            self.noise_rad,
+            || self.stream.normal(),
+        );
         self.optics.follow(mean_rad);
         if let Some(vibration) = &mut self.vibration {
             mean_rad += vibration.next_rad();
         }
         self.rate_word.deg_per_h(mean_rad)
+    }
+
+    /// Takes words of so many cubics from here on.
+    fn split_words(&mut self, cubics: usize) {
+        self.phases_rad.resize(cubics, [0.0; 4]);
+        self.matrices = self.matrices.with_cubics(cubics);
     }
 
     fn next_condition(&mut self) -> Option<Condition> {
@@ -158,7 +181,7 @@ impl RateModel {
         let parts = Parts::under_way(config, &condition);
         // The matrices cost more than all the rest; most conditions leave the gain alone.
         if parts.controller != self.controller {
-            self.matrices = matrices(&parts);
+            self.matrices = matrices(&parts, self.phases_rad.len());
             self.controller = parts.controller;
         }
         self.noise_rad = noise_rad(&parts);
@@ -175,20 +198,24 @@ fn shares(parts: &Parts) -> (f64, f64) {
 }
 
 /// The linear loop over the periods of an output sample.
-fn matrices(parts: &Parts) -> RateMatrices {
+fn matrices(parts: &Parts, cubics: usize) -> RateMatrices {
     let (signal_share, update_share) = shares(parts);
     let effective = Controller {
         gain: parts.controller.gain * signal_share * update_share,
         ..parts.controller
     };
-    RateMatrices::new(&effective, parts.half_periods / parts.timing.half_periods)
+    RateMatrices::new(
+        &effective,
+        parts.half_periods / parts.timing.half_periods,
+        cubics,
+    )
 }
 
 /// Standard deviation of the error's noise per loop period, rad: it counts in the periods that
 /// reach the integrator alone.
 fn noise_rad(parts: &Parts) -> f64 {
     let (signal_share, update_share) = shares(parts);
-    let budget = NoiseBudget::new(&parts.detector, &parts.coil).total_deg_per_sqrt_h();
+    let budget = NoiseBudget::new(&parts.detector, &parts.coil).detection_deg_per_sqrt_h();
     let random_walk = deg_per_sqrt_h_to_rad_per_sqrt_s(budget);
     let error_rad = random_walk * parts.coil.scale_factor_s / parts.controller.loop_period_s.sqrt();
     error_rad / (signal_share * update_share.sqrt())

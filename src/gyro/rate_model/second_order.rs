@@ -66,16 +66,21 @@ impl RateOptics {
         self.drift == 0.0 && !self.optics.is_needed()
     }
 
-    /// Distorts the Sagnac phase of an output sample, a cubic in normalised time, rad.
-    pub(super) fn distort(&mut self, phase_rad: &mut [f64; 4]) {
+    /// Distorts the Sagnac phase of an output sample, cubics of equal length in normalised time, rad.
+    pub(super) fn distort(&mut self, phases_rad: &mut [[f64; 4]]) {
         if self.is_neutral() {
             return;
         }
-        let [c0, c1, c2, c3] = *phase_rad;
-        let mean_rad = c0 + c1 / 2.0 + c2 / 3.0 + c3 / 4.0;
+        let count = phases_rad.len() as f64;
+        let means = phases_rad
+            .iter()
+            .map(|[c0, c1, c2, c3]| c0 + c1 / 2.0 + c2 / 3.0 + c3 / 4.0);
+        let mean_rad = means.sum::<f64>() / count;
+        // What is added to the phase all through the sample, before and after it is scaled.
+        let (mut before, mut after) = (0.0, 0.0);
         if self.optics.dither_rad > 0.0 && self.optics.coupling_rad > 0.0 {
             let deviation = dither_variance(&self.optics, self.half_periods).sqrt();
-            phase_rad[0] += deviation * self.dither.normal();
+            before += deviation * self.dither.normal();
         } else if self.optics.coupling_rad > 0.0 {
             let advance = adler_advance_rad(
                 self.ramp_rad,
@@ -83,18 +88,22 @@ impl RateOptics {
                 self.optics.coupling_rad,
                 self.half_periods,
             );
-            phase_rad[0] += advance / self.half_periods - mean_rad;
+            before += advance / self.half_periods - mean_rad;
         }
         let scale = self.optics.scale(self.gain_error());
-        for coefficient in phase_rad.iter_mut() {
-            *coefficient *= scale;
-        }
         // A step that is cut off lies half a bit below the register on average, but for a few
         // hundredths where the error comes in whole levels of the converter.
-        phase_rad[0] += 0.5 * self.optics.step_lsb_rad
+        after += 0.5 * self.optics.step_lsb_rad
             + self
                 .optics
                 .intensity_bias_rad(self.visibility, self.depth_rad, mean_rad);
+        for phase_rad in phases_rad {
+            phase_rad[0] += before;
+            for coefficient in phase_rad.iter_mut() {
+                *coefficient *= scale;
+            }
+            phase_rad[0] += after;
+        }
     }
 
     /// Lets the ramp and the second loop follow the mean register of the sample.

@@ -6,15 +6,17 @@ use std::f64::consts::PI;
 pub const FLICKER_ALLAN_VARIANCE: f64 = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;
 
 /// Terms of the model, in the order of the fit's columns.
-pub(crate) const TERMS: usize = 5;
+pub(crate) const TERMS: usize = 6;
 pub(crate) const WHITE: usize = 0;
 pub(crate) const FLICKER: usize = 1;
 pub(crate) const WALK: usize = 2;
 pub(crate) const RAMP: usize = 3;
 pub(crate) const INVERSE_SQUARE: usize = 4;
+pub(crate) const CORRELATED: usize = 5;
 
-/// Terms with a smooth covariance function: white, flicker, walk.
-const SMOOTH: usize = 3;
+/// Terms with a smooth covariance function, in the order of [`smooth_covariances`].
+const SMOOTH_TERMS: [usize; SMOOTH] = [WHITE, FLICKER, WALK, CORRELATED];
+const SMOOTH: usize = 4;
 
 /// Lags in a panel up to which they are summed one by one; wider panels are integrated.
 const SUMMED_LAGS: usize = 8;
@@ -37,8 +39,9 @@ const SECOND: [f64; 3] = [1.0, -2.0, 1.0];
 /// averaging factors, the sum of the terms' own; `AVAR = mean z^2 / 2 m^2` over the n starts of the
 /// record, so that `cov(AVAR_1, AVAR_2) = sum W(s) C12(s)^2 / (2 n1 n2 m1^2 m2^2)` with W(s) the pairs
 /// of starts s apart. A term's C12 is the fourth difference of its generalised angle covariance:
-/// `-|u|/2` for white rate noise, `u^2 ln|u| / 2 pi` for flicker, `|u|^3/12` for a walk, an impulse
-/// for white angle noise. A ramp has no scatter of its own; it adds `R^2 mean C12`.
+/// `-|u|/2` for white rate noise, `u^2 ln|u| / 2 pi` for flicker, `|u|^3/12` for a walk,
+/// `-T^2 (|u|/T - 1 + exp(-|u|/T))` for noise with a correlation time T, an impulse for white angle
+/// noise. A ramp has no scatter of its own; it adds `R^2 mean C12`.
 ///
 /// All in units of one sample period, coefficients included. White, walk and the short averaging
 /// times are exact, the rest as good as five-node quadrature between the corners.
@@ -52,8 +55,9 @@ pub(crate) struct Structure {
 }
 
 impl Structure {
-    /// For averaging factors and numbers of second differences of one record.
-    pub(crate) fn new(factors: &[usize], counts: &[usize]) -> Self {
+    /// For averaging factors and numbers of second differences of one record; the correlation time,
+    /// in samples, is that of the exponentially correlated noise, which without one has no products.
+    pub(crate) fn new(factors: &[usize], counts: &[usize], correlation: Option<f64>) -> Self {
         let points = factors.len();
         let mut products = vec![[[0.0; TERMS]; TERMS]; points * points];
         for first in 0..points {
@@ -61,6 +65,7 @@ impl Structure {
                 let pair = pair(
                     [factors[first] as f64, factors[second] as f64],
                     [counts[first] as f64, counts[second] as f64],
+                    correlation,
                 );
                 products[first * points + second] = pair;
                 products[second * points + first] = pair;
@@ -107,18 +112,18 @@ impl Structure {
 }
 
 /// Products of two terms for one pair of averaging factors.
-fn pair([m1, m2]: [f64; 2], [n1, n2]: [f64; 2]) -> [[f64; TERMS]; TERMS] {
+fn pair([m1, m2]: [f64; 2], [n1, n2]: [f64; 2], correlation: Option<f64>) -> [[f64; TERMS]; TERMS] {
     let overlap = |s: f64| (n1.min(n2 - s) - (-s).max(0.0)).max(0.0);
     let mut squares = [[0.0; TERMS]; TERMS];
     let mut means = [0.0; TERMS];
     for panel in panels([m1, m2], [n1, n2]).windows(2) {
         visit(panel[0], panel[1], |s, weight| {
-            let c = smooth_covariances(m1, m2, s);
+            let c = smooth_covariances(m1, m2, s, correlation);
             let pairs = weight * overlap(s);
-            for a in 0..SMOOTH {
-                means[a] += pairs * c[a];
-                for b in a..SMOOTH {
-                    squares[a][b] += pairs * c[a] * c[b];
+            for (first, &a) in SMOOTH_TERMS.iter().enumerate() {
+                means[a] += pairs * c[first];
+                for (second, &b) in SMOOTH_TERMS.iter().enumerate().skip(first) {
+                    squares[a][b] += pairs * c[first] * c[second];
                 }
             }
         });
@@ -126,12 +131,13 @@ fn pair([m1, m2]: [f64; 2], [n1, n2]: [f64; 2]) -> [[f64; TERMS]; TERMS] {
     // White angle noise of variance 1/3 has AVAR = 1/m^2; it correlates at the corners alone.
     let impulses = impulses(m1, m2);
     for &(s, height) in &impulses {
-        let c = smooth_covariances(m1, m2, s);
+        let c = smooth_covariances(m1, m2, s, correlation);
         let pairs = overlap(s);
         means[INVERSE_SQUARE] += pairs * height / 3.0;
         squares[INVERSE_SQUARE][INVERSE_SQUARE] += pairs * (height / 3.0) * (height / 3.0);
-        for a in 0..SMOOTH {
-            squares[a][INVERSE_SQUARE] += pairs * c[a] * height / 3.0;
+        for (first, &a) in SMOOTH_TERMS.iter().enumerate() {
+            let (low, high) = (a.min(INVERSE_SQUARE), a.max(INVERSE_SQUARE));
+            squares[low][high] += pairs * c[first] * height / 3.0;
         }
     }
     let scale = 1.0 / (2.0 * n1 * n2 * m1 * m1 * m2 * m2);
@@ -142,7 +148,7 @@ fn pair([m1, m2]: [f64; 2], [n1, n2]: [f64; 2]) -> [[f64; TERMS]; TERMS] {
             table[a][b] = scale * twice * squares[a][b];
         }
     }
-    for a in [WHITE, FLICKER, WALK, INVERSE_SQUARE] {
+    for a in [WHITE, FLICKER, WALK, INVERSE_SQUARE, CORRELATED] {
         table[a.min(RAMP)][a.max(RAMP)] = means[a] / (n1 * n2);
     }
     table
@@ -185,21 +191,39 @@ fn visit(from: f64, to: f64, mut call: impl FnMut(f64, f64)) {
     }
 }
 
-/// Cross-covariances of the second differences of unit white, flicker and walk noise.
-fn smooth_covariances(m1: f64, m2: f64, s: f64) -> [f64; SMOOTH] {
+/// Cross-covariances of the second differences of unit white, flicker and walk noise, and of that
+/// with a correlation time.
+fn smooth_covariances(m1: f64, m2: f64, s: f64, correlation: Option<f64>) -> [f64; SMOOTH] {
+    // A parabola of the lag has no fourth difference: without it small lags keep their digits.
+    let is_short = correlation.is_some_and(|time| m1 + m2 < time);
     let mut sums = [0.0; SMOOTH];
     for (a, weight_1) in SECOND.iter().enumerate() {
         for (b, weight_2) in SECOND.iter().enumerate() {
             let u = (s + b as f64 * m2 - a as f64 * m1).abs();
             let weight = weight_1 * weight_2;
-            sums[WHITE] -= weight * u / 2.0;
+            sums[0] -= weight * u / 2.0;
             if u > 0.0 {
-                sums[FLICKER] += weight * u * u * u.ln() / (2.0 * PI);
+                sums[1] += weight * u * u * u.ln() / (2.0 * PI);
             }
-            sums[WALK] += weight * u * u * u / 12.0;
+            sums[2] += weight * u * u * u / 12.0;
+            if let Some(time) = correlation {
+                sums[3] -= weight * time * time * correlated_angle(u / time, is_short);
+            }
         }
     }
     sums
+}
+
+/// `x - 1 + exp(-x)`, on request without its `x^2/2`.
+fn correlated_angle(x: f64, without_square: bool) -> f64 {
+    if !without_square {
+        return x + (-x).exp_m1();
+    }
+    if x < 0.1 {
+        let cube = x * x * x;
+        return -cube / 6.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0 * (1.0 - x / 7.0))));
+    }
+    x + (-x).exp_m1() - x * x / 2.0
 }
 
 /// Lags at which second differences of white angle noise correlate, and by how much.
@@ -227,7 +251,7 @@ mod tests {
         let samples = 20_000_usize;
         let factors = [1, 4, 30, 200, 1500];
         let counts = factors.map(|m| samples + 1 - 2 * m);
-        let structure = Structure::new(&factors, &counts);
+        let structure = Structure::new(&factors, &counts, None);
         // The formulas of NIST SP 1065 for flicker and walk are empirical, good to some per cent;
         // at one sample they mean point samples of the rate, not its means.
         for (term, noise, rtol, first) in [
@@ -260,7 +284,7 @@ mod tests {
     fn points_far_apart_correlate_less() {
         let factors = [100, 120, 200, 400, 1600];
         let counts = factors.map(|m| 20_001 - 2 * m);
-        let structure = Structure::new(&factors, &counts);
+        let structure = Structure::new(&factors, &counts, None);
         for term in [WHITE, FLICKER, WALK] {
             let mut squares = [0.0; TERMS];
             squares[term] = 1.0;

@@ -1,15 +1,17 @@
 //! Entering a noise fit into a channel's table: coefficients, or the reasons for their absence.
 
 use super::curves::put_fit_curve;
+use super::extra_terms::{add_to_sheet, put_extra_terms};
 use super::noise_fit::{
     ANGLE_RANDOM_WALK, BIAS_INSTABILITY, NoiseFit, QUANTISATION, RATE_RAMP, RATE_RANDOM_WALK, Term,
 };
 use super::overlapping::AllanPoint;
-use crate::metrics::estimate::interval::round_to_count;
+use crate::metrics::estimate::fit_sheet::{FitSheet, FitTerm};
 use crate::metrics::estimate::reason::{Unavailable, too_short};
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::key::metric::{MetricKey, Needs};
 use crate::units;
+use crate::wording::{plain, to_digits};
 
 /// Metrics that the fit gives.
 pub(crate) const FIT_METRICS: [&MetricKey; 5] = [
@@ -19,20 +21,6 @@ pub(crate) const FIT_METRICS: [&MetricKey; 5] = [
     &RATE_RAMP,
     &QUANTISATION,
 ];
-
-/// Upper end beyond which an interval says nothing, whatever the unit.
-const BOUND_MAX: f64 = 1e6;
-
-/// A bound to three digits, as plain as its size allows.
-fn three_digits(value: f64) -> String {
-    if (1e-3..1e4).contains(&value) {
-        let magnitude = value.log10().floor();
-        let decimals = (2.0 - magnitude).max(0.0);
-        format!("{value:.*}", round_to_count(decimals))
-    } else {
-        format!("{value:.2e}")
-    }
-}
 
 /// Shortest record, s, of which B, K or R can be fitted: the fit must reach 10 s.
 pub(crate) const SLOW_NOISE_DURATION_MIN_S: f64 = 90.0;
@@ -45,79 +33,138 @@ pub(crate) fn slow_noise_lack(key: &MetricKey, duration_s: f64) -> Option<Unavai
 }
 
 /// Enters a fit and the curve it was made from; of a record too short for slow noise without B, K, R.
+///
+/// Where the terms do not describe the curve, none stands: the sheet of the fit has the squares, for
+/// whoever wants to look further.
 pub(crate) fn enter_fit(
     points: &[AllanPoint],
     fit: &NoiseFit,
     duration_s: f64,
     metrics: &mut ChannelMetrics,
 ) {
-    put_noise_fit(fit, metrics);
-    for key in FIT_METRICS {
-        let Some(reason) = slow_noise_lack(key, duration_s) else {
-            continue;
-        };
-        if let Some(metric) = metrics.get(key) {
-            let (high, unit) = (metric.estimate.high, metric.unit);
-            let bound = if high.is_finite() {
-                format!("; it is {high:.2e} {unit} at most")
+    let refusal = inadequacy(fit);
+    for (key, term, unit) in terms(fit) {
+        metrics.metrics.remove(key.name);
+        let estimate = term.estimate().scaled(unit);
+        if let Some(refusal) = &refusal {
+            metrics.miss(key, refusal.clone());
+        } else if let Some(lack) = slow_noise_lack(key, duration_s) {
+            let bound = if term.is_bounded() && estimate.high > 0.0 {
+                let most = plain(to_digits(estimate.high, 2));
+                format!("; it is {most} {} at most", key.unit)
             } else {
                 String::new()
             };
-            metrics.withdraw(key, format!("{reason}{bound}"));
+            metrics.miss(key, format!("{lack}{bound}"));
+        } else if term.is_bounded() {
+            let metric = metrics.put(key, estimate);
+            metric.fields.insert("tau_min_s", fit.tau_range_s[0]);
+            metric.fields.insert("tau_max_s", fit.tau_range_s[1]);
+        } else {
+            metrics.miss(key, unbounded(key, fit));
         }
     }
+    put_extra_terms(fit, metrics);
+    metrics.noise_fit = Some(sheet(fit));
     put_fit_curve(points, Some(fit), metrics);
 }
 
-/// Enters the five fitted coefficients or the reasons for their absence.
-fn put_noise_fit(fit: &NoiseFit, metrics: &mut ChannelMetrics) {
-    type Conversion = fn(f64) -> f64;
-    let entries: [(&MetricKey, &Term, Conversion); 5] = [
+/// The terms that are metrics, each with the factor that takes it from deg/h and s to its unit.
+fn terms(fit: &NoiseFit) -> [(&'static MetricKey, Term, f64); 5] {
+    [
         (
             &ANGLE_RANDOM_WALK,
-            &fit.angle_random_walk_deg_per_h_sqrt_s,
-            units::deg_per_h_sqrt_s_to_deg_per_sqrt_h,
+            fit.angle_random_walk_deg_per_h_sqrt_s,
+            units::deg_per_h_sqrt_s_to_deg_per_sqrt_h(1.0),
         ),
-        (
-            &BIAS_INSTABILITY,
-            &fit.bias_instability_deg_per_h,
-            std::convert::identity,
-        ),
+        (&BIAS_INSTABILITY, fit.bias_instability_deg_per_h, 1.0),
         (
             &RATE_RANDOM_WALK,
-            &fit.rate_random_walk_deg_per_h_per_sqrt_s,
-            units::deg_per_h_per_sqrt_s_to_deg_per_h_per_sqrt_h,
+            fit.rate_random_walk_deg_per_h_per_sqrt_s,
+            units::deg_per_h_per_sqrt_s_to_deg_per_h_per_sqrt_h(1.0),
         ),
         (
             &RATE_RAMP,
-            &fit.rate_ramp_deg_per_h_per_s,
-            units::deg_per_h_per_s_to_deg_per_h_per_h,
+            fit.rate_ramp_deg_per_h_per_s,
+            units::deg_per_h_per_s_to_deg_per_h_per_h(1.0),
         ),
-        (
-            &QUANTISATION,
-            &fit.quantisation_arcsec,
-            std::convert::identity,
-        ),
-    ];
-    for (key, term, convert) in entries {
-        match term {
-            Term::Found(estimate) => {
-                let estimate = estimate.scaled(convert(1.0));
-                let metric = metrics.put(key, estimate);
-                metric.fields.insert("tau_min_s", fit.tau_range_s[0]);
-                metric.fields.insert("tau_max_s", fit.tau_range_s[1]);
-            }
-            Term::LeftOut { reason, allowed } => {
-                metrics.metrics.remove(key.name);
-                let high = convert(allowed.high);
-                // A bound of nothing is that of a record that these five terms do not describe.
-                let bound = if high > 0.0 && high < BOUND_MAX {
-                    format!("; it is {} {} at most (95 %)", three_digits(high), key.unit)
-                } else {
-                    String::new()
-                };
-                metrics.miss(key, format!("{reason}{bound}"));
-            }
-        }
+        (&QUANTISATION, fit.quantisation_arcsec, 1.0),
+    ]
+}
+
+/// Why no term of a fit stands; nothing where they do.
+fn inadequacy(fit: &NoiseFit) -> Option<String> {
+    let goodness = &fit.goodness;
+    if goodness.is_adequate() {
+        return None;
     }
+    let missed = match &goodness.missed_tau_s[..] {
+        [] => String::new(),
+        [one] => format!(", outside the fit's 99 % band at {} s", plain(*one)),
+        [first, .., last] => format!(
+            ", outside the fit's 99 % band at {} averaging times from {} s to {} s",
+            goodness.missed_tau_s.len(),
+            plain(*first),
+            plain(*last)
+        ),
+    };
+    Some(format!(
+        "the Allan variance between {:.2} s and {:.2} s is not described by the noise terms (p = \
+         {:.4}): it lies {:.0} % off the best fit's deviation at {} s{missed}",
+        fit.tau_range_s[0],
+        fit.tau_range_s[1],
+        goodness.p_value,
+        100.0 * goodness.largest_misfit,
+        plain(goodness.largest_misfit_tau_s),
+    ))
+}
+
+/// Why a term has no upper limit.
+fn unbounded(key: &MetricKey, fit: &NoiseFit) -> String {
+    if *key == QUANTISATION {
+        return "not bounded: the 1/tau^2 part of the Allan variance is negative, as behind a loop or \
+                a filter, which hides a quantisation below it"
+            .to_owned();
+    }
+    format!(
+        "not bounded by the Allan variance between {:.2} s and {:.2} s",
+        fit.tau_range_s[0], fit.tau_range_s[1]
+    )
+}
+
+/// The fit as results hold it.
+fn sheet(fit: &NoiseFit) -> FitSheet {
+    let goodness = &fit.goodness;
+    let in_model = |key: &MetricKey| *key != RATE_RAMP || fit.has_ramp;
+    let record = |(key, term, unit): (&MetricKey, Term, f64)| {
+        let term = FitTerm {
+            square: term.square * unit * unit,
+            standard_error: term.standard_error * unit * unit,
+            unit: format!("({})^2", key.unit),
+            is_in_model: in_model(key),
+        };
+        (key.name.to_owned(), term)
+    };
+    let numbers = [
+        ("chi_squared", goodness.chi_squared),
+        ("degrees_of_freedom", goodness.degrees_of_freedom),
+        ("p_value", goodness.p_value),
+        ("p_value_beyond_2_percent", goodness.p_value_beyond_harmless),
+        ("curves", f64::from(goodness.curves)),
+        ("largest_misfit", goodness.largest_misfit),
+        ("largest_misfit_tau_s", goodness.largest_misfit_tau_s),
+        ("tau_min_s", fit.tau_range_s[0]),
+        ("tau_max_s", fit.tau_range_s[1]),
+    ];
+    let mut sheet = FitSheet {
+        is_adequate: goodness.is_adequate(),
+        numbers: numbers
+            .into_iter()
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect(),
+        missed_tau_s: goodness.missed_tau_s.clone(),
+        terms: terms(fit).into_iter().map(record).collect(),
+    };
+    add_to_sheet(fit, &mut sheet);
+    sheet
 }

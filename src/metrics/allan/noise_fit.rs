@@ -1,8 +1,12 @@
 //! Noise coefficients from an Allan variance curve.
 
-use super::covariance::{FLICKER, INVERSE_SQUARE, RAMP, TERMS, WALK, WHITE};
-use super::least_squares::{Problem, basis, fitted_variance};
-use super::overlapping::{AllanPoint, NoiseType, degrees_of_freedom};
+use super::coefficients::NoiseCoefficients;
+use super::covariance::{CORRELATED, FLICKER, INVERSE_SQUARE, RAMP, TERMS, WALK, WHITE};
+use super::judge::choice::{Choice, Search};
+use super::judge::goodness::Goodness;
+use super::least_squares::{Mix, Problem, Solution};
+use super::limits::Limits;
+use super::overlapping::AllanPoint;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Pool, Table};
@@ -75,16 +79,9 @@ pub static QUANTISATION: MetricKey = MetricKey::new(
 .pooled(Pool::AllanFit)
 .closing_tables();
 
-/// Q is said to be found from this many standard errors on; N and B as soon as they are positive,
-/// with an interval that may begin at zero.
-const SIGNIFICANCE: f64 = 1.645;
-
-/// K and R must exceed this many: B explains the same averaging times, and the few independent
-/// differences at the longest of them scatter with a long upper tail.
-const STEEP_SIGNIFICANCE: f64 = 3.0;
-
-/// Standard errors added to the slow terms where a prediction must not trust a lucky record.
-const CAUTION: f64 = 0.5;
+/// Standard errors that K must exceed for predictions to count on it: flicker explains the same
+/// averaging times.
+const WALK_SIGNIFICANCE: f64 = 3.0;
 
 /// Variance of the mean of a record over `B^2`, flicker with correlation times up to `m` records:
 /// `(ln m + 3/2 - gamma) / pi` for m = 100.
@@ -97,73 +94,91 @@ const TAU_RATIO_MIN: f64 = 8.0;
 /// The largest part of the record that an averaging time of the fit may be.
 pub const FIT_TAU_PER_RECORD_MAX: f64 = 1.0 / 9.0;
 
-/// Coefficients of the five classical noise terms of a rate, in deg/h and s; 0 = term left out.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct NoiseCoefficients {
-    /// Angle quantisation Q, arcsec (1 arcsec = 1 deg/h times 1 s).
-    pub quantisation_arcsec: f64,
-    /// Angle random walk N, (deg/h) sqrt(s).
-    pub angle_random_walk_deg_per_h_sqrt_s: f64,
-    /// Bias instability B, deg/h.
-    pub bias_instability_deg_per_h: f64,
-    /// Rate random walk K, (deg/h)/sqrt(s).
-    pub rate_random_walk_deg_per_h_per_sqrt_s: f64,
-    /// Rate ramp R, (deg/h)/s.
-    pub rate_ramp_deg_per_h_per_s: f64,
-}
-
-impl NoiseCoefficients {
-    /// `3Q^2/tau^2 + N^2/tau + (2 ln2/pi) B^2 + K^2 tau/3 + R^2 tau^2/2`, (deg/h)^2.
-    ///
-    /// Source: IEEE Std 952-1997 annex C.
-    #[must_use]
-    pub fn allan_variance(&self, tau_s: f64) -> f64 {
-        let squares = [
-            self.angle_random_walk_deg_per_h_sqrt_s,
-            self.bias_instability_deg_per_h,
-            self.rate_random_walk_deg_per_h_per_sqrt_s,
-            self.rate_ramp_deg_per_h_per_s,
-            self.quantisation_arcsec,
-        ]
-        .map(|value| value * value);
-        let quantisation = 3.0 * squares[4] / (tau_s * tau_s);
-        let rest: f64 = (0..4).map(|term| squares[term] * basis(term, tau_s)).sum();
-        quantisation + rest
-    }
-}
-
 /// What a fit says about one coefficient.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Term {
-    /// The coefficient (not its square) with its 95 % interval.
-    Found(Estimate),
-    /// Left out, and why; the interval begins at zero.
-    LeftOut {
-        /// The reason, in words, with the upper end of the interval.
-        reason: String,
-        /// What the record still allows: value 0, 95 % interval from 0 on.
-        allowed: Estimate,
-    },
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Term {
+    /// Square of the coefficient as fitted, of either sign: its mean over records is the true one.
+    pub square: f64,
+    /// Standard error of the square.
+    pub standard_error: f64,
+    root: Estimate,
 }
 
 impl Term {
-    /// The estimate; value 0 if left out.
-    #[must_use]
-    pub fn estimate(&self) -> Estimate {
-        match self {
-            Self::Found(estimate) => *estimate,
-            Self::LeftOut { allowed, .. } => *allowed,
+    /// A term whose square has this 95 % interval, none of whose ends is negative.
+    pub(crate) fn new(square: f64, standard_error: f64, [low, high]: [f64; 2]) -> Self {
+        let value = square.max(0.0);
+        Self {
+            square,
+            standard_error,
+            root: Estimate::with_interval(
+                value.sqrt(),
+                low.min(value).sqrt(),
+                high.max(value).sqrt(),
+            ),
         }
     }
 
-    /// The value, 0 if left out.
+    /// The coefficient: root of the square, zero where that is negative, with its 95 % interval; the
+    /// upper end is infinite where the record does not bound it.
+    #[must_use]
+    pub fn estimate(&self) -> Estimate {
+        self.root
+    }
+
+    /// The coefficient, zero where the square is negative.
     #[must_use]
     pub fn value(&self) -> f64 {
-        match self {
-            Self::Found(estimate) => estimate.value,
-            Self::LeftOut { .. } => 0.0,
-        }
+        self.root.value
     }
+
+    /// Whether the record bounds the coefficient from above.
+    #[must_use]
+    pub fn is_bounded(&self) -> bool {
+        self.root.high.is_finite()
+    }
+}
+
+/// Exponentially correlated (Gauss-Markov) noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CorrelatedNoise {
+    /// Its standard deviation, deg/h.
+    pub deviation_deg_per_h: Term,
+    /// Its correlation time, s.
+    pub correlation_time_s: Estimate,
+}
+
+/// A sine in the words.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Sine {
+    /// Its amplitude, deg/h.
+    pub amplitude_deg_per_h: Estimate,
+    /// Its period, s.
+    pub period_s: Estimate,
+    /// Independent frequencies among which it was found.
+    pub frequencies_tried: usize,
+}
+
+impl Sine {
+    /// Allan variance, (deg/h)^2.
+    #[must_use]
+    pub fn allan_variance(&self, tau_s: f64) -> f64 {
+        let amplitude = self.amplitude_deg_per_h.value;
+        amplitude * amplitude * sine_allan_variance(tau_s, self.period_s.value)
+    }
+}
+
+/// Allan variance of a sine of unit amplitude: `(sin^2(pi tau/P) / (pi tau/P))^2`.
+///
+/// Source: IEEE Std 952-1997 annex C.
+#[must_use]
+pub fn sine_allan_variance(tau_s: f64, period_s: f64) -> f64 {
+    let turn = std::f64::consts::PI * tau_s / period_s;
+    let sine = turn.sin();
+    (sine * sine / turn).powi(2)
 }
 
 /// A fitted noise model.
@@ -180,19 +195,27 @@ pub struct NoiseFit {
     pub rate_random_walk_deg_per_h_per_sqrt_s: Term,
     /// R, (deg/h)/s.
     pub rate_ramp_deg_per_h_per_s: Term,
+    /// Exponentially correlated noise, where the curve asks for it.
+    pub correlated: Option<CorrelatedNoise>,
+    /// A sine that was taken out of the words before the rest was fitted.
+    pub sine: Option<Sine>,
+    /// Whether the curve asks for a ramp; without one the others are fitted as if there were none.
+    pub has_ramp: bool,
+    /// How well the terms describe the curve.
+    pub goodness: Goodness,
     /// Shortest and longest averaging time used, s.
     pub tau_range_s: [f64; 2],
-    /// Coefficients of the columns N^2, B^2, K^2, R^2, `1/tau^2`.
-    squares: [f64; TERMS],
-    /// Standard errors of the same, 0 where a term is not in the model.
-    standard_errors: [f64; TERMS],
+    /// The fit, deg/h and s; the column of quantisation is `1/tau^2`.
+    mix: Mix,
+    /// The same for predictions: without a walk that is not significant.
+    settled: Mix,
 }
 
 impl NoiseFit {
-    /// The coefficients as plain numbers, those included that are too faint to be reported.
+    /// The coefficients as plain numbers for predictions: K only where it is significant.
     #[must_use]
     pub fn coefficients(&self) -> NoiseCoefficients {
-        let root = |term: usize| self.squares[term].max(0.0).sqrt();
+        let root = |term: usize| self.settled.squares[term].max(0.0).sqrt();
         NoiseCoefficients {
             quantisation_arcsec: root(INVERSE_SQUARE) / 3.0_f64.sqrt(),
             angle_random_walk_deg_per_h_sqrt_s: root(WHITE),
@@ -202,37 +225,63 @@ impl NoiseFit {
         }
     }
 
-    /// Variance of the mean over a record of this length about the true rate, (deg/h)^2.
+    /// Variance that the slow terms give to the mean over a record of this length, (deg/h)^2.
     ///
-    /// `N^2/T + 1.76 B^2 + K^2 T/3 + R^2 T^2/4`, the slow squares each raised by half a standard error:
-    /// a record that does not show flicker bounds it, it does not rule it out. Flicker has no
+    /// `1.76 B^2 + K^2 T/3 + R^2 T^2/4`, of those whose intervals do not begin at zero. Flicker has no
     /// variance of its own; `1.76 = (ln 100 + 3/2 - gamma)/pi` counts drift that is correlated over
     /// up to a hundred records, what is slower still being the bias itself. The walk starts at zero
-    /// with the record, the ramp too.
+    /// with the record, the ramp too. Exponentially correlated noise adds
+    /// `s^2 (2 Tc/T) (1 - (Tc/T) (1 - exp(-T/Tc)))`. No term of a fit that does not describe the curve
+    /// counts.
     ///
     /// Source: derived, flicker as a superposition of Gauss-Markov processes of equal variance per
     /// octave of correlation time (van der Ziel, Physica 16 (1950)).
     #[must_use]
-    pub fn mean_variance(&self, duration_s: f64) -> f64 {
-        let cautious =
-            |term: usize| self.squares[term].max(0.0) + CAUTION * self.standard_errors[term];
-        self.squares[WHITE].max(0.0) / duration_s
-            + FLICKER_MEAN_VARIANCE * cautious(FLICKER)
-            + cautious(WALK) * duration_s / 3.0
-            + cautious(RAMP) * duration_s * duration_s / 4.0
+    pub fn slow_mean_variance(&self, duration_s: f64) -> f64 {
+        if !self.goodness.is_adequate() {
+            return 0.0;
+        }
+        let square = |term: &Term| {
+            let root = term.estimate();
+            if root.low > 0.0 {
+                root.value.powi(2)
+            } else {
+                0.0
+            }
+        };
+        let correlated = self.correlated.as_ref().map_or(0.0, |noise| {
+            let x = duration_s / noise.correlation_time_s.value;
+            square(&noise.deviation_deg_per_h) * 2.0 / x * (1.0 + (-x).exp_m1() / x)
+        });
+        FLICKER_MEAN_VARIANCE * square(&self.bias_instability_deg_per_h)
+            + square(&self.rate_random_walk_deg_per_h_per_sqrt_s) * duration_s / 3.0
+            + square(&self.rate_ramp_deg_per_h_per_s) * duration_s * duration_s / 4.0
+            + correlated
     }
 
-    /// Whether the record shows white noise, as that of a gyro does: where it does not, the five terms
-    /// do not describe it, as behind weights that wander, and nothing may be expected from them.
+    /// Whether the record is one of a gyro at rest, whose white noise shows and which the five terms
+    /// describe: else, as behind weights that wander, nothing may be expected from them.
     #[must_use]
     pub fn shows_white_noise(&self) -> bool {
-        matches!(self.angle_random_walk_deg_per_h_sqrt_s, Term::Found(_))
+        self.goodness.is_adequate()
+            && self.correlated.is_none()
+            && self.sine.is_none()
+            && self.settled.squares[WHITE] > 0.0
     }
 
-    /// Fitted Allan deviation, deg/h, the signed `1/tau^2` term included; never below zero.
+    /// Fitted Allan deviation, deg/h, with its signed terms; never below zero.
     #[must_use]
     pub fn deviation_deg_per_h(&self, tau_s: f64) -> f64 {
-        fitted_variance(&self.squares, tau_s).max(0.0).sqrt()
+        let sine = self.sine.map_or(0.0, |sine| sine.allan_variance(tau_s));
+        (self.mix.variance(tau_s).max(0.0) + sine).sqrt()
+    }
+
+    /// The fit of a record from which a sine was taken.
+    pub(crate) fn beside(self, sine: Sine) -> Self {
+        Self {
+            sine: Some(sine),
+            ..self
+        }
     }
 }
 
@@ -245,29 +294,33 @@ pub struct FitRange {
     pub tau_max_s: f64,
 }
 
-/// Fits the five noise terms to an Allan variance curve.
+/// Fits the noise terms to an Allan variance curve, and judges the fit.
 ///
 /// `AVAR = 3Q^2/tau^2 + N^2/tau + 0.4413 B^2 + K^2 tau/3 + R^2 tau^2/2` is linear in the squares;
 /// they are found by generalised least squares. The covariance of the points, which overlap and
 /// repeat each other, is that of the fitted mix in a record of this length, found in a few rounds.
 ///
-/// No square is held at zero while it is fitted: a bound on B would put N low on white noise. The
+/// No square is held at zero, so that the mean of each over records is the true one. The
 /// `1/tau^2` term, too, is free in sign. Noise whose correlation dies out within the shortest
 /// tau (a loop's bandwidth, a filter's taps) has `AVAR = N^2/tau - 3 sum k R(k) T^2/tau^2` exactly,
-/// so that a fit with positive Q only would put N low by as much as 2 % at ten samples.
+/// so that a fit with positive Q only would put N low by as much as 2 % at ten samples; where it is
+/// negative the record says nothing of a quantisation below it.
 ///
-/// R, then K leave the model unless they exceed 3 of the standard errors they would have if they
-/// were zero. Intervals are those of the terms in the model and hold all true values, none negative,
-/// under which the estimate lies between its quantiles 0.025 and 0.975: where that begins at zero
-/// the upper end alone bounds the coefficient. A term left out has the interval it has beside the
-/// others. Where K is left out, the intervals of the others are widened to what they are beside it:
-/// an hour cannot always tell a faint walk from flicker.
+/// Q, N, B and K are always fitted. A ramp, and exponentially correlated noise with a correlation
+/// time from five shortest averaging times to a tenth of the record, join them where the curve asks
+/// for them (criterion of Bayes and Schwarz). R has otherwise the value that it has beside the others.
+/// A sine is sought in the words, not here.
+///
+/// Intervals hold all true values, none negative, under which the estimate lies between its
+/// quantiles 0.025 and 0.975. No end of one lies where the term alone would exceed the curve at
+/// some averaging time of the fit: none above a 99 % band of the whole curve, what the loop takes
+/// from it given back.
 ///
 /// # Errors
 /// The reason, in words, if fewer than eight points or less than a factor of eight in tau lie in
 /// range.
 ///
-/// Source: IEEE Std 952-1997 annex C (model); derived: covariance, signed terms.
+/// Source: IEEE Std 952-1997 annex C (model); derived: covariance, signed terms, judgement.
 pub fn fit_noise(points: &[AllanPoint], range: FitRange) -> Result<NoiseFit, Unavailable> {
     fit_pooled_noise(points, range, 1.0)
 }
@@ -281,6 +334,67 @@ pub fn fit_pooled_noise(
     range: FitRange,
     records: f64,
 ) -> Result<NoiseFit, Unavailable> {
+    ChosenFit::new(points, range, records).map(|chosen| chosen.judged())
+}
+
+/// A fit of the terms that a curve asks for, not judged yet: that takes most of the time.
+pub(crate) struct ChosenFit {
+    points: Vec<AllanPoint>,
+    choice: Choice,
+}
+
+impl ChosenFit {
+    /// Chooses the terms of a curve, the mean of so many independent records.
+    ///
+    /// # Errors
+    /// As for [`fit_noise`].
+    pub(crate) fn new(
+        points: &[AllanPoint],
+        range: FitRange,
+        records: f64,
+    ) -> Result<Self, Unavailable> {
+        let points = usable(points, range)?;
+        let problem = Problem::new(&points, records);
+        let search = Search {
+            points: &points,
+            near: None,
+        };
+        match search.choose(&problem) {
+            Some(choice) => Ok(Self { points, choice }),
+            None => Err("the scatter of the Allan variances cannot be worked out".into()),
+        }
+    }
+
+    /// Two-sided density of the fitted noise, (deg/h)^2/Hz, that of the slow terms raised by two
+    /// standard errors: a line must stand above noise that the record does not rule out.
+    pub(crate) fn cautious_density(&self, frequency_hz: f64) -> f64 {
+        let angular = std::f64::consts::TAU * frequency_hz;
+        let limits = Limits::new(&self.choice);
+        let raised = |term: usize| {
+            let [square, error] = limits.square(term);
+            square.max(0.0) + 2.0 * error
+        };
+        let problem = &self.choice.problem;
+        let correlated = self.choice.allowed[CORRELATED].then(|| {
+            let time = problem.correlation().unwrap_or(0.0) * problem.sample_period_s();
+            let turn = angular * time;
+            2.0 * raised(CORRELATED) * time / (1.0 + turn * turn)
+        });
+        let [white, _] = limits.square(WHITE);
+        white.max(0.0)
+            + raised(FLICKER) / angular
+            + raised(WALK) / (angular * angular)
+            + correlated.unwrap_or(0.0)
+    }
+
+    /// The fit in coefficients and intervals, judged.
+    pub(crate) fn judged(&self) -> NoiseFit {
+        report(&self.points, &self.choice)
+    }
+}
+
+/// The points of a curve that a fit uses, if they are enough.
+fn usable(points: &[AllanPoint], range: FitRange) -> Result<Vec<AllanPoint>, Unavailable> {
     // A hair of slack keeps a point whose tau equals the limit up to rounding.
     let used: Vec<AllanPoint> = points
         .iter()
@@ -291,25 +405,21 @@ pub fn fit_pooled_noise(
                 && point.deviation_deg_per_h.value > 0.0
         })
         .collect();
-    let reach = |used: &[AllanPoint]| match (used.first(), used.last()) {
+    let reach = match (used.first(), used.last()) {
         (Some(first), Some(last)) => last.tau_s / first.tau_s,
         _ => 0.0,
     };
-    let enough = |used: &[AllanPoint]| used.len() >= POINTS_MIN && reach(used) >= TAU_RATIO_MIN;
-    if !enough(&used) {
+    if used.len() < POINTS_MIN || reach < TAU_RATIO_MIN {
         return Err(format!(
-            "the record offers {} averaging times between {:.4} s and a ninth of its length \
-             ({:.4} s); a fit needs at least {POINTS_MIN} over a factor of {TAU_RATIO_MIN}",
+            "the record offers {} averaging times from {:.4} s to {:.4} s, a ninth of its length; a \
+             fit needs {POINTS_MIN} that span a factor of {TAU_RATIO_MIN}",
             used.len(),
             range.tau_min_s,
             range.tau_max_s,
         )
         .into());
     }
-    let used = thinned(used);
-    let problem = Problem::new(&used, records);
-    let range = [used[0].tau_s, used[used.len() - 1].tau_s];
-    Ok(report(range, &problem))
+    Ok(thinned(used))
 }
 
 /// Every second point and the last of a dense curve: neighbours a fifth of tau apart correlate by 0.9
@@ -325,133 +435,49 @@ fn thinned(used: Vec<AllanPoint>) -> Vec<AllanPoint> {
         .collect()
 }
 
-/// The terms the points ask for.
-fn choose_terms(problem: &Problem) -> [bool; TERMS] {
-    let mut active = [true; TERMS];
-    // R first, then K: each must be needed although the gentler ones may explain the same times.
-    for term in [RAMP, WALK] {
-        active[term] = problem.significance(&problem.solve(&active), term) >= STEEP_SIGNIFICANCE;
-    }
-    active
-}
-
-/// Degrees of freedom of every point given a fitted mix of noise types.
-///
-/// The reciprocal is interpolated between the types' own reciprocals by their share of the Allan
-/// variance at that tau, so that a point where one type rules has exactly that type's number.
-#[must_use]
-pub fn mixed_degrees_of_freedom(
-    points: &[AllanPoint],
-    coefficients: &NoiseCoefficients,
-    angle_count: usize,
-) -> Vec<AllanPoint> {
-    let squares = [
-        coefficients.angle_random_walk_deg_per_h_sqrt_s,
-        coefficients.bias_instability_deg_per_h,
-        coefficients.rate_random_walk_deg_per_h_per_sqrt_s,
-        coefficients.rate_ramp_deg_per_h_per_s,
-    ]
-    .map(|value| value * value);
-    let types = [
-        NoiseType::White,
-        NoiseType::Flicker,
-        NoiseType::RandomWalk,
-        NoiseType::RandomWalk,
-    ];
-    let quantisation = coefficients.quantisation_arcsec.powi(2);
-    points
-        .iter()
-        .map(|point| {
-            let mut total = 0.0;
-            let mut reciprocal = 0.0;
-            let mut add = |variance: f64, noise: NoiseType| {
-                total += variance;
-                reciprocal +=
-                    variance / degrees_of_freedom(noise, angle_count, point.averaged_samples);
-            };
-            for (term, noise) in types.into_iter().enumerate() {
-                add(squares[term] * basis(term, point.tau_s), noise);
-            }
-            add(
-                3.0 * quantisation / (point.tau_s * point.tau_s),
-                NoiseType::Quantisation,
-            );
-            if total > 0.0 {
-                point.with_degrees_of_freedom(total / reciprocal)
-            } else {
-                *point
-            }
-        })
-        .collect()
-}
-
-/// Puts the solution into words and intervals.
-fn report(range: [f64; 2], problem: &Problem) -> NoiseFit {
-    let active = choose_terms(problem);
-    let solution = problem.solve(&active);
-    let mut walking = active;
-    walking[WALK] = true;
-    let beside_walk = problem.solve(&walking);
-    let term = |index: usize, factor: f64, name: &str| -> Term {
-        let mut with = active;
-        with[index] = true;
-        let own = match index {
-            WALK => beside_walk.clone(),
-            _ if active[index] => solution.clone(),
-            _ => problem.solve(&with),
-        };
-        let nothing = || Estimate::with_interval(0.0, 0.0, f64::INFINITY);
-        let mut square = problem.interval(&own, index).unwrap_or_else(nothing);
-        if active[index] && !active[WALK] {
-            // A walk too faint to be told from flicker may still be there.
-            let wider = problem
-                .interval(&beside_walk, index)
-                .unwrap_or_else(nothing);
-            square.low = square.low.min(wider.low);
-            square.high = square.high.max(wider.high);
-        }
-        let root = |square: f64| (problem.in_seconds(index, square) * factor).sqrt();
-        let needed = match index {
-            WALK | RAMP => STEEP_SIGNIFICANCE,
-            INVERSE_SQUARE => SIGNIFICANCE,
-            _ => 0.0,
-        };
-        let [value, low, high] = [square.value, square.low, square.high].map(root);
-        if active[index] && value > 0.0 && problem.significance(&own, index) >= needed {
-            return Term::Found(Estimate::with_interval(value, low, high));
-        }
-        let asked = if needed > 0.0 {
-            format!("its square must exceed {needed} standard errors")
-        } else {
-            "its square comes out below zero".to_owned()
-        };
-        Term::LeftOut {
-            reason: format!(
-                "the Allan variance between {:.2} s and {:.2} s does not show {name}: {asked}",
-                range[0], range[1],
-            ),
-            allowed: Estimate::with_interval(0.0, 0.0, high),
-        }
-    };
-    let square = |index: usize| {
-        let square = solution.square(index);
-        let bound = if index == INVERSE_SQUARE {
-            square
-        } else {
-            square.max(0.0)
-        };
-        problem.in_seconds(index, bound)
-    };
+/// Puts the chosen fit into coefficients and intervals.
+fn report(points: &[AllanPoint], choice: &Choice) -> NoiseFit {
+    let limits = Limits::new(choice);
+    let term = |index: usize| limits.term(index, 1.0);
+    let correlated = choice.allowed[CORRELATED].then(|| CorrelatedNoise {
+        deviation_deg_per_h: term(CORRELATED),
+        correlation_time_s: limits.correlation_time_s(),
+    });
     NoiseFit {
-        quantisation_arcsec: term(INVERSE_SQUARE, 1.0 / 3.0, "quantisation"),
-        angle_random_walk_deg_per_h_sqrt_s: term(WHITE, 1.0, "angle random walk"),
-        bias_instability_deg_per_h: term(FLICKER, 1.0, "bias instability"),
-        rate_random_walk_deg_per_h_per_sqrt_s: term(WALK, 1.0, "rate random walk"),
-        rate_ramp_deg_per_h_per_s: term(RAMP, 1.0, "rate ramp"),
-        tau_range_s: range,
-        squares: std::array::from_fn(square),
-        standard_errors: std::array::from_fn(|index| {
-            problem.in_seconds(index, problem.standard_error(&solution, index))
-        }),
+        quantisation_arcsec: limits.term(INVERSE_SQUARE, 1.0 / 3.0),
+        angle_random_walk_deg_per_h_sqrt_s: term(WHITE),
+        bias_instability_deg_per_h: term(FLICKER),
+        rate_random_walk_deg_per_h_per_sqrt_s: term(WALK),
+        rate_ramp_deg_per_h_per_s: term(RAMP),
+        correlated,
+        sine: None,
+        has_ramp: choice.allowed[RAMP],
+        goodness: Goodness::of(points, choice),
+        tau_range_s: [points[0].tau_s, points[points.len() - 1].tau_s],
+        mix: in_seconds(&choice.problem, &choice.squares),
+        settled: settled(choice, limits.solution()),
     }
+}
+
+fn in_seconds(problem: &Problem, squares: &[f64; TERMS]) -> Mix {
+    let time = problem.correlation();
+    Mix {
+        squares: std::array::from_fn(|term| problem.in_seconds(term, squares[term])),
+        correlation_time: time.map(|time| time * problem.sample_period_s()),
+    }
+}
+
+/// The fit that predictions rest on.
+///
+/// * `whole`: the fit of all chosen terms.
+fn settled(choice: &Choice, whole: &Solution) -> Mix {
+    let problem = &choice.problem;
+    let mut allowed = choice.allowed;
+    allowed[WALK] = problem.significance(whole, WALK) >= WALK_SIGNIFICANCE;
+    let solution = if allowed[WALK] {
+        whole
+    } else {
+        &problem.solve(&allowed)
+    };
+    in_seconds(problem, &solution.squares)
 }

@@ -150,7 +150,7 @@ pub(crate) fn identify_noise(
 }
 
 /// Takes the straight line of least squares away from the values that are there.
-fn remove_line(values: &mut [f64]) {
+pub(crate) fn remove_line(values: &mut [f64]) {
     let pairs = || {
         let indexed = values.iter().enumerate();
         indexed

@@ -17,6 +17,7 @@ rows! {
     allan::noise_fit::ANGLE_RANDOM_WALK,
     trial::dc_gain::ANGLE_RANDOM_WALK_OVER_DC_GAIN,
     trial::weight_noise::WEIGHT_NOISE_RATIO,
+    trial::weight_noise::ALLAN_RATIO_INSIDE_MEMORY,
     noise::bias_stability::BIAS_STABILITY_1S,
     noise::bias_stability::BIAS_STABILITY_10S,
     noise::bias_stability::BIAS_STABILITY_100S,
@@ -26,6 +27,10 @@ rows! {
     allan::noise_fit::RATE_RANDOM_WALK,
     allan::noise_fit::RATE_RAMP,
     allan::noise_fit::QUANTISATION,
+    allan::extra_terms::CORRELATED_NOISE,
+    allan::extra_terms::CORRELATION_TIME,
+    allan::extra_terms::SINE_AMPLITUDE,
+    allan::extra_terms::SINE_PERIOD,
     pool::repeatability::BIAS_REPEATABILITY,
     steps::settling::SETTLING_TIME,
     steps::shape::RISE_TIME,
@@ -164,7 +169,10 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/metrics");
         for room in fs::read_dir(folder).unwrap().flatten() {
             match fs::read_dir(room.path()) {
-                Ok(files) => sources.extend(files.flatten().map(|file| file.path())),
+                Ok(files) => {
+                    let files = files.flatten().map(|file| file.path());
+                    sources.extend(files.filter(|path| path.is_file()));
+                }
                 Err(_) => sources.push(room.path()),
             }
         }

@@ -176,7 +176,11 @@ fn check_tail(key: &MetricKey, samples: usize, last_step_index: usize) -> Result
     .into())
 }
 
-fn check_motion(known: &MetricKey, motion: &Motion) -> Result<(), Unavailable> {
+/// Whether a metric is defined for a motion.
+///
+/// # Errors
+/// The motions it is defined for, in words.
+pub(crate) fn check_motion(known: &MetricKey, motion: &Motion) -> Result<(), Unavailable> {
     let fits = matches!(
         (known.applies, motion),
         (Applies::Always | Applies::Pipeline, _)

@@ -1,6 +1,7 @@
 //! Numbers with their intervals, and the table of one channel that holds them.
 
 pub(super) mod blocks;
+pub(super) mod fit_sheet;
 pub(super) mod influence;
 pub(super) mod interval;
 pub(super) mod missing;

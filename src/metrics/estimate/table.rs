@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::fit_sheet::FitSheet;
 use super::reason::Unavailable;
 use super::repeat_statistics::RepeatStatistics;
 use super::value::{Estimate, Metric};
@@ -46,6 +47,8 @@ pub struct ChannelMetrics {
     pub repeats: BTreeMap<String, RepeatStatistics>,
     /// Columns of words of a curve, by curve and column; a single word holds for all its points.
     pub curve_labels: BTreeMap<String, BTreeMap<String, Vec<&'static str>>>,
+    /// Fit of the noise terms and how well they describe the Allan variance; none without a fit.
+    pub noise_fit: Option<FitSheet>,
     /// Set when the channel failed; its metrics are then empty but for `diverged_at_s`.
     pub error: Option<ChannelFailure>,
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::value::Estimate;
+use crate::wording::to_digits;
 
 /// Relative half width below which an interval is rounding noise and is not shown.
 const EXACT: f64 = 1e-9;
@@ -36,6 +37,11 @@ pub(crate) fn plain(value: f64) -> String {
         return format!("{}e{exponent}", trimmed(mantissa));
     }
     trimmed(&format!("{value:.*}", decimals(value, 6))).to_owned()
+}
+
+/// As [`plain`], to three digits.
+pub(crate) fn three_digits(value: f64) -> String {
+    plain(to_digits(value, 3))
 }
 
 fn trimmed(text: &str) -> &str {

@@ -9,9 +9,9 @@ use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Needs, Table};
-use crate::metrics::noise::memory::memory_samples;
 use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
+use crate::metrics::theory::memory::memory_samples;
 use crate::wording::decimals;
 
 /// Mean.
@@ -96,8 +96,9 @@ pub(crate) fn put_mean(
         .insert("averaging_time_s", averaging_time_s);
 }
 
-/// Enters the smallest and the largest sample.
-pub(crate) fn put_extremes(values: &[f64], metrics: &mut ChannelMetrics) {
+/// Enters what every record has, whatever its motion: the smallest and the largest sample.
+pub(crate) fn put_extremes(record: &Record, metrics: &mut ChannelMetrics) {
+    let values = record.channel_deg_per_h;
     let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     metrics.put(&MINIMUM, Estimate::exact(smallest));

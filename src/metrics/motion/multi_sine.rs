@@ -14,7 +14,7 @@ use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::noise::by_weights::NoiseByWeights;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
-use crate::metrics::noise::truth_response::{reach, remove_response};
+use crate::metrics::noise::truth_response::{Shown, shown};
 use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::sine::tones::{
     RESPONSE_COLUMNS, ToneClock, ToneFits, ToneResponse, fit_tones, put_responses,
@@ -55,6 +55,20 @@ const CHANNEL: usize = 0;
 const TRUTH: usize = 1;
 const RAW: usize = 2;
 
+/// What channel and raw show of the true rate, and the place of the first in the joint fit.
+struct Motion {
+    channel: Option<Shown>,
+    raw: Option<Shown>,
+    first: usize,
+}
+
+impl Motion {
+    fn series(&self) -> impl Iterator<Item = &[f64]> {
+        let shown = self.channel.iter().chain(&self.raw);
+        shown.map(|shown| shown.series.as_slice())
+    }
+}
+
 /// Measures everything a record of several sines supports.
 ///
 /// # Errors
@@ -74,6 +88,12 @@ pub(crate) fn measure_multi_sine(
     if filter.is_some() {
         series.push(record.raw_deg_per_h);
     }
+    let motion = Motion {
+        channel: shown(record, filter),
+        raw: filter.and_then(|_| shown(record, None)),
+        first: series.len(),
+    };
+    series.extend(motion.series());
     let fits = fit_tones(&series, &clock)?;
     let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
     let truth_offset = fits.offset(TRUTH).value;
@@ -106,7 +126,7 @@ pub(crate) fn measure_multi_sine(
         Err(reason) => metrics.miss(&BANDWIDTH, reason),
     }
     measure_tracking(record, metrics);
-    measure_noise(record, &fits, filter, metrics);
+    measure_noise(record, &fits, &motion, filter, metrics);
     Ok(())
 }
 
@@ -155,18 +175,23 @@ fn measure_tracking(record: &Record, metrics: &mut ChannelMetrics) {
 fn measure_noise(
     record: &Record,
     fits: &ToneFits,
+    motion: &Motion,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
-    let motion = fits.residuals(TRUTH, record.truth_deg_per_h);
-    let products = |series: usize, values: &[f64], of: Option<&FilterFacts>| {
+    let tones = fits.response(CHANNEL, TRUTH).len();
+    let products = |series: usize, values: &[f64], shown: Option<&Shown>, place: usize| {
         let mut residuals = fits.residuals(series, values);
-        remove_response(&mut residuals, &motion, reach(of));
+        if let Some(shown) = shown {
+            shown.remove_from(&mut residuals, &fits.residuals(place, &shown.series));
+        }
         let blocks = filter.map_or(RATIO_BLOCKS, FilterFacts::blocks);
         LaggedProducts::new(&residuals, 0.0, LAGS_MIN, blocks)
     };
-    let channel = products(CHANNEL, record.channel_deg_per_h, filter);
-    let raw = filter.map(|_| products(RAW, record.raw_deg_per_h, None));
+    let own = motion.channel.as_ref();
+    let channel = products(CHANNEL, record.channel_deg_per_h, own, motion.first);
+    let of_raw = motion.raw.as_ref();
+    let raw = filter.map(|_| products(RAW, record.raw_deg_per_h, of_raw, motion.first + 1));
     let samples = record.channel_deg_per_h.len();
     let by_weights = match (filter, &raw) {
         (Some(facts), Some(raw)) => NoiseByWeights::new(facts, raw, samples, 0.0),
@@ -175,7 +200,7 @@ fn measure_noise(
     put_noise_std(
         &channel,
         &by_weights,
-        samples,
+        (samples, 2 * tones + 1),
         record.sample_period_s,
         metrics,
     );

@@ -1,11 +1,11 @@
 //! Metrics of a record at rest or at constant rate.
 
 use super::mean::{MEAN, MEAN_ERROR, mean_spread_of, measure_mean_ratio, put_mean};
+use crate::metrics::allan::coefficients::mixed_degrees_of_freedom;
 use crate::metrics::allan::curves::{put_allan_curve, put_fit_curve};
 use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
 use crate::metrics::allan::noise_fit::{
-    ANGLE_RANDOM_WALK, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, Term, fit_noise,
-    mixed_degrees_of_freedom,
+    ANGLE_RANDOM_WALK, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, fit_noise,
 };
 use crate::metrics::allan::overlapping::overlapping_allan;
 use crate::metrics::allan::variants::allan_variant;
@@ -24,6 +24,7 @@ use crate::metrics::noise::bias_stability::{
 };
 use crate::metrics::noise::by_weights::NoiseByWeights;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
+use crate::metrics::noise::line::fit_beside_sine;
 use crate::metrics::noise::memory::fit_tau_min_s;
 use crate::metrics::noise::truth_response::without_motion;
 use crate::metrics::record::{FilterFacts, Record, Settings};
@@ -32,7 +33,7 @@ use crate::metrics::trial::dc_gain::{
     ANGLE_RANDOM_WALK_OVER_DC_GAIN, BIAS_STABILITY_OVER_DC_GAIN, put_over_dc_gain,
 };
 use crate::metrics::trial::predicted::measure_predictions;
-use crate::metrics::trial::weight_noise::measure_weight_noise;
+use crate::metrics::trial::weight_noise::{measure_inside_memory, measure_weight_noise};
 use crate::wording::{counted, plain};
 
 /// Lags of the autocovariance, at least; correlation beyond counts as slow noise.
@@ -48,7 +49,7 @@ pub(crate) fn measure_steady(
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
-    let still = without_motion(record, filter);
+    let still = without_motion(record, 0, filter);
     let record = &still.as_ref().map_or(*record, |(channel, raw)| Record {
         channel_deg_per_h: channel,
         raw_deg_per_h: raw,
@@ -69,7 +70,7 @@ pub(crate) fn measure_steady(
     put_noise_std(
         &products,
         &by_weights,
-        samples,
+        (samples, 1),
         record.sample_period_s,
         metrics,
     );
@@ -78,6 +79,7 @@ pub(crate) fn measure_steady(
         put_noise_gain(&products, &raw, &by_weights, level, metrics);
         measure_mean_ratio(record, 0..samples, facts, metrics);
         measure_weight_noise(record, facts, metrics);
+        measure_inside_memory(record, facts, metrics);
         measure_predictions(record, facts, (&products, &raw), metrics);
         for (key, over) in [
             (&ANGLE_RANDOM_WALK, &ANGLE_RANDOM_WALK_OVER_DC_GAIN),
@@ -112,7 +114,9 @@ fn measure_allan(
         .any(|two| two[0] < two[1] || two[1] < two[0]);
     let constant = || Err("the output does not vary over the record".into());
     let fitted = if varies {
-        fit_noise(&points, range)
+        let values = record.channel_deg_per_h;
+        fit_beside_sine(values, record.sample_period_s, range)
+            .map_or_else(|| fit_noise(&points, range), Ok)
     } else {
         constant()
     };
@@ -213,7 +217,7 @@ fn measure_mean(
     let mean = interval::mean(values);
     let duration_s = values.len() as f64 * record.sample_period_s;
     let slow = match (record.drift, fit) {
-        (None, Some(fit)) => slow_mean_variance(fit, duration_s),
+        (None, Some(fit)) => fit.slow_mean_variance(duration_s),
         _ => 0.0,
     };
     let estimate = match mean_spread_of(record, values, filter, true) {
@@ -235,23 +239,6 @@ fn measure_mean(
 
 /// Field of a mean: standard deviation, in its interval, of the input's slow noise in the mean.
 const SLOW_NOISE: &str = "slow_noise_deg_per_h";
-
-/// Variance of the mean of flicker with correlation times up to a hundred records over `B^2`:
-/// `(ln 100 + 3/2 - gamma) / pi`.
-const FLICKER_MEAN_VARIANCE: f64 = 1.760;
-
-/// Variance of the mean by the slow terms of a fit whose intervals do not begin at zero, (deg/h)^2.
-///
-/// Walk and ramp start at zero with the record. Source: derived; van der Ziel, Physica 16 (1950).
-fn slow_mean_variance(fit: &NoiseFit, duration_s: f64) -> f64 {
-    let square = |term: &Term| match term {
-        Term::Found(estimate) if estimate.low > 0.0 => estimate.value * estimate.value,
-        _ => 0.0,
-    };
-    FLICKER_MEAN_VARIANCE * square(&fit.bias_instability_deg_per_h)
-        + square(&fit.rate_random_walk_deg_per_h_per_sqrt_s) * duration_s / 3.0
-        + square(&fit.rate_ramp_deg_per_h_per_s) * duration_s * duration_s / 4.0
-}
 
 fn products_about_mean(values: &[f64], lags: usize, blocks: usize) -> LaggedProducts {
     LaggedProducts::new(values, interval::mean(values), lags, blocks)

@@ -13,6 +13,7 @@ use crate::metrics::key::metric::{Applies, MetricKey, Needs, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::noise::by_weights::NoiseByWeights;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
+use crate::metrics::noise::truth_response::without_motion;
 use crate::metrics::record::{FilterFacts, Record, SAMPLES_MIN, WeightScatter};
 use crate::metrics::steps::settling::{SETTLING_TIME, settling, tail_start};
 use crate::metrics::steps::shape::{OVERSHOOT, RISE_TIME, Step, put_step_shape};
@@ -83,12 +84,15 @@ pub(crate) fn measure_steps(
         return;
     }
     measure_tracking(record, Some(start), filter, metrics);
-    let products = |series: &[f64]| {
-        let tail = &series[start..];
-        LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS)
-    };
-    let channel = products(values);
-    let raw = products(record.raw_deg_per_h);
+    let products =
+        |tail: &[f64]| LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS);
+    // The table may shake at its rate.
+    let still = without_motion(record, start, filter);
+    let (own_tail, raw_tail) = still.as_ref().map_or_else(
+        || (&values[start..], &record.raw_deg_per_h[start..]),
+        |(own, raw)| (own.as_slice(), raw.as_slice()),
+    );
+    let (channel, raw) = (products(own_tail), products(raw_tail));
     let part = start as f64 / values.len() as f64;
     let by_weights = filter.map_or_else(NoiseByWeights::none, |facts| {
         NoiseByWeights::new(facts, &raw, values.len(), part)
@@ -96,7 +100,7 @@ pub(crate) fn measure_steps(
     put_noise_std(
         &channel,
         &by_weights,
-        values.len() - start,
+        (values.len() - start, 1),
         record.sample_period_s,
         metrics,
     );

@@ -18,12 +18,12 @@ use crate::metrics::key::metric::{Against as Compared, Applies, Headline, Metric
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::noise::by_weights::NoiseByWeights;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
-use crate::metrics::noise::truth_response::{reach, remove_response};
+use crate::metrics::noise::truth_response::shown;
 use crate::metrics::pipeline::LATENCY;
 use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::sine::correlation::correlation_delay_s;
 use crate::metrics::sine::fit::{SwingClock, SwingFit, fit_swing};
-use crate::metrics::theory::bound::filter_bound;
+use crate::metrics::theory::bound::{LeastNoise, filter_bound_at, noise_power_gain};
 use crate::metrics::theory::learning::{Learning, NOT_FROM_ONE_RECORD};
 use crate::metrics::theory::prediction::{lags_needed, predict};
 use crate::metrics::trial::noise_delay::{
@@ -31,7 +31,7 @@ use crate::metrics::trial::noise_delay::{
 };
 use crate::metrics::trial::predicted::DC_GAIN_PREDICTED;
 use crate::metrics::trial::readaptation;
-use crate::metrics::trial::readaptation::GainUnits;
+use crate::metrics::trial::readaptation::{GainUnits, adapts};
 use crate::units;
 
 /// Delay vs raw.
@@ -174,11 +174,13 @@ pub(crate) fn measure_swing(
     let blocks = filter
         .and_then(|facts| facts.learning.as_ref())
         .map_or(fits.channel.block_count(), Learning::stretches);
-    let motion = fits.truth.as_ref().zip(record.truth());
-    let motion = motion.map_or_else(Vec::new, |(fit, truth)| fit.residuals(truth));
     // The table's own harmonics are known, and no noise.
     let noise = |mut residuals: Vec<f64>, of: Option<&FilterFacts>| {
-        remove_response(&mut residuals, &motion, reach(of));
+        if let Some(shown) = shown(record, of)
+            && let Ok(fit) = fit_swing(&shown.series, &clock)
+        {
+            shown.remove_from(&mut residuals, &fit.residuals(&shown.series));
+        }
         LaggedProducts::new(&residuals, 0.0, lags, blocks)
     };
     let channel = noise(residuals, filter);
@@ -192,7 +194,7 @@ pub(crate) fn measure_swing(
     put_noise_std(
         &channel,
         &by_weights,
-        fits.channel.samples(),
+        (fits.channel.samples(), 3),
         record.sample_period_s,
         metrics,
     );
@@ -201,10 +203,10 @@ pub(crate) fn measure_swing(
         put_noise_gain(&channel, &raw, &by_weights, level, metrics);
         measure_mean_ratio(record, &fits, facts, metrics);
         measure_predictions(&fits, &clock, facts, &raw, metrics);
-        measure_bound(&fits, &clock, facts, (&channel, &raw), metrics);
+        measure_bound(&fits, &response, facts, (&channel, &raw), metrics);
         let predicted = metrics.get(&DELAY_PREDICTED);
         let final_gain = predicted.and_then(|metric| metric.fields.get(AMPLITUDE_RATIO.name));
-        if let Some(&final_gain) = final_gain.filter(|_| is_from_rest) {
+        if let Some(&final_gain) = final_gain.filter(|_| is_from_rest && adapts(&facts.shape)) {
             let (own, other) = (record.channel_deg_per_h, record.raw_deg_per_h);
             let units = GainUnits::of_swing(own, other, &clock);
             readaptation::put(&units, final_gain, metrics);
@@ -401,36 +403,48 @@ fn measure_predictions(
 /// neither into account.
 fn measure_bound(
     fits: &Fits,
-    clock: &SwingClock,
+    response: &Response,
     facts: &FilterFacts,
     (channel, raw): (&LaggedProducts, &LaggedProducts),
     metrics: &mut ChannelMetrics,
 ) {
-    let delay = fits
-        .channel
-        .delay_behind_s(&fits.raw)
-        .scaled(1.0 / clock.sample_period_s);
+    let clock = response.clock;
+    let delay_s = response.delay(fits.channel.delay_behind_s(&fits.raw), Against::Raw);
+    let delay = delay_s.scaled(1.0 / clock.sample_period_s);
     let at = |delay_samples: f64, autocovariance: &[f64]| {
-        filter_bound(&facts.shape, delay_samples, autocovariance)
+        filter_bound_at(&facts.shape, delay_samples, autocovariance)
     };
     let autocovariance = raw.autocovariance();
-    let without: Vec<Result<f64, Unavailable>> = (0..raw.blocks())
+    let without: Vec<Result<LeastNoise, Unavailable>> = (0..raw.blocks())
         .map(|block| at(delay.value, &raw.autocovariance_without(block)))
         .collect();
-    let left_out: Vec<f64> = without.iter().flatten().copied().collect();
-    // The bound is a parabola in the delay: its extremes over the interval are at the ends unless
-    // the lowest point lies inside, which the value in the middle stands for. The scatter of the
+    let left_out: Vec<f64> = without
+        .iter()
+        .flatten()
+        .map(|least| least.noise_gain)
+        .collect();
+    // The bound is made of parabolas in the delay: its extremes over the short interval are at the ends
+    // unless the lowest point lies inside, which the value in the middle stands for. The scatter of the
     // autocovariance adds in quadrature; the two are nearly independent.
     let bound = at(delay.value, &autocovariance);
-    put_over_bound(channel, raw, &bound, &without, metrics);
-    let bound = bound.map(|value| {
-        let ends = [delay.low, delay.high].map(|end| at(end, &autocovariance).unwrap_or(value));
+    let over = response.by_weights(facts, |frozen, weights| {
+        let delay_s = frozen.delay_s(clock.frequency_hz, clock.sample_period_s);
+        let least = at(delay_s / clock.sample_period_s, &autocovariance);
+        let least = least.map_or(f64::NAN, |least| least.noise_gain);
+        noise_power_gain(weights, &autocovariance) / least
+    });
+    put_over_bound(channel, raw, &bound, &without, over.as_ref(), metrics);
+    let bound = bound.map(|least| {
+        let value = least.noise_gain;
+        let ends = [delay.low, delay.high]
+            .map(|end| at(end, &autocovariance).map_or(value, |least| least.noise_gain));
         let colour = interval::jackknife(value, &left_out).high - value;
         let below = (value - ends[0].min(ends[1])).max(0.0).hypot(colour);
         let above = (ends[0].max(ends[1]) - value).max(0.0).hypot(colour);
-        Estimate::with_interval(value, (value - below).max(0.0), value + above)
+        let estimate = Estimate::with_interval(value, (value - below).max(0.0), value + above);
+        (estimate, least)
     });
-    if let Ok(bound) = &bound {
+    if let (Ok((bound, _)), None) = (&bound, &over) {
         widen_over_bound(bound, &left_out, metrics);
     }
     put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);

@@ -144,6 +144,18 @@ impl Response {
         self.scatter.of(facts.mean_weights.as_deref(), square)
     }
 
+    /// What learned weights add to a function of the filter frozen at weights, and of these.
+    pub(super) fn by_weights(
+        &self,
+        facts: &FilterFacts,
+        of: impl Fn(&Prediction, &[f64]) -> f64,
+    ) -> Option<Learned> {
+        let newest = facts.shape.newest_age_samples;
+        self.scatter.of(facts.mean_weights.as_deref(), |weights| {
+            of(&Prediction::of_weights(weights.to_vec(), newest), weights)
+        })
+    }
+
     /// The amplitude ratio with the interval of its noise: of raw to the truth by its blocks.
     pub(super) fn amplitude(&self, ratio: Estimate) -> Estimate {
         if !self.is_filter {

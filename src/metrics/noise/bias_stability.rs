@@ -1,8 +1,9 @@
-//! Bias stability: the scatter of non-overlapping block means.
+//! Bias stability: the scatter of non-overlapping block means. Bias instability is another quantity,
+//! the flicker coefficient B of `metrics/allan/noise_fit.rs`.
 
 use std::f64::consts::PI;
 
-use crate::metrics::allan::noise_fit::NoiseCoefficients;
+use crate::metrics::allan::coefficients::NoiseCoefficients;
 use crate::metrics::estimate::blocks::is_sample_or_longer;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;

@@ -12,7 +12,7 @@ pub static NOISE_STD: MetricKey = MetricKey::new(
     "noise_std_deg_per_h",
     "deg/h",
     Applies::Separable,
-    "standard deviation of the samples about the signal: mean, fitted sine, or settled rate",
+    "standard deviation of the samples about the signal: mean, fitted sine, or settled rate; over n less what is fitted",
 )
 .synonyms(&["std", "noise", "rms", "noise_rms", "standard_deviation"])
 .heading("noise std")
@@ -34,7 +34,9 @@ pub static NOISE_GAIN: MetricKey = MetricKey::of_filters(
 .needs(Needs::SettledStep)
 .tables(&[Table::Rest, Table::Swing, Table::MultiSine, Table::Steps]);
 
-/// Standard deviation about the signal.
+/// Standard deviation about a signal of `fitted` parameters.
+///
+/// The sum of squares over `count - fitted`: the mean alone takes one, a sine with its offset three.
 ///
 /// The degrees of freedom are those that the scatter of the variance from block to block shows:
 /// noise whose strength changes, as behind weights that follow a swing, has fewer than its
@@ -43,7 +45,7 @@ pub static NOISE_GAIN: MetricKey = MetricKey::of_filters(
 pub(crate) fn put_noise_std(
     products: &LaggedProducts,
     by_weights: &NoiseByWeights,
-    count: usize,
+    (count, fitted): (usize, usize),
     sample_period_s: f64,
     metrics: &mut ChannelMetrics,
 ) {
@@ -54,7 +56,8 @@ pub(crate) fn put_noise_std(
         Some(learned) => products.learned_freedom(&learned),
         None => products.variance_freedom().unwrap_or(of_lags),
     };
-    let deviation = interval::sample_deviation(autocovariance[0].sqrt(), freedom);
+    let unbiased = count as f64 / count.saturating_sub(fitted).max(1) as f64;
+    let deviation = interval::sample_deviation((autocovariance[0] * unbiased).sqrt(), freedom);
     let metric = metrics.put(&NOISE_STD, by_weights.unless_unknown(deviation));
     metric.fields.insert("count", count as f64);
     if metric.estimate.has_interval() {

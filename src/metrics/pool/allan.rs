@@ -6,7 +6,10 @@ use crate::metrics::allan::curves::{
     TAU, columns_of, fitted_column, put_allan_words, put_fit_curve,
 };
 use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
-use crate::metrics::allan::noise_fit::{ANGLE_RANDOM_WALK, FitRange, NoiseFit, fit_pooled_noise};
+use crate::metrics::allan::extra_terms::pooled_sine;
+use crate::metrics::allan::noise_fit::{
+    ANGLE_RANDOM_WALK, FitRange, NoiseFit, Sine, fit_pooled_noise,
+};
 use crate::metrics::allan::noise_identification::PowerLaw;
 use crate::metrics::allan::overlapping::AllanPoint;
 use crate::metrics::estimate::interval;
@@ -54,16 +57,22 @@ pub(crate) fn pool_allan(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics
 fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<NoiseFit> {
     let points = pooled_points(repeats, &ALLAN_FIT)?;
     let count = repeats.len() as f64;
-    let range = FIT_METRICS.into_iter().find_map(|key| {
-        let fields = &pooled.get(key)?.fields;
+    let range = repeats.iter().find_map(|repeat| {
+        let sheet = repeat.noise_fit.as_ref()?;
         Some(FitRange {
-            tau_min_s: *fields.get("tau_min_s")?,
-            tau_max_s: *fields.get("tau_max_s")?,
+            tau_min_s: sheet.number("tau_min_s")?,
+            tau_max_s: sheet.number("tau_max_s")?,
         })
     });
-    let Some(Ok(fit)) = range.map(|range| fit_pooled_noise(&points, range, count)) else {
+    let sine = pooled_sine(repeats);
+    let rest = without_sine(&points, sine);
+    let Some(Ok(fit)) = range.map(|range| fit_pooled_noise(&rest, range, count)) else {
         put_fit_curve(&points, None, pooled);
         return None;
+    };
+    let fit = match sine {
+        Some(sine) => fit.beside(sine),
+        None => fit,
     };
     let mean = pooled.get(&MEAN);
     let duration_s = mean.and_then(|mean| mean.fields.get("averaging_time_s").copied());
@@ -86,6 +95,17 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
         );
     }
     Some(fit)
+}
+
+/// The curve that the repeats have on average beside a sine.
+fn without_sine(points: &[AllanPoint], sine: Option<Sine>) -> Vec<AllanPoint> {
+    let rest = points.iter().map(|point| {
+        let taken = sine.map_or(0.0, |sine| sine.allan_variance(point.tau_s));
+        let mut rest = *point;
+        rest.deviation_deg_per_h.value = (point.variance() - taken).max(0.0).sqrt();
+        rest
+    });
+    rest.collect()
 }
 
 /// Replaces the mean of what the repeats' fits expect of the bias stability by what the fit to all of

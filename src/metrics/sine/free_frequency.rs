@@ -50,6 +50,16 @@ impl FreeSineFit {
 /// Processing, vol. I, example 3.14. Known answer K23.
 #[must_use]
 pub fn fit_sine_free_frequency(values: &[f64], clock: &SwingClock) -> Option<FreeSineFit> {
+    fit_sine_to(values, clock, TOLERANCE_RAD)
+}
+
+/// The same up to a change of the phase at the ends of the record, rad: a sine that hardly stands out of
+/// its noise takes many steps to the last digit.
+pub(crate) fn fit_sine_to(
+    values: &[f64],
+    clock: &SwingClock,
+    tolerance_rad: f64,
+) -> Option<FreeSineFit> {
     let middle = (values.len() as f64 - 1.0) / 2.0;
     let half_s = middle * clock.sample_period_s;
     let centred = SwingClock {
@@ -77,7 +87,7 @@ pub fn fit_sine_free_frequency(values: &[f64], clock: &SwingClock) -> Option<Fre
         if !step_rad.is_finite() || angular <= 0.0 {
             return None;
         }
-        if step_rad.abs() < TOLERANCE_RAD.max(f64::EPSILON * angular * half_s) {
+        if step_rad.abs() < tolerance_rad.max(f64::EPSILON * angular * half_s) {
             return Some(FreeSineFit {
                 frequency_hz: angular / TAU,
                 amplitude: a.hypot(b),

@@ -7,10 +7,14 @@
 //! at the weights that many records have in common, so that each stretch adds `A_f s_f` of its own to
 //! the mean weights of the record, `A_f` the mean of `R_c^-1` over the checkpoints from f on. Stretches
 //! of the warm-up add theirs. What the known motion puts into a score is the same in every record and
-//! taken off: it is the score of the words without their noise. This is the sandwich covariance of least squares; leaving blocks of the
+//! taken off: it is the score of the words without their noise. The stretches of a motion fade into each
+//! other. This is the sandwich covariance of least squares; leaving blocks of the
 //! output out instead holds the weights of this record for given, and misses nearly all of it.
 //!
 //! Source: derived; White, Econometrica 48 (1980), for the sandwich.
+
+use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
@@ -116,22 +120,41 @@ impl Learning {
             Some(own) => first + record * own / count,
             None => reach + (first - reach) * stretch / warm_up,
         };
-        let sums = |words: &[f64]| -> Vec<DMatrix<f64>> {
-            (0..warm_up + count)
-                .map(|stretch| {
-                    let range = border(stretch).max(reach)..border(stretch + 1);
-                    products(words, range, lag, taps, desired_weights)
-                })
-                .collect()
+        let stretches = warm_up + count;
+        let range = |stretch: usize| border(stretch).max(reach)..border(stretch + 1);
+        let regression = Regression {
+            lag,
+            taps,
+            desired_weights,
         };
-        let moments = sums(words);
+        let moments: Vec<DMatrix<f64>> = (0..stretches)
+            .map(|stretch| regression.products(words, range(stretch), None))
+            .collect();
+        let deviations = match motion {
+            None => deviations(moments.clone()),
+            Some(motion) => {
+                let ranges: Vec<Range<usize>> = (0..stretches).map(range).collect();
+                let tapers = (0..stretches).map(|stretch| Taper::of(&ranges, stretch));
+                let of_noise = tapers.map(|taper| {
+                    let Taper { range, weights } = taper;
+                    let own = regression.products(words, range.clone(), Some(&weights));
+                    let known = regression.products(motion, range, Some(&weights));
+                    // What is no noise are the words' number, which both have.
+                    let number = own[(taps + 1, taps + 1)];
+                    let mut noise = own - known;
+                    noise[(taps + 1, taps + 1)] = number;
+                    noise * TAPERED_POWER.sqrt()
+                });
+                deviations(of_noise.collect())
+            }
+        };
         Some(Self {
             taps,
             is_dc_gain_one: *is_dc_gain_one,
             kept: factor.powf(length as f64),
             warm_up,
             drift_deg_per_h: 0.0,
-            deviations: deviations(&moments, motion.map(sums)),
+            deviations,
             moments,
         })
     }
@@ -409,23 +432,54 @@ impl Solved {
     }
 }
 
-/// Moments less those of the motion, and less the mean of what then is left per word.
-fn deviations(moments: &[DMatrix<f64>], motion: Option<Vec<DMatrix<f64>>>) -> Vec<DMatrix<f64>> {
+/// Moments less their mean per word.
+fn deviations(moments: Vec<DMatrix<f64>>) -> Vec<DMatrix<f64>> {
     let number = |moments: &DMatrix<f64>| moments[(moments.nrows() - 1, moments.nrows() - 1)];
-    let noise: Vec<DMatrix<f64>> = match motion {
-        None => moments.to_vec(),
-        Some(motion) => moments
-            .iter()
-            .zip(motion)
-            .map(|(own, motion)| own - motion)
-            .collect(),
-    };
     let total: f64 = moments.iter().map(number).sum();
-    let mean = noise.iter().sum::<DMatrix<f64>>() / total;
-    let parts = noise.iter().zip(moments);
-    parts
-        .map(|(noise, moments)| noise - &mean * number(moments))
-        .collect()
+    let mean = moments.iter().sum::<DMatrix<f64>>() / total;
+    let about = |own: DMatrix<f64>| {
+        let words = number(&own);
+        own - &mean * words
+    };
+    moments.into_iter().map(about).collect()
+}
+
+/// Variance of a sum of white values over that of the sums under tapers of raised cosines, which
+/// overlap by half.
+const TAPERED_POWER: f64 = 4.0 / 3.0;
+
+/// A stretch whose ends fade into its neighbours.
+///
+/// Behind a motion the error of a filter has next to no noise at its frequency: what a stretch with
+/// sharp ends sums is what the ends cut off, which the next stretch takes back.
+struct Taper {
+    range: Range<usize>,
+    weights: Vec<f64>,
+}
+
+impl Taper {
+    /// From the middle of the stretch before to that of the one behind; the first and the last of all
+    /// have sharp outer ends.
+    fn of(ranges: &[Range<usize>], stretch: usize) -> Self {
+        let middle = |range: &Range<usize>| usize::midpoint(range.start, range.end);
+        let own = &ranges[stretch];
+        let before = stretch.checked_sub(1).map(|at| middle(&ranges[at]));
+        let behind = ranges.get(stretch + 1).map(middle);
+        let range = before.unwrap_or(own.start)..behind.unwrap_or(own.end);
+        let centre = middle(own);
+        let part = |index: usize, from: usize, to: usize| {
+            (index as f64 + 0.5 - from as f64) / (to as f64 - from as f64)
+        };
+        let weights = range
+            .clone()
+            .map(|index| match (index < centre, before, behind) {
+                (true, Some(before), _) => (FRAC_PI_2 * part(index, before, centre)).sin().powi(2),
+                (false, _, Some(behind)) => (FRAC_PI_2 * part(index, centre, behind)).cos().powi(2),
+                _ => 1.0,
+            })
+            .collect();
+        Self { range, weights }
+    }
 }
 
 /// `T` with `(T v)_i = v_i - v_(i-1)`: weights that sum to nothing.
@@ -435,37 +489,59 @@ fn fold(taps: usize) -> DMatrix<f64> {
     })
 }
 
-/// Sums of products of regressors, desired signal and 1 over the words of a range.
-fn products(
-    words: &[f64],
-    range: std::ops::Range<usize>,
+/// What a least-squares filter regresses on what.
+struct Regression<'a> {
     lag: usize,
     taps: usize,
-    desired_weights: &[f64],
-) -> DMatrix<f64> {
-    let aged = |age: usize| &words[range.start - age..range.end - age];
-    let mut desired = vec![0.0; range.len()];
-    for (age, weight) in desired_weights.iter().enumerate() {
-        for (sum, word) in desired.iter_mut().zip(aged(age)) {
-            *sum += weight * word;
+    desired_weights: &'a [f64],
+}
+
+impl Regression<'_> {
+    /// Sums of products of regressors, desired signal and 1 over the words of a range, weighted or not.
+    fn products(
+        &self,
+        words: &[f64],
+        range: Range<usize>,
+        weights: Option<&[f64]>,
+    ) -> DMatrix<f64> {
+        let taps = self.taps;
+        let aged = |age: usize| &words[range.start - age..range.end - age];
+        let mut desired = vec![0.0; range.len()];
+        for (age, weight) in self.desired_weights.iter().enumerate() {
+            for (sum, word) in desired.iter_mut().zip(aged(age)) {
+                *sum += weight * word;
+            }
         }
-    }
-    let ones = vec![1.0; range.len()];
-    let column = |index: usize| match index.checked_sub(taps) {
-        None => aged(lag + index),
-        Some(0) => desired.as_slice(),
-        Some(_) => ones.as_slice(),
-    };
-    let mut moments = DMatrix::zeros(taps + 2, taps + 2);
-    for row in 0..taps + 2 {
-        for other in row..taps + 2 {
-            let view = |index| DVectorView::from_slice(column(index), range.len());
-            let sum = view(row).dot(&view(other));
-            moments[(row, other)] = sum;
-            moments[(other, row)] = sum;
+        let ones = vec![1.0; range.len()];
+        let column = |index: usize| match index.checked_sub(taps) {
+            None => aged(self.lag + index),
+            Some(0) => desired.as_slice(),
+            Some(_) => ones.as_slice(),
+        };
+        let mut moments = DMatrix::zeros(taps + 2, taps + 2);
+        let mut weighted = Vec::with_capacity(range.len());
+        for row in 0..taps + 2 {
+            let own = match weights {
+                None => column(row),
+                Some(weights) => {
+                    weighted.clear();
+                    weighted.extend(column(row).iter().zip(weights).map(|(word, by)| word * by));
+                    weighted.as_slice()
+                }
+            };
+            for other in row..taps + 2 {
+                let sum = dot(own, column(other));
+                moments[(row, other)] = sum;
+                moments[(other, row)] = sum;
+            }
         }
+        moments
     }
-    moments
+}
+
+fn dot(one: &[f64], other: &[f64]) -> f64 {
+    let view = DVectorView::from_slice(one, one.len());
+    view.dot(&DVectorView::from_slice(other, other.len()))
 }
 
 impl LearnedWeights {

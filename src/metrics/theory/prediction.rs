@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::bound::BOUND_TAPS_MAX;
+use super::bound::{BOUND_TAPS_MAX, bound_taps};
 use crate::linear_algebra::singular_value_decomposition;
 use crate::signal::{FilterShape, Section, WeightRule};
 
@@ -31,8 +31,7 @@ enum ImpulseResponse {
 /// Number of lags, zero included, of the second moment that a filter's prediction and its bound need.
 #[must_use]
 pub fn lags_needed(shape: &FilterShape) -> usize {
-    let taps = shape
-        .taps
+    let taps = Some(bound_taps(shape))
         .filter(|taps| *taps <= BOUND_TAPS_MAX)
         .unwrap_or(0);
     let desired = match &shape.rule {

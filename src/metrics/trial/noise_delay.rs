@@ -1,6 +1,6 @@
 //! A filter on the noise-delay plane: its bound, the curve of it, and how far above it stands.
 
-use crate::metrics::estimate::interval;
+use crate::metrics::estimate::influence::{Learned, resampled};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
@@ -8,7 +8,7 @@ use crate::metrics::key::curve::{Column, CurveKey};
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::FilterFacts;
-use crate::metrics::theory::bound::{filter_bound, noise_delay_bound};
+use crate::metrics::theory::bound::{LeastNoise, NoiseDelayBound, bound_taps, filter_bound};
 use crate::units;
 
 /// Least noise power gain at the delay of the filter.
@@ -16,7 +16,7 @@ pub static NOISE_DELAY_BOUND_NOISE_GAIN: MetricKey = MetricKey::of_filters(
     "noise_delay_bound_noise_gain",
     "1",
     Applies::SteadyOrSwing,
-    "least noise gain any fixed filter of as many taps has at this delay with unit DC gain",
+    "least noise gain of as many consecutive taps as the filter has, of any first age behind its register, at this delay with unit DC gain; of one without a count as many as its 1 % memory; sparse taps may do better",
 )
 .heading("least at this delay")
 .tables(&[Table::Rest, Table::Swing]);
@@ -47,76 +47,75 @@ pub static LEAST_WHITE_NOISE_GAIN: Column =
 pub static NOISE_DELAY_BOUND: CurveKey = CurveKey::new(
     "noise_delay_bound",
     &[&DELAY, &LEAST_NOISE_GAIN, &LEAST_WHITE_NOISE_GAIN],
-    "least noise gain of any fixed filter of as many taps with unit DC gain over the delay",
+    "least noise gain of as many consecutive taps with unit DC gain over the delay",
 )
 .picture("noise-delay.svg");
 
 /// Points of the curve.
 const CURVE_POINTS: usize = 41;
 
-/// Enters the noise-delay bound with the delay it holds at and the white-noise figure beside it.
+/// Enters the noise-delay bound with the delay it holds at, the taps that reach it and the white-noise
+/// figure beside it.
 pub(crate) fn put_bound(
-    bound: Result<Estimate, Unavailable>,
+    bound: Result<(Estimate, LeastNoise), Unavailable>,
     facts: &FilterFacts,
     delay_samples: f64,
     sample_period_s: f64,
     metrics: &mut ChannelMetrics,
 ) {
-    let metric = match bound {
-        Ok(bound) => metrics.put(&NOISE_DELAY_BOUND_NOISE_GAIN, bound),
+    let (estimate, least) = match bound {
+        Ok(bound) => bound,
         Err(reason) => return metrics.miss(&NOISE_DELAY_BOUND_NOISE_GAIN, reason),
     };
-    metric
-        .fields
-        .insert("delay_ms", units::s_to_ms(delay_samples * sample_period_s));
-    let taps = facts.shape.taps.unwrap_or(0);
-    if let Some(white) = noise_delay_bound(taps, facts.shape.newest_age_samples, delay_samples) {
-        metric.fields.insert("white_noise_gain", white);
+    let fields = &mut metrics.put(&NOISE_DELAY_BOUND_NOISE_GAIN, estimate).fields;
+    fields.insert("delay_ms", units::s_to_ms(delay_samples * sample_period_s));
+    let taps = bound_taps(&facts.shape);
+    fields.insert("taps", taps as f64);
+    fields.insert("first_age_samples", least.first_age_samples as f64);
+    let white = NoiseDelayBound::white(taps, facts.shape.register_samples);
+    if let Some(white) = white.and_then(|white| white.at(delay_samples)) {
+        fields.insert("white_noise_gain", white.noise_gain);
     }
 }
 
-/// Enters the curve of the bound over delays from one sample before the newest
-/// age to one behind the oldest, for white noise and for the colour of raw's.
+/// Enters the curve of the bound over delays from one sample before the register to one behind the
+/// oldest sample that the filter weighs, for white noise and for the colour of raw's.
 ///
-/// The least of a quadratic form under linear constraints is a quadratic of what these are set to,
-/// here of the delay, so that three solutions give the whole curve. There is no curve of a single
-/// tap, which has one delay, nor of unlimited ones.
+/// There is no curve of a single tap, which delays by whole samples.
 pub(crate) fn put_bound_curve(
     facts: &FilterFacts,
     autocovariance: &[f64],
     sample_period_s: f64,
     metrics: &mut ChannelMetrics,
 ) {
-    let Some(taps) = facts.shape.taps.filter(|taps| *taps > 1) else {
+    let taps = bound_taps(&facts.shape);
+    let register = facts.shape.register_samples;
+    let (Ok(coloured), Some(white)) = (
+        filter_bound(&facts.shape, autocovariance),
+        NoiseDelayBound::white(taps, register),
+    ) else {
         return;
     };
-    let newest = facts.shape.newest_age_samples as f64;
-    let half = (taps as f64 - 1.0) / 2.0;
-    let at = |delay: f64| filter_bound(&facts.shape, delay, autocovariance);
-    let knots = (at(newest), at(newest + half), at(newest + 2.0 * half));
-    let (Ok(first), Ok(middle), Ok(last)) = knots else {
+    if taps < 2 {
         return;
-    };
-    let (slope, curvature) = (0.5 * (last - first), 0.5 * (first + last) - middle);
-    let coloured = |delay: f64| {
-        let from_middle = (delay - newest - half) / half;
-        middle + (slope + curvature * from_middle) * from_middle
-    };
-    let step = (taps as f64 + 1.0) / (CURVE_POINTS as f64 - 1.0);
+    }
+    let first = register as f64 - 1.0;
+    let last = (facts.shape.newest_age_samples + taps) as f64;
+    let step = (last - first) / (CURVE_POINTS as f64 - 1.0);
     let delays: Vec<f64> = (0..CURVE_POINTS)
-        .map(|index| newest - 1.0 + step * index as f64)
+        .map(|index| first + step * index as f64)
         .collect();
-    let white = delays
-        .iter()
-        .filter_map(|&delay| noise_delay_bound(taps, facts.shape.newest_age_samples, delay));
+    let gains = |bound: NoiseDelayBound| -> Vec<f64> {
+        let at = delays.iter().filter_map(|&delay| bound.at(delay));
+        at.map(|least| least.noise_gain).collect()
+    };
     let delays_ms = delays
         .iter()
         .map(|delay| units::s_to_ms(delay * sample_period_s + facts.latency_s));
-    let coloured = delays.iter().map(|delay| coloured(*delay)).collect();
     let columns = [
         (&DELAY, delays_ms.collect()),
-        (&LEAST_NOISE_GAIN, coloured),
-        (&LEAST_WHITE_NOISE_GAIN, white.collect()),
+        (&LEAST_NOISE_GAIN, gains(coloured)),
+        (&LEAST_WHITE_NOISE_GAIN, gains(white)),
     ];
     metrics.put_curve(&NOISE_DELAY_BOUND, columns);
 }
@@ -124,16 +123,18 @@ pub(crate) fn put_bound_curve(
 /// Enters `noise_gain_over_bound`.
 ///
 /// Blocks leave the noise and the bound together: of fixed weights with unit DC gain the ratio
-/// hardly scatters, as both follow from the same autocovariance.
+/// hardly scatters, as both follow from the same autocovariance. `learned` is what weights that forget
+/// nothing add to it.
 pub(crate) fn put_over_bound(
     channel: &LaggedProducts,
     raw: &LaggedProducts,
-    bound: &Result<f64, Unavailable>,
-    bounds_without: &[Result<f64, Unavailable>],
+    bound: &Result<LeastNoise, Unavailable>,
+    bounds_without: &[Result<LeastNoise, Unavailable>],
+    learned: Option<&Learned>,
     metrics: &mut ChannelMetrics,
 ) {
     let bound = match bound {
-        Ok(bound) => *bound,
+        Ok(bound) => bound.noise_gain,
         Err(reason) => return metrics.miss(&NOISE_GAIN_OVER_BOUND, reason.clone()),
     };
     let ratio = |channel: &[f64], raw: &[f64], bound: f64| channel[0] / raw[0] / bound;
@@ -142,7 +143,7 @@ pub(crate) fn put_over_bound(
         .iter()
         .enumerate()
         .filter_map(|(block, bound)| {
-            let bound = *bound.as_ref().ok()?;
+            let bound = bound.as_ref().ok()?.noise_gain;
             let (own, other) = (
                 channel.autocovariance_without(block),
                 raw.autocovariance_without(block),
@@ -150,8 +151,6 @@ pub(crate) fn put_over_bound(
             Some(ratio(&own, &other, bound))
         })
         .collect();
-    metrics.put(
-        &NOISE_GAIN_OVER_BOUND,
-        interval::jackknife(value, &left_out),
-    );
+    let estimate = resampled(value, &left_out, learned);
+    metrics.put(&NOISE_GAIN_OVER_BOUND, estimate);
 }

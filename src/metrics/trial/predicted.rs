@@ -9,7 +9,7 @@ use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::{FilterFacts, Record};
-use crate::metrics::theory::bound::{NO_DELAY_AT_DC, filter_bound};
+use crate::metrics::theory::bound::{NO_DELAY_AT_DC, filter_bound_at, noise_power_gain};
 use crate::metrics::theory::prediction::{Prediction, predict};
 use crate::units;
 
@@ -52,7 +52,7 @@ pub(crate) fn measure_predictions(
             .collect();
         let prediction = predict(&facts.shape, &second_moment)?;
         let delay_samples = ran.unwrap_or_else(|| prediction.delay_at_dc_samples());
-        let bound = filter_bound(&facts.shape, delay_samples, autocovariance);
+        let bound = filter_bound_at(&facts.shape, delay_samples, autocovariance);
         Some((prediction.dc_gain(), delay_samples, bound))
     };
     let means = means_without_blocks(record.raw_deg_per_h, raw.blocks());
@@ -84,7 +84,16 @@ pub(crate) fn measure_predictions(
         metrics.miss(&DELAY_AT_DC, NO_DELAY_AT_DC);
     }
     let without: Vec<_> = parts.into_iter().map(|part| part.2).collect();
-    put_over_bound(channel, raw, &bound, &without, metrics);
+    let newest = facts.shape.newest_age_samples;
+    let autocovariance = raw.autocovariance();
+    let scatter = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
+    let over = scatter.of(facts.mean_weights.as_deref(), |weights| {
+        let delay = Prediction::of_weights(weights.to_vec(), newest).delay_at_dc_samples();
+        let least = filter_bound_at(&facts.shape, delay, &autocovariance);
+        let least = least.map_or(f64::NAN, |least| least.noise_gain);
+        noise_power_gain(weights, &autocovariance) / least
+    });
+    put_over_bound(channel, raw, &bound, &without, over.as_ref(), metrics);
     put_bound_curve(
         facts,
         &raw.autocovariance(),
@@ -93,10 +102,10 @@ pub(crate) fn measure_predictions(
     );
     let bounds: Vec<f64> = without
         .iter()
-        .filter_map(|bound| bound.as_ref().ok().copied())
+        .filter_map(|bound| Some(bound.as_ref().ok()?.noise_gain))
         .collect();
     put_bound(
-        bound.map(|bound| interval::jackknife(bound, &bounds)),
+        bound.map(|least| (interval::jackknife(least.noise_gain, &bounds), least)),
         facts,
         delay_samples,
         record.sample_period_s,

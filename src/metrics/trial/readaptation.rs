@@ -15,7 +15,9 @@ use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::sine::fit::{SwingClock, fit_sine};
 use crate::metrics::steps::settling::tail_start;
+use crate::metrics::theory::memory::memory_samples;
 use crate::metrics::theory::prediction::{lags_needed, predict};
+use crate::signal::{FilterShape, WeightRule};
 use crate::wording::decimals;
 
 /// Readaptation.
@@ -23,7 +25,7 @@ pub static READAPTATION_TIME: MetricKey = MetricKey::of_filters(
     "readaptation_time_s",
     "s",
     Applies::Onset,
-    "time from the start of a motion until the gain stays within 1 % of what it teaches",
+    "time from the start of a motion until the gain stays within 1 % of what it teaches; of a filter that does not adapt its memory",
 )
 .heading("readaptation")
 .needs(Needs::SettledStep)
@@ -210,6 +212,26 @@ fn scatter(gains: &[f64]) -> f64 {
     (interval::mean(&squares) / 6.0).sqrt()
 }
 
+/// Whether a filter learns at all; one that does not has [`put_memory`] for an answer.
+pub(crate) fn adapts(shape: &FilterShape) -> bool {
+    matches!(shape.rule, WeightRule::Adaptive { .. })
+}
+
+/// Enters the readaptation time of a filter that does not adapt: its memory, whatever the motion.
+///
+/// A motion that begins within a word shows whole in the next one, and the output holds nothing older
+/// once that word has come to the oldest sample weighed: `newest age + memory` samples after the motion
+/// began if it begins with a word, which is the interval's lower end, and one more at the latest.
+pub(crate) fn put_memory(facts: &FilterFacts, sample_period_s: f64, metrics: &mut ChannelMetrics) {
+    let memory = memory_samples(&facts.shape);
+    let reach_s = (facts.shape.newest_age_samples + memory) as f64 * sample_period_s;
+    let least_s = reach_s + facts.latency_s;
+    let most_s = least_s + sample_period_s;
+    let time_s = Estimate::with_interval(most_s, least_s, most_s);
+    let fields = &mut metrics.put(&READAPTATION_TIME, time_s).fields;
+    fields.insert("memory_samples", memory as f64);
+}
+
 /// Enters the readaptation time with what defines it, or the reason for its lack.
 pub(crate) fn put(units: &GainUnits, final_gain: f64, metrics: &mut ChannelMetrics) {
     match units.readaptation(final_gain) {
@@ -233,6 +255,9 @@ pub(crate) fn measure_after_step(
     facts: &FilterFacts,
     metrics: &mut ChannelMetrics,
 ) {
+    if !adapts(&facts.shape) {
+        return;
+    }
     let tail = &record.raw_deg_per_h[tail_start(record.raw_deg_per_h.len(), start)..];
     let mean = interval::mean(tail);
     let lags = lags_needed(&facts.shape);

@@ -1,14 +1,16 @@
-//! How much noise the wandering of a filter's weights adds.
+//! Allan deviation of a filter's output over raw's: well beyond its memory, where only the wandering of its
+//! weights changes it, and inside, where smoothing does.
 
 use super::dc_gain::{DC_GAIN, dc_gain_lack};
 use crate::metrics::allan::overlapping::{NoiseType, degrees_of_freedom};
 use crate::metrics::estimate::blocks::samples_in;
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
-use crate::metrics::noise::memory::memory_samples;
 use crate::metrics::record::{FilterFacts, Record};
+use crate::metrics::theory::memory::memory_samples;
 
 /// Weight noise.
 pub static WEIGHT_NOISE_RATIO: MetricKey = MetricKey::of_filters(
@@ -19,6 +21,15 @@ pub static WEIGHT_NOISE_RATIO: MetricKey = MetricKey::of_filters(
 )
 .heading("weight noise")
 .tables(&[Table::Rest]);
+
+/// Allan deviation inside the memory.
+pub static ALLAN_RATIO_INSIDE_MEMORY: MetricKey = MetricKey::of_filters(
+    "allan_ratio_inside_memory",
+    "1",
+    Applies::Steady,
+    "Allan deviation at 1 s over DC gain times raw's, if the filter reaches into it: no less noise beyond",
+)
+.heading("inside memory");
 
 /// Averaging time at which the ratio is taken, s, if the record supports it.
 const AVERAGING_TIME_S: f64 = 1.0;
@@ -51,57 +62,11 @@ pub(crate) fn measure_weight_noise(
     facts: &FilterFacts,
     metrics: &mut ChannelMetrics,
 ) {
-    let Some(dc_gain) = facts.dc_gain else {
-        metrics.miss(
-            &WEIGHT_NOISE_RATIO,
-            "the DC gain of this filter is not known",
-        );
-        return;
+    let (dc_gain, m, ratio) = match beyond_memory(record, facts) {
+        Ok(found) => found,
+        Err(reason) => return metrics.miss(&WEIGHT_NOISE_RATIO, reason),
     };
-    if dc_gain <= 1e-6 || !dc_gain.is_finite() {
-        return metrics.miss(&WEIGHT_NOISE_RATIO, dc_gain_lack(dc_gain));
-    }
-    let count = record.raw_deg_per_h.len();
-    let reach = memory_samples(&facts.shape) + facts.shape.newest_age_samples;
-    let asked = samples_in(AVERAGING_TIME_S, record.sample_period_s).max(REACHES * reach);
-    let longest = asked.min(count / 4);
-    let supported = |m: &usize| degrees_of_freedom(NoiseType::White, count + 1, *m) >= FREEDOM_MIN;
-    let Some(m) = (1..=longest).rev().find(supported) else {
-        metrics.miss(
-            &WEIGHT_NOISE_RATIO,
-            format!("no averaging time has {FREEDOM_MIN} degrees of freedom"),
-        );
-        return;
-    };
-    if m < REACHES_MIN * reach {
-        metrics.miss(
-            &WEIGHT_NOISE_RATIO,
-            format!(
-                "no averaging time long against the {reach} samples that the filter reaches back"
-            ),
-        );
-        return;
-    }
-    let blocks = (count / (AVERAGING_TIMES_PER_BLOCK * m)).clamp(BLOCKS_MIN, BLOCKS_MAX);
-    let own = second_difference_squares(record.channel_deg_per_h, m, blocks);
-    let raw = second_difference_squares(record.raw_deg_per_h, m, blocks);
-    let (own_sum, raw_sum): (f64, f64) = (own.iter().sum(), raw.iter().sum());
-    let scatter = (raw_sum / count as f64).sqrt() / m as f64;
-    if scatter <= 1e-12 * interval::mean(record.raw_deg_per_h).abs() || raw_sum <= 0.0 {
-        metrics.miss(&WEIGHT_NOISE_RATIO, "the raw channel has no noise");
-        return;
-    }
-    let ratio = |own: f64, raw: f64| (own / raw).max(0.0).sqrt() / dc_gain;
-    let left_out: Vec<f64> = own
-        .iter()
-        .zip(&raw)
-        .map(|(own, raw)| ratio(own_sum - own, raw_sum - raw))
-        .collect();
-    let estimate = interval::jackknife(ratio(own_sum, raw_sum), &left_out);
-    let metric = metrics.put(
-        &WEIGHT_NOISE_RATIO,
-        Estimate::with_interval(estimate.value, estimate.low.max(0.0), estimate.high),
-    );
+    let metric = metrics.put(&WEIGHT_NOISE_RATIO, ratio);
     // The time asked for where it is the nearest whole number of samples.
     let averaging_time_s = if m == samples_in(AVERAGING_TIME_S, record.sample_period_s) {
         AVERAGING_TIME_S
@@ -110,6 +75,114 @@ pub(crate) fn measure_weight_noise(
     };
     metric.fields.insert("averaging_time_s", averaging_time_s);
     metric.fields.insert(DC_GAIN.name, dc_gain);
+}
+
+/// DC gain, averaging time in samples, and the ratio there, or why there is none.
+fn beyond_memory(
+    record: &Record,
+    facts: &FilterFacts,
+) -> Result<(f64, usize, Estimate), Unavailable> {
+    let dc_gain = restorable_gain(facts)?;
+    let count = record.raw_deg_per_h.len();
+    let reach = reach_samples(facts);
+    let asked = samples_in(AVERAGING_TIME_S, record.sample_period_s).max(REACHES * reach);
+    let longest = asked.min(count / 4);
+    let Some(m) = (1..=longest).rev().find(|m| is_supported(count, *m)) else {
+        return Err(format!("no averaging time has {FREEDOM_MIN} degrees of freedom").into());
+    };
+    if m < REACHES_MIN * reach {
+        return Err(format!(
+            "no averaging time long against the {reach} samples that the filter reaches back"
+        )
+        .into());
+    }
+    Ok((dc_gain, m, restored_ratio(record, dc_gain, m)?))
+}
+
+/// Enters `allan_ratio_inside_memory`: the same ratio at 1 s, where the filter reaches into it.
+///
+/// White noise through a low pass has less of an Allan deviation there, as `Claim` has it in closed form:
+/// an angle random walk read off at 1 s seems to gain what `weight_noise_ratio` does not show.
+pub(crate) fn measure_inside_memory(
+    record: &Record,
+    facts: &FilterFacts,
+    metrics: &mut ChannelMetrics,
+) {
+    let m = samples_in(AVERAGING_TIME_S, record.sample_period_s);
+    let reach = reach_samples(facts);
+    match inside_memory(record, facts, m, reach) {
+        Ok(ratio) => {
+            let fields = &mut metrics.put(&ALLAN_RATIO_INSIDE_MEMORY, ratio).fields;
+            fields.insert("averaging_time_s", m as f64 * record.sample_period_s);
+            fields.insert("reach_samples", reach as f64);
+        }
+        Err(reason) => metrics.miss(&ALLAN_RATIO_INSIDE_MEMORY, reason),
+    }
+}
+
+/// The ratio at `m` samples, of a filter that reaches so many back, or why there is none.
+fn inside_memory(
+    record: &Record,
+    facts: &FilterFacts,
+    m: usize,
+    reach: usize,
+) -> Result<Estimate, Unavailable> {
+    let dc_gain = restorable_gain(facts)?;
+    if m >= REACHES * reach {
+        return Err(
+            format!("1 s is well beyond the {reach} samples that the filter reaches back").into(),
+        );
+    }
+    let count = record.raw_deg_per_h.len();
+    if !(1..=count / 4).contains(&m) || !is_supported(count, m) {
+        return Err(
+            format!("an averaging time of 1 s has no {FREEDOM_MIN} degrees of freedom").into(),
+        );
+    }
+    restored_ratio(record, dc_gain, m)
+}
+
+/// DC gain by which an output can be restored.
+fn restorable_gain(facts: &FilterFacts) -> Result<f64, Unavailable> {
+    let dc_gain = facts
+        .dc_gain
+        .ok_or("the DC gain of this filter is not known")?;
+    if dc_gain <= 1e-6 || !dc_gain.is_finite() {
+        return Err(dc_gain_lack(dc_gain));
+    }
+    Ok(dc_gain)
+}
+
+/// Samples that a filter reaches back.
+fn reach_samples(facts: &FilterFacts) -> usize {
+    memory_samples(&facts.shape) + facts.shape.newest_age_samples
+}
+
+/// Whether so many samples have degrees of freedom enough at an averaging time of `m`.
+fn is_supported(count: usize, m: usize) -> bool {
+    degrees_of_freedom(NoiseType::White, count + 1, m) >= FREEDOM_MIN
+}
+
+/// `ADEV(output) / (DC gain ADEV(raw))` at `m` samples, or that the raw channel has no noise.
+fn restored_ratio(record: &Record, dc_gain: f64, m: usize) -> Result<Estimate, Unavailable> {
+    let count = record.raw_deg_per_h.len();
+    let blocks = (count / (AVERAGING_TIMES_PER_BLOCK * m)).clamp(BLOCKS_MIN, BLOCKS_MAX);
+    let own = second_difference_squares(record.channel_deg_per_h, m, blocks);
+    let raw = second_difference_squares(record.raw_deg_per_h, m, blocks);
+    let (own_sum, raw_sum): (f64, f64) = (own.iter().sum(), raw.iter().sum());
+    let scatter = (raw_sum / count as f64).sqrt() / m as f64;
+    if scatter <= 1e-12 * interval::mean(record.raw_deg_per_h).abs() || raw_sum <= 0.0 {
+        return Err("the raw channel has no noise".into());
+    }
+    let ratio = |own: f64, raw: f64| (own / raw).max(0.0).sqrt() / dc_gain;
+    let left_out: Vec<f64> = own
+        .iter()
+        .zip(&raw)
+        .map(|(own, raw)| ratio(own_sum - own, raw_sum - raw))
+        .collect();
+    let estimate = interval::jackknife(ratio(own_sum, raw_sum), &left_out);
+    let low = estimate.low.max(0.0);
+    Ok(Estimate::with_interval(estimate.value, low, estimate.high))
 }
 
 /// Sums, block by block of their first sample, of the squared differences between the sums of `m`

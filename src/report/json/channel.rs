@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value};
 
-use crate::metrics::{ChannelMetrics, RepeatStatistics};
-use crate::report::layout::json::{array, estimate, numbers, object, put_array};
+use crate::metrics::{ChannelMetrics, FitSheet, FitTerm, RepeatStatistics};
+use crate::report::layout::json::{array, estimate, numbers, object, put, put_array};
 use crate::report::text::verdict::verdict_text;
 
 /// One channel of `channels`.
@@ -15,6 +15,9 @@ pub(crate) fn channel(metrics: &ChannelMetrics) -> Value {
         .collect();
     if let Some(verdict) = verdict_text(metrics) {
         record.insert("verdict".to_owned(), verdict.into());
+    }
+    if let Some(sheet) = &metrics.noise_fit {
+        record.insert("noise_fit".to_owned(), noise_fit(sheet));
     }
     if !metrics.repeats.is_empty() {
         record.insert("repeats".to_owned(), repeats_json(metrics));
@@ -52,6 +55,30 @@ pub(crate) fn channel(metrics: &ChannelMetrics) -> Value {
         ]);
         record.insert("error".to_owned(), error.into());
     }
+    record.into()
+}
+
+/// `channels.<name>.noise_fit` of the summary.
+fn noise_fit(sheet: &FitSheet) -> Value {
+    let mut record = object([
+        ("criterion", "bic".into()),
+        ("adequate", sheet.is_adequate.into()),
+    ]);
+    for (name, value) in &sheet.numbers {
+        put(&mut record, name, *value);
+    }
+    put_array(&mut record, "missed_tau_s", &sheet.missed_tau_s);
+    let term = |(key, term): (&String, &FitTerm)| {
+        let mut entry = numbers([
+            ("square", term.square),
+            ("standard_error", term.standard_error),
+        ]);
+        entry.insert("unit".to_owned(), term.unit.as_str().into());
+        entry.insert("in_model".to_owned(), term.is_in_model.into());
+        (key.clone(), Value::Object(entry))
+    };
+    let terms: Map<String, Value> = sheet.terms.iter().map(term).collect();
+    record.insert("terms".to_owned(), terms.into());
     record.into()
 }
 

@@ -1,16 +1,19 @@
 //! `allan.svg`: the Allan deviation, or another of its family, with intervals, fitted lines and labelled markers.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Dash, Picture, Shape, Stroke};
-use super::series::{extent, stroke_of};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Dash, Picture, Shape, Stroke};
+use super::drawing::series::{extent, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::ChannelMetrics;
+use crate::metrics::Estimate;
 use crate::metrics::MetricKey;
 use crate::metrics::catalogue::ALLAN;
 use crate::metrics::catalogue::ANGLE_RANDOM_WALK;
 use crate::metrics::catalogue::{BIAS_INSTABILITY, QUANTISATION, RATE_RAMP, RATE_RANDOM_WALK};
+use crate::metrics::catalogue::{CORRELATED_NOISE, CORRELATION_TIME, SINE_AMPLITUDE, SINE_PERIOD};
 use crate::metrics::columns::allan as column;
+use crate::metrics::{correlated_allan_variance, sine_allan_variance};
 use crate::report::record::measured::Measured;
 use crate::units::{
     deg_per_h_per_s_to_deg_per_h_per_h, deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s,
@@ -19,6 +22,9 @@ use crate::units::{
 
 /// The flicker floor of the Allan deviation over B: `sqrt(2 ln 2 / pi)` (IEEE Std 952-1997, C).
 const FLOOR_OVER_B: f64 = 0.664;
+
+/// Steps of the curves of terms that are no straight lines.
+const CURVE_STEPS: usize = 400;
 
 /// The estimator that the noise is fitted to.
 const OVERLAPPING: &str = "overlapping";
@@ -54,12 +60,7 @@ pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
     let positive = |value: &f64| *value > 0.0;
     let tau = tables().flat_map(|(.., tau, _)| tau.iter().copied());
     let read_at = tables().flat_map(|(_, _, metrics, ..)| readings(metrics));
-    let mut names = report.channels.iter();
-    let estimator = names.find_map(|(_, metrics)| {
-        let words = metrics.words(&ALLAN, &column::ESTIMATOR);
-        words.first().copied()
-    });
-    let estimator = estimator.unwrap_or(OVERLAPPING);
+    let estimator = estimator_of(report);
     // The terms are read off the Allan deviation; the lines of the others lie elsewhere.
     let is_read = matches!(estimator, OVERLAPPING | "plain");
     let x = extent(
@@ -99,10 +100,26 @@ pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
                 legend.text(&mut picture, &reading.text);
             }
         }
+        for (curve, text) in extra_terms(metrics, tau) {
+            if is_read {
+                panel.line(&mut picture, &curve, mixed(stroke));
+            }
+            legend.text(&mut picture, &text);
+        }
         legend.space();
     }
     notes(&mut legend, &mut picture, is_read);
     Some(picture)
+}
+
+/// The estimator of the curves.
+fn estimator_of<'a>(report: &Measured<'a>) -> &'a str {
+    let mut channels = report.channels.iter();
+    let estimator = channels.find_map(|(_, metrics)| {
+        let words = metrics.words(&ALLAN, &column::ESTIMATOR);
+        words.first().copied()
+    });
+    estimator.unwrap_or(OVERLAPPING)
 }
 
 /// A deviation in full.
@@ -136,6 +153,7 @@ fn notes(legend: &mut Legend, picture: &mut Picture, is_read: bool) {
             "circle: 60 N at 1 s (slope -1/2); √3 Q/τ (slope -1)",
             "square: 0.664 B (flat)",
             "triangle: K/60 at 3 s (slope 1/2); R τ/√2 (slope 1)",
+            "dash-dotted: correlated noise, sine",
         ]
     } else {
         &[
@@ -200,6 +218,47 @@ fn readings(metrics: &ChannelMetrics) -> Vec<Reading> {
     });
     let all = [angle, walk, floor, rate_walk, ramp];
     all.into_iter().flatten().collect()
+}
+
+/// Terms beyond the five with their curves over the averaging times of the picture.
+fn extra_terms(metrics: &ChannelMetrics, tau: &[f64]) -> Vec<(Vec<(f64, f64)>, String)> {
+    let (Some(&first), Some(&last)) = (tau.first(), tau.last()) else {
+        return Vec::new();
+    };
+    let time = |step: usize| first * (last / first).powf(step as f64 / CURVE_STEPS as f64);
+    let curve = |variance: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> {
+        let points = (0..=CURVE_STEPS).map(|step| (time(step), variance(time(step)).sqrt()));
+        points.filter(|(_, deviation)| *deviation > 0.0).collect()
+    };
+    let pair = |level: &MetricKey, time: &MetricKey| {
+        let (level, time) = (metrics.get(level)?.estimate, metrics.get(time)?.estimate);
+        Some((level, time))
+    };
+    let text = |name: &str, level: &Estimate, time: &Estimate| {
+        let (level, time) = (estimate_text(level, 2), estimate_text(time, 2));
+        format!("{name} {level} deg/h, {time} s")
+    };
+    let correlated = pair(&CORRELATED_NOISE, &CORRELATION_TIME).map(|(level, time)| {
+        let variance =
+            |tau: f64| level.value * level.value * correlated_allan_variance(tau, time.value);
+        (curve(&variance), text("correlated", &level, &time))
+    });
+    let sine = pair(&SINE_AMPLITUDE, &SINE_PERIOD).map(|(level, period)| {
+        let variance =
+            |tau: f64| level.value * level.value * sine_allan_variance(tau, period.value);
+        (curve(&variance), text("sine", &level, &period))
+    });
+    correlated.into_iter().chain(sine).collect()
+}
+
+/// The stroke of a term's curve that is no straight line.
+fn mixed(stroke: Stroke) -> Stroke {
+    Stroke {
+        width: 1.0,
+        dash: Dash::Mixed,
+        opacity: 0.8,
+        ..stroke
+    }
 }
 
 /// The line of a term over the whole frame, and its marker.

@@ -1,10 +1,10 @@
 //! `before-after.svg`: each channel's deviation from the true rate, before and after compensation
 //! and filters, on one time axis.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{BLACK, Picture, Stroke};
-use super::series::{Series, columns, extent, real, series};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{BLACK, Picture, Stroke};
+use super::drawing::series::{Series, columns, extent, real, series};
 use crate::report::RunReport;
 use crate::signal::RunSignals;
 

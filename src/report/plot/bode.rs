@@ -1,10 +1,10 @@
 //! `bode.svg`: gain and phase of the channels against the true rate.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Picture, Stroke};
-use super::series::{extent, shape_of, stroke_of};
-use super::theory::{curves, draw, legend_of};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Picture, Stroke};
+use super::drawing::series::{extent, shape_of, stroke_of};
+use super::drawing::theory::{curves, draw, legend_of};
 use crate::gate::{estimate_text, plain};
 use crate::metrics::catalogue::{BANDWIDTH, DELAY_VS_TRUTH, FREQUENCY_RESPONSE};
 use crate::metrics::columns::tones::{

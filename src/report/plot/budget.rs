@@ -1,9 +1,9 @@
 //! `budget.svg`: the noise budget against modulation depth and against power.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{BLACK, Dash, Picture, Point, Shape, Stroke};
-use super::series::{extent, stroke_of};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{BLACK, Dash, Picture, Point, Shape, Stroke};
+use super::drawing::series::{extent, stroke_of};
 use crate::gate::plain;
 use crate::report::budget::{TOTAL, sources};
 use crate::signal::{BudgetPoint, BudgetSheet};

@@ -1,9 +1,9 @@
 //! `calibration.svg`: errors of the estimators side by side, and how much each group counts.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Picture, Stroke};
-use super::series::{extent, real, shape_of, stroke_of, truth_stroke};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Picture, Stroke};
+use super::drawing::series::{extent, real, shape_of, stroke_of, truth_stroke};
 use crate::signal::{AssemblyParameters, CalibrationEstimate, CalibrationSheet};
 
 /// Standard errors on either side of a 95 % interval.

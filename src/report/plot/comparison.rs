@@ -1,9 +1,9 @@
 //! A table over several scenarios as a picture: intervals beside published figures.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{BLACK, Picture, Shape, Stroke};
-use super::series::{extent, real, stroke_of};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{BLACK, Picture, Shape, Stroke};
+use super::drawing::series::{extent, real, stroke_of};
 use crate::comparison::{ComparedCell, ComparedColumn, ComparedTable};
 use crate::report::record::columns::{heading_of, unit_text};
 
@@ -101,7 +101,7 @@ fn panel(picture: &mut Picture, table: &ComparedTable, columns: &[usize], top: f
     let mut has_published = false;
     for (place, column) in columns.iter().enumerate() {
         let stroke = Stroke {
-            dash: super::picture::Dash::Solid,
+            dash: super::drawing::picture::Dash::Solid,
             ..stroke_of(ordinal(table, *column))
         };
         let part = (real(place) + 0.5) / real(columns.len()) - 0.5;

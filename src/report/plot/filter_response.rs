@@ -1,10 +1,10 @@
 //! `filter-response.svg`: gain and phase delay behind raw of every filter over the frequency, frozen
 //! at its mean weights, and as a motion of several sines found it while it adapted.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Picture, Stroke};
-use super::series::{extent, shape_of, stroke_of};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Picture, Stroke};
+use super::drawing::series::{extent, shape_of, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::MetricKey;
 use crate::metrics::catalogue::{DC_GAIN, DELAY_AT_DC, FREQUENCY_RESPONSE_VS_RAW, FROZEN_RESPONSE};

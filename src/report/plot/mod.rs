@@ -1,33 +1,28 @@
 //! Pictures as SVG: no fonts, no clock, the same bytes from the same records.
 //!
-//! plotters stands behind [`picture`] only.
+//! A file for each picture; what they are drawn with stands in [`drawing`].
 
 pub(super) mod allan;
-mod axis;
 pub(super) mod before_after;
 pub(super) mod bode;
 mod budget;
 mod calibration;
 mod comparison;
+mod drawing;
 pub(super) mod filter_response;
 pub(super) mod noise_delay;
-mod panel;
-mod picture;
 pub(super) mod rate;
 pub(super) mod rate_gain;
 pub(super) mod response;
 pub(super) mod scale_factor;
-mod series;
 pub(super) mod spectrum;
 pub(super) mod swing;
-mod theory;
 pub(super) mod thermal;
-mod thin;
 
 pub(super) use budget::budget_svg;
 pub(super) use calibration::calibration_svg;
 
-pub(super) use picture::Picture;
+pub(super) use drawing::picture::Picture;
 
 use crate::comparison::ComparedTable;
 

@@ -1,10 +1,10 @@
 //! `noise-delay.svg`: what every filter leaves of the noise against what it delays, each beside the
 //! least noise that its taps allow with unit DC gain.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Anchor, Picture, Stroke};
-use super::series::{extent, real, shape_of, stroke_of};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Anchor, Picture, Stroke};
+use super::drawing::series::{extent, real, shape_of, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::catalogue::NOISE_DELAY_BOUND;
 use crate::metrics::columns::noise_delay::{DELAY, LEAST_NOISE_GAIN, LEAST_WHITE_NOISE_GAIN};
@@ -64,7 +64,10 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
         describe(&mut picture, &mut legend, point);
     }
     legend.space();
-    legend.text(&mut picture, "lines: least noise of as many fixed weights");
+    legend.text(
+        &mut picture,
+        "lines: least noise of as many weights in a row",
+    );
     legend.text(&mut picture, "with unit DC gain; dotted: for white noise");
     legend.text(&mut picture, "numbers at the points: DC gain");
     legend.text(&mut picture, "bars: 95 % intervals");
@@ -105,7 +108,7 @@ fn draw_bounds(picture: &mut Picture, panel: &Panel, point: &Point) {
     panel.line(picture, &point.bound, stroke);
     let dotted = Stroke {
         opacity: 0.5,
-        dash: super::series::truth_stroke().dash,
+        dash: super::drawing::series::truth_stroke().dash,
         ..stroke
     };
     panel.line(picture, &point.white, dotted);

@@ -1,13 +1,14 @@
 //! `rate.svg`: the rate of every channel against time.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Picture, Point};
-use super::series::{Series, columns, extent, index, real, series, truth_stroke};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Picture, Point};
+use super::drawing::series::{Series, columns, extent, index, real, series, truth_stroke};
 use crate::report::record::measured::Measured;
 use crate::scenario::{MotionClass, MotionConfig};
 use crate::signal::RunSignals;
 use crate::units::s_to_ms;
+use crate::wording::to_digits;
 
 /// Pixel columns of an envelope, all series together: bounds the size of the file.
 const ENVELOPE_COLUMNS: usize = 6000;
@@ -156,7 +157,7 @@ impl Drawing<'_> {
         }
         let step_s = self.period_s * real(self.samples.div_ceil(share));
         legend.text(picture, "above: smallest to largest value");
-        let each = format!("in each {} s", crate::gate::plain(rounded(step_s)));
+        let each = format!("in each {} s", crate::gate::plain(to_digits(step_s, 2)));
         legend.text(picture, &each);
     }
 
@@ -174,7 +175,7 @@ impl Drawing<'_> {
         let step_s = self.period_s * real(self.samples.div_ceil(MEANS));
         let each = format!(
             "below: means over {} s",
-            crate::gate::plain(rounded(step_s))
+            crate::gate::plain(to_digits(step_s, 2))
         );
         legend.text(picture, &each);
     }
@@ -234,12 +235,7 @@ impl Drawing<'_> {
 }
 
 /// Range of a cut record.
-fn panel_span(columns: &[super::series::Column]) -> f64 {
+fn panel_span(columns: &[super::drawing::series::Column]) -> f64 {
     extent(columns.iter().flat_map(|column| [column.low, column.high]))
         .map_or(0.0, |(low, high)| (high - low).max(f64::MIN_POSITIVE))
-}
-
-/// Two significant digits, for a remark.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
 }

@@ -1,9 +1,9 @@
 //! `rate-gain.svg`: mean output over mean input of every filter against the size of a constant rate.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Picture, Stroke};
-use super::series::{extent, shape_of, stroke_of, truth_stroke};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Picture, Stroke};
+use super::drawing::series::{extent, shape_of, stroke_of, truth_stroke};
 use crate::metrics::Column;
 use crate::metrics::catalogue::RATE_GAIN;
 use crate::metrics::columns::rate_gain::{MEAN_RATIO, MEAN_RATIO_HIGH, MEAN_RATIO_LOW, RATE};

@@ -1,10 +1,10 @@
 //! `response.svg`: output and error of every dwell of a staircase against its input.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Picture, Stroke};
-use super::series::{extent, shape_of, stroke_of, truth_stroke};
-use super::theory::{curves, draw, legend_of};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Picture, Stroke};
+use super::drawing::series::{extent, shape_of, stroke_of, truth_stroke};
+use super::drawing::theory::{curves, draw, legend_of};
 use crate::gate::estimate_text;
 use crate::metrics::catalogue::{
     RESPONSE, SCALE_FACTOR_ASYMMETRY, SCALE_FACTOR_ERROR, SCALE_FACTOR_NONLINEARITY,

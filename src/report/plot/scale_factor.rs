@@ -1,9 +1,9 @@
 //! `scale-factor.svg`: how far every rate of a staircase lies from the line through all of them.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Picture, Stroke};
-use super::series::{extent, shape_of, stroke_of, truth_stroke};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Picture, Stroke};
+use super::drawing::series::{extent, shape_of, stroke_of, truth_stroke};
 use crate::gate::estimate_text;
 use crate::metrics::catalogue::{
     SCALE_FACTOR, SCALE_FACTOR_NONLINEARITY, SCALE_FACTOR_NONLINEARITY_OF_READING,

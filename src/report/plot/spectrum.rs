@@ -1,9 +1,9 @@
 //! `spectrum.svg`: one-sided power spectral density.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Picture, Point};
-use super::series::{extent, real, stroke_of};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Picture, Point};
+use super::drawing::series::{extent, real, stroke_of};
 use crate::metrics::catalogue::PSD;
 use crate::metrics::columns::spectrum::{DENSITY, FREQUENCY};
 use crate::report::record::measured::Measured;

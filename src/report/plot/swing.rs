@@ -1,9 +1,9 @@
 //! `swing.svg`: the channels over one another, and their delays made visible.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Dash, GREY, Picture, Stroke};
-use super::series::{Series, extent, index, real, series, truth_stroke};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Dash, GREY, Picture, Stroke};
+use super::drawing::series::{Series, extent, index, real, series, truth_stroke};
 use crate::gate::estimate_text;
 use crate::metrics::Estimate;
 use crate::metrics::MetricKey;

@@ -1,10 +1,10 @@
 //! `thermal.svg`: the error of the raw channel against the predicted thermal one, over the
 //! temperatures.
 
-use super::axis::Axis;
-use super::panel::{Legend, Panel, WIDTH};
-use super::picture::{Dash, Picture, Stroke};
-use super::series::{columns, extent, index, real, stroke_of, truth_stroke};
+use super::drawing::axis::Axis;
+use super::drawing::panel::{Legend, Panel, WIDTH};
+use super::drawing::picture::{Dash, Picture, Stroke};
+use super::drawing::series::{columns, extent, index, real, stroke_of, truth_stroke};
 use crate::report::RunReport;
 use crate::signal::{RunSignals, TemperatureRecord};
 

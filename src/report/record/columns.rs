@@ -1,6 +1,6 @@
 //! Which metrics matter for which motion, and how they are headed.
 
-use crate::gate::{estimate_text, plain};
+use crate::gate::{estimate_text, plain, three_digits};
 use crate::metrics::{ChannelMetrics, Headline, Metric, MetricKey, Table, find, known_metrics};
 use crate::scenario::{MotionClass, MotionConfig};
 
@@ -87,11 +87,7 @@ pub(crate) fn unit_text(metric: &Metric) -> String {
 pub(crate) fn value_text(metric: &Metric) -> String {
     let text = estimate_text(&metric.estimate, DIGITS);
     match metric.fields.get("expected_deg_per_h") {
-        Some(expected) => {
-            // Three digits.
-            let rounded = format!("{expected:.2e}").parse().unwrap_or(*expected);
-            format!("{text}, expected {}", plain(rounded))
-        }
+        Some(expected) => format!("{text}, expected {}", three_digits(*expected)),
         None => text,
     }
 }

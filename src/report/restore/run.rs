@@ -8,7 +8,9 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value};
 
-use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric, RepeatStatistics};
+use crate::metrics::{
+    ChannelFailure, ChannelMetrics, Estimate, FitSheet, FitTerm, Metric, RepeatStatistics,
+};
 use crate::report::calibration::documents::THETAS;
 use crate::report::layout::json::{EXACT, INTERVAL};
 use crate::report::restore::calibration::calibration_sheet;
@@ -59,6 +61,7 @@ fn channel(record: &Value) -> Option<ChannelMetrics> {
     for (key, value) in record.as_object()? {
         match key.as_str() {
             "verdict" | "repeats" => {}
+            "noise_fit" => channel.noise_fit = Some(noise_fit(value)?),
             "curves" => curves(value.as_object()?, &mut channel)?,
             "unavailable" => {
                 for (name, reason) in value.as_object()? {
@@ -116,6 +119,30 @@ fn metric(record: &Value) -> Option<Metric> {
         unit: interned(record.get("unit")?.as_str()?),
         fields,
     })
+}
+
+fn noise_fit(record: &Value) -> Option<FitSheet> {
+    let mut sheet = FitSheet::default();
+    for (key, value) in record.as_object()? {
+        match key.as_str() {
+            "criterion" => {}
+            "adequate" => sheet.is_adequate = value.as_bool()?,
+            "missed_tau_s" => sheet.missed_tau_s = numbers(value)?,
+            "terms" => {
+                for (name, term) in value.as_object()? {
+                    let term = FitTerm {
+                        square: real(term, "square")?,
+                        standard_error: real(term, "standard_error")?,
+                        unit: term.get("unit")?.as_str()?.to_owned(),
+                        is_in_model: term.get("in_model")?.as_bool()?,
+                    };
+                    sheet.terms.insert(name.clone(), term);
+                }
+            }
+            _ => drop(sheet.numbers.insert(key.clone(), value.as_f64()?)),
+        }
+    }
+    Some(sheet)
 }
 
 /// Columns of numbers, and columns of words, a single one of which stands alone.

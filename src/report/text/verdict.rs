@@ -1,7 +1,7 @@
 //! The verdict on a filter in words.
 
 use crate::gate::{estimate_text, plain};
-use crate::metrics::catalogue::READAPTATION_TIME;
+use crate::metrics::catalogue::{NOISE_DELAY_BOUND_NOISE_GAIN, READAPTATION_TIME};
 use crate::metrics::{
     AgainstOne, ChannelMetrics, Deed, Estimate, FilterVerdict, Finding, filter_verdict,
 };
@@ -23,8 +23,9 @@ pub(crate) fn verdict_text(channel: &ChannelMetrics) -> Option<String> {
         Some(head(&verdict)),
         first,
         second,
+        inside_memory(&verdict),
         verdict.delay_ms.as_ref().map(delay),
-        bound(&verdict),
+        bound(channel, &verdict),
         readaptation(channel, &verdict),
     ];
     let clauses: Vec<String> = clauses.into_iter().flatten().collect();
@@ -135,6 +136,30 @@ fn slow_noise(verdict: &FilterVerdict) -> Option<String> {
     Some(format!("{what} (Allan deviation{at} over raw's: {ratio})"))
 }
 
+/// What an angle random walk read at 1 s would seem to gain, in the words of `claim`.
+fn inside_memory(verdict: &FilterVerdict) -> Option<String> {
+    let ratio = verdict.inside_memory?;
+    let scale = if is_scaled(verdict) {
+        " at restored scale"
+    } else {
+        ""
+    };
+    // What wandering weights or attenuation change beyond the memory, the slow noise says.
+    let beyond =
+        if is(verdict.slow_noise, AgainstOne::Below) || is(verdict.slow_noise, AgainstOne::Above) {
+            ""
+        } else {
+            "; none of it is gained if the ARW is fitted well beyond the memory"
+        };
+    (ratio.against_one == AgainstOne::Below).then(|| {
+        format!(
+            "read at 1 s, inside its memory, ARW{scale} is {} of raw's, and a DC gain of that reads the \
+             same{beyond}",
+            text(&ratio.estimate)
+        )
+    })
+}
+
 fn delay(delay_ms: &Estimate) -> String {
     if delay_ms.high < 0.0 {
         let lead = Estimate::with_interval(-delay_ms.value, -delay_ms.high, -delay_ms.low);
@@ -158,10 +183,10 @@ fn readaptation(channel: &ChannelMetrics, verdict: &FilterVerdict) -> Option<Str
 }
 
 /// Noise against the least that unit DC gain allows.
-fn bound(verdict: &FilterVerdict) -> Option<String> {
+fn bound(channel: &ChannelMetrics, verdict: &FilterVerdict) -> Option<String> {
     let over = verdict.over_bound?;
     let ratio = text(&over.estimate);
-    let least = "the least that its taps allow at this delay with unit DC gain";
+    let least = least(channel);
     Some(match over.against_one {
         AgainstOne::Below if is(verdict.level(), AgainstOne::Below) => {
             format!("its noise is {ratio} of {least}: signal was removed with it")
@@ -175,6 +200,24 @@ fn bound(verdict: &FilterVerdict) -> Option<String> {
         AgainstOne::Above => format!("its noise is {ratio} times {least}"),
         AgainstOne::Undecided => format!("its noise is not told apart from {least}"),
     })
+}
+
+/// The least noise in words, with the samples that reach it where they are known.
+fn least(channel: &ChannelMetrics) -> String {
+    let fields = channel.get(&NOISE_DELAY_BOUND_NOISE_GAIN);
+    let field = |name: &str| fields.and_then(|metric| metric.fields.get(name).copied());
+    let taps = match field("taps").zip(field("first_age_samples")) {
+        Some((taps, first)) => format!(
+            "{} consecutive taps (ages {} to {})",
+            plain(taps),
+            plain(first),
+            plain(first + taps - 1.0)
+        ),
+        None => "as many consecutive taps".to_owned(),
+    };
+    format!(
+        "the least that {taps} allow at this delay with unit DC gain (sparse ones may do better)"
+    )
 }
 
 #[cfg(test)]
@@ -214,9 +257,29 @@ mod tests {
             "reduces noise by attenuating the input: DC gain 0.49; ARW at restored scale 0.00600 \
              ±0.00010 deg/sqrt(h), unchanged (Allan deviation at 1 s over raw's: 1.000 ±0.020); fast \
              noise 0.120 ±0.010 of its power, 0.500 ±0.042 at restored scale, by smoothing too; \
-             delays by 0.75 ms; its noise is 0.400 ±0.030 of the least that its taps allow at this \
-             delay with unit DC gain: signal was removed with it"
+             delays by 0.75 ms; its noise is 0.400 ±0.030 of the least that as many consecutive taps \
+             allow at this delay with unit DC gain (sparse ones may do better): signal was removed with \
+             it"
         );
+    }
+
+    #[test]
+    fn what_is_read_inside_the_memory_is_no_gain() {
+        let said = words(&[
+            ("dc_gain", 1.0, 1.0),
+            ("noise_gain", 0.1, 0.12),
+            ("weight_noise_ratio", 0.99, 1.01),
+            ("allan_ratio_inside_memory", 0.69, 0.73),
+        ]);
+        let words_of_claim = "; read at 1 s, inside its memory, ARW is 0.710 ±0.020 of raw's, and a DC \
+                              gain of that reads the same; none of it is gained if the ARW is fitted \
+                              well beyond the memory";
+        assert!(said.contains(words_of_claim), "{said}");
+        let open = words(&[
+            ("dc_gain", 1.0, 1.0),
+            ("allan_ratio_inside_memory", 0.9, 1.1),
+        ]);
+        assert!(!open.contains("inside its memory"), "{open}");
     }
 
     #[test]

@@ -13,6 +13,8 @@ const ELEMENTS_MAX: usize = 100_000;
 const AXES: usize = 3;
 
 /// What is wrong with a value, and where if not at its key.
+#[derive(Debug, thiserror::Error)]
+#[error("{message}")]
 pub(crate) struct Fault {
     pub(crate) mark: Option<Mark>,
     pub(crate) message: String,
@@ -167,7 +169,7 @@ fn check_elements(
         }
         let shown = format!("{shown}[{index}]");
         let mark = node.mark;
-        check_float(key, &shown, range, &node.value).map_err(|message| Fault { mark, message })?;
+        check_float(key, &shown, range, &node.value).map_err(|fault| Fault { mark, ..fault })?;
         let message = out_of_range(key, &shown, &node.value);
         return Err(Fault { mark, message });
     }
@@ -188,21 +190,17 @@ pub(crate) fn binary64(value: &Value) -> Option<f64> {
 }
 
 /// Whether a number is inside a range.
-fn check_float(
-    key: &Key,
-    shown: &str,
-    range: schema::Range,
-    value: &Value,
-) -> Result<bool, String> {
+fn check_float(key: &Key, shown: &str, range: schema::Range, value: &Value) -> Result<bool, Fault> {
     let Some(number) = binary64(value) else {
-        return Err(wrong_element(key, shown, value));
+        return Err(wrong_element(key, shown, value).into());
     };
     if !number.is_finite() {
         return Err(format!(
             "{shown} = {} is not a finite number: allowed {}",
             value.to_toml(),
             key.allowed()
-        ));
+        )
+        .into());
     }
     Ok(range.contains(number))
 }

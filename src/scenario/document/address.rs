@@ -21,20 +21,86 @@ pub(crate) enum Step {
     Index(usize),
 }
 
+/// Why a written path leads to no place of a scenario, or a place takes no value.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum AddressError {
+    /// Other than names between dots.
+    #[error("`{0}` is not a key path: expected names separated by dots, as in gyro.coil.length_m")]
+    NotNames(String),
+    /// Brackets around something other than an index.
+    #[error("`{0}` is not a key path: expected an index from 0 in brackets, as in gate[2].max")]
+    NotAnIndex(String),
+    /// Empty brackets, as the schema writes them.
+    #[error("`{path}` does not say which {array}")]
+    NoIndex {
+        /// The path as it was written.
+        path: String,
+        /// The array of tables.
+        array: String,
+    },
+    /// What is wrong, and what to write.
+    #[error("{error}: {instead}")]
+    Instead {
+        /// What is wrong.
+        error: Box<AddressError>,
+        /// The path to an element that there is.
+        instead: String,
+    },
+    /// An index behind something that is no array.
+    #[error("{0} has no elements to number")]
+    NotAnArray(String),
+    /// A key inside a value.
+    #[error("{0} is not a table")]
+    NotATable(String),
+    /// A key that nobody knows, and what may have been meant.
+    #[error("{0}")]
+    UnknownKey(String),
+    /// An index behind the last element.
+    #[error("there is no {array}[{index}]: the scenario has {count} of them, counted from 0")]
+    NoElement {
+        /// The array of tables.
+        array: String,
+        /// The index that was asked for.
+        index: usize,
+        /// Number of elements.
+        count: usize,
+    },
+    /// A name that no element has.
+    #[error("there is no {array} named {name}: {}", instead_of_name(array, names))]
+    NoName {
+        /// The array of tables.
+        array: String,
+        /// The name that was asked for.
+        name: String,
+        /// Names that there are.
+        names: Vec<String>,
+    },
+    /// A table where a value of its own is expected.
+    #[error("{0} cannot be set as a whole")]
+    Whole(String),
+    /// An element that is gone.
+    #[error("{0} does not exist")]
+    Missing(String),
+}
+
+fn instead_of_name(array: &str, names: &[String]) -> String {
+    match names {
+        [] => format!("give an index, as in {array}[0]"),
+        _ => format!("expected one of {}", names.join(", ")),
+    }
+}
+
 /// Splits a written path.
 ///
 /// # Errors
 /// What is wrong with its spelling.
-pub(crate) fn parse(path: &str) -> Result<Vec<Step>, String> {
+pub(crate) fn parse(path: &str) -> Result<Vec<Step>, AddressError> {
     let mut steps = Vec::new();
     for part in path.split('.') {
         let (name, indices) = part.split_at(part.find('[').unwrap_or(part.len()));
         let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || !name.chars().all(is_bare) {
-            let path = excerpt(path);
-            return Err(format!(
-                "`{path}` is not a key path: expected names separated by dots, as in gyro.coil.length_m"
-            ));
+            return Err(AddressError::NotNames(excerpt(path).to_string()));
         }
         steps.push(Step::Key(name.to_owned()));
         if indices.is_empty() {
@@ -47,15 +113,12 @@ pub(crate) fn parse(path: &str) -> Result<Vec<Step>, String> {
         match index {
             Some(index) => steps.push(Step::Index(index)),
             None if indices == "[]" => {
-                let path = excerpt(path);
-                return Err(format!("`{path}` does not say which {name}"));
+                return Err(AddressError::NoIndex {
+                    path: excerpt(path).into_owned(),
+                    array: name.to_owned(),
+                });
             }
-            None => {
-                let path = excerpt(path);
-                return Err(format!(
-                    "`{path}` is not a key path: expected an index from 0 in brackets, as in gate[2].max"
-                ));
-            }
+            None => return Err(AddressError::NotAnIndex(excerpt(path).to_string())),
         }
     }
     Ok(steps)
@@ -81,12 +144,13 @@ pub(crate) fn display(steps: &[Step]) -> String {
 pub(crate) fn resolve(
     root: &Table,
     written: &str,
-) -> Result<(Vec<Step>, Option<&'static Key>), String> {
-    let steps = parse(written).map_err(|message| match written.split_once("[]") {
-        Some((array, rest)) if !array.contains('[') => {
-            format!("{message}: {}", which_element(root, array, rest))
-        }
-        _ => message,
+) -> Result<(Vec<Step>, Option<&'static Key>), AddressError> {
+    let steps = parse(written).map_err(|error| match written.split_once("[]") {
+        Some((array, rest)) if !array.contains('[') => AddressError::Instead {
+            error: Box::new(error),
+            instead: which_element(root, array, rest),
+        },
+        _ => error,
     })?;
     let mut rest = steps.into_iter().peekable();
     let mut path: Vec<Step> = Vec::new();
@@ -94,10 +158,10 @@ pub(crate) fn resolve(
     let mut key = None;
     while let Some(step) = rest.next() {
         let Step::Key(name) = step else {
-            return Err(format!("{} has no elements to number", display(&path)));
+            return Err(AddressError::NotAnArray(display(&path)));
         };
         if key.is_some() {
-            return Err(format!("{} is not a table", display(&path)));
+            return Err(AddressError::NotATable(display(&path)));
         }
         match schema::child(&schema_path, &name) {
             None => {
@@ -106,7 +170,7 @@ pub(crate) fn resolve(
                     shown: written_table(written, &path, &name),
                     root: Some(root),
                 };
-                return Err(unknown_key(table, &name));
+                return Err(AddressError::UnknownKey(unknown_key(table, &name)));
             }
             Some(Child::Leaf(leaf)) => {
                 key = Some(leaf);
@@ -203,34 +267,24 @@ fn written_table<'a>(written: &'a str, path: &[Step], name: &str) -> &'a str {
 }
 
 /// The index of the element that a step selects by index or by name.
-fn element_index(array: &str, elements: &[Node], selector: &Step) -> Result<usize, String> {
+fn element_index(array: &str, elements: &[Node], selector: &Step) -> Result<usize, AddressError> {
     match selector {
         Step::Index(index) if *index < elements.len() => Ok(*index),
-        Step::Index(index) => Err(format!(
-            "there is no {array}[{index}]: the scenario has {} of them, counted from 0",
-            elements.len()
-        )),
+        Step::Index(index) => Err(AddressError::NoElement {
+            array: array.to_owned(),
+            index: *index,
+            count: elements.len(),
+        }),
         Step::Key(name) => {
-            let names: Vec<&str> = elements
+            let name_of =
+                |node: &'_ Node| node.as_table()?.get("name")?.as_text().map(str::to_owned);
+            let position = elements
                 .iter()
-                .filter_map(|node| node.as_table()?.get("name")?.as_text())
-                .collect();
-            let position = elements.iter().position(|node| {
-                node.as_table()
-                    .and_then(|table| table.get("name"))
-                    .and_then(Node::as_text)
-                    == Some(name)
-            });
-            position.ok_or_else(|| match names[..] {
-                [] => format!(
-                    "there is no {array} named {}: give an index, as in {array}[0]",
-                    excerpt(name)
-                ),
-                _ => format!(
-                    "there is no {array} named {}: expected one of {}",
-                    excerpt(name),
-                    names.join(", ")
-                ),
+                .position(|node| name_of(node).as_ref() == Some(name));
+            position.ok_or_else(|| AddressError::NoName {
+                array: array.to_owned(),
+                name: excerpt(name).to_string(),
+                names: elements.iter().filter_map(name_of).collect(),
             })
         }
     }
@@ -252,7 +306,7 @@ pub(crate) fn assign(
     path: &[Step],
     value: Node,
     mark: Mark,
-) -> Result<(), String> {
+) -> Result<(), AddressError> {
     let mut over = value;
     over.mark = Some(mark);
     // The part below the last array is wrapped into tables and merged, so that alternatives
@@ -270,7 +324,7 @@ pub(crate) fn assign(
         }
     }
     let Value::Table(over_table) = over.value else {
-        return Err(format!("{} cannot be set as a whole", display(path)));
+        return Err(AddressError::Whole(display(path)));
     };
     match outer {
         [] => {
@@ -282,7 +336,7 @@ pub(crate) fn assign(
                 .get_mut(array)
                 .and_then(Node::as_array_mut)
                 .and_then(|elements| elements.get_mut(*index))
-                .ok_or_else(|| format!("{} does not exist", display(outer)))?;
+                .ok_or_else(|| AddressError::Missing(display(outer)))?;
             let over = Node {
                 value: Value::Table(over_table),
                 mark: None,
@@ -290,7 +344,7 @@ pub(crate) fn assign(
             merge_node(&format!("{array}[]"), element, over);
             Ok(())
         }
-        _ => Err(format!("{} does not exist", display(outer))),
+        _ => Err(AddressError::Missing(display(outer))),
     }
 }
 

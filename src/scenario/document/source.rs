@@ -16,6 +16,8 @@ struct Source {
     text: String,
     /// The path as seen from the scenario's own folder; `None` for a `--set` argument.
     label: Option<Label>,
+    /// Whether the program made the text: no place in it is one of the file.
+    is_made_up: bool,
     /// Places of every [`STRIDE`]th byte, worked out when a place is asked for: many complaints
     /// about a long text do not count its lines again and again.
     waypoints: OnceLock<Vec<Waypoint>>,
@@ -45,13 +47,14 @@ impl Waypoint {
 }
 
 impl Source {
-    fn new(shown: String, text: String, label: Option<Label>) -> Arc<Self> {
-        Arc::new(Self {
+    fn new(shown: String, text: String, label: Option<Label>) -> Self {
+        Self {
             shown,
             text,
             label,
+            is_made_up: false,
             waypoints: OnceLock::new(),
-        })
+        }
     }
 
     /// Line and column of a byte; of the last one for a byte behind the end.
@@ -90,14 +93,26 @@ pub(crate) struct Mark {
 impl Sources {
     /// Adds the text of a file; returns its index.
     pub(crate) fn add_file(&mut self, shown: String, text: String, label: Label) -> usize {
-        self.0.push(Source::new(shown, text, Some(label)));
-        self.0.len() - 1
+        self.add(Source::new(shown, text, Some(label)))
+    }
+
+    /// Adds a text that the program puts around what a file holds; complaints about it are about the
+    /// file as a whole. Returns its index.
+    pub(crate) fn add_frame(&mut self, shown: String, text: String, label: Label) -> usize {
+        self.add(Source {
+            is_made_up: true,
+            ..Source::new(shown, text, Some(label))
+        })
     }
 
     /// Adds a `--set` argument; returns its index.
     pub(crate) fn add_set(&mut self, argument: &str) -> usize {
         let shown = format!("--set {}", excerpt(argument));
-        self.0.push(Source::new(shown, String::new(), None));
+        self.add(Source::new(shown, String::new(), None))
+    }
+
+    fn add(&mut self, source: Source) -> usize {
+        self.0.push(Arc::new(source));
         self.0.len() - 1
     }
 
@@ -129,6 +144,9 @@ impl Sources {
         let source = &self.0[mark.source];
         if source.label.is_none() {
             return Location::of_set(&source.shown);
+        }
+        if source.is_made_up {
+            return Location::of_file(source.shown.clone());
         }
         let Waypoint { line, column } = source.place(mark.start);
         let snippet = Snippet::around(&source.text, mark.start);

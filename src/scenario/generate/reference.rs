@@ -17,6 +17,7 @@ const RULE: &str = "# ----------------------------------------------------------
 
 /// What stands above the first key.
 const HEAD: &str = "\
+#:schema ./scenario.schema.json
 # Reference of the fogbench scenario file, generated from the declarations of its keys.
 #
 # Every key stands here with its type, allowed range, unit and meaning: a key marked \"default\" may

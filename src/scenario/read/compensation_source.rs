@@ -10,6 +10,7 @@ use crate::calibration::CompensationParameters;
 use crate::scenario::document::source::{Label, Mark, Sources, shown_path};
 use crate::scenario::document::tree::{Node, Table, Value, parse_document};
 use crate::scenario::message::error::{Location, ScenarioError};
+use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::read::chain;
 use crate::scenario::read::draft::Draft;
 use crate::scenario::read::input::{self, Input};
@@ -76,10 +77,10 @@ pub fn load_calibration(
 ) -> Result<(CompensationParameters, String), Vec<ScenarioError>> {
     let mut sources = Sources::default();
     let label = Label::of_scenario(path);
-    let source = sources.add_file(shown_path(path), FRAME.to_owned(), label.clone());
+    let source = sources.add_frame(shown_path(path), FRAME.to_owned(), label.clone());
     let start = Mark { source, start: 0 };
     let named = Named {
-        key: FILE,
+        key: None,
         mark: start,
         path: path.to_owned(),
         label: label.clone(),
@@ -119,9 +120,10 @@ fn resolved_error(path: &Path) -> ScenarioError {
     ScenarioError::at(location, "it holds no parameters")
 }
 
-/// A file that a key names.
+/// A file that a key or the command line names.
 struct Named {
-    key: &'static str,
+    /// The key, if it is one.
+    key: Option<&'static str>,
     mark: Mark,
     path: PathBuf,
     label: Label,
@@ -134,18 +136,18 @@ impl Named {
         let mark = node.mark?;
         let (path, label) = sources.beside(mark, node.as_text()?);
         Some(Self {
-            key,
+            key: Some(key),
             mark,
             path,
             label,
         })
     }
 
-    /// A complaint at the key.
+    /// A complaint at the key, or about the file.
     fn error(&self, sources: &Sources, message: &str) -> ScenarioError {
         let shown = shown_path(&self.path);
-        let key = self.key;
-        sources.error(self.mark, format!("{TABLE}.{key} = {shown}: {message}"))
+        let by_key = self.key.map(|key| format!("{TABLE}.{key} = {shown}: "));
+        sources.error(self.mark, by_key.unwrap_or_default() + message)
     }
 
     /// The text of the file and its digest.
@@ -172,14 +174,15 @@ fn parameters(
         let start = error.start;
         sources.error(Mark { source, start }, error.message)
     })?;
-    let version = root.get("schema");
-    if !matches!(
-        version.map(|node| &node.value),
-        None | Some(Value::Integer(FILE_VERSION))
-    ) {
-        let mark = version.and_then(|node| node.mark).unwrap_or(start);
+    if let Some(version) = root.get("schema")
+        && !matches!(version.value, Value::Integer(FILE_VERSION))
+    {
+        let mark = version.mark.unwrap_or(start);
+        let written = version.value.to_toml();
         let message = format!(
-            "schema is not supported: this build reads calibration files of schema {FILE_VERSION}"
+            "schema = {} is not supported: this build reads calibration files of schema \
+             {FILE_VERSION}",
+            excerpt(&written)
         );
         return Err(sources.error(mark, message));
     }

@@ -93,18 +93,38 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, InputError> {
         _ => InputError::System(error),
     })?;
     check(&metadata)?;
-    let file = File::open(path).map_err(InputError::System)?;
+    let file = open(path).map_err(InputError::System)?;
     let metadata = file.metadata().map_err(InputError::System)?;
     check(&metadata)?;
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
     // The size that the system tells need not be true: what is read decides.
     file.take(BYTES_MAX + 1)
         .read_to_end(&mut bytes)
-        .map_err(InputError::System)?;
+        .map_err(|error| match error.kind() {
+            io::ErrorKind::WouldBlock => InputError::Special {
+                kind: "a stream of the system",
+            },
+            _ => InputError::System(error),
+        })?;
     if bytes.len() as u64 > BYTES_MAX {
         return Err(too_long(format!("more than {BYTES_MAX}")));
     }
     Ok(bytes)
+}
+
+/// Opens a file so that reading never waits. What the system shows as a regular file may yet be a
+/// stream, as `/proc/kmsg`, the messages of the kernel, which end only when there are no more.
+#[cfg(unix)]
+fn open(path: &Path) -> io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    let flags = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();
+    File::options().read(true).custom_flags(flags).open(path)
+}
+
+/// Opens a file.
+#[cfg(not(unix))]
+fn open(path: &Path) -> io::Result<File> {
+    File::open(path)
 }
 
 fn too_long(found: String) -> InputError {

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use crate::scenario::document::address::{self, Step};
+use crate::scenario::document::address::{self, AddressError, Step};
 use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::keys::schema::Key;
@@ -214,7 +214,7 @@ fn point(draft: &Draft, axes: &[Axis], values: &[Node]) -> Result<Resolved, Unso
     for (axis, value) in axes.iter().zip(values).rev() {
         let mark = value.mark.unwrap_or(axis.mark);
         address::assign(&mut draft.root, &axis.path, value.clone(), mark)
-            .map_err(|message| vec![draft.sources.error(mark, message)])?;
+            .map_err(|error| vec![draft.sources.error(mark, error.to_string())])?;
     }
     draft.resolve()
 }
@@ -274,7 +274,7 @@ fn axes(
                 mark,
                 values,
             }),
-            Err(message) => errors.push(sources.error(mark, format!("matrix: {message}"))),
+            Err(error) => errors.push(sources.error(mark, format!("matrix: {error}"))),
         }
     }
     if axes.is_empty() && errors.is_empty() {
@@ -286,6 +286,36 @@ fn axes(
     Ok((axes, errors))
 }
 
+/// Why a key cannot be swept.
+#[derive(Debug, thiserror::Error)]
+enum AxisError {
+    #[error(transparent)]
+    Address(#[from] AddressError),
+    #[error("{0} is a table: sweep the keys inside it")]
+    Table(String),
+    /// What makes a scenario rather than describes it.
+    #[error("{0} cannot be swept")]
+    Fixed(String),
+    #[error("{written} is swept by {earlier} already")]
+    Twice {
+        /// The key as it is written here.
+        written: String,
+        /// The same key as it was written before.
+        earlier: String,
+    },
+    #[error("{0} is swept here and given by --set: leave one of them out")]
+    Set(String),
+    #[error("{0} has no values: expected a non-empty array")]
+    Empty(String),
+    #[error("{written} has the wrong type: expected an array of values, got {got}")]
+    NotAnArray {
+        /// The key as it is written.
+        written: String,
+        /// Type of what stands there.
+        got: &'static str,
+    },
+}
+
 /// Checks one swept key.
 fn axis(
     draft: &Draft,
@@ -293,34 +323,32 @@ fn axis(
     set_paths: &[Vec<Step>],
     written: &str,
     node: &Node,
-) -> Result<(Vec<Step>, &'static Key, Vec<Node>), String> {
+) -> Result<(Vec<Step>, &'static Key, Vec<Node>), AxisError> {
     let (path, key) = address::resolve(&draft.root, written)?;
-    let Some(key) = key else {
-        return Err(format!("{written} is a table: sweep the keys inside it"));
-    };
+    let shown = || written.to_owned();
+    let key = key.ok_or_else(|| AxisError::Table(shown()))?;
     if matches!(
         key.path,
         "schema" | "name" | "extends" | "matrix" | "description" | script::FILE_KEY
     ) {
-        return Err(format!("{written} cannot be swept"));
+        return Err(AxisError::Fixed(shown()));
     }
     if let Some(other) = earlier.iter().find(|other| other.path == path) {
-        return Err(format!("{written} is swept by {} already", other.written));
+        return Err(AxisError::Twice {
+            written: shown(),
+            earlier: other.written.clone(),
+        });
     }
     if set_paths.contains(&path) {
-        return Err(format!(
-            "{written} is swept here and given by --set: leave one of them out"
-        ));
+        return Err(AxisError::Set(shown()));
     }
     match &node.value {
-        Value::Array(values) if values.is_empty() => Err(format!(
-            "{written} has no values: expected a non-empty array"
-        )),
+        Value::Array(values) if values.is_empty() => Err(AxisError::Empty(shown())),
         Value::Array(values) => Ok((path, key, values.to_vec())),
-        other => Err(format!(
-            "{written} has the wrong type: expected an array of values, got {}",
-            other.type_name()
-        )),
+        other => Err(AxisError::NotAnArray {
+            written: shown(),
+            got: other.type_name(),
+        }),
     }
 }
 

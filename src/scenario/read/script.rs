@@ -61,9 +61,9 @@ pub(crate) fn read_into(
         file: label.text(),
         digest,
     });
-    let points = columns(source, &text).map_err(|(start, message)| {
+    let points = columns(source, &text).map_err(|TableError { start, fault }| {
         let mark = Mark { source, start };
-        sources.error(mark, message)
+        sources.error(mark, fault.to_string())
     })?;
     script.remove("file");
     let node = Node {
@@ -72,6 +72,40 @@ pub(crate) fn read_into(
     };
     script.insert("points".to_owned(), node);
     Ok(())
+}
+
+/// Why a file is not the table of a script, and the byte at which it shows.
+#[derive(Debug, thiserror::Error)]
+#[error("{fault}")]
+struct TableError {
+    start: usize,
+    fault: TableFault,
+}
+
+/// What is wrong with the table of a script.
+#[derive(Debug, thiserror::Error)]
+enum TableFault {
+    /// What the reader of its lines says.
+    #[error("{0}")]
+    Text(String),
+    #[error("the file is empty: expected {}", expected())]
+    Empty,
+    #[error("unknown column `{name}`: expected {}", expected(), name = .0)]
+    UnknownColumn(String),
+    #[error("wrong columns: expected {}", expected())]
+    WrongColumns,
+    #[error("too many rows: allowed up to {ROWS_MAX}")]
+    TooManyRows,
+    #[error("{0} values in the row: expected 2, one a column")]
+    Width(usize),
+    #[error("{column} = `{cell}` is not a number: expected one such as 0.5")]
+    NotANumber { column: String, cell: String },
+}
+
+impl TableFault {
+    fn at(self, start: usize) -> TableError {
+        TableError { start, fault: self }
+    }
 }
 
 /// A cell and the byte at which it starts.
@@ -88,47 +122,42 @@ fn cells(delimiter: Delimiter, start: usize, line: &str, width: usize) -> Vec<Ce
 }
 
 /// The lines that say something, with the byte at which each starts.
-fn lines(text: &str) -> Result<Vec<(usize, &str)>, (usize, String)> {
+fn lines(text: &str) -> Result<Vec<(usize, &str)>, TableError> {
     let mut lines = Lines::new(text.as_bytes(), "the file is not UTF-8 text");
     let mut found = Vec::new();
     loop {
         match lines.next_line() {
             Ok(Some(line)) => found.push((line.start, &text[line.start..][..line.text.len()])),
             Ok(None) => return Ok(found),
-            Err(TextError::Content { start, message, .. }) => return Err((start, message)),
-            Err(TextError::Io(error)) => return Err((0, error.to_string())),
+            Err(TextError::Content { start, message, .. }) => {
+                return Err(TableFault::Text(message).at(start));
+            }
+            Err(TextError::Io(error)) => return Err(TableFault::Text(error.to_string()).at(0)),
         }
     }
 }
 
 /// The columns of a table, every value marked where it stands.
-fn columns(source: usize, text: &str) -> Result<Table, (usize, String)> {
+fn columns(source: usize, text: &str) -> Result<Table, TableError> {
     let mut lines = lines(text)?.into_iter();
-    let (start, header) = lines
-        .next()
-        .ok_or_else(|| (0, format!("the file is empty: expected {}", expected())))?;
+    let (start, header) = lines.next().ok_or_else(|| TableFault::Empty.at(0))?;
     let delimiter = Delimiter::of(header);
     let header = cells(delimiter, start, header, 0);
     check_header(start, &header)?;
     let mut values: [Vec<Node>; 2] = [Vec::new(), Vec::new()];
     for (start, line) in lines {
         if values[0].len() == ROWS_MAX {
-            return Err((start, format!("too many rows: allowed up to {ROWS_MAX}")));
+            return Err(TableFault::TooManyRows.at(start));
         }
         let row = cells(delimiter, start, line, header.len());
         if row.len() != header.len() {
-            let count = row.len();
-            return Err((
-                start,
-                format!("{count} values in the row: expected 2, one a column"),
-            ));
+            return Err(TableFault::Width(row.len()).at(start));
         }
         for ((at, cell), (column, (_, name))) in row.iter().zip(values.iter_mut().zip(&header)) {
             let number: f64 = cell.parse().map_err(|_| {
-                let cell = excerpt(cell);
-                let message =
-                    format!("{name} = `{cell}` is not a number: expected one such as 0.5");
-                (*at, message)
+                let cell = excerpt(cell).into_owned();
+                let column = (*name).to_owned();
+                TableFault::NotANumber { column, cell }.at(*at)
             })?;
             column.push(Node {
                 value: Value::Float(number),
@@ -155,21 +184,14 @@ fn expected() -> String {
 }
 
 /// Refuses a header that is not [`TIME`] and one of [`VALUES`], in any order.
-fn check_header(start: usize, header: &[Cell<'_>]) -> Result<(), (usize, String)> {
+fn check_header(start: usize, header: &[Cell<'_>]) -> Result<(), TableError> {
     let is_known = |name: &str| name == TIME || VALUES.contains(&name);
     if let Some((at, name)) = header.iter().find(|(_, name)| !is_known(name)) {
-        return Err((
-            *at,
-            format!(
-                "unknown column `{}`: expected {}",
-                excerpt(name),
-                expected()
-            ),
-        ));
+        return Err(TableFault::UnknownColumn(excerpt(name).into_owned()).at(*at));
     }
     let times = header.iter().filter(|(_, name)| *name == TIME).count();
     if header.len() == 2 && times == 1 {
         return Ok(());
     }
-    Err((start, format!("wrong columns: expected {}", expected())))
+    Err(TableFault::WrongColumns.at(start))
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::scenario::check::inert::{Idle, IdleSet, IdleSets};
 use crate::scenario::check::presence::check_contradictions;
-use crate::scenario::document::address::{self, Step};
+use crate::scenario::document::address::{self, AddressError, Step};
 use crate::scenario::document::source::{Label, Mark, Sources, shown_path};
 use crate::scenario::document::tree::{Node, Table, Value, parse_value};
 use crate::scenario::message::error::{Location, ScenarioError, in_order};
@@ -230,7 +230,7 @@ pub(in crate::scenario) fn apply_sets(
                     .extend(remark.map(|remark| format!("--set {shown}: {remark}")));
                 paths.push(path);
             }
-            Err(message) => errors.push(sources.error(mark, message)),
+            Err(error) => errors.push(sources.error(mark, error.to_string())),
         }
     }
     errors.extend(check_contradictions(&draft.root, draft.root_mark, &sources));
@@ -238,24 +238,33 @@ pub(in crate::scenario) fn apply_sets(
     paths
 }
 
+/// Why a `--set` argument sets nothing.
+#[derive(Debug, thiserror::Error)]
+enum SetError {
+    #[error("expected key=value, as in gyro.coil.length_m=800")]
+    NoValue,
+    #[error("extends cannot be set: write it into a file")]
+    Extends,
+    #[error("{0} cannot be set: write the sweep into a file, or give one value, as in seed=2")]
+    Matrix(String),
+    #[error(transparent)]
+    Address(#[from] AddressError),
+    /// What the reader of TOML says.
+    #[error("{0} in the value")]
+    Value(String),
+}
+
 /// Applies one `--set` argument; the path it sets, and what is worth saying of it.
 fn apply_set(
     root: &mut Table,
     argument: &str,
     mark: Mark,
-) -> Result<(Vec<Step>, Option<String>), String> {
-    let Some((key, value)) = argument.split_once('=') else {
-        return Err("expected key=value, as in gyro.coil.length_m=800".to_owned());
-    };
+) -> Result<(Vec<Step>, Option<String>), SetError> {
+    let (key, value) = argument.split_once('=').ok_or(SetError::NoValue)?;
     let key = key.trim();
     match key.split('.').next() {
-        Some("extends") => return Err("extends cannot be set: write it into a file".to_owned()),
-        Some("matrix") => {
-            let key = excerpt(key);
-            return Err(format!(
-                "{key} cannot be set: write the sweep into a file, or give one value, as in seed=2"
-            ));
-        }
+        Some("extends") => return Err(SetError::Extends),
+        Some("matrix") => return Err(SetError::Matrix(excerpt(key).to_string())),
         _ => {}
     }
     let (path, _) = address::resolve(root, key)?;
@@ -267,13 +276,13 @@ fn apply_set(
 }
 
 /// The value of a `--set` argument: TOML, or a bare word as text.
-fn set_value(text: &str, mark: Mark) -> Result<Node, String> {
+fn set_value(text: &str, mark: Mark) -> Result<Node, SetError> {
     match parse_value(mark.source, text) {
         Ok(node) => Ok(node),
         Err(_) if !text.is_empty() && !text.starts_with(['"', '\'', '[', '{']) => Ok(Node {
             value: Value::Text(text.to_owned()),
             mark: Some(mark),
         }),
-        Err(error) => Err(format!("{} in the value", error.message)),
+        Err(error) => Err(SetError::Value(error.message)),
     }
 }

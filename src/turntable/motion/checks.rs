@@ -1,7 +1,13 @@
 //! Checks of a motion against the record: what all kinds share.
 
 /// Fewest output samples per cycle of a swing.
-pub(super) const SAMPLES_PER_CYCLE_MIN: f64 = 8.0;
+pub(super) const SAMPLES_PER_CYCLE_MIN: f64 = 4.0;
+
+/// Fewest output samples of a ramp between two rates.
+pub(super) const SAMPLES_PER_RAMP_MIN: f64 = 8.0;
+
+/// Shortest ramp, s: 0 is a jump, and between the two lie lengths whose reciprocals are no numbers.
+const RAMP_MIN_S: f64 = 1e-9;
 
 /// Relative slack when times are compared, so that `3 x 0.1 s` fits into 0.3 s.
 pub(super) const TIME_SLACK: f64 = 1e-9;
@@ -49,17 +55,29 @@ impl MotionChecks<'_> {
                 "{key} = {soft_start_s:?} s is longer than the warm-up: allowed [0, warm_up_s = {warm_up_s:?}] s"
             );
             self.complain_or(key, "warm_up_s", message);
+        } else {
+            self.ramp(key, soft_start_s);
         }
     }
 
-    /// Refuses a frequency that the cubics between samples cannot follow.
+    /// Refuses a ramp so short that its acceleration is no number.
+    pub(super) fn ramp(&mut self, key: &str, length_s: f64) {
+        if length_s > 0.0 && length_s < RAMP_MIN_S {
+            let message = format!(
+                "{key} = {length_s:?} s is out of range: allowed 0 s, a jump, or {RAMP_MIN_S:?} s and more"
+            );
+            self.complain(key, message);
+        }
+    }
+
+    /// Refuses a frequency that the output samples cannot show.
     pub(super) fn frequency(&mut self, key: &str, frequency_hz: f64) {
         let output_rate_hz = 1.0 / self.sample_period_s;
         let frequency_hz_max = output_rate_hz / SAMPLES_PER_CYCLE_MIN;
         if frequency_hz > frequency_hz_max {
             let message = format!(
                 "{key} = {frequency_hz:?} Hz is too fast: allowed up to \
-                 {frequency_hz_max:.6} Hz, 8 samples a cycle at the output rate of {output_rate_hz:.6} Hz"
+                 {frequency_hz_max:.6} Hz, {SAMPLES_PER_CYCLE_MIN} samples a cycle at the output rate of {output_rate_hz:.6} Hz"
             );
             self.complain(key, message);
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::checks::MotionChecks;
 use super::course::Course;
-use crate::turntable::motion::campaign::CampaignConfig;
+use crate::turntable::motion::kinds::campaign::CampaignConfig;
 use crate::turntable::motion::stairs::Stairs;
 use crate::turntable::servo::ServoConfig;
 
@@ -15,6 +15,11 @@ pub(in crate::turntable) trait Motion {
 
     /// Largest commanded rate in magnitude, without the Earth's, rad/s; of several sines its bound.
     fn rate_max_rad_per_s(&self) -> f64;
+
+    /// Highest frequency of the sines that it is made of, Hz; 0 where it is made of none.
+    fn frequency_max_hz(&self) -> f64 {
+        0.0
+    }
 
     /// Largest jump and acceleration in magnitude, the Earth's left out.
     fn extremes(&self, surroundings: Surroundings) -> CommandExtremes;

@@ -1,45 +1,36 @@
-//! What the table is told to do: one file a kind of motion.
+//! What the table is told to do: the kinds of motion, and what they share.
 //!
 //! The settings of each kind implement [`Motion`](kind::Motion): class, extremes, checks and command. The list
 //! of kinds stands here, and the rest of the bench asks [`MotionConfig`].
 
-mod campaign;
 mod checks;
-mod chirp;
 mod command;
 mod course;
 mod kind;
-mod multi_sine;
-mod rest;
-mod rotation;
+mod kinds;
 mod samples;
-mod scale_factor_test;
-mod script;
 mod soft_start;
 mod staircase;
 mod stairs;
-mod steps;
-mod swing;
-mod trapezoid;
 
-pub use campaign::{CampaignConfig, CampaignGroup, campaign_angles_rad};
 pub use checks::MotionChecks;
-pub use chirp::{ChirpConfig, Progression};
 pub use kind::{CommandExtremes, MotionClass, Surroundings};
-pub use multi_sine::MultiSineConfig;
-pub use rest::StaticConfig;
-pub use rotation::RotationConfig;
+pub use kinds::campaign::{CampaignConfig, CampaignGroup, campaign_angles_rad};
+pub use kinds::chirp::{ChirpConfig, Progression};
+pub use kinds::multi_sine::MultiSineConfig;
+pub use kinds::rest::StaticConfig;
+pub use kinds::rotation::RotationConfig;
+pub use kinds::scale_factor_test::{PreferredSeries, ScaleFactorTestConfig, TEST_RATES_MIN};
+pub use kinds::script::{ScriptConfig, ScriptPoints};
+pub use kinds::steps::StepsConfig;
+pub use kinds::swing::SwingConfig;
+pub use kinds::trapezoid::TrapezoidConfig;
 pub use samples::{dwell_ends, first_measured_index, step_indices};
-pub use scale_factor_test::{PreferredSeries, ScaleFactorTestConfig, TEST_RATES_MIN};
-pub use script::{ScriptConfig, ScriptPoints};
 pub use stairs::Stairs;
-pub use steps::StepsConfig;
-pub use swing::SwingConfig;
-pub use trapezoid::TrapezoidConfig;
 
-pub(in crate::turntable) use campaign::remountings;
 pub(in crate::turntable) use command::Command;
 pub(in crate::turntable) use kind::Motion;
+pub(in crate::turntable) use kinds::campaign::remountings;
 
 use std::sync::Arc;
 
@@ -109,6 +100,12 @@ impl MotionConfig {
     #[must_use]
     pub fn rate_max_rad_per_s(&self) -> f64 {
         self.kind().rate_max_rad_per_s()
+    }
+
+    /// Highest frequency of the sines that the command is made of, Hz; 0 where it is made of none.
+    #[must_use]
+    pub fn frequency_max_hz(&self) -> f64 {
+        self.kind().frequency_max_hz()
     }
 
     /// Largest jump and acceleration of the command.

@@ -1,7 +1,7 @@
 //! Checks of the tables that close the suite: names that refer to one another.
 
 use crate::scenario::config::ComparisonColumn;
-use crate::scenario::document::address;
+use crate::scenario::document::address::{self, AddressError};
 use crate::scenario::keys::schema::Kind;
 use crate::scenario::read::resolved::Resolved;
 
@@ -26,10 +26,10 @@ pub(in crate::scenario) fn check(resolved: &Resolved) -> Vec<(String, String)> {
             complaints.push((key, message));
         }
         if let Some(written) = &comparison.per_change_of
-            && let Err(message) = numeric(resolved, written)
+            && let Err(error) = numeric(resolved, written)
         {
             let key = format!("comparison[{index}].per_change_of");
-            complaints.push((key.clone(), format!("{key}: {message}")));
+            complaints.push((key.clone(), format!("{key}: {error}")));
         }
         for column in &comparison.columns {
             if ComparisonColumn::parse(column).is_none() {
@@ -63,23 +63,32 @@ pub(in crate::scenario) fn check(resolved: &Resolved) -> Vec<(String, String)> {
     for (index, assumption) in scenario.assumptions.iter().enumerate() {
         // A scenario may put other filters in the place of its base's.
         let is_of_a_filter = assumption.key.starts_with("filter.");
-        if let Err(message) = address::resolve(resolved.tree(), &assumption.key)
+        if let Err(error) = address::resolve(resolved.tree(), &assumption.key)
             && !is_of_a_filter
         {
             let key = format!("assumption[{index}].key");
-            complaints.push((key.clone(), format!("{key}: {message}")));
+            complaints.push((key.clone(), format!("{key}: {error}")));
         }
     }
     complaints
 }
 
+/// Why a metric has no change for each unit of a key.
+#[derive(Debug, thiserror::Error)]
+enum ChangeError {
+    #[error("{0} is not a number")]
+    NotANumber(String),
+    #[error(transparent)]
+    Address(#[from] AddressError),
+}
+
 /// Whether a key stands for a number; one of a filter may be another scenario's.
-fn numeric(resolved: &Resolved, written: &str) -> Result<(), String> {
+fn numeric(resolved: &Resolved, written: &str) -> Result<(), ChangeError> {
     match address::resolve(resolved.tree(), written) {
         Ok((_, Some(key))) if matches!(key.kind, Kind::Float(_) | Kind::Integer(_)) => Ok(()),
-        Ok(_) => Err(format!("{written} is not a number")),
+        Ok(_) => Err(ChangeError::NotANumber(written.to_owned())),
         Err(_) if written.starts_with("filter.") => Ok(()),
-        Err(message) => Err(message),
+        Err(error) => Err(error.into()),
     }
 }
 

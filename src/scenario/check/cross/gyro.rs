@@ -1,10 +1,13 @@
-//! Checks across the values of the gyro's temperature that need no physics.
+//! Checks across the values of the gyro that need no physics.
 
 use crate::gyro::{
     PowerConfig, TemperatureConfig, TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig,
     Winding,
 };
 use crate::scenario::config::Scenario;
+
+/// Finest step of a rate word, deg/s: a whole number of 53 bits then reaches 9000 deg/s.
+const RATE_LSB_MIN_DEG_PER_S: f64 = 1e-12;
 
 /// Key to blame and what is wrong with it, for every contradiction.
 pub(crate) fn check(scenario: &Scenario) -> Vec<(String, String)> {
@@ -16,11 +19,25 @@ pub(crate) fn check(scenario: &Scenario) -> Vec<(String, String)> {
     };
     found.extend(winding(thermal, scenario.gyro.coil.length_m));
     found.extend(power(thermal));
+    found.extend(rate_word(scenario.gyro.output.rate_lsb_deg_per_s));
     found
 }
 
 fn complaint(key: &str, rest: &str) -> (String, String) {
     (key.to_owned(), format!("{key} = {rest}"))
+}
+
+fn rate_word(lsb_deg_per_s: f64) -> Option<(String, String)> {
+    let is_senseless = lsb_deg_per_s > 0.0 && lsb_deg_per_s < RATE_LSB_MIN_DEG_PER_S;
+    is_senseless.then(|| {
+        complaint(
+            "gyro.output.rate_lsb_deg_per_s",
+            &format!(
+                "{lsb_deg_per_s:?} deg/s is out of range: allowed 0 deg/s, no rounding, or \
+                 {RATE_LSB_MIN_DEG_PER_S:?} deg/s and more"
+            ),
+        )
+    })
 }
 
 fn ramp(config: &TemperatureRampConfig) -> Vec<(String, String)> {

@@ -1,0 +1,169 @@
+//! `fogbench analyze` and `fogbench filter`: a recorded log in place of table and gyro.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::cli::options::format::Format;
+use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions, LogOptions};
+use crate::cli::terminal::complaint::{self, Complaint};
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
+use crate::cli::terminal::place::Place;
+use crate::experiment::{
+    LogFilters, LogInput, LogSettings, LogTrial, compensate_log, load_log_compensation,
+    load_log_filters, try_log,
+};
+use crate::recording::{AssemblyColumns, LogError, LogFormat, read_assembly_log, read_log};
+use crate::report::{log_json, log_text};
+use crate::scenario::AllanConfig;
+
+/// Measures a log.
+pub(in crate::cli) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
+    if let Err(exit) = place(&options.log).check(&inputs(&options.log)) {
+        return Ok(exit);
+    }
+    let input = match read(&options.log) {
+        Ok((input, _)) => input,
+        Err(exit) => return Ok(exit),
+    };
+    conclude(input, None, &options.log, false)
+}
+
+/// Puts a log through the filters of a scenario and measures what they make of it.
+pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
+    let mut inputs = inputs(&options.log);
+    inputs.push(&options.filters);
+    if let Err(exit) = place(&options.log).check(&inputs) {
+        return Ok(exit);
+    }
+    let (input, sample_rate_hz) = match read(&options.log) {
+        Ok(read) => read,
+        Err(exit) => return Ok(exit),
+    };
+    let filters = match load_log_filters(&options.filters, &options.set, sample_rate_hz) {
+        Ok(filters) => filters,
+        Err(errors) => return Ok(refused(&errors)),
+    };
+    conclude(input, Some(&filters), &options.log, options.csv)
+}
+
+/// Where the results go.
+fn place(options: &LogOptions) -> Place<'_> {
+    Place::new(options.output.as_deref(), "log", options.force)
+}
+
+/// Files that are read.
+fn inputs(options: &LogOptions) -> Vec<&Path> {
+    let calibration = options.calibration.iter();
+    std::iter::once(&options.file)
+        .chain(calibration)
+        .map(PathBuf::as_path)
+        .collect()
+}
+
+/// The words to measure and their rate, Hz: of one column, or of three and a calibration.
+fn read(options: &LogOptions) -> Result<(LogInput, f64), Exit> {
+    let (Some(calibration), Some(axis)) = (&options.calibration, options.axis) else {
+        let log = read_log(&options.file, &format(options)).map_err(|error| unreadable(&error))?;
+        let sample_rate_hz = log.sample_rate_hz;
+        return Ok((log.into(), sample_rate_hz));
+    };
+    let [x, y, z] = &options.columns[..] else {
+        let count = options.columns.len();
+        let message = format!("--columns names {count} columns: expected three, of x, y and z");
+        return Err(refused(&[message]));
+    };
+    let form = options.compensation_form;
+    let compensation = load_log_compensation(calibration, form).map_err(|errors| {
+        let exit = refused(&errors);
+        if calibration.is_file() {
+            exit
+        } else {
+            Exit::Io
+        }
+    })?;
+    let columns = AssemblyColumns {
+        gyros: [x, y, z],
+        temperature: options.temperature_column.as_deref(),
+    };
+    let found = read_assembly_log(&options.file, &format(options), &columns);
+    let logs = found.map_err(|error| unreadable(&error))?;
+    let sample_rate_hz = logs.gyros[axis].sample_rate_hz;
+    let compensated = compensate_log(logs, &compensation, axis);
+    Ok((LogInput::Compensated(compensated), sample_rate_hz))
+}
+
+fn format(options: &LogOptions) -> LogFormat {
+    LogFormat {
+        sample_rate_hz: options.rate_hz,
+        unit: options.unit,
+        scale: options.scale,
+        column: options.column.clone(),
+        time_column: options.time.clone(),
+        time_unit: options.time_unit,
+    }
+}
+
+/// Says why a file was not read.
+pub(in crate::cli) fn unreadable(error: &LogError) -> Exit {
+    output::talk(&format!("error: {error}"));
+    match error {
+        LogError::Read { .. } => Exit::Io,
+        LogError::Content { .. } => Exit::Usage,
+    }
+}
+
+fn refused<C: Complaint>(errors: &[C]) -> Exit {
+    complaint::print(errors);
+    Exit::Usage
+}
+
+fn conclude(
+    input: LogInput,
+    filters: Option<&LogFilters>,
+    options: &LogOptions,
+    as_csv: bool,
+) -> io::Result<Exit> {
+    let settings = LogSettings {
+        motion: options.motion,
+        warm_up_s: options.warm_up_s,
+        bias_averaging_time_s: options.bias_averaging_time_s,
+        fit_tau_min_s: options.fit_tau_min_s,
+        allan: AllanConfig {
+            estimator: options.allan_estimator,
+            averaging_times: options.averaging_times,
+        },
+    };
+    let trial = match try_log(input, filters, &settings) {
+        Ok(trial) => trial,
+        Err(error) => {
+            output::talk(&format!("error: {error}"));
+            return Ok(Exit::Usage);
+        }
+    };
+    let folder = options.output.as_deref();
+    if let Err(exit) = place(options).fill(|folder| trial.write(folder, as_csv)) {
+        return Ok(exit);
+    }
+    output::data(&text(&trial, options.format))?;
+    if let Some(folder) = folder {
+        output::talk(&format!("results in {}", folder.display()));
+    }
+    Ok(if trial.has_failed() {
+        Exit::RunFailed
+    } else {
+        Exit::Success
+    })
+}
+
+fn text(trial: &LogTrial, format: Format) -> String {
+    trial.with_report(|report| match format {
+        Format::Text => log_text(report, output::width(), output::colour()),
+        Format::Json => log_json(report),
+        Format::Jsonl => {
+            let document = log_json(report);
+            let line: String = document.lines().map(str::trim_start).collect();
+            format!("{line}\n")
+        }
+    })
+}

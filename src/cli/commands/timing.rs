@@ -1,0 +1,205 @@
+//! `fogbench timing`: what a filter costs in hardware.
+
+use std::fmt::Write;
+use std::io;
+
+use serde_json::{Value, json};
+
+use crate::cli::options::format::Format;
+use crate::cli::options::hardware::{FilterOptions, TimingOptions};
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
+use crate::filters::hardware::PipelineTiming;
+use crate::fpga::FpgaError;
+use crate::fpga::kinds::CoreSettings;
+use crate::fpga::rls::{ScheduleReport, ScheduleSettings, TimingRow, schedule_clocks, table};
+use crate::fpga::timing::{check_clock, sample_period_us, sample_rate_max_khz};
+
+/// Prints Table 1, the counted pipeline, and what units with latency do to it.
+pub(in crate::cli) fn timing(options: &TimingOptions) -> io::Result<Exit> {
+    let report = match Report::new(options) {
+        Ok(report) => report,
+        Err(error) => {
+            output::talk(&format!("error: {error}"));
+            return Ok(Exit::Usage);
+        }
+    };
+    output::data(&match options.format {
+        Format::Text => report.text(),
+        Format::Json => format!("{:#}\n", report.json()),
+        Format::Jsonl => format!("{}\n", report.json()),
+    })?;
+    Ok(Exit::Success)
+}
+
+/// Everything that is printed.
+struct Report<'a> {
+    filter: &'a FilterOptions,
+    /// Table 1; recursive least squares only.
+    table: Vec<TimingRow>,
+    measured: PipelineTiming,
+    stalled: u64,
+    /// Recursive least squares only.
+    interleaved: Option<ScheduleReport>,
+}
+
+impl<'a> Report<'a> {
+    fn new(options: &'a TimingOptions) -> Result<Self, FpgaError> {
+        let filter = &options.filter;
+        let settings = filter.settings();
+        let measured = settings.timing()?;
+        check_clock(filter.clock_mhz)?;
+        let stalled = settings.core.stalled_clocks(options.units())?;
+        let mut report = Self {
+            filter,
+            table: Vec::new(),
+            measured,
+            stalled,
+            interleaved: None,
+        };
+        if let CoreSettings::Rls(core) = &settings.core {
+            let load = core.load();
+            let rows = table(
+                load.tap_count,
+                load.division,
+                load.forgets,
+                filter.clock_mhz,
+            )?;
+            report.table = rows.to_vec();
+            let schedule = ScheduleSettings {
+                ram_ports: options.ram_ports,
+                symmetric_half: false,
+            };
+            report.interleaved = Some(schedule_clocks(load, options.units(), schedule)?);
+        }
+        Ok(report)
+    }
+
+    fn json(&self) -> Value {
+        let usage = &self.measured.usage;
+        let clock_mhz = self.filter.clock_mhz;
+        let rows: Vec<Value> = self
+            .table
+            .iter()
+            .map(|row| {
+                json!({
+                    "design": row.design.name(), "basis": row.basis.name(),
+                    "clocks": row.clocks, "multipliers": row.multipliers,
+                    "dividers": row.dividers, "adders": row.adders,
+                    "sample_period_us": row.sample_period_us,
+                    "sample_rate_max_khz": row.sample_rate_max_khz,
+                })
+            })
+            .collect();
+        let model = |clocks: u64| {
+            json!({
+                "clocks": clocks,
+                "sample_period_us": sample_period_us(clocks, clock_mhz),
+                "sample_rate_max_khz": sample_rate_max_khz(clocks, clock_mhz),
+            })
+        };
+        let states = usage.states.iter();
+        let states: serde_json::Map<String, Value> = states
+            .map(|state| (state.state.to_owned(), state.clocks.into()))
+            .collect();
+        let mut document = json!({
+            "kind": self.filter.kind_name(), "taps": self.filter.taps, "clock_mhz": clock_mhz,
+            "clocks_per_sample": usage.clocks_per_sample,
+            "sample_period_us": self.measured.sample_period_us,
+            "latency_clocks": usage.latency_clocks,
+            "latency_us": self.measured.latency_us,
+            "sample_rate_max_khz": self.measured.sample_rate_max_khz,
+            "wake_up_clocks": usage.wake_up_clocks,
+            "clocks_per_state": states,
+            "rama_accesses": usage.rama_accesses, "ramb_accesses": usage.ramb_accesses,
+            "multiplies": usage.multiplies, "additions": usage.additions,
+            "divisions": usage.divisions,
+            "table": rows,
+            "stalled": model(self.stalled),
+        });
+        if let Some(report) = &self.interleaved {
+            document["interleaved"] = model(report.clocks);
+            document["interleaved"]["bound"] = report.bound.name().into();
+        }
+        document
+    }
+
+    fn text(&self) -> String {
+        let mut text = String::new();
+        let usage = &self.measured.usage;
+        let clock_mhz = self.filter.clock_mhz;
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{}, {} taps, {clock_mhz} MHz, every operation in one clock (counted on the model)\n  \
+             {} clocks a sample, {:.2} us, {:.1} kHz; result after {} clocks, {:.3} us; \
+             {} more clock after idling",
+            self.filter.kind_name(),
+            self.filter.taps,
+            usage.clocks_per_sample,
+            self.measured.sample_period_us,
+            self.measured.sample_rate_max_khz,
+            usage.latency_clocks,
+            self.measured.latency_us,
+            usage.wake_up_clocks,
+        );
+        self.write_usage(&mut text);
+        if !self.table.is_empty() {
+            let _ = writeln!(
+                text,
+                "\nTable 1   basis     clocks  multipliers  dividers  adders       us      kHz"
+            );
+        }
+        for row in &self.table {
+            let _ = writeln!(
+                text,
+                "{:8}  {:8} {:>7} {:>12} {:>9} {:>7} {:>8.3} {:>8.1}",
+                row.design.name(),
+                row.basis.name(),
+                row.clocks,
+                row.multipliers,
+                row.dividers,
+                row.adders,
+                row.sample_period_us,
+                row.sample_rate_max_khz,
+            );
+        }
+        let _ = writeln!(text, "\nwith the latencies given");
+        let mut line = |name: &str, clocks: u64, bound: &str| {
+            let _ = writeln!(
+                text,
+                "  {name:11} {clocks:>7} clocks {:>9.3} us {:>9.1} kHz  {bound}",
+                sample_period_us(clocks, clock_mhz),
+                sample_rate_max_khz(clocks, clock_mhz)
+            );
+        };
+        line("stalled", self.stalled, "the control waits for each result");
+        if let Some(report) = &self.interleaved {
+            let bound = format!("bound by: {}", report.bound.name());
+            line("interleaved", report.clocks, &bound);
+        }
+        text
+    }
+
+    /// Clocks per state, ports and units.
+    fn write_usage(&self, text: &mut String) {
+        let usage = &self.measured.usage;
+        let states = usage.states.iter().filter(|state| state.clocks > 0);
+        let states: Vec<String> = states
+            .map(|state| format!("{} {}", state.state, state.clocks))
+            .collect();
+        for line in states.chunks(5) {
+            let _ = writeln!(text, "  {}", line.join(", "));
+        }
+        let _ = writeln!(
+            text,
+            "  ports in use: RAMA {}, RAMB {}; multiplier {}, adder {}, divider {} of {} clocks",
+            usage.rama_accesses,
+            usage.ramb_accesses,
+            usage.multiplies,
+            usage.additions,
+            usage.divisions,
+            usage.clocks_per_sample,
+        );
+    }
+}

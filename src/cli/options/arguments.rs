@@ -1,0 +1,140 @@
+//! What may be said on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::cli::options::calibrate::CalibrateOptions;
+use crate::cli::options::claim::ClaimOptions;
+use crate::cli::options::format::Format;
+use crate::cli::options::hardware::{ExportOptions, TimingOptions};
+use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
+
+/// Version and build of the program.
+const VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (build ",
+    env!("FOGBENCH_BUILD"),
+    ")"
+);
+
+/// Closed-loop fibre-optic-gyro and rate-turntable testbench.
+///
+/// Runs TOML scenarios through turntable, gyro, denoising filters and metrics, and judges them.
+/// Exit codes: 0 all well, 1 a gate failed, 2 usage or scenario error, 3 a channel failed,
+/// 4 nothing selected, 70 internal error, 74 input/output error, 129, 130 and 143 ended by SIGHUP,
+/// SIGINT and SIGTERM.
+#[derive(Debug, Parser)]
+#[command(
+    name = "fogbench",
+    version = VERSION,
+    propagate_version = true,
+    arg_required_else_help = true
+)]
+pub(in crate::cli) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(in crate::cli) command: Command,
+}
+
+/// Commands.
+#[derive(Debug, Subcommand)]
+pub(in crate::cli) enum Command {
+    /// Run scenarios in parallel, write results and evaluate gates
+    Run(RunOptions),
+    /// Check scenario files without running them
+    Check(SelectOptions),
+    /// Print every resolved run of scenario files, defaults and sweeps included
+    Expand(SelectOptions),
+    /// List the runs that a selection holds
+    List(ListOptions),
+    /// Print the JSON Schema of scenario files
+    Schema,
+    /// Print the noise budget of a gyro in closed form, without a run
+    Budget(BudgetOptions),
+    /// Measure a recorded log: every metric that needs no true rate
+    Analyze(AnalyzeOptions),
+    /// Replay a recorded log through the filters of a scenario and measure what they make of it
+    Filter(FilterLogOptions),
+    /// Say what else would read the same as a claimed reduction of noise
+    Claim(ClaimOptions),
+    /// Find the errors of a three-axis assembly from group means or a simulated campaign
+    Calibrate(CalibrateOptions),
+    /// Print clocks, units and sample rates of a filter in hardware
+    Timing(TimingOptions),
+    /// Write golden vectors, waveforms or RTL of a hardware pipeline into a folder
+    Export(ExportOptions),
+}
+
+/// Which scenarios.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct SelectOptions {
+    /// Scenario files and folders [default: every folder of scenarios/]
+    pub(in crate::cli) paths: Vec<PathBuf>,
+    /// Override a key of every selected scenario; `filter.<name>.<key>` reaches into a filter
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(in crate::cli) set: Vec<String>,
+}
+
+/// Whose results `run --resume` takes over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum ResumeFrom {
+    /// Those of this very build
+    SameBuild,
+    /// Those of any build of this version
+    AnyBuild,
+}
+
+/// Options of `budget`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct BudgetOptions {
+    /// Scenario file, or a base without a name
+    pub(in crate::cli) path: PathBuf,
+    /// Override a key
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(in crate::cli) set: Vec<String>,
+    /// Folder for budget.svg and budget.csv [default: neither is written]
+    #[arg(short, long, value_name = "DIR")]
+    pub(in crate::cli) output: Option<PathBuf>,
+    /// Replace files in the folder that fogbench did not write
+    #[arg(long, requires = "output")]
+    pub(in crate::cli) force: bool,
+    /// Form of the budget on stdout
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(in crate::cli) format: Format,
+}
+
+/// Options of `list`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct ListOptions {
+    #[command(flatten)]
+    pub(in crate::cli) select: SelectOptions,
+    /// Form of the list
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(in crate::cli) format: Format,
+}
+
+/// Options of `run`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct RunOptions {
+    #[command(flatten)]
+    pub(in crate::cli) select: SelectOptions,
+    /// Folder for the results
+    #[arg(short, long, value_name = "DIR", default_value = "output")]
+    pub(in crate::cli) output: PathBuf,
+    /// Replace files and folders in it that fogbench did not write, or that were changed since
+    #[arg(long)]
+    pub(in crate::cli) force: bool,
+    /// Take over undamaged results of the same build, scenario, seed and inputs; `any-build`: of any
+    /// build of this version
+    #[arg(long, value_name = "BUILD", num_args = 0..=1, require_equals = true,
+          default_missing_value = "same-build")]
+    pub(in crate::cli) resume: Option<ResumeFrom>,
+    /// Threads, at most 256; 0 = RAYON_NUM_THREADS, else one per core; no result depends on it
+    #[arg(short, long, value_name = "N", default_value_t = 0,
+          value_parser = clap::value_parser!(u16).range(0..=256))]
+    pub(in crate::cli) jobs: u16,
+    /// Form of the results on stdout
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(in crate::cli) format: Format,
+}

@@ -1,0 +1,149 @@
+//! What may be said of recorded logs.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::options::format::Format;
+use crate::cli::options::numbers::{OptionError, within};
+use crate::experiment::LogMotion;
+use crate::recording::{RateUnit, SAMPLE_RATE_HZ, TimeUnit};
+use crate::scenario::AllanEstimatorConfig;
+use crate::vocabulary::{AveragingTimes, CompensationForm};
+
+/// Shortest time that an option names, s: a sample at the fastest rate that is analysed in blocks.
+const TIME_MIN_S: f64 = 1e-9;
+/// Longest such time, s: 115 days.
+const TIME_MAX_S: f64 = 1e7;
+/// Sizes of the units that one count stands for.
+const FACTOR: (f64, f64) = (1e-30, 1e30);
+
+/// A log and how to measure it.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct LogOptions {
+    /// Recorded log: NPY with one dimension, or text with columns between `,`, `;`, tabs or blanks
+    pub(in crate::cli) file: PathBuf,
+    /// Samples per second [default: what the time column says]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true,
+          value_parser = within(SAMPLE_RATE_HZ.0, SAMPLE_RATE_HZ.1, "Hz"),
+          required_unless_present = "time")]
+    pub(in crate::cli) rate_hz: Option<f64>,
+    /// Unit of the numbers: deg/h, deg/s, mdeg/s or mdps, arcsec/s, rad/s, rad/h; as angles turned
+    /// in a sample deg/sample, arcsec/sample, rad/sample, urad/sample
+    #[arg(long, value_name = "UNIT")]
+    pub(in crate::cli) unit: RateUnit,
+    /// Units that one count of the log stands for
+    #[arg(long, value_name = "UNITS", default_value_t = 1.0, value_parser = factor,
+          allow_negative_numbers = true)]
+    pub(in crate::cli) scale: f64,
+    /// Column of a text by its heading or number from 1 [default: the only one beside the time]
+    #[arg(long, value_name = "COLUMN")]
+    pub(in crate::cli) column: Option<String>,
+    /// Columns of the gyros x, y, z of an assembly, to be compensated
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        value_delimiter = ',',
+        conflicts_with = "column",
+        requires = "calibration",
+        requires = "axis"
+    )]
+    pub(in crate::cli) columns: Vec<String>,
+    /// Parameters to take out of these columns: calibration.toml as `calibrate` and `run` write it
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "columns",
+        conflicts_with = "column"
+    )]
+    pub(in crate::cli) calibration: Option<PathBuf>,
+    /// Axis to measure and to filter after compensation: x, y or z
+    #[arg(long, value_name = "AXIS", requires = "columns", conflicts_with = "column",
+          value_parser = axis)]
+    pub(in crate::cli) axis: Option<usize>,
+    /// Column of the assembly's temperature, deg C, which its biases follow
+    #[arg(long, value_name = "COLUMN", requires = "calibration")]
+    pub(in crate::cli) temperature_column: Option<String>,
+    /// How rates follow from the outputs: `exact`, or `first-order` as in the patent
+    #[arg(
+        long,
+        value_name = "FORM",
+        default_value = "exact",
+        requires = "calibration"
+    )]
+    pub(in crate::cli) compensation_form: CompensationForm,
+    /// Column of the time; its stamps must be equally spaced
+    #[arg(long, value_name = "COLUMN")]
+    pub(in crate::cli) time: Option<String>,
+    /// Unit of the time column: s, ms, us, ns
+    #[arg(long, value_name = "UNIT", default_value = "s", requires = "time")]
+    pub(in crate::cli) time_unit: TimeUnit,
+    /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz
+    #[arg(long, value_name = "MOTION", default_value = "static")]
+    pub(in crate::cli) motion: LogMotion,
+    /// Time at the start that metrics leave out, s
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
+          value_parser = within(0.0, TIME_MAX_S, "s"))]
+    pub(in crate::cli) warm_up_s: f64,
+    /// Averaging time of the plain bias stability, s: a sample of the log or longer
+    #[arg(long, value_name = "S", default_value_t = 100.0, allow_negative_numbers = true,
+          value_parser = within(TIME_MIN_S, TIME_MAX_S, "s"))]
+    pub(in crate::cli) bias_averaging_time_s: f64,
+    /// Shortest averaging time of the noise fit, s: longer than the noise is correlated
+    /// [default: what the correlation of the log asks for, and ten samples at least unless the words are white]
+    #[arg(long, value_name = "S", allow_negative_numbers = true,
+          value_parser = within(TIME_MIN_S, TIME_MAX_S, "s"))]
+    pub(in crate::cli) fit_tau_min_s: Option<f64>,
+    /// Deviation of the Allan curve: `overlapping`, `plain`, `modified`, `hadamard`; the noise terms are
+    /// fitted to the overlapping one
+    #[arg(long, value_name = "ESTIMATOR", default_value = "overlapping")]
+    pub(in crate::cli) allan_estimator: AllanEstimatorConfig,
+    /// Averaging times of the Allan curve: `octave`, `decade`, `all` (up to 1000)
+    #[arg(long, value_name = "TIMES", default_value = "octave")]
+    pub(in crate::cli) averaging_times: AveragingTimes,
+    /// Folder for summary.json, curves, pictures and filtered samples [default: none is written]
+    #[arg(short, long, value_name = "DIR")]
+    pub(in crate::cli) output: Option<PathBuf>,
+    /// Replace files in the folder that fogbench did not write
+    #[arg(long, requires = "output")]
+    pub(in crate::cli) force: bool,
+    /// Form of the results on stdout
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(in crate::cli) format: Format,
+}
+
+/// Options of `analyze`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct AnalyzeOptions {
+    #[command(flatten)]
+    pub(in crate::cli) log: LogOptions,
+}
+
+/// Options of `filter`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct FilterLogOptions {
+    #[command(flatten)]
+    pub(in crate::cli) log: LogOptions,
+    /// Scenario or base file whose [[filter]] tables the log runs through
+    #[arg(long, value_name = "SCENARIO")]
+    pub(in crate::cli) filters: PathBuf,
+    /// Override a key of that file; `filter.<name>.<key>` reaches into a filter
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(in crate::cli) set: Vec<String>,
+    /// Write the filtered samples as CSV as well
+    #[arg(long, requires = "output")]
+    pub(in crate::cli) csv: bool,
+}
+
+fn axis(text: &str) -> Result<usize, OptionError> {
+    let found = ["x", "y", "z"].iter().position(|axis| *axis == text);
+    found.ok_or(OptionError::Axis)
+}
+
+/// A negative one turns the sense of the axis.
+fn factor(text: &str) -> Result<f64, OptionError> {
+    let (least, most) = FACTOR;
+    let number = text.parse::<f64>().ok();
+    let number = number.filter(|number| (least..=most).contains(&number.abs()));
+    number.ok_or(OptionError::Factor { least, most })
+}

@@ -1,0 +1,12 @@
+//! What the command line can be asked for: arguments, their ranges and words, and options that would do
+//! nothing beside others.
+
+pub(in crate::cli) mod arguments;
+pub(in crate::cli) mod calibrate;
+pub(in crate::cli) mod claim;
+pub(in crate::cli) mod format;
+pub(in crate::cli) mod hardware;
+pub(in crate::cli) mod idle;
+pub(in crate::cli) mod log;
+pub(in crate::cli) mod numbers;
+pub(in crate::cli) mod words;

@@ -1,0 +1,86 @@
+//! Where a command writes its one result.
+
+use std::path::Path;
+
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
+use crate::store::{OutputFolder, StoreError, StoreOptions, holds_result};
+
+/// The folder of a result, if one is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::cli) struct Place<'a> {
+    folder: Option<&'a Path>,
+    /// Kind of the result, as the record of the folder says.
+    holds: &'static str,
+    options: StoreOptions,
+}
+
+impl<'a> Place<'a> {
+    /// The place of a result of the kind `holds`.
+    pub(in crate::cli) fn new(folder: Option<&'a Path>, holds: &'static str, force: bool) -> Self {
+        let options = StoreOptions {
+            force,
+            ..StoreOptions::default()
+        };
+        Self {
+            folder,
+            holds,
+            options,
+        }
+    }
+
+    /// Checks the folder before anything is computed; none of the `inputs` may be a file of the results
+    /// that would be replaced.
+    ///
+    /// A refusal is printed before its exit code is returned.
+    pub(in crate::cli) fn check(self, inputs: &[&Path]) -> Result<(), Exit> {
+        let Some(folder) = self.folder else {
+            return Ok(());
+        };
+        if let Some(input) = inputs.iter().find(|input| holds_result(folder, input)) {
+            output::talk(&format!(
+                "error: {} is read, and is among the results in {} that would be replaced: nothing was \
+                 done; choose another folder",
+                input.display(),
+                folder.display()
+            ));
+            return Err(Exit::Usage);
+        }
+        let cautions = OutputFolder::check_result(folder, self.holds, self.options)
+            .map_err(|error| refused(&error))?;
+        for caution in cautions {
+            output::talk(&format!("warning: {caution}"));
+        }
+        Ok(())
+    }
+
+    /// Takes the folder, if there is one, and gives it to `write`.
+    pub(in crate::cli) fn fill(
+        self,
+        write: impl FnOnce(&OutputFolder) -> Result<(), StoreError>,
+    ) -> Result<(), Exit> {
+        let Some(path) = self.folder else {
+            return Ok(());
+        };
+        // What is worth saying was said when the folder was checked, but for what has come since.
+        let folder = OutputFolder::of_result(path, self.holds, self.options);
+        folder
+            .and_then(|folder| write(&folder))
+            .map_err(|error| refused(&error))
+    }
+}
+
+/// Says why results are not written.
+fn refused(error: &StoreError) -> Exit {
+    output::talk(&format!("error: {error}"));
+    exit_of(error)
+}
+
+/// The exit code of results that are not written.
+pub(in crate::cli) fn exit_of(error: &StoreError) -> Exit {
+    if error.is_refusal() {
+        Exit::Usage
+    } else {
+        Exit::Io
+    }
+}

@@ -1,0 +1,144 @@
+//! Terms beyond the classical five, where a record asks for them: exponentially correlated noise, and a
+//! sine.
+
+use super::noise_fit::{NoiseFit, Sine};
+use crate::metrics::estimate::fit_sheet::{FitSheet, FitTerm};
+use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::metric::{Applies, MetricKey, Needs};
+
+/// Exponentially correlated noise.
+pub static CORRELATED_NOISE: MetricKey = MetricKey::new(
+    "correlated_noise_deg_per_h",
+    "deg/h",
+    Applies::Steady,
+    "standard deviation of exponentially correlated (Gauss-Markov) noise, where the Allan variance asks for it",
+)
+.synonyms(&["gauss_markov", "markov", "exponentially_correlated_noise"])
+.heading("correlated noise")
+.needs(Needs::AllanFit)
+.by_choice()
+.closing_tables();
+
+/// Its correlation time.
+pub static CORRELATION_TIME: MetricKey = MetricKey::new(
+    "correlation_time_s",
+    "s",
+    Applies::Steady,
+    "correlation time of that noise",
+)
+.synonyms(&["correlation_time", "markov_time"])
+.heading("correlation time")
+.needs(Needs::AllanFit)
+.by_choice()
+.closing_tables();
+
+/// Amplitude of a sine in the words.
+pub static SINE_AMPLITUDE: MetricKey = MetricKey::new(
+    "sine_amplitude_deg_per_h",
+    "deg/h",
+    Applies::Steady,
+    "amplitude of a sine in the words, found by a line test and taken out before the fit",
+)
+.synonyms(&["sinusoidal_noise", "sine", "sine_amplitude"])
+.heading("sine")
+.needs(Needs::AllanFit)
+.by_choice()
+.closing_tables();
+
+/// Period of the sine.
+pub static SINE_PERIOD: MetricKey =
+    MetricKey::new("sine_period_s", "s", Applies::Steady, "period of that sine")
+        .synonyms(&["sine_period"])
+        .heading("sine period")
+        .needs(Needs::AllanFit)
+        .by_choice()
+        .closing_tables();
+
+/// Why a record has none of them.
+const NOT_ASKED_FOR: &str = "the record does not ask for it";
+
+/// Field of the independent frequencies among which a sine was found.
+const TRIED: &str = "frequencies_tried";
+
+/// Enters the terms that a fit has beyond the five.
+pub(crate) fn put_extra_terms(fit: &NoiseFit, metrics: &mut ChannelMetrics) {
+    let is_adequate = fit.goodness.is_adequate();
+    let correlated = fit.correlated.filter(|_| is_adequate);
+    let mut put = |key: &MetricKey, estimate: Option<Estimate>| match estimate {
+        Some(estimate) if estimate.high.is_finite() => {
+            let metric = metrics.put(key, estimate);
+            metric.fields.insert("tau_min_s", fit.tau_range_s[0]);
+            metric.fields.insert("tau_max_s", fit.tau_range_s[1]);
+        }
+        _ => {
+            metrics.metrics.remove(key.name);
+            metrics.miss(key, NOT_ASKED_FOR);
+        }
+    };
+    put(
+        &CORRELATED_NOISE,
+        correlated.map(|noise| noise.deviation_deg_per_h.estimate()),
+    );
+    put(
+        &CORRELATION_TIME,
+        correlated.map(|noise| noise.correlation_time_s),
+    );
+    // A line stands by itself, whatever the rest is.
+    put(
+        &SINE_AMPLITUDE,
+        fit.sine.map(|sine| sine.amplitude_deg_per_h),
+    );
+    put(&SINE_PERIOD, fit.sine.map(|sine| sine.period_s));
+    if let (Some(sine), Some(metric)) = (fit.sine, metrics.get_mut(&SINE_AMPLITUDE)) {
+        let tried = sine.frequencies_tried as f64;
+        metric.fields.insert(TRIED, tried);
+    }
+}
+
+/// Enters them into the sheet of the fit, in which also an inadequate one is told.
+pub(crate) fn add_to_sheet(fit: &NoiseFit, sheet: &mut FitSheet) {
+    if let Some(noise) = fit.correlated {
+        let term = FitTerm {
+            square: noise.deviation_deg_per_h.square,
+            standard_error: noise.deviation_deg_per_h.standard_error,
+            unit: format!("({})^2", CORRELATED_NOISE.unit),
+            is_in_model: true,
+        };
+        sheet.terms.insert(CORRELATED_NOISE.name.to_owned(), term);
+        let time = noise.correlation_time_s.value;
+        sheet.numbers.insert(CORRELATION_TIME.name.to_owned(), time);
+    }
+}
+
+/// The sine of most of several records, with the mean of its squares as that of its amplitude; none
+/// where less than half of them have it.
+pub(crate) fn pooled_sine(repeats: &[ChannelMetrics]) -> Option<Sine> {
+    let found = repeats.iter().filter_map(|repeat| {
+        let amplitude = repeat.get(&SINE_AMPLITUDE)?;
+        let tried = amplitude.fields.get(TRIED)?;
+        Some((
+            amplitude.estimate,
+            repeat.get(&SINE_PERIOD)?.estimate,
+            *tried,
+        ))
+    });
+    let found: Vec<(Estimate, Estimate, f64)> = found.collect();
+    if found.is_empty() || 2 * found.len() < repeats.len() {
+        return None;
+    }
+    let periods: Vec<f64> = found.iter().map(|(_, period, _)| period.value).collect();
+    let squares: f64 = found.iter().map(|(it, ..)| it.value * it.value).sum();
+    let amplitude = (squares / repeats.len() as f64).sqrt();
+    let half = |it: &Estimate| (it.high - it.low) / 2.0;
+    let pooled_half = |pick: &dyn Fn(&(Estimate, Estimate, f64)) -> f64| {
+        let sum: f64 = found.iter().map(|it| pick(it).powi(2)).sum();
+        sum.sqrt() / found.len() as f64
+    };
+    Some(Sine {
+        amplitude_deg_per_h: Estimate::symmetric(amplitude, pooled_half(&|it| half(&it.0))),
+        period_s: Estimate::symmetric(interval::mean(&periods), pooled_half(&|it| half(&it.1))),
+        frequencies_tried: interval::round_to_count(found[0].2),
+    })
+}

@@ -1,0 +1,240 @@
+//! A frame with two axes, and the legend beside it.
+
+use super::axis::Axis;
+use super::picture::{Anchor, BLACK, Colour, PALE, Picture, Point, Shape, Stroke};
+
+/// Width of every picture, pixels.
+pub(in crate::report::plot) const WIDTH: f64 = 1200.0;
+/// Left edge of the frames.
+pub(in crate::report::plot) const LEFT: f64 = 90.0;
+/// Right edge of the frames; the legend stands to the right of it.
+pub(in crate::report::plot) const RIGHT: f64 = 880.0;
+/// Left edge of the legend.
+const LEGEND: f64 = 900.0;
+const SMALL: f64 = 13.0;
+
+/// A frame that maps data to pixels.
+pub(in crate::report::plot) struct Panel {
+    top: f64,
+    bottom: f64,
+    x: Axis,
+    y: Axis,
+}
+
+impl Panel {
+    /// Draws frame, grid, ticks and titles, and returns the frame.
+    pub(in crate::report::plot) fn new(
+        picture: &mut Picture,
+        (top, bottom): (f64, f64),
+        x: Axis,
+        y: Axis,
+    ) -> Self {
+        let panel = Self { top, bottom, x, y };
+        for (axis, is_x) in [(&panel.x, true), (&panel.y, false)] {
+            for value in axis
+                .minor
+                .iter()
+                .chain(axis.ticks.iter().map(|(value, _)| value))
+            {
+                picture.line(panel.grid_line(*value, is_x), Stroke::solid(PALE, 0.75));
+            }
+            for (value, label) in &axis.ticks {
+                if is_x {
+                    let at = (panel.place_x(*value), bottom + 14.0);
+                    picture.text(at, label, SMALL, Anchor::Middle);
+                } else {
+                    let at = (LEFT - 7.0, panel.place_y(*value));
+                    picture.text(at, label, SMALL, Anchor::End);
+                }
+            }
+        }
+        let corners = [
+            (LEFT, top),
+            (RIGHT, top),
+            (RIGHT, bottom),
+            (LEFT, bottom),
+            (LEFT, top),
+        ];
+        picture.line(corners.to_vec(), Stroke::solid(BLACK, 1.0));
+        let below = (0.5 * (LEFT + RIGHT), bottom + 34.0);
+        picture.text(below, &panel.x.title, 14.0, Anchor::Middle);
+        picture.upright_text((22.0, 0.5 * (top + bottom)), &panel.y.title, 14.0);
+        panel
+    }
+
+    fn grid_line(&self, value: f64, is_x: bool) -> Vec<Point> {
+        if is_x {
+            let x = self.place_x(value);
+            vec![(x, self.top), (x, self.bottom)]
+        } else {
+            let y = self.place_y(value);
+            vec![(LEFT, y), (RIGHT, y)]
+        }
+    }
+
+    fn place_x(&self, value: f64) -> f64 {
+        LEFT + self.x.fraction(value) * (RIGHT - LEFT)
+    }
+
+    fn place_y(&self, value: f64) -> f64 {
+        self.bottom - self.y.fraction(value) * (self.bottom - self.top)
+    }
+
+    /// Where a point of data stands, pixels.
+    pub(in crate::report::plot) fn place(&self, (x, y): (f64, f64)) -> Point {
+        (self.place_x(x), self.place_y(y))
+    }
+
+    /// Range of the x axis.
+    pub(in crate::report::plot) fn x_range(&self) -> (f64, f64) {
+        self.x.range()
+    }
+
+    /// Draws a line through points of data, cut off at the frame.
+    pub(in crate::report::plot) fn line(
+        &self,
+        picture: &mut Picture,
+        data: &[(f64, f64)],
+        stroke: Stroke,
+    ) {
+        let mut piece: Vec<Point> = Vec::new();
+        for pair in data.windows(2) {
+            let Some((start, end)) = self.clipped(self.place(pair[0]), self.place(pair[1])) else {
+                picture.line(std::mem::take(&mut piece), stroke);
+                continue;
+            };
+            let continues = piece
+                .last()
+                .is_some_and(|(x, y)| (x - start.0).abs() + (y - start.1).abs() < 1e-6);
+            if !continues {
+                picture.line(std::mem::take(&mut piece), stroke);
+                piece.push(start);
+            }
+            piece.push(end);
+        }
+        picture.line(piece, stroke);
+    }
+
+    /// Fills between two lines over the same abscissae, cut off at the frame.
+    pub(in crate::report::plot) fn band(
+        &self,
+        picture: &mut Picture,
+        data: &[(f64, f64, f64)],
+        colour: Colour,
+        opacity: f64,
+    ) {
+        let inside = |(x, y): Point| (x.clamp(LEFT, RIGHT), y.clamp(self.top, self.bottom));
+        let lower = data
+            .iter()
+            .map(|(x, low, _)| inside(self.place((*x, *low))));
+        let upper = data
+            .iter()
+            .rev()
+            .map(|(x, _, high)| inside(self.place((*x, *high))));
+        picture.area(lower.chain(upper).collect(), colour, opacity);
+    }
+
+    /// Draws a marker if it lies inside the frame.
+    pub(in crate::report::plot) fn marker(
+        &self,
+        picture: &mut Picture,
+        data: (f64, f64),
+        shape: Shape,
+        colour: Colour,
+    ) {
+        let (x, y) = self.place(data);
+        if (LEFT..=RIGHT).contains(&x) && (self.top..=self.bottom).contains(&y) {
+            picture.marker((x, y), shape, colour);
+        }
+    }
+
+    /// The part of a segment inside the frame (Liang and Barsky).
+    fn clipped(&self, start: Point, end: Point) -> Option<(Point, Point)> {
+        let (dx, dy) = (end.0 - start.0, end.1 - start.1);
+        let mut enter = 0.0_f64;
+        let mut leave = 1.0_f64;
+        let edges = [
+            (-dx, start.0 - LEFT),
+            (dx, RIGHT - start.0),
+            (-dy, start.1 - self.top),
+            (dy, self.bottom - start.1),
+        ];
+        for (speed, distance) in edges {
+            if !(speed.is_finite() && distance.is_finite()) {
+                return None;
+            }
+            if speed.abs() < 1e-12 {
+                if distance < 0.0 {
+                    return None;
+                }
+            } else if speed < 0.0 {
+                enter = enter.max(distance / speed);
+            } else {
+                leave = leave.min(distance / speed);
+            }
+        }
+        let at = |part: f64| (start.0 + part * dx, start.1 + part * dy);
+        (enter <= leave).then(|| (at(enter), at(leave)))
+    }
+}
+
+/// Text and samples to the right of the frames.
+pub(in crate::report::plot) struct Legend {
+    y: f64,
+}
+
+impl Legend {
+    /// A legend that starts at a height.
+    pub(in crate::report::plot) fn new(top: f64) -> Self {
+        Self { y: top + 10.0 }
+    }
+
+    /// A line sample with its name.
+    pub(in crate::report::plot) fn line(
+        &mut self,
+        picture: &mut Picture,
+        stroke: Stroke,
+        text: &str,
+    ) {
+        let points = vec![(LEGEND, self.y), (LEGEND + 34.0, self.y)];
+        picture.line(
+            points,
+            Stroke {
+                opacity: 1.0,
+                ..stroke
+            },
+        );
+        self.text_at(picture, LEGEND + 42.0, text, 14.0);
+    }
+
+    /// A marker with its meaning.
+    pub(in crate::report::plot) fn marker(
+        &mut self,
+        picture: &mut Picture,
+        look: (Shape, Colour),
+        text: &str,
+    ) {
+        picture.marker((LEGEND + 17.0, self.y), look.0, look.1);
+        self.text_at(picture, LEGEND + 42.0, text, 12.5);
+    }
+
+    /// A remark.
+    pub(in crate::report::plot) fn text(&mut self, picture: &mut Picture, text: &str) {
+        self.text_at(picture, LEGEND, text, 12.5);
+    }
+
+    /// An indented remark that belongs to the entry above.
+    pub(in crate::report::plot) fn detail(&mut self, picture: &mut Picture, text: &str) {
+        self.text_at(picture, LEGEND + 42.0, text, 12.5);
+    }
+
+    /// Leaves room.
+    pub(in crate::report::plot) fn space(&mut self) {
+        self.y += 10.0;
+    }
+
+    fn text_at(&mut self, picture: &mut Picture, x: f64, text: &str, size: f64) {
+        picture.text((x, self.y), text, size, Anchor::Start);
+        self.y += size + 7.0;
+    }
+}
