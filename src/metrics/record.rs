@@ -248,6 +248,14 @@ impl FilterFacts {
         }
     }
 
+    /// The filter, if its weights are given.
+    pub(crate) fn given(&self) -> Option<Prediction> {
+        match self.shape.rule {
+            WeightRule::Adaptive { .. } => None,
+            _ => self.frozen(),
+        }
+    }
+
     /// Delay at DC of the filter frozen, samples; 0 where it has none.
     pub(crate) fn delay_at_dc_samples(&self) -> f64 {
         let delay = self.frozen().map(|frozen| frozen.delay_at_dc_samples());

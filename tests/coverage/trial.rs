@@ -14,6 +14,9 @@ extends = "scenarios/base/fog70.toml"
 fidelity = "rate"
 warm_up_s = 1.0
 
+[gyro.output]
+average_samples = 4
+
 [[filter]]
 name = "lms"
 [filter.lms]

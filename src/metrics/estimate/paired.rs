@@ -80,7 +80,18 @@ impl MeanScatter {
         if long < SAMPLES_MIN {
             return Self::of(differences, reach);
         }
-        let density = tapered_density(aligned, long);
+        Self::of_known_density(differences, tapered_density(aligned, long), reach, cycle)
+    }
+
+    /// Of differences whose spectral density at zero frequency is known.
+    ///
+    /// * `cycle`: samples of a swing, whose phase the ends of all blocks share.
+    pub(crate) fn of_known_density(
+        differences: &[f64],
+        density: Spread,
+        reach: usize,
+        cycle: Option<f64>,
+    ) -> Self {
         let short = whole(reach, cycle).max(differences.len() as f64 / SHORT_BLOCKS_MAX as f64);
         Self {
             density,
@@ -106,6 +117,11 @@ impl MeanScatter {
     pub(crate) fn ends_over(&self, count: usize) -> Spread {
         self.ends.scaled(1.0 / count.max(1) as f64)
     }
+}
+
+/// Spectral density of values at zero frequency, variance times samples.
+pub(crate) fn density_at_zero(values: &[f64]) -> Spread {
+    MeanScatter::of(values, 1).density
 }
 
 /// Autocovariance of values about their mean at lags from 0 on.

@@ -95,6 +95,16 @@ impl Estimate {
         }
     }
 
+    /// The estimate with an independent half width added to both sides in quadrature.
+    #[must_use]
+    pub(crate) fn widened(self, half_width: f64) -> Self {
+        Self {
+            low: self.value - (self.value - self.low).hypot(half_width),
+            high: self.value + (self.high - self.value).hypot(half_width),
+            ..self
+        }
+    }
+
     /// The estimate with both ends cut to `[least, most]`; the value lies between.
     #[must_use]
     pub(crate) fn clamped(self, least: f64, most: f64) -> Self {

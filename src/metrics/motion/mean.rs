@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::metrics::estimate::influence::{Learned, Spread};
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::paired::{MeanScatter, delayed};
+use crate::metrics::estimate::paired::{MeanScatter, delayed, density_at_zero};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
@@ -12,6 +12,7 @@ use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Needs, 
 use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
 use crate::metrics::theory::memory::memory_samples;
+use crate::signal::WeightRule;
 use crate::wording::decimals;
 
 /// Mean.
@@ -221,6 +222,9 @@ pub(crate) fn paired_ratio(
 }
 
 /// How the mean of a channel minus its gain times raw scatters, both without motion.
+///
+/// Of given weights with the gain G the density at zero frequency is `(G - gain)^2` times raw's: blocks
+/// of a short record do not tell it from what is near it.
 pub(crate) fn paired_scatter(
     (own, raw): (&[f64], &[f64]),
     gain: f64,
@@ -233,11 +237,41 @@ pub(crate) fn paired_scatter(
             .collect()
     };
     let reach = filter_reach(Some(facts));
+    if let Some(given) = facts.given() {
+        let density = density_at_zero(raw).scaled(given.dc_gain() - gain);
+        let density = density.plus(rounding_density((own, raw), facts));
+        return MeanScatter::of_known_density(&minus(raw), density, reach, None);
+    }
     let delay = facts.delay_at_dc_samples();
     // Delayed, the first samples have no input.
     let aligned = minus(&delayed(raw, delay));
     let whole = reach.min(aligned.len() / 2);
     MeanScatter::of_paired(&minus(raw), &aligned[whole..], reach, None)
+}
+
+/// Samples at the end of a record that show the rounding of a filter in hardware.
+const ROUNDED_SAMPLES: usize = 2000;
+
+/// Spectral density of what given weights do not explain of a channel: the rounding of its words.
+pub(crate) fn rounding_density((own, raw): (&[f64], &[f64]), facts: &FilterFacts) -> Spread {
+    let WeightRule::Fixed(weights) = &facts.shape.rule else {
+        return Spread::known(0.0);
+    };
+    let newest = facts.shape.newest_age_samples;
+    let first = (newest + weights.len()).max(own.len().saturating_sub(ROUNDED_SAMPLES));
+    let rest: Vec<f64> = (first..own.len())
+        .map(|index| {
+            let ages = weights.iter().zip(newest..);
+            let explained = ages.map(|(weight, age)| weight * raw[index - age]);
+            own[index] - explained.sum::<f64>()
+        })
+        .collect();
+    let variance = if rest.len() < 2 {
+        0.0
+    } else {
+        interval::sample_variance(&rest)
+    };
+    Spread::known(variance)
 }
 
 /// Why nothing can be divided by raw's mean; nothing if it can be told from zero.

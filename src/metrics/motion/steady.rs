@@ -16,6 +16,7 @@ use crate::metrics::estimate::table::{
 };
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::estimate::{blocks, interval};
+use crate::metrics::key::metric::MetricKey;
 use crate::metrics::noise::autocovariance::{CURVE_LAGS, LaggedProducts};
 use crate::metrics::noise::bias_stability;
 use crate::metrics::noise::bias_stability::{
@@ -27,10 +28,10 @@ use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::line::fit_beside_sine;
 use crate::metrics::noise::memory::fit_tau_min_s;
 use crate::metrics::noise::truth_response::without_motion;
-use crate::metrics::record::{FilterFacts, Record, Settings};
+use crate::metrics::record::{FilterFacts, Record, Settings, WeightScatter};
 use crate::metrics::theory::prediction::lags_needed;
 use crate::metrics::trial::dc_gain::{
-    ANGLE_RANDOM_WALK_OVER_DC_GAIN, BIAS_STABILITY_OVER_DC_GAIN, put_over_dc_gain,
+    ANGLE_RANDOM_WALK_OVER_DC_GAIN, BIAS_STABILITY_OVER_DC_GAIN, DC_GAIN, put_over_dc_gain,
 };
 use crate::metrics::trial::predicted::measure_predictions;
 use crate::metrics::trial::weight_noise::{measure_inside_memory, measure_weight_noise};
@@ -87,6 +88,23 @@ pub(crate) fn measure_steady(
         ] {
             put_over_dc_gain(key, over, facts.dc_gain, metrics);
         }
+        if let WeightScatter::Learned(_) = facts.weight_scatter(samples, 0.0) {
+            widen_by_gain(&ANGLE_RANDOM_WALK, metrics);
+        }
+    }
+}
+
+/// Adds the scatter of the DC gain, which is in the fitted noise of no single record, to a metric that is
+/// proportional to it.
+fn widen_by_gain(key: &MetricKey, metrics: &mut ChannelMetrics) {
+    let Some(gain) = metrics.get(&DC_GAIN).map(|metric| metric.estimate) else {
+        return;
+    };
+    let relative = Spread::of(&gain).half_width() / gain.value;
+    if let Some(metric) = metrics.get_mut(key).filter(|_| relative.is_finite()) {
+        metric.estimate = metric
+            .estimate
+            .widened(relative.abs() * metric.estimate.value);
     }
 }
 

@@ -1,6 +1,8 @@
 //! Metrics of a record of steps.
 
-use super::mean::{RatioOfMeans, measure_mean_ratio, paired_ratio, ratio_of_means_lack};
+use super::mean::{
+    RatioOfMeans, filter_reach, measure_mean_ratio, paired_ratio, ratio_of_means_lack,
+};
 use super::steady::LAGS_MIN;
 use super::tracking::measure_tracking;
 use crate::metrics::estimate::blocks::RATIO_BLOCKS;
@@ -33,6 +35,13 @@ pub static SETTLED_GAIN: MetricKey = MetricKey::of_filters(
 
 /// Rate after a step over the step below which it counts as rest.
 const REST_PER_STEP: f64 = 0.05;
+
+/// Samples that a filter reaches back, for each block of a settled part: shorter ones are not
+/// independent.
+const REACHES_PER_BLOCK: usize = 8;
+
+/// Fewest blocks.
+const BLOCKS_MIN: usize = 6;
 
 /// Metrics of a staircase: settling after the last step, noise and means.
 pub(crate) fn measure_steps(
@@ -84,8 +93,9 @@ pub(crate) fn measure_steps(
         return;
     }
     measure_tracking(record, Some(start), filter, metrics);
-    let products =
-        |tail: &[f64]| LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, RATIO_BLOCKS);
+    let reaches = (values.len() - start) / (REACHES_PER_BLOCK * filter_reach(filter));
+    let blocks = reaches.clamp(BLOCKS_MIN, RATIO_BLOCKS);
+    let products = |tail: &[f64]| LaggedProducts::new(tail, interval::mean(tail), LAGS_MIN, blocks);
     // The table may shake at its rate.
     let still = without_motion(record, start, filter);
     let (own_tail, raw_tail) = still.as_ref().map_or_else(

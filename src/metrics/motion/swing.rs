@@ -27,7 +27,7 @@ use crate::metrics::theory::bound::{LeastNoise, filter_bound_at, noise_power_gai
 use crate::metrics::theory::learning::{Learning, NOT_FROM_ONE_RECORD};
 use crate::metrics::theory::prediction::{lags_needed, predict};
 use crate::metrics::trial::noise_delay::{
-    NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve, put_over_bound,
+    put_bound, put_bound_curve, put_over_bound, widen_over_bound,
 };
 use crate::metrics::trial::predicted::DC_GAIN_PREDICTED;
 use crate::metrics::trial::readaptation;
@@ -272,6 +272,12 @@ fn measure_correlation(
     let clock = response.clock;
     match correlation_delay_s(truth_deg_per_h, record.channel_deg_per_h, &clock) {
         Ok(delay_s) => {
+            // What weights on their way add to the channel's noise is in what they have learned.
+            let by_raw = response
+                .is_learned()
+                .then(|| correlation_delay_s(truth_deg_per_h, record.raw_deg_per_h, &clock).ok())
+                .flatten();
+            let delay_s = by_raw.map_or(delay_s, |raw| Spread::of(&raw).about(delay_s.value));
             let delay_ms = response.with_weights(delay_s);
             let delay_ms = delay_ms.shifted(latency_s).scaled(units::s_to_ms(1.0));
             let metric = metrics.put(&DELAY_BY_CORRELATION, delay_ms);
@@ -334,14 +340,12 @@ fn measure_mean_ratio(
     let own = fits.channel.residuals(record.channel_deg_per_h);
     let scatter = paired_scatter((&own, &raw), ratio, facts);
     let samples = own.len();
-    let learned = facts
-        .learning
-        .as_ref()
-        .and_then(|learning| learning.mean_ratio(offset));
-    let estimate = match (
-        facts.weight_scatter(record.raw_deg_per_h.len(), 0.0),
-        learned,
-    ) {
+    // The offset is a constant rate beside the swing: the mean weights make it what it is.
+    let weights = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
+    let learned = weights.of(facts.mean_weights.as_deref(), |weights| {
+        weights.iter().sum()
+    });
+    let estimate = match (weights, learned) {
         (WeightScatter::Blocks, _) => scatter.over(samples).scaled(1.0 / offset).about(ratio),
         (WeightScatter::Learned(_), Some(learned)) => {
             let ends = scatter.ends_over(samples).scaled(1.0 / offset);
@@ -423,9 +427,6 @@ fn measure_bound(
         .flatten()
         .map(|least| least.noise_gain)
         .collect();
-    // The bound is made of parabolas in the delay: its extremes over the short interval are at the ends
-    // unless the lowest point lies inside, which the value in the middle stands for. The scatter of the
-    // autocovariance adds in quadrature; the two are nearly independent.
     let bound = at(delay.value, &autocovariance);
     let over = response.by_weights(facts, |frozen, weights| {
         let delay_s = frozen.delay_s(clock.frequency_hz, clock.sample_period_s);
@@ -435,43 +436,12 @@ fn measure_bound(
     });
     put_over_bound(channel, raw, &bound, &without, over.as_ref(), metrics);
     let bound = bound.map(|least| {
-        let value = least.noise_gain;
-        let ends = [delay.low, delay.high]
-            .map(|end| at(end, &autocovariance).map_or(value, |least| least.noise_gain));
-        let colour = interval::jackknife(value, &left_out).high - value;
-        let below = (value - ends[0].min(ends[1])).max(0.0).hypot(colour);
-        let above = (ends[0].max(ends[1]) - value).max(0.0).hypot(colour);
-        let estimate = Estimate::with_interval(value, (value - below).max(0.0), value + above);
-        (estimate, least)
+        let at = |delay| at(delay, &autocovariance).ok();
+        (least.over_delay(&delay, at, &left_out), least)
     });
     if let (Ok((bound, _)), None) = (&bound, &over) {
         widen_over_bound(bound, &left_out, metrics);
     }
     put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
     put_bound_curve(facts, &autocovariance, clock.sample_period_s, metrics);
-}
-
-/// Adds what the uncertain delay does to the bound to the interval of the noise gain over it.
-///
-/// The scatter of the noise is in that interval already, where numerator and bound share it; of the
-/// bound's own interval only what exceeds it comes on top, in quadrature.
-fn widen_over_bound(bound: &Estimate, left_out: &[f64], metrics: &mut ChannelMetrics) {
-    let Some(metric) = metrics.get_mut(&NOISE_GAIN_OVER_BOUND) else {
-        return;
-    };
-    let colour = interval::jackknife(bound.value, left_out).high - bound.value;
-    let by_delay = |half_width: f64| {
-        let rest = (half_width * half_width - colour * colour).max(0.0).sqrt();
-        rest / bound.value * metric.estimate.value
-    };
-    let below = by_delay(bound.high - bound.value);
-    let above = by_delay(bound.value - bound.low);
-    let Estimate {
-        value, low, high, ..
-    } = metric.estimate;
-    metric.estimate = Estimate::with_interval(
-        value,
-        (value - below.hypot(value - low)).max(0.0),
-        value + above.hypot(high - value),
-    );
 }

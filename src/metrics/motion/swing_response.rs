@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::mean::filter_reach;
+use super::mean::{filter_reach, rounding_density};
 use crate::metrics::estimate::influence::{Learned, Spread};
 use crate::metrics::estimate::paired::{MeanScatter, delayed};
 use crate::metrics::estimate::value::Estimate;
@@ -111,6 +111,11 @@ impl Response {
         self.scatter.unless_unknown(spread.about(delay_s.value))
     }
 
+    /// Whether the weights forget nothing and what they have learned is known.
+    pub(super) fn is_learned(&self) -> bool {
+        self.learned.is_some()
+    }
+
     /// A delay of the channel with what learned weights add to its interval.
     pub(super) fn with_weights(&self, delay_s: Estimate) -> Estimate {
         let spread = match &self.learned {
@@ -202,12 +207,18 @@ fn paired_scatter(
         [real, imaginary]
     };
     let reach = filter_reach(filter);
+    let cycle = 1.0 / (clock.frequency_hz * clock.sample_period_s);
+    if let Some(facts) = filter.filter(|facts| facts.given().is_some()) {
+        // The response of given weights is what the fits show but for the ends.
+        let density = rounding_density((&own, &raw), facts).scaled(scale / 2.0_f64.sqrt());
+        return parts(&raw, turned)
+            .map(|part| MeanScatter::of_known_density(&part, density, reach, Some(cycle)));
+    }
     let angular = TAU * clock.frequency_hz * clock.sample_period_s;
     let delay = filter.map_or(0.0, FilterFacts::delay_at_dc_samples);
     let plain = parts(&raw, turned);
     let aligned = parts(&delayed(&raw, delay), turned + angular * delay);
     let first = reach.min(own.len() / 2);
-    let cycle = 1.0 / (clock.frequency_hz * clock.sample_period_s);
     [0, 1].map(|part| {
         MeanScatter::of_paired(&plain[part], &aligned[part][first..], reach, Some(cycle))
     })

@@ -3,9 +3,9 @@
 //!
 //! With `R_c`, `p_c` the sums of products up to a checkpoint c, its weights are
 //! `w_c = R_c^-1 p_c = w + R_c^-1 sum_(f <= c) s_f` exactly, for any w, with the score
-//! `s_f = p_f - R_f w` of each stretch f. The scores of long stretches are independent and of mean 0
-//! at the weights that many records have in common, so that each stretch adds `A_f s_f` of its own to
-//! the mean weights of the record, `A_f` the mean of `R_c^-1` over the checkpoints from f on. Stretches
+//! `s_f = p_f - R_f w` of each stretch f. The scores of long stretches are independent, and those at the
+//! weights that many records have in common at c are of mean 0, so that each stretch adds the mean of
+//! `R_c^-1 s_f` over the checkpoints from f on to the mean weights of the record. Stretches
 //! of the warm-up add theirs. What the known motion puts into a score is the same in every record and
 //! taken off: it is the score of the words without their noise. The stretches of a motion fade into each
 //! other. This is the sandwich covariance of least squares; leaving blocks of the
@@ -29,6 +29,9 @@ const STRETCHES_MIN: usize = 20;
 
 /// Shortest stretch, in words that the filter reaches back: scores correlate over as many.
 const REACHES_MIN: usize = 16;
+
+/// Largest power of a stretch over the smallest of words that show one motion.
+const POWER_RATIO_MAX: f64 = 4.0;
 
 /// Part of the record that a memory may span for its blocks to tell how it scatters.
 const MEMORY_PER_RECORD: f64 = 0.1;
@@ -183,7 +186,8 @@ impl Learning {
         let (parts, freedom) = solved.weight_parts(self, from);
         let shift = self.drift_deg_per_h;
         let drift = if shift > 0.0 {
-            Solved::of(self, shift)?.last - &solved.last
+            let moved = Solved::of(self, shift)?;
+            moved.mean_weights(self, from) - solved.mean_weights(self, from)
         } else {
             DVector::zeros(solved.last.len())
         };
@@ -198,7 +202,12 @@ impl Learning {
     /// What each stretch adds to the gain for a constant rate that is there from the first word on,
     /// the filter free to adapt to it: `(G' (m + r) - G m) / r` with the gains G without and G' with
     /// the rate r, and the mean m of the record.
+    ///
+    /// None where the words' power changes within the record, as over steps.
     pub(crate) fn adapted_gain(&self, rate: f64) -> Option<Learned> {
+        if !self.is_even() {
+            return None;
+        }
         let (without, with) = (Solved::of(self, 0.0)?, Solved::of(self, rate)?);
         let (parts, freedom) = without.weight_parts(self, 0);
         let (moved, _) = with.weight_parts(self, 0);
@@ -255,19 +264,25 @@ impl Learning {
         }
         let gain = self.gain(&solved.last);
         let means = self.mean_parts();
-        let mut reach = DVector::zeros(solved.last.len());
+        let free = solved.last.len();
+        let mut reach = DVector::zeros(free);
+        let mut by_weights = DMatrix::zeros(free, free);
         let mut parts = vec![0.0; count];
         for stretch in (0..count).rev() {
             reach *= self.kept;
+            by_weights *= self.kept;
             if let Some(inverse) = &solved.inverses[stretch] {
-                reach += inverse * &inputs[stretch];
+                let own = inverse * &inputs[stretch];
+                by_weights += &solved.weights[stretch] * own.transpose();
+                reach += own;
             }
             let by_input = if with_input {
                 gain * means[stretch]
             } else {
                 0.0
             };
-            parts[stretch] = reach.dot(&solved.scores[stretch]) + by_input;
+            let (normal, right) = &solved.noise[stretch];
+            parts[stretch] = reach.dot(right) - normal.dot(&by_weights.transpose()) + by_input;
         }
         let (_, freedom) = solved.weight_parts(self, 0);
         Some(Learned {
@@ -280,7 +295,11 @@ impl Learning {
     /// What each stretch adds to the mean output over the mean input of the record.
     ///
     /// Output and input share the noise of the input, which cancels; of the weights the part remains.
+    /// None where the words' power changes within the record: the weights then move within a stretch.
     pub(crate) fn mean_ratio(&self, mean: f64) -> Option<Learned> {
+        if !self.is_even() {
+            return None;
+        }
         let mut learned = self.output_mean(false)?.scaled(1.0 / mean);
         // A rate that all words share by slow noise moves the weights as well.
         let drift = self.drift_deg_per_h;
@@ -290,6 +309,19 @@ impl Learning {
             learned.warm_up += 1;
         }
         Some(learned)
+    }
+
+    /// Whether the words have about the same power in all stretches.
+    fn is_even(&self) -> bool {
+        let last = self.taps + 1;
+        let powers = self
+            .moments
+            .iter()
+            .map(|own| own[(0, 0)] / own[(last, last)]);
+        let (least, most) = powers.fold((f64::INFINITY, 0.0_f64), |(least, most), power| {
+            (least.min(power), most.max(power))
+        });
+        most <= POWER_RATIO_MAX * least
     }
 
     /// Mean of the newest regressor over the record.
@@ -356,9 +388,11 @@ struct Solved {
     inverses: Vec<Option<DMatrix<f64>>>,
     /// Number of stretches that count.
     numbers: Vec<f64>,
-    /// `s_f` at the weights of all words.
-    scores: Vec<DVector<f64>>,
-    /// These weights.
+    /// Normal equations of the noise of each stretch: its score at the weights w is `p - R w`.
+    noise: Vec<(DMatrix<f64>, DVector<f64>)>,
+    /// Weights at the end of each stretch; zero before the words determine them.
+    weights: Vec<DVector<f64>>,
+    /// Those of all words.
     last: DVector<f64>,
 }
 
@@ -371,24 +405,28 @@ impl Solved {
             .collect();
         let free = problems[0].1.len();
         let (mut normal, mut right) = (DMatrix::zeros(free, free), DVector::zeros(free));
-        let (mut inverses, mut numbers) = (Vec::new(), Vec::new());
+        let (mut inverses, mut numbers, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         let mut number = 0.0;
         for (own, product) in &problems {
             normal = normal * learning.kept + own;
             right = right * learning.kept + product;
             number = number * learning.kept + 1.0;
-            inverses.push(normal.clone().cholesky().map(|factors| factors.inverse()));
+            let inverse = normal.clone().cholesky().map(|factors| factors.inverse());
+            weights.push(match &inverse {
+                Some(inverse) => inverse * &right,
+                None => DVector::zeros(free),
+            });
+            inverses.push(inverse);
             numbers.push(number);
         }
-        let last = inverses.last()?.as_ref()? * &right;
-        let scores = learning.deviations.iter().map(|deviations| {
-            let (normal, right) = learning.problem(deviations, shift);
-            right - normal * &last
-        });
+        inverses.last()?.as_ref()?;
+        let last = weights.last()?.clone();
+        let deviations = learning.deviations.iter();
         Some(Self {
-            scores: scores.collect(),
+            noise: deviations.map(|own| learning.problem(own, shift)).collect(),
             inverses,
             numbers,
+            weights,
             last,
         })
     }
@@ -401,31 +439,59 @@ impl Solved {
             .unwrap_or(stretch)
     }
 
-    /// What each stretch adds to the mean weights from the stretch `from` of the record on, and the
-    /// degrees of freedom of their scatter.
-    fn weight_parts(&self, learning: &Learning, from: usize) -> (Vec<DVector<f64>>, f64) {
+    /// How much the checkpoints count for in the mean weights from the stretch `from` of the record on.
+    fn shares(&self, learning: &Learning, from: usize) -> Vec<f64> {
         let count = self.inverses.len();
-        let first = learning.warm_up + from;
-        let mut share = vec![0.0; count];
-        for stretch in first..count {
-            share[stretch] += 0.5;
-            share[self.before(stretch)] += 0.5;
+        let mut shares = vec![0.0; count];
+        for stretch in learning.warm_up + from..count {
+            shares[stretch] += 0.5;
+            shares[self.before(stretch)] += 0.5;
         }
-        let total: f64 = share.iter().sum();
+        let total: f64 = shares.iter().sum();
+        shares.iter().map(|share| share / total).collect()
+    }
+
+    /// Mean weights from the stretch `from` of the record on.
+    fn mean_weights(&self, learning: &Learning, from: usize) -> DVector<f64> {
+        let shares = self.shares(learning, from);
+        let weighted = self.weights.iter().zip(shares);
+        weighted.map(|(weights, share)| weights * share).sum()
+    }
+
+    /// What each stretch adds to these, and the degrees of freedom of their scatter.
+    ///
+    /// The scores are those at the weights of each checkpoint: before a step they are others than behind.
+    fn weight_parts(&self, learning: &Learning, from: usize) -> (Vec<DVector<f64>>, f64) {
+        let shares = self.shares(learning, from);
+        let count = self.inverses.len();
         let free = self.last.len();
-        let mut mean = DMatrix::zeros(free, free);
+        let weighed: Vec<DMatrix<f64>> = self
+            .inverses
+            .iter()
+            .zip(&shares)
+            .map(|(inverse, share)| match inverse {
+                Some(inverse) => inverse * *share,
+                None => DMatrix::zeros(free, free),
+            })
+            .collect();
         let (mut profile, mut squares, mut fourths) = (0.0_f64, 0.0, 0.0);
         let mut parts = vec![DVector::zeros(learning.taps); count];
         for stretch in (0..count).rev() {
-            mean *= learning.kept;
             profile *= learning.kept;
-            if let Some(inverse) = &self.inverses[stretch] {
-                mean += inverse * (share[stretch] / total);
-                profile += share[stretch] / total / self.numbers[stretch];
+            if self.inverses[stretch].is_some() {
+                profile += shares[stretch] / self.numbers[stretch];
             }
             squares += profile.powi(2);
             fourths += profile.powi(4);
-            parts[stretch] = learning.unfolded(&mean * &self.scores[stretch]);
+            let (normal, right) = &self.noise[stretch];
+            let mut part = DVector::zeros(free);
+            let mut kept = 1.0;
+            for checkpoint in stretch..count {
+                let score = right - normal * &self.weights[checkpoint];
+                part.gemv(kept, &weighed[checkpoint], &score, 1.0);
+                kept *= learning.kept;
+            }
+            parts[stretch] = learning.unfolded(part);
         }
         let freedom = squares * squares / fourths - free as f64;
         (parts, freedom.max(1.0))

@@ -6,7 +6,8 @@ use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::{ChannelMetrics, EXPECTED};
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
-use crate::metrics::record::{FilterFacts, Record};
+use crate::metrics::record::{FilterFacts, Record, WeightScatter};
+use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
 use crate::signal::WeightRule;
 
 /// DC gain.
@@ -77,6 +78,9 @@ pub(crate) fn put_dc_gains(record: &Record, facts: &FilterFacts, metrics: &mut C
         let of_blocks = interval::from_parts(gain, blocks);
         match learned {
             Some(learned) => learned.spread().about(gain),
+            None if matches!(scatter, WeightScatter::Learned(_)) => {
+                Estimate::without_interval(gain, NOT_FROM_ONE_RECORD)
+            }
             None => scatter.unless_unknown(of_blocks),
         }
     };

@@ -1,11 +1,13 @@
 //! What theory predicts of a filter at rest, with the noise that the record shows.
 
 use super::noise_delay::{
-    NOISE_DELAY_BOUND_NOISE_GAIN, NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve, put_over_bound,
+    NOISE_DELAY_BOUND_NOISE_GAIN, NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve,
+    put_over_bound, widen_over_bound,
 };
 use crate::metrics::estimate::influence::{Spread, spread};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::{FilterFacts, Record};
@@ -77,12 +79,13 @@ pub(crate) fn measure_predictions(
     let by_drift = at(&raw.autocovariance(), mean + drift).map_or(0.0, |moved| moved.0 - dc_gain);
     let spread = spread(&gains, None).plus(Spread::known(by_drift * by_drift));
     metrics.put(&DC_GAIN_PREDICTED, spread.about(dc_gain));
-    if delay_samples.is_finite() {
+    let delay = if delay_samples.is_finite() {
         let left_out: Vec<f64> = parts.iter().map(|part| part.1).collect();
-        put_delay_at_dc(record, facts, (delay_samples, &left_out), metrics);
+        put_delay_at_dc(record, facts, (delay_samples, &left_out), metrics)
     } else {
         metrics.miss(&DELAY_AT_DC, NO_DELAY_AT_DC);
-    }
+        Estimate::exact(delay_samples)
+    };
     let without: Vec<_> = parts.into_iter().map(|part| part.2).collect();
     let newest = facts.shape.newest_age_samples;
     let autocovariance = raw.autocovariance();
@@ -104,13 +107,14 @@ pub(crate) fn measure_predictions(
         .iter()
         .filter_map(|bound| Some(bound.as_ref().ok()?.noise_gain))
         .collect();
-    put_bound(
-        bound.map(|least| (interval::jackknife(least.noise_gain, &bounds), least)),
-        facts,
-        delay_samples,
-        record.sample_period_s,
-        metrics,
-    );
+    let bound = bound.map(|least| {
+        let at = |delay| filter_bound_at(&facts.shape, delay, &autocovariance).ok();
+        (least.over_delay(&delay, at, &bounds), least)
+    });
+    if let (Ok((bound, _)), None) = (&bound, &over) {
+        widen_over_bound(bound, &bounds, metrics);
+    }
+    put_bound(bound, facts, delay_samples, record.sample_period_s, metrics);
 }
 
 /// Mean of the values with each of `blocks` blocks of equal length left out.
@@ -125,14 +129,14 @@ fn means_without_blocks(values: &[f64], blocks: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Enters the delay at DC: of given weights exact, of ones that learn by their blocks or by what they
+/// Enters the delay at DC, and returns it in samples without the latency: of given weights exact, of ones that learn by their blocks or by what they
 /// have learned, of a prediction by the blocks left out.
 fn put_delay_at_dc(
     record: &Record,
     facts: &FilterFacts,
     (delay_samples, left_out): (f64, &[f64]),
     metrics: &mut ChannelMetrics,
-) {
+) -> Estimate {
     let newest = facts.shape.newest_age_samples;
     let delay =
         |weights: &[f64]| Prediction::of_weights(weights.to_vec(), newest).delay_at_dc_samples();
@@ -153,4 +157,5 @@ fn put_delay_at_dc(
         .scaled(record.sample_period_s)
         .shifted(facts.latency_s);
     metrics.put(&DELAY_AT_DC, delay_s.scaled(units::s_to_ms(1.0)));
+    samples
 }
