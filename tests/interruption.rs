@@ -608,7 +608,23 @@ mod process {
             let prints = !stdout(&heard).is_empty();
             let expected = if prints { 74 } else { expected };
             assert_eq!(output.status.code(), Some(expected), "{arguments:?}");
+            let says = stderr(&output).contains("cannot write to standard output: ");
+            assert_eq!(says, prints, "{arguments:?}");
         }
+    }
+
+    #[test]
+    fn a_suite_has_its_verdict_whatever_the_stack_of_the_shell() {
+        let folder = scratch();
+        scenario(folder.path(), "a", SHORT);
+        let output = Command::new("sh")
+            .args(["-c", "ulimit -s 64; exec \"$0\" run a.toml"])
+            .arg(env!("CARGO_BIN_EXE_fogbench"))
+            .current_dir(folder.path())
+            .output()
+            .expect("it starts");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert!(folder.path().join("output/junit.xml").exists());
     }
 
     #[test]

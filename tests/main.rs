@@ -43,6 +43,7 @@ mod growth;
 mod gyro_effects;
 mod injection;
 mod interruption;
+mod kalman_export;
 mod known_answers_allan;
 mod known_answers_allan_variants;
 mod known_answers_gyro;

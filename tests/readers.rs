@@ -373,6 +373,55 @@ fn a_first_line_that_begins_like_a_number_is_never_passed_over() {
     }
 }
 
+/// A log of one column with these lines among its samples.
+fn log_with(folder: &Path, lines: &[(usize, &str)]) -> Result<usize, String> {
+    let mut text: Vec<String> = (0..40).map(|sample| format!("{}", sample % 7)).collect();
+    for (at, line) in lines {
+        text.insert(*at, (*line).to_owned());
+    }
+    let file = write(folder, "log.csv", &(text.join("\n") + "\n"));
+    let log = read_log(&file, &format(None));
+    log.map(|log| log.rate_deg_per_h.len())
+        .map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_sample_that_is_missing_is_not_passed_over() {
+    let folder = scratch();
+    let with = |lines: &[(usize, &str)]| log_with(folder.path(), lines);
+    // Before and behind the samples an empty line means nothing.
+    assert_eq!(
+        with(&[(0, ""), (1, "rate"), (2, ""), (43, ""), (44, "")]),
+        Ok(40)
+    );
+    assert_eq!(with(&[(7, "# pause")]), Ok(40));
+    for missing in ["#N/A", "N/A", "null", "NaN", "_"] {
+        assert!(with(&[(7, missing)]).is_err(), "{missing}");
+    }
+    for first in ["N/A", "NA", "#N/A", "None", "~99"] {
+        assert!(with(&[(0, first)]).is_err(), "{first}");
+    }
+    // Between them it may be a sample that is missing, which is said.
+    assert_eq!(with(&[(7, ""), (9, "  "), (10, "")]), Ok(40));
+    let said = read_log(&folder.path().join("log.csv"), &format(None))
+        .expect("a log")
+        .notes();
+    assert!(
+        said[0].contains("2 empty lines between the samples, from line 8 on"),
+        "{said:?}"
+    );
+    // A time column shows that nothing is missing.
+    let timed = LogFormat {
+        sample_rate_hz: None,
+        time_column: Some("t".to_owned()),
+        ..format(None)
+    };
+    let file = write(folder.path(), "timed.csv", "t,g\n0,1\n1,2\n\n2,1\n3,2\n");
+    let log = read_log(&file, &timed).expect("a log");
+    assert_eq!(log.rate_deg_per_h, [1.0, 2.0, 1.0, 2.0]);
+    assert!(!log.notes()[0].contains("empty"));
+}
+
 #[test]
 fn a_heading_of_numbers_is_not_taken_for_a_sample() {
     // What pandas writes for a table whose columns have no names.

@@ -39,6 +39,7 @@ mod pipeline;
 mod pool;
 mod record;
 mod sine;
+mod state_space;
 mod steps;
 mod theory;
 mod trial;
@@ -90,6 +91,7 @@ pub use sine::correlation::correlation_delay_s;
 pub use sine::fit::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use sine::free_frequency::{FreeSineFit, fit_sine_free_frequency};
 pub use sine::tones::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
+pub use state_space::{FlickerBank, State, StateSpace, noise_state_space};
 pub use steps::nonlinearity::{Nonlinearity, Residual, expected_largest};
 pub use steps::scale_factor::{
     Asymmetry, RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero,

@@ -21,8 +21,29 @@ pub(crate) struct Columns {
     pub(crate) data: Vec<Column>,
     /// The time, where it was asked for.
     pub(crate) time: Option<Column>,
+    /// Empty lines between the rows.
+    pub(crate) empty_lines: EmptyLines,
     /// Where each row stands; rows of an array stand at their index.
     pub(crate) lines: Option<RowLines>,
+}
+
+/// Empty lines between samples, several in a row as one: each may stand for samples that are missing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EmptyLines {
+    /// How many.
+    pub count: usize,
+    /// The first, from 1; 0 where there is none.
+    pub first: usize,
+}
+
+impl EmptyLines {
+    /// Counts an empty line.
+    pub(crate) fn extend(&mut self, line: Option<usize>) {
+        if let Some(line) = line {
+            self.count += 1;
+            self.first = if self.count == 1 { line } else { self.first };
+        }
+    }
 }
 
 /// The lines that rows stand in. Most rows stand in the line after that of the row before.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::BufRead;
 use std::path::Path;
 
-use super::column::{Column, Columns, RowLines};
+use super::column::{Column, Columns, EmptyLines, RowLines};
 use super::error::{LogError, Place};
 use super::input::{failure, push};
 use super::text::{Delimiter, FirstLineError, Lines, TextError, finite, is_heading, listed, shown};
@@ -186,6 +186,9 @@ pub(super) fn read(
                 table.insert(Table::new(layout, wanted).map_err(at(number))?)
             }
         };
+        if table.columns.rows() > 0 {
+            table.columns.empty_lines.extend(line.empty_before);
+        }
         let cells = table.row(line.text).map_err(at(line.number))?;
         table.take(path, &cells, line.number)?;
         if table.columns.rows() >= wanted.samples_max {
@@ -240,6 +243,7 @@ impl Table {
                 data: data.iter().copied().map(named).collect(),
                 time: time.map(named),
                 lines: Some(RowLines::default()),
+                empty_lines: EmptyLines::default(),
             },
             layout,
             data,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::bounds::{check_rate, check_sample_rate, check_temperature};
-use super::column::Columns;
+use super::column::{Columns, EmptyLines};
 use super::csv::{self, Wanted};
 use super::error::LogError;
 use super::input::Input;
@@ -11,6 +11,7 @@ use super::timing::{TimeUnit, Timing, timing};
 use super::unit::RateUnit;
 use super::{npy, npy_heading};
 use crate::units::s_to_us;
+use crate::wording::counted;
 
 /// What the user says of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +46,8 @@ pub struct Log {
     pub sample_rate_hz: f64,
     /// What the time column says; none without one.
     pub timing: Option<Timing>,
+    /// Empty lines between the samples.
+    pub empty_lines: EmptyLines,
 }
 
 impl Log {
@@ -57,14 +60,20 @@ impl Log {
     /// What is worth saying about how it was read.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
-        let Some(timing) = self.timing else {
-            return Vec::new();
-        };
-        vec![format!(
-            "time column: {:.6} Hz, no gap, stamps within {:.3} us of equal spacing",
-            timing.sample_rate_hz,
-            s_to_us(timing.jitter_max_s)
-        )]
+        let EmptyLines { count, first } = self.empty_lines;
+        match self.timing {
+            Some(timing) => vec![format!(
+                "time column: {:.6} Hz, no gap, stamps within {:.3} us of equal spacing",
+                timing.sample_rate_hz,
+                s_to_us(timing.jitter_max_s)
+            )],
+            None if count > 0 => vec![format!(
+                "{} between the samples, from line {first} on, passed over: the samples are taken to be \
+                 equally spaced all the same",
+                counted(count, "empty line")
+            )],
+            None => Vec::new(),
+        }
     }
 }
 
@@ -205,6 +214,7 @@ fn log(
         rate_deg_per_h: rates(path, columns, index, format, sample_rate_hz)?,
         sample_rate_hz,
         timing,
+        empty_lines: columns.empty_lines,
     })
 }
 

@@ -23,6 +23,7 @@ pub use bounds::{
     OutOfBounds, RATE_MAX_DEG_PER_H, SAMPLE_RATE_HZ, STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C,
     check_rate, check_sample_rate, check_temperature,
 };
+pub use column::EmptyLines;
 pub use csv::csv_text;
 pub use error::LogError;
 pub use groups::{GROUPS_MAX, Mounting, RecordedGroup, RecordedGroups, read_groups};

@@ -14,6 +14,11 @@ const SHOWN_CHARACTERS: usize = 40;
 /// Most names that a message lists.
 const LISTED_MAX: usize = 20;
 
+/// What spreadsheets write where a number is missing.
+const SPREADSHEET_ERRORS: [&str; 6] = ["#N/A", "#VALUE!", "#DIV/0!", "#REF!", "#NUM!", "#NULL!"];
+/// Words for a missing number, in small letters.
+const MISSING: [&str; 6] = ["n/a", "na", "null", "none", "nil", "missing"];
+
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// First bytes of what is no text in UTF-8, and what to do.
 const FOREIGN: [(&[u8], &str); 5] = [
@@ -36,6 +41,8 @@ pub struct Line<'a> {
     pub start: usize,
     /// What it says, without its end.
     pub text: &'a str,
+    /// Number of the first empty line between the one before and it.
+    pub empty_before: Option<usize>,
 }
 
 /// Why a text was not read on.
@@ -92,12 +99,15 @@ impl<R: BufRead> Lines<R> {
     /// # Errors
     /// [`TextError`]: bytes that are no UTF-8, NUL, a line beyond 1 MiB.
     pub fn next_line(&mut self) -> Result<Option<Line<'_>>, TextError> {
+        let mut empty_before = None;
         loop {
             if !self.advance()? {
                 return Ok(None);
             }
             let text = self.line.trim();
-            if !(text.is_empty() || text.starts_with('#')) {
+            if text.is_empty() {
+                empty_before.get_or_insert(self.number);
+            } else if !is_comment(text) {
                 break;
             }
         }
@@ -105,6 +115,7 @@ impl<R: BufRead> Lines<R> {
             number: self.number,
             start: self.start,
             text: &self.line,
+            empty_before,
         }))
     }
 
@@ -179,6 +190,12 @@ impl<R: BufRead> Lines<R> {
             message,
         }
     }
+}
+
+/// Whether a line is a comment; what a spreadsheet writes for a missing number is none.
+fn is_comment(text: &str) -> bool {
+    let is_missing = |error: &&str| text.starts_with(*error);
+    text.starts_with('#') && !SPREADSHEET_ERRORS.iter().any(|error| is_missing(&error))
 }
 
 /// What stands between the cells of a line.
@@ -283,6 +300,8 @@ pub(super) enum FirstLineError {
          heading that begins with a letter"
     )]
     BeginsLikeNumber(String),
+    #[error("`{0}` stands for a missing number: expected a number in every sample, or a heading")]
+    Missing(String),
     #[error("`{0}` is neither a number nor a heading")]
     Neither(String),
 }
@@ -301,6 +320,11 @@ pub(super) fn is_heading(cells: &[&str]) -> Result<bool, FirstLineError> {
     if let Some(cell) = cells.iter().find(|cell| begins_like_number(cell)) {
         return Err(FirstLineError::BeginsLikeNumber(shown(cell)));
     }
+    let is_missing =
+        |cell: &&&str| cell.starts_with('#') || MISSING.contains(&&*cell.to_lowercase());
+    if let Some(cell) = cells.iter().find(is_missing) {
+        return Err(FirstLineError::Missing(shown(cell)));
+    }
     if cells
         .iter()
         .any(|cell| cell.contains(|c: char| c.is_alphabetic() || c == '_'))
@@ -316,17 +340,29 @@ fn begins_like_number(cell: &str) -> bool {
     first.is_some_and(char::is_numeric)
 }
 
-/// A cell as messages repeat it: the beginning of a long one, nothing that a terminal obeys.
+/// A cell as messages repeat it: the beginning of a long one, nothing that a terminal obeys or hides.
 pub(super) fn shown(cell: &str) -> String {
     let mut text: String = cell
         .chars()
         .take(SHOWN_CHARACTERS)
-        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .map(|c| if is_visible(c) { c } else { '\u{fffd}' })
         .collect();
     if cell.chars().nth(SHOWN_CHARACTERS).is_some() {
         text.push_str("...");
     }
     text
+}
+
+/// Whether a terminal shows a character and does nothing else with it.
+fn is_visible(c: char) -> bool {
+    const UNSEEN: [std::ops::RangeInclusive<char>; 5] = [
+        '\u{ad}'..='\u{ad}',
+        '\u{200b}'..='\u{200f}',
+        '\u{2028}'..='\u{202e}',
+        '\u{2060}'..='\u{2069}',
+        '\u{feff}'..='\u{feff}',
+    ];
+    !c.is_control() && !UNSEEN.iter().any(|range| range.contains(&c))
 }
 
 /// Names as messages list them.

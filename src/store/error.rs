@@ -73,6 +73,18 @@ pub enum StoreError {
         /// What is the matter with it.
         reason: Foreign,
     },
+    /// A file that stands alone would be replaced, and is the user's.
+    #[error(
+        "{} {reason}: nothing was done; choose another name{}",
+        path.display(),
+        if *reason == Foreign::Unknown { ", or replace it with --force" } else { "" }
+    )]
+    FileNotOurs {
+        /// The file.
+        path: PathBuf,
+        /// What is the matter with it.
+        reason: Foreign,
+    },
     /// No folder of results can be here.
     #[error(
         "{} cannot take results: {} {reason}: nothing was done; choose another folder, or move it away",
@@ -136,7 +148,10 @@ impl StoreError {
     /// folder in use or something spared half way.
     #[must_use]
     pub fn is_refusal(&self) -> bool {
-        matches!(self, Self::NotOurs { .. } | Self::Obstacle { .. })
+        matches!(
+            self,
+            Self::NotOurs { .. } | Self::FileNotOurs { .. } | Self::Obstacle { .. }
+        )
     }
 
     /// What the system said of `path`, as an error.

@@ -8,25 +8,75 @@ use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions, LogOptions};
 use crate::cli::terminal::complaint::{self, Complaint};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
-use crate::cli::terminal::place::Place;
+use crate::cli::terminal::place::{Place, exit_of};
 use crate::experiment::{
     LogFilters, LogInput, LogSettings, LogTrial, compensate_log, load_log_compensation,
     load_log_filters, try_log,
 };
 use crate::recording::{AssemblyColumns, LogError, LogFormat, read_assembly_log, read_log};
-use crate::report::{log_json, log_text};
+use crate::report::{is_kalman_json, log_json, log_text};
 use crate::scenario::AllanConfig;
+use crate::store::{SingleFile, StoreError};
 
-/// Measures a log.
+/// Measures a log, and writes its noise as a linear system.
 pub(in crate::cli) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
-    if let Err(exit) = place(&options.log).check(&inputs(&options.log)) {
+    let inputs = inputs(&options.log);
+    if let Err(exit) = place(&options.log).check(&inputs) {
+        return Ok(exit);
+    }
+    let kalman = options.kalman.as_deref().map(|path| SingleFile {
+        path,
+        is_ours: is_kalman_json,
+        force: options.log.force,
+    });
+    if let Some(file) = kalman
+        && let Err(exit) = check_file(file, &inputs)
+    {
         return Ok(exit);
     }
     let input = match read(&options.log) {
         Ok((input, _)) => input,
         Err(exit) => return Ok(exit),
     };
-    conclude(input, None, &options.log, false)
+    let (exit, trial) = conclude(input, None, &options.log, false)?;
+    match (kalman, trial) {
+        (Some(file), Some(trial)) => Ok(write_kalman(&trial, file).err().unwrap_or(exit)),
+        _ => Ok(exit),
+    }
+}
+
+/// Writes the noise of a log as a linear system.
+fn write_kalman(trial: &LogTrial, file: SingleFile) -> Result<(), Exit> {
+    let text = trial.kalman().map_err(|error| {
+        output::talk(&format!(
+            "error: no --kalman {}: {error}",
+            file.path.display()
+        ));
+        Exit::RunFailed
+    })?;
+    file.write(&text).map_err(|error| refused_file(&error))?;
+    output::talk(&format!(
+        "noise for a Kalman filter in {}",
+        file.path.display()
+    ));
+    Ok(())
+}
+
+/// Checks the place of a file that stands alone before anything is computed.
+fn check_file(file: SingleFile, inputs: &[&Path]) -> Result<(), Exit> {
+    if inputs.contains(&file.path) {
+        output::talk(&format!(
+            "error: {} is read: nothing was done; choose another name",
+            file.path.display()
+        ));
+        return Err(Exit::Usage);
+    }
+    file.check().map_err(|error| refused_file(&error))
+}
+
+fn refused_file(error: &StoreError) -> Exit {
+    output::talk(&format!("error: {error}"));
+    exit_of(error)
 }
 
 /// Puts a log through the filters of a scenario and measures what they make of it.
@@ -44,7 +94,7 @@ pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
         Ok(filters) => filters,
         Err(errors) => return Ok(refused(&errors)),
     };
-    conclude(input, Some(&filters), &options.log, options.csv)
+    conclude(input, Some(&filters), &options.log, options.csv).map(|(exit, _)| exit)
 }
 
 /// Where the results go.
@@ -123,7 +173,7 @@ fn conclude(
     filters: Option<&LogFilters>,
     options: &LogOptions,
     as_csv: bool,
-) -> io::Result<Exit> {
+) -> io::Result<(Exit, Option<LogTrial>)> {
     let settings = LogSettings {
         motion: options.motion,
         warm_up_s: options.warm_up_s,
@@ -138,22 +188,23 @@ fn conclude(
         Ok(trial) => trial,
         Err(error) => {
             output::talk(&format!("error: {error}"));
-            return Ok(Exit::Usage);
+            return Ok((Exit::Usage, None));
         }
     };
     let folder = options.output.as_deref();
     if let Err(exit) = place(options).fill(|folder| trial.write(folder, as_csv)) {
-        return Ok(exit);
+        return Ok((exit, None));
     }
     output::data(&text(&trial, options.format))?;
     if let Some(folder) = folder {
         output::talk(&format!("results in {}", folder.display()));
     }
-    Ok(if trial.has_failed() {
+    let exit = if trial.has_failed() {
         Exit::RunFailed
     } else {
         Exit::Success
-    })
+    };
+    Ok((exit, Some(trial)))
 }
 
 fn text(trial: &LogTrial, format: Format) -> String {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 
 use crate::cli::options::format::Format;
 use crate::cli::options::numbers::{OptionError, within};
@@ -20,6 +20,7 @@ const FACTOR: (f64, f64) = (1e-30, 1e30);
 
 /// A log and how to measure it.
 #[derive(Args, Debug)]
+#[command(group(ArgGroup::new("written").multiple(true)))]
 pub(in crate::cli) struct LogOptions {
     /// Recorded log: NPY with one dimension, or text with columns between `,`, `;`, tabs or blanks
     pub(in crate::cli) file: PathBuf,
@@ -102,10 +103,10 @@ pub(in crate::cli) struct LogOptions {
     #[arg(long, value_name = "TIMES", default_value = "octave")]
     pub(in crate::cli) averaging_times: AveragingTimes,
     /// Folder for summary.json, curves, pictures and filtered samples [default: none is written]
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", group = "written")]
     pub(in crate::cli) output: Option<PathBuf>,
-    /// Replace files in the folder that fogbench did not write
-    #[arg(long, requires = "output")]
+    /// Replace files that fogbench did not write
+    #[arg(long, requires = "written")]
     pub(in crate::cli) force: bool,
     /// Form of the results on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -117,6 +118,10 @@ pub(in crate::cli) struct LogOptions {
 pub(in crate::cli) struct AnalyzeOptions {
     #[command(flatten)]
     pub(in crate::cli) log: LogOptions,
+    /// File for the noise as a linear system at the log's rate (F, Q_d, H, R, S and P0 as JSON), for a
+    /// Kalman filter
+    #[arg(long, value_name = "FILE", group = "written")]
+    pub(in crate::cli) kalman: Option<PathBuf>,
 }
 
 /// Options of `filter`.

@@ -27,7 +27,11 @@ pub(in crate::cli) fn data(text: &str) -> io::Result<()> {
             READER_IS_GONE.store(true, Ordering::Relaxed);
             Ok(())
         }
-        written => written,
+        Err(error) => {
+            let message = format!("cannot write to standard output: {error}");
+            Err(io::Error::new(error.kind(), message))
+        }
+        Ok(()) => Ok(()),
     }
 }
 

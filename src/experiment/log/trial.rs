@@ -11,9 +11,12 @@ use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
 use crate::experiment::output_file::write_file;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
-use crate::metrics::{ChannelMetrics, Motion, Settings, is_sample_or_longer, record_fit_tau_min_s};
+use crate::metrics::{
+    ChannelMetrics, Motion, Settings, Unavailable, is_sample_or_longer, noise_state_space,
+    record_fit_tau_min_s,
+};
 use crate::recording::Log;
-use crate::report::{LogReport, log_files};
+use crate::report::{KalmanReport, LogReport, kalman_json, log_files};
 use crate::scenario::{AllanConfig, MotionConfig, SwingConfig};
 use crate::signal::RunSignals;
 use crate::store::{OutputFolder, StoreError};
@@ -317,6 +320,20 @@ impl LogTrial {
             channels: &self.channels,
             notes: &self.notes,
         })
+    }
+
+    /// The noise of the words as a linear system, JSON.
+    ///
+    /// # Errors
+    /// Why the words have no fit of noise terms.
+    pub fn kalman(&self) -> Result<String, Unavailable> {
+        let (_, raw) = &self.channels[0];
+        let system = noise_state_space(raw)?;
+        Ok(kalman_json(&KalmanReport {
+            tool_version: VERSION,
+            file: &self.log.file,
+            system: &system,
+        }))
     }
 
     /// Writes `summary.json`, curves and pictures into `folder`, and the words of every filter

@@ -2,6 +2,7 @@
 //! sine.
 
 use super::noise_fit::{NoiseFit, Sine};
+use super::overlapping::AllanPoint;
 use crate::metrics::estimate::fit_sheet::{FitSheet, FitTerm};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::ChannelMetrics;
@@ -112,33 +113,51 @@ pub(crate) fn add_to_sheet(fit: &NoiseFit, sheet: &mut FitSheet) {
     }
 }
 
+/// The sine that a channel was found to have.
+pub(crate) fn found_sine(channel: &ChannelMetrics) -> Option<Sine> {
+    let amplitude = channel.get(&SINE_AMPLITUDE)?;
+    Some(Sine {
+        amplitude_deg_per_h: amplitude.estimate,
+        period_s: channel.get(&SINE_PERIOD)?.estimate,
+        frequencies_tried: interval::round_to_count(*amplitude.fields.get(TRIED)?),
+    })
+}
+
+/// The curve that is left of one without its sine.
+pub(crate) fn without_sine(points: &[AllanPoint], sine: Option<Sine>) -> Vec<AllanPoint> {
+    let rest = points.iter().map(|point| {
+        let taken = sine.map_or(0.0, |sine| sine.allan_variance(point.tau_s));
+        let mut rest = *point;
+        rest.deviation_deg_per_h.value = (point.variance() - taken).max(0.0).sqrt();
+        rest
+    });
+    rest.collect()
+}
+
 /// The sine of most of several records, with the mean of its squares as that of its amplitude; none
 /// where less than half of them have it.
 pub(crate) fn pooled_sine(repeats: &[ChannelMetrics]) -> Option<Sine> {
-    let found = repeats.iter().filter_map(|repeat| {
-        let amplitude = repeat.get(&SINE_AMPLITUDE)?;
-        let tried = amplitude.fields.get(TRIED)?;
-        Some((
-            amplitude.estimate,
-            repeat.get(&SINE_PERIOD)?.estimate,
-            *tried,
-        ))
-    });
-    let found: Vec<(Estimate, Estimate, f64)> = found.collect();
+    let found: Vec<Sine> = repeats.iter().filter_map(found_sine).collect();
     if found.is_empty() || 2 * found.len() < repeats.len() {
         return None;
     }
-    let periods: Vec<f64> = found.iter().map(|(_, period, _)| period.value).collect();
-    let squares: f64 = found.iter().map(|(it, ..)| it.value * it.value).sum();
+    let periods: Vec<f64> = found.iter().map(|it| it.period_s.value).collect();
+    let squares: f64 = found
+        .iter()
+        .map(|it| it.amplitude_deg_per_h.value.powi(2))
+        .sum();
     let amplitude = (squares / repeats.len() as f64).sqrt();
     let half = |it: &Estimate| (it.high - it.low) / 2.0;
-    let pooled_half = |pick: &dyn Fn(&(Estimate, Estimate, f64)) -> f64| {
-        let sum: f64 = found.iter().map(|it| pick(it).powi(2)).sum();
+    let pooled_half = |pick: fn(&Sine) -> &Estimate| {
+        let sum: f64 = found.iter().map(|it| half(pick(it)).powi(2)).sum();
         sum.sqrt() / found.len() as f64
     };
     Some(Sine {
-        amplitude_deg_per_h: Estimate::symmetric(amplitude, pooled_half(&|it| half(&it.0))),
-        period_s: Estimate::symmetric(interval::mean(&periods), pooled_half(&|it| half(&it.1))),
-        frequencies_tried: interval::round_to_count(found[0].2),
+        amplitude_deg_per_h: Estimate::symmetric(
+            amplitude,
+            pooled_half(|it| &it.amplitude_deg_per_h),
+        ),
+        period_s: Estimate::symmetric(interval::mean(&periods), pooled_half(|it| &it.period_s)),
+        frequencies_tried: found[0].frequencies_tried,
     })
 }

@@ -60,7 +60,7 @@ pub static RATE_RAMP: MetricKey = MetricKey::new(
     Applies::Steady,
     "R of the fit to the overlapping Allan variance, R^2 tau^2/2",
 )
-.synonyms(&["r", "rate_ramp", "drift", "drift_rate"])
+.synonyms(&["r", "rate_ramp", "drift_rate"])
 .heading("rate ramp")
 .needs(Needs::SlowNoiseFit)
 .pooled(Pool::AllanFit)
@@ -385,6 +385,29 @@ impl ChosenFit {
             + raised(FLICKER) / angular
             + raised(WALK) / (angular * angular)
             + correlated.unwrap_or(0.0)
+    }
+
+    /// The terms as noise can have them, s: without those whose square came out negative, the others
+    /// fitted again; the `1/tau^2` term may be of either sign beside white noise.
+    pub(crate) fn non_negative(&self) -> Mix {
+        let problem = &self.choice.problem;
+        let mut allowed = self.choice.allowed;
+        loop {
+            let solution = problem.solve(&allowed);
+            let is_impossible = |term: usize| {
+                let is_smooth = term == INVERSE_SQUARE && solution.squares[WHITE] > 0.0;
+                allowed[term] && solution.squares[term] < 0.0 && !is_smooth
+            };
+            let excess =
+                |term: usize| solution.squares[term] / problem.standard_error(&solution, term);
+            let worst = (0..TERMS)
+                .filter(|&term| is_impossible(term))
+                .min_by(|&a, &b| excess(a).total_cmp(&excess(b)));
+            match worst {
+                Some(term) => allowed[term] = false,
+                None => return in_seconds(problem, &solution.squares),
+            }
+        }
     }
 
     /// The fit in coefficients and intervals, judged.

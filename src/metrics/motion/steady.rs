@@ -133,7 +133,7 @@ fn measure_allan(
     let constant = || Err("the output does not vary over the record".into());
     let fitted = if varies {
         let values = record.channel_deg_per_h;
-        fit_beside_sine(values, record.sample_period_s, range)
+        fit_beside_sine(values, record.sample_period_s, &points, range)
             .map_or_else(|| fit_noise(&points, range), Ok)
     } else {
         constant()

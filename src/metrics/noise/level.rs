@@ -14,7 +14,7 @@ pub static NOISE_STD: MetricKey = MetricKey::new(
     Applies::Separable,
     "standard deviation of the samples about the signal: mean, fitted sine, or settled rate; over n less what is fitted",
 )
-.synonyms(&["std", "noise", "rms", "noise_rms", "standard_deviation"])
+.synonyms(&["std", "noise", "noise_rms", "standard_deviation"])
 .heading("noise std")
 .pooled(Pool::RootMeanSquare)
 .needs(Needs::SettledStep)

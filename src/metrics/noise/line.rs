@@ -4,9 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use realfft::RealFftPlanner;
 
-use crate::metrics::allan::noise_fit::{ChosenFit, FitRange, NoiseFit, Sine};
+use crate::metrics::allan::noise_fit::{ChosenFit, FitRange, NoiseFit, Sine, sine_allan_variance};
 use crate::metrics::allan::noise_identification::remove_line;
-use crate::metrics::allan::overlapping::overlapping_allan;
+use crate::metrics::allan::overlapping::{AllanPoint, overlapping_allan};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
 use crate::metrics::estimate::value::Estimate;
@@ -33,6 +33,16 @@ const PHASE_TOLERANCE_RAD: f64 = 3e-4;
 /// Part of what a line must have that a peak over its neighbours must have to be looked at.
 const WORTH_A_LOOK: f64 = 0.7;
 
+/// Part of the power that a line must have, as its bin shows it, from which on a sine is fitted, and as
+/// the fit shows it, from which on it is taken out of the words: most peaks of noise end at the first,
+/// nearly all at the second, and both cost little beside what they save.
+const WORTH_A_FIT: f64 = 0.5;
+const WORTH_REMOVING: f64 = 0.8;
+
+/// Least part of an Allan variance that is left of it without a sine: the variances of both add on
+/// average only.
+const REST_MIN: f64 = 0.1;
+
 /// Neighbours of a bin are those within this ratio of frequency, at least so many bins of the record on
 /// either side; those as near as the window's own width do not count.
 const NEIGHBOUR_RATIO: f64 = 1.4;
@@ -46,17 +56,29 @@ const HANN: f64 = 2.0 / 3.0;
 ///
 /// Nothing if no frequency stands out, with periods from
 /// four shortest averaging times to a third of the record.
+///
+/// * `points`: overlapping Allan deviation of the words.
 pub(crate) fn fit_beside_sine(
     words_deg_per_h: &[f64],
     sample_period_s: f64,
+    points: &[AllanPoint],
     range: FitRange,
 ) -> Option<NoiseFit> {
     let means = BlockMeans::new(words_deg_per_h, sample_period_s, range.tau_min_s);
     let band = means.band(range.tau_min_s)?;
     let threshold = means.threshold(band);
-    let frequency_hz = means.peak(band, threshold)?;
+    let peak = means.peak(band, threshold)?;
+    let duration_s = words_deg_per_h.len() as f64 * sample_period_s;
+    let power = |amplitude: f64| amplitude * amplitude * duration_s / 4.0;
+    let stands_out = |frequency_hz: f64, amplitude: f64, part: f64| {
+        let rest = curve_without(points, frequency_hz, amplitude);
+        let chosen = ChosenFit::new(&rest, range, 1.0).ok()?;
+        let density = chosen.cautious_density(frequency_hz);
+        (power(amplitude) > part * threshold * density).then_some(())
+    };
+    stands_out(peak.frequency_hz, peak.amplitude, WORTH_A_FIT)?;
     let clock = SwingClock {
-        frequency_hz,
+        frequency_hz: peak.frequency_hz,
         sample_period_s: means.period_s,
         first_stamp_s: 0.0,
     };
@@ -65,12 +87,11 @@ pub(crate) fn fit_beside_sine(
         return None;
     }
     let amplitude = found.amplitude / means.gain(found.frequency_hz);
+    stands_out(found.frequency_hz, amplitude, WORTH_REMOVING)?;
     let rest = without(words_deg_per_h, sample_period_s, &found, amplitude, &means);
     let chosen = ChosenFit::new(&overlapping_allan(&rest, sample_period_s), range, 1.0).ok()?;
-    let duration_s = words_deg_per_h.len() as f64 * sample_period_s;
     let density = chosen.cautious_density(found.frequency_hz);
-    let power = amplitude * amplitude * duration_s / 4.0;
-    if power < threshold * density {
+    if power(amplitude) < threshold * density {
         return None;
     }
     // Bounds of Cramer and Rao: 2 S/T of the amplitude, 6 S/(pi^2 A^2 T^3) of the frequency.
@@ -88,6 +109,19 @@ pub(crate) fn fit_beside_sine(
         frequencies_tried: interval::round_to_count(means.tried(band)),
     };
     Some(chosen.judged().beside(sine))
+}
+
+/// The curve that words would have without a sine, up to what the two have in common by chance.
+fn curve_without(points: &[AllanPoint], frequency_hz: f64, amplitude: f64) -> Vec<AllanPoint> {
+    let period_s = 1.0 / frequency_hz;
+    let without = points.iter().map(|point| {
+        let sine = amplitude * amplitude * sine_allan_variance(point.tau_s, period_s);
+        let variance = point.variance();
+        let mut rest = *point;
+        rest.deviation_deg_per_h.value = (variance - sine).max(REST_MIN * variance).sqrt();
+        rest
+    });
+    without.collect()
 }
 
 /// The words without the sine, whose phase counts from the middle of the means.
@@ -108,6 +142,13 @@ fn without(
             word - amplitude * sine.phase_at_rad(time_s).cos()
         })
         .collect()
+}
+
+/// A bin that stands out.
+struct Peak {
+    frequency_hz: f64,
+    /// Amplitude of a sine of this frequency, deg/h.
+    amplitude: f64,
 }
 
 /// Means of consecutive words about a straight line.
@@ -164,8 +205,8 @@ impl BlockMeans {
         (count * word).sin() / (count * word.sin())
     }
 
-    /// Frequency whose power stands out most from that of its neighbours, if it may be a line.
-    fn peak(&self, [lowest, highest]: [f64; 2], threshold: f64) -> Option<f64> {
+    /// Bin whose power stands out most from that of its neighbours, if it may be a line.
+    fn peak(&self, [lowest, highest]: [f64; 2], threshold: f64) -> Option<Peak> {
         let power = self.power();
         let bins = 2 * (power.len() - 1);
         let step_hz = 1.0 / (bins as f64 * self.period_s);
@@ -186,7 +227,7 @@ impl BlockMeans {
                 0.0
             }
         };
-        let mut best = (0.0, None);
+        let mut best = (0.0, 0);
         let (first, last) = (edge(lowest), edge(highest));
         for (bin, own_power) in power.iter().enumerate().take(last + 1).skip(first) {
             let centre = bin as f64;
@@ -201,10 +242,17 @@ impl BlockMeans {
             let level = total / count.max(1) as f64;
             let ratio = own_power / level.max(f64::MIN_POSITIVE);
             if count > 0 && ratio > best.0 {
-                best = (ratio, Some(centre * step_hz));
+                best = (ratio, bin);
             }
         }
-        best.1.filter(|_| best.0 / HANN > WORTH_A_LOOK * threshold)
+        let (ratio, bin) = best;
+        let frequency_hz = bin as f64 * step_hz;
+        // The window halves the sum of `A N/2` that a sine has.
+        let amplitude = 4.0 * power[bin].sqrt() / self.values.len() as f64;
+        (ratio / HANN > WORTH_A_LOOK * threshold).then(|| Peak {
+            frequency_hz,
+            amplitude: amplitude / self.gain(frequency_hz),
+        })
     }
 
     /// Power spectrum with the Hann window, zeros appended, in arbitrary units.

@@ -6,10 +6,8 @@ use crate::metrics::allan::curves::{
     TAU, columns_of, fitted_column, put_allan_words, put_fit_curve,
 };
 use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
-use crate::metrics::allan::extra_terms::pooled_sine;
-use crate::metrics::allan::noise_fit::{
-    ANGLE_RANDOM_WALK, FitRange, NoiseFit, Sine, fit_pooled_noise,
-};
+use crate::metrics::allan::extra_terms::{pooled_sine, without_sine};
+use crate::metrics::allan::noise_fit::{ANGLE_RANDOM_WALK, FitRange, NoiseFit, fit_pooled_noise};
 use crate::metrics::allan::noise_identification::PowerLaw;
 use crate::metrics::allan::overlapping::AllanPoint;
 use crate::metrics::estimate::interval;
@@ -95,17 +93,6 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
         );
     }
     Some(fit)
-}
-
-/// The curve that the repeats have on average beside a sine.
-fn without_sine(points: &[AllanPoint], sine: Option<Sine>) -> Vec<AllanPoint> {
-    let rest = points.iter().map(|point| {
-        let taken = sine.map_or(0.0, |sine| sine.allan_variance(point.tau_s));
-        let mut rest = *point;
-        rest.deviation_deg_per_h.value = (point.variance() - taken).max(0.0).sqrt();
-        rest
-    });
-    rest.collect()
 }
 
 /// Replaces the mean of what the repeats' fits expect of the bias stability by what the fit to all of

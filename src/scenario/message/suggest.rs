@@ -115,10 +115,26 @@ pub(crate) fn suggestions(schema_path: &str, name: &str) -> Vec<&'static str> {
     if name.len() > KNOWN_LENGTH_MAX {
         return Vec::new();
     }
+    // The table as a word of the name, `coil_length_m` for `coil.length_m`.
+    let joined = |path: &&&str| {
+        let inner = if schema_path.is_empty() {
+            Some(**path)
+        } else {
+            path.strip_prefix(schema_path)
+                .and_then(|rest| rest.strip_prefix('.'))
+        };
+        inner.is_some_and(|inner| inner.contains('.') && inner.replace('.', "_") == name)
+    };
+    if let Some(path) = paths().iter().find(joined) {
+        return vec![path];
+    }
     let written = Name::of(name);
     let scored = names().iter().filter_map(|(known, path)| {
         let likeness = likeness(&written, known, vocabulary())?;
-        path_is_open(schema_path, path).then(|| (rank(likeness, schema_path, path), *path))
+        let is_meant = is_related(schema_path, parent(path))
+            || likeness == Likeness::Same && is_the_only_one(path);
+        let is_meant = is_meant && path_is_open(schema_path, path);
+        is_meant.then(|| (rank(likeness, schema_path, path), *path))
     });
     let mut scored: Vec<((Likeness, usize), &'static str)> = scored.collect();
     scored.sort_by_key(|(rank, _)| *rank);
@@ -134,6 +150,26 @@ pub(crate) fn suggestions(schema_path: &str, name: &str) -> Vec<&'static str> {
         return Vec::new();
     }
     equal
+}
+
+/// Whether one table is the other or holds it: what stands elsewhere is most often another thing of that
+/// name, as the bits of another converter.
+fn is_related(one: &str, other: &str) -> bool {
+    let holds = |outer: &str, inner: &str| {
+        inner
+            .strip_prefix(outer)
+            .is_some_and(|rest| outer.is_empty() || rest.is_empty() || rest.starts_with('.'))
+    };
+    holds(one, other) || holds(other, one)
+}
+
+/// Whether no other key is of the same sort, as the bits of a converter and those of a step are: it can be
+/// meant from anywhere.
+fn is_the_only_one(path: &str) -> bool {
+    let is_key = keys().any(|key| key.path == path);
+    let name = last_name(path);
+    let mut others = paths().iter().filter(|other| **other != path);
+    is_key && !others.any(|other| last_name(other).ends_with(name))
 }
 
 /// Likeness, then the way from one table to the other; a slip in the same table beats the very name
@@ -282,6 +318,7 @@ fn listed(place: Place<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wording::words_of;
 
     fn unknown(schema_path: &str, shown: &str, name: &str) -> String {
         let place = Place {
@@ -344,10 +381,7 @@ mod tests {
             for (known, other) in names() {
                 let (one, other) = (last_name(one), last_name(other));
                 if let Some(found) = likeness(own, known, vocabulary()) {
-                    let words = (
-                        crate::wording::words_of(one),
-                        crate::wording::words_of(other),
-                    );
+                    let words = (words_of(one), words_of(other));
                     assert_eq!(words.0, words.1, "{one} stands for {other}: {found:?}");
                 }
             }
@@ -379,6 +413,26 @@ mod tests {
             "unknown key gyro.coil.length_km: did you mean gyro.coil.length_m? (1 km is \
              1000 m)"
         );
+        // A thing of the same name elsewhere is another thing; one that has no like is meant.
+        for (table, name) in [
+            ("turntable.encoder", "bits"),
+            ("gyro.source", "drift_ppm"),
+            ("gyro.modulator", "frequency_hz"),
+            ("gyro.adc", "offset"),
+            ("gyro.detector", "temperature_k"),
+            ("turntable.encoder", "noise"),
+            ("turntable.site", "temperature"),
+        ] {
+            let found = unknown(table, table, name);
+            assert!(!found.contains("did you mean"), "{found}");
+        }
+        let moved = unknown("gyro.coil", "gyro.coil", "wavelength_nm");
+        assert!(
+            moved.ends_with("did you mean gyro.source.wavelength_nm?"),
+            "{moved}"
+        );
+        assert!(unknown("", "", "sweep").contains("[matrix]"));
+        assert!(unknown("gyro", "gyro", "coil_length_m").ends_with("mean gyro.coil.length_m?"));
         // Another motion would contradict the one at hand.
         let swing = unknown("turntable.swing", "turntable.swing", "rate_deg_per_s");
         assert!(

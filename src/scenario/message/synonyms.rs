@@ -16,15 +16,33 @@ pub(in crate::scenario) enum Meaning {
     Advice(&'static str),
 }
 
-/// A row: names, where they may stand (a part of the schema path, empty for everywhere), meaning.
-type Row = (&'static [&'static str], &'static str, Meaning);
+/// Tables in which a name has a meaning.
+#[derive(Clone, Copy, Debug)]
+enum Where {
+    /// Whose path begins so; an empty one is everywhere.
+    Below(&'static str),
+    /// These alone: what is called so elsewhere is something else.
+    In(&'static [&'static str]),
+}
+
+/// A row: names, where they may stand, meaning.
+type Row = (&'static [&'static str], Where, Meaning);
 
 use Meaning::{Advice, Key};
+use Where::{Below, In};
+
+/// Tables in which a word of noise is one of the gyro's, not of its source, converter or table.
+const OF_NOISE: Where = In(&["gyro", "gyro.noise", "gyro.slow_noise"]);
 
 const ROWS: &[Row] = &[
     (
+        &["sweep", "scan", "grid"],
+        In(&[""]),
+        Advice("points are listed in [matrix], as in \"gyro.coil.length_m\" = [500, 1000]"),
+    ),
+    (
         &["angle_random_walk", "angular_random_walk", "random_walk"],
-        "",
+        Below(""),
         Advice(
             "the angle random walk is no key: it follows from gyro.source, gyro.detector, the sources \
              in gyro.noise and gyro.noise.technical_phase_urad_per_sqrt_hz; `fogbench budget FILE` \
@@ -38,40 +56,44 @@ const ROWS: &[Row] = &[
             "flicker_noise",
             "bias_stability",
         ],
-        "",
+        Below(""),
         Key("gyro.slow_noise.bias_instability_deg_per_h"),
     ),
     (
         &["rate_random_walk"],
-        "gyro",
+        Below("gyro"),
         Key("gyro.slow_noise.rate_random_walk_deg_per_h_per_sqrt_h"),
     ),
     (
         &["rate_random_walk"],
-        "filter[]",
+        Below("filter[]"),
         Key("filter[].kalman.rate_random_walk_deg_per_h_per_sqrt_h"),
     ),
     (
         &["drift", "rate_ramp", "bias_drift"],
-        "gyro",
+        OF_NOISE,
         Key("gyro.slow_noise.rate_ramp_deg_per_h_per_h"),
     ),
     (
         &["bias", "offset", "constant_bias"],
-        "gyro",
+        OF_NOISE,
         Key("gyro.slow_noise.bias_deg_per_h"),
     ),
     (
         &["correlation_time", "tau", "tc"],
-        "gyro",
+        OF_NOISE,
         Key("gyro.slow_noise.gauss_markov_correlation_time_s"),
     ),
     (
         &["markov", "gauss_markov", "first_order_markov"],
-        "gyro",
+        OF_NOISE,
         Key("gyro.slow_noise.gauss_markov_deg_per_h"),
     ),
-    (&["dac", "dac_bit"], "", Key("gyro.modulator.dac_bits")),
+    (
+        &["dac", "dac_bit"],
+        Below(""),
+        Key("gyro.modulator.dac_bits"),
+    ),
     (
         &[
             "sample_rate",
@@ -80,7 +102,7 @@ const ROWS: &[Row] = &[
             "sampling_frequency",
             "sample_period",
         ],
-        "",
+        Below(""),
         Advice(
             "the output rate is no key: it follows from gyro.coil, \
              gyro.output.half_periods_per_sample and gyro.output.average_samples; `fogbench budget \
@@ -89,12 +111,12 @@ const ROWS: &[Row] = &[
     ),
     (
         &["loop_gain", "controller_gain", "integrator_gain"],
-        "",
+        Below(""),
         Key("gyro.controller.loop_bandwidth_hz"),
     ),
     (
         &["scale_factor"],
-        "",
+        Below(""),
         Advice(
             "the scale factor is no key: it follows from gyro.coil and gyro.source.wavelength_nm; \
              gyro.assembly.scale_factor_error_ppm sets its error",
@@ -102,7 +124,7 @@ const ROWS: &[Row] = &[
     ),
     (
         &["turn", "number_turn", "winding_count"],
-        "gyro.coil",
+        Below("gyro.coil"),
         Advice(
             "the number of turns is no key: it is gyro.coil.length_m over the circumference of \
          gyro.coil.diameter_mm",
@@ -118,7 +140,7 @@ const ROWS: &[Row] = &[
             "window",
             "n",
         ],
-        "filter[].rls",
+        Below("filter[].rls"),
         Key("filter[].rls.taps"),
     ),
     (
@@ -131,7 +153,7 @@ const ROWS: &[Row] = &[
             "window",
             "n",
         ],
-        "filter[].lms",
+        Below("filter[].lms"),
         Key("filter[].lms.taps"),
     ),
     (
@@ -145,27 +167,27 @@ const ROWS: &[Row] = &[
             "n",
             "sample",
         ],
-        "filter[].moving_average",
+        Below("filter[].moving_average"),
         Key("filter[].moving_average.taps"),
     ),
     (
         &["lambda", "alpha", "forgetting"],
-        "filter[].rls",
+        Below("filter[].rls"),
         Key("filter[].rls.forgetting_factor"),
     ),
     (
         &["delta", "initial_covariance"],
-        "filter[].rls",
+        Below("filter[].rls"),
         Key("filter[].rls.initial_inverse_correlation"),
     ),
     (
         &["mu", "step"],
-        "filter[].lms",
+        Below("filter[].lms"),
         Key("filter[].lms.step_size"),
     ),
     (
         &["mu", "step_size"],
-        "filter[].sign_lms",
+        Below("filter[].sign_lms"),
         Key("filter[].sign_lms.step"),
     ),
     (
@@ -175,7 +197,7 @@ const ROWS: &[Row] = &[
             "bandwidth",
             "frequency",
         ],
-        "filter[].one_pole",
+        Below("filter[].one_pole"),
         Key("filter[].one_pole.cutoff_hz"),
     ),
     (
@@ -185,27 +207,40 @@ const ROWS: &[Row] = &[
             "bandwidth",
             "frequency",
         ],
-        "filter[].butterworth",
+        Below("filter[].butterworth"),
         Key("filter[].butterworth.cutoff_hz"),
     ),
     (
         &["kind", "type"],
-        "filter[]",
+        Below("filter[]"),
         Advice("the kind of a filter is the name of its table, as in [filter.rls]"),
     ),
     (
         &["motion", "profile", "kind", "type"],
-        "turntable",
+        Below("turntable"),
         Advice("the motion is the name of its table, as in [turntable.swing]"),
     ),
     (
         &["channel"],
-        "gate[]",
+        Below("gate[]"),
         Advice("the channel stands before its metric, as in metric = \"raw.noise_std_deg_per_h\""),
     ),
-    (&["limit", "upper", "below"], "gate[]", Key("gate[].max")),
-    (&["lower", "above"], "gate[]", Key("gate[].min")),
+    (
+        &["limit", "upper", "below"],
+        Below("gate[]"),
+        Key("gate[].max"),
+    ),
+    (&["lower", "above"], Below("gate[]"), Key("gate[].min")),
 ];
+
+impl Where {
+    fn holds(self, schema_path: &str) -> bool {
+        match self {
+            Below(start) => schema_path.starts_with(start),
+            In(tables) => tables.contains(&schema_path),
+        }
+    }
+}
 
 /// The words of the names of each row.
 fn row_words() -> &'static [Vec<Vec<String>>] {
@@ -222,7 +257,7 @@ pub(in crate::scenario) fn meaning(schema_path: &str, name: &str) -> Option<Mean
     let words = words_of(name);
     let mut rows = ROWS.iter().zip(row_words());
     let means = |(row, names): &(&Row, &Vec<Vec<String>>)| {
-        schema_path.starts_with(row.1) && names.contains(&words)
+        row.1.holds(schema_path) && names.contains(&words)
     };
     rows.find(means).map(|((.., meaning), _)| *meaning)
 }
@@ -254,5 +289,10 @@ mod tests {
         assert!(found("gyro.slow_noise", "BI").ends_with("bias_instability_deg_per_h"));
         assert!(found("filter[].lms", "mu").ends_with("step_size"));
         assert!(found("turntable", "mu").is_empty());
+        assert!(found("", "sweep").contains("[matrix]"));
+        // The drift of a source and the offset of a converter are not those of the rate.
+        assert!(found("gyro", "drift").ends_with("rate_ramp_deg_per_h_per_h"));
+        assert!(found("gyro.source", "drift_ppm").is_empty());
+        assert!(found("gyro.adc", "offset").is_empty());
     }
 }

@@ -115,7 +115,17 @@ impl Search<'_> {
     ///
     /// Source: Schwarz, Annals of Statistics 6 (1978) 461.
     pub(crate) fn choose(&self, problem: &Problem) -> Option<Choice> {
-        let mut best = Choice::of(problem.clone(), BASE, self.solve(problem, &BASE), 0.0)?;
+        self.base(problem).map(|base| self.extend(base))
+    }
+
+    /// The fit with the terms that every fit has.
+    pub(crate) fn base(&self, problem: &Problem) -> Option<Choice> {
+        Choice::of(problem.clone(), BASE, self.solve(problem, &BASE), 0.0)
+    }
+
+    /// A fit with the terms added that the criterion asks for.
+    pub(crate) fn extend(&self, base: Choice) -> Choice {
+        let mut best = base;
         let mut penalty = 0.0;
         for _ in 0..2 {
             let Some(found) = self.best_addition(&best) else {
@@ -126,7 +136,7 @@ impl Search<'_> {
             allowed[found.term] = true;
             let problem = match found.correlation {
                 None => best.problem.clone(),
-                Some(time) if problem.correlation().is_some() => {
+                Some(time) if best.problem.correlation().is_some() => {
                     best.problem.with_near_correlation(time)
                 }
                 Some(time) => best.problem.with_correlation(self.points, time),
@@ -141,7 +151,7 @@ impl Search<'_> {
                 _ => break,
             }
         }
-        Some(best)
+        best
     }
 
     /// The term whose column would take most out of the residuals beyond its price.

@@ -70,9 +70,14 @@ impl Goodness {
         while curves < CURVES && worse[0] < WORSE_ENOUGH {
             problem.variance = draws.next();
             curves += 1;
-            let Some(drawn) = search.choose(&problem) else {
+            let Some(plain) = search.base(&problem) else {
                 continue;
             };
+            // A term more makes no curve fit worse.
+            if plain.chi_squared < found[0] && harmful(&plain) < found[1] {
+                continue;
+            }
+            let drawn = search.extend(plain);
             worse[0] += u32::from(drawn.chi_squared >= found[0]);
             worse[1] += u32::from(harmful(&drawn) >= found[1]);
         }

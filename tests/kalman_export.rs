@@ -1,0 +1,235 @@
+//! `analyze --kalman`: the noise of a log as a linear system, which has the log's Allan variance.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::support::{code, fogbench, stderr, write};
+use fogbench::random::Streams;
+
+const RATE_HZ: f64 = 10.0;
+
+/// An hour and more of white noise and a walk, with the angle rounded or the words smoothed.
+fn log(folder: &Path, angle_step: Option<f64>) {
+    let mut random = Streams::new(7, 0).stream("log");
+    let (mut bias, mut angle, mut before) = (0.0, 0.0_f64, 0.0_f64);
+    let mut smooth = 0.0;
+    let mut text = String::new();
+    for _ in 0..60_000 {
+        bias += 0.01 * random.normal();
+        smooth += 0.5 * (3.0 * random.normal() - smooth);
+        let word = if let Some(step) = angle_step {
+            // An arcsecond in a second is a degree in an hour.
+            angle += (0.2 * random.normal() + bias) / RATE_HZ;
+            let rounded = (angle / step).round() * step;
+            let word = (rounded - before) * RATE_HZ;
+            before = rounded;
+            word
+        } else {
+            smooth + bias
+        };
+        text.push_str(&format!("{word}\n"));
+    }
+    write(folder, "log.csv", &text);
+}
+
+fn analyze(folder: &Path, more: &[&str]) -> std::process::Output {
+    let rate_hz = RATE_HZ.to_string();
+    let mut arguments = vec![
+        "analyze",
+        "log.csv",
+        "--rate-hz",
+        &rate_hz,
+        "--unit",
+        "deg/h",
+    ];
+    arguments.extend(more);
+    fogbench(folder, &arguments)
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    let items = value.as_array().expect("an array");
+    items
+        .iter()
+        .map(|it| it.as_f64().expect("a number"))
+        .collect()
+}
+
+/// The system as somebody would read it who has the file alone.
+struct System {
+    transition: Vec<Vec<f64>>,
+    noise: Vec<Vec<f64>>,
+    initial: Vec<Vec<f64>>,
+    observation: Vec<f64>,
+    cross: Vec<f64>,
+    measurement: f64,
+}
+
+impl System {
+    fn read(document: &Value) -> Self {
+        let matrix = |name: &str| -> Vec<Vec<f64>> {
+            document[name]
+                .as_array()
+                .expect("rows")
+                .iter()
+                .map(numbers)
+                .collect()
+        };
+        Self {
+            transition: matrix("F"),
+            noise: matrix("Q_d"),
+            initial: matrix("P0"),
+            observation: numbers(&document["H"]),
+            cross: numbers(&document["S"]),
+            measurement: document["R"].as_f64().expect("R"),
+        }
+    }
+
+    /// Allan deviation of m words each by the second moments of state and angle.
+    fn allan_deviation(&self, m: usize) -> f64 {
+        let n = self.observation.len();
+        let mut of_state = self.initial.clone();
+        let mut with_sum = vec![0.0; n];
+        let mut of_sum = 0.0;
+        for word in 0..2 * m {
+            let sign = if word < m { -1.0 } else { 1.0 };
+            let product = |row: &[f64], column: &dyn Fn(usize) -> f64| -> f64 {
+                row.iter()
+                    .enumerate()
+                    .map(|(k, value)| value * column(k))
+                    .sum()
+            };
+            let seen: Vec<f64> = of_state
+                .iter()
+                .map(|row| product(row, &|k| self.observation[k]))
+                .collect();
+            let along = |vector: &[f64]| product(&self.observation, &|k| vector[k]);
+            of_sum += 2.0 * sign * along(&with_sum) + along(&seen) + self.measurement;
+            let carried: Vec<f64> = (0..n).map(|k| with_sum[k] + sign * seen[k]).collect();
+            with_sum = (0..n)
+                .map(|row| product(&self.transition[row], &|k| carried[k]) + sign * self.cross[row])
+                .collect();
+            let halfway: Vec<Vec<f64>> = (0..n)
+                .map(|row| {
+                    (0..n)
+                        .map(|column| product(&self.transition[row], &|k| of_state[k][column]))
+                        .collect()
+                })
+                .collect();
+            of_state = (0..n)
+                .map(|row| {
+                    (0..n)
+                        .map(|column| {
+                            product(&self.transition[column], &|k| halfway[row][k])
+                                + self.noise[row][column]
+                        })
+                        .collect()
+                })
+                .collect();
+        }
+        (of_sum / (2.0 * (m * m) as f64)).sqrt()
+    }
+}
+
+fn model(folder: &Path, more: &[&str]) -> Value {
+    let arguments = [&["--kalman", "noise.json", "-o", "out"][..], more].concat();
+    let output = analyze(folder, &arguments);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let text = fs::read_to_string(folder.join("noise.json")).expect("the model");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+#[test]
+fn a_log_comes_back_from_its_system() {
+    for (angle_step, state) in [(None, "angle_random_walk"), (Some(0.1), "quantisation")] {
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        log(folder.path(), angle_step);
+        let document = model(folder.path(), &[]);
+        let states = document["states"].as_array().expect("states");
+        let names: Vec<&str> = states.iter().filter_map(|it| it["name"].as_str()).collect();
+        assert!(
+            names.contains(&state) && names.contains(&"bias"),
+            "{names:?}"
+        );
+        assert_eq!(document["F"].as_array().expect("rows").len(), names.len());
+        let system = System::read(&document);
+        let fit: Value = serde_json::from_str(
+            &fs::read_to_string(folder.path().join("out/summary.json")).expect("a summary"),
+        )
+        .expect("JSON");
+        let curve = &fit["channels"]["raw"]["curves"]["allan_fit"];
+        let (tau, deviation) = (
+            numbers(&curve["tau_s"]),
+            numbers(&curve["deviation_deg_per_h"]),
+        );
+        let longest = document["tau_max_s"].as_f64().expect("a time");
+        let mut compared = 0;
+        for (tau_s, measured) in tau.iter().zip(deviation) {
+            let m = (tau_s * RATE_HZ).round() as usize;
+            if !(2..=1000).contains(&m) || *tau_s > longest {
+                continue;
+            }
+            let got = system.allan_deviation(m);
+            // Three standard errors of the curve: 1.5 T/tau degrees of freedom and more.
+            let tolerance = 0.03 + 3.0 * (m as f64 / 180_000.0).sqrt();
+            assert!(
+                (got / measured - 1.0).abs() < tolerance,
+                "{state} {tau_s}: {got} {measured}"
+            );
+            compared += 1;
+        }
+        assert!(compared > 15, "{compared}");
+        for point in document["allan_deviation"].as_array().expect("a curve") {
+            let tau_s = point["tau_s"].as_f64().expect("a time");
+            let m = (tau_s * RATE_HZ).round() as usize;
+            if m <= 1000 {
+                let stated = point["deviation_deg_per_h"].as_f64().expect("a deviation");
+                let got = system.allan_deviation(m);
+                assert!((got / stated - 1.0).abs() < 0.03, "{tau_s}: {got} {stated}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_file_of_the_user_stays() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    log(folder.path(), None);
+    write(folder.path(), "noise.json", "{\"mine\": true}\n");
+    let refused = analyze(folder.path(), &["--kalman", "noise.json"]);
+    assert_eq!(code(&refused), 2);
+    assert!(stderr(&refused).contains("noise.json was not written by fogbench"));
+    let kept = fs::read_to_string(folder.path().join("noise.json")).expect("the file");
+    assert_eq!(kept, "{\"mine\": true}\n");
+    assert_eq!(
+        code(&analyze(folder.path(), &["--kalman", "log.csv", "--force"])),
+        2
+    );
+    assert_eq!(
+        code(&analyze(
+            folder.path(),
+            &["--kalman", "noise.json", "--force"]
+        )),
+        0
+    );
+    // What was written before is replaced without a word.
+    assert_eq!(
+        code(&analyze(folder.path(), &["--kalman", "noise.json"])),
+        0
+    );
+}
+
+#[test]
+fn a_record_without_a_fit_has_no_system() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    write(folder.path(), "log.csv", "1\n2\n1\n3\n2\n1\n4\n2\n3\n1\n");
+    let output = analyze(folder.path(), &["--kalman", "noise.json"]);
+    assert_eq!(code(&output), 3, "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("no --kalman noise.json: "),
+        "{}",
+        stderr(&output)
+    );
+    assert!(!folder.path().join("noise.json").exists());
+}
