@@ -21,6 +21,9 @@ const LONG_BLOCKS: usize = 16;
 const SHORT_BLOCKS_MAX: usize = 2000;
 const REACHES_PER_BLOCK: usize = 16;
 
+/// The same where the density is known: so long that the two ends of a block have nothing in common.
+const REACHES_PER_KNOWN_BLOCK: usize = 2;
+
 /// Fewest samples of a tapered block.
 const SAMPLES_MIN: usize = 4;
 
@@ -56,7 +59,7 @@ impl MeanScatter {
             ends: ends(
                 values,
                 density,
-                whole(reach, None)
+                whole(REACHES_PER_BLOCK * reach, None)
                     .max(count as f64 / SHORT_BLOCKS_MAX as f64)
                     .min(long as f64),
             ),
@@ -80,7 +83,8 @@ impl MeanScatter {
         if long < SAMPLES_MIN {
             return Self::of(differences, reach);
         }
-        Self::of_known_density(differences, tapered_density(aligned, long), reach, cycle)
+        let density = tapered_density(aligned, long);
+        Self::of_blocks(differences, density, REACHES_PER_BLOCK * reach, cycle)
     }
 
     /// Of differences whose spectral density at zero frequency is known.
@@ -92,7 +96,12 @@ impl MeanScatter {
         reach: usize,
         cycle: Option<f64>,
     ) -> Self {
-        let short = whole(reach, cycle).max(differences.len() as f64 / SHORT_BLOCKS_MAX as f64);
+        Self::of_blocks(differences, density, REACHES_PER_KNOWN_BLOCK * reach, cycle)
+    }
+
+    /// Of differences with this density, in blocks of so many samples at least.
+    fn of_blocks(differences: &[f64], density: Spread, least: usize, cycle: Option<f64>) -> Self {
+        let short = whole(least, cycle).max(differences.len() as f64 / SHORT_BLOCKS_MAX as f64);
         Self {
             density,
             ends: ends(
@@ -142,9 +151,9 @@ pub(crate) fn mean_spread(values: &[f64], reach: usize) -> Spread {
     MeanScatter::of(values, reach).over(values.len())
 }
 
-/// Shortest block of a filter's reach, in whole cycles of a swing, samples.
-fn whole(reach: usize, cycle: Option<f64>) -> f64 {
-    let least = (REACHES_PER_BLOCK * reach.max(1)) as f64;
+/// Shortest block of so many samples at least, in whole cycles of a swing, samples.
+fn whole(least: usize, cycle: Option<f64>) -> f64 {
+    let least = least.max(1) as f64;
     cycle.map_or(least, |cycle| (least / cycle).ceil() * cycle)
 }
 

@@ -52,41 +52,7 @@ pub(crate) fn measure_steps(
     metrics: &mut ChannelMetrics,
 ) {
     let values = record.channel_deg_per_h;
-    match settling(
-        values,
-        last_step_index,
-        step_deg_per_h,
-        record.sample_period_s,
-    ) {
-        Ok(settled) => {
-            // A filter that learns meets the step with the weights of its own record.
-            let scatter = filter.map_or(WeightScatter::Blocks, |facts| {
-                facts.weight_scatter(values.len(), 0.0)
-            });
-            let given = |estimate: Estimate| match scatter {
-                WeightScatter::Blocks => estimate,
-                _ => Estimate::without_interval(estimate.value, NOT_FROM_ONE_RECORD),
-            };
-            let metric = metrics.put(&SETTLING_TIME, given(settled.settling_time_s));
-            metric
-                .fields
-                .insert("band_deg_per_h", settled.band_deg_per_h);
-            metric.fields.insert("step_deg_per_h", step_deg_per_h);
-            let step = Step {
-                rate_deg_per_h: values,
-                index: last_step_index,
-                height_deg_per_h: step_deg_per_h,
-                settling: settled,
-                sample_period_s: record.sample_period_s,
-            };
-            put_step_shape(&step, given, metrics);
-        }
-        Err(reason) => {
-            for key in [&SETTLING_TIME, &OVERSHOOT, &RISE_TIME] {
-                metrics.miss(key, reason.clone());
-            }
-        }
-    }
+    put_settling(record, last_step_index, step_deg_per_h, filter, metrics);
     let start = tail_start(values.len(), last_step_index.min(values.len()));
     if values.len() - start < SAMPLES_MIN {
         measure_tracking(record, None, filter, metrics);
@@ -127,6 +93,52 @@ pub(crate) fn measure_steps(
             );
         } else {
             measure_after_step(record, last_step_index, facts, metrics);
+        }
+    }
+}
+
+/// Enters what the last step shows: settling, rise and overshoot.
+fn put_settling(
+    record: &Record,
+    last_step_index: usize,
+    step_deg_per_h: f64,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
+    let values = record.channel_deg_per_h;
+    match settling(
+        values,
+        last_step_index,
+        step_deg_per_h,
+        record.sample_period_s,
+    ) {
+        Ok(settled) => {
+            // A filter that learns meets the step with the weights of its own record.
+            let scatter = filter.map_or(WeightScatter::Blocks, |facts| {
+                facts.weight_scatter(values.len(), 0.0)
+            });
+            let given = |estimate: Estimate| match scatter {
+                WeightScatter::Blocks => estimate,
+                _ => Estimate::without_interval(estimate.value, NOT_FROM_ONE_RECORD),
+            };
+            let metric = metrics.put(&SETTLING_TIME, given(settled.settling_time_s));
+            metric
+                .fields
+                .insert("band_deg_per_h", settled.band_deg_per_h);
+            metric.fields.insert("step_deg_per_h", step_deg_per_h);
+            let step = Step {
+                rate_deg_per_h: values,
+                index: last_step_index,
+                height_deg_per_h: step_deg_per_h,
+                settling: settled,
+                sample_period_s: record.sample_period_s,
+            };
+            put_step_shape(&step, given, metrics);
+        }
+        Err(reason) => {
+            for key in [&SETTLING_TIME, &OVERSHOOT, &RISE_TIME] {
+                metrics.miss(key, reason.clone());
+            }
         }
     }
 }

@@ -166,31 +166,11 @@ pub(crate) fn measure_swing(
         let by_weights = response.tracking_by_weights(&fits, filter);
         measure_tracking(truth, record, &fits, by_weights, metrics);
     }
-    let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     metrics.put(
         &HARMONIC_DISTORTION,
         fits.channel.harmonic_distortion_percent(&residuals),
     );
-    let blocks = filter
-        .and_then(|facts| facts.learning.as_ref())
-        .map_or(fits.channel.block_count(), Learning::stretches);
-    // The table's own harmonics are known, and no noise.
-    let noise = |mut residuals: Vec<f64>, of: Option<&FilterFacts>| {
-        if let Some(shown) = shown(record, of)
-            && let Ok(fit) = fit_swing(&shown.series, &clock)
-        {
-            shown.remove_from(&mut residuals, &fit.residuals(&shown.series));
-        }
-        LaggedProducts::new(&residuals, 0.0, lags, blocks)
-    };
-    let channel = noise(residuals, filter);
-    let raw = filter.map(|_| noise(fits.raw.residuals(record.raw_deg_per_h), None));
-    let by_weights = match (filter, &raw) {
-        (Some(facts), Some(raw)) => {
-            NoiseByWeights::new(facts, raw, record.raw_deg_per_h.len(), 0.0)
-        }
-        _ => NoiseByWeights::none(),
-    };
+    let (channel, raw, by_weights) = noise_about_sine(record, &fits, &clock, filter);
     put_noise_std(
         &channel,
         &by_weights,
@@ -213,6 +193,37 @@ pub(crate) fn measure_swing(
         }
     }
     Ok(())
+}
+
+/// Noise of the channel and of raw about their sines, and how the weights of the filter scatter.
+fn noise_about_sine(
+    record: &Record,
+    fits: &Fits,
+    clock: &SwingClock,
+    filter: Option<&FilterFacts>,
+) -> (LaggedProducts, Option<LaggedProducts>, NoiseByWeights) {
+    let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
+    let blocks = filter
+        .and_then(|facts| facts.learning.as_ref())
+        .map_or(fits.channel.block_count(), Learning::stretches);
+    // The table's own harmonics are known, and no noise.
+    let noise = |mut residuals: Vec<f64>, of: Option<&FilterFacts>| {
+        if let Some(shown) = shown(record, of)
+            && let Ok(fit) = fit_swing(&shown.series, clock)
+        {
+            shown.remove_from(&mut residuals, &fit.residuals(&shown.series));
+        }
+        LaggedProducts::new(&residuals, 0.0, lags, blocks)
+    };
+    let channel = noise(fits.channel.residuals(record.channel_deg_per_h), filter);
+    let raw = filter.map(|_| noise(fits.raw.residuals(record.raw_deg_per_h), None));
+    let by_weights = match (filter, &raw) {
+        (Some(facts), Some(raw)) => {
+            NoiseByWeights::new(facts, raw, record.raw_deg_per_h.len(), 0.0)
+        }
+        _ => NoiseByWeights::none(),
+    };
+    (channel, raw, by_weights)
 }
 
 /// Delays and amplitude ratio. A pipeline's latency is part of its delays.

@@ -5,3 +5,4 @@ pub(super) mod claim;
 pub(super) mod learning;
 pub(super) mod memory;
 pub(super) mod prediction;
+mod stretches;
