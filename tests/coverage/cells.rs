@@ -87,7 +87,7 @@ const fn not_judged(
     }
 }
 
-const NOT_JUDGED: [NotJudged; 11] = [
+const NOT_JUDGED: [NotJudged; 13] = [
     not_judged(
         ["", "mean", "noise_gain_over_bound"],
         "a mean stands at its bound, where the ratio moves to second order alone: stated is 4.5 times true",
@@ -96,6 +96,10 @@ const NOT_JUDGED: [NotJudged; 11] = [
         ["swing", "lms", "dc_gain"],
         "its sum of weights is 1 to a billionth; blocks show a fiftieth of what is left",
     ),
+    not_judged(
+        ["swing", "lms", "noise_gain"],
+        "weights that a swing's power normalises remember their noise for longer than a block: 0.66",
+    ),
     not_judged(["steps", "rls", "mean_deg"], WITHIN_A_STRETCH),
     not_judged(["steps", "rls", "mean_error"], WITHIN_A_STRETCH),
     not_judged(["steps", "rls", "tracking_error"], WITHIN_A_STRETCH),
@@ -103,6 +107,7 @@ const NOT_JUDGED: [NotJudged; 11] = [
     not_judged(["staircase", "rls", "mean_error"], WITHIN_A_STRETCH),
     not_judged(["staircase", "rls", "dc_gain"], WITHIN_A_STRETCH),
     not_judged(["staircase", "rls", "scale_factor_error"], WITHIN_A_STRETCH),
+    not_judged(["staircase", "rls", "noise_gain"], SHORT_TAIL),
     not_judged(["staircase", "", "settled_gain"], SHORT_TAIL),
     not_judged(["staircase", "", "mean_ratio"], SHORT_TAIL),
 ];
@@ -110,7 +115,7 @@ const NOT_JUDGED: [NotJudged; 11] = [
 const WITHIN_A_STRETCH: &str = "weights that meet a step move within a stretch of their learning: stated is 0.5 to 7 times true";
 
 const SHORT_TAIL: &str = "the settled part is half a second of rest, few blocks of a filter's reach: \
-    Student's t of one or two degrees of freedom covers, and is five times too wide";
+    Student's t of few degrees of freedom covers, and is up to five times too wide";
 
 /// What the seeds say of one cell.
 struct Cell {
