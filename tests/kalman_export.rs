@@ -34,6 +34,16 @@ fn log(folder: &Path, angle_step: Option<f64>) {
     write(folder, "log.csv", &text);
 }
 
+/// Words in an averaging time.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a small positive whole number"
+)]
+fn words_in(tau_s: f64) -> usize {
+    (tau_s * RATE_HZ).round() as usize
+}
+
 fn analyze(folder: &Path, more: &[&str]) -> std::process::Output {
     let rate_hz = RATE_HZ.to_string();
     let mut arguments = vec![
@@ -166,7 +176,7 @@ fn a_log_comes_back_from_its_system() {
         let longest = document["tau_max_s"].as_f64().expect("a time");
         let mut compared = 0;
         for (tau_s, measured) in tau.iter().zip(deviation) {
-            let m = (tau_s * RATE_HZ).round() as usize;
+            let m = words_in(*tau_s);
             if !(2..=1000).contains(&m) || *tau_s > longest {
                 continue;
             }
@@ -182,7 +192,7 @@ fn a_log_comes_back_from_its_system() {
         assert!(compared > 15, "{compared}");
         for point in document["allan_deviation"].as_array().expect("a curve") {
             let tau_s = point["tau_s"].as_f64().expect("a time");
-            let m = (tau_s * RATE_HZ).round() as usize;
+            let m = words_in(tau_s);
             if m <= 1000 {
                 let stated = point["deviation_deg_per_h"].as_f64().expect("a deviation");
                 let got = system.allan_deviation(m);

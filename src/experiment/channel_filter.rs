@@ -141,6 +141,17 @@ impl Arithmetic {
         }
     }
 
+    fn step_all(
+        &mut self,
+        words_deg_per_h: &[f64],
+        outputs: &mut Vec<Output>,
+    ) -> Result<(), Divergence> {
+        match self {
+            Self::Textbook(filter) => filter.step_all(words_deg_per_h, outputs),
+            Self::Hardware(filter) => filter.step_all(words_deg_per_h, outputs),
+        }
+    }
+
     #[inline]
     pub(super) fn step(&mut self, word_deg_per_h: f64) -> Result<Output, Divergence> {
         match self {
@@ -199,6 +210,10 @@ impl ChannelFilter {
 
     /// Filters the next words of the record.
     pub(super) fn process(&mut self, words_deg_per_h: &[f64]) {
+        let adapts = matches!(self.shape.rule, WeightRule::Adaptive { .. });
+        if !adapts && self.rate_twins.is_none() && self.restarts.is_none() {
+            return self.process_alone(words_deg_per_h);
+        }
         for &word in words_deg_per_h {
             if self.failure.is_some() {
                 return;
@@ -207,6 +222,26 @@ impl ChannelFilter {
                 self.failure = Some(divergence);
                 self.output_deg_per_h = Vec::new();
             }
+        }
+    }
+
+    /// The same for a filter with nothing beside it, in one go.
+    fn process_alone(&mut self, words_deg_per_h: &[f64]) {
+        if self.failure.is_some() {
+            return;
+        }
+        let mut outputs = Vec::with_capacity(words_deg_per_h.len());
+        self.failure = self.filter.step_all(words_deg_per_h, &mut outputs).err();
+        if self.failure.is_some() {
+            self.output_deg_per_h = Vec::new();
+            return;
+        }
+        for output in outputs {
+            if self.output_deg_per_h.len() >= self.warm_up_samples {
+                self.weight_sum_total += output.weight_sum;
+                self.measured += 1;
+            }
+            self.output_deg_per_h.push(output.value_deg_per_h);
         }
     }
 

@@ -121,6 +121,17 @@ pub fn measure(
     metrics
 }
 
+/// As [`measure`] for raw words of which some are missing (NaN): what a log measures without its outliers.
+pub(crate) fn measure_present(record: &Record, settings: &Settings) -> ChannelMetrics {
+    let mut metrics = ChannelMetrics::default();
+    if let Err(reason) = measure_words(record, settings, None, &mut metrics) {
+        refuse_rest(&reason, &mut metrics);
+    }
+    metrics.keep_finite();
+    explain_missing(record, settings, false, &mut metrics);
+    metrics
+}
+
 fn measure_motion(
     record: &Record,
     settings: &Settings,
@@ -138,6 +149,16 @@ fn measure_motion(
     if let Some(index) = values.iter().position(|value| !value.is_finite()) {
         return Err(format!("sample {index} of the record is not finite").into());
     }
+    measure_words(record, settings, filter, metrics)
+}
+
+fn measure_words(
+    record: &Record,
+    settings: &Settings,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) -> Result<(), Unavailable> {
+    let values = record.channel_deg_per_h;
     let spectrum = welch(
         values,
         record.sample_period_s,
@@ -193,7 +214,8 @@ fn measure_motion(
 /// Gives one reason to everything that is still missing.
 fn refuse_rest(reason: &Unavailable, metrics: &mut ChannelMetrics) {
     for known in known_metrics() {
-        let is_own = **known == DIVERGED_AT || known.applies == Applies::Pipeline;
+        let is_own =
+            **known == DIVERGED_AT || matches!(known.applies, Applies::Pipeline | Applies::Log);
         if !is_own && metrics.get(known).is_none() {
             metrics.miss(known, reason.clone());
         }
@@ -210,7 +232,7 @@ fn explain_missing(
     let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
     for known in known_metrics() {
         if **known == DIVERGED_AT
-            || known.applies == Applies::Calibration
+            || matches!(known.applies, Applies::Calibration | Applies::Log)
             || metrics.get(known).is_some()
             || metrics.why_unavailable(known).is_some()
         {

@@ -26,6 +26,7 @@
 //! | `catalogue` | the list of metrics, their names, and which records support them |
 //! | `pool` | independent repeats, and conditions compared |
 //! | `measure` | all of it for one channel |
+//! | `quality` | what is the matter with the words of a log: outliers, smoothing |
 
 mod allan;
 mod calibration;
@@ -37,6 +38,7 @@ mod motion;
 mod noise;
 mod pipeline;
 mod pool;
+mod quality;
 mod record;
 mod sine;
 mod state_space;
@@ -57,6 +59,7 @@ pub use allan::noise_identification::PowerLaw;
 pub use allan::overlapping::{
     AllanPoint, NoiseType, degrees_of_freedom, overlapping_allan, overlapping_allan_at,
 };
+pub use allan::pulses::answer::{PulseAnswer, PulseMethod};
 pub use allan::stream::AllanStream;
 pub use allan::variants::{
     AllanEstimator, AllanOptions, AllanVariantPoint, allan_variant, allan_variant_at,
@@ -67,6 +70,7 @@ pub use catalogue::{columns, find, known_curves, known_metrics, repeated_metrics
 pub use estimate::blocks::{block_label_s, block_means, is_sample_or_longer, samples_in};
 pub use estimate::fit_sheet::{FitSheet, FitTerm};
 pub use estimate::missing::MissingMetric;
+pub use estimate::outlier_sheet::OutlierEntry;
 pub use estimate::reason::Unavailable;
 pub use estimate::repeat_statistics::RepeatStatistics;
 pub use estimate::table::{ChannelFailure, ChannelMetrics};
@@ -86,6 +90,9 @@ pub use noise::truth_response::known_motion;
 pub use pool::aggregate::aggregate;
 pub use pool::repeatability::repeats_lack;
 pub use pool::sensitivity::{ConditionPoint, change_divisor, largest_change_per_unit};
+pub use quality::examine::examine_log;
+pub use quality::outliers::{Outlier, Outliers, find_outliers};
+pub use quality::smoothing::{Smoothed, Smoothing, find_smoothing};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};
 pub use sine::correlation::correlation_delay_s;
 pub use sine::fit::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};

@@ -194,8 +194,10 @@ impl<R: BufRead> Lines<R> {
 
 /// Whether a line is a comment; what a spreadsheet writes for a missing number is none.
 fn is_comment(text: &str) -> bool {
-    let is_missing = |error: &&str| text.starts_with(*error);
-    text.starts_with('#') && !SPREADSHEET_ERRORS.iter().any(|error| is_missing(&error))
+    let is_missing = SPREADSHEET_ERRORS
+        .iter()
+        .any(|error| text.starts_with(error));
+    text.starts_with('#') && !is_missing
 }
 
 /// What stands between the cells of a line.

@@ -11,6 +11,7 @@ use crate::report::layout::json::{SCHEMA, tool};
 use crate::report::layout::json::{object, pretty, put};
 use crate::report::layout::text::{Tone, toned, wrapped};
 use crate::report::record::measured::Measured;
+use crate::report::text::quality::quality_text;
 use crate::report::text::table::{channels_text, failures_text, filter_verdicts};
 use crate::scenario::{MotionClass, MotionConfig};
 use crate::wording::counted;
@@ -81,6 +82,7 @@ pub fn log_text(report: &LogReport, width: usize, colour: bool) -> String {
     let measured = report.measured();
     text.push_str(&channels_text(&measured, width, colour));
     text.push_str(&failures_text(&measured, &[], width, colour));
+    text.push_str(&quality_text(report.channels, width));
     text.push_str(&filter_verdicts(&measured, width, colour));
     for note in report.notes {
         let note = format!("{} {note}", toned("note:", Tone::Doubt, colour));

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, IsTerminal};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -18,6 +19,7 @@ use crate::experiment::{
 };
 use crate::report::{self, RunOutcome, RunReport, RunStatus};
 use crate::scenario::bounded;
+use crate::wording::counted;
 
 /// Plans, runs, prints and judges.
 pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exit> {
@@ -25,6 +27,14 @@ pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Re
         Ok(plans) => plans,
         Err(exit) => return Ok(exit),
     };
+    if options.require_gates
+        && plans
+            .iter()
+            .all(|plan| plan.resolved().scenario.gates.is_empty())
+    {
+        output::talk("error: --require-gates: no selected scenario has a gate; nothing was run");
+        return Ok(Exit::GateFailed);
+    }
     let suite = SuiteOptions {
         threads: usize::from(options.jobs),
         force: options.force,
@@ -60,14 +70,23 @@ fn resume(from: Option<ResumeFrom>) -> Resume {
 }
 
 /// The verdict of the whole suite: the worst of its runs.
-fn exit_of(suite: &SuiteOutcome) -> Exit {
+///
+/// * `is_cut_short`: whether runs were left out because another one had failed.
+fn exit_of(suite: &SuiteOutcome, is_cut_short: bool) -> Exit {
     if suite.broken {
         return Exit::Internal;
     }
     if suite.unwritten || !suite.failures.is_empty() {
         return Exit::Io;
     }
-    match suite.runs.iter().map(RunOutcome::status).max() {
+    let counts = |run: &&RunOutcome| !(is_cut_short && run.is_not_run);
+    match suite
+        .runs
+        .iter()
+        .filter(counts)
+        .map(RunOutcome::status)
+        .max()
+    {
         None | Some(RunStatus::Pass) => Exit::Success,
         Some(RunStatus::GateFailed) => Exit::GateFailed,
         Some(RunStatus::ChannelFailed | RunStatus::NotRun | RunStatus::RunFailed) => {
@@ -108,6 +127,8 @@ struct Progress<'a> {
     options: &'a RunOptions,
     interrupt: &'a Interrupt,
     pending: Mutex<Pending>,
+    /// Whether a run has failed.
+    has_failed: AtomicBool,
 }
 
 /// Texts that wait for their turn.
@@ -139,6 +160,7 @@ impl<'a> Progress<'a> {
             options,
             interrupt,
             pending: Mutex::new(pending),
+            has_failed: AtomicBool::new(false),
         }
     }
 
@@ -154,7 +176,7 @@ impl<'a> Progress<'a> {
                 let printed = self.print_rest(&closing(suite, self.options.format));
                 self.talk_of(suite);
                 let unprinted = printed.err().map(io_failure);
-                exit_of(suite).worst(unprinted.unwrap_or(Exit::Success))
+                exit_of(suite, self.is_cut_short()).worst(unprinted.unwrap_or(Exit::Success))
             }
             Err(error) => {
                 self.talk(&format!("error: {error}"));
@@ -169,7 +191,19 @@ impl<'a> Progress<'a> {
         exit.worst(signal.unwrap_or(Exit::Success))
     }
 
+    /// Whether a run has failed and no other is to start.
+    fn is_cut_short(&self) -> bool {
+        self.options.fail_fast && self.has_failed.load(Ordering::Relaxed)
+    }
+
     fn talk_of(&self, suite: &SuiteOutcome) {
+        let left = suite.runs.iter().filter(|run| run.is_not_run).count();
+        if self.is_cut_short() && left > 0 {
+            self.talk(&format!(
+                "--fail-fast: {left} of {} not started after the first failure",
+                counted(suite.runs.len(), "run")
+            ));
+        }
         for failure in &suite.failures {
             self.talk(&format!("error: {failure}"));
         }
@@ -257,14 +291,23 @@ impl experiment::Progress for Progress<'_> {
     fn should_stop(&self) -> bool {
         self.interrupt.exit().is_some()
     }
+
+    fn may_start(&self) -> bool {
+        !self.is_cut_short()
+    }
 }
 
 impl Observer for Progress<'_> {
     fn finished(&self, index: usize, report: &RunReport) {
+        let status = || RunOutcome::from_report(report, "").status();
+        if self.options.fail_fast && status() != RunStatus::Pass {
+            self.has_failed.store(true, Ordering::Relaxed);
+        }
         self.print_in_turn(index, self.text(report));
     }
 
     fn failed(&self, index: usize, outcome: &RunOutcome) {
+        self.has_failed.store(true, Ordering::Relaxed);
         let reason = outcome.error.as_deref().unwrap_or_default();
         self.talk(&format!("error: {}: {reason}", outcome.folder));
         self.print_in_turn(index, String::new());

@@ -9,6 +9,7 @@ use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::experiment::{Plan, Sound, check_suite, plan_suite};
 use crate::scenario::ScenarioError;
+use wildmatch::WildMatch;
 
 /// Folder whose sub-folders run when no path is given.
 const DEFAULT_FOLDER: &str = "scenarios";
@@ -17,7 +18,7 @@ const DEFAULT_FOLDER: &str = "scenarios";
 ///
 /// Complaints and remarks are printed before it returns.
 pub(in crate::cli) fn plans(options: &SelectOptions) -> Result<Vec<Plan>, Exit> {
-    let plans = selected(options, plan_suite)?;
+    let plans = selected(options, plan_suite, |plan| &plan.resolved().scenario.name)?;
     // What is said of a scenario is said once, not for each of its points.
     let mut said = BTreeSet::new();
     let remarks = plans.iter().flat_map(|plan| &plan.resolved().remarks);
@@ -29,7 +30,7 @@ pub(in crate::cli) fn plans(options: &SelectOptions) -> Result<Vec<Plan>, Exit> 
 ///
 /// Complaints are printed before the exit code is returned.
 pub(in crate::cli) fn sound(options: &SelectOptions) -> Result<Vec<Sound>, Exit> {
-    selected(options, check_suite)
+    selected(options, check_suite, |sound| &sound.name)
 }
 
 /// What a reader finds, or every complaint.
@@ -39,6 +40,7 @@ type Found<T> = Result<Vec<T>, Vec<ScenarioError>>;
 fn selected<T>(
     options: &SelectOptions,
     read: impl Fn(&[PathBuf], &[String]) -> Found<T>,
+    name: impl Fn(&T) -> &str,
 ) -> Result<Vec<T>, Exit> {
     let paths = if options.paths.is_empty() {
         vec![PathBuf::from(DEFAULT_FOLDER)]
@@ -51,12 +53,23 @@ fn selected<T>(
         ));
         return Err(Exit::NothingSelected);
     }
-    let found = read(&paths, &options.set).map_err(|errors| {
+    let mut found = read(&paths, &options.set).map_err(|errors| {
         complaint::print(&errors);
         Exit::Usage
     })?;
     if found.is_empty() {
         output::talk("error: nothing selected: no scenario with a `name` was found");
+        return Err(Exit::NothingSelected);
+    }
+    let globs: Vec<WildMatch> = options.names.iter().map(|it| WildMatch::new(it)).collect();
+    if !globs.is_empty() {
+        found.retain(|it| globs.iter().any(|glob| glob.matches(name(it))));
+    }
+    if found.is_empty() {
+        output::talk(&format!(
+            "error: nothing selected: no scenario has a name like `{}`; `fogbench list` shows the names",
+            options.names.join("` or `")
+        ));
         return Err(Exit::NothingSelected);
     }
     Ok(found)

@@ -74,6 +74,9 @@ pub(in crate::cli) struct SelectOptions {
     /// Override a key of every selected scenario; `filter.<name>.<key>` reaches into a filter
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(in crate::cli) set: Vec<String>,
+    /// Only scenarios of these names, in which `*` stands for any text and `?` for one character
+    #[arg(long = "filter", value_name = "GLOB")]
+    pub(in crate::cli) names: Vec<String>,
 }
 
 /// Whose results `run --resume` takes over.
@@ -130,6 +133,12 @@ pub(in crate::cli) struct RunOptions {
     #[arg(long, value_name = "BUILD", num_args = 0..=1, require_equals = true,
           default_missing_value = "same-build")]
     pub(in crate::cli) resume: Option<ResumeFrom>,
+    /// Start no further run once one has failed, be it by a gate
+    #[arg(long)]
+    pub(in crate::cli) fail_fast: bool,
+    /// Fail where no selected scenario has a gate
+    #[arg(long)]
+    pub(in crate::cli) require_gates: bool,
     /// Threads, at most 256; 0 = RAYON_NUM_THREADS, else one per core; no result depends on it
     #[arg(short, long, value_name = "N", default_value_t = 0,
           value_parser = clap::value_parser!(u16).range(0..=256))]

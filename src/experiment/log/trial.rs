@@ -12,8 +12,8 @@ use crate::experiment::output_file::write_file;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
 use crate::metrics::{
-    ChannelMetrics, Motion, Settings, Unavailable, is_sample_or_longer, noise_state_space,
-    record_fit_tau_min_s,
+    ChannelMetrics, Motion, Settings, Unavailable, examine_log, is_sample_or_longer,
+    noise_state_space, record_fit_tau_min_s,
 };
 use crate::recording::Log;
 use crate::report::{KalmanReport, LogReport, kalman_json, log_files};
@@ -25,6 +25,8 @@ use crate::wording::{counted, plain};
 
 /// Name of the log's own channel.
 const RAW: &str = "raw";
+/// What stands behind the name of a channel whose outliers are left out.
+const WITHOUT_OUTLIERS: &str = "_without_outliers";
 /// Name of the channel without the constant errors of its assembly.
 const COMPENSATED: &str = "compensated";
 
@@ -151,27 +153,19 @@ pub fn try_log(
         raw_deg_per_h: std::mem::take(&mut log.rate_deg_per_h),
         compensated_deg_per_h: compensated,
     };
-    let clashes = |filters: &LogFilters| filters.configs().iter().any(|it| it.name == COMPENSATED);
-    if record.compensated_deg_per_h.is_some() && filters.is_some_and(clashes) {
+    let is_compensated = record.compensated_deg_per_h.is_some();
+    if let Some(message) = filters.and_then(|filters| clash(filters, is_compensated)) {
         return Err(LogTrialError {
             file: log.file,
-            message: format!("a filter is named `{COMPENSATED}`, as is the channel it is given"),
+            message,
         });
     }
     let words = record.filter_input_deg_per_h();
     let finished = filters.map_or_else(Vec::new, |filters| {
         run(filters, length, sample_period_s, words)
     });
-    let fit_tau_min_s = settings.fit_tau_min_s.unwrap_or_else(|| {
-        let measured = &record.raw_deg_per_h[length.warm_up..];
-        record_fit_tau_min_s(measured, sample_period_s)
-    });
-    let metric_settings = Settings {
-        motion: metric_motion(settings.motion),
-        bias_averaging_time_s: settings.bias_averaging_time_s,
-        fit_tau_min_s,
-        allan: allan_options(settings.allan),
-    };
+    let measured = &record.raw_deg_per_h[length.warm_up..];
+    let metric_settings = metric_settings(settings, measured, sample_period_s);
     let cut = Cut {
         record: &record,
         encoder_rad: None,
@@ -180,8 +174,12 @@ pub fn try_log(
         settings: &metric_settings,
         drift: None,
     };
+    let is_tau_given = settings.fit_tau_min_s.is_some();
     let (raw, others): (_, Vec<_>) = rayon::join(
-        || cut.measure_raw(),
+        || {
+            let words = &record.raw_deg_per_h;
+            examined(RAW, cut.measure_raw(), words, &cut, is_tau_given)
+        },
         || {
             let filters = finished.par_iter();
             filters
@@ -195,12 +193,14 @@ pub fn try_log(
         let of_pipelines = finished.iter();
         notes.extend(of_pipelines.flat_map(|it| pipeline_metrics::notes(it, sample_period_s)));
     }
-    let is_compensated = record.compensated_deg_per_h.is_some();
-    let compensated = is_compensated.then(|| (COMPENSATED.to_owned(), cut.measure_compensated()));
-    let own = std::iter::once((RAW.to_owned(), raw)).chain(compensated);
-    let channels = own.chain(others);
+    let compensated = is_compensated.then(|| {
+        let measured = cut.measure_compensated();
+        examined(COMPENSATED, measured, words, &cut, is_tau_given)
+    });
+    let own = raw.into_iter().chain(compensated.into_iter().flatten());
+    let channels: Vec<_> = own.chain(others).collect();
     Ok(LogTrial {
-        channels: channels.collect(),
+        channels,
         motion: report_motion(settings.motion),
         source: filters.map(LogFilters::source),
         filters: finished,
@@ -209,6 +209,50 @@ pub fn try_log(
         length,
         notes,
     })
+}
+
+/// What is wrong with the name of a filter that a channel of the log has.
+fn clash(filters: &LogFilters, is_compensated: bool) -> Option<String> {
+    let own = [(RAW, true), (COMPENSATED, is_compensated)];
+    let own: Vec<String> = own
+        .into_iter()
+        .filter(|(_, is_there)| *is_there)
+        .flat_map(|(name, _)| [name.to_owned(), format!("{name}{WITHOUT_OUTLIERS}")])
+        .collect();
+    let mut names = filters.configs().iter().map(|it| &it.name);
+    let taken = names.find(|name| own.contains(name))?;
+    Some(format!(
+        "a filter is named `{taken}`, as is a channel of the log"
+    ))
+}
+
+/// How the words of a log, those behind the warm-up, are measured.
+fn metric_settings(settings: &LogSettings, measured: &[f64], sample_period_s: f64) -> Settings {
+    let fit_tau_min_s = settings.fit_tau_min_s;
+    Settings {
+        motion: metric_motion(settings.motion),
+        bias_averaging_time_s: settings.bias_averaging_time_s,
+        fit_tau_min_s: fit_tau_min_s
+            .unwrap_or_else(|| record_fit_tau_min_s(measured, sample_period_s)),
+        allan: allan_options(settings.allan),
+    }
+}
+
+/// A measured channel, and beside it what it measures without its outliers, if it has any.
+fn examined(
+    name: &str,
+    mut metrics: ChannelMetrics,
+    words: &[f64],
+    cut: &Cut,
+    is_tau_given: bool,
+) -> Vec<(String, ChannelMetrics)> {
+    let (first, settings) = (cut.length.warm_up, cut.settings);
+    let record = cut.of(words, words);
+    let rest = examine_log(&record, settings, is_tau_given, first, &mut metrics);
+    let rest = rest.map(|rest| (format!("{name}{WITHOUT_OUTLIERS}"), rest));
+    std::iter::once((name.to_owned(), metrics))
+        .chain(rest)
+        .collect()
 }
 
 /// Every filter over the whole log.
@@ -322,12 +366,15 @@ impl LogTrial {
         })
     }
 
-    /// The noise of the words as a linear system, JSON.
+    /// The noise of the words as a linear system, JSON; that without outliers where there are any.
     ///
     /// # Errors
     /// Why the words have no fit of noise terms.
     pub fn kalman(&self) -> Result<String, Unavailable> {
-        let (_, raw) = &self.channels[0];
+        let clean = format!("{RAW}{WITHOUT_OUTLIERS}");
+        let mut channels = self.channels.iter();
+        let clean = channels.find(|(name, _)| *name == clean);
+        let (_, raw) = clean.unwrap_or(&self.channels[0]);
         let system = noise_state_space(raw)?;
         Ok(kalman_json(&KalmanReport {
             tool_version: VERSION,

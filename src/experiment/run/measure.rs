@@ -123,8 +123,18 @@ impl Cut<'_> {
         input_deg_per_h: &[f64],
         filter: Option<&FilterFacts>,
     ) -> ChannelMetrics {
+        let record = self.of(channel_deg_per_h, input_deg_per_h);
+        measure(&record, self.settings, filter)
+    }
+
+    /// The measured part of a channel and of what it was made from.
+    pub(crate) fn of<'b>(
+        &'b self,
+        channel_deg_per_h: &'b [f64],
+        input_deg_per_h: &'b [f64],
+    ) -> Record<'b> {
         let first = self.length.warm_up;
-        let record = Record {
+        Record {
             channel_deg_per_h: &channel_deg_per_h[first..],
             raw_deg_per_h: &input_deg_per_h[first..],
             // A recorded log has none.
@@ -134,8 +144,7 @@ impl Cut<'_> {
             sample_period_s: self.sample_period_s,
             first_stamp_s: stamp_s(first as u64, self.sample_period_s),
             drift: self.drift.as_ref(),
-        };
-        measure(&record, self.settings, filter)
+        }
     }
 
     /// What a filter has learned from its input; none where its motion is not known.

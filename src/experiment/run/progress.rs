@@ -11,6 +11,10 @@ pub trait Progress: Sync {
     fn should_stop(&self) -> bool {
         false
     }
+    /// Whether another run of a suite may start; those that have started go on.
+    fn may_start(&self) -> bool {
+        true
+    }
 }
 
 /// Nobody listens, nobody stops.

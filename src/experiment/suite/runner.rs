@@ -77,7 +77,7 @@ fn run_all(plans: &[Plan], layout: &Layout, suite: &Suite, observer: &dyn Observ
     let order = order.par_iter().with_max_len(1);
     let ledger = suite.ledger;
     order.for_each(|&index| {
-        if observer.should_stop() {
+        if observer.should_stop() || !observer.may_start() {
             return;
         }
         let plan = &plans[index];

@@ -21,6 +21,11 @@ pub trait Core: Send {
     /// infinite impulse response.
     fn weights(&self) -> &[f64];
 
+    /// Weights that no update changes, with their sum; none of a core that has a state of its own.
+    fn given(&self) -> Option<(&[f64], f64)> {
+        None
+    }
+
     /// Number of regressors that an update takes.
     fn regressors(&self) -> usize {
         self.weights().len()
@@ -67,27 +72,101 @@ impl<C: Core> CoreFilter<C> {
         &self.core
     }
 
-    fn advance(&mut self, input: f64) -> Result<Output, Fault> {
-        self.watch.check_input(input)?;
-        let (regressors, desired) = self.front_end.push(input);
-        let result = self.core.update(regressors, desired)?;
-        self.watch.check_output(result)?;
-        Ok(self.register.clock(result))
-    }
-}
-
-impl<C: Core> Filter for CoreFilter<C> {
-    fn step(&mut self, input_deg_per_h: f64) -> Result<Output, Divergence> {
+    /// Takes a sample, with `update` making the word of it.
+    #[inline]
+    fn step_by(
+        &mut self,
+        input_deg_per_h: f64,
+        update: impl FnOnce(&mut C, &[f64], f64) -> Result<Output, Fault>,
+    ) -> Result<Output, Divergence> {
         if let Some(divergence) = &self.diverged {
             return Err(divergence.clone());
         }
         let sample = self.samples;
         self.samples += 1;
-        self.advance(input_deg_per_h).map_err(|fault| {
+        self.advance(input_deg_per_h, update).map_err(|fault| {
             let divergence = fault.at(sample);
             self.diverged = Some(divergence.clone());
             divergence
         })
+    }
+
+    #[inline]
+    fn advance(
+        &mut self,
+        input: f64,
+        update: impl FnOnce(&mut C, &[f64], f64) -> Result<Output, Fault>,
+    ) -> Result<Output, Fault> {
+        self.watch.check_input(input)?;
+        let (regressors, desired) = self.front_end.push(input);
+        let result = update(&mut self.core, regressors, desired)?;
+        self.watch.check_output(result)?;
+        Ok(self.register.clock(result))
+    }
+
+    /// Words of coming samples, several side by side, of a filter with many given weights.
+    fn words_of(&self, inputs: &[f64]) -> Option<impl Iterator<Item = Output> + use<C>> {
+        let (weights, weight_sum) = self.core.given()?;
+        if weights.len() < LANES {
+            return None;
+        }
+        let history = self.front_end.history();
+        let samples: Vec<f64> = history.chain(inputs.iter().copied()).collect();
+        let words = convolved(weights, &samples, inputs.len()).into_iter();
+        Some(words.map(move |value_deg_per_h| Output {
+            value_deg_per_h,
+            weight_sum,
+        }))
+    }
+}
+
+/// Outputs that are summed side by side: each in the order of [`dot`], without waiting for the sum of
+/// another.
+const LANES: usize = 8;
+
+/// The `count` inner products of the weights with the samples, oldest first, that begin with the first
+/// `weights.len()` of them.
+fn convolved(weights: &[f64], samples: &[f64], count: usize) -> Vec<f64> {
+    let newest = weights.len() - 1;
+    let mut words = Vec::with_capacity(count);
+    while words.len() + LANES <= count {
+        let mut sums = [std::iter::empty::<f64>().sum::<f64>(); LANES];
+        for (age, weight) in weights.iter().enumerate() {
+            let first = newest + words.len() - age;
+            let lanes = &samples[first..first + LANES];
+            for (sum, sample) in sums.iter_mut().zip(lanes) {
+                *sum += weight * sample;
+            }
+        }
+        words.extend(sums);
+    }
+    for word in words.len()..count {
+        let newest_first = samples[word..=word + newest].iter().rev();
+        words.push(weights.iter().zip(newest_first).map(|(w, x)| w * x).sum());
+    }
+    words
+}
+
+impl<C: Core> Filter for CoreFilter<C> {
+    fn step(&mut self, input_deg_per_h: f64) -> Result<Output, Divergence> {
+        self.step_by(input_deg_per_h, C::update)
+    }
+
+    fn step_all(
+        &mut self,
+        inputs_deg_per_h: &[f64],
+        outputs: &mut Vec<Output>,
+    ) -> Result<(), Divergence> {
+        let Some(words) = self.words_of(inputs_deg_per_h) else {
+            for &input_deg_per_h in inputs_deg_per_h {
+                outputs.push(self.step(input_deg_per_h)?);
+            }
+            return Ok(());
+        };
+        for (&input_deg_per_h, word) in inputs_deg_per_h.iter().zip(words) {
+            outputs.push(self.step_by(input_deg_per_h, |_, _, _| Ok(word))?);
+        }
+        Ok(())
     }
 
     fn weights(&self) -> &[f64] {

@@ -30,6 +30,22 @@ pub trait Filter: Send {
     /// same one in every later call.
     fn step(&mut self, input_deg_per_h: f64) -> Result<Output, Divergence>;
 
+    /// Takes consecutive samples and appends the words stamped with them, to the bit those of
+    /// [`step`](Self::step) for one after another.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step), once the words before that sample are appended.
+    fn step_all(
+        &mut self,
+        inputs_deg_per_h: &[f64],
+        outputs: &mut Vec<Output>,
+    ) -> Result<(), Divergence> {
+        for &input_deg_per_h in inputs_deg_per_h {
+            outputs.push(self.step(input_deg_per_h)?);
+        }
+        Ok(())
+    }
+
     /// Weights after the newest update, the one on the newest regressor first.
     fn weights(&self) -> &[f64];
 

@@ -110,6 +110,12 @@ impl FrontEnd {
         }
     }
 
+    /// The samples that the next one's regressors reach back to, oldest first.
+    pub(super) fn history(&self) -> impl Iterator<Item = f64> {
+        let newest_first = &self.line.newest_first()[..self.lag + self.taps - 1];
+        newest_first.iter().rev().copied()
+    }
+
     /// Takes a sample; returns the regressors, newest first, and the desired value.
     pub(super) fn push(&mut self, sample: f64) -> (&[f64], f64) {
         self.line.push(sample);

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::covariance::{
-    CORRELATED, FLICKER, FLICKER_ALLAN_VARIANCE, RAMP, Structure, TERMS, WALK, WHITE,
+    CORRELATED, FLICKER, FLICKER_ALLAN_VARIANCE, INVERSE_SQUARE, RAMP, Structure, TERMS, WALK,
+    WHITE,
 };
 use super::overlapping::AllanPoint;
 use super::sampling::{Sampling, THIRD_AT};
@@ -89,6 +90,8 @@ pub(crate) struct Problem {
     correlation: Option<f64>,
     /// Independent records the curve is the mean of.
     records: f64,
+    /// Square of the `1/tau^2` term where it is known and not fitted.
+    known_inverse_square: Option<f64>,
 }
 
 /// An optimum, how it was reached from the points, and what the points scatter like.
@@ -115,7 +118,22 @@ impl Problem {
             structure: Arc::new(Structure::new(&factors, &counts, None)),
             correlation: None,
             records,
+            known_inverse_square: None,
         }
+    }
+
+    /// The same with the `1/tau^2` term of this square, in deg/h and s, known.
+    pub(crate) fn with_inverse_square(self, known: Option<f64>) -> Self {
+        let unit = self.in_seconds(INVERSE_SQUARE, 1.0);
+        Self {
+            known_inverse_square: known.map(|square| square / unit),
+            ..self
+        }
+    }
+
+    /// Whether the `1/tau^2` term is known, and not to be fitted.
+    pub(crate) fn knows_inverse_square(&self) -> bool {
+        self.known_inverse_square.is_some()
     }
 
     /// The same with exponentially correlated noise of this correlation time, samples, among its
@@ -231,7 +249,11 @@ impl Problem {
         let design = DMatrix::from_fn(self.points(), columns.len(), |row, column| {
             self.column(columns[column], row)
         });
-        let measured = DVector::from_column_slice(&self.variance);
+        let known = self.known_inverse_square;
+        let known = known.filter(|_| !allowed[INVERSE_SQUARE]).unwrap_or(0.0);
+        let measured = DVector::from_fn(self.points(), |row, _| {
+            self.variance[row] - known * self.column(INVERSE_SQUARE, row)
+        });
         let mut squares = [0.0; TERMS];
         let mut kept = None;
         for round in 0..=rounds {
@@ -242,6 +264,9 @@ impl Problem {
             squares = [0.0; TERMS];
             for (&term, &value) in columns.iter().zip(solved.iter()) {
                 squares[term] = value;
+            }
+            if known > 0.0 {
+                squares[INVERSE_SQUARE] = known;
             }
             kept = Some(found);
             if round == rounds {

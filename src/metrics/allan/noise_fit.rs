@@ -7,6 +7,7 @@ use super::judge::goodness::Goodness;
 use super::least_squares::{Mix, Problem, Solution};
 use super::limits::Limits;
 use super::overlapping::AllanPoint;
+use super::pulses::answer::PulseAnswer;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Pool, Table};
@@ -71,7 +72,7 @@ pub static QUANTISATION: MetricKey = MetricKey::new(
     "quantisation_arcsec",
     "arcsec",
     Applies::Steady,
-    "Q of the fit to the overlapping Allan variance, 3 Q^2/tau^2",
+    "Q of the fit to the overlapping Allan variance, 3 Q^2/tau^2; of counted pulses their step over sqrt(12)",
 )
 .synonyms(&["q", "quantisation", "quantisation_noise"])
 .heading("quantisation")
@@ -199,6 +200,9 @@ pub struct NoiseFit {
     pub correlated: Option<CorrelatedNoise>,
     /// A sine that was taken out of the words before the rest was fitted.
     pub sine: Option<Sine>,
+    /// What is told of words that count pulses: their quantisation is that of the pulses by construction,
+    /// and the other terms are those of the noise below it.
+    pub pulses: Option<PulseAnswer>,
     /// Whether the curve asks for a ramp; without one the others are fitted as if there were none.
     pub has_ramp: bool,
     /// How well the terms describe the curve.
@@ -217,7 +221,10 @@ impl NoiseFit {
     pub fn coefficients(&self) -> NoiseCoefficients {
         let root = |term: usize| self.settled.squares[term].max(0.0).sqrt();
         NoiseCoefficients {
-            quantisation_arcsec: root(INVERSE_SQUARE) / 3.0_f64.sqrt(),
+            quantisation_arcsec: match self.counted_pulses() {
+                Some(_) => self.quantisation_arcsec.value(),
+                None => root(INVERSE_SQUARE) / 3.0_f64.sqrt(),
+            },
             angle_random_walk_deg_per_h_sqrt_s: root(WHITE),
             bias_instability_deg_per_h: root(FLICKER),
             rate_random_walk_deg_per_h_per_sqrt_s: root(WALK),
@@ -231,8 +238,8 @@ impl NoiseFit {
     /// variance of its own; `1.76 = (ln 100 + 3/2 - gamma)/pi` counts drift that is correlated over
     /// up to a hundred records, what is slower still being the bias itself. The walk starts at zero
     /// with the record, the ramp too. Exponentially correlated noise adds
-    /// `s^2 (2 Tc/T) (1 - (Tc/T) (1 - exp(-T/Tc)))`. No term of a fit that does not describe the curve
-    /// counts.
+    /// `s^2 (2 Tc/T) (1 - (Tc/T) (1 - exp(-T/Tc)))`, counted pulses `2 Q^2/T^2`. No term of a fit that does
+    /// not describe the curve counts.
     ///
     /// Source: derived, flicker as a superposition of Gauss-Markov processes of equal variance per
     /// octave of correlation time (van der Ziel, Physica 16 (1950)).
@@ -253,10 +260,27 @@ impl NoiseFit {
             let x = duration_s / noise.correlation_time_s.value;
             square(&noise.deviation_deg_per_h) * 2.0 / x * (1.0 + (-x).exp_m1() / x)
         });
+        // The angle at either end is known to a pulse.
+        let pulses = self.counted_pulses().map_or(0.0, |_| {
+            2.0 * self.quantisation_arcsec.square / (duration_s * duration_s)
+        });
         FLICKER_MEAN_VARIANCE * square(&self.bias_instability_deg_per_h)
             + square(&self.rate_random_walk_deg_per_h_per_sqrt_s) * duration_s / 3.0
             + square(&self.rate_ramp_deg_per_h_per_s) * duration_s * duration_s / 4.0
             + correlated
+            + pulses
+    }
+
+    /// Averaging time from which on a quantisation is `3 Q^2/tau^2`, s: that of pulses only once they have
+    /// lost their phase.
+    pub(crate) fn quantisation_is_white_from_s(&self) -> f64 {
+        let pulses = self.pulses.as_ref();
+        pulses.map_or(0.0, |pulses| pulses.sawtooth.dephasing_time_s())
+    }
+
+    /// The answer of words that are pulses themselves.
+    pub(crate) fn counted_pulses(&self) -> Option<&PulseAnswer> {
+        self.pulses.as_ref().filter(|it| it.counts)
     }
 
     /// Whether the record is one of a gyro at rest, whose white noise shows and which the five terms
@@ -273,7 +297,10 @@ impl NoiseFit {
     #[must_use]
     pub fn deviation_deg_per_h(&self, tau_s: f64) -> f64 {
         let sine = self.sine.map_or(0.0, |sine| sine.allan_variance(tau_s));
-        (self.mix.variance(tau_s).max(0.0) + sine).sqrt()
+        let pulses = self
+            .counted_pulses()
+            .map_or(0.0, |pulses| pulses.sawtooth.allan_variance(tau_s));
+        (self.mix.variance(tau_s).max(0.0) + sine + pulses).sqrt()
     }
 
     /// The fit of a record from which a sine was taken.
@@ -282,6 +309,20 @@ impl NoiseFit {
             sine: Some(sine),
             ..self
         }
+    }
+
+    /// The fit to the noise below pulses: of words that are such the quantisation is theirs, and
+    /// the `1/tau^2` term of the record that was fitted gives way to the sawtooth.
+    pub(crate) fn of_pulses(mut self, pulses: Option<PulseAnswer>) -> Self {
+        self.pulses = pulses;
+        if let Some(pulses) = self.counted_pulses() {
+            let step = pulses.step_arcsec();
+            let square = step * step / 12.0;
+            self.quantisation_arcsec = Term::new(square, 0.0, [square; 2]);
+            self.mix.squares[INVERSE_SQUARE] = 0.0;
+            self.settled.squares[INVERSE_SQUARE] = 0.0;
+        }
+        self
     }
 }
 
@@ -337,6 +378,15 @@ pub fn fit_pooled_noise(
     ChosenFit::new(points, range, records).map(|chosen| chosen.judged())
 }
 
+/// As [`fit_noise`] where the `1/tau^2` term is known, arcsec^2 (AVAR times `tau^2`).
+pub(crate) fn fit_beside_known(
+    points: &[AllanPoint],
+    range: FitRange,
+    inverse_square: Option<f64>,
+) -> Result<NoiseFit, Unavailable> {
+    ChosenFit::beside_known(points, range, inverse_square).map(|chosen| chosen.judged())
+}
+
 /// A fit of the terms that a curve asks for, not judged yet: that takes most of the time.
 pub(crate) struct ChosenFit {
     points: Vec<AllanPoint>,
@@ -355,11 +405,29 @@ impl ChosenFit {
     ) -> Result<Self, Unavailable> {
         let points = usable(points, range)?;
         let problem = Problem::new(&points, records);
+        Self::of(points, &problem)
+    }
+
+    /// As [`new`](Self::new) of one record, whose `1/tau^2` term may be known, arcsec^2.
+    ///
+    /// # Errors
+    /// As for [`fit_noise`].
+    pub(crate) fn beside_known(
+        points: &[AllanPoint],
+        range: FitRange,
+        inverse_square: Option<f64>,
+    ) -> Result<Self, Unavailable> {
+        let points = usable(points, range)?;
+        let problem = Problem::new(&points, 1.0).with_inverse_square(inverse_square);
+        Self::of(points, &problem)
+    }
+
+    fn of(points: Vec<AllanPoint>, problem: &Problem) -> Result<Self, Unavailable> {
         let search = Search {
             points: &points,
             near: None,
         };
-        match search.choose(&problem) {
+        match search.choose(problem) {
             Some(choice) => Ok(Self { points, choice }),
             None => Err("the scatter of the Allan variances cannot be worked out".into()),
         }
@@ -474,6 +542,7 @@ fn report(points: &[AllanPoint], choice: &Choice) -> NoiseFit {
         rate_ramp_deg_per_h_per_s: term(RAMP),
         correlated,
         sine: None,
+        pulses: None,
         has_ramp: choice.allowed[RAMP],
         goodness: Goodness::of(points, choice),
         tau_range_s: [points[0].tau_s, points[points.len() - 1].tau_s],

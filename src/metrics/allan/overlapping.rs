@@ -1,5 +1,6 @@
 //! Overlapping Allan deviation of a rate record.
 
+use super::gaps::{missing_stretches, second_difference_sums_with_gaps};
 use super::sums::second_difference_sums_of_record;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::round_to_count;
@@ -101,7 +102,8 @@ pub fn degrees_of_freedom(noise: NoiseType, angle_count: usize, averaged_samples
 /// of the record. Degrees of freedom are those of white noise; a fit may refine them
 /// ([`AllanPoint::with_degrees_of_freedom`]).
 ///
-/// * `rate_deg_per_h`: `[n]`, deg/h, uniformly spaced.
+/// * `rate_deg_per_h`: `[n]`, deg/h, uniformly spaced; NaN marks a missing sample, and differences that
+///   touch one are left out.
 /// * `sample_period_s`: s, > 0.
 ///
 /// Fewer than four samples give no point. One angle array (8 bytes a sample) is the only large
@@ -143,16 +145,26 @@ pub fn overlapping_allan_at(
         .copied()
         .filter(|&m| m > 0 && 2 * m < angle_count)
         .collect();
-    let sums = second_difference_sums_of_record(rate_deg_per_h, &factors);
-    factors
+    let possible = |m: usize| angle_count - 2 * m;
+    let missing = missing_stretches(rate_deg_per_h);
+    let sums: Vec<(f64, usize)> = if missing.is_empty() {
+        let sums = second_difference_sums_of_record(rate_deg_per_h, &factors).into_iter();
+        let counts = factors.iter().map(|&m| possible(m));
+        sums.zip(counts).collect()
+    } else {
+        second_difference_sums_with_gaps(rate_deg_per_h, &missing, &factors)
+    };
+    let supported = factors
         .iter()
         .zip(sums)
-        .map(|(&m, sum)| {
-            let count = angle_count - 2 * m;
+        .filter(|(_, (_, count))| *count > 0);
+    supported
+        .map(|(&m, (sum, count))| {
             let m_f = m as f64;
             // The angle is in units of one sample period, which cancels against tau.
             let deviation = (sum / (2.0 * m_f * m_f * count as f64)).sqrt();
-            let freedom = degrees_of_freedom(NoiseType::White, angle_count, m);
+            let share = count as f64 / possible(m) as f64;
+            let freedom = (degrees_of_freedom(NoiseType::White, angle_count, m) * share).max(1.0);
             AllanPoint {
                 tau_s: m_f * sample_period_s,
                 averaged_samples: m,

@@ -69,6 +69,8 @@ rows! {
     motion::steps::SETTLED_GAIN,
     trial::readaptation::READAPTATION_TIME,
     pipeline::PREDICTED_FAILURE,
+    quality::outliers::OUTLIERS,
+    quality::smoothing::SMOOTHING_TIME,
     measure::DIVERGED_AT,
     pipeline::LATENCY,
     pipeline::SAMPLE_PERIOD,

@@ -6,24 +6,28 @@ use super::interval::round_to_count;
 /// Blocks of time whose scatter gives the intervals of ratios.
 pub(crate) const RATIO_BLOCKS: usize = 20;
 
-/// Means of `count` blocks of equal length that cover all values.
+/// Means of `count` blocks of equal length that cover all values; missing ones (NaN) are left out.
 pub(crate) fn equal_block_means(values: &[f64], count: usize) -> Vec<f64> {
     let blocks = count.min(values.len());
     (0..blocks)
         .map(|block| {
             let start = values.len() * block / blocks;
             let end = values.len() * (block + 1) / blocks;
-            interval::mean(&values[start..end])
+            interval::mean_of_present(&values[start..end])
         })
+        .filter(|mean| !mean.is_nan())
         .collect()
 }
 
 /// Means of consecutive blocks of `block_samples`; what is left over at the end is not used.
+///
+/// Missing samples (NaN) are left out, and so is a block of which more than half is missing.
 #[must_use]
 pub fn block_means(rate_deg_per_h: &[f64], block_samples: usize) -> Vec<f64> {
     rate_deg_per_h
         .chunks_exact(block_samples.max(1))
-        .map(interval::mean)
+        .map(interval::mean_of_present)
+        .filter(|mean| !mean.is_nan())
         .collect()
 }
 

@@ -124,6 +124,22 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
+/// Arithmetic mean of the values that are there (no NaN); no number where more than half are missing.
+pub(crate) fn mean_of_present(values: &[f64]) -> f64 {
+    let whole = mean(values);
+    if !whole.is_nan() {
+        return whole;
+    }
+    let present = values.iter().filter(|value| !value.is_nan());
+    let (sum, count) = present.fold((0.0, 0_usize), |(sum, count), value| {
+        (sum + value, count + 1)
+    });
+    if 2 * count < values.len() {
+        return f64::NAN;
+    }
+    sum / count as f64
+}
+
 /// Unbiased sample variance; 0 for fewer than two values.
 pub(crate) fn sample_variance(values: &[f64]) -> f64 {
     if values.len() < 2 {

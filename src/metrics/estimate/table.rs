@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::fit_sheet::FitSheet;
+use super::outlier_sheet::OutlierEntry;
 use super::reason::Unavailable;
 use super::repeat_statistics::RepeatStatistics;
 use super::value::{Estimate, Metric};
@@ -49,6 +50,12 @@ pub struct ChannelMetrics {
     pub curve_labels: BTreeMap<String, BTreeMap<String, Vec<&'static str>>>,
     /// Fit of the noise terms and how well they describe the Allan variance; none without a fit.
     pub noise_fit: Option<FitSheet>,
+    /// How noise terms were found where the words of the gyro count pulses, by metric; else empty.
+    pub pulse_words: BTreeMap<String, String>,
+    /// Outliers in the order of time; looked for in the words of logs.
+    pub outliers: Vec<OutlierEntry>,
+    /// What the smoothing of a log looks like, in words; none where none shows.
+    pub smoothing: Option<String>,
     /// Set when the channel failed; its metrics are then empty but for `diverged_at_s`.
     pub error: Option<ChannelFailure>,
 }

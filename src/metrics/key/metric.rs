@@ -32,6 +32,8 @@ pub enum Applies {
     Pipeline,
     /// The estimates of a calibration campaign, which are no records.
     Calibration,
+    /// The words of a recorded log.
+    Log,
 }
 
 impl Applies {
@@ -50,6 +52,7 @@ impl Applies {
             Self::SteadyOrSwing => "a swing or a table at rest or at constant rate",
             Self::Moving => "a moving table",
             Self::Calibration => "the estimates of a calibration campaign",
+            Self::Log => "a recorded log",
             Self::Separable => {
                 "rest, constant rate, sines or steps, where noise can be told from motion,"
             }

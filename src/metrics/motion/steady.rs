@@ -8,6 +8,8 @@ use crate::metrics::allan::noise_fit::{
     ANGLE_RANDOM_WALK, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, fit_noise,
 };
 use crate::metrics::allan::overlapping::overlapping_allan;
+use crate::metrics::allan::pulses::entry::{enter_lack, enter_pulses};
+use crate::metrics::allan::pulses::recognition::PulseWords;
 use crate::metrics::allan::variants::allan_variant;
 use crate::metrics::estimate::blocks::RATIO_BLOCKS;
 use crate::metrics::estimate::influence::Spread;
@@ -27,6 +29,7 @@ use crate::metrics::noise::by_weights::NoiseByWeights;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::line::fit_beside_sine;
 use crate::metrics::noise::memory::fit_tau_min_s;
+use crate::metrics::noise::pulse_fit::RecordFit;
 use crate::metrics::noise::truth_response::without_motion;
 use crate::metrics::record::{FilterFacts, Record, Settings, WeightScatter};
 use crate::metrics::theory::prediction::lags_needed;
@@ -50,19 +53,26 @@ pub(crate) fn measure_steady(
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
+    let tau_min_s = settings.fit_tau_min_s;
+    let pulses = PulseWords::recognise(record.raw_deg_per_h, record.sample_period_s, tau_min_s);
     let still = without_motion(record, 0, filter);
+    let pulses = match still {
+        Some(_) => pulses.map(PulseWords::without_times),
+        None => pulses,
+    };
     let record = &still.as_ref().map_or(*record, |(channel, raw)| Record {
         channel_deg_per_h: channel,
         raw_deg_per_h: raw,
         ..*record
     });
-    let fit = measure_allan(record, settings, filter, metrics);
+    let fit = measure_allan(record, settings, filter, pulses.as_ref(), metrics);
     measure_bias(record, settings, fit.as_ref(), metrics);
     measure_mean(record, fit.as_ref(), filter, metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let blocks = filter.map_or(RATIO_BLOCKS, FilterFacts::blocks);
     let products = products_about_mean(record.channel_deg_per_h, lags, blocks);
-    let samples = record.channel_deg_per_h.len();
+    let words = record.channel_deg_per_h.iter();
+    let samples = words.filter(|word| !word.is_nan()).count();
     let raw = filter.map(|_| products_about_mean(record.raw_deg_per_h, lags, blocks));
     let by_weights = match (filter, &raw) {
         (Some(facts), Some(raw)) => NoiseByWeights::new(facts, raw, samples, 0.0),
@@ -112,50 +122,62 @@ fn widen_by_gain(key: &MetricKey, metrics: &mut ChannelMetrics) {
 ///
 /// The curve `allan` is that of the settings. The noise is fitted to the overlapping Allan deviation,
 /// the curve `allan_fit`, whose points take the degrees of freedom of the noise mix that the fit found.
+/// Where the raw words count pulses it is that of a record without them.
 fn measure_allan(
     record: &Record,
     settings: &Settings,
     filter: Option<&FilterFacts>,
+    pulses: Option<&PulseWords>,
     metrics: &mut ChannelMetrics,
 ) -> Option<NoiseFit> {
-    let points = overlapping_allan(record.channel_deg_per_h, record.sample_period_s);
-    let samples = record.channel_deg_per_h.len();
+    let words = record.channel_deg_per_h;
+    let sample_period_s = record.sample_period_s;
+    let points = overlapping_allan(words, sample_period_s);
+    let duration_s = words.len() as f64 * sample_period_s;
     let range = FitRange {
         tau_min_s: filter.map_or(settings.fit_tau_min_s, |facts| {
-            fit_tau_min_s(&facts.shape, record.sample_period_s, settings.fit_tau_min_s)
+            fit_tau_min_s(&facts.shape, sample_period_s, settings.fit_tau_min_s)
         }),
-        tau_max_s: FIT_TAU_PER_RECORD_MAX * samples as f64 * record.sample_period_s,
+        tau_max_s: FIT_TAU_PER_RECORD_MAX * duration_s,
     };
-    let varies = record
-        .channel_deg_per_h
+    let varies = words
         .windows(2)
         .any(|two| two[0] < two[1] || two[1] < two[0]);
-    let constant = || Err("the output does not vary over the record".into());
-    let fitted = if varies {
-        let values = record.channel_deg_per_h;
-        fit_beside_sine(values, record.sample_period_s, &points, range)
-            .map_or_else(|| fit_noise(&points, range), Ok)
+    let fitted = if !varies {
+        Err("the output does not vary over the record".into())
+    } else if let Some(pulses) = pulses {
+        pulses.fit(words, sample_period_s, range, filter.is_none())
     } else {
-        constant()
+        let fit = fit_beside_sine(words, sample_period_s, &points, range, None)
+            .map_or_else(|| fit_noise(&points, range), Ok);
+        fit.map(|fit| RecordFit {
+            fit,
+            points: points.clone(),
+            samples: words.len(),
+        })
     };
-    let variant = allan_variant(
-        record.channel_deg_per_h,
-        record.sample_period_s,
-        &settings.allan,
-    );
+    let variant = allan_variant(words, sample_period_s, &settings.allan);
     let estimator = settings.allan.estimator;
-    put_allan_curve(&variant, estimator, fitted.as_ref().ok(), metrics);
+    let fit = fitted.as_ref().ok().map(|it| &it.fit);
+    put_allan_curve(&variant, estimator, fit, metrics);
     match fitted {
-        Ok(fit) => {
+        Ok(RecordFit {
+            fit,
+            points,
+            samples,
+        }) => {
             let points = mixed_degrees_of_freedom(&points, &fit.coefficients(), samples + 1);
-            let duration_s = samples as f64 * record.sample_period_s;
             enter_fit(&points, &fit, duration_s, metrics);
+            enter_pulses(&fit, metrics);
             Some(fit)
         }
         Err(reason) => {
             put_fit_curve(&points, None, metrics);
             for key in FIT_METRICS {
                 metrics.miss(key, reason.clone());
+            }
+            if let Some(pulses) = pulses.filter(|_| filter.is_none()) {
+                enter_lack(pulses, range, metrics);
             }
             None
         }
@@ -209,7 +231,10 @@ fn measure_bias(
         if let Some(correlation) = bias_stability::correlation(&means, &raw_means) {
             metric.fields.insert(RAW_CORRELATION, correlation);
         }
-        if let Some(fit) = fit.filter(|fit| fit.shows_white_noise()) {
+        let expects = |fit: &&NoiseFit| {
+            fit.shows_white_noise() && fit.quantisation_is_white_from_s() <= averaging_time_s
+        };
+        if let Some(fit) = fit.filter(expects) {
             let coefficients = fit.coefficients();
             let expected = bias_stability::expected_bias_stability(
                 &coefficients,
@@ -232,7 +257,7 @@ fn measure_mean(
     metrics: &mut ChannelMetrics,
 ) {
     let values = record.channel_deg_per_h;
-    let mean = interval::mean(values);
+    let mean = interval::mean_of_present(values);
     let duration_s = values.len() as f64 * record.sample_period_s;
     let slow = match (record.drift, fit) {
         (None, Some(fit)) => fit.slow_mean_variance(duration_s),
@@ -259,5 +284,5 @@ fn measure_mean(
 const SLOW_NOISE: &str = "slow_noise_deg_per_h";
 
 fn products_about_mean(values: &[f64], lags: usize, blocks: usize) -> LaggedProducts {
-    LaggedProducts::new(values, interval::mean(values), lags, blocks)
+    LaggedProducts::new(values, interval::mean_of_present(values), lags, blocks)
 }

@@ -171,10 +171,12 @@ pub(crate) fn measure_swing(
         fits.channel.harmonic_distortion_percent(&residuals),
     );
     let (channel, raw, by_weights) = noise_about_sine(record, &fits, &clock, filter);
+    let words = record.channel_deg_per_h[..fits.channel.samples()].iter();
+    let count = words.filter(|word| !word.is_nan()).count();
     put_noise_std(
         &channel,
         &by_weights,
-        (fits.channel.samples(), 3),
+        (count, 3),
         record.sample_period_s,
         metrics,
     );

@@ -100,7 +100,8 @@ pub(crate) struct LaggedProducts {
 }
 
 impl LaggedProducts {
-    /// Products of `values - centre` at lags `0 ..= largest_lag` in `blocks` blocks of equal length.
+    /// Products of `values - centre` at lags `0 ..= largest_lag` in `blocks` blocks of equal length;
+    /// pairs with a missing value (NaN) are left out.
     pub(crate) fn new(values: &[f64], centre: f64, largest_lag: usize, blocks: usize) -> Self {
         let blocks = blocks.clamp(1, values.len().max(1));
         let mut sums = vec![vec![0.0; largest_lag + 1]; blocks];
@@ -118,8 +119,9 @@ impl LaggedProducts {
                     // The last block of a short record may hold fewer samples than the lag.
                     let later = deviations.get(lag..).unwrap_or_default();
                     let pairs = (end - start).min(later.len());
-                    sums[block][lag] += dot(&deviations[..pairs], &later[..pairs]);
-                    counts[block][lag] += pairs;
+                    let (sum, count) = products(&deviations[..pairs], &later[..pairs]);
+                    sums[block][lag] += sum;
+                    counts[block][lag] += count;
                 }
                 start = end;
             }
@@ -199,6 +201,18 @@ pub(crate) fn independent_samples(autocovariance: &[f64], count: usize) -> f64 {
     } else {
         count as f64
     }
+}
+
+/// Sum of the products of all pairs without a missing value (NaN), and their number.
+pub(crate) fn products(a: &[f64], b: &[f64]) -> (f64, usize) {
+    let whole = dot(a, b);
+    if !whole.is_nan() {
+        return (whole, a.len());
+    }
+    let pairs = a.iter().zip(b).map(|(a, b)| a * b);
+    pairs
+        .filter(|product| !product.is_nan())
+        .fold((0.0, 0), |(sum, count), product| (sum + product, count + 1))
 }
 
 /// Dot product in eight interleaved sums, which the compiler turns into vectors.

@@ -58,11 +58,13 @@ const HANN: f64 = 2.0 / 3.0;
 /// four shortest averaging times to a third of the record.
 ///
 /// * `points`: overlapping Allan deviation of the words.
+/// * `inverse_square`: `tau^2` times the Allan variance of a known quantisation, arcsec^2.
 pub(crate) fn fit_beside_sine(
     words_deg_per_h: &[f64],
     sample_period_s: f64,
     points: &[AllanPoint],
     range: FitRange,
+    inverse_square: Option<f64>,
 ) -> Option<NoiseFit> {
     let means = BlockMeans::new(words_deg_per_h, sample_period_s, range.tau_min_s);
     let band = means.band(range.tau_min_s)?;
@@ -72,7 +74,7 @@ pub(crate) fn fit_beside_sine(
     let power = |amplitude: f64| amplitude * amplitude * duration_s / 4.0;
     let stands_out = |frequency_hz: f64, amplitude: f64, part: f64| {
         let rest = curve_without(points, frequency_hz, amplitude);
-        let chosen = ChosenFit::new(&rest, range, 1.0).ok()?;
+        let chosen = ChosenFit::beside_known(&rest, range, inverse_square).ok()?;
         let density = chosen.cautious_density(frequency_hz);
         (power(amplitude) > part * threshold * density).then_some(())
     };
@@ -89,7 +91,8 @@ pub(crate) fn fit_beside_sine(
     let amplitude = found.amplitude / means.gain(found.frequency_hz);
     stands_out(found.frequency_hz, amplitude, WORTH_REMOVING)?;
     let rest = without(words_deg_per_h, sample_period_s, &found, amplitude, &means);
-    let chosen = ChosenFit::new(&overlapping_allan(&rest, sample_period_s), range, 1.0).ok()?;
+    let points = overlapping_allan(&rest, sample_period_s);
+    let chosen = ChosenFit::beside_known(&points, range, inverse_square).ok()?;
     let density = chosen.cautious_density(found.frequency_hz);
     if power(amplitude) < threshold * density {
         return None;
@@ -165,8 +168,13 @@ impl BlockMeans {
         let half = (tau_min_s / sample_period_s / 2.0 + 1e-9).floor();
         let least = words.len().div_ceil(MEANS_MAX);
         let block = interval::round_to_count(half).max(least).max(1);
-        let mut values: Vec<f64> = words.chunks_exact(block).map(interval::mean).collect();
+        let means = words.chunks_exact(block).map(interval::mean_of_present);
+        let mut values: Vec<f64> = means.collect();
         remove_line(&mut values);
+        // A mean that is missing says nothing of a line: it gets what its neighbours have in common.
+        for value in values.iter_mut().filter(|value| value.is_nan()) {
+            *value = 0.0;
+        }
         Self {
             values,
             block,

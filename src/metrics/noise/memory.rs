@@ -4,7 +4,8 @@
 
 use rayon::prelude::*;
 
-use super::autocovariance::dot;
+use super::autocovariance::products;
+use crate::metrics::allan::pulses::recognition::PulseWords;
 use crate::metrics::estimate::interval;
 use crate::metrics::theory::memory::memory_samples;
 use crate::signal::FilterShape;
@@ -49,7 +50,7 @@ const FIT_TAU_PER_LENGTH: f64 = 4.0;
 /// out, lags with a ratio of 1.15. White noise has length 1, a moving average its own, a one-pole
 /// filter three time constants.
 ///
-/// Nothing where it does not die out within a quarter of these lags: a record of slow noise only, a
+/// Missing samples (NaN) are left out. Nothing where it does not die out within a quarter of these lags: a record of slow noise only, a
 /// periodic disturbance, or too short a record.
 #[must_use]
 pub fn correlation_length_samples(values: &[f64]) -> Option<usize> {
@@ -60,23 +61,24 @@ pub fn correlation_length_samples(values: &[f64]) -> Option<usize> {
         let next = interval::round_to_count(last as f64 * LAG_RATIO).max(last + 1);
         lags.push(next.min(largest));
     }
-    let mean = interval::mean(values);
+    let mean = interval::mean_of_present(values);
     let deviations: Vec<f64> = values.iter().map(|value| value - mean).collect();
-    let products: Vec<f64> = lags
+    let covariances: Vec<f64> = lags
         .par_iter()
         .map(|&lag| {
             let pairs = deviations.len() - lag;
-            dot(&deviations[..pairs], &deviations[lag..]) / pairs.max(1) as f64
+            let (sum, count) = products(&deviations[..pairs], &deviations[lag..]);
+            sum / count.max(1) as f64
         })
         .collect();
     let far: Vec<f64> = lags
         .iter()
-        .zip(&products)
+        .zip(&covariances)
         .filter(|(lag, _)| **lag > largest / 2)
         .map(|(_, product)| *product)
         .collect();
     let plateau = interval::mean(&far);
-    let fast = products[0] - plateau;
+    let fast = covariances[0] - plateau;
     if far.is_empty() || fast <= 0.0 {
         return None;
     }
@@ -87,7 +89,7 @@ pub fn correlation_length_samples(values: &[f64]) -> Option<usize> {
         .enumerate()
         .take_while(|(_, pair)| pair[1] <= largest / 2)
     {
-        let product = products[index + 1] - plateau;
+        let product = covariances[index + 1] - plateau;
         squares += (pair[1] - pair[0]) as f64 * (product / fast).powi(2);
         let error = fast * ((1.0 + 2.0 * squares) / values.len() as f64).sqrt();
         if product.abs() > (UNCORRELATED * fast).max(SIGNIFICANCE * error) {
@@ -99,10 +101,15 @@ pub fn correlation_length_samples(values: &[f64]) -> Option<usize> {
 
 /// Shortest averaging time of a fit to a record that nothing is known of, s: four correlation
 /// lengths, and ten samples at least where successive words are correlated, as behind the loop of a
-/// gyro. White words are fitted from four samples on.
+/// gyro. White words are fitted from four samples on; of words that count pulses, whose correlation is that
+/// of the pulses, ten samples are taken.
 #[must_use]
 pub fn record_fit_tau_min_s(values: &[f64], sample_period_s: f64) -> f64 {
     const CORRELATED_SAMPLES_MIN: f64 = 10.0;
+    let of_correlated_s = CORRELATED_SAMPLES_MIN * sample_period_s;
+    if PulseWords::recognise(values, sample_period_s, of_correlated_s).is_some() {
+        return of_correlated_s;
+    }
     let length = correlation_length_samples(values).unwrap_or(1);
     let least = if length > 1 {
         CORRELATED_SAMPLES_MIN

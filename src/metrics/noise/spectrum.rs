@@ -65,7 +65,7 @@ pub fn segment_samples(record_samples: usize) -> usize {
 /// sampling rate. One-sided: white noise of angle random walk N has `S1 = 2 N^2`, where the
 /// coefficients of IEEE Std 952 refer to the two-sided density `N^2`.
 ///
-/// A record shorter than one segment, or a segment shorter than four samples, gives an empty
+/// A segment with a missing sample (NaN) is left out. A record shorter than one segment, or a segment shorter than four samples, gives an empty
 /// spectrum.
 ///
 /// # Panics
@@ -83,7 +83,7 @@ pub fn welch(rate_deg_per_h: &[f64], sample_period_s: f64, segment_samples: usiz
     if length < 4 || rate_deg_per_h.len() < length {
         return spectrum;
     }
-    let mean = interval::mean(rate_deg_per_h);
+    let mean = interval::mean_of_present(rate_deg_per_h);
     let window: Vec<f64> = (0..length)
         .map(|k| 0.5 - 0.5 * (2.0 * PI * k as f64 / length as f64).cos())
         .collect();
@@ -94,9 +94,14 @@ pub fn welch(rate_deg_per_h: &[f64], sample_period_s: f64, segment_samples: usiz
     let mut scratch = transform.make_scratch_vec();
     let mut power = vec![0.0; output.len()];
     let step = length / 2;
-    let segments = (rate_deg_per_h.len() - length) / step + 1;
-    for segment in 0..segments {
+    let all = (rate_deg_per_h.len() - length) / step + 1;
+    let mut segments = 0;
+    for segment in 0..all {
         let values = &rate_deg_per_h[segment * step..segment * step + length];
+        if values.iter().any(|value| value.is_nan()) {
+            continue;
+        }
+        segments += 1;
         for ((slot, value), weight) in input.iter_mut().zip(values).zip(&window) {
             *slot = (value - mean) * weight;
         }
@@ -107,7 +112,10 @@ pub fn welch(rate_deg_per_h: &[f64], sample_period_s: f64, segment_samples: usiz
             *sum += bin.norm_sqr();
         }
     }
-    let scale = 2.0 * sample_period_s / (segments as f64 * window_power);
+    if segments == 0 {
+        return spectrum;
+    }
+    let scale = 2.0 * sample_period_s / (f64::from(segments) * window_power);
     let resolution_hz = 1.0 / (length as f64 * sample_period_s);
     for (bin, sum) in power.iter().enumerate().skip(1) {
         let sides = if 2 * bin == length { 0.5 } else { 1.0 };

@@ -7,7 +7,9 @@ use crate::metrics::allan::curves::{
 };
 use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
 use crate::metrics::allan::extra_terms::{pooled_sine, without_sine};
-use crate::metrics::allan::noise_fit::{ANGLE_RANDOM_WALK, FitRange, NoiseFit, fit_pooled_noise};
+use crate::metrics::allan::noise_fit::{
+    ANGLE_RANDOM_WALK, FitRange, NoiseFit, Term, fit_pooled_noise,
+};
 use crate::metrics::allan::noise_identification::PowerLaw;
 use crate::metrics::allan::overlapping::AllanPoint;
 use crate::metrics::estimate::interval;
@@ -53,6 +55,10 @@ pub(crate) fn pool_allan(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics
 }
 
 fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<NoiseFit> {
+    if repeats.iter().any(|repeat| !repeat.pulse_words.is_empty()) {
+        pool_pulses(repeats, pooled);
+        return None;
+    }
     let points = pooled_points(repeats, &ALLAN_FIT)?;
     let count = repeats.len() as f64;
     let range = repeats.iter().find_map(|repeat| {
@@ -93,6 +99,37 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
         );
     }
     Some(fit)
+}
+
+/// Pools the terms of words that count pulses, each repeat of which was fitted to a curve of its own: the
+/// mean of the squares with Student's t on their scatter.
+fn pool_pulses(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
+    for key in FIT_METRICS {
+        let squares = repeats.iter().filter_map(|repeat| {
+            let sheet = repeat.noise_fit.as_ref()?;
+            let term = sheet.terms.get(key.name)?;
+            repeat.get(key).map(|_| term.square)
+        });
+        let squares: Vec<f64> = squares.collect();
+        if squares.len() < 2 || pooled.get(key).is_none() {
+            continue;
+        }
+        let square = interval::from_parts(interval::mean(&squares), &squares);
+        let term = Term::new(
+            square.value,
+            0.0,
+            [square.low.max(0.0), square.high.max(0.0)],
+        );
+        if let Some(metric) = pooled.get_mut(key) {
+            metric.estimate = term.estimate();
+            metric.fields.insert("repeats", squares.len() as f64);
+        }
+    }
+    let told = repeats.iter().flat_map(|repeat| &repeat.pulse_words);
+    for (key, words) in told {
+        let entry = pooled.pulse_words.entry(key.clone());
+        entry.or_insert_with(|| words.clone());
+    }
 }
 
 /// Replaces the mean of what the repeats' fits expect of the bias stability by what the fit to all of

@@ -84,7 +84,12 @@ impl FitSums {
     fn of(values: &[f64], clock: &SwingClock, start: usize) -> Self {
         let mut sums = Self::zero();
         let (mut cc, mut cs, mut ss, mut c_sum, mut s_sum) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let mut count = 0.0;
         for (index, value) in values.iter().enumerate() {
+            if value.is_nan() {
+                continue;
+            }
+            count += 1.0;
             let (s, c) = clock.phase_rad(start + index).sin_cos();
             cc += c * c;
             cs += c * s;
@@ -93,7 +98,6 @@ impl FitSums {
             s_sum += s;
             sums.right += Vector3::new(c * value, s * value, *value);
         }
-        let count = values.len() as f64;
         sums.normal = Matrix3::new(cc, cs, c_sum, cs, ss, s_sum, c_sum, s_sum, count);
         sums
     }
@@ -109,7 +113,8 @@ impl FitSums {
     }
 }
 
-/// Least-squares sine of known frequency: `y ~ a cos wt + b sin wt + c`.
+/// Least-squares sine of known frequency: `y ~ a cos wt + b sin wt + c`; missing samples (NaN) are
+/// left out.
 ///
 /// Amplitude `sqrt(a^2 + b^2)`, phase `atan2(-b, a)`. `None` if the samples do not determine three
 /// parameters.
@@ -339,7 +344,11 @@ impl SwingFit {
     /// Cosine and sine amplitudes of harmonics 2 ..= highest in one sub-block.
     fn harmonics(&self, residuals: &[f64], start: usize, highest: usize) -> Vec<f64> {
         let mut sums = vec![0.0; 2 * highest.saturating_sub(1)];
-        for (index, value) in residuals.iter().enumerate() {
+        let present = residuals.iter().enumerate();
+        let present = present.filter(|(_, value)| !value.is_nan());
+        let mut count = 0_usize;
+        for (index, value) in present {
+            count += 1;
             let (s, c) = self.clock.phase_rad(start + index).sin_cos();
             let (mut cosine, mut sine) = (c, s);
             for pair in sums.chunks_exact_mut(2) {
@@ -348,7 +357,7 @@ impl SwingFit {
                 pair[1] += value * sine;
             }
         }
-        let scale = 2.0 / residuals.len().max(1) as f64;
+        let scale = 2.0 / count.max(1) as f64;
         sums.iter().map(|sum| sum * scale).collect()
     }
 }

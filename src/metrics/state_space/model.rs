@@ -179,7 +179,7 @@ impl Lag {
 /// behind one pole, those of a counter a state for the angle's rounding.
 ///
 /// # Errors
-/// The reason, where the channel has no noise fit or one that does not describe its curve.
+/// The reason, where the words count pulses, or the channel has no noise fit or one that does not describe its curve.
 pub fn noise_state_space(channel: &ChannelMetrics) -> Result<StateSpace, Unavailable> {
     let lack = || {
         let of_fit = channel.unavailable.get(ANGLE_RANDOM_WALK.name);
@@ -187,6 +187,12 @@ pub fn noise_state_space(channel: &ChannelMetrics) -> Result<StateSpace, Unavail
             .cloned()
             .unwrap_or("the channel has no fit of noise terms".into())
     };
+    if !channel.pulse_words.is_empty() {
+        return Err(
+            "the words count pulses, whose quantisation depends on the rate: it is no linear system"
+                .into(),
+        );
+    }
     let sheet = channel.noise_fit.as_ref().filter(|it| it.is_adequate);
     let sheet = sheet.ok_or_else(lack)?;
     let points = curve(channel).ok_or("the channel has no Allan curve")?;

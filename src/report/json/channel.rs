@@ -2,8 +2,9 @@
 
 use serde_json::{Map, Value};
 
-use crate::metrics::{ChannelMetrics, FitSheet, FitTerm, RepeatStatistics};
+use crate::metrics::{ChannelMetrics, FitSheet, FitTerm, OutlierEntry, RepeatStatistics};
 use crate::report::layout::json::{array, estimate, numbers, object, put, put_array};
+use crate::report::text::quality::smoothing_words;
 use crate::report::text::verdict::verdict_text;
 
 /// One channel of `channels`.
@@ -18,6 +19,20 @@ pub(crate) fn channel(metrics: &ChannelMetrics) -> Value {
     }
     if let Some(sheet) = &metrics.noise_fit {
         record.insert("noise_fit".to_owned(), noise_fit(sheet));
+    }
+    if !metrics.pulse_words.is_empty() {
+        let words = metrics.pulse_words.iter();
+        let words: Map<String, Value> = words
+            .map(|(key, words)| (key.clone(), words.as_str().into()))
+            .collect();
+        record.insert("pulse_words".to_owned(), words.into());
+    }
+    if let Some(words) = smoothing_words(metrics) {
+        record.insert("smoothing".to_owned(), words.into());
+    }
+    if !metrics.outliers.is_empty() {
+        let list: Vec<Value> = metrics.outliers.iter().map(outlier).collect();
+        record.insert("outlier_list".to_owned(), list.into());
     }
     if !metrics.repeats.is_empty() {
         record.insert("repeats".to_owned(), repeats_json(metrics));
@@ -79,6 +94,17 @@ fn noise_fit(sheet: &FitSheet) -> Value {
     };
     let terms: Map<String, Value> = sheet.terms.iter().map(term).collect();
     record.insert("terms".to_owned(), terms.into());
+    record.into()
+}
+
+/// One of `channels.<name>.outlier_list`.
+fn outlier(entry: &OutlierEntry) -> Value {
+    let mut record = object([("index", entry.index.into()), ("words", entry.words.into())]);
+    record.extend(numbers([
+        ("time_s", entry.time_s),
+        ("size_deg_per_h", entry.size_deg_per_h),
+        ("size_deviations", entry.size_deviations),
+    ]));
     record.into()
 }
 

@@ -62,6 +62,12 @@ fn channel(record: &Value) -> Option<ChannelMetrics> {
         match key.as_str() {
             "verdict" | "repeats" => {}
             "noise_fit" => channel.noise_fit = Some(noise_fit(value)?),
+            "pulse_words" => {
+                for (name, words) in value.as_object()? {
+                    let words = words.as_str()?.to_owned();
+                    channel.pulse_words.insert(name.clone(), words);
+                }
+            }
             "curves" => curves(value.as_object()?, &mut channel)?,
             "unavailable" => {
                 for (name, reason) in value.as_object()? {

@@ -175,7 +175,8 @@ fn block_lines(columns: &[Vec<String>]) -> String {
     format!("\n{}", grid.lines(INDENT))
 }
 
-/// Channels that failed, then metrics of the table that a record could not support.
+/// Channels that failed, metrics of the table that a record could not support, then how the noise below
+/// counted pulses was found.
 pub(crate) fn failures_text(
     report: &Measured,
     verdicts: &[Verdict],
@@ -199,11 +200,29 @@ pub(crate) fn failures_text(
         let line = format!("no {key} for {}: {reason}", names.join(", "));
         text.push_str(&wrapped(&line, INDENT, width));
     }
+    for ((key, words), names) in pulse_words(report) {
+        let line = format!("{key} for {}: {words}", names.join(", "));
+        text.push_str(&wrapped(&line, INDENT, width));
+    }
     if text.is_empty() {
         text
     } else {
         format!("\n{text}")
     }
+}
+
+/// How the noise of words that count pulses was found, with the channels concerned.
+fn pulse_words<'a>(report: &Measured<'a>) -> BTreeMap<(&'a str, &'a str), Vec<&'a str>> {
+    let mut told: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
+    for (name, metrics) in report.channels {
+        for (key, words) in &metrics.pulse_words {
+            let is_there = metrics.metrics.contains_key(key);
+            if is_there {
+                told.entry((key, words)).or_default().push(name);
+            }
+        }
+    }
+    told
 }
 
 /// What the sine fits use of the run, and what they leave out.

@@ -120,7 +120,9 @@ impl Search<'_> {
 
     /// The fit with the terms that every fit has.
     pub(crate) fn base(&self, problem: &Problem) -> Option<Choice> {
-        Choice::of(problem.clone(), BASE, self.solve(problem, &BASE), 0.0)
+        let mut base = BASE;
+        base[INVERSE_SQUARE] = !problem.knows_inverse_square();
+        Choice::of(problem.clone(), base, self.solve(problem, &base), 0.0)
     }
 
     /// A fit with the terms added that the criterion asks for.

@@ -1,0 +1,122 @@
+//! A recorded log examined: its outliers, and what it measures without them.
+
+use super::outliers::{OUTLIERS, Outliers, find_outliers};
+use super::smoothing::{SMOOTHING_TIME, find_smoothing};
+use crate::metrics::estimate::outlier_sheet::OutlierEntry;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::measure::measure_present;
+use crate::metrics::noise::memory::record_fit_tau_min_s;
+use crate::metrics::record::{Motion, Record, SAMPLES_MIN, Settings};
+use crate::metrics::sine::fit::{SwingClock, fit_swing};
+
+/// Examines the words of a log that was measured, and gives what it measures without its outliers;
+/// nothing where it has none.
+///
+/// * `first_index`: index in the log of the first word of the record.
+/// * `is_fit_tau_min_given`: whether the shortest averaging time of the fit stands, or follows the words.
+///
+/// Of a swing the residuals about the fitted sine are looked at. Without outliers means sums leave out
+/// what is missing: an Allan variance every difference that touches it, nothing is put in its place.
+pub fn examine_log(
+    record: &Record,
+    settings: &Settings,
+    is_fit_tau_min_given: bool,
+    first_index: usize,
+    metrics: &mut ChannelMetrics,
+) -> Option<ChannelMetrics> {
+    let words = record.channel_deg_per_h;
+    if words.len() < SAMPLES_MIN || metrics.error.is_some() {
+        for key in [&OUTLIERS, &SMOOTHING_TIME] {
+            metrics.miss(key, "the record is too short for it");
+        }
+        return None;
+    }
+    let residuals = about_motion(record, &settings.motion);
+    let mut still = residuals.unwrap_or_else(|| words.to_vec());
+    let found = find_outliers(&still);
+    if let Ok(outliers) = &found {
+        outliers.leave_out(&mut still);
+    }
+    put_smoothing(&still, record.sample_period_s, metrics);
+    drop(still);
+    let outliers = match found {
+        Ok(outliers) => outliers,
+        Err(reason) => {
+            metrics.miss(&OUTLIERS, reason);
+            return None;
+        }
+    };
+    put_outliers(&outliers, record, first_index, metrics);
+    if outliers.events.is_empty() {
+        return None;
+    }
+    let mut rest = words.to_vec();
+    outliers.leave_out(&mut rest);
+    let fit_tau_min_s = if is_fit_tau_min_given {
+        settings.fit_tau_min_s
+    } else {
+        record_fit_tau_min_s(&rest, record.sample_period_s)
+    };
+    let settings = Settings {
+        fit_tau_min_s,
+        ..settings.clone()
+    };
+    let rest_record = Record {
+        channel_deg_per_h: &rest,
+        raw_deg_per_h: &rest,
+        ..*record
+    };
+    Some(measure_present(&rest_record, &settings))
+}
+
+/// The words about a motion that is known; nothing where they stand for themselves.
+fn about_motion(record: &Record, motion: &Motion) -> Option<Vec<f64>> {
+    let (Motion::Swing { frequency_hz } | Motion::SwingFromRest { frequency_hz }) = motion else {
+        return None;
+    };
+    let clock = SwingClock {
+        frequency_hz: *frequency_hz,
+        sample_period_s: record.sample_period_s,
+        first_stamp_s: record.first_stamp_s,
+    };
+    let words = record.channel_deg_per_h;
+    let fit = fit_swing(words, &clock).ok()?;
+    Some(fit.residuals(words))
+}
+
+/// Enters the averaging time of a log that was smoothed, words about the motion and without outliers.
+fn put_smoothing(words: &[f64], sample_period_s: f64, metrics: &mut ChannelMetrics) {
+    match find_smoothing(words, sample_period_s) {
+        Ok(found) => {
+            metrics.put(&SMOOTHING_TIME, found.averaging_time_s);
+            metrics.smoothing = Some(found.like.words());
+        }
+        Err(reason) => metrics.miss(&SMOOTHING_TIME, reason),
+    }
+}
+
+fn put_outliers(
+    outliers: &Outliers,
+    record: &Record,
+    first_index: usize,
+    metrics: &mut ChannelMetrics,
+) {
+    let count = outliers.events.len() as f64;
+    let metric = metrics.put(&OUTLIERS, Estimate::exact(count));
+    for (field, value) in [
+        ("words", outliers.words() as f64),
+        ("threshold_deg_per_h", outliers.threshold_deg_per_h),
+        ("threshold_deviations", outliers.threshold_deviations),
+    ] {
+        metric.fields.insert(field, value);
+    }
+    let entries = outliers.events.iter().map(|event| OutlierEntry {
+        index: first_index + event.first,
+        time_s: record.first_stamp_s + event.first as f64 * record.sample_period_s,
+        words: event.words,
+        size_deg_per_h: event.size_deg_per_h,
+        size_deviations: event.size_deviations,
+    });
+    metrics.outliers = entries.collect();
+}
