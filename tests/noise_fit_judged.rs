@@ -8,21 +8,14 @@ use fogbench::metrics::{
     AllanOptions, ChannelMetrics, FIT_TAU_PER_RECORD_MAX, FitRange, Motion, NoiseFit, Record,
     Settings, Term, fit_noise, measure, overlapping_allan,
 };
-use fogbench::random::Streams;
 use rayon::prelude::*;
+
+use crate::support::records::normals;
 
 /// Records per mix: a few seconds; by hand `FOGBENCH_RECORDS=20000`.
 fn records() -> u64 {
     let asked = std::env::var("FOGBENCH_RECORDS").ok();
     asked.and_then(|text| text.parse().ok()).unwrap_or(600)
-}
-
-fn normals(seed: u64, source: &str, count: usize) -> Vec<f64> {
-    let mut values = vec![0.0; count];
-    Streams::new(seed, 0)
-        .stream(source)
-        .fill_normal(&mut values);
-    values
 }
 
 /// White noise of N = 1, a walk, and noise of a standard deviation with a correlation time, one word

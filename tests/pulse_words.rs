@@ -6,10 +6,10 @@ use fogbench::metrics::catalogue::{ANGLE_RANDOM_WALK, QUANTISATION, RATE_RANDOM_
 use fogbench::metrics::{
     AllanOptions, ChannelMetrics, Motion, Record, Settings, measure, record_fit_tau_min_s,
 };
-use fogbench::random::Streams;
 use rayon::prelude::*;
 use serde_json::Value;
 
+use crate::support::records::normals;
 use crate::support::{code, fogbench, stderr, stdout, summary, write};
 
 /// Angle random walk of all records, deg/sqrt(h), and in (deg/h) sqrt(s).
@@ -18,14 +18,6 @@ const WALK: f64 = 60.0 * WALK_DEG_PER_SQRT_H;
 
 /// Flicker of the records, deg/h.
 const BIAS_INSTABILITY: f64 = 0.045;
-
-fn normals(seed: u64, source: &str, count: usize) -> Vec<f64> {
-    let mut values = vec![0.0; count];
-    Streams::new(seed, 0)
-        .stream(source)
-        .fill_normal(&mut values);
-    values
-}
 
 /// Flicker, one value a second: Gauss-Markov noise of equal variance per octave of correlation time.
 fn flicker(seed: u64, seconds: usize) -> Vec<f64> {

@@ -219,10 +219,15 @@ impl ChannelFilter {
                 return;
             }
             if let Err(divergence) = self.step(word) {
-                self.failure = Some(divergence);
-                self.output_deg_per_h = Vec::new();
+                self.fail(divergence);
             }
         }
+    }
+
+    /// Ends the channel: its words are of no use.
+    fn fail(&mut self, divergence: Divergence) {
+        self.failure = Some(divergence);
+        self.output_deg_per_h = Vec::new();
     }
 
     /// The same for a filter with nothing beside it, in one go.
@@ -231,10 +236,8 @@ impl ChannelFilter {
             return;
         }
         let mut outputs = Vec::with_capacity(words_deg_per_h.len());
-        self.failure = self.filter.step_all(words_deg_per_h, &mut outputs).err();
-        if self.failure.is_some() {
-            self.output_deg_per_h = Vec::new();
-            return;
+        if let Err(divergence) = self.filter.step_all(words_deg_per_h, &mut outputs) {
+            return self.fail(divergence);
         }
         for output in outputs {
             if self.output_deg_per_h.len() >= self.warm_up_samples {

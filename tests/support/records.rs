@@ -11,11 +11,17 @@ use fogbench::signal::{FilterShape, WeightRule};
 /// Sample period of the gyro under test, s.
 pub(crate) const PERIOD_S: f64 = 64.0 * 3.916_576e-6;
 
-pub(crate) fn white(seed: u64, count: usize, deviation: f64) -> Vec<f64> {
+/// Standard normal draws of a source.
+pub(crate) fn normals(seed: u64, source: &str, count: usize) -> Vec<f64> {
     let mut values = vec![0.0; count];
     Streams::new(seed, 0)
-        .stream("white")
+        .stream(source)
         .fill_normal(&mut values);
+    values
+}
+
+pub(crate) fn white(seed: u64, count: usize, deviation: f64) -> Vec<f64> {
+    let mut values = normals(seed, "white", count);
     for value in &mut values {
         *value *= deviation;
     }

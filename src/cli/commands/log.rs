@@ -8,7 +8,7 @@ use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions, LogOptions};
 use crate::cli::terminal::complaint::{self, Complaint};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
-use crate::cli::terminal::place::{Place, exit_of};
+use crate::cli::terminal::place::{self, Place};
 use crate::experiment::{
     LogFilters, LogInput, LogSettings, LogTrial, compensate_log, load_log_compensation,
     load_log_filters, try_log,
@@ -16,7 +16,7 @@ use crate::experiment::{
 use crate::recording::{AssemblyColumns, LogError, LogFormat, read_assembly_log, read_log};
 use crate::report::{is_kalman_json, log_json, log_text};
 use crate::scenario::AllanConfig;
-use crate::store::{SingleFile, StoreError};
+use crate::store::SingleFile;
 
 /// Measures a log, and writes its noise as a linear system.
 pub(in crate::cli) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
@@ -54,7 +54,7 @@ fn write_kalman(trial: &LogTrial, file: SingleFile) -> Result<(), Exit> {
         ));
         Exit::RunFailed
     })?;
-    file.write(&text).map_err(|error| refused_file(&error))?;
+    file.write(&text).map_err(|error| place::refused(&error))?;
     output::talk(&format!(
         "noise for a Kalman filter in {}",
         file.path.display()
@@ -71,12 +71,7 @@ fn check_file(file: SingleFile, inputs: &[&Path]) -> Result<(), Exit> {
         ));
         return Err(Exit::Usage);
     }
-    file.check().map_err(|error| refused_file(&error))
-}
-
-fn refused_file(error: &StoreError) -> Exit {
-    output::talk(&format!("error: {error}"));
-    exit_of(error)
+    file.check().map_err(|error| place::refused(&error))
 }
 
 /// Puts a log through the filters of a scenario and measures what they make of it.

@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use wildmatch::WildMatch;
+
 use crate::cli::options::arguments::SelectOptions;
 use crate::cli::terminal::complaint;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::experiment::{Plan, Sound, check_suite, plan_suite};
 use crate::scenario::ScenarioError;
-use wildmatch::WildMatch;
 
 /// Folder whose sub-folders run when no path is given.
 const DEFAULT_FOLDER: &str = "scenarios";

@@ -71,7 +71,7 @@ impl<'a> Place<'a> {
 }
 
 /// Says why results are not written.
-fn refused(error: &StoreError) -> Exit {
+pub(in crate::cli) fn refused(error: &StoreError) -> Exit {
     output::talk(&format!("error: {error}"));
     exit_of(error)
 }

@@ -1,7 +1,7 @@
 //! A filter: front end, weights and their update, output register, watch.
 
 use super::divergence::{Divergence, Fault, Watch};
-use super::filter::{Filter, Output};
+use super::filter::{Filter, Output, step_each};
 use super::front_end::{FrontEnd, FrontEndConfig, Register, adaptive_rule};
 use crate::signal::{FilterShape, WeightRule};
 use crate::vocabulary::DesiredSignal;
@@ -158,10 +158,7 @@ impl<C: Core> Filter for CoreFilter<C> {
         outputs: &mut Vec<Output>,
     ) -> Result<(), Divergence> {
         let Some(words) = self.words_of(inputs_deg_per_h) else {
-            for &input_deg_per_h in inputs_deg_per_h {
-                outputs.push(self.step(input_deg_per_h)?);
-            }
-            return Ok(());
+            return step_each(self, inputs_deg_per_h, outputs);
         };
         for (&input_deg_per_h, word) in inputs_deg_per_h.iter().zip(words) {
             outputs.push(self.step_by(input_deg_per_h, |_, _, _| Ok(word))?);

@@ -40,10 +40,7 @@ pub trait Filter: Send {
         inputs_deg_per_h: &[f64],
         outputs: &mut Vec<Output>,
     ) -> Result<(), Divergence> {
-        for &input_deg_per_h in inputs_deg_per_h {
-            outputs.push(self.step(input_deg_per_h)?);
-        }
-        Ok(())
+        step_each(self, inputs_deg_per_h, outputs)
     }
 
     /// Weights after the newest update, the one on the newest regressor first.
@@ -51,4 +48,16 @@ pub trait Filter: Send {
 
     /// Input samples that the outputs weigh, and the rule of the weights.
     fn shape(&self) -> FilterShape;
+}
+
+/// Takes samples one after another.
+pub(super) fn step_each<F: Filter + ?Sized>(
+    filter: &mut F,
+    inputs_deg_per_h: &[f64],
+    outputs: &mut Vec<Output>,
+) -> Result<(), Divergence> {
+    for &input_deg_per_h in inputs_deg_per_h {
+        outputs.push(filter.step(input_deg_per_h)?);
+    }
+    Ok(())
 }

@@ -127,9 +127,7 @@ pub(crate) fn found_sine(channel: &ChannelMetrics) -> Option<Sine> {
 pub(crate) fn without_sine(points: &[AllanPoint], sine: Option<Sine>) -> Vec<AllanPoint> {
     let rest = points.iter().map(|point| {
         let taken = sine.map_or(0.0, |sine| sine.allan_variance(point.tau_s));
-        let mut rest = *point;
-        rest.deviation_deg_per_h.value = (point.variance() - taken).max(0.0).sqrt();
-        rest
+        point.with_variance((point.variance() - taken).max(0.0))
     });
     rest.collect()
 }

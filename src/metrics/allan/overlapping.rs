@@ -39,6 +39,12 @@ impl AllanPoint {
         }
     }
 
+    /// The point with another Allan variance, (deg/h)^2, whose interval is not looked at.
+    pub(crate) fn with_variance(mut self, variance: f64) -> Self {
+        self.deviation_deg_per_h.value = variance.sqrt();
+        self
+    }
+
     /// Allan variance, (deg/h)^2.
     #[must_use]
     pub fn variance(&self) -> f64 {

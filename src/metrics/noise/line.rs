@@ -120,9 +120,7 @@ fn curve_without(points: &[AllanPoint], frequency_hz: f64, amplitude: f64) -> Ve
     let without = points.iter().map(|point| {
         let sine = amplitude * amplitude * sine_allan_variance(point.tau_s, period_s);
         let variance = point.variance();
-        let mut rest = *point;
-        rest.deviation_deg_per_h.value = (variance - sine).max(REST_MIN * variance).sqrt();
-        rest
+        point.with_variance((variance - sine).max(REST_MIN * variance))
     });
     without.collect()
 }

@@ -319,15 +319,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::random::Streams;
-
-    fn white(seed: u64, count: usize) -> Vec<f64> {
-        let mut words = vec![0.0; count];
-        Streams::new(seed, 0)
-            .stream("words")
-            .fill_normal(&mut words);
-        words
-    }
+    use crate::metrics::quality::white;
 
     /// First words and lengths of what is found.
     fn found(words: &[f64]) -> Vec<(usize, usize)> {
@@ -425,11 +417,11 @@ mod tests {
         let coarse: Vec<f64> = coarse.iter().map(|it| it.clamp(-6.0, 6.0)).collect();
         assert!(why(&coarse).starts_with("off: the words have 7 distinct values"));
         let mut rest = 0.0;
-        let pulses: Vec<f64> = white(6, 5000)
+        let pulses: Vec<f64> = white(6, 12_000)
             .iter()
             .enumerate()
             .map(|(index, noise)| {
-                rest += 0.1 * noise + 0.002 * (index as f64).min(2000.0);
+                rest += 0.1 * noise + 0.001 * index as f64;
                 let whole = f64::round(rest);
                 rest -= whole;
                 25.0 * whole

@@ -421,15 +421,7 @@ impl<'a> Search<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Streams;
-
-    fn white(seed: u64, count: usize) -> Vec<f64> {
-        let mut words = vec![0.0; count];
-        Streams::new(seed, 0)
-            .stream("words")
-            .fill_normal(&mut words);
-        words
-    }
+    use crate::metrics::quality::white;
 
     fn walk(words: &[f64]) -> Vec<f64> {
         let mut sum = 0.0;

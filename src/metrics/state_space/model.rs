@@ -203,8 +203,11 @@ pub fn noise_state_space(channel: &ChannelMetrics) -> Result<StateSpace, Unavail
     };
     let mix = ChosenFit::new(&without_sine(&points, sine), range, 1.0)?.non_negative();
     let sample_period_s = points[0].tau_s / points[0].averaged_samples as f64;
-    let last = &points[points.len() - 1];
-    let samples = (last.count + 2 * last.averaged_samples - 1) as f64;
+    // Differences that outliers touch are missing, fewest at the shortest times.
+    let lengths = points
+        .iter()
+        .map(|it| it.count + 2 * it.averaged_samples - 1);
+    let samples = lengths.max().unwrap_or(0) as f64;
     let tau_range_s = [
         TAU_MIN_SAMPLES * sample_period_s,
         TAU_MAX_PER_RECORD * samples * sample_period_s,

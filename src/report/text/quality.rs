@@ -52,10 +52,14 @@ fn line(metrics: &ChannelMetrics) -> Option<String> {
         String::new()
     };
     let words = found.iter().map(|entry| entry.words).sum::<usize>();
+    let bursts = if words > found.len() {
+        format!(" ({} in all)", counted(words, "word"))
+    } else {
+        String::new()
+    };
     Some(format!(
-        "{} of {} {beyond}{head}: {}",
+        "{}{bursts} {beyond}{head}: {}",
         found.len(),
-        counted(words, "word"),
         listed.join(", ")
     ))
 }
