@@ -36,6 +36,7 @@ fn measured(encoder: EncoderConfig, frequency_hz: f64) -> ChannelMetrics {
         encoder_rad: Some(&angles[4000..]),
         sample_period_s: PERIOD_S,
         first_stamp_s: 4001.0 * PERIOD_S,
+        drift: None,
     };
     measure(&record, &settings(Motion::Swing { frequency_hz }), None)
 }

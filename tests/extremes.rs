@@ -473,6 +473,7 @@ fn measuring_words_whose_squares_overflow_ends_with_reasons() {
             encoder_rad: None,
             sample_period_s: 1e-3,
             first_stamp_s: 1e-3,
+            drift: None,
         };
         let settings = Settings {
             motion,
@@ -513,6 +514,7 @@ fn optimal_weights_of_a_second_moment_that_is_not_finite_are_none() {
         rule: WeightRule::Adaptive {
             desired_weights: vec![1.0],
             is_dc_gain_one: false,
+            forgetting_factor: None,
         },
     };
     let moment = |last: f64| [1.0, 0.5, 0.25, 0.125, 0.1, 0.05, 0.02, last];

@@ -6,7 +6,8 @@ use fogbench::Scenario;
 use fogbench::filters::{
     Core, DivergenceKind, ExpectedWords, Filter, FilterKind, FrontEndConfig, Lms, LmsConfig,
     Normalisation, Rls, RlsConfig, RlsCore, adaptive_rule, conditional_keys,
-    constant_eigenvalue_max, covariance_digits_warning, lms_step_bound, sine_eigenvalue_max,
+    constant_eigenvalue_max, covariance_digits_warning, least_squares_rule, lms_step_bound,
+    sine_eigenvalue_max,
 };
 use fogbench::random::Streams;
 use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
@@ -464,7 +465,7 @@ fn shapes_tell_the_age_of_the_newest_weighed_sample() {
         (shape.taps, shape.newest_age_samples, shape.register_samples),
         (Some(4), 2, 1)
     );
-    assert_eq!(shape.rule, adaptive_rule(DesiredSignal::Current));
+    assert_eq!(shape.rule, least_squares_rule(DesiredSignal::Current, 1.0));
     let shape = Lms::new(&lms(0.8, ENERGY)).shape();
     assert_eq!(
         (shape.taps, shape.newest_age_samples, shape.register_samples),

@@ -241,6 +241,7 @@ fn record<'a>(channel: &'a [f64], raw: &'a [f64], truth: &'a [f64]) -> Record<'a
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 3.000_1,
+        drift: None,
     }
 }
 

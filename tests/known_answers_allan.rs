@@ -303,6 +303,7 @@ fn slow_noise_is_fitted_and_its_intervals_cover_the_truth() {
             encoder_rad: None,
             sample_period_s: 1.0,
             first_stamp_s: 0.0,
+            drift: None,
         };
         let settings = Settings {
             motion: Motion::Steady,

@@ -29,6 +29,7 @@ mod comparison;
 mod comparison_change;
 mod comparison_filters;
 mod compensation;
+mod coverage;
 mod cycle_exact;
 mod determinism;
 mod documents;

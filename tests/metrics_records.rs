@@ -28,6 +28,7 @@ fn measured(
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 1.0,
+        drift: None,
     };
     measure(&record, settings, facts)
 }
@@ -119,6 +120,7 @@ fn through_a_wandering_gain(deviation: f64) -> ChannelMetrics {
         encoder_rad: None,
         sample_period_s: 0.01,
         first_stamp_s: 0.0,
+        drift: None,
     };
     let facts = FilterFacts {
         dc_gain: Some(0.5),

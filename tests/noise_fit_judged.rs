@@ -52,6 +52,7 @@ fn measured(values: &[f64], sample_period_s: f64, tau_min_s: f64) -> ChannelMetr
         encoder_rad: None,
         sample_period_s,
         first_stamp_s: 0.0,
+        drift: None,
     };
     let settings = Settings {
         motion: Motion::Steady,

@@ -82,6 +82,7 @@ impl Words {
             truth_deg_per_h: &[],
             response_deg_per_h: &[],
             encoder_rad: None,
+            drift: None,
             sample_period_s: 1.0 / self.frequency_hz(),
             first_stamp_s: 0.0,
         };

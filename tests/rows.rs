@@ -167,6 +167,8 @@ fn facts() -> FilterFacts {
         dc_gain_adapted: Some(1.0),
         mean_weights: None,
         block_weights: Vec::new(),
+        block_dc_gains_adapted: Vec::new(),
+        learning: None,
         added_rate_deg_per_h: 1.0,
         rate_gains: vec![RateGain {
             rate_deg_per_s: 1.0,
@@ -212,6 +214,7 @@ fn measured(case: &Case, seed: u64) -> [ChannelMetrics; 2] {
             encoder_rad: Some(&angles),
             sample_period_s: PERIOD_S,
             first_stamp_s: PERIOD_S,
+            drift: None,
         };
         measure(&record, &settings, filter)
     })

@@ -195,6 +195,7 @@ fn a_general_motion_has_means_and_tracking_error_and_reasons_for_the_rest() {
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: PERIOD_S,
+        drift: None,
     };
     let settings = Settings {
         motion: Motion::General,

@@ -34,6 +34,9 @@ pub(super) struct ChannelFilter {
     /// Sums of every weight over consecutive blocks of the record, and the samples of each.
     weight_totals: [Vec<f64>; WEIGHT_BLOCKS],
     weight_counts: [u32; WEIGHT_BLOCKS],
+    /// Sums of the twin's output minus the filter's over the same blocks.
+    twin_differences: [f64; WEIGHT_BLOCKS],
+    twin_counts: [u32; WEIGHT_BLOCKS],
     twin_difference_total: f64,
     measured: u64,
 }
@@ -77,6 +80,8 @@ pub(super) struct FinishedFilter {
     pub(super) name: String,
     /// Input samples that the filter weighs, and the rule of its weights.
     pub(super) shape: FilterShape,
+    /// Whether it started afresh within the record.
+    pub(super) restarts: bool,
     /// The words, or why there are none.
     pub(super) words: Result<FilterWords, Divergence>,
     /// The hardware, if it is one.
@@ -103,6 +108,8 @@ pub(super) struct FilterWords {
     pub(super) dc_gain: Option<f64>,
     /// The same with the filter free to adapt to the added rate; none if the twin failed.
     pub(super) dc_gain_adapted: Option<f64>,
+    /// The same over consecutive blocks of the record.
+    pub(super) block_dc_gains_adapted: Vec<f64>,
     /// The same for rates of other sizes; empty unless asked for.
     pub(super) rate_gains: Vec<RateGain>,
     /// Time mean of every weight over the measured record, as left by each sample; none for an
@@ -180,6 +187,8 @@ impl ChannelFilter {
             shape,
             weight_totals: std::array::from_fn(|_| vec![0.0; filter.as_filter().weights().len()]),
             weight_counts: [0; WEIGHT_BLOCKS],
+            twin_differences: [0.0; WEIGHT_BLOCKS],
+            twin_counts: [0; WEIGHT_BLOCKS],
             measured_samples: length.measured.max(1),
             filter,
             twin: adapts.then(arithmetic),
@@ -256,7 +265,11 @@ impl ChannelFilter {
         let twin = self.twin.as_mut();
         match twin.map(|twin| twin.step(word_deg_per_h + ADDED_RATE_DEG_PER_H)) {
             Some(Ok(twin)) if is_measured => {
-                self.twin_difference_total += twin.value_deg_per_h - output.value_deg_per_h;
+                let difference = twin.value_deg_per_h - output.value_deg_per_h;
+                let block = self.block(index - self.warm_up_samples);
+                self.twin_difference_total += difference;
+                self.twin_differences[block] += difference;
+                self.twin_counts[block] += 1;
             }
             Some(Err(_)) => self.twin = None,
             _ => {}
@@ -267,8 +280,7 @@ impl ChannelFilter {
         if is_measured {
             self.weight_sum_total += output.weight_sum;
             if let WeightRule::Adaptive { .. } = self.shape.rule {
-                let index = self.output_deg_per_h.len() - 1 - self.warm_up_samples;
-                let block = (index * WEIGHT_BLOCKS / self.measured_samples).min(WEIGHT_BLOCKS - 1);
+                let block = self.block(index - self.warm_up_samples);
                 let weights = self.filter.as_filter().weights();
                 for (total, weight) in self.weight_totals[block].iter_mut().zip(weights) {
                     *total += weight;
@@ -278,6 +290,11 @@ impl ChannelFilter {
             self.measured += 1;
         }
         Ok(())
+    }
+
+    /// Block of a sample, counted from the first measured one.
+    fn block(&self, measured: usize) -> usize {
+        (measured * WEIGHT_BLOCKS / self.measured_samples).min(WEIGHT_BLOCKS - 1)
     }
 
     /// Ends the run.
@@ -314,12 +331,14 @@ impl ChannelFilter {
                         mean(self.twin_difference_total).map(|gain| gain / ADDED_RATE_DEG_PER_H)
                     })
                 }),
+                block_dc_gains_adapted: self.block_dc_gains_adapted(),
                 output_deg_per_h: self.output_deg_per_h,
             }),
         };
         FinishedFilter {
             name: self.name,
             shape: self.shape,
+            restarts: self.restarts.is_some(),
             words,
             pipeline,
         }
@@ -336,6 +355,15 @@ impl ChannelFilter {
                     .map(|total| total / f64::from(count))
                     .collect()
             })
+            .collect()
+    }
+
+    /// Gain of the twin over each block that has samples.
+    fn block_dc_gains_adapted(&self) -> Vec<f64> {
+        let blocks = self.twin_differences.iter().zip(self.twin_counts);
+        blocks
+            .filter(|(_, count)| *count > 0)
+            .map(|(difference, count)| difference / (f64::from(count) * ADDED_RATE_DEG_PER_H))
             .collect()
     }
 

@@ -114,6 +114,7 @@ impl Core for ConstrainedRlsCore {
         WeightRule::Adaptive {
             desired_weights: desired.weights().to_vec(),
             is_dc_gain_one: true,
+            forgetting_factor: Some(self.free.forgetting_factor()),
         }
     }
 }

@@ -42,7 +42,7 @@ pub use butterworth::{ButterworthFilterConfig, butterworth};
 pub use common::{
     Complaint, Complaints, Core, CoreFilter, Divergence, DivergenceKind, Fault, Filter, FixedCore,
     FixedFilter, FrontEndConfig, Output, RecursiveFilter, Register, SectionsCore, Watch,
-    adaptive_rule,
+    adaptive_rule, least_squares_rule,
 };
 pub use constrained_rls::{ConstrainedRls, ConstrainedRlsCore, ConstrainedRlsFilterConfig};
 pub use kalman::{

@@ -1,9 +1,13 @@
 //! Recursive least squares in its textbook gain form.
 
-use super::common::{Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, dot};
+use super::common::{
+    Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, dot,
+    least_squares_rule,
+};
 use super::hardware::{self, PipelineSettings};
 use super::kind::{Condition, ExpectedWords, FilterSettings};
 use crate::declare::table;
+use crate::signal::WeightRule;
 use crate::vocabulary::{
     DesiredSignal, Division, NumberFormat, OutputRegister, Pipeline, UpdateOrder, UpdateSign,
 };
@@ -183,6 +187,11 @@ impl RlsCore {
         }
     }
 
+    /// Forgetting factor.
+    pub(super) fn forgetting_factor(&self) -> f64 {
+        self.forgetting_factor
+    }
+
     /// Inverse correlation matrix P, `[p * p]`, row major, (deg/h)^-2.
     #[must_use]
     pub fn inverse_correlation(&self) -> &[f64] {
@@ -260,6 +269,10 @@ impl Core for RlsCore {
 
     fn weights(&self) -> &[f64] {
         &self.weights
+    }
+
+    fn rule(&self, desired: DesiredSignal) -> WeightRule {
+        least_squares_rule(desired, self.forgetting_factor)
     }
 }
 

@@ -73,6 +73,15 @@ macro_rules! kinds {
                 }
             }
 
+            /// What a sample counts for once the next has come; none where the weights follow a
+            /// gradient.
+            #[must_use]
+            pub fn forgetting_factor(&self) -> Option<f64> {
+                match self {
+                    $(Self::$kind(core) => Core::forgetting_factor(core),)+
+                }
+            }
+
             /// Whether there is hardware with the engine's words.
             #[must_use]
             pub fn has_hardware(&self) -> bool {

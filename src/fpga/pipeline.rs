@@ -42,6 +42,11 @@ pub trait Core {
     /// Number of weights.
     fn tap_count(&self) -> usize;
 
+    /// What a sample counts for once the next has come; none where the weights follow a gradient.
+    fn forgetting_factor(&self) -> Option<f64> {
+        None
+    }
+
     /// Rounds the settings to the word format and checks the rounded values.
     ///
     /// # Errors

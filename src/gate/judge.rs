@@ -4,7 +4,7 @@ use crate::gate::number::limits_text;
 use crate::gate::{Verdict, VerdictKind};
 use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{
-    ChannelFailure, ChannelMetrics, Estimate, Metric, estimate_text, is_exact, plain,
+    ChannelFailure, ChannelMetrics, Estimate, IntervalKind, Metric, estimate_text, is_exact, plain,
 };
 use crate::scenario::{GateConfig, GateDecision, InconclusivePolicy};
 
@@ -112,7 +112,9 @@ fn measured<'a>(
     let quotient = match &gate.relative_to {
         None => Quotient {
             value: metric.estimate.value,
-            interval: Some((metric.estimate.low, metric.estimate.high)),
+            // Without an interval nothing but the value can be judged.
+            interval: (!matches!(metric.estimate.interval, IntervalKind::Absent(_)))
+                .then_some((metric.estimate.low, metric.estimate.high)),
             confidence: metric.estimate.confidence,
         },
         Some(other) => {
@@ -182,7 +184,10 @@ fn lookup<'a>(
 /// Bonferroni's inequality, usually far more). It is unbounded where the divisor's interval
 /// touches zero.
 fn ratio(numerator: &Estimate, denominator: &Estimate) -> Quotient {
-    let bounded = denominator.low > 0.0 || denominator.high < 0.0;
+    let is_absent = |of: &Estimate| matches!(of.interval, IntervalKind::Absent(_));
+    let bounded = (denominator.low > 0.0 || denominator.high < 0.0)
+        && !is_absent(numerator)
+        && !is_absent(denominator);
     let interval = bounded.then(|| {
         let ends = [
             numerator.low / denominator.low,
@@ -209,10 +214,8 @@ pub fn quotient(numerator: &Estimate, denominator: &Estimate) -> Option<Estimate
     let (low, high) = quotient.interval?;
     let is_finite = quotient.value.is_finite() && low.is_finite() && high.is_finite();
     is_finite.then_some(Estimate {
-        value: quotient.value,
-        low,
-        high,
         confidence: quotient.confidence,
+        ..Estimate::with_interval(quotient.value, low, high)
     })
 }
 
@@ -242,10 +245,8 @@ fn decide(verdict: &mut Verdict, gate: &GateConfig, quotient: &Quotient, unit: &
 /// `0.340 ±0.001 ms (95 % interval) lies inside [0.33, 0.35] ms`.
 fn words(verdict: &Verdict, quotient: &Quotient, by_value: bool) -> String {
     let estimate = quotient.interval.map(|(low, high)| Estimate {
-        value: quotient.value,
-        low,
-        high,
         confidence: quotient.confidence,
+        ..Estimate::with_interval(quotient.value, low, high)
     });
     let number = match &estimate {
         Some(estimate) => estimate_text(estimate, REASON_DIGITS),

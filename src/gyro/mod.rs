@@ -56,7 +56,7 @@ pub use loop_model::LoopModel;
 pub use loop_model::faults::LoopFaults;
 pub use noise::budget::NoiseBudget;
 pub use noise::budget_sheet::{budget_at, budget_sheet, power_independent_ratio};
-pub use noise::slow_noise::{SlowNoise, SlowNoiseConfig};
+pub use noise::slow_noise::{SlowNoise, SlowNoiseConfig, slow_drift};
 pub use noise::{
     Densities, Density, NoiseConfig, NoiseDraw, NoiseSource, SOURCES as NOISE_SOURCES,
 };

@@ -62,6 +62,7 @@ const SPECTRUM_POINTS_MAX: usize = 400;
 ///     encoder_rad: None,
 ///     sample_period_s: 0.01,
 ///     first_stamp_s: 0.01,
+///     drift: None,
 /// };
 /// let settings = Settings {
 ///     motion: Motion::Steady,
@@ -111,7 +112,7 @@ pub fn measure(
         }
     }
     if let Some(facts) = filter {
-        put_dc_gains(facts, &mut metrics);
+        put_dc_gains(record, facts, &mut metrics);
         put_rate_gains(facts, &mut metrics);
         put_frozen_response(facts, record.sample_period_s, &mut metrics);
     }
@@ -185,9 +186,10 @@ fn measure_words(
             measure_multi_sine(record, frequencies_hz, filter, metrics)
         }
         Motion::General => {
-            measure_tracking(record, metrics);
+            measure_tracking(record, None, filter, metrics);
             if let Some(facts) = filter {
-                measure_mean_ratio(record, metrics);
+                let all = 0..record.channel_deg_per_h.len();
+                measure_mean_ratio(record, all, facts, metrics);
                 match onset(record.truth_deg_per_h) {
                     Some(start) => measure_after_step(record, start, facts, metrics),
                     None => {

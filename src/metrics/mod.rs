@@ -75,7 +75,7 @@ pub use estimate::reason::Unavailable;
 pub use estimate::repeat_statistics::RepeatStatistics;
 pub use estimate::table::{ChannelFailure, ChannelMetrics};
 pub(crate) use estimate::text::{estimate_text, is_exact, plain, three_digits, wants_exponent};
-pub use estimate::value::{Estimate, Metric};
+pub use estimate::value::{Estimate, IntervalKind, Metric};
 pub use key::curve::{Column, Curve, CurveKey};
 pub(crate) use key::metric::{Against, Headline, Table};
 pub use key::metric::{Applies, MetricKey};
@@ -86,6 +86,7 @@ pub use noise::bias_stability::{
 };
 pub use noise::memory::{correlation_length_samples, record_fit_tau_min_s};
 pub use noise::spectrum::{Spectrum, log_binned, segment_samples, welch};
+pub use noise::truth_response::known_motion;
 pub use pool::aggregate::aggregate;
 pub use pool::repeatability::repeats_lack;
 pub use pool::sensitivity::{ConditionPoint, change_divisor, largest_change_per_unit};
@@ -112,6 +113,7 @@ pub use theory::bound::{
     noise_power_gain,
 };
 pub use theory::claim::{Claim, ClaimedFigure, Lookalikes};
+pub use theory::learning::Learning;
 pub use theory::memory::memory_samples;
 pub use theory::prediction::{Prediction, lags_needed, predict};
 pub use trial::readaptation::{GainUnits, Readaptation};

@@ -3,8 +3,15 @@
 use std::ops::Range;
 
 use super::allan::variants::AllanOptions;
+use super::estimate::blocks::RATIO_BLOCKS;
+use super::estimate::influence::Learned;
+use super::estimate::interval::round_to_count;
+use super::estimate::value::Estimate;
+use super::theory::learning::{
+    LearnedWeights, Learning, NOT_FROM_ONE_RECORD, remembers_the_record,
+};
 use super::theory::prediction::Prediction;
-use crate::signal::{FilterShape, WeightRule};
+use crate::signal::{FilterShape, SlowDrift, WeightRule};
 
 /// Fewest samples worth measuring.
 pub(crate) const SAMPLES_MIN: usize = 64;
@@ -29,6 +36,9 @@ pub struct Record<'a> {
     pub sample_period_s: f64,
     /// Stamp of the first sample, s.
     pub first_stamp_s: f64,
+    /// How the slow noise of the gyro scatters over seeds; none where nobody knows it, as of a
+    /// recorded log.
+    pub drift: Option<&'a SlowDrift>,
 }
 
 impl<'a> Record<'a> {
@@ -36,6 +46,26 @@ impl<'a> Record<'a> {
     #[must_use]
     pub fn truth(&self) -> Option<&'a [f64]> {
         (!self.truth_deg_per_h.is_empty()).then_some(self.truth_deg_per_h)
+    }
+
+    /// Covariance over seeds of the slow noise in the means over two ranges of samples, (deg/h)^2;
+    /// 0 where it is not known.
+    pub(crate) fn drift_covariance(&self, one: &Range<usize>, other: &Range<usize>) -> f64 {
+        let stretch = |samples: &Range<usize>| {
+            [samples.start, samples.end].map(|at| {
+                let before_first = self.first_stamp_s - self.sample_period_s;
+                before_first + at as f64 * self.sample_period_s
+            })
+        };
+        let (one, other) = (stretch(one), stretch(other));
+        self.drift
+            .map_or(0.0, |drift| drift.mean_covariance(one, other))
+    }
+
+    /// Variance over seeds of the slow noise in the mean of the record, (deg/h)^2.
+    pub(crate) fn drift_variance(&self) -> f64 {
+        let all = 0..self.channel_deg_per_h.len();
+        self.drift_covariance(&all, &all)
     }
 }
 
@@ -119,6 +149,11 @@ pub struct FilterFacts {
     pub mean_weights: Option<Vec<f64>>,
     /// The same over consecutive blocks of the record; empty where the weights are given.
     pub block_weights: Vec<Vec<f64>>,
+    /// DC gain adapted over the same blocks; empty where it is not known.
+    pub block_dc_gains_adapted: Vec<f64>,
+    /// What it has learned from each stretch of its words, if it is a least-squares filter that
+    /// remembers more than a tenth of the record.
+    pub learning: Option<Learning>,
     /// The added rate, deg/h.
     pub added_rate_deg_per_h: f64,
     /// Gains for constant rates of other sizes; empty where none was asked for.
@@ -128,7 +163,76 @@ pub struct FilterFacts {
     pub latency_s: f64,
 }
 
+/// How the weights of a filter scatter from seed to seed.
+#[derive(Clone, Debug)]
+pub(crate) enum WeightScatter {
+    /// They are given, or forget so soon that the blocks of a record show it.
+    Blocks,
+    /// They forget nothing, and what they learned is known.
+    Learned(LearnedWeights),
+    /// They forget nothing, and one record does not tell; why.
+    Unknown(&'static str),
+}
+
+impl WeightScatter {
+    /// What each stretch adds to a function of the mean weights.
+    pub(crate) fn of(
+        &self,
+        weights: Option<&[f64]>,
+        of: impl Fn(&[f64]) -> f64,
+    ) -> Option<Learned> {
+        match (self, weights) {
+            (Self::Learned(learned), Some(weights)) => Some(learned.scatter(weights, of)),
+            _ => None,
+        }
+    }
+
+    /// The estimate, or its value alone where one record does not tell the scatter of the weights.
+    pub(crate) fn unless_unknown(&self, estimate: Estimate) -> Estimate {
+        match self {
+            Self::Unknown(reason) => Estimate::without_interval(estimate.value, reason),
+            _ => estimate,
+        }
+    }
+}
+
 impl FilterFacts {
+    /// How the weights scatter that the filter has in the mean over a record of so many samples,
+    /// from the part `from` of it on.
+    pub(crate) fn weight_scatter(&self, samples: usize, from: f64) -> WeightScatter {
+        if !remembers_the_record(&self.shape, samples) {
+            return WeightScatter::Blocks;
+        }
+        let learned = self.learning.as_ref().and_then(|learning| {
+            let stretches = learning.stretches() as f64;
+            let first = round_to_count((from * stretches).floor());
+            learning.weights_from(first.min(learning.stretches() - 1))
+        });
+        learned.map_or(
+            WeightScatter::Unknown(NOT_FROM_ONE_RECORD),
+            WeightScatter::Learned,
+        )
+    }
+
+    /// Whether the sum of its weights is held at 1 while they adapt.
+    pub(crate) fn dc_gain_is_held(&self) -> bool {
+        let rule = &self.shape.rule;
+        matches!(
+            rule,
+            WeightRule::Adaptive {
+                is_dc_gain_one: true,
+                ..
+            }
+        )
+    }
+
+    /// Blocks that a record of this filter is cut into: the stretches in which it learned, if that
+    /// is known, else as many as tell how a ratio scatters.
+    pub(crate) fn blocks(&self) -> usize {
+        let stretches = self.learning.as_ref().map(Learning::stretches);
+        stretches.unwrap_or(RATIO_BLOCKS)
+    }
+
     /// The filter frozen: at the mean of its weights, or as given; `None` without weights.
     #[must_use]
     pub fn frozen(&self) -> Option<Prediction> {
@@ -142,6 +246,20 @@ impl FilterFacts {
             }
             (WeightRule::Adaptive { .. }, None) => None,
         }
+    }
+
+    /// The filter, if its weights are given.
+    pub(crate) fn given(&self) -> Option<Prediction> {
+        match self.shape.rule {
+            WeightRule::Adaptive { .. } => None,
+            _ => self.frozen(),
+        }
+    }
+
+    /// Delay at DC of the filter frozen, samples; 0 where it has none.
+    pub(crate) fn delay_at_dc_samples(&self) -> f64 {
+        let delay = self.frozen().map(|frozen| frozen.delay_at_dc_samples());
+        delay.filter(|delay| delay.is_finite()).unwrap_or(0.0)
     }
 
     /// Delay at DC of the mean weights, samples: `sum age w / sum w`, the register included; `None`

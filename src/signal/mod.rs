@@ -3,12 +3,14 @@
 //! Invariant: no stage knowledge; a stage passes these to the right and never imports another.
 
 mod calibration;
+mod slow_drift;
 
 pub use calibration::{
     AssemblyParameters, AxisCoefficient, CalibrationEstimate, CalibrationGroup, CalibrationPlan,
     CalibrationRank, CalibrationSheet, CalibrationTruth, CompensationCheck, EstimateError,
     ParameterRounding,
 };
+pub use slow_drift::SlowDrift;
 
 /// Motion of the gyro's input axis over one output sample interval.
 ///
@@ -129,6 +131,9 @@ pub enum WeightRule {
         desired_weights: Vec<f64>,
         /// Whether their sum is held at 1.
         is_dc_gain_one: bool,
+        /// Of recursive least squares: what a word counts for once the next has come, 1 if nothing
+        /// is forgotten. None where the weights follow a gradient.
+        forgetting_factor: Option<f64>,
     },
     /// They are given, newest sample first.
     Fixed(Vec<f64>),

@@ -14,8 +14,8 @@ const HEAD: &str = "\
 
 <!-- Generated from the declarations in src/metrics by the test `generated_page_of_the_metrics`. -->
 
-Rates are in deg/h. An interval covers the true value with 95 % probability unless it says otherwise. A
-metric that a record cannot support is left out and named with its reason; it is never guessed. `raw` is
+Rates are in deg/h. An interval is a 95 % confidence interval for the ensemble value: the mean over seeds
+of records of this length and warm-up in the same scenario; see [intervals](intervals.md). A metric that a record cannot support is left out and named with its reason; it is never guessed. `raw` is
 what a filter is given: the output of the gyro, or with a `[compensation]` the compensated output.
 
 - *Bias stability* is the standard deviation of non-overlapping means (the practice of GJB 2426A) and
@@ -23,9 +23,7 @@ what a filter is given: the output of the gyro, or with a `[compensation]` the c
   deviation over 0.664. The two words are never mixed.
 - *Truth* is the inertial rate of the gyro's input axis: what the table really does, servo included, plus
   the projection of Earth rate.
-- The interval of the mean allows for flicker that the record cannot rule out. The intervals of a filter
-  channel are conditional on the weights of that record; how far the numbers scatter from record to record
-  comes from `repeats`.
+- A value without an interval says `exact`, or why a single record gives none; `repeats` gives it.
 - A gate passes when the whole interval lies inside its limits, fails when it lies outside, and is
   *inconclusive*, which fails too unless the gate allows it, when the interval reaches over a limit.
 

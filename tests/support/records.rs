@@ -50,6 +50,7 @@ pub(crate) fn shape(
         rule: WeightRule::Adaptive {
             desired_weights,
             is_dc_gain_one: false,
+            forgetting_factor: None,
         },
     }
 }
@@ -60,6 +61,8 @@ pub(crate) fn facts() -> FilterFacts {
         dc_gain: Some(0.8),
         dc_gain_adapted: None,
         block_weights: Vec::new(),
+        block_dc_gains_adapted: Vec::new(),
+        learning: None,
         mean_weights: None,
         added_rate_deg_per_h: 1.0,
         rate_gains: Vec::new(),
@@ -86,6 +89,7 @@ pub(crate) fn raw_record<'a>(raw: &'a [f64], truth: &'a [f64]) -> Record<'a> {
         encoder_rad: None,
         sample_period_s: PERIOD_S,
         first_stamp_s: 0.0,
+        drift: None,
     }
 }
 

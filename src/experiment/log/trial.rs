@@ -172,6 +172,7 @@ pub fn try_log(
         length,
         sample_period_s,
         settings: &metric_settings,
+        drift: None,
     };
     let is_tau_given = settings.fit_tau_min_s.is_some();
     let (raw, others): (_, Vec<_>) = rayon::join(

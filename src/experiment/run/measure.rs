@@ -14,9 +14,12 @@ use crate::experiment::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, Finis
 use crate::experiment::pipeline_metrics;
 use crate::experiment::plan::Plan;
 use crate::filters::Divergence;
+use crate::gyro::{self, slow_drift};
 use crate::metrics::{
-    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Record, Settings, measure,
+    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Learning, Motion, Record, Settings,
+    known_motion, measure,
 };
+use crate::signal::SlowDrift;
 
 /// Channels of one repeat with their metrics.
 pub(crate) type Channels = Vec<(String, ChannelMetrics)>;
@@ -37,6 +40,12 @@ pub(crate) fn measure_repeat(
         fit_tau_min_s: plan.fit_tau_min_s(),
         allan: allan_options(scenario.allan),
     };
+    let simulated_s = scenario.warm_up_s + scenario.duration_s;
+    let drift = slow_drift(
+        &scenario.gyro.slow_noise,
+        gyro::word_period_s(&scenario.gyro),
+        simulated_s,
+    );
     let gyros = simulation.gyros.iter();
     let cuts: Vec<Cut> = gyros
         .map(|record| Cut {
@@ -45,6 +54,7 @@ pub(crate) fn measure_repeat(
             length,
             sample_period_s,
             settings,
+            drift: Some(drift.clone()),
         })
         .collect();
     let measured = |name: String, measure: &dyn Fn() -> ChannelMetrics| {
@@ -82,6 +92,8 @@ pub(crate) struct Cut<'a> {
     pub(crate) length: RecordLength,
     pub(crate) sample_period_s: f64,
     pub(crate) settings: &'a Settings,
+    /// How the slow noise of the gyro scatters over seeds, where that is known.
+    pub(crate) drift: Option<SlowDrift>,
 }
 
 impl Cut<'_> {
@@ -131,14 +143,51 @@ impl Cut<'_> {
             encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
             sample_period_s: self.sample_period_s,
             first_stamp_s: stamp_s(first as u64, self.sample_period_s),
+            drift: self.drift.as_ref(),
         }
+    }
+
+    /// What a filter has learned from its input; none where its motion is not known.
+    fn learning(&self, filter: &FinishedFilter, input: &[f64]) -> Option<Learning> {
+        let first = self.length.warm_up;
+        if !Learning::is_of(&filter.shape, input.len() - first) {
+            return None;
+        }
+        let truth = &self.record.truth_deg_per_h;
+        let is_at_rest = self.settings.motion == Motion::Steady;
+        if truth.is_empty() && !is_at_rest {
+            return None;
+        }
+        let moves = truth
+            .windows(2)
+            .any(|two| two[0] < two[1] || two[1] < two[0]);
+        let response = self.record.response_deg_per_h.as_deref();
+        let motion = moves.then(|| known_motion(input, response, truth));
+        Learning::of(&filter.shape, input, motion.as_deref(), first)
+    }
+
+    /// Variance over seeds of the slow noise in the mean of the record, (deg/h)^2.
+    fn drift_variance(&self) -> f64 {
+        let first = self.length.warm_up as u64;
+        let start_s = stamp_s(first, self.sample_period_s) - self.sample_period_s;
+        let end_s = stamp_s(first + self.length.measured as u64, self.sample_period_s)
+            - self.sample_period_s;
+        let drift = self.drift.as_ref();
+        drift.map_or(0.0, |drift| drift.mean_variance([start_s, end_s]))
     }
 
     pub(crate) fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
         let mut metrics = match &filter.words {
             Ok(words) => {
-                let facts = filter_facts(filter, words);
                 let input = self.record.filter_input_deg_per_h();
+                let facts = FilterFacts {
+                    // What a filter learned before it started afresh is gone.
+                    learning: (!filter.restarts)
+                        .then(|| self.learning(filter, input))
+                        .flatten()
+                        .map(|learning| learning.with_drift(self.drift_variance())),
+                    ..filter_facts(filter, words)
+                };
                 self.measure(&words.output_deg_per_h, input, Some(&facts))
             }
             Err(divergence) => diverged(divergence, self.sample_period_s),
@@ -158,6 +207,8 @@ fn filter_facts(filter: &FinishedFilter, words: &FilterWords) -> FilterFacts {
         dc_gain_adapted: words.dc_gain_adapted,
         mean_weights: words.mean_weights.clone(),
         block_weights: words.block_weights.clone(),
+        block_dc_gains_adapted: words.block_dc_gains_adapted.clone(),
+        learning: None,
         added_rate_deg_per_h: ADDED_RATE_DEG_PER_H,
         rate_gains: words.rate_gains.clone(),
         latency_s: pipeline_metrics::latency_s(filter.pipeline.as_ref()),

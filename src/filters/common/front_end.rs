@@ -10,6 +10,17 @@ pub fn adaptive_rule(desired: DesiredSignal) -> WeightRule {
     WeightRule::Adaptive {
         desired_weights: desired.weights().to_vec(),
         is_dc_gain_one: false,
+        forgetting_factor: None,
+    }
+}
+
+/// The same of recursive least squares.
+#[must_use]
+pub fn least_squares_rule(desired: DesiredSignal, forgetting_factor: f64) -> WeightRule {
+    WeightRule::Adaptive {
+        desired_weights: desired.weights().to_vec(),
+        is_dc_gain_one: false,
+        forgetting_factor: Some(forgetting_factor),
     }
 }
 

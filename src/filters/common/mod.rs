@@ -14,5 +14,5 @@ pub use core_filter::{Core, CoreFilter};
 pub use divergence::{Divergence, DivergenceKind, Fault, Watch};
 pub use filter::{Filter, Output};
 pub use fixed::{FixedCore, FixedFilter};
-pub use front_end::{FrontEndConfig, Register, adaptive_rule};
+pub use front_end::{FrontEndConfig, Register, adaptive_rule, least_squares_rule};
 pub use sections::{RecursiveFilter, SectionsCore};

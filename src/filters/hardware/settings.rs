@@ -1,7 +1,7 @@
 //! A hardware pipeline with its front end: constants, checks, timing and the filter they stand for.
 
 use super::filter::{HardwareFilter, PipelineFilter};
-use crate::filters::common::{Complaints, FrontEndConfig, adaptive_rule};
+use crate::filters::common::{Complaints, FrontEndConfig, adaptive_rule, least_squares_rule};
 use crate::fpga::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::FrontEnd;
@@ -167,7 +167,11 @@ impl PipelineSettings {
             input_lag_samples: self.input_lag_samples,
             output_register: self.output_register,
         };
-        front_end.shape(Some(self.tap_count()), adaptive_rule(self.desired))
+        let rule = match self.core.forgetting_factor() {
+            Some(factor) => least_squares_rule(self.desired, factor),
+            None => adaptive_rule(self.desired),
+        };
+        front_end.shape(Some(self.tap_count()), rule)
     }
 }
 

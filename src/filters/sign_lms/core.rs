@@ -185,6 +185,7 @@ impl Core for SignLmsCore {
         WeightRule::Adaptive {
             desired_weights: desired.weights().to_vec(),
             is_dc_gain_one: self.config.form == SignLmsForm::UnityGain,
+            forgetting_factor: None,
         }
     }
 }

@@ -61,6 +61,10 @@ impl Core for RlsCore {
         self.settings.tap_count
     }
 
+    fn forgetting_factor(&self) -> Option<f64> {
+        Some(self.settings.forgetting_factor)
+    }
+
     fn config<F: Fp>(&self) -> Result<RlsConfig<F>, FpgaError> {
         RlsConfig::new(self.settings)
     }

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use super::gauss_markov::GaussMarkov;
 use crate::declare::table;
 use crate::random::{Stream, Streams};
+use crate::signal::SlowDrift;
 use crate::units::{
     deg_per_h_per_h_to_deg_per_h_per_s, deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s,
     deg_per_h_to_rad_per_s,
@@ -241,6 +242,48 @@ impl SlowNoise {
     }
 }
 
+/// How the slow noise scatters over seeds, for output samples of `sample_period_s` over
+/// `simulated_time_s`.
+#[must_use]
+pub fn slow_drift(
+    config: &SlowNoiseConfig,
+    sample_period_s: f64,
+    simulated_time_s: f64,
+) -> SlowDrift {
+    let interval_s = f64::from(samples_per_update(sample_period_s)) * sample_period_s;
+    let longest = LONGEST_CORRELATION_RECORDS * simulated_time_s.max(interval_s) / interval_s;
+    let instability = config.bias_instability_deg_per_h;
+    let of_flicker = instability * instability * RATIO.ln() / PI;
+    let shortest = (
+        SHORTEST_VARIANCE_RATIO * of_flicker,
+        SHORTEST_CORRELATION_INTERVALS * interval_s,
+    );
+    let others =
+        flicker_correlations(longest).map(|correlation| (of_flicker, correlation * interval_s));
+    let correlated = (
+        config.gauss_markov_deg_per_h.powi(2),
+        config.gauss_markov_correlation_time_s,
+    );
+    let turn_on = (config.turn_on_bias_deg_per_h.powi(2), f64::INFINITY);
+    let walk =
+        deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(config.rate_random_walk_deg_per_h_per_sqrt_h);
+    SlowDrift {
+        processes: std::iter::once(shortest)
+            .chain(others)
+            .chain([correlated, turn_on])
+            .filter(|(variance, _)| *variance > 0.0)
+            .collect(),
+        walk_deg2_per_h2_per_s: walk * walk,
+    }
+}
+
+/// Correlation times, in updates, of the processes of the flicker but the shortest, until one is no less
+/// than `longest`.
+fn flicker_correlations(longest: f64) -> impl Iterator<Item = f64> {
+    let next = move |correlation: &f64| (*correlation < longest).then_some(correlation * RATIO);
+    std::iter::successors(Some(SHORTEST_CORRELATION_INTERVALS), next).skip(1)
+}
+
 /// Output samples between updates: as many as fit the update interval, one to four.
 fn samples_per_update(sample_period_s: f64) -> u32 {
     #[expect(
@@ -261,22 +304,20 @@ fn gauss_markov_ladder(
     stream: &mut Stream,
     start: &mut Stream,
 ) -> Vec<Held> {
-    let mut processes = Vec::new();
-    let mut correlation = SHORTEST_CORRELATION_INTERVALS;
-    while correlation < longest {
-        correlation *= RATIO;
-        let hold_updates = hold_updates(correlation);
-        let exponent = f64::from(hold_updates) / correlation;
-        let process = match hold_updates {
-            1 => GaussMarkov::mean_over(deviation, exponent, stream, start),
-            _ => GaussMarkov::at_instants(deviation, exponent, stream),
-        };
-        processes.push(Held {
-            process,
-            hold_updates,
-        });
-    }
-    processes
+    flicker_correlations(longest)
+        .map(|correlation| {
+            let hold_updates = hold_updates(correlation);
+            let exponent = f64::from(hold_updates) / correlation;
+            let process = match hold_updates {
+                1 => GaussMarkov::mean_over(deviation, exponent, stream, start),
+                _ => GaussMarkov::at_instants(deviation, exponent, stream),
+            };
+            Held {
+                process,
+                hold_updates,
+            }
+        })
+        .collect()
 }
 
 /// Updates over which a process of a correlation time (in updates) is held.

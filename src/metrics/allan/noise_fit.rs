@@ -84,9 +84,6 @@ pub static QUANTISATION: MetricKey = MetricKey::new(
 /// averaging times.
 const WALK_SIGNIFICANCE: f64 = 3.0;
 
-/// Standard errors added to the slow terms where a prediction must not trust a lucky record.
-const CAUTION: f64 = 0.5;
-
 /// Variance of the mean of a record over `B^2`, flicker with correlation times up to `m` records:
 /// `(ln m + 3/2 - gamma) / pi` for m = 100.
 const FLICKER_MEAN_VARIANCE: f64 = 1.760;
@@ -216,8 +213,6 @@ pub struct NoiseFit {
     mix: Mix,
     /// The same for predictions: without a walk that is not significant.
     settled: Mix,
-    /// Standard errors of the latter, 0 where a term is not in it.
-    settled_errors: [f64; TERMS],
 }
 
 impl NoiseFit {
@@ -237,33 +232,41 @@ impl NoiseFit {
         }
     }
 
-    /// Variance of the mean over a record of this length about the true rate, (deg/h)^2.
+    /// Variance that the slow terms give to the mean over a record of this length, (deg/h)^2.
     ///
-    /// `N^2/T + 1.76 B^2 + K^2 T/3 + R^2 T^2/4`, the slow squares each raised by half a standard error:
-    /// a record that does not show flicker bounds it, it does not rule it out. Flicker has no
+    /// `1.76 B^2 + K^2 T/3 + R^2 T^2/4`, of those whose intervals do not begin at zero. Flicker has no
     /// variance of its own; `1.76 = (ln 100 + 3/2 - gamma)/pi` counts drift that is correlated over
     /// up to a hundred records, what is slower still being the bias itself. The walk starts at zero
     /// with the record, the ramp too. Exponentially correlated noise adds
-    /// `s^2 (2 Tc/T) (1 - (Tc/T) (1 - exp(-T/Tc)))`, counted pulses `2 Q^2/T^2`.
+    /// `s^2 (2 Tc/T) (1 - (Tc/T) (1 - exp(-T/Tc)))`, counted pulses `2 Q^2/T^2`. No term of a fit that does
+    /// not describe the curve counts.
     ///
     /// Source: derived, flicker as a superposition of Gauss-Markov processes of equal variance per
     /// octave of correlation time (van der Ziel, Physica 16 (1950)).
     #[must_use]
-    pub fn mean_variance(&self, duration_s: f64) -> f64 {
-        let squares = &self.settled.squares;
-        let cautious = |term: usize| squares[term].max(0.0) + CAUTION * self.settled_errors[term];
-        let correlated = self.settled.correlation_time.map_or(0.0, |time| {
-            let x = duration_s / time;
-            cautious(CORRELATED) * 2.0 / x * (1.0 + (-x).exp_m1() / x)
+    pub fn slow_mean_variance(&self, duration_s: f64) -> f64 {
+        if !self.goodness.is_adequate() {
+            return 0.0;
+        }
+        let square = |term: &Term| {
+            let root = term.estimate();
+            if root.low > 0.0 {
+                root.value.powi(2)
+            } else {
+                0.0
+            }
+        };
+        let correlated = self.correlated.as_ref().map_or(0.0, |noise| {
+            let x = duration_s / noise.correlation_time_s.value;
+            square(&noise.deviation_deg_per_h) * 2.0 / x * (1.0 + (-x).exp_m1() / x)
         });
         // The angle at either end is known to a pulse.
         let pulses = self.counted_pulses().map_or(0.0, |_| {
             2.0 * self.quantisation_arcsec.square / (duration_s * duration_s)
         });
-        squares[WHITE].max(0.0) / duration_s
-            + FLICKER_MEAN_VARIANCE * cautious(FLICKER)
-            + cautious(WALK) * duration_s / 3.0
-            + cautious(RAMP) * duration_s * duration_s / 4.0
+        FLICKER_MEAN_VARIANCE * square(&self.bias_instability_deg_per_h)
+            + square(&self.rate_random_walk_deg_per_h_per_sqrt_s) * duration_s / 3.0
+            + square(&self.rate_ramp_deg_per_h_per_s) * duration_s * duration_s / 4.0
             + correlated
             + pulses
     }
@@ -531,7 +534,6 @@ fn report(points: &[AllanPoint], choice: &Choice) -> NoiseFit {
         deviation_deg_per_h: term(CORRELATED),
         correlation_time_s: limits.correlation_time_s(),
     });
-    let (settled, settled_errors) = settled(choice, limits.solution());
     NoiseFit {
         quantisation_arcsec: limits.term(INVERSE_SQUARE, 1.0 / 3.0),
         angle_random_walk_deg_per_h_sqrt_s: term(WHITE),
@@ -545,8 +547,7 @@ fn report(points: &[AllanPoint], choice: &Choice) -> NoiseFit {
         goodness: Goodness::of(points, choice),
         tau_range_s: [points[0].tau_s, points[points.len() - 1].tau_s],
         mix: in_seconds(&choice.problem, &choice.squares),
-        settled,
-        settled_errors,
+        settled: settled(choice, limits.solution()),
     }
 }
 
@@ -558,10 +559,10 @@ fn in_seconds(problem: &Problem, squares: &[f64; TERMS]) -> Mix {
     }
 }
 
-/// The fit that predictions rest on, and its standard errors.
+/// The fit that predictions rest on.
 ///
 /// * `whole`: the fit of all chosen terms.
-fn settled(choice: &Choice, whole: &Solution) -> (Mix, [f64; TERMS]) {
+fn settled(choice: &Choice, whole: &Solution) -> Mix {
     let problem = &choice.problem;
     let mut allowed = choice.allowed;
     allowed[WALK] = problem.significance(whole, WALK) >= WALK_SIGNIFICANCE;
@@ -570,8 +571,5 @@ fn settled(choice: &Choice, whole: &Solution) -> (Mix, [f64; TERMS]) {
     } else {
         &problem.solve(&allowed)
     };
-    let errors = std::array::from_fn(|term| {
-        problem.in_seconds(term, problem.standard_error(solution, term))
-    });
-    (in_seconds(problem, &solution.squares), errors)
+    in_seconds(problem, &solution.squares)
 }

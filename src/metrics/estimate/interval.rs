@@ -4,8 +4,13 @@
 //! names another.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
+use statrs::function::gamma::ln_gamma;
 
+use super::influence::{Spread, resampled};
 use super::value::Estimate;
+
+/// Why a record gives no interval where it holds no two blocks.
+pub(crate) const TOO_FEW_BLOCKS: &str = "the record is too short for an interval";
 
 /// Quantile 0.975 of the standard normal distribution.
 pub(crate) const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
@@ -57,6 +62,25 @@ pub(crate) fn deviation(value: f64, degrees_of_freedom: f64) -> Estimate {
     Estimate::with_interval(value, square.low.sqrt(), square.high.sqrt())
 }
 
+/// Interval of the mean over records of a sample standard deviation.
+///
+/// That is `c4 = sqrt(2 / nu) Gamma((nu + 1) / 2) / Gamma(nu / 2)` times the root of the variance: of
+/// six values 5 % below it.
+pub(crate) fn sample_deviation(value: f64, degrees_of_freedom: f64) -> Estimate {
+    let of_root = deviation(value, degrees_of_freedom);
+    let freedom = degrees_of_freedom.max(0.1);
+    let c4 = if freedom < EXACT_DEGREES_OF_FREEDOM_MAX {
+        (2.0 / freedom).sqrt() * (ln_gamma(0.5 * freedom + 0.5) - ln_gamma(0.5 * freedom)).exp()
+    } else {
+        1.0
+    };
+    Estimate {
+        low: c4 * of_root.low,
+        high: c4 * of_root.high,
+        ..of_root
+    }
+}
+
 /// As [`deviation`] at another two-sided confidence, between 0 and 1 and kept short of both.
 pub(crate) fn deviation_at(value: f64, degrees_of_freedom: f64, confidence: f64) -> Estimate {
     let confidence = confidence.clamp(1e-6, 1.0 - 1e-9);
@@ -64,11 +88,10 @@ pub(crate) fn deviation_at(value: f64, degrees_of_freedom: f64, confidence: f64)
     let normal_quantile = Normal::standard().inverse_cdf(1.0 - tail);
     let freedom = degrees_of_freedom.max(0.1);
     let (low, high) = chi_square_quantiles(freedom, tail, normal_quantile);
+    let (low, high) = ((freedom / high).sqrt(), (freedom / low).sqrt());
     Estimate {
-        value,
-        low: value * (freedom / high).sqrt(),
-        high: value * (freedom / low).sqrt(),
         confidence,
+        ..Estimate::with_interval(value, value * low, value * high)
     }
 }
 
@@ -136,11 +159,14 @@ pub(crate) fn sample_variance(values: &[f64]) -> f64 {
 /// scatter the parts reveal. Fewer than two parts give no interval.
 pub(crate) fn from_parts(value: f64, parts: &[f64]) -> Estimate {
     if parts.len() < 2 {
-        return Estimate::exact(value);
+        return Estimate::without_interval(value, TOO_FEW_BLOCKS);
     }
     let count = parts.len() as f64;
-    let error = (sample_variance(parts) / count).sqrt();
-    Estimate::symmetric(value, student_quantile(count - 1.0) * error)
+    let spread = Spread {
+        variance: sample_variance(parts) / count,
+        freedom: count - 1.0,
+    };
+    spread.about(value)
 }
 
 /// `value` with the jackknife interval of its leave-one-block-out versions.
@@ -150,12 +176,7 @@ pub(crate) fn from_parts(value: f64, parts: &[f64]) -> Estimate {
 ///
 /// Source: Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM 1982, chapter 3.
 pub(crate) fn jackknife(value: f64, left_out: &[f64]) -> Estimate {
-    if left_out.len() < 2 {
-        return Estimate::exact(value);
-    }
-    let count = left_out.len() as f64;
-    let error = (sample_variance(left_out) * (count - 1.0) * (count - 1.0) / count).sqrt();
-    Estimate::symmetric(value, student_quantile(count - 1.0) * error)
+    resampled(value, left_out, None)
 }
 
 /// Rounds a non-negative number to a count.

@@ -2,9 +2,11 @@
 
 pub(super) mod blocks;
 pub(super) mod fit_sheet;
+pub(super) mod influence;
 pub(super) mod interval;
 pub(super) mod missing;
 pub(super) mod outlier_sheet;
+pub(super) mod paired;
 pub(super) mod reason;
 pub(super) mod repeat_statistics;
 pub(super) mod table;

@@ -162,6 +162,7 @@ impl ChannelMetrics {
                 low,
                 high,
                 confidence,
+                ..
             } = *estimate;
             [value, low, high, confidence]
                 .iter()

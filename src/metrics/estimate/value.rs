@@ -5,9 +5,24 @@ use std::collections::BTreeMap;
 /// Confidence of every interval unless a record says otherwise.
 pub(crate) const CONFIDENCE: f64 = 0.95;
 
-/// A value with the interval that covers the truth with probability `confidence`.
+/// What the ends of an estimate are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum IntervalKind {
+    /// Ends of a confidence interval for the ensemble value: the mean over seeds of records of this
+    /// length and warm-up, same scenario. Of a log: for the mean over records of the process that
+    /// made it.
+    Confidence,
+    /// The value itself, which no noise of the gyro moves, or which is a fact of this record.
+    Exact,
+    /// The value itself, for want of an interval, and why a single record gives none.
+    Absent(&'static str),
+}
+
+/// A value with the interval that covers its ensemble value with probability `confidence`.
 ///
-/// Where no interval can be given, `low = high = value`.
+/// The ensemble value is the mean over seeds of records of this length and warm-up in the same
+/// scenario. Where `interval` says so there is none: `low = high = value`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Estimate {
@@ -19,10 +34,12 @@ pub struct Estimate {
     pub high: f64,
     /// Two-sided coverage of `[low, high]`.
     pub confidence: f64,
+    /// What the ends are.
+    pub interval: IntervalKind,
 }
 
 impl Estimate {
-    /// A value without uncertainty (exact, or of unknown uncertainty).
+    /// A value without uncertainty.
     #[must_use]
     pub fn exact(value: f64) -> Self {
         Self {
@@ -30,18 +47,23 @@ impl Estimate {
             low: value,
             high: value,
             confidence: CONFIDENCE,
+            interval: IntervalKind::Exact,
+        }
+    }
+
+    /// A value of unknown uncertainty, and why it is unknown.
+    #[must_use]
+    pub fn without_interval(value: f64, reason: &'static str) -> Self {
+        Self {
+            interval: IntervalKind::Absent(reason),
+            ..Self::exact(value)
         }
     }
 
     /// A value with a symmetric 95 % interval of the given half width.
     #[must_use]
     pub fn symmetric(value: f64, half_width: f64) -> Self {
-        Self {
-            value,
-            low: value - half_width,
-            high: value + half_width,
-            confidence: CONFIDENCE,
-        }
+        Self::with_interval(value, value - half_width, value + half_width)
     }
 
     /// A value with a 95 % interval.
@@ -52,6 +74,44 @@ impl Estimate {
             low,
             high,
             confidence: CONFIDENCE,
+            interval: IntervalKind::Confidence,
+        }
+    }
+
+    /// Whether `[low, high]` is an interval.
+    #[must_use]
+    pub fn has_interval(&self) -> bool {
+        self.interval == IntervalKind::Confidence
+    }
+
+    /// The estimate with everything moved by `shift`.
+    #[must_use]
+    pub fn shifted(self, shift: f64) -> Self {
+        Self {
+            value: self.value + shift,
+            low: self.low + shift,
+            high: self.high + shift,
+            ..self
+        }
+    }
+
+    /// The estimate with an independent half width added to both sides in quadrature.
+    #[must_use]
+    pub(crate) fn widened(self, half_width: f64) -> Self {
+        Self {
+            low: self.value - (self.value - self.low).hypot(half_width),
+            high: self.value + (self.high - self.value).hypot(half_width),
+            ..self
+        }
+    }
+
+    /// The estimate with both ends cut to `[least, most]`; the value lies between.
+    #[must_use]
+    pub(crate) fn clamped(self, least: f64, most: f64) -> Self {
+        Self {
+            low: self.low.max(least).min(self.value),
+            high: self.high.min(most).max(self.value),
+            ..self
         }
     }
 
@@ -62,7 +122,7 @@ impl Estimate {
             value: self.value * factor,
             low: self.low * factor,
             high: self.high * factor,
-            confidence: self.confidence,
+            ..self
         }
     }
 }

@@ -1,12 +1,18 @@
 //! Mean of a record, its error, its ratio to that of raw, and the extremes.
 
-use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
+use std::ops::Range;
+
+use crate::metrics::estimate::influence::{Learned, Spread};
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::paired::{MeanScatter, delayed, density_at_zero};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Needs, Table};
-use crate::metrics::record::Record;
+use crate::metrics::record::{FilterFacts, Record, WeightScatter};
+use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
+use crate::metrics::theory::memory::memory_samples;
+use crate::signal::WeightRule;
 use crate::wording::decimals;
 
 /// Mean.
@@ -68,6 +74,9 @@ pub static MAXIMUM: MetricKey = MetricKey::new(
 .needs(Needs::Samples)
 .run_column(5);
 
+/// Samples over which the words of a gyro are correlated.
+const GYRO_REACH: usize = 15;
+
 /// Enters the mean and, where the truth is known, its error against the mean truth.
 pub(crate) fn put_mean(
     mean: Estimate,
@@ -82,13 +91,8 @@ pub(crate) fn put_mean(
     let Some(truth_deg_per_h) = truth_deg_per_h else {
         return;
     };
-    let error = Estimate::with_interval(
-        mean.value - truth_deg_per_h,
-        mean.low - truth_deg_per_h,
-        mean.high - truth_deg_per_h,
-    );
     metrics
-        .put(&MEAN_ERROR, error)
+        .put(&MEAN_ERROR, mean.shifted(-truth_deg_per_h))
         .fields
         .insert("averaging_time_s", averaging_time_s);
 }
@@ -102,11 +106,178 @@ pub(crate) fn put_extremes(record: &Record, metrics: &mut ChannelMetrics) {
     metrics.put(&MAXIMUM, Estimate::exact(largest));
 }
 
-/// Ratio of the means, if raw's mean can be told from zero.
-pub(crate) fn measure_mean_ratio(record: &Record, metrics: &mut ChannelMetrics) {
-    let channel = equal_block_means(record.channel_deg_per_h, RATIO_BLOCKS);
-    let raw = equal_block_means(record.raw_deg_per_h, RATIO_BLOCKS);
-    put_ratio_of_means(&MEAN_RATIO, &channel, &raw, metrics);
+/// Samples over which what a filter does to its words has died out.
+pub(crate) fn filter_reach(filter: Option<&FilterFacts>) -> usize {
+    let of = |facts: &FilterFacts| memory_samples(&facts.shape) + facts.shape.newest_age_samples;
+    filter.map_or(0, of) + GYRO_REACH
+}
+
+/// How sure the mean of a channel over the record is.
+///
+/// * `noise`: samples without the motion, of all the record or of a settled part of it.
+/// * `is_at_rest`: whether the mean rate is no more than noise to a filter that learns.
+///
+/// Fast noise by its spectral density at zero frequency; slow noise, of which a record shows next to
+/// nothing, as the gyro has it, times the gain for a rate that is there from the first word on; and
+/// what weights that forget nothing have learned.
+pub(crate) fn mean_spread_of(
+    record: &Record,
+    noise: &[f64],
+    filter: Option<&FilterFacts>,
+    is_at_rest: bool,
+) -> Result<Spread, &'static str> {
+    let samples = record.channel_deg_per_h.len();
+    let gain = filter
+        .and_then(|facts| facts.dc_gain_adapted)
+        .unwrap_or(1.0);
+    let drift = Spread::known(record.drift_variance()).scaled(gain);
+    let fast = || {
+        // What is missing is not waited for: noise on either side of a few words is hardly nearer.
+        let is_there = |word: &&f64| !word.is_nan();
+        let present: Vec<f64> = noise.iter().filter(is_there).copied().collect();
+        let count = samples - (noise.len() - present.len());
+        MeanScatter::of(&present, filter_reach(filter)).over(count)
+    };
+    let scatter = filter.map_or(WeightScatter::Blocks, |facts| {
+        facts.weight_scatter(samples, 0.0)
+    });
+    match scatter {
+        WeightScatter::Blocks => Ok(fast().plus(drift)),
+        WeightScatter::Unknown(reason) => Err(reason),
+        WeightScatter::Learned(_) => {
+            let learning = filter.and_then(|facts| facts.learning.as_ref());
+            let learned = learning.and_then(|known| known.output_mean(is_at_rest));
+            let learned = learned.ok_or(NOT_FROM_ONE_RECORD)?.spread();
+            let spread = learned.plus(drift);
+            Ok(if is_at_rest {
+                spread
+            } else {
+                spread.plus(fast())
+            })
+        }
+    }
+}
+
+/// Ratio of the means of the record, if raw's mean can be told from zero.
+///
+/// * `settled`: samples in which the channel is raw times the ratio but for noise.
+pub(crate) fn measure_mean_ratio(
+    record: &Record,
+    settled: Range<usize>,
+    facts: &FilterFacts,
+    metrics: &mut ChannelMetrics,
+) {
+    let samples = record.raw_deg_per_h.len();
+    let raw = interval::mean(record.raw_deg_per_h);
+    let fast = MeanScatter::of(&record.raw_deg_per_h[settled.clone()], GYRO_REACH).over(samples);
+    let raw_mean = fast.plus(Spread::known(record.drift_variance())).about(raw);
+    if let Some(reason) = ratio_of_means_lack(&raw_mean) {
+        return metrics.miss(&MEAN_RATIO, reason);
+    }
+    let of = RatioOfMeans {
+        ratio: interval::mean(record.channel_deg_per_h) / raw,
+        raw_deg_per_h: raw,
+        samples,
+    };
+    let learning = facts.learning.as_ref();
+    let learned = learning.and_then(|learning| learning.mean_ratio(raw));
+    metrics.put(
+        &MEAN_RATIO,
+        paired_ratio(record, settled, of, facts, learned),
+    );
+}
+
+/// A mean of the channel over that of raw.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RatioOfMeans {
+    /// The ratio.
+    pub(crate) ratio: f64,
+    /// Raw's mean, deg/h.
+    pub(crate) raw_deg_per_h: f64,
+    /// Samples in both means.
+    pub(crate) samples: usize,
+}
+
+/// A ratio of means, by the noise of a settled part of the record and by what weights have learned.
+///
+/// What a filter makes of a word comes a little later: the noise of both means cancels but for the
+/// ends.
+pub(crate) fn paired_ratio(
+    record: &Record,
+    settled: Range<usize>,
+    of: RatioOfMeans,
+    facts: &FilterFacts,
+    learned: Option<Learned>,
+) -> Estimate {
+    let own = &record.channel_deg_per_h[settled.clone()];
+    let raw = &record.raw_deg_per_h[settled];
+    let gain = interval::mean(own) / interval::mean(raw);
+    let scatter = paired_scatter((own, raw), gain, facts);
+    let over_level = 1.0 / of.raw_deg_per_h;
+    match (
+        facts.weight_scatter(record.raw_deg_per_h.len(), 0.0),
+        learned,
+    ) {
+        (WeightScatter::Blocks, _) => scatter.over(of.samples).scaled(over_level).about(of.ratio),
+        (WeightScatter::Learned(_), Some(learned)) => {
+            let ends = scatter.ends_over(of.samples).scaled(over_level);
+            learned.spread().plus(ends).about(of.ratio)
+        }
+        _ => Estimate::without_interval(of.ratio, NOT_FROM_ONE_RECORD),
+    }
+}
+
+/// How the mean of a channel minus its gain times raw scatters, both without motion.
+///
+/// Of given weights with the gain G the density at zero frequency is `(G - gain)^2` times raw's: blocks
+/// of a short record do not tell it from what is near it.
+pub(crate) fn paired_scatter(
+    (own, raw): (&[f64], &[f64]),
+    gain: f64,
+    facts: &FilterFacts,
+) -> MeanScatter {
+    let minus = |raw: &[f64]| -> Vec<f64> {
+        own.iter()
+            .zip(raw)
+            .map(|(own, raw)| own - gain * raw)
+            .collect()
+    };
+    let reach = filter_reach(Some(facts));
+    if let Some(given) = facts.given() {
+        let density = density_at_zero(raw).scaled(given.dc_gain() - gain);
+        let density = density.plus(rounding_density((own, raw), facts));
+        return MeanScatter::of_known_density(&minus(raw), density, reach, None);
+    }
+    let delay = facts.delay_at_dc_samples();
+    // Delayed, the first samples have no input.
+    let aligned = minus(&delayed(raw, delay));
+    let whole = reach.min(aligned.len() / 2);
+    MeanScatter::of_paired(&minus(raw), &aligned[whole..], reach, None)
+}
+
+/// Samples at the end of a record that show the rounding of a filter in hardware.
+const ROUNDED_SAMPLES: usize = 2000;
+
+/// Spectral density of what given weights do not explain of a channel: the rounding of its words.
+pub(crate) fn rounding_density((own, raw): (&[f64], &[f64]), facts: &FilterFacts) -> Spread {
+    let WeightRule::Fixed(weights) = &facts.shape.rule else {
+        return Spread::known(0.0);
+    };
+    let newest = facts.shape.newest_age_samples;
+    let first = (newest + weights.len()).max(own.len().saturating_sub(ROUNDED_SAMPLES));
+    let rest: Vec<f64> = (first..own.len())
+        .map(|index| {
+            let ages = weights.iter().zip(newest..);
+            let explained = ages.map(|(weight, age)| weight * raw[index - age]);
+            own[index] - explained.sum::<f64>()
+        })
+        .collect();
+    let variance = if rest.len() < 2 {
+        0.0
+    } else {
+        interval::sample_variance(&rest)
+    };
+    Spread::known(variance)
 }
 
 /// Why nothing can be divided by raw's mean; nothing if it can be told from zero.
@@ -118,24 +289,4 @@ pub(crate) fn ratio_of_means_lack(raw_mean: &Estimate) -> Option<Unavailable> {
         )
         .into()
     })
-}
-
-/// Enters the ratio of the means of equally long blocks.
-pub(crate) fn put_ratio_of_means(
-    key: &MetricKey,
-    channel: &[f64],
-    raw: &[f64],
-    metrics: &mut ChannelMetrics,
-) {
-    let raw_mean = interval::from_parts(interval::mean(raw), raw);
-    if let Some(reason) = ratio_of_means_lack(&raw_mean) {
-        return metrics.miss(key, reason);
-    }
-    let (channel_sum, raw_sum): (f64, f64) = (channel.iter().sum(), raw.iter().sum());
-    let left_out: Vec<f64> = channel
-        .iter()
-        .zip(raw)
-        .map(|(own, other)| (channel_sum - own) / (raw_sum - other))
-        .collect();
-    metrics.put(key, interval::jackknife(channel_sum / raw_sum, &left_out));
 }

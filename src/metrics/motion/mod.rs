@@ -5,4 +5,5 @@ pub(super) mod multi_sine;
 pub(super) mod steady;
 pub(super) mod steps;
 pub(super) mod swing;
+mod swing_response;
 pub(super) mod tracking;

@@ -12,6 +12,7 @@ use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::curve::CurveKey;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
+use crate::metrics::noise::by_weights::NoiseByWeights;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::truth_response::{Shown, shown};
 use crate::metrics::record::{FilterFacts, Record};
@@ -131,20 +132,13 @@ pub(crate) fn measure_multi_sine(
 
 /// Responses with a pipeline's latency, which is part of its delays.
 fn later(responses: Vec<ToneResponse>, latency_s: f64) -> Vec<ToneResponse> {
-    let shifted = |estimate: Estimate, shift: f64| {
-        let Estimate {
-            value, low, high, ..
-        } = estimate;
-        Estimate::with_interval(value + shift, low + shift, high + shift)
-    };
     responses
         .into_iter()
         .map(|response| ToneResponse {
-            phase_rad: shifted(
-                response.phase_rad,
-                -std::f64::consts::TAU * response.frequency_hz * latency_s,
-            ),
-            delay_s: shifted(response.delay_s, latency_s),
+            phase_rad: response
+                .phase_rad
+                .shifted(-std::f64::consts::TAU * response.frequency_hz * latency_s),
+            delay_s: response.delay_s.shifted(latency_s),
             ..response
         })
         .collect()
@@ -191,21 +185,29 @@ fn measure_noise(
         if let Some(shown) = shown {
             shown.remove_from(&mut residuals, &fits.residuals(place, &shown.series));
         }
-        LaggedProducts::new(&residuals, 0.0, LAGS_MIN, RATIO_BLOCKS)
+        let blocks = filter.map_or(RATIO_BLOCKS, FilterFacts::blocks);
+        LaggedProducts::new(&residuals, 0.0, LAGS_MIN, blocks)
     };
     let own = motion.channel.as_ref();
     let channel = products(CHANNEL, record.channel_deg_per_h, own, motion.first);
+    let of_raw = motion.raw.as_ref();
+    let raw = filter.map(|_| products(RAW, record.raw_deg_per_h, of_raw, motion.first + 1));
+    let samples = record.channel_deg_per_h.len();
+    let by_weights = match (filter, &raw) {
+        (Some(facts), Some(raw)) => NoiseByWeights::new(facts, raw, samples, 0.0),
+        _ => NoiseByWeights::none(),
+    };
     put_noise_std(
         &channel,
-        (record.channel_deg_per_h.len(), 2 * tones + 1),
+        &by_weights,
+        (samples, 2 * tones + 1),
         record.sample_period_s,
         metrics,
     );
-    if filter.is_some() {
-        let raw = record.raw_deg_per_h;
-        let level = raw.iter().fold(0.0_f64, |max, rate| max.max(rate.abs()));
-        let of_raw = products(RAW, raw, motion.raw.as_ref(), motion.first + 1);
-        put_noise_gain(&channel, &of_raw, level, metrics);
+    if let Some(raw) = raw {
+        let words = record.raw_deg_per_h.iter();
+        let level = words.fold(0.0_f64, |max, rate| max.max(rate.abs()));
+        put_noise_gain(&channel, &raw, &by_weights, level, metrics);
         let offset = fits.offset(RAW);
         if let Some(reason) = ratio_of_means_lack(&offset) {
             metrics.miss(&MEAN_RATIO, reason);

@@ -1,6 +1,6 @@
 //! Metrics of a record at rest or at constant rate.
 
-use super::mean::{MEAN, MEAN_ERROR, measure_mean_ratio, put_mean};
+use super::mean::{MEAN, MEAN_ERROR, mean_spread_of, measure_mean_ratio, put_mean};
 use crate::metrics::allan::coefficients::mixed_degrees_of_freedom;
 use crate::metrics::allan::curves::{put_allan_curve, put_fit_curve};
 use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
@@ -11,27 +11,30 @@ use crate::metrics::allan::overlapping::overlapping_allan;
 use crate::metrics::allan::pulses::entry::{enter_lack, enter_pulses};
 use crate::metrics::allan::pulses::recognition::PulseWords;
 use crate::metrics::allan::variants::allan_variant;
-use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
+use crate::metrics::estimate::blocks::RATIO_BLOCKS;
+use crate::metrics::estimate::influence::Spread;
 use crate::metrics::estimate::table::{
     ChannelMetrics, DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION,
 };
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::estimate::{blocks, interval};
+use crate::metrics::key::metric::MetricKey;
 use crate::metrics::noise::autocovariance::{CURVE_LAGS, LaggedProducts};
 use crate::metrics::noise::bias_stability;
 use crate::metrics::noise::bias_stability::{
     BIAS_STABILITY, BIAS_STABILITY_1S, BIAS_STABILITY_10S, BIAS_STABILITY_100S, BLOCKS_MIN,
     averaging_lack,
 };
+use crate::metrics::noise::by_weights::NoiseByWeights;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::line::fit_beside_sine;
 use crate::metrics::noise::memory::fit_tau_min_s;
 use crate::metrics::noise::pulse_fit::RecordFit;
 use crate::metrics::noise::truth_response::without_motion;
-use crate::metrics::record::{FilterFacts, Record, Settings};
+use crate::metrics::record::{FilterFacts, Record, Settings, WeightScatter};
 use crate::metrics::theory::prediction::lags_needed;
 use crate::metrics::trial::dc_gain::{
-    ANGLE_RANDOM_WALK_OVER_DC_GAIN, BIAS_STABILITY_OVER_DC_GAIN, put_over_dc_gain,
+    ANGLE_RANDOM_WALK_OVER_DC_GAIN, BIAS_STABILITY_OVER_DC_GAIN, DC_GAIN, put_over_dc_gain,
 };
 use crate::metrics::trial::predicted::measure_predictions;
 use crate::metrics::trial::weight_noise::{measure_inside_memory, measure_weight_noise};
@@ -64,17 +67,28 @@ pub(crate) fn measure_steady(
     });
     let fit = measure_allan(record, settings, filter, pulses.as_ref(), metrics);
     measure_bias(record, settings, fit.as_ref(), metrics);
-    measure_mean(record, fit.as_ref(), metrics);
+    measure_mean(record, fit.as_ref(), filter, metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
-    let products = products_about_mean(record.channel_deg_per_h, lags);
+    let blocks = filter.map_or(RATIO_BLOCKS, FilterFacts::blocks);
+    let products = products_about_mean(record.channel_deg_per_h, lags, blocks);
     let words = record.channel_deg_per_h.iter();
     let samples = words.filter(|word| !word.is_nan()).count();
-    put_noise_std(&products, (samples, 1), record.sample_period_s, metrics);
-    if let Some(facts) = filter {
-        let raw = products_about_mean(record.raw_deg_per_h, lags);
+    let raw = filter.map(|_| products_about_mean(record.raw_deg_per_h, lags, blocks));
+    let by_weights = match (filter, &raw) {
+        (Some(facts), Some(raw)) => NoiseByWeights::new(facts, raw, samples, 0.0),
+        _ => NoiseByWeights::none(),
+    };
+    put_noise_std(
+        &products,
+        &by_weights,
+        (samples, 1),
+        record.sample_period_s,
+        metrics,
+    );
+    if let (Some(facts), Some(raw)) = (filter, raw) {
         let level = interval::mean(record.raw_deg_per_h).abs();
-        put_noise_gain(&products, &raw, level, metrics);
-        measure_mean_ratio(record, metrics);
+        put_noise_gain(&products, &raw, &by_weights, level, metrics);
+        measure_mean_ratio(record, 0..samples, facts, metrics);
         measure_weight_noise(record, facts, metrics);
         measure_inside_memory(record, facts, metrics);
         measure_predictions(record, facts, (&products, &raw), metrics);
@@ -84,6 +98,23 @@ pub(crate) fn measure_steady(
         ] {
             put_over_dc_gain(key, over, facts.dc_gain, metrics);
         }
+        if let WeightScatter::Learned(_) = facts.weight_scatter(samples, 0.0) {
+            widen_by_gain(&ANGLE_RANDOM_WALK, metrics);
+        }
+    }
+}
+
+/// Adds the scatter of the DC gain, which is in the fitted noise of no single record, to a metric that is
+/// proportional to it.
+fn widen_by_gain(key: &MetricKey, metrics: &mut ChannelMetrics) {
+    let Some(gain) = metrics.get(&DC_GAIN).map(|metric| metric.estimate) else {
+        return;
+    };
+    let relative = Spread::of(&gain).half_width() / gain.value;
+    if let Some(metric) = metrics.get_mut(key).filter(|_| relative.is_finite()) {
+        metric.estimate = metric
+            .estimate
+            .widened(relative.abs() * metric.estimate.value);
     }
 }
 
@@ -191,7 +222,7 @@ fn measure_bias(
             )
         });
         let deviation = interval::sample_variance(&means).sqrt();
-        let metric = metrics.put(name, interval::deviation(deviation, freedom));
+        let metric = metrics.put(name, interval::sample_deviation(deviation, freedom));
         metric.fields.insert("averaging_time_s", averaging_time_s);
         metric.fields.insert("block_samples", block as f64);
         metric.fields.insert("count", means.len() as f64);
@@ -217,19 +248,24 @@ fn measure_bias(
 
 /// Mean and its error.
 ///
-/// With a fit, the variance of the mean over T is the fitted Allan variance at T (half the mean
-/// square difference between the means of two such records in a row): `N^2/T` for white noise, and
-/// it does not vanish with T for slow noise. Without one, Student's t on ten block means.
-fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMetrics) {
+/// Where the slow noise of the gyro is not known, as of a log, the interval is about the process that
+/// the fit found: its white noise, and those slow terms that the record tells from nothing.
+fn measure_mean(
+    record: &Record,
+    fit: Option<&NoiseFit>,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
     let values = record.channel_deg_per_h;
     let mean = interval::mean_of_present(values);
     let duration_s = values.len() as f64 * record.sample_period_s;
-    let estimate = match fit {
-        Some(fit) if fit.shows_white_noise() => {
-            let variance = fit.mean_variance(duration_s);
-            Estimate::symmetric(mean, interval::NORMAL_QUANTILE * variance.sqrt())
-        }
-        _ => interval::from_parts(mean, &equal_block_means(values, 10)),
+    let slow = match (record.drift, fit) {
+        (None, Some(fit)) => fit.slow_mean_variance(duration_s),
+        _ => 0.0,
+    };
+    let estimate = match mean_spread_of(record, values, filter, true) {
+        Ok(spread) => spread.plus(Spread::known(slow)).about(mean),
+        Err(reason) => Estimate::without_interval(mean, reason),
     };
     put_mean(
         estimate,
@@ -237,14 +273,16 @@ fn measure_mean(record: &Record, fit: Option<&NoiseFit>, metrics: &mut ChannelMe
         duration_s,
         metrics,
     );
+    let drift = record.drift_variance() + slow;
+    if let Some(metric) = metrics.get_mut(&MEAN).filter(|_| drift > 0.0) {
+        metric.fields.insert(SLOW_NOISE, drift.sqrt());
+    }
     metrics.mark_exact(&[&MEAN, &MEAN_ERROR]);
 }
 
-fn products_about_mean(values: &[f64], lags: usize) -> LaggedProducts {
-    LaggedProducts::new(
-        values,
-        interval::mean_of_present(values),
-        lags,
-        RATIO_BLOCKS,
-    )
+/// Field of a mean: standard deviation, in its interval, of the input's slow noise in the mean.
+const SLOW_NOISE: &str = "slow_noise_deg_per_h";
+
+fn products_about_mean(values: &[f64], lags: usize, blocks: usize) -> LaggedProducts {
+    LaggedProducts::new(values, interval::mean_of_present(values), lags, blocks)
 }

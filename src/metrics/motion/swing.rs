@@ -2,25 +2,32 @@
 
 use std::f64::consts::TAU;
 
-use super::mean::{MEAN_RATIO, put_mean, ratio_of_means_lack};
+use super::mean::{
+    MEAN_RATIO, filter_reach, mean_spread_of, paired_scatter, put_mean, ratio_of_means_lack,
+};
 use super::steady::LAGS_MIN;
-use super::tracking::TRACKING_ERROR_RMS;
+use super::swing_response::{Against, Fits, Response};
+use super::tracking::{TRACKING_ERROR_RMS, root};
+use crate::metrics::estimate::influence::{Learned, Spread};
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::paired::mean_spread;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::{Estimate, Metric};
-use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Table};
+use crate::metrics::key::metric::{Against as Compared, Applies, Headline, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
+use crate::metrics::noise::by_weights::NoiseByWeights;
 use crate::metrics::noise::level::{put_noise_gain, put_noise_std};
 use crate::metrics::noise::truth_response::shown;
 use crate::metrics::pipeline::LATENCY;
-use crate::metrics::record::{FilterFacts, Record};
+use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::sine::correlation::correlation_delay_s;
 use crate::metrics::sine::fit::{SwingClock, SwingFit, fit_swing};
-use crate::metrics::theory::bound::{LeastNoise, filter_bound_at};
+use crate::metrics::theory::bound::{LeastNoise, filter_bound_at, noise_power_gain};
+use crate::metrics::theory::learning::{Learning, NOT_FROM_ONE_RECORD};
 use crate::metrics::theory::prediction::{lags_needed, predict};
 use crate::metrics::trial::noise_delay::{
-    NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve, put_over_bound,
+    put_bound, put_bound_curve, put_over_bound, widen_over_bound,
 };
 use crate::metrics::trial::predicted::DC_GAIN_PREDICTED;
 use crate::metrics::trial::readaptation;
@@ -57,7 +64,7 @@ pub static DELAY_VS_TRUTH: MetricKey = MetricKey::new(
     "phase delay behind the true rate at the swing frequency; of several sines the lowest",
 )
 .heading("delay vs truth")
-.against(Against::Truth)
+.against(Compared::Truth)
 .of_turned_axis()
 .tables(&[Table::Swing, Table::MultiSine])
 .headlines(&[Headline::MultiSine]);
@@ -70,7 +77,7 @@ pub static DELAY_VS_ENCODER: MetricKey = MetricKey::new(
     "phase delay behind the rate implied by a sine fit of the encoder's angle",
 )
 .heading("delay vs encoder")
-.against(Against::Encoder)
+.against(Compared::Encoder)
 .of_turned_axis()
 .by_choice()
 .tables(&[Table::Swing]);
@@ -82,7 +89,7 @@ pub static DELAY_BY_CORRELATION: MetricKey = MetricKey::new(
     Applies::Swing,
     "delay behind the true rate again, by the peak of their correlation: a check of the sine fit",
 )
-.against(Against::Truth)
+.against(Compared::Truth)
 .of_turned_axis();
 
 /// Amplitude ratio.
@@ -93,7 +100,7 @@ pub static AMPLITUDE_RATIO: MetricKey = MetricKey::new(
     "fitted amplitude over raw's, for raw itself over the true rate's; of several sines the lowest",
 )
 .heading("amplitude ratio")
-.against(Against::TruthForRaw)
+.against(Compared::TruthForRaw)
 .run_column(10)
 .tables(&[Table::Swing, Table::MultiSine])
 .headlines(&[Headline::Swing]);
@@ -108,16 +115,6 @@ pub static HARMONIC_DISTORTION: MetricKey = MetricKey::new(
 .synonyms(&["thd", "distortion"])
 .heading("harmonic distortion")
 .tables(&[Table::Swing]);
-
-/// The sine fits of one swing record.
-struct Fits {
-    channel: SwingFit,
-    raw: SwingFit,
-    /// The true rate, if it is known.
-    truth: Option<SwingFit>,
-    /// Rate implied by the encoder's angle, if there is an encoder.
-    encoder: Option<SwingFit>,
-}
 
 /// Measures everything a swing record supports.
 ///
@@ -150,44 +147,45 @@ pub(crate) fn measure_swing(
         },
     };
     let duration_s = fits.channel.samples() as f64 * record.sample_period_s;
+    let residuals = fits.channel.residuals(record.channel_deg_per_h);
+    let offset = fits.channel.whole.offset;
+    let mean = match mean_spread_of(record, &residuals, filter, false) {
+        Ok(spread) => spread.about(offset),
+        Err(reason) => Estimate::without_interval(offset, reason),
+    };
     put_mean(
-        fits.channel.offset(),
+        mean,
         fits.truth.as_ref().map(|truth| truth.whole.offset),
         duration_s,
         metrics,
     );
-    measure_sines(&fits, &clock, filter, metrics);
+    let response = Response::new(record, &fits, &clock, filter);
+    measure_sines(&fits, &response, &clock, filter, metrics);
     if let Some(truth) = record.truth() {
-        measure_correlation(truth, record, &clock, filter, metrics);
-        measure_tracking(truth, record, &fits, metrics);
+        measure_correlation(truth, record, &response, filter, metrics);
+        let by_weights = response.tracking_by_weights(&fits, filter);
+        measure_tracking(truth, record, &fits, by_weights, metrics);
     }
-    let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
-    let residuals = fits.channel.residuals(record.channel_deg_per_h);
     metrics.put(
         &HARMONIC_DISTORTION,
         fits.channel.harmonic_distortion_percent(&residuals),
     );
-    let blocks = fits.channel.block_count();
-    // The table's own harmonics are known, and no noise.
-    let noise = |mut residuals: Vec<f64>, of: Option<&FilterFacts>| {
-        if let Some(shown) = shown(record, of)
-            && let Ok(fit) = fit_swing(&shown.series, &clock)
-        {
-            shown.remove_from(&mut residuals, &fit.residuals(&shown.series));
-        }
-        LaggedProducts::new(&residuals, 0.0, lags, blocks)
-    };
-    let channel = noise(residuals, filter);
+    let (channel, raw, by_weights) = noise_about_sine(record, &fits, &clock, filter);
     let words = record.channel_deg_per_h[..fits.channel.samples()].iter();
     let count = words.filter(|word| !word.is_nan()).count();
-    put_noise_std(&channel, (count, 3), record.sample_period_s, metrics);
-    if let Some(facts) = filter {
-        let raw = noise(fits.raw.residuals(record.raw_deg_per_h), None);
+    put_noise_std(
+        &channel,
+        &by_weights,
+        (count, 3),
+        record.sample_period_s,
+        metrics,
+    );
+    if let (Some(facts), Some(raw)) = (filter, raw) {
         let level = fits.raw.whole.amplitude + fits.raw.whole.offset.abs();
-        put_noise_gain(&channel, &raw, level, metrics);
-        measure_mean_ratio(&fits, metrics);
+        put_noise_gain(&channel, &raw, &by_weights, level, metrics);
+        measure_mean_ratio(record, &fits, facts, metrics);
         measure_predictions(&fits, &clock, facts, &raw, metrics);
-        measure_bound(&fits, &clock, facts, (&channel, &raw), metrics);
+        measure_bound(&fits, &response, facts, (&channel, &raw), metrics);
         let predicted = metrics.get(&DELAY_PREDICTED);
         let final_gain = predicted.and_then(|metric| metric.fields.get(AMPLITUDE_RATIO.name));
         if let Some(&final_gain) = final_gain.filter(|_| is_from_rest && adapts(&facts.shape)) {
@@ -199,9 +197,41 @@ pub(crate) fn measure_swing(
     Ok(())
 }
 
+/// Noise of the channel and of raw about their sines, and how the weights of the filter scatter.
+fn noise_about_sine(
+    record: &Record,
+    fits: &Fits,
+    clock: &SwingClock,
+    filter: Option<&FilterFacts>,
+) -> (LaggedProducts, Option<LaggedProducts>, NoiseByWeights) {
+    let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
+    let blocks = filter
+        .and_then(|facts| facts.learning.as_ref())
+        .map_or(fits.channel.block_count(), Learning::stretches);
+    // The table's own harmonics are known, and no noise.
+    let noise = |mut residuals: Vec<f64>, of: Option<&FilterFacts>| {
+        if let Some(shown) = shown(record, of)
+            && let Ok(fit) = fit_swing(&shown.series, clock)
+        {
+            shown.remove_from(&mut residuals, &fit.residuals(&shown.series));
+        }
+        LaggedProducts::new(&residuals, 0.0, lags, blocks)
+    };
+    let channel = noise(fits.channel.residuals(record.channel_deg_per_h), filter);
+    let raw = filter.map(|_| noise(fits.raw.residuals(record.raw_deg_per_h), None));
+    let by_weights = match (filter, &raw) {
+        (Some(facts), Some(raw)) => {
+            NoiseByWeights::new(facts, raw, record.raw_deg_per_h.len(), 0.0)
+        }
+        _ => NoiseByWeights::none(),
+    };
+    (channel, raw, by_weights)
+}
+
 /// Delays and amplitude ratio. A pipeline's latency is part of its delays.
 fn measure_sines(
     fits: &Fits,
+    response: &Response,
     clock: &SwingClock,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
@@ -214,8 +244,9 @@ fn measure_sines(
         let start_s = (clock.first_stamp_s - clock.sample_period_s).max(0.0);
         metric.fields.insert("excluded_s", start_s);
     };
-    let mut put_delay = |key: &MetricKey, reference| {
-        let delay_s = later(fits.channel.delay_behind_s(reference), latency_s);
+    let mut put_delay = |key: &MetricKey, reference: &SwingFit, against: Against| {
+        let delay_s = fits.channel.delay_behind_s(reference);
+        let delay_s = response.delay(delay_s, against).shifted(latency_s);
         let metric = metrics.put(key, delay_s.scaled(units::s_to_ms(1.0)));
         describe(metric);
         if latency_s > 0.0 {
@@ -224,17 +255,18 @@ fn measure_sines(
         }
     };
     if let Some(truth) = &fits.truth {
-        put_delay(&DELAY_VS_TRUTH, truth);
+        put_delay(&DELAY_VS_TRUTH, truth, Against::Truth);
     }
     if let Some(encoder) = &fits.encoder {
-        put_delay(&DELAY_VS_ENCODER, encoder);
+        put_delay(&DELAY_VS_ENCODER, encoder, Against::Truth);
     }
     if filter.is_some() {
-        put_delay(&DELAY_VS_RAW, &fits.raw);
+        put_delay(&DELAY_VS_RAW, &fits.raw, Against::Raw);
     }
     let reference = filter.map_or(fits.truth.as_ref(), |_| Some(&fits.raw));
     if let Some(reference) = reference {
-        describe(metrics.put(&AMPLITUDE_RATIO, fits.channel.amplitude_over(reference)));
+        let ratio = fits.channel.amplitude_over(reference);
+        describe(metrics.put(&AMPLITUDE_RATIO, response.amplitude(ratio)));
     }
 }
 
@@ -245,14 +277,22 @@ fn measure_sines(
 fn measure_correlation(
     truth_deg_per_h: &[f64],
     record: &Record,
-    clock: &SwingClock,
+    response: &Response,
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
     let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
-    match correlation_delay_s(truth_deg_per_h, record.channel_deg_per_h, clock) {
+    let clock = response.clock;
+    match correlation_delay_s(truth_deg_per_h, record.channel_deg_per_h, &clock) {
         Ok(delay_s) => {
-            let delay_ms = later(delay_s, latency_s).scaled(units::s_to_ms(1.0));
+            // What weights on their way add to the channel's noise is in what they have learned.
+            let by_raw = response
+                .is_learned()
+                .then(|| correlation_delay_s(truth_deg_per_h, record.raw_deg_per_h, &clock).ok())
+                .flatten();
+            let delay_s = by_raw.map_or(delay_s, |raw| Spread::of(&raw).about(delay_s.value));
+            let delay_ms = response.with_weights(delay_s);
+            let delay_ms = delay_ms.shifted(latency_s).scaled(units::s_to_ms(1.0));
             let metric = metrics.put(&DELAY_BY_CORRELATION, delay_ms);
             metric.fields.insert("frequency_hz", clock.frequency_hz);
         }
@@ -260,21 +300,15 @@ fn measure_correlation(
     }
 }
 
-/// A delay and the known time after it at which the value appears.
-fn later(delay_s: Estimate, latency_s: f64) -> Estimate {
-    Estimate {
-        value: delay_s.value + latency_s,
-        low: delay_s.low + latency_s,
-        high: delay_s.high + latency_s,
-        confidence: delay_s.confidence,
-    }
-}
-
-/// Root mean square difference from the truth, with Student's t on the sub-blocks' squares.
+/// Root mean square difference from the truth, by the squares of blocks of whole cycles.
+///
+/// Weights that forget nothing are still on their way in the record, which many blocks show less of,
+/// and scatter from seed to seed, by which response and noise differ.
 fn measure_tracking(
     truth_deg_per_h: &[f64],
     record: &Record,
     fits: &Fits,
+    by_weights: Option<Learned>,
     metrics: &mut ChannelMetrics,
 ) {
     let errors: Vec<f64> = record.channel_deg_per_h[..fits.channel.samples()]
@@ -282,23 +316,57 @@ fn measure_tracking(
         .zip(truth_deg_per_h)
         .map(|(rate, truth)| rate - truth)
         .collect();
-    let mean_squares = fits.channel.block_mean_squares(&errors);
-    let square = interval::from_parts(interval::mean(&mean_squares), &mean_squares);
-    let estimate = Estimate::with_interval(
-        square.value.sqrt(),
-        square.low.max(0.0).sqrt(),
-        square.high.sqrt(),
-    );
-    metrics.put(&TRACKING_ERROR_RMS, estimate);
+    let blocks = by_weights
+        .as_ref()
+        .map_or(fits.channel.block_count(), |_| TRACKING_BLOCKS);
+    let mean_squares = fits.channel.block_mean_squares(&errors, blocks);
+    let square = interval::mean(&mean_squares);
+    let count = mean_squares.len() as f64;
+    let spread = Spread {
+        variance: interval::sample_variance(&mean_squares) / count,
+        freedom: count - 1.0,
+    };
+    let spread = by_weights.map_or(spread, |learned| spread.plus(learned.spread()));
+    metrics.put(&TRACKING_ERROR_RMS, root(square, spread));
 }
 
+/// Blocks of the squared differences from the truth of a filter that forgets nothing.
+const TRACKING_BLOCKS: usize = 150;
+
 /// Ratio of the offsets, if raw's offset can be told from zero.
-fn measure_mean_ratio(fits: &Fits, metrics: &mut ChannelMetrics) {
-    if let Some(reason) = ratio_of_means_lack(&fits.raw.offset()) {
-        metrics.miss(&MEAN_RATIO, reason);
-    } else {
-        metrics.put(&MEAN_RATIO, fits.channel.offset_ratio(&fits.raw));
+fn measure_mean_ratio(
+    record: &Record,
+    fits: &Fits,
+    facts: &FilterFacts,
+    metrics: &mut ChannelMetrics,
+) {
+    let raw = fits.raw.residuals(record.raw_deg_per_h);
+    let offset = fits.raw.whole.offset;
+    let fast = mean_spread(&raw, filter_reach(None));
+    let raw_mean = fast
+        .plus(Spread::known(record.drift_variance()))
+        .about(offset);
+    if let Some(reason) = ratio_of_means_lack(&raw_mean) {
+        return metrics.miss(&MEAN_RATIO, reason);
     }
+    let ratio = fits.channel.whole.offset / offset;
+    let own = fits.channel.residuals(record.channel_deg_per_h);
+    let scatter = paired_scatter((&own, &raw), ratio, facts);
+    let samples = own.len();
+    // The offset is a constant rate beside the swing: the mean weights make it what it is.
+    let weights = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
+    let learned = weights.of(facts.mean_weights.as_deref(), |weights| {
+        weights.iter().sum()
+    });
+    let estimate = match (weights, learned) {
+        (WeightScatter::Blocks, _) => scatter.over(samples).scaled(1.0 / offset).about(ratio),
+        (WeightScatter::Learned(_), Some(learned)) => {
+            let ends = scatter.ends_over(samples).scaled(1.0 / offset);
+            learned.spread().plus(ends).about(ratio)
+        }
+        _ => Estimate::without_interval(ratio, NOT_FROM_ONE_RECORD),
+    };
+    metrics.put(&MEAN_RATIO, estimate);
 }
 
 /// Wiener prediction for the fitted sine plus the measured noise: delay behind raw and DC gain.
@@ -352,15 +420,14 @@ fn measure_predictions(
 /// neither into account.
 fn measure_bound(
     fits: &Fits,
-    clock: &SwingClock,
+    response: &Response,
     facts: &FilterFacts,
     (channel, raw): (&LaggedProducts, &LaggedProducts),
     metrics: &mut ChannelMetrics,
 ) {
-    let delay = fits
-        .channel
-        .delay_behind_s(&fits.raw)
-        .scaled(1.0 / clock.sample_period_s);
+    let clock = response.clock;
+    let delay_s = response.delay(fits.channel.delay_behind_s(&fits.raw), Against::Raw);
+    let delay = delay_s.scaled(1.0 / clock.sample_period_s);
     let at = |delay_samples: f64, autocovariance: &[f64]| {
         filter_bound_at(&facts.shape, delay_samples, autocovariance)
     };
@@ -373,49 +440,21 @@ fn measure_bound(
         .flatten()
         .map(|least| least.noise_gain)
         .collect();
-    // The bound is made of parabolas in the delay: its extremes over the short interval are at the ends
-    // unless the lowest point lies inside, which the value in the middle stands for. The scatter of the
-    // autocovariance adds in quadrature; the two are nearly independent.
     let bound = at(delay.value, &autocovariance);
-    put_over_bound(channel, raw, &bound, &without, metrics);
-    let bound = bound.map(|least| {
-        let value = least.noise_gain;
-        let ends = [delay.low, delay.high]
-            .map(|end| at(end, &autocovariance).map_or(value, |least| least.noise_gain));
-        let colour = interval::jackknife(value, &left_out).high - value;
-        let below = (value - ends[0].min(ends[1])).max(0.0).hypot(colour);
-        let above = (ends[0].max(ends[1]) - value).max(0.0).hypot(colour);
-        let estimate = Estimate::with_interval(value, (value - below).max(0.0), value + above);
-        (estimate, least)
+    let over = response.by_weights(facts, |frozen, weights| {
+        let delay_s = frozen.delay_s(clock.frequency_hz, clock.sample_period_s);
+        let least = at(delay_s / clock.sample_period_s, &autocovariance);
+        let least = least.map_or(f64::NAN, |least| least.noise_gain);
+        noise_power_gain(weights, &autocovariance) / least
     });
-    if let Ok((bound, _)) = &bound {
+    put_over_bound(channel, raw, &bound, &without, over.as_ref(), metrics);
+    let bound = bound.map(|least| {
+        let at = |delay| at(delay, &autocovariance).ok();
+        (least.over_delay(&delay, at, &left_out), least)
+    });
+    if let (Ok((bound, _)), None) = (&bound, &over) {
         widen_over_bound(bound, &left_out, metrics);
     }
     put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
     put_bound_curve(facts, &autocovariance, clock.sample_period_s, metrics);
-}
-
-/// Adds what the uncertain delay does to the bound to the interval of the noise gain over it.
-///
-/// The scatter of the noise is in that interval already, where numerator and bound share it; of the
-/// bound's own interval only what exceeds it comes on top, in quadrature.
-fn widen_over_bound(bound: &Estimate, left_out: &[f64], metrics: &mut ChannelMetrics) {
-    let Some(metric) = metrics.get_mut(&NOISE_GAIN_OVER_BOUND) else {
-        return;
-    };
-    let colour = interval::jackknife(bound.value, left_out).high - bound.value;
-    let by_delay = |half_width: f64| {
-        let rest = (half_width * half_width - colour * colour).max(0.0).sqrt();
-        rest / bound.value * metric.estimate.value
-    };
-    let below = by_delay(bound.high - bound.value);
-    let above = by_delay(bound.value - bound.low);
-    let Estimate {
-        value, low, high, ..
-    } = metric.estimate;
-    metric.estimate = Estimate::with_interval(
-        value,
-        (value - below.hypot(value - low)).max(0.0),
-        value + above.hypot(high - value),
-    );
 }

@@ -1,5 +1,7 @@
 //! Autocovariance of a record, kept per block of time for the jackknife.
 
+use super::by_weights::NoiseByWeights;
+use crate::metrics::estimate::influence::{Learned, resampled, spread};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
 use crate::metrics::estimate::table::ChannelMetrics;
@@ -53,32 +55,29 @@ pub fn autocovariance(values: &[f64], largest_lag: usize) -> Vec<f64> {
 }
 
 /// Correlation of neighbours, `R(1)/R(0)`, with its jackknife interval; `None` without noise.
-pub(crate) fn lag_one_correlation(products: &LaggedProducts) -> Option<Estimate> {
+pub(crate) fn lag_one_correlation(
+    products: &LaggedProducts,
+    learned: Option<&Learned>,
+) -> Option<Estimate> {
     let of = |autocovariance: &[f64]| autocovariance[1] / autocovariance[0];
     let whole = products.autocovariance();
     let left_out: Vec<f64> = (0..products.blocks())
         .map(|block| of(&products.autocovariance_without(block)))
         .collect();
-    (whole[0] > 0.0).then(|| {
-        let estimate = interval::jackknife(of(&whole), &left_out);
-        let [low, high] = [estimate.low, estimate.high].map(|end| end.clamp(-1.0, 1.0));
-        Estimate::with_interval(
-            estimate.value,
-            low.min(estimate.value),
-            high.max(estimate.value),
-        )
-    })
+    (whole[0] > 0.0).then(|| resampled(of(&whole), &left_out, learned).clamped(-1.0, 1.0))
 }
 
 /// Enters the correlation of neighbours and the first lags of the autocovariance of the noise.
 pub(crate) fn put_autocovariance(
     products: &LaggedProducts,
+    by_weights: &NoiseByWeights,
     sample_period_s: f64,
     metrics: &mut ChannelMetrics,
 ) {
-    match lag_one_correlation(products) {
+    let learned = by_weights.of(|noise| noise[1] / noise[0]);
+    match lag_one_correlation(products, learned.as_ref()) {
         Some(correlation) => {
-            metrics.put(&LAG1_CORRELATION, correlation);
+            metrics.put(&LAG1_CORRELATION, by_weights.unless_unknown(correlation));
         }
         None => metrics.miss(&LAG1_CORRELATION, "the channel has no noise"),
     }
@@ -163,6 +162,18 @@ impl LaggedProducts {
         let quantiles = NORMAL_QUANTILE / interval::student_quantile(blocks - 1.0);
         let freedom = 2.0 * power * power / of_mean * quantiles * quantiles;
         (variances.len() >= FREEDOM_BLOCKS_MIN && freedom.is_finite()).then_some(freedom.max(1.0))
+    }
+
+    /// The same of noise whose power the filter's weights move as well: `learned` is what each
+    /// stretch adds to the variance through them.
+    pub(crate) fn learned_freedom(&self, learned: &Learned) -> f64 {
+        let left_out: Vec<f64> = (0..self.blocks())
+            .map(|block| self.autocovariance_without(block)[0])
+            .collect();
+        let power = self.autocovariance()[0];
+        let spread = spread(&left_out, Some(learned));
+        let quantiles = NORMAL_QUANTILE / interval::student_quantile(spread.freedom);
+        (2.0 * power * power / spread.variance * quantiles * quantiles).max(1.0)
     }
 
     fn mean_products(&self, left_out: Option<usize>) -> Vec<f64> {
@@ -266,14 +277,14 @@ mod tests {
         let white: Vec<f64> = (0..20_001).map(|_| uniform()).collect();
         let sums: Vec<f64> = white.windows(2).map(|two| two[0] + two[1]).collect();
         let products = LaggedProducts::new(&sums, interval::mean(&sums), 1, 20);
-        let found = lag_one_correlation(&products).unwrap();
+        let found = lag_one_correlation(&products, None).unwrap();
         // Standard error by Bartlett: sqrt((1 - 3/4 + 1/4) / n) = 0.005.
         assert!(found.low < 0.5 && 0.5 < found.high, "{found:?}");
         assert!(
             (0.01..0.05).contains(&(found.high - found.low)),
             "{found:?}"
         );
-        assert!(lag_one_correlation(&LaggedProducts::new(&[1.0; 9], 1.0, 1, 3)).is_none());
+        assert!(lag_one_correlation(&LaggedProducts::new(&[1.0; 9], 1.0, 1, 3), None).is_none());
         let twelfth = autocovariance(&white, 2);
         assert!((twelfth[0] * 12.0 - 1.0).abs() < 0.05 && twelfth[2].abs() < 0.003);
     }

@@ -1,10 +1,11 @@
 //! Noise about the signal, and what a filter leaves of noise and mean.
 
 use super::autocovariance::{LaggedProducts, independent_samples, put_autocovariance};
+use super::by_weights::NoiseByWeights;
+use crate::metrics::estimate::influence::resampled;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::{ChannelMetrics, DEGREES_OF_FREEDOM};
-use crate::metrics::estimate::value::Estimate;
-use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
+use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Pool, Table};
 
 /// Standard deviation of the noise.
 pub static NOISE_STD: MetricKey = MetricKey::new(
@@ -15,6 +16,7 @@ pub static NOISE_STD: MetricKey = MetricKey::new(
 )
 .synonyms(&["std", "noise", "noise_rms", "standard_deviation"])
 .heading("noise std")
+.pooled(Pool::RootMeanSquare)
 .needs(Needs::SettledStep)
 .run_column(3)
 .tables(&[Table::Rest, Table::Swing, Table::MultiSine, Table::Steps])
@@ -42,19 +44,25 @@ pub static NOISE_GAIN: MetricKey = MetricKey::of_filters(
 /// curve of the autocovariance go with it.
 pub(crate) fn put_noise_std(
     products: &LaggedProducts,
+    by_weights: &NoiseByWeights,
     (count, fitted): (usize, usize),
     sample_period_s: f64,
     metrics: &mut ChannelMetrics,
 ) {
-    put_autocovariance(products, sample_period_s, metrics);
+    put_autocovariance(products, by_weights, sample_period_s, metrics);
     let autocovariance = products.autocovariance();
     let of_lags = (independent_samples(&autocovariance, count) - 1.0).max(1.0);
-    let freedom = products.variance_freedom().unwrap_or(of_lags);
+    let freedom = match by_weights.of(|noise| noise[0]) {
+        Some(learned) => products.learned_freedom(&learned),
+        None => products.variance_freedom().unwrap_or(of_lags),
+    };
     let unbiased = count as f64 / count.saturating_sub(fitted).max(1) as f64;
-    let deviation = (autocovariance[0] * unbiased).sqrt();
-    let metric = metrics.put(&NOISE_STD, interval::deviation(deviation, freedom));
+    let deviation = interval::sample_deviation((autocovariance[0] * unbiased).sqrt(), freedom);
+    let metric = metrics.put(&NOISE_STD, by_weights.unless_unknown(deviation));
     metric.fields.insert("count", count as f64);
-    metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
+    if metric.estimate.has_interval() {
+        metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
+    }
 }
 
 /// Ratio of the variances about the signal; blocks leave numerator and denominator together.
@@ -63,6 +71,7 @@ pub(crate) fn put_noise_std(
 pub(crate) fn put_noise_gain(
     channel: &LaggedProducts,
     raw: &LaggedProducts,
+    by_weights: &NoiseByWeights,
     raw_level_deg_per_h: f64,
     metrics: &mut ChannelMetrics,
 ) {
@@ -77,8 +86,8 @@ pub(crate) fn put_noise_gain(
         })
         .collect();
     let value = channel.autocovariance()[0] / raw_variance;
-    let gain = interval::jackknife(value, &left_out);
+    let learned = by_weights.of(|noise| noise[0] / by_weights.raw_power());
     // A power is never negative.
-    let gain = Estimate::with_interval(gain.value, gain.low.max(0.0), gain.high);
-    metrics.put(&NOISE_GAIN, gain);
+    let gain = resampled(value, &left_out, learned.as_ref()).clamped(0.0, f64::INFINITY);
+    metrics.put(&NOISE_GAIN, by_weights.unless_unknown(gain));
 }

@@ -2,6 +2,7 @@
 
 pub(super) mod autocovariance;
 pub(super) mod bias_stability;
+pub(super) mod by_weights;
 pub(super) mod level;
 pub(super) mod line;
 pub(super) mod memory;

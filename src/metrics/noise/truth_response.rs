@@ -101,6 +101,33 @@ fn reach(filter: Option<&FilterFacts>) -> usize {
     (GYRO_LAGS + of_filter).min(LAGS_MAX)
 }
 
+/// What a gyro's words show of its motion, the mean of the words included.
+///
+/// * `response`: its answer to the motion without noise, one value a word, where that is known.
+/// * `truth`: the true rate, whose lagged copies are taken else.
+#[must_use]
+pub fn known_motion(words: &[f64], response: Option<&[f64]>, truth: &[f64]) -> Vec<f64> {
+    let about = |series: &[f64]| -> Vec<f64> {
+        let mean = interval::mean(series);
+        series.iter().map(|rate| rate - mean).collect()
+    };
+    let mut noise = about(words);
+    let (motion, offsets) = match response.filter(|answer| answer.len() == words.len()) {
+        Some(answer) => (answer, vec![-1, 0, 1]),
+        None => (truth, spaced(0, 1, COLUMNS)),
+    };
+    let shown = Shown {
+        series: about(motion),
+        offsets,
+    };
+    shown.remove_from(&mut noise, &shown.series);
+    words
+        .iter()
+        .zip(noise)
+        .map(|(word, noise)| word - noise)
+        .collect()
+}
+
 /// So many offsets from the first on.
 fn spaced(first: isize, stride: usize, count: usize) -> Vec<isize> {
     let stride = isize::try_from(stride).unwrap_or(1);

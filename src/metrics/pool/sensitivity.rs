@@ -72,10 +72,8 @@ fn magnitude_of_difference(x: Estimate, y: Estimate, widening: f64) -> Estimate 
         (0.0, high.max(-low))
     };
     Estimate {
-        value: difference.abs(),
-        low,
-        high,
         confidence: x.confidence.min(y.confidence),
+        ..Estimate::with_interval(difference.abs(), low, high)
     }
 }
 

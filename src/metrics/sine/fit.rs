@@ -43,7 +43,7 @@ pub struct SineFit {
 
 impl SwingClock {
     /// Angular phase of sample `index`, reduced to one turn before it loses digits, rad.
-    fn phase_rad(&self, index: usize) -> f64 {
+    pub(crate) fn phase_rad(&self, index: usize) -> f64 {
         let time_s = self.first_stamp_s + index as f64 * self.sample_period_s;
         (time_s * self.frequency_hz).fract() * TAU
     }
@@ -288,14 +288,18 @@ impl SwingFit {
         interval::from_parts(self.whole.amplitude / reference.whole.amplitude, &parts)
     }
 
-    /// Mean square of values over every sub-block.
+    /// Mean square of values over each of so many blocks of whole cycles, at most one a cycle.
     #[must_use]
-    pub fn block_mean_squares(&self, values: &[f64]) -> Vec<f64> {
-        self.borders
-            .windows(2)
-            .map(|ends| {
-                let block = &values[ends[0]..ends[1]];
-                block.iter().map(|value| value * value).sum::<f64>() / block.len() as f64
+    pub fn block_mean_squares(&self, values: &[f64], blocks: usize) -> Vec<f64> {
+        let count = blocks.clamp(1, self.cycles);
+        let border = |block: usize| {
+            let samples = self.clock.samples_in(self.cycles * block / count);
+            samples.min(values.len())
+        };
+        (0..count)
+            .map(|block| {
+                let own = &values[border(block)..border(block + 1)];
+                own.iter().map(|value| value * value).sum::<f64>() / own.len() as f64
             })
             .collect()
     }

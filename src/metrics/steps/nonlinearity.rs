@@ -5,7 +5,6 @@
 
 use statrs::function::erf::erf;
 
-use crate::metrics::estimate::interval;
 use crate::metrics::estimate::value::Estimate;
 
 /// Intervals of Simpson's rule in [`expected_largest`]; the error is then below 1e-6.
@@ -34,8 +33,8 @@ pub struct Residual {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Nonlinearity {
-    /// Largest ratio. Its interval is simultaneous over the points (Bonferroni): the largest of many
-    /// residuals is large by chance, so that its own interval would not hold.
+    /// Largest ratio, with the interval of its mean over many records: the largest of many residuals
+    /// is large by chance, and so is its mean.
     pub value: Estimate,
     /// Expected largest ratio of an ideal gyro with the noise of these points.
     pub noise_floor: f64,
@@ -60,27 +59,74 @@ impl Nonlinearity {
 
     /// The largest of the residuals over their `divisor`; those without one are left out.
     fn largest(residuals: &[Residual], divisor: impl Fn(&Residual) -> Option<f64>) -> Self {
-        let (mut value, mut low, mut high) = (0.0_f64, 0.0_f64, 0.0_f64);
-        let mut deviations = Vec::with_capacity(residuals.len());
-        for residual in residuals {
-            let Some(divisor) = divisor(residual) else {
-                continue;
-            };
-            let freedom = residual.degrees_of_freedom;
-            let quantile = interval::student_quantile_of_many(freedom, residuals.len());
-            let half_width = quantile * residual.deviation_deg_per_h;
-            let size = residual.value_deg_per_h.abs();
-            value = value.max(size / divisor);
-            low = low.max((size - half_width) / divisor);
-            high = high.max((size + half_width) / divisor);
-            deviations.push(residual.deviation_deg_per_h / divisor);
-        }
+        let parts: Vec<(f64, f64)> = residuals
+            .iter()
+            .filter_map(|residual| {
+                let divisor = divisor(residual)?;
+                let size = residual.value_deg_per_h.abs() / divisor;
+                Some((size, residual.deviation_deg_per_h / divisor))
+            })
+            .collect();
+        let deviations: Vec<f64> = parts.iter().map(|part| part.1).collect();
         Self {
-            value: Estimate::with_interval(value, low, high),
+            value: largest_magnitude(&parts, LINE_PARAMETERS),
             noise_floor: expected_largest(&deviations),
         }
     }
 }
+
+/// Parameters of a line, which its residuals lack in freedom.
+const LINE_PARAMETERS: usize = 2;
+
+/// The largest of normal deviates' magnitudes with the interval of its mean over many records.
+///
+/// * `parts`: magnitude and standard deviation of each.
+/// * `fitted`: parameters fitted to them, in which they have no freedom.
+///
+/// The mean of a deviate is what is left of its magnitude once the share that noise has in the sum
+/// of all squares is taken off (James and Stein), so that the largest of pure noise has the interval
+/// that noise gives it and a lone large one its own. With the quantiles q and the mean m of the
+/// largest under these means the interval is `[x - (q_high - m), x + (m - q_low)]`.
+pub(crate) fn largest_magnitude(parts: &[(f64, f64)], fitted: usize) -> Estimate {
+    let value = parts.iter().fold(0.0_f64, |max, part| max.max(part.0));
+    let noisy: Vec<(f64, f64)> = parts.iter().copied().filter(|part| part.1 > 0.0).collect();
+    if noisy.is_empty() {
+        return Estimate::exact(value);
+    }
+    let squares: f64 = noisy
+        .iter()
+        .map(|(size, deviation)| (size / deviation).powi(2))
+        .sum();
+    let freedom = noisy.len().saturating_sub(fitted).max(1) as f64;
+    let kept = (1.0 - freedom / squares).max(0.0);
+    let below = |x: f64| -> f64 {
+        let inside = noisy.iter().map(|(size, deviation)| {
+            let scale = deviation * std::f64::consts::SQRT_2;
+            0.5 * (erf((x - kept * size) / scale) + erf((x + kept * size) / scale))
+        });
+        inside.product()
+    };
+    let reach = noisy.iter().fold(0.0_f64, |max, (size, deviation)| {
+        max.max(kept * size + REACH * deviation)
+    });
+    let step = reach / f64::from(INTERVALS);
+    let (mut mean, mut low, mut high) = (0.0, 0.0, 0.0);
+    for node in 0..INTERVALS {
+        let x = (f64::from(node) + 0.5) * step;
+        let part = below(x);
+        mean += (1.0 - part) * step;
+        low += if part < TAIL { step } else { 0.0 };
+        high += if part < 1.0 - TAIL { step } else { 0.0 };
+    }
+    Estimate::with_interval(
+        value,
+        (value - (high - mean)).max(0.0),
+        value + (mean - low),
+    )
+}
+
+/// Probability beyond either end of an interval.
+const TAIL: f64 = 0.025;
 
 /// Expected largest magnitude of independent normal deviates of these standard deviations.
 ///

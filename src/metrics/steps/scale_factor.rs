@@ -8,7 +8,7 @@
 //! derived: every quantity below is linear in the outputs up to a ratio, and each output comes with
 //! its own standard deviation.
 
-use super::nonlinearity::{Nonlinearity, Residual};
+use super::nonlinearity::{Nonlinearity, Residual, largest_magnitude};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
@@ -151,22 +151,31 @@ impl Line {
     }
 }
 
-/// Standard deviation of a weighted sum of independent outputs, and its degrees of freedom.
+/// Covariance of the outputs by slow noise, whose mean wanders from point to point, (deg/h)^2.
+pub(crate) type DriftCovariance<'a> = &'a dyn Fn(usize, usize) -> f64;
+
+/// Standard deviation of a weighted sum of outputs, and its degrees of freedom.
+///
+/// * `weights`: index of each point and its weight.
 ///
 /// Source: Welch and Satterthwaite.
-fn spread_of(parts: impl Iterator<Item = (f64, RatePoint)>) -> (f64, f64) {
+fn spread_of(weights: &[(usize, f64)], points: &[RatePoint], drift: DriftCovariance) -> (f64, f64) {
     let (mut variance, mut square) = (0.0, 0.0);
-    for (weight, point) in parts {
+    for &(index, weight) in weights {
+        let point = points[index];
         let part = (weight * point.deviation_deg_per_h).powi(2);
         variance += part;
         square += part * part / point.degrees_of_freedom.max(1.0);
+        let others = weights.iter();
+        let shared = others.map(|&(other, by)| weight * by * drift(index, other));
+        variance += shared.sum::<f64>();
     }
     let freedom = if square > 0.0 {
         variance * variance / square
     } else {
         f64::INFINITY
     };
-    (variance.sqrt(), freedom)
+    (variance.max(0.0).sqrt(), freedom)
 }
 
 /// Fits the scale factor and everything that follows from it.
@@ -179,6 +188,15 @@ fn spread_of(parts: impl Iterator<Item = (f64, RatePoint)>) -> (f64, f64) {
 pub fn fit_scale_factor(
     points: &[RatePoint],
     rest: StaticZero,
+) -> Result<ScaleFactorFit, Unavailable> {
+    fit_drifting_scale_factor(points, rest, &|_, _| 0.0)
+}
+
+/// As [`fit_scale_factor`], with the slow noise in the intervals.
+pub(crate) fn fit_drifting_scale_factor(
+    points: &[RatePoint],
+    rest: StaticZero,
+    drift: DriftCovariance,
 ) -> Result<ScaleFactorFit, Unavailable> {
     let inputs: Vec<f64> = points
         .iter()
@@ -193,17 +211,21 @@ pub fn fit_scale_factor(
         return Err(too_few_rates(rates));
     }
     let line = Line::through(&inputs, &outputs);
-    let residuals = residuals(points, &inputs, &outputs, &line);
+    let residuals = residuals(points, (&inputs, &outputs), &line, drift);
     let full_scale = outputs.iter().fold(0.0_f64, |max, at| max.max(at.abs()));
-    let weighted = inputs.iter().map(|input| line.slope_weight(*input));
-    let (deviation, freedom) = spread_of(weighted.zip(points.iter().copied()));
+    let weights: Vec<(usize, f64)> = inputs
+        .iter()
+        .map(|input| line.slope_weight(*input))
+        .enumerate()
+        .collect();
+    let (deviation, freedom) = spread_of(&weights, points, drift);
     Ok(ScaleFactorFit {
         factor: Estimate::symmetric(line.slope, interval::student_quantile(freedom) * deviation),
         offset_deg_per_h: line.offset,
         full_scale_deg_per_h: full_scale,
         nonlinearity: Nonlinearity::of_full_scale(&residuals, full_scale),
         nonlinearity_of_reading: Nonlinearity::of_reading(&residuals),
-        asymmetry: asymmetry(points, &inputs, &outputs),
+        asymmetry: asymmetry(points, (&inputs, &outputs), drift),
         residuals,
     })
 }
@@ -214,7 +236,12 @@ pub(crate) fn too_few_rates(rates: usize) -> Unavailable {
 }
 
 /// Distances of the points from the line, each with the noise of all points.
-fn residuals(points: &[RatePoint], inputs: &[f64], outputs: &[f64], line: &Line) -> Vec<Residual> {
+fn residuals(
+    points: &[RatePoint],
+    (inputs, outputs): (&[f64], &[f64]),
+    line: &Line,
+    drift: DriftCovariance,
+) -> Vec<Residual> {
     let count = inputs.len();
     let moved: Vec<usize> = [1.0, -1.0]
         .into_iter()
@@ -227,7 +254,8 @@ fn residuals(points: &[RatePoint], inputs: &[f64], outputs: &[f64], line: &Line)
                 let own_output = if other == own { 1.0 } else { 0.0 };
                 own_output - line.leverage(*input, *input_other, count)
             });
-            let (deviation, freedom) = spread_of(weights.zip(points.iter().copied()));
+            let weights: Vec<(usize, f64)> = weights.enumerate().collect();
+            let (deviation, freedom) = spread_of(&weights, points, drift);
             Residual {
                 value_deg_per_h: output - line.at(*input),
                 deviation_deg_per_h: deviation,
@@ -240,7 +268,11 @@ fn residuals(points: &[RatePoint], inputs: &[f64], outputs: &[f64], line: &Line)
 }
 
 /// `|K+ - K-| / ((K+ + K-) / 2)` of separate lines with offsets of their own.
-fn asymmetry(points: &[RatePoint], inputs: &[f64], outputs: &[f64]) -> Option<Asymmetry> {
+fn asymmetry(
+    points: &[RatePoint],
+    (inputs, outputs): (&[f64], &[f64]),
+    drift: DriftCovariance,
+) -> Option<Asymmetry> {
     let sense = |sense: f64| {
         let own: Vec<usize> = of_sense(inputs, sense).collect();
         let own_inputs: Vec<f64> = own.iter().map(|&index| inputs[index]).collect();
@@ -248,10 +280,10 @@ fn asymmetry(points: &[RatePoint], inputs: &[f64], outputs: &[f64]) -> Option<As
         let is_enough = distinct_rates(own_inputs.iter().copied()) >= RATES_PER_SENSE_MIN;
         is_enough.then(|| {
             let line = Line::through(&own_inputs, &own_outputs);
-            let weighted: Vec<(f64, RatePoint)> = own_inputs
+            let weighted: Vec<(usize, f64)> = own_inputs
                 .iter()
                 .zip(&own)
-                .map(|(input, &index)| (line.slope_weight(*input), points[index]))
+                .map(|(input, &index)| (index, sense * line.slope_weight(*input)))
                 .collect();
             (line.slope, weighted)
         })
@@ -260,14 +292,10 @@ fn asymmetry(points: &[RatePoint], inputs: &[f64], outputs: &[f64]) -> Option<As
     parts.extend(others);
     let mean = 0.5 * (positive + negative);
     let difference = (positive - negative) / mean;
-    let (deviation, freedom) = spread_of(parts.into_iter());
-    let half_width = interval::student_quantile(freedom) * deviation / mean.abs();
+    let (deviation, _) = spread_of(&parts, points, drift);
+    let size = (difference.abs(), deviation / mean.abs());
     Some(Asymmetry {
-        value: Estimate::with_interval(
-            difference.abs(),
-            (difference.abs() - half_width).max(0.0),
-            difference.abs() + half_width,
-        ),
+        value: largest_magnitude(&[size], 0),
         positive,
         negative,
     })

@@ -4,6 +4,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
+use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
 use crate::wording::counted;
 
@@ -37,8 +38,10 @@ pub(crate) const STEP_SAMPLES_MIN: usize = 16;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Settling {
-    /// From the step to the stamp of the first sample after which the rate stays in the band, s.
-    pub settling_time_s: f64,
+    /// From the step to the stamp of the first sample after which the rate stays in the band, s. The
+    /// interval is that of the noise at the edge of the band, and a sample more on either side, as
+    /// the time is a whole number of them.
+    pub settling_time_s: Estimate,
     /// Half width of the band, deg/h.
     pub band_deg_per_h: f64,
     /// Rate settled at: mean of the last quarter, deg/h.
@@ -90,15 +93,34 @@ pub fn settling(
     let noise = deviation_about_line(tail);
     let noise_reach = noise * noise_deviations(samples - step_index);
     let band = (BAND_PER_STEP * step_deg_per_h.abs()).max(noise_reach);
-    let outside = rate_deg_per_h[step_index..]
-        .iter()
-        .rposition(|rate| (rate - target).abs() > band);
-    let settled = outside.map_or(0, |last| last + 1);
+    let settled_within = |band: f64| {
+        let outside = rate_deg_per_h[step_index..]
+            .iter()
+            .rposition(|rate| (rate - target).abs() > band);
+        outside.map_or(0, |last| last + 1)
+    };
+    let settled = settled_within(band);
     if step_index + settled > start {
         return Err("the rate has not settled before the last quarter of the record".into());
     }
     Ok(Settling {
-        settling_time_s: (settled + 1) as f64 * sample_period_s,
+        settling_time_s: {
+            let reach = interval::NORMAL_QUANTILE * noise;
+            let entered = |band: f64| {
+                let inside = |rate: &f64| (rate - target).abs() <= band;
+                rate_deg_per_h[step_index..]
+                    .iter()
+                    .position(inside)
+                    .unwrap_or(settled)
+            };
+            let ends = [
+                entered(band + reach).min(settled),
+                (entered(band - reach) + 2).max(settled + 2),
+            ];
+            let [value, low, high] =
+                [settled + 1, ends[0], ends[1]].map(|samples| samples as f64 * sample_period_s);
+            Estimate::with_interval(value, low, high)
+        },
         band_deg_per_h: band,
         final_deg_per_h: target,
         noise_std_deg_per_h: noise,
@@ -151,7 +173,7 @@ mod tests {
         let settled = settling(&rates, 100, 36.0, 0.001).unwrap();
         let expected = 0.001 * (time_constant * 100.0_f64.ln()).ceil();
         assert!(
-            (settled.settling_time_s - expected).abs() < 1e-12,
+            (settled.settling_time_s.value - expected).abs() < 1e-12,
             "{settled:?}"
         );
     }

@@ -1,7 +1,9 @@
 //! Overshoot and rise time of the last step of a record.
 
-use super::settling::Settling;
+use super::settling::{Settling, tail_start};
+use crate::metrics::estimate::influence::Spread;
 use crate::metrics::estimate::interval::NORMAL_QUANTILE;
+use crate::metrics::estimate::paired::{covariance_at_lags, mean_spread};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
@@ -97,8 +99,9 @@ impl Step<'_> {
 
     /// Time from 10 % to 90 % of the step, s, linear between samples.
     ///
-    /// The interval is that of the noise, widened by a sample period: each crossing is known to lie
-    /// between two samples.
+    /// The interval is that of the noise of the samples between which the two crossings lie, with
+    /// their correlation, and of the rate settled at; the error of the straight line between two
+    /// samples is the same in every record.
     ///
     /// # Errors
     /// The reason, in words, where the step has no height, the noise is large or no sample precedes the step.
@@ -115,39 +118,91 @@ impl Step<'_> {
             )
             .into());
         }
-        let shift = NORMAL_QUANTILE * noise;
-        let rise = |shift: f64| {
-            let (start, end) = (
-                self.crossing(RISE.0 + shift)?,
-                self.crossing(RISE.1 - shift)?,
-            );
-            Some((end - start) * self.sample_period_s)
-        };
-        let found = (rise(0.0), rise(shift), rise(-shift));
-        let (Some(value), Some(short), Some(long)) = found else {
+        let (Some(start), Some(end)) = (self.crossing(RISE.0), self.crossing(RISE.1)) else {
             return Err("no sample precedes the step".into());
         };
-        let period_s = self.sample_period_s;
-        let low = (short.min(value) - period_s).max(0.0);
-        Ok(Estimate::with_interval(
-            value,
-            low,
-            long.max(value) + period_s,
-        ))
+        let value = (end.at() - start.at()) * self.sample_period_s;
+        let deviation = self.rise_deviation(&start, &end) * self.sample_period_s;
+        let rise = Spread::known(deviation * deviation).about(value);
+        Ok(rise.clamped(0.0, f64::INFINITY))
     }
 
-    /// Where the response first reaches a level, samples.
-    fn crossing(&self, level: f64) -> Option<f64> {
+    /// Standard deviation of the time between two crossings by the noise, samples.
+    fn rise_deviation(&self, start: &Crossing, end: &Crossing) -> f64 {
+        let slopes: Vec<(usize, f64)> = end
+            .slopes()
+            .into_iter()
+            .chain(start.slopes().map(|(index, slope)| (index, -slope)))
+            .collect();
+        let lags = end.before + 1 - start.before;
+        let tail = &self.rate_deg_per_h[tail_start(self.rate_deg_per_h.len(), self.index)..];
+        let noise = covariance_at_lags(tail, lags.min(tail.len() / LAGS_PER_TAIL));
+        let covariance = |lag: usize| noise.get(lag).copied().unwrap_or(0.0);
+        let variance: f64 = slopes
+            .iter()
+            .flat_map(|(i, a)| {
+                slopes
+                    .iter()
+                    .map(move |(j, b)| a * b * covariance(i.abs_diff(*j)))
+            })
+            .sum();
+        // The rate settled at moves all responses alike.
+        let common: f64 = slopes.iter().map(|(_, slope)| slope).sum();
+        let settled = mean_spread(tail, 1).variance * common * common;
+        (variance.max(0.0) + settled).sqrt() / self.height_deg_per_h.abs()
+    }
+
+    /// Where the response first reaches a level.
+    fn crossing(&self, level: f64) -> Option<Crossing> {
         let after =
             (self.index..self.rate_deg_per_h.len()).find(|&index| self.response(index) >= level)?;
         let before = after.checked_sub(1)?;
         let (low, high) = (self.response(before), self.response(after));
-        Some(before as f64 + ((level - low) / (high - low)).clamp(0.0, 1.0))
+        Some(Crossing {
+            before,
+            part: ((level - low) / (high - low)).clamp(0.0, 1.0),
+            rise: high - low,
+        })
+    }
+}
+
+/// Samples of the settled rate for each lag of its autocovariance.
+const LAGS_PER_TAIL: usize = 8;
+
+/// Where a response crosses a level.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    /// The sample before.
+    before: usize,
+    /// Part of the way to the next one.
+    part: f64,
+    /// Response of the next one over that of this.
+    rise: f64,
+}
+
+impl Crossing {
+    /// Time of the crossing, samples.
+    fn at(&self) -> f64 {
+        self.before as f64 + self.part
+    }
+
+    /// Derivatives of that time by the responses of the two samples.
+    fn slopes(&self) -> [(usize, f64); 2] {
+        [
+            (self.before, -(1.0 - self.part) / self.rise),
+            (self.before + 1, -self.part / self.rise),
+        ]
     }
 }
 
 /// Enters overshoot and rise time.
-pub(crate) fn put_step_shape(step: &Step, metrics: &mut ChannelMetrics) {
+///
+/// `given` takes the interval from estimates that a single record does not give.
+pub(crate) fn put_step_shape(
+    step: &Step,
+    given: impl Fn(Estimate) -> Estimate,
+    metrics: &mut ChannelMetrics,
+) {
     if !step.has_height() {
         for key in [&OVERSHOOT, &RISE_TIME] {
             metrics.miss(key, NO_HEIGHT);
@@ -155,10 +210,10 @@ pub(crate) fn put_step_shape(step: &Step, metrics: &mut ChannelMetrics) {
         return;
     }
     let percent = step.overshoot().scaled(100.0);
-    metrics.put(&OVERSHOOT, percent);
+    metrics.put(&OVERSHOOT, given(percent));
     match step.rise_time_s() {
         Ok(rise) => {
-            metrics.put(&RISE_TIME, rise);
+            metrics.put(&RISE_TIME, given(rise));
         }
         Err(reason) => metrics.miss(&RISE_TIME, reason),
     }
@@ -176,7 +231,7 @@ mod tests {
                 index: 16,
                 height_deg_per_h,
                 settling: Settling {
-                    settling_time_s: 0.1,
+                    settling_time_s: Estimate::exact(0.1),
                     band_deg_per_h: 50.0,
                     final_deg_per_h: 100.0,
                     noise_std_deg_per_h: 10.0,
@@ -185,7 +240,7 @@ mod tests {
                 sample_period_s: 0.1,
             };
             let mut metrics = ChannelMetrics::default();
-            put_step_shape(&step, &mut metrics);
+            put_step_shape(&step, |estimate| estimate, &mut metrics);
             for key in [&OVERSHOOT, &RISE_TIME] {
                 assert_eq!(metrics.why_unavailable(key), Some(NO_HEIGHT));
             }

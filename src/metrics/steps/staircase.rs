@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::scale_factor::{
     RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero, distinct_rates,
-    distinct_rates_by_sense, fit_scale_factor, too_few_rates,
+    distinct_rates_by_sense, fit_drifting_scale_factor, too_few_rates,
 };
 use super::small_input::measure_small_inputs;
 use crate::metrics::estimate::blocks::equal_block_means;
@@ -261,7 +261,12 @@ pub(crate) fn measure_scale_factor(
         }
     };
     let points: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
-    match fit_scale_factor(&points, rest) {
+    let ranges: Vec<Range<usize>> = dwells
+        .iter()
+        .filter_map(|(dwell, _)| counted(dwell, samples))
+        .collect();
+    let drift = |one: usize, other: usize| record.drift_covariance(&ranges[one], &ranges[other]);
+    match fit_drifting_scale_factor(&points, rest, &drift) {
         Ok(fit) => {
             put_fit(&fit, staircase, points.len(), metrics);
             put_rates(

@@ -102,6 +102,7 @@ mod tests {
         let adaptive = WeightRule::Adaptive {
             desired_weights: vec![1.0],
             is_dc_gain_one: false,
+            forgetting_factor: None,
         };
         assert_eq!(of(adaptive), 10);
         let pole = (-1.0_f64 / 100.0).exp();

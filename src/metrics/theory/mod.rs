@@ -2,5 +2,7 @@
 
 pub(super) mod bound;
 pub(super) mod claim;
+pub(super) mod learning;
 pub(super) mod memory;
 pub(super) mod prediction;
+mod stretches;

@@ -56,6 +56,7 @@ pub fn predict(shape: &FilterShape, second_moment: &[f64]) -> Option<Prediction>
         WeightRule::Adaptive {
             desired_weights,
             is_dc_gain_one,
+            ..
         } => {
             let weights = wiener_weights(shape, desired_weights, *is_dc_gain_one, second_moment)?;
             ImpulseResponse::Finite(weights)

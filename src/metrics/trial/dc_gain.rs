@@ -1,10 +1,14 @@
 //! DC gain of a filter, found by replay, and metrics restored by it.
 
+use crate::metrics::estimate::influence::Learned;
+use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::{ChannelMetrics, EXPECTED};
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
-use crate::metrics::record::FilterFacts;
+use crate::metrics::record::{FilterFacts, Record, WeightScatter};
+use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
+use crate::signal::WeightRule;
 
 /// DC gain.
 pub static DC_GAIN: MetricKey = MetricKey::of_filters(
@@ -61,16 +65,47 @@ pub static BIAS_STABILITY_OVER_DC_GAIN: MetricKey = MetricKey::of_filters(
 .needs(Needs::ScenarioBlocks)
 .tables(&[Table::Rest]);
 
-/// Enters the DC gains found by replay, which are exact up to rounding.
-pub(crate) fn put_dc_gains(facts: &FilterFacts, metrics: &mut ChannelMetrics) {
-    for (key, gain) in [
-        (&DC_GAIN, facts.dc_gain),
-        (&DC_GAIN_ADAPTED, facts.dc_gain_adapted),
+/// Enters the DC gains found by replay.
+///
+/// Those of given weights are exact. Weights that adapt scatter from seed to seed: the blocks of the
+/// record show it, or what the filter has learned from each stretch of its words.
+pub(crate) fn put_dc_gains(record: &Record, facts: &FilterFacts, metrics: &mut ChannelMetrics) {
+    let scatter = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
+    let estimate = |gain: f64, blocks: &[f64], learned: Option<Learned>| {
+        if !matches!(facts.shape.rule, WeightRule::Adaptive { .. }) || facts.dc_gain_is_held() {
+            return Estimate::exact(gain);
+        }
+        let of_blocks = interval::from_parts(gain, blocks);
+        match learned {
+            Some(learned) => learned.spread().about(gain),
+            None if matches!(scatter, WeightScatter::Learned(_)) => {
+                Estimate::without_interval(gain, NOT_FROM_ONE_RECORD)
+            }
+            None => scatter.unless_unknown(of_blocks),
+        }
+    };
+    let sums: Vec<f64> = facts
+        .block_weights
+        .iter()
+        .map(|weights| weights.iter().sum())
+        .collect();
+    let weights = facts.mean_weights.as_deref();
+    let by_weights = scatter.of(weights, |weights| weights.iter().sum());
+    let learning = facts.learning.as_ref();
+    let adapted = learning.and_then(|known| known.adapted_gain(facts.added_rate_deg_per_h));
+    for (key, gain, blocks, learned) in [
+        (&DC_GAIN, facts.dc_gain, &sums, by_weights),
+        (
+            &DC_GAIN_ADAPTED,
+            facts.dc_gain_adapted,
+            &facts.block_dc_gains_adapted,
+            adapted,
+        ),
     ] {
         match gain {
             Some(gain) => {
                 metrics
-                    .put(key, Estimate::exact(gain))
+                    .put(key, estimate(gain, blocks, learned))
                     .fields
                     .insert("added_rate_deg_per_h", facts.added_rate_deg_per_h);
             }

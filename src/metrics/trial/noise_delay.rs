@@ -1,5 +1,6 @@
 //! A filter on the noise-delay plane: its bound, the curve of it, and how far above it stands.
 
+use crate::metrics::estimate::influence::{Learned, resampled};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
@@ -53,6 +54,28 @@ pub static NOISE_DELAY_BOUND: CurveKey = CurveKey::new(
 
 /// Points of the curve.
 const CURVE_POINTS: usize = 41;
+
+impl LeastNoise {
+    /// The bound with its interval: the scatter of the autocovariance, and of the delay it is taken at.
+    ///
+    /// The bound is made of parabolas in the delay: its extremes over the short interval are at the ends
+    /// unless the lowest point lies inside, which the value in the middle stands for. The scatter of the
+    /// autocovariance adds in quadrature; the two are nearly independent.
+    pub(crate) fn over_delay(
+        &self,
+        delay_samples: &Estimate,
+        at: impl Fn(f64) -> Option<Self>,
+        left_out: &[f64],
+    ) -> Estimate {
+        let value = self.noise_gain;
+        let ends = [delay_samples.low, delay_samples.high]
+            .map(|end| at(end).map_or(value, |least| least.noise_gain));
+        let colour = interval::jackknife(value, left_out).high - value;
+        let below = (value - ends[0].min(ends[1])).max(0.0).hypot(colour);
+        let above = (ends[0].max(ends[1]) - value).max(0.0).hypot(colour);
+        Estimate::with_interval(value, (value - below).max(0.0), value + above)
+    }
+}
 
 /// Enters the noise-delay bound with the delay it holds at, the taps that reach it and the white-noise
 /// figure beside it.
@@ -123,12 +146,14 @@ pub(crate) fn put_bound_curve(
 /// Enters `noise_gain_over_bound`.
 ///
 /// Blocks leave the noise and the bound together: of fixed weights with unit DC gain the ratio
-/// hardly scatters, as both follow from the same autocovariance.
+/// hardly scatters, as both follow from the same autocovariance. `learned` is what weights that forget
+/// nothing add to it.
 pub(crate) fn put_over_bound(
     channel: &LaggedProducts,
     raw: &LaggedProducts,
     bound: &Result<LeastNoise, Unavailable>,
     bounds_without: &[Result<LeastNoise, Unavailable>],
+    learned: Option<&Learned>,
     metrics: &mut ChannelMetrics,
 ) {
     let bound = match bound {
@@ -149,8 +174,31 @@ pub(crate) fn put_over_bound(
             Some(ratio(&own, &other, bound))
         })
         .collect();
-    metrics.put(
-        &NOISE_GAIN_OVER_BOUND,
-        interval::jackknife(value, &left_out),
+    let estimate = resampled(value, &left_out, learned);
+    metrics.put(&NOISE_GAIN_OVER_BOUND, estimate);
+}
+
+/// Adds what the uncertain delay does to the bound to the interval of the noise gain over it.
+///
+/// The scatter of the noise is in that interval already, where numerator and bound share it; of the
+/// bound's own interval only what exceeds it comes on top, in quadrature.
+pub(crate) fn widen_over_bound(bound: &Estimate, left_out: &[f64], metrics: &mut ChannelMetrics) {
+    let Some(metric) = metrics.get_mut(&NOISE_GAIN_OVER_BOUND) else {
+        return;
+    };
+    let colour = interval::jackknife(bound.value, left_out).high - bound.value;
+    let by_delay = |half_width: f64| {
+        let rest = (half_width * half_width - colour * colour).max(0.0).sqrt();
+        rest / bound.value * metric.estimate.value
+    };
+    let below = by_delay(bound.high - bound.value);
+    let above = by_delay(bound.value - bound.low);
+    let Estimate {
+        value, low, high, ..
+    } = metric.estimate;
+    metric.estimate = Estimate::with_interval(
+        value,
+        (value - below.hypot(value - low)).max(0.0),
+        value + above.hypot(high - value),
     );
 }

@@ -1,15 +1,18 @@
 //! What theory predicts of a filter at rest, with the noise that the record shows.
 
 use super::noise_delay::{
-    NOISE_DELAY_BOUND_NOISE_GAIN, NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve, put_over_bound,
+    NOISE_DELAY_BOUND_NOISE_GAIN, NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve,
+    put_over_bound, widen_over_bound,
 };
+use crate::metrics::estimate::influence::{Spread, spread};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::{FilterFacts, Record};
-use crate::metrics::theory::bound::{NO_DELAY_AT_DC, filter_bound_at};
-use crate::metrics::theory::prediction::predict;
+use crate::metrics::theory::bound::{NO_DELAY_AT_DC, filter_bound_at, noise_power_gain};
+use crate::metrics::theory::prediction::{Prediction, predict};
 use crate::units;
 
 /// DC gain predicted.
@@ -42,22 +45,25 @@ pub(crate) fn measure_predictions(
     (channel, raw): (&LaggedProducts, &LaggedProducts),
     metrics: &mut ChannelMetrics,
 ) {
-    let mean_square = interval::mean(record.raw_deg_per_h).powi(2);
+    let mean = interval::mean(record.raw_deg_per_h);
     let ran = facts.mean_delay_at_dc_samples();
-    let at = |autocovariance: &[f64]| {
+    let at = |autocovariance: &[f64], mean: f64| {
         let second_moment: Vec<f64> = autocovariance
             .iter()
-            .map(|value| value + mean_square)
+            .map(|value| value + mean * mean)
             .collect();
         let prediction = predict(&facts.shape, &second_moment)?;
         let delay_samples = ran.unwrap_or_else(|| prediction.delay_at_dc_samples());
         let bound = filter_bound_at(&facts.shape, delay_samples, autocovariance);
         Some((prediction.dc_gain(), delay_samples, bound))
     };
-    let parts: Vec<_> = (0..raw.blocks())
-        .filter_map(|block| at(&raw.autocovariance_without(block)))
+    let means = means_without_blocks(record.raw_deg_per_h, raw.blocks());
+    let parts: Vec<_> = means
+        .into_iter()
+        .enumerate()
+        .filter_map(|(block, mean)| at(&raw.autocovariance_without(block), mean))
         .collect();
-    let Some((dc_gain, delay_samples, bound)) = at(&raw.autocovariance()) else {
+    let Some((dc_gain, delay_samples, bound)) = at(&raw.autocovariance(), mean) else {
         metrics.miss(&DC_GAIN_PREDICTED, "the raw channel has no power");
         for name in [
             &NOISE_DELAY_BOUND_NOISE_GAIN,
@@ -69,20 +75,28 @@ pub(crate) fn measure_predictions(
         return;
     };
     let gains: Vec<f64> = parts.iter().map(|part| part.0).collect();
-    metrics.put(&DC_GAIN_PREDICTED, interval::jackknife(dc_gain, &gains));
-    let delay_ms = |samples: f64| {
-        let delay_s = samples * record.sample_period_s + facts.latency_s;
-        units::s_to_ms(delay_s)
-    };
-    if delay_samples.is_finite() {
-        let delays_ms: Vec<f64> = parts.iter().map(|part| delay_ms(part.1)).collect();
-        let at_dc = interval::jackknife(delay_ms(delay_samples), &delays_ms);
-        metrics.put(&DELAY_AT_DC, at_dc);
+    let drift = record.drift_variance().sqrt();
+    let by_drift = at(&raw.autocovariance(), mean + drift).map_or(0.0, |moved| moved.0 - dc_gain);
+    let spread = spread(&gains, None).plus(Spread::known(by_drift * by_drift));
+    metrics.put(&DC_GAIN_PREDICTED, spread.about(dc_gain));
+    let delay = if delay_samples.is_finite() {
+        let left_out: Vec<f64> = parts.iter().map(|part| part.1).collect();
+        put_delay_at_dc(record, facts, (delay_samples, &left_out), metrics)
     } else {
         metrics.miss(&DELAY_AT_DC, NO_DELAY_AT_DC);
-    }
+        Estimate::exact(delay_samples)
+    };
     let without: Vec<_> = parts.into_iter().map(|part| part.2).collect();
-    put_over_bound(channel, raw, &bound, &without, metrics);
+    let newest = facts.shape.newest_age_samples;
+    let autocovariance = raw.autocovariance();
+    let scatter = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
+    let over = scatter.of(facts.mean_weights.as_deref(), |weights| {
+        let delay = Prediction::of_weights(weights.to_vec(), newest).delay_at_dc_samples();
+        let least = filter_bound_at(&facts.shape, delay, &autocovariance);
+        let least = least.map_or(f64::NAN, |least| least.noise_gain);
+        noise_power_gain(weights, &autocovariance) / least
+    });
+    put_over_bound(channel, raw, &bound, &without, over.as_ref(), metrics);
     put_bound_curve(
         facts,
         &raw.autocovariance(),
@@ -93,11 +107,55 @@ pub(crate) fn measure_predictions(
         .iter()
         .filter_map(|bound| Some(bound.as_ref().ok()?.noise_gain))
         .collect();
-    put_bound(
-        bound.map(|least| (interval::jackknife(least.noise_gain, &bounds), least)),
-        facts,
-        delay_samples,
-        record.sample_period_s,
-        metrics,
-    );
+    let bound = bound.map(|least| {
+        let at = |delay| filter_bound_at(&facts.shape, delay, &autocovariance).ok();
+        (least.over_delay(&delay, at, &bounds), least)
+    });
+    if let (Ok((bound, _)), None) = (&bound, &over) {
+        widen_over_bound(bound, &bounds, metrics);
+    }
+    put_bound(bound, facts, delay_samples, record.sample_period_s, metrics);
+}
+
+/// Mean of the values with each of `blocks` blocks of equal length left out.
+fn means_without_blocks(values: &[f64], blocks: usize) -> Vec<f64> {
+    let total: f64 = values.iter().sum();
+    let border = |block: usize| values.len() * block / blocks;
+    (0..blocks)
+        .map(|block| {
+            let own = &values[border(block)..border(block + 1)];
+            (total - own.iter().sum::<f64>()) / (values.len() - own.len()) as f64
+        })
+        .collect()
+}
+
+/// Enters the delay at DC, and returns it in samples without the latency: of given weights exact, of ones that learn by their blocks or by what they
+/// have learned, of a prediction by the blocks left out.
+fn put_delay_at_dc(
+    record: &Record,
+    facts: &FilterFacts,
+    (delay_samples, left_out): (f64, &[f64]),
+    metrics: &mut ChannelMetrics,
+) -> Estimate {
+    let newest = facts.shape.newest_age_samples;
+    let delay =
+        |weights: &[f64]| Prediction::of_weights(weights.to_vec(), newest).delay_at_dc_samples();
+    let scatter = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
+    let samples = match scatter.of(facts.mean_weights.as_deref(), delay) {
+        Some(learned) => learned.spread().about(delay_samples),
+        None if facts.block_weights.is_empty() => interval::jackknife(delay_samples, left_out),
+        None => {
+            let blocks: Vec<f64> = facts
+                .block_weights
+                .iter()
+                .map(|block| delay(block))
+                .collect();
+            scatter.unless_unknown(interval::from_parts(delay_samples, &blocks))
+        }
+    };
+    let delay_s = samples
+        .scaled(record.sample_period_s)
+        .shifted(facts.latency_s);
+    metrics.put(&DELAY_AT_DC, delay_s.scaled(units::s_to_ms(1.0)));
+    samples
 }

@@ -6,7 +6,7 @@ use crate::report::calibration::documents::calibration_json;
 use crate::report::comparison::json::comparison;
 use crate::report::json::channel::channel;
 use crate::report::json::compensation::compensation_json;
-use crate::report::layout::json::{SCHEMA, tool};
+use crate::report::layout::json::{INTERVALS, SCHEMA, tool};
 use crate::report::layout::json::{numbers, object, pretty, put};
 use crate::report::text::scale_factor::filter_state_word;
 use crate::report::{RunOutcome, RunReport, RunStatus};
@@ -32,6 +32,7 @@ pub fn run_summary_json(report: &RunReport) -> String {
         ("tool", tool(report.tool_version)),
         ("scenario", scenario(report)),
         ("gyro", gyro(report.gyro)),
+        ("intervals", INTERVALS.into()),
         ("channels", channels.into()),
         ("published", Value::Array(published)),
         ("gates", Value::Array(gates)),

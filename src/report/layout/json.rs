@@ -1,6 +1,6 @@
 //! JSON that people can read: one record or one curve a line.
 
-use crate::metrics::{Estimate, Metric};
+use crate::metrics::{Estimate, IntervalKind, Metric};
 use serde_json::{Map, Number, Value};
 use std::fmt::Write as _;
 
@@ -133,11 +133,33 @@ pub(crate) fn tool(version: &str) -> Value {
 /// A metric with its interval, unit and fields.
 pub(crate) fn estimate(metric: &Metric) -> Map<String, Value> {
     let mut record = interval(&metric.estimate);
+    if let Some(word) = interval_word(&metric.estimate) {
+        record.insert(INTERVAL.to_owned(), word.into());
+    }
     record.insert("unit".to_owned(), metric.unit.into());
     for (field, value) in &metric.fields {
         put(&mut record, field, *value);
     }
     record
+}
+
+/// Key of what the ends of an estimate are, where they are no interval.
+pub(crate) const INTERVAL: &str = "interval";
+
+/// Word for a value that no noise moves, or that is a fact of the record.
+pub(crate) const EXACT: &str = "exact";
+
+/// What every interval of a summary is that says nothing else.
+pub(crate) const INTERVALS: &str = "confidence intervals for the ensemble value: the mean over seeds \
+     of records of this length and warm-up, same scenario";
+
+/// What the ends of an estimate are, where they are no interval.
+fn interval_word(estimate: &Estimate) -> Option<&'static str> {
+    match estimate.interval {
+        IntervalKind::Exact => Some(EXACT),
+        IntervalKind::Absent(reason) => Some(reason),
+        _ => None,
+    }
 }
 
 /// A value with its interval.

@@ -12,6 +12,7 @@ use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FitSheet, FitTerm, Metric, RepeatStatistics,
 };
 use crate::report::calibration::documents::THETAS;
+use crate::report::layout::json::{EXACT, INTERVAL};
 use crate::report::restore::calibration::calibration_sheet;
 use crate::signal::{CalibrationSheet, CompensationSheet};
 
@@ -103,15 +104,19 @@ fn channel(record: &Value) -> Option<ChannelMetrics> {
 }
 
 fn metric(record: &Value) -> Option<Metric> {
+    let [value, low, high] = ["value", "low", "high"].map(|key| real(record, key));
     let estimate = Estimate {
-        value: real(record, "value")?,
-        low: real(record, "low")?,
-        high: real(record, "high")?,
         confidence: real(record, "confidence")?,
+        ..match record.get(INTERVAL).map(Value::as_str) {
+            None => Estimate::with_interval(value?, low?, high?),
+            Some(Some(EXACT)) => Estimate::exact(value?),
+            Some(reason) => Estimate::without_interval(value?, interned(reason?)),
+        }
     };
     let mut fields = BTreeMap::new();
     for (key, value) in record.as_object()? {
-        if !["value", "low", "high", "confidence", "unit"].contains(&key.as_str()) {
+        let own = ["value", "low", "high", "confidence", INTERVAL, "unit"];
+        if !own.contains(&key.as_str()) {
             fields.insert(interned(key), value.as_f64()?);
         }
     }

@@ -20,6 +20,10 @@ use crate::wording::printable;
 /// What stands where there is no number.
 const NOTHING: &str = "-";
 const INDENT: &str = "  ";
+/// What the intervals of the table are.
+const INTERVALS: &str = "±: 95 % confidence for the mean over seeds of records like this one; a figure \
+     without is exact or, as summary.json then says, has none";
+
 /// The table of one run: budget, channels by metrics, published figures beside the simulated
 /// ones, gates, failures and notes. Lines are kept within `width` where words allow it.
 #[must_use]
@@ -30,6 +34,7 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
         text.push_str(&compensation_text(sheet, width));
     }
     text.push_str(&channels_text(&report.measured(), width, colour));
+    text.push_str(&wrapped(INTERVALS, INDENT, width));
     text.push_str(&scale_factor_text(report, width, colour));
     text.push_str(&repeats_text(report, width, colour));
     let verdicts = report.verdicts;
