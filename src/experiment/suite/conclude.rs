@@ -41,7 +41,7 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
     let tables = unbroken(ledger, || report::comparison_files(&comparison));
     let mut files = tables.unwrap_or_default();
     let summary = || report::suite_summary_json(VERSION, &runs, &comparison, &stale);
-    let junit = || report::junit_xml(&runs);
+    let junit = || report::junit_xml(&runs, None);
     files.extend(unbroken(ledger, summary).map(|text| (SUMMARY.to_owned(), text)));
     files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
     failures.extend(output.publish(&files).err().map(|error| error.to_string()));
