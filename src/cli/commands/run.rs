@@ -113,9 +113,8 @@ fn closing(suite: &SuiteOutcome, format: Format) -> String {
             let suite = report::suite_text(runs, width, colour);
             suite + &report::comparison_text(across, width, colour)
         }
-        Format::Json => {
-            report::suite_summary_json(env!("CARGO_PKG_VERSION"), runs, across, &suite.stale)
-        }
+        // What could not be written is told as a failure of the suite.
+        Format::Json => suite.summary_json().unwrap_or_default(),
         // Every run has been printed on its own line.
         Format::Jsonl => String::new(),
     }

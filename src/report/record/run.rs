@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::metrics::{ChannelFailure, ChannelMetrics, Metric};
 use crate::report::record::columns::headline;
+use crate::report::record::sweep::PointOfSweep;
 use crate::scenario::Scenario;
 use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
 
@@ -20,7 +21,7 @@ pub struct RunReport<'a> {
     /// Digest of the resolved scenario.
     pub digest: &'a str,
     /// Point of a sweep: its index and the keys it sets.
-    pub sweep: Option<(usize, Vec<(String, String)>)>,
+    pub sweep: Option<PointOfSweep>,
     /// The gyro in closed form.
     pub gyro: &'a GyroFacts,
     /// What was taken out of the outputs, if anything was.
@@ -90,6 +91,8 @@ pub struct RunOutcome {
     pub folder: String,
     /// Name of the scenario file, without the folder.
     pub file: String,
+    /// Point of a sweep: its index and the keys it sets.
+    pub sweep: Option<PointOfSweep>,
     /// Channels, `raw` first.
     pub channels: Vec<ChannelOutcome>,
     /// Judged gates.
@@ -123,6 +126,7 @@ impl RunOutcome {
             name: report.scenario.name.clone(),
             folder: folder.to_owned(),
             file: report.file.to_owned(),
+            sweep: report.sweep.clone(),
             channels,
             verdicts: report.verdicts.to_vec(),
             kept: Vec::new(),
@@ -139,6 +143,7 @@ impl RunOutcome {
             name: name.to_owned(),
             folder: folder.to_owned(),
             file: file.to_owned(),
+            sweep: None,
             channels: Vec::new(),
             verdicts: Vec::new(),
             kept: Vec::new(),
@@ -156,6 +161,12 @@ impl RunOutcome {
             is_not_run: true,
             ..Self::failed(name, folder, file, String::new())
         }
+    }
+
+    /// The outcome of a run at a point of a sweep.
+    #[must_use]
+    pub fn at(self, sweep: Option<PointOfSweep>) -> Self {
+        Self { sweep, ..self }
     }
 
     /// The outcome with the metrics `keys` of every channel that has one of them.
