@@ -12,6 +12,7 @@ mod assembly;
 mod average_output;
 mod bit_exact;
 mod bounds;
+mod build_servers;
 mod calibrate;
 mod calibrate_files;
 mod calibration_campaign;

@@ -16,17 +16,18 @@
 //! | `csv` | metrics, curves and repeats |
 //! | `json` | `summary.json` of runs and suites |
 //! | `restore` | `summary.json` read back |
+//! | `build_server` | JUnit, annotations, Markdown and metrics for build servers |
 //!
 //! [`artefacts`](fn@artefacts) lists every file that is written, with what makes it.
 
 mod artefacts;
 mod budget;
+mod build_server;
 mod calibration;
 mod claim;
 mod comparison;
 mod csv;
 mod json;
-mod junit;
 mod kalman;
 mod layout;
 mod log;
@@ -40,6 +41,10 @@ pub use artefacts::{
     calibration_files, log_files, plots, run_file_names, run_files, run_pictures, suite_files,
 };
 pub use budget::{budget_json, budget_text};
+pub use build_server::bencher::{BencherMetrics, is_bencher_metrics};
+pub use build_server::github::github_annotations;
+pub use build_server::junit::{SuiteTimes, is_junit_xml, junit_xml};
+pub use build_server::markdown::{is_suite_markdown, suite_markdown};
 pub use calibration::calibrate::{CalibrateReport, calibrate_json, calibrate_text};
 pub use calibration::documents::{CalibrationProvenance, calibration_json};
 pub use calibration::text::calibration_text;
@@ -51,7 +56,6 @@ pub use csv::metrics::SuiteMetrics;
 pub use json::failed::{FailedRun, failed_run_json};
 pub use json::suite::{SuiteReport, write_suite_summary};
 pub use json::summary::run_summary_json;
-pub use junit::junit_xml;
 pub use kalman::{KalmanReport, is_kalman_json, kalman_json};
 pub use log::{LogReport, log_json, log_text};
 pub use plot::{Pictures, SVG_BYTES_MAX};

@@ -2,6 +2,7 @@
 //!
 //! `FOGBENCH_BLESS=1 cargo test --test integration generated` writes the generated ones.
 
+mod ci_page;
 mod command_line_page;
 mod console;
 mod figures;

@@ -7,6 +7,7 @@ use std::process::{Command, Output};
 
 pub(crate) mod generated;
 pub(crate) mod gyro_cases;
+pub(crate) mod junit;
 pub(crate) mod patent_cases;
 pub(crate) mod reference_gyro;
 pub(crate) mod run;

@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::commands::select;
+use crate::cli::commands::server_files::ServerFiles;
 use crate::cli::options::arguments::{ResumeFrom, RunOptions};
 use crate::cli::options::format::Format;
 use crate::cli::terminal::exit::{Exit, io_failure};
@@ -41,7 +42,11 @@ pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Re
         resume: resume(options.resume),
         ..SuiteOptions::new(options.output.clone())
     };
-    let progress = Progress::new(&plans, options, interrupt);
+    let server = match ServerFiles::check(options, &plans) {
+        Ok(server) => server,
+        Err(exit) => return Ok(exit),
+    };
+    let progress = Progress::new(&plans, (options, server), interrupt);
     if let Some(text) = senseless_threads(options) {
         output::talk(&format!(
             "warning: RAYON_NUM_THREADS = `{}` is no number of threads: one per core",
@@ -124,6 +129,7 @@ fn closing(suite: &SuiteOutcome, format: Format) -> String {
 struct Progress<'a> {
     bar: ProgressBar,
     options: &'a RunOptions,
+    server: ServerFiles<'a>,
     interrupt: &'a Interrupt,
     pending: Mutex<Pending>,
     /// Whether a run has failed.
@@ -138,7 +144,11 @@ struct Pending {
 }
 
 impl<'a> Progress<'a> {
-    fn new(plans: &[Plan], options: &'a RunOptions, interrupt: &'a Interrupt) -> Self {
+    fn new(
+        plans: &[Plan],
+        (options, server): (&'a RunOptions, ServerFiles<'a>),
+        interrupt: &'a Interrupt,
+    ) -> Self {
         let total_s: f64 = plans.iter().map(Plan::simulated_s).sum();
         let bar = if io::stderr().is_terminal() {
             ProgressBar::new(whole(total_s))
@@ -157,6 +167,7 @@ impl<'a> Progress<'a> {
         Self {
             bar,
             options,
+            server,
             interrupt,
             pending: Mutex::new(pending),
             has_failed: AtomicBool::new(false),
@@ -175,7 +186,9 @@ impl<'a> Progress<'a> {
                 let printed = self.print_rest(&closing(suite, self.options.format));
                 self.talk_of(suite);
                 let unprinted = printed.err().map(io_failure);
-                exit_of(suite, self.is_cut_short()).worst(unprinted.unwrap_or(Exit::Success))
+                let served = self.beside_bar(|| self.server.write(suite));
+                let exit = exit_of(suite, self.is_cut_short()).worst(served);
+                exit.worst(unprinted.unwrap_or(Exit::Success))
             }
             Err(error) => {
                 self.talk(&format!("error: {error}"));
@@ -297,7 +310,12 @@ impl experiment::Progress for Progress<'_> {
 }
 
 impl Observer for Progress<'_> {
+    fn started(&self, index: usize) {
+        self.server.started(index);
+    }
+
     fn finished(&self, index: usize, report: &RunReport) {
+        self.server.ended(index);
         let status = || RunOutcome::from_report(report, "").status();
         if self.options.fail_fast && status() != RunStatus::Pass {
             self.has_failed.store(true, Ordering::Relaxed);
@@ -306,6 +324,7 @@ impl Observer for Progress<'_> {
     }
 
     fn failed(&self, index: usize, outcome: &RunOutcome) {
+        self.server.ended(index);
         self.has_failed.store(true, Ordering::Relaxed);
         let reason = outcome.error.as_deref().unwrap_or_default();
         self.talk(&format!("error: {}: {reason}", outcome.folder));

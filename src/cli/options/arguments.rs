@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::cli::options::build_server::BuildServerOptions;
 use crate::cli::options::calibrate::CalibrateOptions;
 use crate::cli::options::claim::ClaimOptions;
 use crate::cli::options::format::Format;
@@ -125,7 +126,7 @@ pub(in crate::cli) struct RunOptions {
     /// Folder for the results
     #[arg(short, long, value_name = "DIR", default_value = "output")]
     pub(in crate::cli) output: PathBuf,
-    /// Replace files and folders in it that fogbench did not write, or that were changed since
+    /// Replace files and folders that fogbench did not write, or that were changed since
     #[arg(long)]
     pub(in crate::cli) force: bool,
     /// Take over undamaged results of the same build, scenario, seed and inputs; `any-build`: of any
@@ -146,4 +147,6 @@ pub(in crate::cli) struct RunOptions {
     /// Form of the results on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(in crate::cli) format: Format,
+    #[command(flatten)]
+    pub(in crate::cli) server: BuildServerOptions,
 }

@@ -41,7 +41,7 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
     let mut failures: Vec<String> = failures.iter().map(ToString::to_string).collect();
     let tables = unbroken(ledger, || report::comparison_files(&comparison));
     let mut files = tables.unwrap_or_default();
-    let junit = || report::junit_xml(&runs);
+    let junit = || report::junit_xml(&runs, None);
     files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
     let summary = SuiteReport {
         tool_version: VERSION,
@@ -53,7 +53,8 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
         for (name, text) in &files {
             staged.write(name, text.as_bytes())?;
         }
-        write_metrics(staged, output, &summary, &mut failures)
+        let written = || write_metrics(staged, output, &summary, &mut failures);
+        unbroken(ledger, written).unwrap_or(Ok(()))
     });
     failures.extend(published.err().map(|error| error.to_string()));
     SuiteOutcome {

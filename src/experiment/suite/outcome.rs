@@ -12,6 +12,8 @@ use crate::store::StoreError;
 
 /// What the caller hears of the runs of a suite besides their progress; called from many threads.
 pub trait Observer: Progress {
+    /// Run `index` of the plan begins.
+    fn started(&self, _index: usize) {}
     /// Run `index` of the plan is done and its files stand in their place.
     fn finished(&self, _index: usize, _report: &RunReport) {}
     /// Run `index` of the plan could not finish, or its result could not be written; in the first case a

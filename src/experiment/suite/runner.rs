@@ -82,7 +82,10 @@ fn run_all(plans: &[Plan], layout: &Layout, suite: &Suite, observer: &dyn Observ
             return;
         }
         let plan = &plans[index];
-        let run = || run_scenario(plan, index, layout, suite, observer);
+        let run = || {
+            observer.started(index);
+            run_scenario(plan, index, layout, suite, observer)
+        };
         let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
             ledger.note_broken();
             Ok(Some(broken_run(plan, &*panic)))

@@ -81,6 +81,17 @@ pub struct ChannelOutcome {
     pub expected_failure: bool,
 }
 
+impl ChannelOutcome {
+    /// Why it failed, in a sentence; none if it did not.
+    pub(in crate::report) fn failure_text(&self) -> Option<String> {
+        let failure = self.failure.as_ref()?;
+        Some(format!(
+            "channel {} failed at sample {}: {}",
+            self.name, failure.sample, failure.message
+        ))
+    }
+}
+
 /// One run, as the suite sees it: small enough to keep for every run of a large sweep.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -180,6 +191,12 @@ impl RunOutcome {
         });
         self.kept = channels.filter(|(_, kept)| !kept.is_empty()).collect();
         self
+    }
+
+    /// Whether it ran to its end, so that its folder holds its result.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        self.error.is_none() && !self.is_not_run
     }
 
     /// How the run ended.

@@ -1,0 +1,224 @@
+//! What a build server gets of a suite: files beside the output folder, and annotations.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Instant, SystemTime};
+
+use crate::cli::options::arguments::RunOptions;
+use crate::cli::options::build_server::Annotations;
+use crate::cli::options::format::Format;
+use crate::cli::terminal::exit::{Exit, io_failure};
+use crate::cli::terminal::{output, place};
+use crate::experiment::{Plan, SuiteOutcome};
+use crate::report::{
+    BencherMetrics, RestoredRun, SUITE_SUMMARY, SuiteTimes, github_annotations, is_bencher_metrics,
+    is_junit_xml, is_suite_markdown, junit_xml, suite_markdown,
+};
+use crate::store::SingleFile;
+
+/// What is asked for, and the clock of the suite.
+pub(in crate::cli) struct ServerFiles<'a> {
+    options: &'a RunOptions,
+    /// Scenario file of each run.
+    scenario_files: Vec<String>,
+    began: Instant,
+    runs: Mutex<Vec<RunClock>>,
+}
+
+/// When a run began, and when it had ended.
+#[derive(Clone, Copy, Default)]
+struct RunClock {
+    began: Option<(SystemTime, Instant)>,
+    ended: Option<Instant>,
+}
+
+impl<'a> ServerFiles<'a> {
+    /// Starts the clock, once every file is known to be one that may be written.
+    ///
+    /// A refusal is printed before its exit code is returned.
+    pub(in crate::cli) fn check(options: &'a RunOptions, plans: &[Plan]) -> Result<Self, Exit> {
+        let files: Vec<SingleFile> = files(options).map(|(_, file)| file).collect();
+        let below = resolved(&options.output);
+        for (index, file) in files.iter().enumerate() {
+            let path = resolved(file.path);
+            if path.starts_with(&below) {
+                output::talk(&format!(
+                    "error: {} lies in the output folder, where nothing depends on the time or place of \
+                     a run: nothing was run; choose a file outside of {}",
+                    file.path.display(),
+                    options.output.display()
+                ));
+                return Err(Exit::Usage);
+            }
+            if files[..index]
+                .iter()
+                .any(|other| resolved(other.path) == path)
+            {
+                output::talk(&format!(
+                    "error: {} is asked for twice: nothing was run",
+                    file.path.display()
+                ));
+                return Err(Exit::Usage);
+            }
+            file.check().map_err(|error| place::refused(&error))?;
+            let folder = path.parent().unwrap_or(&path);
+            if !folder.is_dir() {
+                output::talk(&format!(
+                    "error: there is no folder {} for {}: nothing was run",
+                    folder.display(),
+                    file.path.display()
+                ));
+                return Err(Exit::Io);
+            }
+        }
+        Ok(Self {
+            options,
+            scenario_files: plans
+                .iter()
+                .map(|plan| plan.resolved().shown_file())
+                .collect(),
+            began: Instant::now(),
+            runs: Mutex::new(vec![RunClock::default(); plans.len()]),
+        })
+    }
+
+    /// Notes that a run begins.
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "a time stamp for the report of a build server, which is no result"
+    )]
+    pub(in crate::cli) fn started(&self, index: usize) {
+        if let Some(run) = self.clocks().get_mut(index) {
+            run.began = Some((SystemTime::now(), Instant::now()));
+        }
+    }
+
+    /// Notes that a run has ended.
+    pub(in crate::cli) fn ended(&self, index: usize) {
+        if let Some(run) = self.clocks().get_mut(index) {
+            run.ended = Some(Instant::now());
+        }
+    }
+
+    fn clocks(&self) -> MutexGuard<'_, Vec<RunClock>> {
+        self.runs.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn times(&self) -> SuiteTimes {
+        let of_run = |run: &RunClock| {
+            let (started, began) = run.began?;
+            Some((started, run.ended?.duration_since(began)))
+        };
+        SuiteTimes {
+            duration: self.began.elapsed(),
+            runs: self.clocks().iter().map(of_run).collect(),
+        }
+    }
+
+    /// Writes the files and prints the annotations; success, or how the program ends for want of one.
+    pub(in crate::cli) fn write(&self, suite: &SuiteOutcome) -> Exit {
+        let mut exit = Exit::Success;
+        for (kind, file) in files(self.options) {
+            let text = match kind {
+                Kind::Junit => junit_xml(&suite.runs, Some(&self.times())),
+                Kind::Markdown => suite_markdown(&suite.runs, ""),
+                Kind::Bencher => bencher_text(&self.options.output, suite),
+            };
+            if let Err(error) = file.write(&text) {
+                exit = exit.worst(place::refused(&error));
+            }
+        }
+        exit.worst(self.annotate(suite))
+    }
+
+    fn annotate(&self, suite: &SuiteOutcome) -> Exit {
+        let text = match self.options.server.annotations {
+            None => return Exit::Success,
+            Some(Annotations::Github) => {
+                github_annotations(&suite.runs, &self.scenario_files, from_here)
+            }
+        };
+        if self.options.format == Format::Text {
+            return output::data(&text).map_or_else(io_failure, |()| Exit::Success);
+        }
+        text.lines().for_each(output::talk);
+        Exit::Success
+    }
+}
+
+/// What a file holds.
+#[derive(Clone, Copy)]
+enum Kind {
+    Junit,
+    Markdown,
+    Bencher,
+}
+
+impl Kind {
+    /// Whether a text of this kind is one that fogbench wrote; an empty file holds nothing of anybody's, and
+    /// a build server makes that of a job's page beforehand.
+    fn is_ours(self) -> fn(&str) -> bool {
+        match self {
+            Self::Junit => |text| text.is_empty() || is_junit_xml(text),
+            Self::Markdown => |text| text.is_empty() || is_suite_markdown(text),
+            Self::Bencher => |text| text.is_empty() || is_bencher_metrics(text),
+        }
+    }
+}
+
+/// The files that are asked for.
+fn files(options: &RunOptions) -> impl Iterator<Item = (Kind, SingleFile<'_>)> {
+    let server = &options.server;
+    let asked = [
+        (Kind::Junit, &server.junit),
+        (Kind::Markdown, &server.summary_markdown),
+        (Kind::Bencher, &server.bmf),
+    ];
+    asked.into_iter().filter_map(|(kind, path)| {
+        let file = SingleFile {
+            path: path.as_deref()?,
+            is_ours: kind.is_ours(),
+            force: options.force,
+        };
+        Some((kind, file))
+    })
+}
+
+/// Metrics of every run of which the output folder holds the result of this suite.
+fn bencher_text(folder: &Path, suite: &SuiteOutcome) -> String {
+    let mut metrics = BencherMetrics::default();
+    for run in suite.runs.iter().filter(|run| run.is_finished()) {
+        let summary = folder.join(&run.folder).join(SUITE_SUMMARY.name);
+        let text = fs::read_to_string(summary).ok();
+        if let Some(restored) = text.and_then(|text| RestoredRun::of_summary(&text)) {
+            metrics.add(&run.folder, &restored.channels);
+        }
+    }
+    metrics.text()
+}
+
+/// A path with its links resolved as far as it exists.
+fn resolved(path: &Path) -> PathBuf {
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mut ancestors = whole.ancestors();
+    let found = ancestors.find_map(|it| Some((it, fs::canonicalize(it).ok()?)));
+    match found {
+        Some((stands, real)) => real.join(whole.strip_prefix(stands).unwrap_or(Path::new(""))),
+        None => whole,
+    }
+}
+
+/// A path from the working directory, `/` between its parts; as it is where it leads out of it.
+fn from_here(path: &str) -> String {
+    let here = std::env::current_dir().and_then(fs::canonicalize);
+    let file = fs::canonicalize(path);
+    let inside = here.ok().zip(file.ok());
+    let inside = inside.and_then(|(here, file)| Some(file.strip_prefix(here).ok()?.to_owned()));
+    let Some(inside) = inside else {
+        return path.to_owned();
+    };
+    let parts = inside.components();
+    let parts = parts.map(|part| part.as_os_str().to_string_lossy().into_owned());
+    parts.collect::<Vec<_>>().join("/")
+}
