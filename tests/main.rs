@@ -62,6 +62,7 @@ mod known_answers_thermal;
 mod known_answers_turntable;
 mod least_noise;
 mod library;
+mod metrics_file;
 mod metrics_intervals;
 mod metrics_records;
 mod metrology;

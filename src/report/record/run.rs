@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::gate::{Verdict, VerdictKind, estimate_text, expects_failure};
 use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 use crate::report::record::columns::{DIGITS, heading_of, headline, unit_text, value_text};
+use crate::report::record::sweep::PointOfSweep;
 use crate::scenario::Scenario;
 use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
 
@@ -20,7 +21,7 @@ pub struct RunReport<'a> {
     /// Digest of the resolved scenario.
     pub digest: &'a str,
     /// Point of a sweep: its index and the keys it sets.
-    pub sweep: Option<(usize, Vec<(String, String)>)>,
+    pub sweep: Option<PointOfSweep>,
     /// The gyro in closed form.
     pub gyro: &'a GyroFacts,
     /// What was taken out of the outputs, if anything was.
@@ -101,6 +102,8 @@ pub struct RunOutcome {
     pub folder: String,
     /// Name of the scenario file, without the folder.
     pub file: String,
+    /// Point of a sweep: its index and the keys it sets.
+    pub sweep: Option<PointOfSweep>,
     /// Channels, `raw` first.
     pub channels: Vec<ChannelOutcome>,
     /// Judged gates.
@@ -108,8 +111,6 @@ pub struct RunOutcome {
     /// The one or two figures that its gates or published rows are about, in words: channel, heading and
     /// value with unit.
     pub figures: Vec<String>,
-    /// Point of a sweep: the keys it sets, and to what.
-    pub point: Vec<(String, String)>,
     /// Metrics that a table of the suite asks for, by channel and key.
     pub kept: Vec<(String, BTreeMap<String, Metric>)>,
     /// Pictures in the folder of the run.
@@ -139,13 +140,10 @@ impl RunOutcome {
             name: report.scenario.name.clone(),
             folder: folder.to_owned(),
             file: report.file.to_owned(),
+            sweep: report.sweep.clone(),
             channels,
             verdicts: report.verdicts.to_vec(),
             figures: figures(report),
-            point: report
-                .sweep
-                .as_ref()
-                .map_or_else(Vec::new, |(_, point)| point.clone()),
             kept: Vec::new(),
             pictures: Vec::new(),
             error: None,
@@ -160,10 +158,10 @@ impl RunOutcome {
             name: name.to_owned(),
             folder: folder.to_owned(),
             file: file.to_owned(),
+            sweep: None,
             channels: Vec::new(),
             verdicts: Vec::new(),
             figures: Vec::new(),
-            point: Vec::new(),
             kept: Vec::new(),
             pictures: Vec::new(),
             error: Some(error),
@@ -179,6 +177,12 @@ impl RunOutcome {
             is_not_run: true,
             ..Self::failed(name, folder, file, String::new())
         }
+    }
+
+    /// The outcome of a run at a point of a sweep.
+    #[must_use]
+    pub fn at(self, sweep: Option<PointOfSweep>) -> Self {
+        Self { sweep, ..self }
     }
 
     /// The outcome with the metrics `keys` of every channel that has one of them.

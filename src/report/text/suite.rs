@@ -62,7 +62,7 @@ pub fn scenario_text(runs: &[RunOutcome], style: SuiteStyle, aside: &str) -> Str
     let Some(first) = ended.first() else {
         return String::new();
     };
-    if runs.len() == 1 && first.point.is_empty() {
+    if runs.len() == 1 && first.sweep.is_none() {
         return run_line(first, &first.name, style, aside) + &details(first, style, DETAILS_MAX);
     }
     let mut text = sweep_line(&first.name, &ended, style, aside);
@@ -208,15 +208,11 @@ fn gates_text(accepted: usize, gates: usize) -> String {
 }
 
 fn point_text(run: &RunOutcome) -> String {
-    let point: Vec<String> = run
-        .point
-        .iter()
-        .map(|(key, value)| format!("{key} = {value}"))
-        .collect();
-    if point.is_empty() {
+    let Some((_, point)) = &run.sweep else {
         return run.folder.clone();
-    }
-    point.join(", ")
+    };
+    let keys = point.iter().map(|(key, value)| format!("{key} = {value}"));
+    keys.collect::<Vec<_>>().join(", ")
 }
 
 /// Why a run failed: the run itself, its channels, its gates; no line of what passed.

@@ -157,9 +157,8 @@ impl Account {
                 let gap = if is_apart { "" } else { "\n" };
                 format!("{tables}{gap}{end}")
             }
-            Format::Json => {
-                report::suite_summary_json(env!("CARGO_PKG_VERSION"), runs, across, &suite.stale)
-            }
+            // What could not be written is told as a failure of the suite.
+            Format::Json => suite.summary_json().unwrap_or_default(),
             // Every run has been printed on its own line.
             Format::Jsonl => String::new(),
         }
