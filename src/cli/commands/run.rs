@@ -7,6 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::cli::commands::against::Against;
 use crate::cli::commands::select;
 use crate::cli::commands::server_files::ServerFiles;
 use crate::cli::options::arguments::{ResumeFrom, RunOptions};
@@ -42,11 +43,13 @@ pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Re
         resume: resume(options.resume),
         ..SuiteOptions::new(options.output.clone())
     };
-    let server = match ServerFiles::check(options, &plans) {
-        Ok(server) => server,
+    let beside = Against::read(options, &plans)
+        .and_then(|against| Ok((against, ServerFiles::check(options, &plans)?)));
+    let (against, server) = match beside {
+        Ok(beside) => beside,
         Err(exit) => return Ok(exit),
     };
-    let progress = Progress::new(&plans, (options, server), interrupt);
+    let progress = Progress::new(&plans, options, (against, server), interrupt);
     if let Some(text) = senseless_threads(options) {
         output::talk(&format!(
             "warning: RAYON_NUM_THREADS = `{}` is no number of threads: one per core",
@@ -130,6 +133,7 @@ fn closing(suite: &SuiteOutcome, format: Format) -> String {
 struct Progress<'a> {
     bar: ProgressBar,
     options: &'a RunOptions,
+    against: Against<'a>,
     server: ServerFiles<'a>,
     interrupt: &'a Interrupt,
     pending: Mutex<Pending>,
@@ -147,7 +151,8 @@ struct Pending {
 impl<'a> Progress<'a> {
     fn new(
         plans: &[Plan],
-        (options, server): (&'a RunOptions, ServerFiles<'a>),
+        options: &'a RunOptions,
+        (against, server): (Against<'a>, ServerFiles<'a>),
         interrupt: &'a Interrupt,
     ) -> Self {
         let total_s: f64 = plans.iter().map(Plan::simulated_s).sum();
@@ -168,6 +173,7 @@ impl<'a> Progress<'a> {
         Self {
             bar,
             options,
+            against,
             server,
             interrupt,
             pending: Mutex::new(pending),
@@ -187,8 +193,10 @@ impl<'a> Progress<'a> {
                 let printed = self.print_rest(&closing(suite, self.options.format));
                 self.talk_of(suite);
                 let unprinted = printed.err().map(io_failure);
-                let served = self.beside_bar(|| self.server.write(suite));
-                let exit = exit_of(suite, self.is_cut_short()).worst(served);
+                let compared = self.beside_bar(|| self.against.compare(suite));
+                let served = self.beside_bar(|| self.server.write(suite, &compared.markdown));
+                let exit = exit_of(suite, self.is_cut_short());
+                let exit = exit.worst(compared.exit).worst(served);
                 exit.worst(unprinted.unwrap_or(Exit::Success))
             }
             Err(error) => {

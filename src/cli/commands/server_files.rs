@@ -117,12 +117,14 @@ impl<'a> ServerFiles<'a> {
     }
 
     /// Writes the files and prints the annotations; success, or how the program ends for want of one.
-    pub(in crate::cli) fn write(&self, suite: &SuiteOutcome) -> Exit {
+    ///
+    /// * `comparison`: Markdown of a comparison with a baseline, empty without one.
+    pub(in crate::cli) fn write(&self, suite: &SuiteOutcome, comparison: &str) -> Exit {
         let mut exit = Exit::Success;
         for (kind, file) in files(self.options) {
             let text = match kind {
                 Kind::Junit => junit_xml(&suite.runs, Some(&self.times())),
-                Kind::Markdown => suite_markdown(&suite.runs, ""),
+                Kind::Markdown => suite_markdown(&suite.runs, comparison),
                 Kind::Bencher => bencher_text(&self.options.output, suite),
             };
             if let Err(error) = file.write(&text) {

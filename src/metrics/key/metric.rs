@@ -145,6 +145,36 @@ impl Pool {
     }
 }
 
+/// Which of two values is the better one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Better {
+    /// The lower one.
+    Lower,
+    /// The higher one.
+    Higher,
+    /// Neither: a change is a change.
+    Neither,
+}
+
+impl Better {
+    /// The word in files: `lower`, `higher` or `none`.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Lower => "lower",
+            Self::Higher => "higher",
+            Self::Neither => "none",
+        }
+    }
+
+    /// The one that a word of a file stands for.
+    #[must_use]
+    pub fn of_word(word: &str) -> Option<Self> {
+        let all = [Self::Lower, Self::Higher, Self::Neither];
+        all.into_iter().find(|better| better.as_str() == word)
+    }
+}
+
 /// Tables that have a column for the metric, by the kind of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Table {
@@ -191,6 +221,10 @@ pub struct MetricKey {
     pub applies: Applies,
     /// Whether only filters have it.
     pub filters_only: bool,
+    /// Which of two values is the better one.
+    pub better: Better,
+    /// Whether it follows from the settings alone: no noise of any seed moves it.
+    pub is_of_settings: bool,
     /// Names that people give to it, by their words without a unit.
     pub(crate) synonyms: &'static [&'static str],
     pub(crate) heading: Option<&'static str>,
@@ -233,6 +267,8 @@ impl MetricKey {
             definition,
             applies,
             filters_only: false,
+            better: Better::Neither,
+            is_of_settings: false,
             synonyms: &[],
             heading: None,
             needs: Needs::Record,
@@ -284,6 +320,30 @@ impl MetricKey {
     pub(crate) const fn heading(self, heading: &'static str) -> Self {
         Self {
             heading: Some(heading),
+            ..self
+        }
+    }
+
+    /// The same, the lower the better.
+    pub(crate) const fn lower_is_better(self) -> Self {
+        Self {
+            better: Better::Lower,
+            ..self
+        }
+    }
+
+    /// The same, the higher the better.
+    pub(crate) const fn higher_is_better(self) -> Self {
+        Self {
+            better: Better::Higher,
+            ..self
+        }
+    }
+
+    /// The same, moved by no noise.
+    pub(crate) const fn of_settings(self) -> Self {
+        Self {
+            is_of_settings: true,
             ..self
         }
     }
@@ -383,6 +443,18 @@ impl MetricKey {
     #[must_use]
     pub fn pooling(&self) -> String {
         self.pool.words()
+    }
+
+    /// Whether the suite's lines show it for some motion.
+    #[must_use]
+    pub fn is_headline(&self) -> bool {
+        !self.headlines.is_empty()
+    }
+
+    /// Whether nobody misses it who did not ask for it: a record need not have it.
+    #[must_use]
+    pub fn is_by_choice(&self) -> bool {
+        self.is_by_choice
     }
 
     /// Whether the scatter of repeats gives it, which a single record cannot.

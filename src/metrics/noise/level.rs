@@ -14,6 +14,7 @@ pub static NOISE_STD: MetricKey = MetricKey::new(
     Applies::Separable,
     "standard deviation of the samples about the signal: mean, fitted sine, or settled rate; over n less what is fitted",
 )
+.lower_is_better()
 .synonyms(&["std", "noise", "noise_rms", "standard_deviation"])
 .heading("noise std")
 .pooled(Pool::RootMeanSquare)
@@ -29,6 +30,7 @@ pub static NOISE_GAIN: MetricKey = MetricKey::of_filters(
     Applies::Separable,
     "variance about the signal over that of raw",
 )
+.lower_is_better()
 .synonyms(&["noise_power_gain", "noise_reduction"])
 .heading("noise power gain")
 .needs(Needs::SettledStep)

@@ -1,0 +1,34 @@
+//! A baseline brought up to date.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::record::{Entry, Id, Side};
+
+/// The baseline with the figures of a later side. Directions and tolerances stay those of the baseline, and
+/// so do scenarios of which the later side holds nothing.
+#[must_use]
+pub fn updated(baseline: &Side, later: &Side) -> Side {
+    let kept: BTreeMap<&Id, &Entry> = baseline.entries.iter().map(|it| (&it.id, it)).collect();
+    let scenarios = later.entries.iter().map(|it| it.id.scenario.as_str());
+    let scenarios: BTreeSet<&str> = scenarios
+        .chain(later.lacks.keys().map(|id| id.scenario.as_str()))
+        .collect();
+    let own = baseline.entries.iter();
+    let own = own.filter(|entry| !scenarios.contains(entry.id.scenario.as_str()));
+    let fresh = later.entries.iter().map(|entry| {
+        let before = kept.get(&entry.id);
+        Entry {
+            better: before.map_or(entry.better, |it| it.better),
+            absolute_tolerance: before.and_then(|it| it.absolute_tolerance),
+            relative_tolerance: before.and_then(|it| it.relative_tolerance),
+            ..entry.clone()
+        }
+    });
+    let mut entries: Vec<Entry> = own.cloned().chain(fresh).collect();
+    entries.sort_by(|one, other| one.id.cmp(&other.id));
+    Side {
+        tool_version: later.tool_version.clone(),
+        entries,
+        lacks: BTreeMap::new(),
+    }
+}
