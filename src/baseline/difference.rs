@@ -34,19 +34,44 @@ fn of_deviates(difference: f64, tolerance: f64, tail: impl Fn(f64, bool) -> f64)
     }
 }
 
-/// Pair by pair: Student's t of the differences of repeats that share their noise, and their mean. `None`
+/// Pairs of figures that share their noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pairs {
+    /// Repeats, so many.
+    Repeats(usize),
+    /// Blocks of the samples, so many.
+    Blocks(usize),
+}
+
+/// Pair by pair: Student's t of the differences of figures that share their noise, and their mean. `None`
 /// where there are no pairs, or they do not differ.
-pub(super) fn paired(old: &Entry, new: &Entry, tolerance: f64) -> Option<(f64, Chance)> {
-    let count = old.repeats.len();
-    if old.seed != new.seed || count < PAIRS_MIN || count != new.repeats.len() {
+pub(super) fn paired(old: &Entry, new: &Entry, tolerance: f64) -> Option<(Pairs, f64, Chance)> {
+    if old.seed != new.seed {
         return None;
     }
-    let pairs = old.repeats.iter().zip(&new.repeats);
-    let differences: Vec<f64> = pairs.map(|(old, new)| new - old).collect();
+    let of = |old: &[f64], new: &[f64]| {
+        let count = old.len();
+        if count < PAIRS_MIN || count != new.len() {
+            return None;
+        }
+        let pairs = old.iter().zip(new);
+        let differences: Vec<f64> = pairs.map(|(old, new)| new - old).collect();
+        let (mean, chance) = student(&differences, tolerance)?;
+        Some((count, mean, chance))
+    };
+    if let Some((count, mean, chance)) = of(&old.repeats, &new.repeats) {
+        return Some((Pairs::Repeats(count), mean, chance));
+    }
+    let (count, mean, chance) = of(&old.blocks, &new.blocks)?;
+    Some((Pairs::Blocks(count), mean, chance))
+}
+
+/// Mean of differences and the chance of it; `None` where all are zero.
+fn student(differences: &[f64], tolerance: f64) -> Option<(f64, Chance)> {
     if differences.iter().all(|difference| *difference == 0.0) {
         return None;
     }
-    let n = count as f64;
+    let n = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / n;
     let squares: f64 = differences.iter().map(|it| (it - mean).powi(2)).sum();
     let error = (squares / (n - 1.0) / n).sqrt();

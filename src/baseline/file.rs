@@ -223,8 +223,72 @@ fn entry(written: Written) -> Result<Entry, BaselineError> {
         seed: written.seed,
         conditions: written.digest,
         repeats: written.values,
+        blocks: Vec::new(),
         better,
         absolute_tolerance: written.absolute_tolerance,
         relative_tolerance: written.relative_tolerance,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WRITTEN: &str = "schema = 1\n[tool]\nname = \"fogbench\"\nversion = \"0.1.0\"\n[[metric]]\n\
+        scenario = \"power\"\npoint = { \"gyro.source.power_uw\" = 0.50 }\nchannel = \"raw\"\n\
+        metric = \"mean_deg_per_h\"\nvalue = 8\nlow = 7.5\nhigh = 8.5\nunit = \"deg/h\"\n\
+        direction = \"higher\"\nabsolute_tolerance = 1\nseed = 3\ndigest = \"c\"\nvalues = [1.0, 2]\n";
+
+    #[test]
+    fn a_baseline_reads_back_as_it_was_written() {
+        let read = read_baseline(WRITTEN).unwrap();
+        let entry = &read.entries[0];
+        assert_eq!(entry.better, Some(Better::Higher));
+        assert_eq!(entry.absolute_tolerance, Some(1.0));
+        assert_eq!(entry.repeats, [1.0, 2.0]);
+        let text = to_toml(&read);
+        assert!(is_baseline_toml(&text) && !is_baseline_toml(WRITTEN));
+        assert_eq!(read_baseline(&text).unwrap(), read, "{text}");
+        assert_eq!(to_toml(&read_baseline(&text).unwrap()), text);
+    }
+
+    #[test]
+    fn what_is_no_baseline_is_refused() {
+        let refused =
+            |from: &str, to: &str| read_baseline(&WRITTEN.replacen(from, to, 1)).unwrap_err();
+        assert_eq!(
+            refused("schema = 1", "schema = 2"),
+            BaselineError::Schema(2)
+        );
+        assert!(matches!(
+            refused("higher", "up"),
+            BaselineError::Direction { .. }
+        ));
+        assert!(matches!(
+            refused("absolute_tolerance = 1", "absolute_tolerance = -1.0"),
+            BaselineError::Range {
+                key: "absolute_tolerance",
+                ..
+            }
+        ));
+        assert!(matches!(
+            refused("low = 7.5\n", ""),
+            BaselineError::Syntax(_)
+        ));
+        assert!(matches!(
+            refused("low = 7.5", "low = 9.5"),
+            BaselineError::Range { key: "low", .. }
+        ));
+        assert!(matches!(
+            refused("absolute", "absolut"),
+            BaselineError::Syntax(_)
+        ));
+        assert!(matches!(
+            refused("seed = 3\n", ""),
+            BaselineError::Syntax(_)
+        ));
+        let metric = &WRITTEN[WRITTEN.find("[[metric]]").unwrap()..];
+        let twice = read_baseline(&format!("{WRITTEN}{metric}")).unwrap_err();
+        assert!(matches!(twice, BaselineError::Twice(_)));
+    }
 }

@@ -1,11 +1,11 @@
 //! The rule: what a difference is called.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use super::difference::{Chance, ends, paired, unpaired};
+use super::difference::{Chance, Pairs, ends, paired, unpaired};
 use super::holm::{FAMILY_ERROR, HEADLINE_WEIGHT, OTHER_WEIGHT, corrected};
 use super::record::{Entry, Id, Interval, Point, Side};
-use crate::metrics::{Better, find};
+use crate::metrics::{Better, MetricKey, find};
 
 /// Part of the earlier value that differs where the same formula is computed on another machine.
 const ROUNDING: f64 = 1e-9;
@@ -81,6 +81,8 @@ pub enum Basis {
     Tolerance,
     /// So many repeats of the same seed, pair by pair.
     Pairs(usize),
+    /// So many blocks of the samples of the same seed, pair by pair.
+    Blocks(usize),
     /// The figure's own interval: the run's noise is the same on both sides.
     SameNoise,
     /// Two intervals as independent.
@@ -96,7 +98,8 @@ impl Basis {
         match self {
             Self::Identical => "identical".to_owned(),
             Self::Tolerance => "by tolerance".to_owned(),
-            Self::Pairs(count) => format!("{count} pairs"),
+            Self::Pairs(count) => format!("{count} pairs of repeats"),
+            Self::Blocks(count) => format!("{count} pairs of blocks"),
             Self::SameNoise => "same noise".to_owned(),
             Self::Unpaired => "unpaired".to_owned(),
             Self::None => "not judged".to_owned(),
@@ -178,21 +181,28 @@ pub fn compare(old: &Side, new: &Side) -> Comparison {
             .collect()
     };
     let (old_entries, mut new_entries) = (by_id(old), by_id(new));
-    let same_noise = runs_of_same_noise(&old_entries, &new_entries);
+    let runs = facts_of_runs(&old_entries, &new_entries);
     let mut drafts: Vec<Draft> = Vec::new();
     for (id, earlier) in old_entries {
         drafts.push(match new_entries.remove(&id) {
-            Some(later) => {
-                let is_same_noise = same_noise.contains(&(id.scenario.clone(), id.point.clone()));
-                pair(earlier, later, is_same_noise)
-            }
+            Some(later) => pair(earlier, later, &runs[&run_of(&id)]),
+            None if runs[&run_of(&id)].is_changed => Draft::decided(Row {
+                old: Some(earlier),
+                outcome: Outcome::ChangedScenario,
+                ..Row::open(id)
+            }),
             None => Draft::decided(gone(earlier, new)),
         });
     }
     for (id, later) in new_entries {
+        let is_changed = runs.get(&run_of(&id)).is_some_and(|run| run.is_changed);
         let row = Row {
             new: Some(later),
-            outcome: Outcome::New,
+            outcome: if is_changed {
+                Outcome::ChangedScenario
+            } else {
+                Outcome::New
+            },
             ..Row::open(id)
         };
         drafts.push(Draft::decided(row));
@@ -207,22 +217,48 @@ pub fn compare(old: &Side, new: &Side) -> Comparison {
     }
 }
 
-/// Runs whose noise is the same on both sides: of one seed, and a noisy figure of the gyro itself is the
-/// same to the bit.
-fn runs_of_same_noise(
+/// What is known of a run as a whole.
+#[derive(Default)]
+struct RunFacts {
+    /// Whether its noise is the same on both sides: of one seed, and a noisy figure of the gyro itself is
+    /// the same to the bit.
+    is_same_noise: bool,
+    /// Whether its conditions differ.
+    is_changed: bool,
+    /// Metrics that it has, by which its motion is known.
+    metrics: Vec<&'static MetricKey>,
+}
+
+impl RunFacts {
+    /// Share of the error that a metric may spend.
+    fn weight(&self, key: Option<&MetricKey>) -> f64 {
+        match key {
+            Some(key) if key.is_headline_of(&self.metrics) => HEADLINE_WEIGHT,
+            _ => OTHER_WEIGHT,
+        }
+    }
+}
+
+fn run_of(id: &Id) -> (String, Point) {
+    (id.scenario.clone(), id.point.clone())
+}
+
+fn facts_of_runs(
     old: &BTreeMap<Id, Entry>,
     new: &BTreeMap<Id, Entry>,
-) -> BTreeSet<(String, Point)> {
-    let is_shared = |(id, earlier): &(&Id, &Entry)| {
+) -> BTreeMap<(String, Point), RunFacts> {
+    let mut runs: BTreeMap<(String, Point), RunFacts> = BTreeMap::new();
+    for (id, earlier) in old {
+        let facts = runs.entry(run_of(id)).or_default();
         let is_raw = id.channel == "raw" || id.channel.ends_with("_raw");
         let is_noisy = matches!(earlier.interval, Interval::Confidence { low, high } if low < high);
         let later = new.get(id);
-        is_raw && is_noisy && later.is_some_and(|later| is_identical(earlier, later))
-    };
-    let shared = old.iter().filter(is_shared);
-    shared
-        .map(|(id, _)| (id.scenario.clone(), id.point.clone()))
-        .collect()
+        let is_shared = later.is_some_and(|later| is_identical(earlier, later));
+        facts.is_changed |= later.is_some_and(|later| later.conditions != earlier.conditions);
+        facts.is_same_noise |= is_raw && is_noisy && is_shared;
+        facts.metrics.extend(find(&id.metric));
+    }
+    runs
 }
 
 fn is_identical(old: &Entry, new: &Entry) -> bool {
@@ -272,7 +308,7 @@ fn gone(earlier: Entry, new: &Side) -> Row {
 }
 
 /// Judges two figures as far as they can be judged by themselves.
-fn pair(old: Entry, new: Entry, is_same_noise: bool) -> Draft {
+fn pair(old: Entry, new: Entry, run: &RunFacts) -> Draft {
     let key = find(&old.id.metric);
     let better = old.better.or(new.better);
     let better = better.unwrap_or_else(|| key.map_or(Better::Neither, |key| key.better));
@@ -324,12 +360,13 @@ fn pair(old: Entry, new: Entry, is_same_noise: bool) -> Draft {
             decided(Outcome::Unsure, Basis::None, reason, old, new)
         };
     }
-    let weight = match key {
-        Some(key) if key.is_headline() => HEADLINE_WEIGHT,
-        _ => OTHER_WEIGHT,
-    };
-    if let Some((mean, chance)) = paired(&old, &new, tolerance) {
-        let draft = decided(Outcome::Same, Basis::Pairs(old.repeats.len()), "", old, new);
+    let weight = run.weight(key);
+    if let Some((pairs, mean, chance)) = paired(&old, &new, tolerance) {
+        let basis = match pairs {
+            Pairs::Repeats(count) => Basis::Pairs(count),
+            Pairs::Blocks(count) => Basis::Blocks(count),
+        };
+        let draft = decided(Outcome::Same, basis, "", old, new);
         return Draft {
             row: Row {
                 difference: Some(mean),
@@ -342,7 +379,7 @@ fn pair(old: Entry, new: Entry, is_same_noise: bool) -> Draft {
             }),
         };
     }
-    if is_same_noise {
+    if run.is_same_noise {
         let outcome = beyond_own_interval(&old, &new, tolerance, better);
         return decided(outcome, Basis::SameNoise, "", old, new);
     }
@@ -420,5 +457,264 @@ fn decide(drafts: &mut [Draft]) {
                 draft.row.outcome = Outcome::Unsure;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::baseline::record::Lack;
+
+    const ARW: &str = "angle_random_walk_deg_per_sqrt_h";
+
+    fn entry(metric: &str, value: f64, half_width: f64) -> Entry {
+        Entry {
+            id: Id {
+                scenario: "s".to_owned(),
+                point: Point::new(),
+                channel: "raw".to_owned(),
+                metric: metric.to_owned(),
+            },
+            value,
+            interval: Interval::Confidence {
+                low: value - half_width,
+                high: value + half_width,
+            },
+            degrees_of_freedom: None,
+            unit: "deg/h".to_owned(),
+            seed: 1,
+            conditions: "c".to_owned(),
+            repeats: Vec::new(),
+            blocks: Vec::new(),
+            better: None,
+            absolute_tolerance: None,
+            relative_tolerance: None,
+        }
+    }
+
+    fn exact(metric: &str, value: f64) -> Entry {
+        Entry {
+            interval: Interval::Exact,
+            ..entry(metric, value, 0.0)
+        }
+    }
+
+    fn side(entries: &[Entry]) -> Side {
+        Side {
+            entries: entries.to_vec(),
+            ..Side::default()
+        }
+    }
+
+    fn only(old: Entry, new: Entry) -> Row {
+        let comparison = compare(&side(&[old]), &side(&[new]));
+        assert_eq!(comparison.rows.len(), 1);
+        comparison.rows[0].clone()
+    }
+
+    fn reseeded(entry: Entry) -> Entry {
+        Entry { seed: 2, ..entry }
+    }
+
+    #[test]
+    fn a_noisy_figure_is_worse_beyond_its_noise_in_the_worse_direction() {
+        let judged = |metric: &str, value: f64| {
+            only(entry(metric, 1.0, 0.1), reseeded(entry(metric, value, 0.1))).outcome
+        };
+        assert_eq!(judged(ARW, 1.3), Outcome::Worse);
+        assert_eq!(judged(ARW, 0.7), Outcome::Better);
+        assert_eq!(judged(ARW, 1.05), Outcome::Same);
+        assert_eq!(judged("bandwidth_hz", 1.3), Outcome::Better);
+        assert_eq!(judged("bandwidth_hz", 0.7), Outcome::Worse);
+        assert_eq!(judged("mean_deg_per_h", 1.3), Outcome::Changed);
+        assert_eq!(judged("mean_deg_per_h", 0.7), Outcome::Changed);
+    }
+
+    #[test]
+    fn a_difference_that_one_test_would_find_and_many_do_not_is_left_open() {
+        // 2.8 standard errors: p of 0.0026 on one side, of 0.05 in twenty.
+        let shift = 2.8 * 0.1 * 2.0_f64.sqrt() / 1.96;
+        let many = |shift: f64| {
+            let named = |index: usize, value: f64| {
+                let mut entry = entry(ARW, value, 0.1);
+                entry.id.scenario = format!("s{index:02}");
+                entry
+            };
+            let old: Vec<Entry> = (0..30).map(|index| named(index, 1.0)).collect();
+            let mut new: Vec<Entry> = (0..30).map(|index| reseeded(named(index, 1.001))).collect();
+            new[0] = reseeded(named(0, 1.0 + shift));
+            compare(&side(&old), &side(&new)).rows[0].outcome
+        };
+        assert_eq!(many(shift), Outcome::Unsure);
+        assert_eq!(many(5.0 / 2.8 * shift), Outcome::Worse);
+        let alone = only(entry(ARW, 1.0, 0.1), reseeded(entry(ARW, 1.0 + shift, 0.1)));
+        assert_eq!(alone.outcome, Outcome::Worse);
+    }
+
+    #[test]
+    fn exact_figures_are_judged_by_tolerance() {
+        let latency = |value: f64| exact("latency_us", value);
+        assert_eq!(only(latency(1.0), latency(1.1)).outcome, Outcome::Worse);
+        assert_eq!(
+            only(latency(1.0), reseeded(latency(1.1))).outcome,
+            Outcome::Worse
+        );
+        assert_eq!(
+            only(latency(1.0), latency(1.0 + 1e-12)).outcome,
+            Outcome::Same
+        );
+        // A fact of one record says nothing of another seed.
+        let largest = |value: f64| exact("maximum_deg_per_h", value);
+        assert_eq!(
+            only(largest(1.0), reseeded(largest(1.1))).outcome,
+            Outcome::Unsure
+        );
+        assert_eq!(only(largest(1.0), largest(1.1)).outcome, Outcome::Changed);
+        let tolerant = |entry: Entry| Entry {
+            absolute_tolerance: Some(0.2),
+            ..entry
+        };
+        assert_eq!(
+            only(tolerant(latency(1.0)), latency(1.1)).outcome,
+            Outcome::Same
+        );
+        assert_eq!(
+            only(tolerant(latency(1.0)), latency(1.3)).outcome,
+            Outcome::Worse
+        );
+    }
+
+    #[test]
+    fn a_tolerance_and_a_direction_of_the_file_count() {
+        let old = Entry {
+            relative_tolerance: Some(0.5),
+            ..entry(ARW, 1.0, 0.01)
+        };
+        assert_eq!(
+            only(old.clone(), reseeded(entry(ARW, 1.4, 0.01))).outcome,
+            Outcome::Same
+        );
+        assert_eq!(
+            only(old, reseeded(entry(ARW, 1.6, 0.01))).outcome,
+            Outcome::Worse
+        );
+        let turned = Entry {
+            better: Some(Better::Higher),
+            ..entry(ARW, 1.0, 0.01)
+        };
+        assert_eq!(
+            only(turned, reseeded(entry(ARW, 1.6, 0.01))).outcome,
+            Outcome::Better
+        );
+    }
+
+    #[test]
+    fn repeats_of_the_same_seed_are_compared_pair_by_pair() {
+        let repeated = |shift: f64| Entry {
+            // They scatter by far more than they differ.
+            repeats: [3.0, -2.0, 5.0, 0.5, -4.0, 1.0]
+                .iter()
+                .zip([0.01, -0.01, 0.02, 0.0, -0.02, 0.0])
+                .map(|(noise, own)| 10.0 + noise + shift + own * shift)
+                .collect(),
+            ..entry(ARW, 10.0 + shift, 4.0)
+        };
+        let row = only(repeated(0.0), repeated(0.5));
+        assert_eq!((row.outcome, row.basis), (Outcome::Worse, Basis::Pairs(6)));
+        assert!((row.difference.unwrap() - 0.5).abs() < 1e-12);
+        // The same of another seed share no noise, and four are too few.
+        let row = only(repeated(0.0), reseeded(repeated(0.5)));
+        assert_eq!((row.outcome, row.basis), (Outcome::Same, Basis::Unpaired));
+        let four = |entry: Entry| Entry {
+            repeats: entry.repeats[..4].to_vec(),
+            ..entry
+        };
+        let row = only(four(repeated(0.0)), four(repeated(0.5)));
+        assert_eq!(row.basis, Basis::Unpaired);
+        let blocks = |entry: Entry| Entry {
+            blocks: entry.repeats.clone(),
+            repeats: Vec::new(),
+            ..entry
+        };
+        let row = only(blocks(repeated(0.0)), blocks(repeated(0.5)));
+        assert_eq!((row.outcome, row.basis), (Outcome::Worse, Basis::Blocks(6)));
+    }
+
+    #[test]
+    fn where_the_noise_is_the_same_a_figure_is_judged_by_its_own_interval() {
+        let mean = entry("mean_deg_per_h", 8.0, 0.5);
+        let judged = |value: f64| {
+            let (old, new) = (entry(ARW, 1.0, 0.1), entry(ARW, value, 0.1));
+            let comparison = compare(&side(&[mean.clone(), old]), &side(&[mean.clone(), new]));
+            let row = comparison.rows.iter().find(|row| row.id.metric == ARW);
+            let row = row.unwrap();
+            (row.outcome, row.basis)
+        };
+        assert_eq!(judged(1.11), (Outcome::Worse, Basis::SameNoise));
+        assert_eq!(judged(0.89), (Outcome::Better, Basis::SameNoise));
+        assert_eq!(judged(1.07), (Outcome::Unsure, Basis::SameNoise));
+        assert_eq!(judged(1.02), (Outcome::Same, Basis::SameNoise));
+        assert_eq!(judged(1.0), (Outcome::Same, Basis::Identical));
+    }
+
+    #[test]
+    fn other_conditions_are_not_judged_and_what_is_gone_or_new_is_named() {
+        let other = Entry {
+            conditions: "d".to_owned(),
+            ..entry(ARW, 9.0, 0.1)
+        };
+        assert_eq!(
+            only(entry(ARW, 1.0, 0.1), other).outcome,
+            Outcome::ChangedScenario
+        );
+        let (one, two) = (entry(ARW, 1.0, 0.1), entry("mean_deg_per_h", 1.0, 0.1));
+        let outcome = |old: &Side, new: &Side, place: usize| compare(old, new).rows[place].outcome;
+        let (both, one) = (side(&[one.clone(), two.clone()]), side(&[one]));
+        assert_eq!(outcome(&both, &one, 1), Outcome::Removed);
+        assert_eq!(outcome(&one, &both, 1), Outcome::New);
+        let lacking = |is_failure| {
+            let lack = Lack {
+                reason: "too short".to_owned(),
+                is_failure,
+            };
+            Side {
+                lacks: [(two.id.clone(), lack)].into(),
+                ..one.clone()
+            }
+        };
+        assert_eq!(outcome(&both, &lacking(false), 1), Outcome::Unsure);
+        assert_eq!(outcome(&both, &lacking(true), 1), Outcome::Removed);
+    }
+
+    #[test]
+    fn points_match_by_their_values_whatever_their_order() {
+        let at = |power: &str, value: f64| {
+            let mut entry = entry(ARW, value, 0.01);
+            entry.id.point = crate::baseline::point_of([("gyro.source.power_uw", power)]);
+            entry
+        };
+        let old = side(&[at("0.5", 1.0), at("1.0", 2.0)]);
+        let new = side(&[at("2.0", 9.0), at("1.0", 2.0), at("0.50", 1.0)]);
+        let comparison = compare(&old, &new);
+        let outcomes: Vec<Outcome> = comparison.rows.iter().map(|row| row.outcome).collect();
+        assert_eq!(outcomes, [Outcome::Same, Outcome::Same, Outcome::New]);
+    }
+
+    #[test]
+    fn standard_deviations_of_few_values_are_compared_by_their_degrees_of_freedom() {
+        let few = |value: f64| Entry {
+            degrees_of_freedom: Some(4.0),
+            ..entry("bias_stability_10s_deg_per_h", value, 0.01)
+        };
+        // The interval alone, which is made far too narrow here, would find it.
+        let row = only(few(1.0), reseeded(few(2.0)));
+        // P(F(4, 4) > 4) = 0.104.
+        assert_eq!(row.outcome, Outcome::Same);
+        assert!(
+            (row.p_value.unwrap() - 0.104).abs() < 1e-3,
+            "{:?}",
+            row.p_value
+        );
+        assert_eq!(only(few(1.0), reseeded(few(4.0))).outcome, Outcome::Worse);
     }
 }

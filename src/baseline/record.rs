@@ -98,6 +98,9 @@ pub struct Entry {
     pub conditions: String,
     /// Values of the repeats, in order; empty for a single record.
     pub repeats: Vec<f64>,
+    /// Values of equal blocks of its samples, in order; empty where there are no samples, or where blocks do
+    /// not give the value.
+    pub blocks: Vec<f64>,
     /// The better direction, where a file gives it.
     pub better: Option<Better>,
     /// Difference that counts for none, in the unit, where a file gives it.

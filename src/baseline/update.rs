@@ -32,3 +32,55 @@ pub fn updated(baseline: &Side, later: &Side) -> Side {
         lacks: BTreeMap::new(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::baseline::{Interval, Point};
+    use crate::metrics::Better;
+
+    fn entry(scenario: &str, value: f64) -> Entry {
+        Entry {
+            id: Id {
+                scenario: scenario.to_owned(),
+                point: Point::new(),
+                channel: "raw".to_owned(),
+                metric: "mean_deg_per_h".to_owned(),
+            },
+            value,
+            interval: Interval::Exact,
+            degrees_of_freedom: None,
+            unit: "deg/h".to_owned(),
+            seed: 1,
+            conditions: "c".to_owned(),
+            repeats: Vec::new(),
+            blocks: Vec::new(),
+            better: None,
+            absolute_tolerance: None,
+            relative_tolerance: None,
+        }
+    }
+
+    #[test]
+    fn figures_are_new_and_what_the_user_wrote_stays() {
+        let own = Entry {
+            better: Some(Better::Lower),
+            absolute_tolerance: Some(0.5),
+            ..entry("a", 1.0)
+        };
+        let baseline = Side {
+            entries: vec![own.clone(), entry("kept", 4.0)],
+            ..Side::default()
+        };
+        let later = Side {
+            tool_version: "0.2.0".to_owned(),
+            entries: vec![entry("b", 3.0), entry("a", 2.0)],
+            ..Side::default()
+        };
+        let updated = updated(&baseline, &later);
+        assert_eq!(updated.tool_version, "0.2.0");
+        let fresh = Entry { value: 2.0, ..own };
+        let want = [fresh, entry("b", 3.0), entry("kept", 4.0)];
+        assert_eq!(updated.entries, want);
+    }
+}

@@ -11,7 +11,10 @@ use serde_json::Value;
 use crate::baseline::{
     BaselineError, Entry, Id, Interval, Lack, Point, Side, point_of, read_baseline,
 };
-use crate::metrics::{ChannelMetrics, IntervalKind, Metric, RepeatStatistics};
+use crate::experiment::build::VERSION;
+use crate::experiment::run::Run;
+use crate::metrics::{ChannelMetrics, IntervalKind, Metric, RepeatStatistics, find};
+use crate::recording::read_stimulus;
 use crate::report::{RestoredRun, RunStatus, SUITE_SUMMARY};
 use crate::store::MANIFEST_FILE;
 
@@ -112,7 +115,12 @@ pub fn read_output(folder: &Path) -> Result<Side, SideError> {
 fn runs_of_suite(folder: &Path) -> Result<Vec<(PathBuf, String)>, SideError> {
     let path = folder.join(SUITE_SUMMARY.name);
     let text = match fs::read_to_string(&path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+        Err(error)
+            if matches!(
+                error.kind(),
+                io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
+            ) =>
+        {
             return Err(SideError::NoResults(folder.to_owned()));
         }
         text => text.map_err(SideError::unreadable(&path))?,
@@ -129,6 +137,34 @@ fn runs_of_suite(folder: &Path) -> Result<Vec<(PathBuf, String)>, SideError> {
     read().ok_or(SideError::Damaged(path))
 }
 
+/// The side of runs in memory, as of an output folder that holds them.
+#[must_use]
+pub fn side_of_runs(runs: &[Run]) -> Side {
+    let mut side = Side {
+        tool_version: VERSION.to_owned(),
+        ..Side::default()
+    };
+    for run in runs {
+        let resolved = run.plan().resolved();
+        let assignments = resolved.sweep.iter().flat_map(|point| &point.assignments);
+        let origin = Origin {
+            tool_version: VERSION.to_owned(),
+            scenario: resolved.scenario.name.clone(),
+            point: point_of(assignments.map(|(key, value)| (key.as_str(), value.as_str()))),
+            seed: resolved.scenario.seed,
+            conditions: None,
+            measured_part: 1.0,
+        };
+        let conditions = resolved.conditions();
+        for (name, channel) in run.channels() {
+            side.entries
+                .extend(entries(&origin, &conditions, name, channel));
+            side.lacks.extend(lacks(&origin, name, channel));
+        }
+    }
+    side
+}
+
 /// What a manifest says of a run.
 struct Origin {
     tool_version: String,
@@ -136,11 +172,14 @@ struct Origin {
     point: Point,
     seed: u64,
     conditions: Option<String>,
+    /// Part of the samples that lies behind the warm-up.
+    measured_part: f64,
 }
 
 impl Origin {
     fn of_manifest(text: &str) -> Option<Self> {
         let root: toml::Table = text.parse().ok()?;
+        let number = |table: &toml::Value, key: &str| table.get(key)?.as_float();
         let text = |table: &toml::Value, key: &str| Some(table.get(key)?.as_str()?.to_owned());
         let (origin, scenario) = (root.get("origin")?, root.get("scenario")?);
         let sweep = origin
@@ -156,6 +195,8 @@ impl Origin {
             point: point_of(assignments.map(|(key, value)| (key.as_str(), value.as_str()))),
             seed: u64::try_from(scenario.get("seed")?.as_integer()?).ok()?,
             conditions: text(origin, "conditions"),
+            measured_part: number(scenario, "duration_s")?
+                / (number(scenario, "duration_s")? + number(scenario, "warm_up_s")?),
         })
     }
 
@@ -204,11 +245,54 @@ fn read_run(folder: &Path, status: &str) -> Result<Side, SideError> {
         return Err(SideError::Damaged(path));
     };
     for (name, channel) in &restored.channels {
-        side.entries
-            .extend(entries(&origin, conditions, name, channel));
+        let words = measured_words(folder, name, origin.measured_part);
+        let own = entries(&origin, conditions, name, channel);
+        side.entries.extend(own.map(|entry| match &words {
+            Some(words) => with_blocks(entry, words),
+            None => entry,
+        }));
         side.lacks.extend(lacks(&origin, name, channel));
     }
     Ok(side)
+}
+
+/// Words of a channel behind the warm-up; none if the run kept no samples.
+fn measured_words(folder: &Path, channel: &str, part: f64) -> Option<Vec<f64>> {
+    let path = folder.join("samples").join(format!("{channel}.npy"));
+    let words = path
+        .is_file()
+        .then(|| read_stimulus(&path, None, usize::MAX));
+    let mut words = words?.ok()?;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a part of a count, which is positive and fits"
+    )]
+    let first = ((1.0 - part) * words.len() as f64).ceil() as usize;
+    Some(words.split_off(first.min(words.len())))
+}
+
+/// Blocks of a record that are compared pair by pair.
+const BLOCKS: usize = 20;
+
+/// The entry with the figures of blocks, where these give its value within its interval.
+fn with_blocks(entry: Entry, words: &[f64]) -> Entry {
+    let of_blocks = find(&entry.id.metric).and_then(|key| key.of_blocks);
+    let length = words.len() / BLOCKS;
+    let Some(of_blocks) = of_blocks.filter(|_| length > 1 && entry.repeats.is_empty()) else {
+        return entry;
+    };
+    let blocks = words.chunks_exact(length).take(BLOCKS);
+    let blocks: Vec<f64> = blocks.map(|block| of_blocks.of(block)).collect();
+    let whole = of_blocks.whole(&blocks);
+    let is_given = match entry.interval {
+        Interval::Confidence { low, high } => low <= whole && whole <= high,
+        Interval::Exact | Interval::Absent => false,
+    };
+    Entry {
+        blocks: if is_given { blocks } else { Vec::new() },
+        ..entry
+    }
 }
 
 fn entries<'a>(
@@ -231,6 +315,7 @@ fn entries<'a>(
             .repeats
             .get(key)
             .map_or_else(Vec::new, finite_values),
+        blocks: Vec::new(),
         better: None,
         absolute_tolerance: None,
         relative_tolerance: None,

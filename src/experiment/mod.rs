@@ -23,7 +23,7 @@ mod stimulus;
 mod suite;
 
 #[cfg(feature = "report")]
-pub use baseline::{SideError, read_baseline_file, read_output, read_side};
+pub use baseline::{SideError, read_baseline_file, read_output, read_side, side_of_runs};
 pub use budget::{GyroBudget, gyro_budget};
 pub use build::BUILD;
 #[cfg(feature = "report")]

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::table::DEGREES_OF_FREEDOM;
-
 /// Confidence of every interval unless a record says otherwise.
 pub(crate) const CONFIDENCE: f64 = 0.95;
 
@@ -150,12 +148,6 @@ impl Metric {
             unit,
             fields: BTreeMap::new(),
         }
-    }
-
-    /// Degrees of freedom, for a standard deviation.
-    #[must_use]
-    pub fn degrees_of_freedom(&self) -> Option<f64> {
-        self.fields.get(DEGREES_OF_FREEDOM).copied()
     }
 
     /// The metric with one more defining field.

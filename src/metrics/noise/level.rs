@@ -5,7 +5,7 @@ use super::by_weights::NoiseByWeights;
 use crate::metrics::estimate::influence::resampled;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::{ChannelMetrics, DEGREES_OF_FREEDOM};
-use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Pool, Table};
+use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, OfBlocks, Pool, Table};
 
 /// Standard deviation of the noise.
 pub static NOISE_STD: MetricKey = MetricKey::new(
@@ -15,6 +15,7 @@ pub static NOISE_STD: MetricKey = MetricKey::new(
     "standard deviation of the samples about the signal: mean, fitted sine, or settled rate; over n less what is fitted",
 )
 .lower_is_better()
+.of_blocks(OfBlocks::Deviation)
 .synonyms(&["std", "noise", "noise_rms", "standard_deviation"])
 .heading("noise std")
 .pooled(Pool::RootMeanSquare)

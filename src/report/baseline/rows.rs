@@ -2,6 +2,7 @@
 
 use crate::baseline::{Comparison, Entry, Interval, Outcome, Row};
 use crate::metrics::{Estimate, estimate_text, plain};
+use crate::wording::counted;
 
 /// Significant digits of a half width.
 const DIGITS: i32 = 2;
@@ -21,7 +22,7 @@ pub(super) fn counts(comparison: &Comparison) -> String {
     let counts: Vec<String> = counts
         .map(|(outcome, count)| format!("{count} {}", outcome.as_str()))
         .collect();
-    let total = crate::wording::counted(comparison.rows.len(), "figure");
+    let total = counted(comparison.rows.len(), "figure");
     if counts.is_empty() {
         return total;
     }

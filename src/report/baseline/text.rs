@@ -1,11 +1,13 @@
 //! A comparison for people.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::rows::{change, counts, figure, grounds, notable, unit};
 use crate::baseline::{Comparison, Outcome, Row};
 use crate::report::layout::text::{Tone, toned};
 use crate::scenario::bounded;
+use crate::wording::counted;
 
 /// Rows of an outcome that are printed.
 const ROWS_MAX: usize = 50;
@@ -22,6 +24,10 @@ pub fn comparison_with_baseline_text(
     let mut text = String::new();
     let rows = notable(comparison);
     for outcome in Outcome::ALL {
+        if outcome == Outcome::ChangedScenario {
+            text.push_str(&changed_scenarios(&rows));
+            continue;
+        }
         let of = rows.iter().filter(|row| row.outcome == outcome);
         for row in of.clone().take(ROWS_MAX) {
             let tone = match outcome {
@@ -53,6 +59,27 @@ pub fn comparison_with_baseline_text(
     };
     let verdict = toned(verdict, tone, colour);
     let _ = writeln!(text, "{verdict}  compared {}{versions}", counts(comparison));
+    text
+}
+
+/// A line for each run whose scenario differs, as none of its figures is judged.
+fn changed_scenarios(rows: &[&Row]) -> String {
+    let mut runs: BTreeMap<String, usize> = BTreeMap::new();
+    for row in rows {
+        if row.outcome == Outcome::ChangedScenario {
+            *runs.entry(row.id.run_text()).or_default() += 1;
+        }
+    }
+    let mut text = String::new();
+    let word = Outcome::ChangedScenario.as_str();
+    for (run, count) in runs.iter().take(ROWS_MAX) {
+        let count = counted(*count, "figure");
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{word:16} {}: {count} not judged", bounded(run));
+    }
+    if let Some(more) = runs.len().checked_sub(ROWS_MAX).filter(|more| *more > 0) {
+        let _ = writeln!(text, "and {more} more scenarios differ");
+    }
     text
 }
 
