@@ -81,14 +81,16 @@ fn shifted(entry: &Entry, by: f64) -> Entry {
 /// How many of the figures of a metric are called worse when one at a time is moved by so many standard
 /// errors of the difference, and how many there are.
 fn found(old: &Side, new: &Side, metric: &str, errors: f64) -> (usize, usize) {
+    let before = |entry: &Entry| old.entries.iter().find(|it| it.id == entry.id);
+    // One fit in a hundred does not describe its record, and gives no figure.
     let places: Vec<usize> = (0..new.entries.len())
         .filter(|place| new.entries[*place].id.metric == metric)
+        .filter(|place| before(&new.entries[*place]).is_some())
         .collect();
     let is_found = |place: &&usize| {
         let mut moved = new.clone();
         let entry = &mut moved.entries[**place];
-        let before = old.entries.iter().find(|it| it.id == entry.id);
-        let before = before.expect("both sides have it");
+        let before = before(entry).expect("both sides have it");
         let by = errors * standard_error(before, entry);
         *entry = shifted(entry, by);
         let id = entry.id.clone();

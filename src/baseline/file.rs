@@ -163,9 +163,9 @@ fn entry(written: Written) -> Result<Entry, BaselineError> {
         .collect();
     let id = Id {
         point: point_of(point.iter().map(|(key, value)| (*key, value.as_str()))),
-        scenario: written.scenario,
-        channel: written.channel,
-        metric: written.metric,
+        scenario: written.scenario.clone(),
+        channel: written.channel.clone(),
+        metric: written.metric.clone(),
     };
     let range = |key, value: f64, is_good: bool, expected| {
         let id = id.to_string();
@@ -191,19 +191,7 @@ fn entry(written: Written) -> Result<Entry, BaselineError> {
         let is_good = tolerance >= 0.0 && tolerance.is_finite();
         range(key, tolerance, is_good, "0 or more")?;
     }
-    let interval = match (written.low, written.high, written.interval.as_deref()) {
-        (Some(low), Some(high), None) => {
-            range("low", low, low <= high, "at most high")?;
-            Interval::Confidence { low, high }
-        }
-        (None, None, Some("exact")) => Interval::Exact,
-        (None, None, Some("absent")) => Interval::Absent,
-        _ => {
-            let text =
-                format!("{id}: expected low and high, or interval = \"exact\" or \"absent\"");
-            return Err(BaselineError::Syntax(text));
-        }
-    };
+    let interval = interval(&id, &written)?;
     let better = match written.direction {
         None => None,
         Some(word) => match Better::of_word(&word) {
@@ -228,6 +216,26 @@ fn entry(written: Written) -> Result<Entry, BaselineError> {
         absolute_tolerance: written.absolute_tolerance,
         relative_tolerance: written.relative_tolerance,
     })
+}
+
+/// The interval of an entry.
+fn interval(id: &Id, written: &Written) -> Result<Interval, BaselineError> {
+    match (written.low, written.high, written.interval.as_deref()) {
+        (Some(low), Some(high), None) if low <= high => Ok(Interval::Confidence { low, high }),
+        (Some(low), Some(_), None) => Err(BaselineError::Range {
+            id: id.to_string(),
+            key: "low",
+            value: low,
+            expected: "at most high",
+        }),
+        (None, None, Some("exact")) => Ok(Interval::Exact),
+        (None, None, Some("absent")) => Ok(Interval::Absent),
+        _ => {
+            let text =
+                format!("{id}: expected low and high, or interval = \"exact\" or \"absent\"");
+            Err(BaselineError::Syntax(text))
+        }
+    }
 }
 
 #[cfg(test)]

@@ -307,90 +307,142 @@ fn gone(earlier: Entry, new: &Side) -> Row {
     }
 }
 
-/// Judges two figures as far as they can be judged by themselves.
-fn pair(old: Entry, new: Entry, run: &RunFacts) -> Draft {
-    let key = find(&old.id.metric);
-    let better = old.better.or(new.better);
-    let better = better.unwrap_or_else(|| key.map_or(Better::Neither, |key| key.better));
-    let absolute = old.absolute_tolerance.or(new.absolute_tolerance);
-    let relative = old.relative_tolerance.or(new.relative_tolerance);
-    let has_tolerance = absolute.is_some() || relative.is_some();
-    let tolerance = absolute
-        .unwrap_or(0.0)
-        .max(relative.unwrap_or(0.0).max(ROUNDING) * old.value.abs());
-    let difference = new.value - old.value;
-    let row = Row {
-        difference: Some(difference),
-        ..Row::open(old.id.clone())
-    };
-    let decided = |outcome, basis, reason: &str, old: Entry, new: Entry| {
-        Draft::decided(Row {
+/// What two figures are judged with.
+struct Terms {
+    key: Option<&'static MetricKey>,
+    better: Better,
+    /// Difference that counts for none.
+    tolerance: f64,
+    /// Whether a file gives it.
+    has_tolerance: bool,
+}
+
+impl Terms {
+    fn of(old: &Entry, new: &Entry) -> Self {
+        let key = find(&old.id.metric);
+        let declared = || key.map_or(Better::Neither, |key| key.better);
+        let absolute = old.absolute_tolerance.or(new.absolute_tolerance);
+        let relative = old.relative_tolerance.or(new.relative_tolerance);
+        let least = relative.unwrap_or(0.0).max(ROUNDING) * old.value.abs();
+        Self {
+            key,
+            better: old.better.or(new.better).unwrap_or_else(declared),
+            tolerance: absolute.unwrap_or(0.0).max(least),
+            has_tolerance: absolute.is_some() || relative.is_some(),
+        }
+    }
+}
+
+/// What two figures say by themselves.
+struct Finding {
+    outcome: Outcome,
+    basis: Basis,
+    reason: &'static str,
+    /// The test that the correction is to decide; the outcome is then what holds if it finds nothing.
+    test: Option<Test>,
+}
+
+impl Finding {
+    fn new(outcome: Outcome, basis: Basis) -> Self {
+        Self {
             outcome,
             basis,
-            reason: reason.to_owned(),
+            reason: "",
+            test: None,
+        }
+    }
+
+    fn because(outcome: Outcome, reason: &'static str) -> Self {
+        Self {
+            reason,
+            ..Self::new(outcome, Basis::None)
+        }
+    }
+}
+
+/// Judges two figures as far as they can be judged by themselves.
+fn pair(old: Entry, new: Entry, run: &RunFacts) -> Draft {
+    let (finding, difference) = judge(&old, &new, run);
+    let row = Row {
+        difference: Some(difference),
+        outcome: finding.outcome,
+        basis: finding.basis,
+        reason: finding.reason.to_owned(),
+        ..Row::open(old.id.clone())
+    };
+    Draft {
+        row: Row {
             old: Some(old),
             new: Some(new),
-            ..row.clone()
-        })
-    };
+            ..row
+        },
+        test: finding.test,
+    }
+}
+
+/// What two figures say by themselves, and how far they differ.
+fn judge(old: &Entry, new: &Entry, run: &RunFacts) -> (Finding, f64) {
+    let difference = new.value - old.value;
     if old.conditions != new.conditions {
-        return decided(Outcome::ChangedScenario, Basis::None, "", old, new);
+        let finding = Finding::new(Outcome::ChangedScenario, Basis::None);
+        return (finding, difference);
     }
     if old.unit != new.unit {
-        return decided(Outcome::Changed, Basis::None, "the units differ", old, new);
+        let finding = Finding::because(Outcome::Changed, "the units differ");
+        return (finding, difference);
     }
-    if is_identical(&old, &new) {
-        return decided(Outcome::Same, Basis::Identical, "", old, new);
+    if is_identical(old, new) {
+        return (Finding::new(Outcome::Same, Basis::Identical), difference);
     }
+    let terms = Terms::of(old, new);
     let is_exact = old.interval == Interval::Exact && new.interval == Interval::Exact;
-    let lacks_interval = ends(&old).is_none() || ends(&new).is_none();
-    if is_exact || lacks_interval {
-        let is_of_settings = key.is_some_and(|key| key.is_of_settings);
-        let may_judge = has_tolerance || (is_exact && (old.seed == new.seed || is_of_settings));
-        return if difference.abs() <= tolerance {
-            decided(Outcome::Same, Basis::Tolerance, "", old, new)
-        } else if may_judge {
-            let outcome = Outcome::of_difference(difference, better);
-            decided(outcome, Basis::Tolerance, "", old, new)
-        } else if is_exact {
-            let reason = "a fact of one record, and the seeds differ";
-            decided(Outcome::Unsure, Basis::None, reason, old, new)
-        } else {
-            let reason = "one record does not tell how sure it is";
-            decided(Outcome::Unsure, Basis::None, reason, old, new)
-        };
+    if is_exact || ends(old).is_none() || ends(new).is_none() {
+        return (by_tolerance(old, new, is_exact, &terms), difference);
     }
-    let weight = run.weight(key);
-    if let Some((pairs, mean, chance)) = paired(&old, &new, tolerance) {
+    let test = |chance: Chance| Test {
+        chance,
+        better: terms.better,
+        weight: run.weight(terms.key),
+    };
+    if let Some((pairs, mean, chance)) = paired(old, new, terms.tolerance) {
         let basis = match pairs {
             Pairs::Repeats(count) => Basis::Pairs(count),
             Pairs::Blocks(count) => Basis::Blocks(count),
         };
-        let draft = decided(Outcome::Same, basis, "", old, new);
-        return Draft {
-            row: Row {
-                difference: Some(mean),
-                ..draft.row
-            },
-            test: Some(Test {
-                chance,
-                better,
-                weight,
-            }),
+        let finding = Finding {
+            test: Some(test(chance)),
+            ..Finding::new(Outcome::Same, basis)
         };
+        return (finding, mean);
     }
     if run.is_same_noise {
-        let outcome = beyond_own_interval(&old, &new, tolerance, better);
-        return decided(outcome, Basis::SameNoise, "", old, new);
+        let outcome = beyond_own_interval(old, new, terms.tolerance, terms.better);
+        return (Finding::new(outcome, Basis::SameNoise), difference);
     }
-    let test = unpaired(&old, &new, tolerance).map(|chance| Test {
-        chance,
-        better,
-        weight,
-    });
-    Draft {
-        test,
-        ..decided(Outcome::Same, Basis::Unpaired, "", old, new)
+    let finding = Finding {
+        test: unpaired(old, new, terms.tolerance).map(test),
+        ..Finding::new(Outcome::Same, Basis::Unpaired)
+    };
+    (finding, difference)
+}
+
+/// Of figures of which one has no interval.
+fn by_tolerance(old: &Entry, new: &Entry, is_exact: bool, terms: &Terms) -> Finding {
+    let difference = new.value - old.value;
+    let is_of_settings = terms.key.is_some_and(|key| key.is_of_settings);
+    let may_judge = is_exact && (old.seed == new.seed || is_of_settings);
+    if difference.abs() <= terms.tolerance {
+        Finding::new(Outcome::Same, Basis::Tolerance)
+    } else if terms.has_tolerance || may_judge {
+        let outcome = Outcome::of_difference(difference, terms.better);
+        Finding::new(outcome, Basis::Tolerance)
+    } else if is_exact {
+        Finding::because(
+            Outcome::Unsure,
+            "a fact of one record, and the seeds differ",
+        )
+    } else {
+        Finding::because(Outcome::Unsure, "one record does not tell how sure it is")
     }
 }
 
