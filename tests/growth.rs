@@ -1,11 +1,16 @@
-//! Time and memory of `check` on long inputs: held by their growth, which no slow machine changes.
+//! Time and memory of `check` on long inputs, and memory of the files of a suite: held by their growth,
+//! which no slow machine changes.
 #![cfg(target_os = "linux")]
 
 use std::fmt::Write as _;
 use std::fs;
+use std::io::{self, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
+
+use fogbench::comparison::Comparison;
+use fogbench::report::{RunOutcome, SuiteMetrics, SuiteReport, write_suite_summary};
 
 use crate::support::write;
 
@@ -20,9 +25,13 @@ struct Cost {
 
 /// Runs `check` on a path and watches it.
 fn cost_of_check(folder: &Path, path: &str) -> Cost {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_fogbench"))
-        .args(["check", path])
-        .current_dir(folder)
+    let mut program = Command::new(env!("CARGO_BIN_EXE_fogbench"));
+    cost_of(program.args(["check", path]).current_dir(folder))
+}
+
+/// Runs a program and watches it.
+fn cost_of(program: &mut Command) -> Cost {
+    let mut child = program
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -157,5 +166,93 @@ fn unknown_keys_cost_as_much_as_their_number() {
     assert!(
         line.time_us <= 2 * lines.time_us,
         "on one line: {line:?}, on many: {lines:?}"
+    );
+}
+
+/// Variable that says how many points the suite of [`writes_the_files_of_a_suite`] has.
+const POINTS: &str = "FOGBENCH_TEST_POINTS";
+/// Metrics of each of its points.
+const ROWS: usize = 114;
+
+/// Counts what is written and keeps nothing.
+struct Counts(usize);
+
+impl Write for Counts {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += bytes.len();
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// `metrics.csv` of a point.
+fn metrics_of_a_point(metrics: &SuiteMetrics, index: usize) -> String {
+    let mut text = metrics.head();
+    for row in 0..ROWS {
+        let _ = writeln!(
+            text,
+            "m,{index},channel{},metric_of_a_usual_length{row},0.0123456789012345,0.0113456789012345,\
+             0.0133456789012345,0.95,deg/sqrt(h),ok,{index}.5",
+            row % 3
+        );
+    }
+    text
+}
+
+#[test]
+#[ignore = "the child of `files_of_a_suite_take_the_memory_of_one_run`"]
+fn writes_the_files_of_a_suite() {
+    let points = std::env::var(POINTS).expect("how many points there are");
+    let points: usize = points.parse().expect("a number");
+    let runs: Vec<RunOutcome> = (0..points)
+        .map(|index| {
+            let set = vec![("gyro.source.power_uw".to_owned(), format!("{index}.5"))];
+            let run = RunOutcome::failed("m", &format!("m/{index:04}"), "m.toml", String::new());
+            run.at(Some((index, set)))
+        })
+        .collect();
+    let metrics = SuiteMetrics::of(&runs);
+    let mut csv = Counts(0);
+    for (index, run) in runs.iter().enumerate() {
+        let own = metrics_of_a_point(&metrics, index);
+        let rows = metrics.rows(run, Some(&own));
+        csv.write_all(rows.as_bytes()).expect("it takes it");
+    }
+    let suite = SuiteReport {
+        tool_version: "0.1.0",
+        runs: &runs,
+        across: &Comparison::default(),
+        stale: &[],
+    };
+    let mut json = Counts(0);
+    let own = |run: &RunOutcome| {
+        let point = run.sweep.as_ref().map(|(index, _)| *index);
+        Ok(point.map(|index| metrics_of_a_point(&metrics, index)))
+    };
+    write_suite_summary(&mut json, &suite, &own).expect("it takes it");
+    assert!(csv.0 > points * ROWS * 80 && json.0 > points * ROWS * 80);
+}
+
+#[test]
+fn files_of_a_suite_take_the_memory_of_one_run() {
+    let own = std::env::current_exe().expect("this program");
+    let memory_kb = |points: usize| {
+        let mut child = Command::new(&own);
+        child.args([
+            "--exact",
+            "growth::writes_the_files_of_a_suite",
+            "--ignored",
+        ]);
+        cost_of(child.env(POINTS, points.to_string())).memory_kb
+    };
+    let (small, large) = (memory_kb(100), memory_kb(10_000));
+    // The files have 100 MB and more each; what is kept of each run is its outcome.
+    let added = large.saturating_sub(small);
+    assert!(
+        added < 20_000,
+        "{small} kB of 100 points, {large} kB of 10000"
     );
 }

@@ -8,8 +8,8 @@ use fogbench::gate::{Verdict, VerdictKind, judge};
 use fogbench::metrics::ChannelMetrics;
 use fogbench::metrics::catalogue::{ALLAN, PSD};
 use fogbench::report::{
-    RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, curve_csv, junit_xml, plots, run_summary_json,
-    suite_summary_json, suite_text, table_text,
+    RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, SuiteReport, curve_csv, junit_xml, plots,
+    run_summary_json, suite_text, table_text, write_suite_summary,
 };
 use fogbench::scenario::{GateConfig, GateDecision, InconclusivePolicy, Scenario};
 use fogbench::signal::{GyroFacts, RunSignals, TheoryCurve, TheoryQuantity};
@@ -197,6 +197,7 @@ fn a_summary_has_the_documented_shape() {
         "tool",
         "scenario",
         "gyro",
+        "intervals",
         "channels",
         "published",
         "gates",
@@ -301,13 +302,15 @@ fn junit_has_a_case_for_every_gate_and_failure_and_repeats_to_the_byte() {
 
 #[test]
 fn the_suite_is_counted() {
-    let json: serde_json::Value = serde_json::from_str(&suite_summary_json(
-        "0.1.0",
-        &suite(),
-        &Comparison::default(),
-        &[],
-    ))
-    .unwrap();
+    let report = SuiteReport {
+        tool_version: "0.1.0",
+        runs: &suite(),
+        across: &Comparison::default(),
+        stale: &[],
+    };
+    let mut text = Vec::new();
+    write_suite_summary(&mut text, &report, &|_| Ok(None)).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&text).unwrap();
     assert_eq!(json["runs"][0]["status"], "channel_failed");
     assert_eq!(json["runs"][1]["status"], "pass");
     assert_eq!(json["runs"][2]["status"], "run_failed");
@@ -315,10 +318,10 @@ fn the_suite_is_counted() {
     let text = suite_text(&suite(), 100, false);
     let last = text.lines().last().unwrap();
     assert!(last.starts_with("FAIL  3 runs: 1 passed"), "{last}");
-    // The message of a failed channel stands below the grid and within the width.
-    assert!(text.contains("\n  bad failed at sample 5984: "), "{text}");
+    // The message of a failed channel stands below its line and within the width.
+    assert!(text.contains("channel bad at sample 5984: "), "{text}");
     let narrow = suite_text(&suite(), 40, false);
-    let message = narrow.split("bad failed").nth(1).unwrap();
+    let message = narrow.split("channel bad").nth(1).unwrap();
     assert!(message.lines().next().unwrap().len() <= 28, "{narrow}");
 }
 

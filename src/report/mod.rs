@@ -13,8 +13,8 @@
 //! | `text` | tables of runs and suites |
 //! | `plot` | pictures |
 //! | `comparison` | tables over several scenarios |
+//! | `csv` | metrics, curves and repeats |
 //! | `json` | `summary.json` of runs and suites |
-//! | `csv` | curves and repeats |
 //! | `restore` | `summary.json` read back |
 //! | `build_server` | JUnit, annotations, Markdown and metrics for build servers |
 //! | `baseline` | a comparison with earlier results |
@@ -39,8 +39,8 @@ mod restore;
 mod text;
 
 pub use artefacts::{
-    Artefact, Contents, JUNIT, OutputFile, Place, SUITE_SUMMARY, artefacts, budget_files,
-    calibration_files, log_files, plots, run_files, run_pictures,
+    Artefact, Contents, JUNIT, METRICS, OutputFile, Place, SUITE_SUMMARY, artefacts, budget_files,
+    calibration_files, log_files, plots, run_file_names, run_files, run_pictures, suite_files,
 };
 pub use baseline::json::comparison_with_baseline_json;
 pub use baseline::markdown::comparison_with_baseline_markdown;
@@ -55,14 +55,17 @@ pub use calibration::documents::{CalibrationProvenance, calibration_json};
 pub use calibration::text::calibration_text;
 pub use claim::{claim_json, claim_text};
 pub use comparison::files::{comparison_file_names, comparison_files};
-pub use comparison::text::comparison_text;
+pub use comparison::text::{comparison_lines, comparison_text};
 pub use csv::curves::curve_csv;
+pub use csv::metrics::SuiteMetrics;
 pub use json::failed::{FailedRun, failed_run_json};
-pub use json::summary::{run_summary_json, suite_summary_json};
+pub use json::suite::{SuiteReport, write_suite_summary};
+pub use json::summary::run_summary_json;
 pub use kalman::{KalmanReport, is_kalman_json, kalman_json};
 pub use log::{LogReport, log_json, log_text};
 pub use plot::{Pictures, SVG_BYTES_MAX};
 pub use record::run::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
+pub use record::sweep::PointOfSweep;
 pub use restore::run::RestoredRun;
-pub use text::suite::suite_text;
+pub use text::suite::{SuiteStyle, closing_text, scenario_text, suite_text, sweep_text};
 pub use text::table::table_text;

@@ -1,7 +1,7 @@
 //! A folder being built in the workshop.
 
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 use super::error::StoreError;
@@ -48,6 +48,25 @@ impl<'a> Staged<'a> {
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let path = self.place(name)?;
         fs::write(&path, bytes).map_err(|source| self.failed(name, source))
+    }
+
+    /// Writes one file bit by bit; `name` may lead through folders, which are made.
+    ///
+    /// # Errors
+    /// What `write` or the file system says.
+    pub fn write_by(
+        &self,
+        name: &str,
+        write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
+    ) -> Result<(), StoreError> {
+        let path = self.place(name)?;
+        let written = || {
+            let mut file = BufWriter::new(File::create(&path)?);
+            write(&mut file)?;
+            file.into_inner().map_err(io::IntoInnerError::into_error)?;
+            Ok(())
+        };
+        written().map_err(|source| self.failed(name, source))
     }
 
     /// Writes one NPY file of binary64; see [`write_npy`].

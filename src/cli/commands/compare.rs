@@ -32,7 +32,7 @@ pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
 }
 
 /// How a comparison ends.
-pub(super) fn exit_of(comparison: &Comparison, fail_on: &[Outcome]) -> Exit {
+pub(in crate::cli) fn exit_of(comparison: &Comparison, fail_on: &[Outcome]) -> Exit {
     if comparison.has_any(fail_on) {
         Exit::GateFailed
     } else {
@@ -41,12 +41,12 @@ pub(super) fn exit_of(comparison: &Comparison, fail_on: &[Outcome]) -> Exit {
 }
 
 /// The side that a path leads to; a refusal is printed before its exit code is returned.
-pub(super) fn side(path: &Path) -> Result<Side, Exit> {
+pub(in crate::cli) fn side(path: &Path) -> Result<Side, Exit> {
     read_side(path).map_err(|error| refused(&error))
 }
 
 /// Says why a side cannot be read.
-pub(super) fn refused(error: &SideError) -> Exit {
+pub(in crate::cli) fn refused(error: &SideError) -> Exit {
     output::talk(&format!("error: {error}"));
     if error.is_io() { Exit::Io } else { Exit::Usage }
 }

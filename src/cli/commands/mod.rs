@@ -1,6 +1,5 @@
 //! The commands, a file for each, and the selection of scenarios that several share.
 
-pub(in crate::cli) mod against;
 pub(in crate::cli) mod baseline;
 pub(in crate::cli) mod budget;
 pub(in crate::cli) mod calibrate;
@@ -14,5 +13,4 @@ pub(in crate::cli) mod log;
 pub(in crate::cli) mod run;
 pub(in crate::cli) mod schema;
 pub(in crate::cli) mod select;
-pub(in crate::cli) mod server_files;
 pub(in crate::cli) mod timing;

@@ -5,12 +5,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::entry::Suite;
 use super::ledger::Ledger;
 use super::outcome::SuiteOutcome;
-use super::output::{JUNIT, SUMMARY, Settled};
+use super::output::{JUNIT, METRICS, SUMMARY, Settled, SuiteOutput};
 use crate::comparison::{ComparedRun, Comparison, Layout};
 use crate::experiment::build::VERSION;
 use crate::experiment::plan::Plan;
-use crate::report::{self, RunOutcome};
+use crate::report::{self, RunOutcome, SuiteMetrics, SuiteReport};
 use crate::scenario::Resolved;
+use crate::store::{Staged, StoreError};
 
 /// What the plans ask of the runs of all.
 pub(crate) fn layout(plans: &[Plan]) -> Layout<'_> {
@@ -40,12 +41,24 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
     let mut failures: Vec<String> = failures.iter().map(ToString::to_string).collect();
     let tables = unbroken(ledger, || report::comparison_files(&comparison));
     let mut files = tables.unwrap_or_default();
-    let summary = || report::suite_summary_json(VERSION, &runs, &comparison, &stale);
     let junit = || report::junit_xml(&runs, None);
-    files.extend(unbroken(ledger, summary).map(|text| (SUMMARY.to_owned(), text)));
     files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
-    failures.extend(output.publish(&files).err().map(|error| error.to_string()));
+    let summary = SuiteReport {
+        tool_version: VERSION,
+        runs: &runs,
+        across: &comparison,
+        stale: &stale,
+    };
+    let published = output.publish(|staged| {
+        for (name, text) in &files {
+            staged.write(name, text.as_bytes())?;
+        }
+        let written = || write_metrics(staged, output, &summary, &mut failures);
+        unbroken(ledger, written).unwrap_or(Ok(()))
+    });
+    failures.extend(published.err().map(|error| error.to_string()));
     SuiteOutcome {
+        folder: output.path().to_owned(),
         runs,
         comparison,
         broken: ledger.is_broken(),
@@ -54,6 +67,32 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
         unwritten: ledger.is_unwritten(),
         failures,
     }
+}
+
+/// Writes the files that hold the metrics of every run, which are read out of the runs' folders one after
+/// the other. Of a run whose metrics cannot be read there, the rest stands, and `failures` say why.
+fn write_metrics(
+    staged: &Staged,
+    output: &SuiteOutput,
+    suite: &SuiteReport,
+    failures: &mut Vec<String>,
+) -> Result<(), StoreError> {
+    let metrics = SuiteMetrics::of(suite.runs);
+    staged.write_by(METRICS, |out| {
+        out.write_all(metrics.head().as_bytes())?;
+        for run in suite.runs {
+            let own = output.metrics_of(run).unwrap_or_else(|error| {
+                failures.push(error.to_string());
+                None
+            });
+            out.write_all(metrics.rows(run, own.as_deref()).as_bytes())?;
+        }
+        Ok(())
+    })?;
+    staged.write_by(SUMMARY, |out| {
+        let metrics_of = |run: &RunOutcome| Ok(output.metrics_of(run).unwrap_or_default());
+        report::write_suite_summary(out, suite, &metrics_of)
+    })
 }
 
 /// What `make` makes; none, and a note in the ledger, if it breaks an invariant.

@@ -40,12 +40,7 @@ pub(crate) fn run_scenario(
     match run_plan(plan, observer) {
         Ok(results) => enter_result((plan, index), &results, layout, suite, observer),
         Err(Unfinished::Stopped) => Ok(None),
-        Err(Unfinished::Failed(error)) => {
-            let resolved = plan.resolved();
-            let (name, file) = (&resolved.scenario.name, &resolved.file);
-            let failed = RunOutcome::failed(name, &resolved.folder(), file, error);
-            Ok(Some(failed))
-        }
+        Err(Unfinished::Failed(error)) => Ok(Some(files::failed(plan, error))),
     }
 }
 

@@ -6,7 +6,7 @@ use crate::experiment::output_file::write_file;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{RecordLength, Simulation};
 use crate::gyro::temperature_record;
-use crate::report::{self, Pictures, RunReport};
+use crate::report::{self, Pictures, PointOfSweep, RunOutcome, RunReport};
 use crate::signal::RunSignals;
 use crate::store::{Staged, StoreError};
 
@@ -18,10 +18,7 @@ pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
         scenario: &resolved.scenario,
         file: &resolved.file,
         digest: &resolved.digest,
-        sweep: resolved
-            .sweep
-            .as_ref()
-            .map(|point| (point.index, point.assignments.clone())),
+        sweep: point_of(plan),
         gyro: plan.facts(),
         compensation: None,
         theory: &[],
@@ -30,6 +27,19 @@ pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
         verdicts: &[],
         notes: &[],
     }
+}
+
+/// The point of a sweep that a plan is.
+pub(super) fn point_of(plan: &Plan) -> Option<PointOfSweep> {
+    let point = plan.resolved().sweep.as_ref();
+    point.map(|point| (point.index, point.assignments.clone()))
+}
+
+/// The outcome of a plan that gave no result.
+pub(super) fn failed(plan: &Plan, reason: String) -> RunOutcome {
+    let resolved = plan.resolved();
+    let (name, file) = (&resolved.scenario.name, &resolved.file);
+    RunOutcome::failed(name, &resolved.folder(), file, reason).at(point_of(plan))
 }
 
 /// Writes everything of one run beside its place, to be swapped in whole.

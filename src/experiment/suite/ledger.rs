@@ -5,6 +5,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
 use std::time::{Duration, Instant};
 
+use super::files::point_of;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::Progress;
 use crate::report::RunOutcome;
@@ -111,7 +112,7 @@ impl Ledger {
             outcome.unwrap_or_else(|| {
                 let resolved = plan.resolved();
                 let name = &resolved.scenario.name;
-                RunOutcome::not_run(name, &resolved.folder(), &resolved.file)
+                RunOutcome::not_run(name, &resolved.folder(), &resolved.file).at(point_of(plan))
             })
         });
         all.collect()

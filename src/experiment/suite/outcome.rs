@@ -1,7 +1,10 @@
 //! What a suite tells while it runs, and what comes of it.
 
+use std::fs;
 use std::io;
+use std::path::PathBuf;
 
+use super::output::SUMMARY;
 use crate::comparison::Comparison;
 use crate::experiment::run::Progress;
 use crate::report::{RunOutcome, RunReport};
@@ -34,6 +37,8 @@ impl Observer for () {}
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct SuiteOutcome {
+    /// The output folder.
+    pub folder: PathBuf,
     /// Runs in the order of the plans.
     pub runs: Vec<RunOutcome>,
     /// What they say across scenarios.
@@ -51,6 +56,14 @@ pub struct SuiteOutcome {
 }
 
 impl SuiteOutcome {
+    /// The text of the suite's `summary.json`, as it stands in the output folder.
+    ///
+    /// # Errors
+    /// Whatever the file system says of reading it.
+    pub fn summary_json(&self) -> io::Result<String> {
+        fs::read_to_string(self.folder.join(SUMMARY))
+    }
+
     /// Why something that belongs into the output folder does not stand there, in words; none if
     /// everything does.
     #[must_use]

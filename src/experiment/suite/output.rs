@@ -10,7 +10,7 @@ use super::options::SuiteOptions;
 use crate::comparison::Layout;
 use crate::experiment::build::{BUILD, VERSION};
 use crate::experiment::plan::Plan;
-use crate::report::{self, FailedRun};
+use crate::report::{self, FailedRun, RunOutcome};
 use crate::scenario::{manifest_toml, slug};
 use crate::store::{
     self, MANIFEST_FILE, OutputFolder, Staged, StoreError, StoreOptions, SuiteFileNames,
@@ -19,6 +19,7 @@ use crate::store::{
 /// Files of every suite.
 pub(crate) const SUMMARY: &str = report::SUITE_SUMMARY.name;
 pub(crate) const JUNIT: &str = report::JUNIT.name;
+pub(crate) const METRICS: &str = report::METRICS.name;
 
 /// The output folder of a suite that runs.
 pub(crate) struct SuiteOutput {
@@ -88,7 +89,8 @@ impl SuiteOutput {
         options: &SuiteOptions,
     ) -> Result<Self, StoreError> {
         let scenarios = scenarios(plans);
-        let mut names = vec![SUMMARY.to_owned(), JUNIT.to_owned()];
+        let suite = report::suite_files().into_iter().map(str::to_owned);
+        let mut names: Vec<String> = suite.collect();
         names.extend(layout.comparisons.iter().flat_map(|comparison| {
             report::comparison_file_names(comparison.kind, &slug(&comparison.name))
         }));
@@ -206,14 +208,31 @@ impl SuiteOutput {
         settled
     }
 
-    /// Writes the suite's own files, as one.
-    pub(crate) fn publish(&self, files: &[(String, String)]) -> Result<(), StoreError> {
+    /// Writes the suite's own files by `write`, as one.
+    pub(crate) fn publish(
+        &self,
+        write: impl FnOnce(&Staged) -> Result<(), StoreError>,
+    ) -> Result<(), StoreError> {
         let staged = self.stage()?;
-        for (name, text) in files {
-            staged.write(name, text.as_bytes())?;
-        }
+        write(&staged)?;
         staged.seal_plainly()?;
         staged.put_files_in_place()
+    }
+
+    /// The metrics of a run out of its folder; none of one that has not ended with a result.
+    ///
+    /// # Errors
+    /// Whatever the file system says of reading them.
+    pub(crate) fn metrics_of(&self, run: &RunOutcome) -> io::Result<Option<String>> {
+        if run.error.is_some() || run.is_not_run {
+            return Ok(None);
+        }
+        let path = self.path().join(&run.folder).join(METRICS);
+        let text = fs::read_to_string(&path);
+        let text = text.map_err(|source| {
+            io::Error::new(source.kind(), format!("{}: {source}", path.display()))
+        });
+        text.map(Some)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Results of an earlier suite that need not be computed again.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -11,7 +12,7 @@ use crate::comparison::Layout;
 use crate::experiment::build::{BUILD, VERSION, names_one_program};
 use crate::experiment::plan::Plan;
 use crate::gate::judge;
-use crate::report::{RestoredRun, RunOutcome, RunReport, run_summary_json};
+use crate::report::{self, RestoredRun, RunOutcome, RunReport, run_summary_json};
 use crate::scenario::manifest_toml;
 use crate::store::{Head, MANIFEST_FILE, Ownership, Record, inspect};
 
@@ -47,7 +48,7 @@ pub(crate) fn take_over(
         notes: &restored.notes,
         ..report_of_plan(plan)
     };
-    if run_summary_json(&report) != summary {
+    if run_summary_json(&report) != summary || !has_files(&path, &report) {
         return None;
     }
     output.note_placed(folder.clone());
@@ -77,6 +78,14 @@ fn is_of(plan: &Plan, folder: &Path, resume: Resume) -> bool {
     );
     let is_same_build = names_one_program(BUILD) && found.build == Head::of(&own).build;
     found.text == Head::of(&own).text && (resume == Resume::AnyBuild || is_same_build)
+}
+
+/// Whether a folder holds the files that this build writes, which an earlier one may not have known.
+fn has_files(folder: &Path, report: &RunReport) -> bool {
+    let record = Record::of_manifest(folder).unwrap_or_default();
+    let known: BTreeSet<&str> = record.names().collect();
+    let mut names = report::run_file_names(report).into_iter();
+    names.all(|name| known.contains(name.as_str()))
 }
 
 /// Pictures in the folder of a run.

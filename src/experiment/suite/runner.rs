@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::conclude::{conclude, layout};
 use super::entry::{Suite, run_scenario};
+use super::files::failed;
 use super::ledger::{Ledger, wait};
 use super::options::SuiteOptions;
 use super::outcome::{Observer, SuiteError, SuiteOutcome};
@@ -126,10 +127,7 @@ pub(super) fn enter_unwritten(
     suite: &Suite,
     observer: &dyn Observer,
 ) {
-    let resolved = plan.resolved();
-    let name = &resolved.scenario.name;
-    let reason = error.to_string();
-    let outcome = RunOutcome::failed(name, &resolved.folder(), &resolved.file, reason);
+    let outcome = failed(plan, error.to_string());
     if suite.ledger.enter(index, &outcome) {
         suite.ledger.note_unwritten();
         tell_failed(index, &outcome, suite, observer);
@@ -150,11 +148,5 @@ fn broken_run(plan: &Plan, panic: &(dyn Any + Send)) -> RunOutcome {
         .map(String::as_str)
         .or_else(|| panic.downcast_ref::<&str>().copied())
         .unwrap_or("no message");
-    let resolved = plan.resolved();
-    RunOutcome::failed(
-        &resolved.scenario.name,
-        &resolved.folder(),
-        &resolved.file,
-        format!("internal error, please report it: {message}"),
-    )
+    failed(plan, format!("internal error, please report it: {message}"))
 }

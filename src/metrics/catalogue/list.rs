@@ -115,16 +115,12 @@ pub fn known_curves() -> &'static [&'static CurveKey] {
     CURVES
 }
 
-/// Metrics whose values of every repeat are kept, in the order of the columns of `runs.csv`.
+/// Every metric in the order of the columns of `runs.csv`: those with a place of their own first.
 #[must_use]
 pub fn repeated_metrics() -> Vec<&'static MetricKey> {
-    let mut kept: Vec<_> = CATALOGUE
-        .iter()
-        .copied()
-        .filter(|key| key.run_column.is_some())
-        .collect();
-    kept.sort_by_key(|key| key.run_column);
-    kept
+    let mut all = CATALOGUE.to_vec();
+    all.sort_by_key(|key| (key.run_column.is_none(), key.run_column));
+    all
 }
 
 /// The metric of a name.
@@ -225,11 +221,15 @@ mod tests {
 
     #[test]
     fn columns_of_repeats_stand_in_places_of_their_own() {
-        let places: Vec<Option<u8>> = repeated_metrics()
-            .iter()
-            .map(|key| key.run_column)
-            .collect();
-        let expected: Vec<Option<u8>> = (1..).map(Some).take(places.len()).collect();
+        let all = repeated_metrics();
+        assert_eq!(all.len(), CATALOGUE.len());
+        let places: Vec<u8> = all.iter().filter_map(|key| key.run_column).collect();
+        let expected: Vec<u8> = (1..).take(places.len()).collect();
         assert_eq!(places, expected);
+        assert!(
+            all[..places.len()]
+                .iter()
+                .all(|key| key.run_column.is_some())
+        );
     }
 }

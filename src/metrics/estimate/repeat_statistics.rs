@@ -12,8 +12,10 @@ pub struct RepeatStatistics {
     pub unit: &'static str,
     /// Averaging time of the metric, s, where that defines it.
     pub averaging_time_s: Option<f64>,
-    /// Values of the repeats, in order.
+    /// Values of the repeats that have it, in order.
     pub values: Vec<f64>,
+    /// Indices of the repeats that lack it, in order.
+    pub lacking: Vec<usize>,
     /// Their mean.
     pub mean: f64,
     /// Their standard deviation, divisor one less than their number.
@@ -25,11 +27,17 @@ pub struct RepeatStatistics {
 }
 
 impl RepeatStatistics {
-    /// Statistics of one metric; `None` with fewer than two repeats or where one lacks it.
+    /// Statistics of one metric; `None` where fewer than two repeats have it.
     #[must_use]
     pub fn of(repeats: &[ChannelMetrics], key: &MetricKey) -> Option<Self> {
-        let metrics: Option<Vec<_>> = repeats.iter().map(|repeat| repeat.get(key)).collect();
-        let metrics = metrics.filter(|metrics| metrics.len() > 1)?;
+        let metrics: Vec<_> = repeats
+            .iter()
+            .filter_map(|repeat| repeat.get(key))
+            .collect();
+        if metrics.len() < 2 {
+            return None;
+        }
+        let lacks = |index: &usize| repeats[*index].get(key).is_none();
         let values: Vec<f64> = metrics.iter().map(|metric| metric.estimate.value).collect();
         let mean = interval::mean(&values);
         let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
@@ -40,8 +48,44 @@ impl RepeatStatistics {
             standard_deviation: (squares / (values.len() - 1) as f64).sqrt(),
             minimum: values.iter().copied().fold(f64::INFINITY, f64::min),
             maximum: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            lacking: (0..repeats.len()).filter(lacks).collect(),
             values,
         })
+    }
+
+    /// Count of the repeats, those that lack the metric among them.
+    #[must_use]
+    pub fn repeats(&self) -> usize {
+        self.values.len() + self.lacking.len()
+    }
+
+    /// Value of the repeat of an index; none where it lacks the metric.
+    #[must_use]
+    pub fn value_of(&self, repeat: usize) -> Option<f64> {
+        match self.lacking.binary_search(&repeat) {
+            Ok(_) => None,
+            Err(before) => self.values.get(repeat - before).copied(),
+        }
+    }
+
+    /// Percentile of the values, by linear interpolation between the two nearest in order: definition 7
+    /// of Hyndman and Fan (1996), that of NumPy.
+    ///
+    /// * `percent`: 0 for the smallest, 100 for the largest.
+    #[must_use]
+    pub fn percentile(&self, percent: f64) -> f64 {
+        let mut sorted = self.values.clone();
+        sorted.sort_by(f64::total_cmp);
+        let place = (percent / 100.0).clamp(0.0, 1.0) * (sorted.len() - 1) as f64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a place between 0 and the number of values"
+        )]
+        let below = place as usize;
+        let above = (below + 1).min(sorted.len() - 1);
+        let part = place - below as f64;
+        sorted[below] + part * (sorted[above] - sorted[below])
     }
 }
 
@@ -71,9 +115,39 @@ mod tests {
     }
 
     #[test]
-    fn one_repeat_and_a_metric_that_one_repeat_lacks_have_no_statistics() {
+    fn one_repeat_has_no_statistics() {
         assert!(RepeatStatistics::of(&[repeat(1.0)], &MEAN).is_none());
         let lacking = [repeat(1.0), ChannelMetrics::default()];
         assert!(RepeatStatistics::of(&lacking, &MEAN).is_none());
+    }
+
+    #[test]
+    fn a_repeat_that_lacks_the_metric_keeps_its_place() {
+        let none = ChannelMetrics::default;
+        let repeats = [none(), repeat(1.0), none(), repeat(3.0), none()];
+        let statistics = RepeatStatistics::of(&repeats, &MEAN).expect("two values");
+        assert_eq!(statistics.repeats(), 5);
+        let places: Vec<Option<f64>> = (0..6).map(|index| statistics.value_of(index)).collect();
+        assert_eq!(places, [None, Some(1.0), None, Some(3.0), None, None]);
+    }
+
+    #[test]
+    fn known_answer_of_percentiles() {
+        // numpy.percentile([15, 20, 35, 40, 50], [0, 5, 25, 40, 50, 75, 95, 100])
+        let repeats = [40.0, 15.0, 50.0, 20.0, 35.0].map(repeat);
+        let statistics = RepeatStatistics::of(&repeats, &MEAN).expect("five values");
+        for (percent, expected) in [
+            (0.0, 15.0),
+            (5.0, 16.0),
+            (25.0, 20.0),
+            (40.0, 29.0),
+            (50.0, 35.0),
+            (75.0, 40.0),
+            (95.0, 48.0),
+            (100.0, 50.0),
+        ] {
+            let found = statistics.percentile(percent);
+            assert!((found - expected).abs() < 1e-12, "{percent} %: {found}");
+        }
     }
 }

@@ -44,7 +44,7 @@ pub struct ChannelMetrics {
     pub unavailable: BTreeMap<String, Unavailable>,
     /// Curves: name, then column name and values.
     pub curves: BTreeMap<String, Curve>,
-    /// The main metrics over the repeats by key; empty for a single record.
+    /// Metrics over the repeats by key; empty for a single record.
     pub repeats: BTreeMap<String, RepeatStatistics>,
     /// Columns of words of a curve, by curve and column; a single word holds for all its points.
     pub curve_labels: BTreeMap<String, BTreeMap<String, Vec<&'static str>>>,

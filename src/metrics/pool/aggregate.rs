@@ -29,8 +29,8 @@ const SCATTER_REPEATS_MIN: usize = 6;
 ///
 /// Repeatabilities: standard deviation of the repeats' values, from six repeats on.
 ///
-/// Each metric gets the field `repeats`, the number of repeats that have it; the values of the main
-/// ones ([`repeated_metrics`]) are kept repeat by repeat. Allan
+/// Each metric gets the field `repeats`, the number of repeats that have it; the values are kept repeat
+/// by repeat. Allan
 /// deviations and spectra are averaged as powers, other curves as they are. If a repeat failed, the first failed one stands for the channel.
 #[must_use]
 pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {

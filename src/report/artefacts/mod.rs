@@ -18,10 +18,10 @@ use crate::report::record::run::RunReport;
 use crate::scenario::SamplesFormat;
 use crate::signal::{BudgetSheet, CalibrationSheet, RunSignals};
 
-pub use table::{JUNIT, SUITE_SUMMARY};
+pub use table::{JUNIT, METRICS, SUITE_SUMMARY};
 
 use samples::Samples;
-use table::{RUN_AND_LOG, TABLE};
+use table::{RUN_AND_LOG, SUITE, TABLE};
 
 /// Folder that a file is written into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -209,6 +209,21 @@ pub fn run_files<'a>(report: &RunReport, gyros: &[RunSignals<'a>]) -> Vec<Output
         Made::Sheet(text) => report.calibration.map(|sheet| text(sheet, &provenance)),
         _ => None,
     })
+}
+
+/// Names of the files that every suite has in its output folder, but for the record of them.
+#[must_use]
+pub fn suite_files() -> Vec<&'static str> {
+    let is_own = |artefact: &Artefact| matches!(artefact.made, Made::By(SUITE));
+    let own = of(Place::Suite).filter(is_own);
+    own.map(|artefact| artefact.name).collect()
+}
+
+/// Names of the files but for pictures and samples that the folder of a run has.
+#[must_use]
+pub fn run_file_names(report: &RunReport) -> Vec<String> {
+    let files = run_files(report, &[]).into_iter();
+    files.map(|file| file.name).collect()
 }
 
 /// Samples and texts of a folder, in the order of the rows.

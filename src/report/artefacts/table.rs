@@ -3,12 +3,15 @@
 use super::{Artefact, Made, Place, Scene, samples};
 use crate::report::budget::budget_csv;
 use crate::report::calibration::documents::{calibration_toml, groups_csv};
+use crate::report::csv::metrics::metrics_csv;
 use crate::report::csv::runs::runs_csv;
 use crate::report::json::summary::run_summary_json;
 use crate::report::log::log_json;
 use crate::report::plot::{self, Picture};
 use crate::scenario::MotionClass;
 
+/// What makes the files of a suite.
+pub(super) const SUITE: &str = "experiment::suite";
 const ALWAYS: &str = "always";
 const NPY: &str = "output.samples = \"npy\"";
 const RUN: &[Place] = &[Place::Run];
@@ -17,10 +20,19 @@ pub(super) const RUN_AND_LOG: &[Place] = &[Place::Run, Place::Log];
 /// Summary of a suite.
 pub const SUITE_SUMMARY: Artefact = Artefact {
     name: "summary.json",
-    holds: "outcome of every run with its gates, and the tables over several scenarios",
+    holds: "outcome of every run with its gates and metrics, and the tables over several scenarios",
     when: "after every run, so that a stopped suite has one",
     places: &[Place::Suite],
-    made: Made::By("experiment::suite"),
+    made: Made::By(SUITE),
+};
+
+/// Metrics of a suite.
+pub const METRICS: Artefact = Artefact {
+    name: "metrics.csv",
+    holds: "every metric of every run, one a row, with the values of the swept keys",
+    when: "after every run, so that a stopped suite has one",
+    places: &[Place::Suite],
+    made: Made::By(SUITE),
 };
 
 /// Verdict of a suite for a build server.
@@ -29,13 +41,14 @@ pub const JUNIT: Artefact = Artefact {
     holds: "gates and failures as JUnit test cases",
     when: "after every run, so that a stopped suite has one",
     places: &[Place::Suite],
-    made: Made::By("experiment::suite"),
+    made: Made::By(SUITE),
 };
 
 /// Every file but the CSV files of curves, which [`artefacts`] adds. Pictures stand in the order in
 /// which those that are left out are told.
 pub(super) const TABLE: &[Artefact] = &[
     SUITE_SUMMARY,
+    METRICS,
     JUNIT,
     Artefact {
         name: "<published or sensitivity>-<table>.csv",
@@ -80,8 +93,15 @@ pub(super) const TABLE: &[Artefact] = &[
         made: Made::Log(|report| Some(log_json(report))),
     },
     Artefact {
+        name: "metrics.csv",
+        holds: "every metric of every channel, one a row",
+        when: ALWAYS,
+        places: RUN,
+        made: Made::Run(|report| Some(metrics_csv(report))),
+    },
+    Artefact {
         name: "runs.csv",
-        holds: "main metrics of every repeat",
+        holds: "every metric of every repeat",
         when: "several repeats",
         places: RUN,
         made: Made::Run(runs_csv),

@@ -1,4 +1,4 @@
-//! `runs.csv`: the main metrics of every repeat.
+//! `runs.csv`: every metric of every repeat.
 
 use std::fmt::Write as _;
 
@@ -35,7 +35,7 @@ pub(in crate::report) fn runs_csv(report: &RunReport) -> Option<String> {
             for key in &columns {
                 text.push(',');
                 let of = metrics.repeats.get(key.name);
-                if let Some(value) = of.and_then(|of| of.values.get(run)) {
+                if let Some(value) = of.and_then(|of| of.value_of(run)) {
                     let _ = write!(text, "{value:?}");
                 }
             }

@@ -3,17 +3,17 @@
 use serde_json::{Map, Value};
 
 use crate::metrics::{ChannelMetrics, FitSheet, FitTerm, OutlierEntry, RepeatStatistics};
-use crate::report::layout::json::{array, estimate, numbers, object, put, put_array};
+use crate::report::layout::json::{METRICS, array, estimate, numbers, object, put, put_array};
 use crate::report::text::quality::smoothing_words;
 use crate::report::text::verdict::verdict_text;
 
 /// One channel of `channels`.
 pub(crate) fn channel(metrics: &ChannelMetrics) -> Value {
-    let mut record: Map<String, Value> = metrics
-        .metrics
-        .iter()
-        .map(|(key, metric)| (key.clone(), estimate(metric).into()))
-        .collect();
+    let own = metrics.metrics.iter();
+    let own = own.map(|(key, metric)| (key.clone(), estimate(metric).into()));
+    let mut record: Map<String, Value> = own.collect();
+    // The same once more by themselves: beside them stand texts and curves.
+    record.insert(METRICS.to_owned(), record.clone().into());
     if let Some(verdict) = verdict_text(metrics) {
         record.insert("verdict".to_owned(), verdict.into());
     }
@@ -116,6 +116,15 @@ fn words_of(words: &[&str]) -> Value {
     }
 }
 
+/// Percentiles of a metric over the repeats.
+const PERCENTILES: [(&str, f64); 5] = [
+    ("percentile_5", 5.0),
+    ("percentile_25", 25.0),
+    ("percentile_50", 50.0),
+    ("percentile_75", 75.0),
+    ("percentile_95", 95.0),
+];
+
 /// `channels.<name>.repeats` of the summary.
 pub(crate) fn repeats_json(metrics: &ChannelMetrics) -> Value {
     let of = |(key, statistics): (&String, &RepeatStatistics)| {
@@ -127,6 +136,12 @@ pub(crate) fn repeats_json(metrics: &ChannelMetrics) -> Value {
             ("minimum", statistics.minimum),
             ("maximum", statistics.maximum),
         ]));
+        for (key, percent) in PERCENTILES {
+            put(&mut record, key, statistics.percentile(percent));
+        }
+        if !statistics.lacking.is_empty() {
+            record.insert("lacking".to_owned(), statistics.lacking.clone().into());
+        }
         (key.clone(), Value::Object(record))
     };
     let records: Map<String, Value> = metrics.repeats.iter().map(of).collect();

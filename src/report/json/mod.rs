@@ -3,4 +3,5 @@
 pub(super) mod channel;
 pub(super) mod compensation;
 pub(super) mod failed;
+pub(super) mod suite;
 pub(super) mod summary;

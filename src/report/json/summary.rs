@@ -1,15 +1,14 @@
-//! `summary.json` of a run and of a suite.
+//! `summary.json` of a run.
 
-use crate::comparison::Comparison;
-use crate::gate::{Verdict, VerdictKind};
+use crate::gate::Verdict;
+use crate::report::RunReport;
 use crate::report::calibration::documents::calibration_json;
-use crate::report::comparison::json::comparison;
 use crate::report::json::channel::channel;
 use crate::report::json::compensation::compensation_json;
 use crate::report::layout::json::{INTERVALS, SCHEMA, tool};
 use crate::report::layout::json::{numbers, object, pretty, put};
+use crate::report::record::sweep::{PointOfSweep, swept_value};
 use crate::report::text::scale_factor::filter_state_word;
-use crate::report::{RunOutcome, RunReport, RunStatus};
 use crate::scenario::{Fidelity, PublishedConfig, portable_place};
 use crate::signal::GyroFacts;
 use serde_json::{Map, Value};
@@ -49,83 +48,6 @@ pub fn run_summary_json(report: &RunReport) -> String {
     pretty(&root.into())
 }
 
-/// The text of the suite's `summary.json`: every run with its folder, verdict counts and status;
-/// then what the suite says across its scenarios, and folders that hold results of earlier ones.
-#[must_use]
-pub fn suite_summary_json(
-    tool_version: &str,
-    runs: &[RunOutcome],
-    across: &Comparison,
-    stale: &[String],
-) -> String {
-    let with = |status: RunStatus| runs.iter().filter(|run| run.status() == status).count();
-    let verdicts = |kind: VerdictKind| runs.iter().map(|run| run.count(kind)).sum::<usize>();
-    let mut totals = object([
-        ("runs", runs.len().into()),
-        ("passed", with(RunStatus::Pass).into()),
-        ("gate_failed", with(RunStatus::GateFailed).into()),
-        ("channel_failed", with(RunStatus::ChannelFailed).into()),
-        ("run_failed", with(RunStatus::RunFailed).into()),
-        ("gates_passed", verdicts(VerdictKind::Pass).into()),
-        ("gates_failed", verdicts(VerdictKind::Fail).into()),
-        (
-            "gates_inconclusive",
-            verdicts(VerdictKind::Inconclusive).into(),
-        ),
-    ]);
-    // Only a suite that was stopped has such runs.
-    let not_run = with(RunStatus::NotRun);
-    if not_run > 0 {
-        totals.insert("not_run".to_owned(), not_run.into());
-    }
-    let mut root = object([
-        ("schema", SCHEMA.into()),
-        ("tool", tool(tool_version)),
-        ("runs", runs.iter().map(run_entry).collect()),
-        ("totals", totals.into()),
-    ]);
-    if !stale.is_empty() {
-        root.insert("stale".to_owned(), stale.to_vec().into());
-    }
-    root.extend(comparison(across));
-    pretty(&root.into())
-}
-
-fn run_entry(run: &RunOutcome) -> Value {
-    let gates = object([
-        ("pass", run.count(VerdictKind::Pass).into()),
-        ("fail", run.count(VerdictKind::Fail).into()),
-        ("inconclusive", run.count(VerdictKind::Inconclusive).into()),
-    ]);
-    let mut entry = object([
-        ("name", run.name.as_str().into()),
-        ("folder", run.folder.as_str().into()),
-        ("file", run.file.as_str().into()),
-        ("status", run.status().as_str().into()),
-        ("gates", gates.into()),
-    ]);
-    let failed: Map<String, Value> = run
-        .channels
-        .iter()
-        .filter_map(|channel| {
-            let failure = channel.failure.as_ref()?;
-            let record = object([
-                ("kind", failure.kind.as_str().into()),
-                ("expected", channel.expected_failure.into()),
-                ("message", failure.message.as_str().into()),
-            ]);
-            Some((channel.name.clone(), record.into()))
-        })
-        .collect();
-    if !failed.is_empty() {
-        entry.insert("failed_channels".to_owned(), failed.into());
-    }
-    if let Some(error) = &run.error {
-        entry.insert("error".to_owned(), error.as_str().into());
-    }
-    entry.into()
-}
-
 fn scenario(report: &RunReport) -> Value {
     let scenario = report.scenario;
     let fidelity = match scenario.fidelity {
@@ -150,15 +72,18 @@ fn scenario(report: &RunReport) -> Value {
     if let Some(description) = &scenario.description {
         record.insert("description".to_owned(), description.as_str().into());
     }
-    if let Some((index, point)) = &report.sweep {
-        let point: Map<String, Value> = point
-            .iter()
-            .map(|(key, value)| (key.clone(), value.as_str().into()))
-            .collect();
-        let sweep = object([("index", (*index).into()), ("point", point.into())]);
-        record.insert("sweep".to_owned(), sweep.into());
+    if let Some(sweep) = &report.sweep {
+        record.insert("sweep".to_owned(), point_json(sweep));
     }
     record.into()
+}
+
+/// The point in JSON: `index`, and `point` with the keys.
+pub(super) fn point_json((index, assignments): &PointOfSweep) -> Value {
+    let point = assignments.iter();
+    let point = point.map(|(key, value)| (key.clone(), swept_value(value)));
+    let point: Map<String, Value> = point.collect();
+    object([("index", (*index).into()), ("point", point.into())]).into()
 }
 
 fn gyro(facts: &GyroFacts) -> Value {

@@ -62,6 +62,13 @@ pub(crate) fn pretty(value: &Value) -> String {
     text
 }
 
+/// The same without the newline, of a value that stands `depth` containers deep.
+pub(crate) fn pretty_at(value: &Value, depth: usize) -> String {
+    let mut text = String::new();
+    write_value(&mut text, value, depth);
+    text
+}
+
 fn is_flat(value: &Value) -> bool {
     let scalar = |value: &Value| !value.is_array() && !value.is_object();
     match value {
@@ -145,6 +152,9 @@ pub(crate) fn estimate(metric: &Metric) -> Map<String, Value> {
 
 /// Key of what the ends of an estimate are, where they are no interval.
 pub(crate) const INTERVAL: &str = "interval";
+
+/// Key of the metrics of a channel, and of nothing else.
+pub(crate) const METRICS: &str = "metrics";
 
 /// Word for a value that no noise moves, or that is a fact of the record.
 pub(crate) const EXACT: &str = "exact";

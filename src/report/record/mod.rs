@@ -3,3 +3,4 @@
 pub(super) mod columns;
 pub(super) mod measured;
 pub(super) mod run;
+pub(super) mod sweep;

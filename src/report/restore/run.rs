@@ -3,7 +3,7 @@
 //! Whoever restores a report must compare the summary that it makes with the one it came from; only
 //! equal bytes show that nothing was lost on the way.
 
-use crate::report::restore::values::{interned, numbers, real, reals, texts};
+use crate::report::restore::values::{indices, interned, numbers, real, reals, texts};
 use std::collections::BTreeMap;
 
 use serde_json::{Map, Value};
@@ -12,7 +12,7 @@ use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FitSheet, FitTerm, Metric, RepeatStatistics,
 };
 use crate::report::calibration::documents::THETAS;
-use crate::report::layout::json::{EXACT, INTERVAL};
+use crate::report::layout::json::{EXACT, INTERVAL, METRICS};
 use crate::report::restore::calibration::calibration_sheet;
 use crate::signal::{CalibrationSheet, CompensationSheet};
 
@@ -60,7 +60,7 @@ fn channel(record: &Value) -> Option<ChannelMetrics> {
     let mut channel = ChannelMetrics::default();
     for (key, value) in record.as_object()? {
         match key.as_str() {
-            "verdict" | "repeats" => {}
+            "verdict" | "repeats" | METRICS => {}
             "noise_fit" => channel.noise_fit = Some(noise_fit(value)?),
             "pulse_words" => {
                 for (name, words) in value.as_object()? {
@@ -93,6 +93,7 @@ fn channel(record: &Value) -> Option<ChannelMetrics> {
             averaging_time_s: measured
                 .and_then(|metric| metric.fields.get("averaging_time_s").copied()),
             values: numbers(record.get("values")?)?,
+            lacking: record.get("lacking").map_or(Some(Vec::new()), indices)?,
             mean: real(record, "mean")?,
             standard_deviation: real(record, "standard_deviation")?,
             minimum: real(record, "minimum")?,

@@ -23,6 +23,14 @@ pub(in crate::report) fn numbers(values: &Value) -> Option<Vec<f64>> {
     values.as_array()?.iter().map(Value::as_f64).collect()
 }
 
+/// An array of indices.
+pub(in crate::report) fn indices(values: &Value) -> Option<Vec<usize>> {
+    let values = values.as_array()?.iter();
+    values
+        .map(|index| usize::try_from(index.as_u64()?).ok())
+        .collect()
+}
+
 /// A number of a record.
 pub(in crate::report) fn real(record: &Value, key: &str) -> Option<f64> {
     record.get(key)?.as_f64()

@@ -135,12 +135,11 @@ fn values_block(columns: &[(&str, &RepeatStatistics)]) -> Grid {
     let mut grid = Grid::default();
     let heads = columns.iter().map(|(name, _)| (*name).to_owned());
     grid.row(std::iter::once("run".to_owned()).chain(heads));
-    let count = columns.iter().map(|(_, of)| of.values.len()).max();
+    let count = columns.iter().map(|(_, of)| of.repeats()).max();
     for run in 0..count.filter(|count| *count <= ROWS_MAX).unwrap_or(0) {
         let cells = columns.iter().map(|(_, of)| {
-            of.values
-                .get(run)
-                .map_or_else(String::new, |value| digits(*value, of.standard_deviation))
+            of.value_of(run)
+                .map_or_else(String::new, |value| digits(value, of.standard_deviation))
         });
         grid.row(std::iter::once((run + 1).to_string()).chain(cells));
     }
@@ -171,5 +170,5 @@ fn digits(value: f64, scatter: f64) -> String {
 
 pub(in crate::report) fn repeats_of(metrics: &ChannelMetrics) -> usize {
     let mut all = metrics.repeats.values();
-    all.next().map_or(0, |of| of.values.len())
+    all.next().map_or(0, RepeatStatistics::repeats)
 }

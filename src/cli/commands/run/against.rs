@@ -13,7 +13,7 @@ use crate::experiment::{Plan, SuiteOutcome, read_output};
 use crate::report::{comparison_with_baseline_markdown, comparison_with_baseline_text};
 
 /// The earlier results that a suite is compared with.
-pub(in crate::cli) struct Against<'a> {
+pub(super) struct Against<'a> {
     options: &'a RunOptions,
     /// Earlier results, and what fails; none if nothing is compared.
     earlier: Option<(Side, Vec<Outcome>)>,
@@ -22,11 +22,11 @@ pub(in crate::cli) struct Against<'a> {
 }
 
 /// What came of the comparison.
-pub(in crate::cli) struct Compared {
+pub(super) struct Compared {
     /// How the program ends by it.
-    pub(in crate::cli) exit: Exit,
+    pub(super) exit: Exit,
     /// The same in Markdown.
-    pub(in crate::cli) markdown: String,
+    pub(super) markdown: String,
 }
 
 impl Compared {
@@ -42,7 +42,7 @@ impl<'a> Against<'a> {
     /// Reads the earlier results before anything runs, which may replace them.
     ///
     /// A refusal is printed before its exit code is returned.
-    pub(in crate::cli) fn read(options: &'a RunOptions, plans: &[Plan]) -> Result<Self, Exit> {
+    pub(super) fn read(options: &'a RunOptions, plans: &[Plan]) -> Result<Self, Exit> {
         let earlier = options.against.baseline.as_deref().map(side).transpose()?;
         let fail_on = FailOn::outcomes(&options.against.fail_on);
         let mut points: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
@@ -62,7 +62,7 @@ impl<'a> Against<'a> {
     }
 
     /// Compares the results of a suite, and prints what differs: on stdout where that is text.
-    pub(in crate::cli) fn compare(&self, suite: &SuiteOutcome) -> Compared {
+    pub(super) fn compare(&self, suite: &SuiteOutcome) -> Compared {
         let Some((earlier, fail_on)) = &self.earlier else {
             return Compared::nothing(Exit::Success);
         };
