@@ -109,6 +109,10 @@ pub mod comparison;
 
 #[cfg(feature = "report")]
 #[doc(hidden)]
+pub mod baseline;
+
+#[cfg(feature = "report")]
+#[doc(hidden)]
 pub mod report;
 
 #[cfg(feature = "report")]

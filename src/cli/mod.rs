@@ -10,7 +10,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use crate::experiment::start_threads;
-use commands::{budget, calibrate, check, claim, expand, export, list, log, run, schema, timing};
+use commands::{
+    baseline, budget, calibrate, check, claim, compare, expand, export, list, log, run, schema,
+    timing,
+};
 use options::arguments::{Arguments, Command};
 use options::idle;
 use terminal::exit::{self, Exit};
@@ -48,6 +51,8 @@ fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
         Command::Expand(options) => expand::expand(options),
         Command::List(options) => list::list(options),
         Command::Schema => schema::schema(),
+        Command::Compare(options) => compare::compare(options),
+        Command::Baseline(options) => baseline::baseline(options),
         Command::Budget(options) => budget::budget(options),
         Command::Analyze(options) => log::analyze(options),
         Command::Filter(options) => log::filter(options),

@@ -3,6 +3,8 @@
 //! Invariant: wiring only; what a stage does stands in the stage. Checks that need physics live in
 //! `plan`, so that `check` and `run` refuse the same files.
 
+#[cfg(feature = "report")]
+mod baseline;
 mod budget;
 mod build;
 mod campaign;
@@ -20,6 +22,8 @@ mod stimulus;
 #[cfg(feature = "report")]
 mod suite;
 
+#[cfg(feature = "report")]
+pub use baseline::{SideError, read_baseline_file, read_output, read_side, side_of_runs};
 pub use budget::{GyroBudget, gyro_budget};
 pub use build::BUILD;
 #[cfg(feature = "report")]

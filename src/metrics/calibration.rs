@@ -8,6 +8,7 @@ pub static BIAS_ERROR_RMS: MetricKey = MetricKey::of_estimates(
     "deg/h",
     "root mean square error of the three biases that an estimator finds",
 )
+.lower_is_better()
 .heading("bias error rms")
 .pooled(Pool::RootMeanSquare)
 .tables(&[Table::Campaign])
@@ -19,6 +20,7 @@ pub static SCALE_FACTOR_ERROR_RMS: MetricKey = MetricKey::of_estimates(
     "ppm",
     "root mean square error of the three scale factors that an estimator finds",
 )
+.lower_is_better()
 .heading("scale factor error rms")
 .pooled(Pool::RootMeanSquare)
 .tables(&[Table::Campaign])
@@ -30,6 +32,7 @@ pub static MISALIGNMENT_ERROR_RMS: MetricKey = MetricKey::of_estimates(
     "arcsec",
     "root mean square error of the six misalignments that an estimator finds",
 )
+.lower_is_better()
 .pooled(Pool::RootMeanSquare);
 
 /// Normalised error squared.
@@ -44,18 +47,22 @@ pub static COMPENSATED_RATE_ERROR: MetricKey = MetricKey::of_estimates(
     "compensated_rate_error_deg_per_h",
     "deg/h",
     "largest error of the plan's rates compensated with the estimate, exact form",
-);
+)
+.lower_is_better();
 
 /// Plan condition number.
 pub static PLAN_CONDITION_NUMBER: MetricKey = MetricKey::of_estimates(
     "plan_condition_number",
     "1",
     "largest condition number of the weighted rows of the three gyros",
-);
+)
+.lower_is_better()
+.of_settings();
 
 /// Rounding loss.
 pub static ROUNDING_LOSS: MetricKey = MetricKey::of_estimates(
     "rounding_loss_deg_per_h",
     "deg/h",
     "largest difference of a bias of the covariance recursion from its square-root form",
-);
+)
+.lower_is_better();

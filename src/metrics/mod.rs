@@ -78,7 +78,7 @@ pub(crate) use estimate::text::{estimate_text, is_exact, plain, three_digits, wa
 pub use estimate::value::{Estimate, IntervalKind, Metric};
 pub use key::curve::{Column, Curve, CurveKey};
 pub(crate) use key::metric::{Against, Headline, Table};
-pub use key::metric::{Applies, MetricKey};
+pub use key::metric::{Applies, Better, MetricKey, OfBlocks};
 pub use measure::measure;
 pub use noise::autocovariance::autocovariance;
 pub use noise::bias_stability::{

@@ -11,6 +11,8 @@ pub static PREDICTED_FAILURE: MetricKey = MetricKey::of_pipelines(
     "s",
     "time to failure ln(0.01/eps)/(1-alpha) of the gain-first update, in samples and s",
 )
+.higher_is_better()
+.of_settings()
 .heading("predicted failure")
 .closing_tables();
 
@@ -20,12 +22,16 @@ pub static LATENCY: MetricKey = MetricKey::of_pipelines(
     "us",
     "from accepting a sample to its result, counted on the model",
 )
+.lower_is_better()
+.of_settings()
 .heading("latency")
 .closing_tables();
 
 /// Sample period of the pipeline.
 pub static SAMPLE_PERIOD: MetricKey =
     MetricKey::of_pipelines("sample_period_us", "us", "time of these clocks")
+        .lower_is_better()
+        .of_settings()
         .heading("pipeline period")
         .closing_tables();
 
@@ -34,14 +40,18 @@ pub static CLOCKS_PER_SAMPLE: MetricKey = MetricKey::of_pipelines(
     "clocks_per_sample",
     "1",
     "clocks from one accepted sample to the next, back to back, counted on the model",
-);
+)
+.lower_is_better()
+.of_settings();
 
 /// Largest sample rate of the pipeline.
 pub static SAMPLE_RATE_MAX: MetricKey = MetricKey::of_pipelines(
     "sample_rate_max_khz",
     "kHz",
     "largest sample rate the pipeline keeps up with, 1/sample_period_us",
-);
+)
+.higher_is_better()
+.of_settings();
 
 /// Largest asymmetry of the inverse correlation matrix.
 pub static ASYMMETRY_MAX: MetricKey = MetricKey::of_pipelines(

@@ -17,10 +17,12 @@
 //! | `json` | `summary.json` of runs and suites |
 //! | `restore` | `summary.json` read back |
 //! | `build_server` | JUnit, annotations, Markdown and metrics for build servers |
+//! | `baseline` | a comparison with earlier results |
 //!
 //! [`artefacts`](fn@artefacts) lists every file that is written, with what makes it.
 
 mod artefacts;
+mod baseline;
 mod budget;
 mod build_server;
 mod calibration;
@@ -40,6 +42,9 @@ pub use artefacts::{
     Artefact, Contents, JUNIT, METRICS, OutputFile, Place, SUITE_SUMMARY, artefacts, budget_files,
     calibration_files, log_files, plots, run_file_names, run_files, run_pictures, suite_files,
 };
+pub use baseline::json::comparison_with_baseline_json;
+pub use baseline::markdown::comparison_with_baseline_markdown;
+pub use baseline::text::comparison_with_baseline_text;
 pub use budget::{budget_json, budget_text};
 pub use build_server::bencher::{BencherMetrics, is_bencher_metrics};
 pub use build_server::github::github_annotations;

@@ -28,7 +28,7 @@ what a filter is given: the output of the gyro, or with a `[compensation]` the c
   *inconclusive*, which fails too unless the gate allows it, when the interval reaches over a limit.
 
 The tables say for which motions a metric is defined (*filters* where raw has none), what the record must
-offer, and how independent repeats are pooled (*mean*: what has degrees of freedom as root of the mean
+offer, which value is the better one ([comparing](compare.md)), and how independent repeats are pooled (*mean*: what has degrees of freedom as root of the mean
 square). In `summary.json` a metric stands under `channels.<name>.<key>`; see [results](output.md). The
 source file of a metric declares it beside its computation.
 ";
@@ -123,6 +123,7 @@ fn row(key: &MetricKey, file: &str) -> String {
         key.definition.to_owned(),
         format!("{only}{records}{reference}"),
         requirement(key),
+        key.better.as_str().to_owned(),
         pooling.to_owned(),
         format!("[{source}](../{file})"),
     ];
@@ -140,7 +141,7 @@ pub(crate) fn page() -> String {
         let module = sources.get(&folder).or_else(|| sources.get(&file));
         let doc = subject(module.expect("a module has a file"));
         write!(page, "\n## {name}\n\n{doc}\n\n").expect("a string takes it");
-        page.push_str("| key | unit | definition | defined for | needs | repeats | source |\n|---|---|---|---|---|---|---|\n");
+        page.push_str("| key | unit | definition | defined for | needs | better | repeats | source |\n|---|---|---|---|---|---|---|---|\n");
         for (key, file) in keys {
             page.push_str(&row(key, &file));
         }

@@ -1,9 +1,11 @@
 //! The commands, a file for each, and the selection of scenarios that several share.
 
+pub(in crate::cli) mod baseline;
 pub(in crate::cli) mod budget;
 pub(in crate::cli) mod calibrate;
 pub(in crate::cli) mod check;
 pub(in crate::cli) mod claim;
+pub(in crate::cli) mod compare;
 pub(in crate::cli) mod expand;
 pub(in crate::cli) mod export;
 pub(in crate::cli) mod list;

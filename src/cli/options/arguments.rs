@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::cli::options::baseline::{AgainstOptions, BaselineOptions, CompareOptions};
 use crate::cli::options::build_server::BuildServerOptions;
 use crate::cli::options::calibrate::CalibrateOptions;
 use crate::cli::options::claim::ClaimOptions;
@@ -55,6 +56,10 @@ pub(in crate::cli) enum Command {
     List(ListOptions),
     /// Print the JSON Schema of scenario files
     Schema,
+    /// Compare results with earlier ones or with a baseline, metric by metric
+    Compare(CompareOptions),
+    /// Keep results in a file to compare later ones with
+    Baseline(BaselineOptions),
     /// Print the noise budget of a gyro in closed form, without a run
     Budget(BudgetOptions),
     /// Measure a recorded log: every metric that needs no true rate
@@ -157,6 +162,8 @@ pub(in crate::cli) struct RunOptions {
     /// Form of the results on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(in crate::cli) format: Format,
+    #[command(flatten)]
+    pub(in crate::cli) against: AgainstOptions,
     #[command(flatten)]
     pub(in crate::cli) server: BuildServerOptions,
 }

@@ -57,6 +57,8 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
         | Command::Expand(_)
         | Command::List(_)
         | Command::Schema
+        | Command::Compare(_)
+        | Command::Baseline(_)
         | Command::Budget(_)
         | Command::Claim(_) => Vec::new(),
     }

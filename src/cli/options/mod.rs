@@ -2,6 +2,7 @@
 //! nothing beside others.
 
 pub(in crate::cli) mod arguments;
+pub(in crate::cli) mod baseline;
 pub(in crate::cli) mod build_server;
 pub(in crate::cli) mod calibrate;
 pub(in crate::cli) mod claim;

@@ -16,6 +16,7 @@ pub static CORRELATED_NOISE: MetricKey = MetricKey::new(
     Applies::Steady,
     "standard deviation of exponentially correlated (Gauss-Markov) noise, where the Allan variance asks for it",
 )
+.lower_is_better()
 .synonyms(&["gauss_markov", "markov", "exponentially_correlated_noise"])
 .heading("correlated noise")
 .needs(Needs::AllanFit)
@@ -42,6 +43,7 @@ pub static SINE_AMPLITUDE: MetricKey = MetricKey::new(
     Applies::Steady,
     "amplitude of a sine in the words, found by a line test and taken out before the fit",
 )
+.lower_is_better()
 .synonyms(&["sinusoidal_noise", "sine", "sine_amplitude"])
 .heading("sine")
 .needs(Needs::AllanFit)

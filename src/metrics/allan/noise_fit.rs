@@ -19,6 +19,7 @@ pub static ANGLE_RANDOM_WALK: MetricKey = MetricKey::new(
     Applies::Steady,
     "N of the fit to the overlapping Allan variance, N^2/tau",
 )
+.lower_is_better()
 .synonyms(&["n", "angle_random_walk", "angular_random_walk"])
 .heading("ARW")
 .slow_noise()
@@ -35,6 +36,7 @@ pub static BIAS_INSTABILITY: MetricKey = MetricKey::new(
     Applies::Steady,
     "B of the fit to the overlapping Allan variance, (0.664 B)^2: the flicker floor over 0.664",
 )
+.lower_is_better()
 .synonyms(&["b", "flicker", "flicker_floor", "bias_instability"])
 .heading("bias instability")
 .needs(Needs::SlowNoiseFit)
@@ -48,6 +50,7 @@ pub static RATE_RANDOM_WALK: MetricKey = MetricKey::new(
     Applies::Steady,
     "K of the fit to the overlapping Allan variance, K^2 tau/3",
 )
+.lower_is_better()
 .synonyms(&["k", "rate_random_walk"])
 .heading("rate random walk")
 .needs(Needs::SlowNoiseFit)
@@ -61,6 +64,7 @@ pub static RATE_RAMP: MetricKey = MetricKey::new(
     Applies::Steady,
     "R of the fit to the overlapping Allan variance, R^2 tau^2/2",
 )
+.lower_is_better()
 .synonyms(&["r", "rate_ramp", "drift_rate"])
 .heading("rate ramp")
 .needs(Needs::SlowNoiseFit)
@@ -74,6 +78,7 @@ pub static QUANTISATION: MetricKey = MetricKey::new(
     Applies::Steady,
     "Q of the fit to the overlapping Allan variance, 3 Q^2/tau^2; of counted pulses their step over sqrt(12)",
 )
+.lower_is_better()
 .synonyms(&["q", "quantisation", "quantisation_noise"])
 .heading("quantisation")
 .needs(Needs::AllanFit)

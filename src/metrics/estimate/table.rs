@@ -60,6 +60,14 @@ pub struct ChannelMetrics {
     pub error: Option<ChannelFailure>,
 }
 
+impl Metric {
+    /// Degrees of freedom, for a standard deviation.
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> Option<f64> {
+        self.fields.get(DEGREES_OF_FREEDOM).copied()
+    }
+}
+
 impl ChannelMetrics {
     /// Enters a metric under its catalogue unit, and returns it for its defining fields.
     pub(crate) fn put(&mut self, key: &MetricKey, estimate: Estimate) -> &mut Metric {

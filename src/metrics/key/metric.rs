@@ -37,6 +37,17 @@ pub enum Applies {
 }
 
 impl Applies {
+    /// Lines of the suite's table for the one motion whose records alone have the metric.
+    fn headlines(self) -> &'static [Headline] {
+        match self {
+            Self::Steady => &[Headline::Rest],
+            Self::Swing => &[Headline::Swing],
+            Self::MultiSine => &[Headline::MultiSine],
+            Self::Steps => &[Headline::Steps, Headline::ScaleFactor],
+            _ => &[],
+        }
+    }
+
     /// The records in words, which follow "defined for".
     #[must_use]
     pub fn words(self) -> &'static str {
@@ -145,6 +156,73 @@ impl Pool {
     }
 }
 
+/// Which of two values is the better one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Better {
+    /// The lower one.
+    Lower,
+    /// The higher one.
+    Higher,
+    /// Neither: a change is a change.
+    Neither,
+}
+
+impl Better {
+    /// The word in files: `lower`, `higher` or `none`.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Lower => "lower",
+            Self::Higher => "higher",
+            Self::Neither => "none",
+        }
+    }
+
+    /// The one that a word of a file stands for.
+    #[must_use]
+    pub fn of_word(word: &str) -> Option<Self> {
+        let all = [Self::Lower, Self::Higher, Self::Neither];
+        all.into_iter().find(|better| better.as_str() == word)
+    }
+}
+
+/// How blocks of a record give the metric, where results are compared block by block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OfBlocks {
+    /// As the mean of their means.
+    Mean,
+    /// As the root of the mean of their variances.
+    Deviation,
+}
+
+impl OfBlocks {
+    /// The figure of one block.
+    #[must_use]
+    pub fn of(self, words: &[f64]) -> f64 {
+        let count = words.len() as f64;
+        let mean = words.iter().sum::<f64>() / count;
+        match self {
+            Self::Mean => mean,
+            Self::Deviation => {
+                let squares: f64 = words.iter().map(|word| (word - mean).powi(2)).sum();
+                (squares / (count - 1.0)).sqrt()
+            }
+        }
+    }
+
+    /// The figure of the whole out of those of its blocks.
+    #[must_use]
+    pub fn whole(self, blocks: &[f64]) -> f64 {
+        let count = blocks.len() as f64;
+        match self {
+            Self::Mean => blocks.iter().sum::<f64>() / count,
+            Self::Deviation => {
+                (blocks.iter().map(|block| block * block).sum::<f64>() / count).sqrt()
+            }
+        }
+    }
+}
+
 /// Tables that have a column for the metric, by the kind of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Table {
@@ -191,6 +269,12 @@ pub struct MetricKey {
     pub applies: Applies,
     /// Whether only filters have it.
     pub filters_only: bool,
+    /// Which of two values is the better one.
+    pub better: Better,
+    /// Whether it follows from the settings alone: no noise of any seed moves it.
+    pub is_of_settings: bool,
+    /// How blocks of a record give it; none if they do not.
+    pub of_blocks: Option<OfBlocks>,
     /// Names that people give to it, by their words without a unit.
     pub(crate) synonyms: &'static [&'static str],
     pub(crate) heading: Option<&'static str>,
@@ -233,6 +317,9 @@ impl MetricKey {
             definition,
             applies,
             filters_only: false,
+            better: Better::Neither,
+            is_of_settings: false,
+            of_blocks: None,
             synonyms: &[],
             heading: None,
             needs: Needs::Record,
@@ -284,6 +371,38 @@ impl MetricKey {
     pub(crate) const fn heading(self, heading: &'static str) -> Self {
         Self {
             heading: Some(heading),
+            ..self
+        }
+    }
+
+    /// The same, the lower the better.
+    pub(crate) const fn lower_is_better(self) -> Self {
+        Self {
+            better: Better::Lower,
+            ..self
+        }
+    }
+
+    /// The same, the higher the better.
+    pub(crate) const fn higher_is_better(self) -> Self {
+        Self {
+            better: Better::Higher,
+            ..self
+        }
+    }
+
+    /// The same, moved by no noise.
+    pub(crate) const fn of_settings(self) -> Self {
+        Self {
+            is_of_settings: true,
+            ..self
+        }
+    }
+
+    /// The same, given by blocks of the record.
+    pub(crate) const fn of_blocks(self, of_blocks: OfBlocks) -> Self {
+        Self {
+            of_blocks: Some(of_blocks),
             ..self
         }
     }
@@ -383,6 +502,23 @@ impl MetricKey {
     #[must_use]
     pub fn pooling(&self) -> String {
         self.pool.words()
+    }
+
+    /// Whether the suite's lines show it for the motion of a record that has these metrics.
+    #[must_use]
+    pub fn is_headline_of(&self, record: &[&Self]) -> bool {
+        let shown: Vec<Headline> = record
+            .iter()
+            .flat_map(|other| other.applies.headlines().iter().copied())
+            .collect();
+        let is_shown = |headline: &Headline| shown.is_empty() || shown.contains(headline);
+        self.headlines.iter().any(is_shown)
+    }
+
+    /// Whether nobody misses it who did not ask for it: a record need not have it.
+    #[must_use]
+    pub fn is_by_choice(&self) -> bool {
+        self.is_by_choice
     }
 
     /// Whether the scatter of repeats gives it, which a single record cannot.

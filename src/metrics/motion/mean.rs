@@ -8,7 +8,7 @@ use crate::metrics::estimate::paired::{MeanScatter, delayed, density_at_zero};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
-use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Needs, Table};
+use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Needs, OfBlocks, Table};
 use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
 use crate::metrics::theory::memory::memory_samples;
@@ -22,6 +22,7 @@ pub static MEAN: MetricKey = MetricKey::new(
     Applies::Always,
     "mean over the record; in a swing the offset of the sine fit over whole cycles",
 )
+.of_blocks(OfBlocks::Mean)
 .synonyms(&["average"])
 .heading("mean")
 .run_column(1)

@@ -44,6 +44,7 @@ pub static BANDWIDTH: MetricKey = MetricKey::new(
     Applies::MultiSine,
     "where the gain against the true rate first falls through 1/sqrt(2) of that of the lowest sine",
 )
+.higher_is_better()
 .heading("bandwidth")
 .needs(Needs::TwoSines)
 .of_turned_axis()

@@ -41,6 +41,7 @@ pub static DELAY_VS_RAW: MetricKey = MetricKey::of_filters(
     Applies::Tones,
     "phase delay behind the raw channel at the swing frequency; of several sines the lowest",
 )
+.lower_is_better()
 .heading("delay vs raw")
 .run_column(9)
 .tables(&[Table::Swing, Table::MultiSine])
@@ -63,6 +64,7 @@ pub static DELAY_VS_TRUTH: MetricKey = MetricKey::new(
     Applies::Tones,
     "phase delay behind the true rate at the swing frequency; of several sines the lowest",
 )
+.lower_is_better()
 .heading("delay vs truth")
 .against(Compared::Truth)
 .of_turned_axis()
@@ -76,6 +78,7 @@ pub static DELAY_VS_ENCODER: MetricKey = MetricKey::new(
     Applies::Swing,
     "phase delay behind the rate implied by a sine fit of the encoder's angle",
 )
+.lower_is_better()
 .heading("delay vs encoder")
 .against(Compared::Encoder)
 .of_turned_axis()
@@ -89,6 +92,7 @@ pub static DELAY_BY_CORRELATION: MetricKey = MetricKey::new(
     Applies::Swing,
     "delay behind the true rate again, by the peak of their correlation: a check of the sine fit",
 )
+.lower_is_better()
 .against(Compared::Truth)
 .of_turned_axis();
 
@@ -112,6 +116,7 @@ pub static HARMONIC_DISTORTION: MetricKey = MetricKey::new(
     Applies::Swing,
     "root sum of squares of harmonics 2 to 5 over the fundamental, noise power subtracted",
 )
+.lower_is_better()
 .synonyms(&["thd", "distortion"])
 .heading("harmonic distortion")
 .tables(&[Table::Swing]);

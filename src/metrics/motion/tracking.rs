@@ -17,6 +17,7 @@ pub static TRACKING_ERROR_RMS: MetricKey = MetricKey::new(
     Applies::Moving,
     "root mean square difference from the true rate at the same stamps",
 )
+.lower_is_better()
 .synonyms(&["tracking_error", "rms_error"])
 .heading("tracking error rms")
 .against(Against::Truth)

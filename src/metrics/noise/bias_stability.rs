@@ -19,6 +19,7 @@ pub static BIAS_STABILITY_1S: MetricKey = MetricKey::new(
     Applies::Steady,
     "standard deviation of non-overlapping 1 s means",
 )
+.lower_is_better()
 .heading("bias stability")
 .slow_noise()
 .needs(Needs::Blocks(1.0));
@@ -30,6 +31,7 @@ pub static BIAS_STABILITY_10S: MetricKey = MetricKey::new(
     Applies::Steady,
     "standard deviation of non-overlapping 10 s means",
 )
+.lower_is_better()
 .heading("bias stability")
 .slow_noise()
 .needs(Needs::Blocks(10.0));
@@ -41,6 +43,7 @@ pub static BIAS_STABILITY_100S: MetricKey = MetricKey::new(
     Applies::Steady,
     "standard deviation of non-overlapping 100 s means",
 )
+.lower_is_better()
 .heading("bias stability")
 .slow_noise()
 .needs(Needs::Blocks(100.0));
@@ -52,6 +55,7 @@ pub static BIAS_STABILITY: MetricKey = MetricKey::new(
     Applies::Steady,
     "standard deviation of non-overlapping means over the scenario's bias_averaging_time_s",
 )
+.lower_is_better()
 .heading("bias stability")
 .slow_noise()
 .needs(Needs::ScenarioBlocks)

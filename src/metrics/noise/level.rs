@@ -5,7 +5,7 @@ use super::by_weights::NoiseByWeights;
 use crate::metrics::estimate::influence::resampled;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::{ChannelMetrics, DEGREES_OF_FREEDOM};
-use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Pool, Table};
+use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, OfBlocks, Pool, Table};
 
 /// Standard deviation of the noise.
 pub static NOISE_STD: MetricKey = MetricKey::new(
@@ -14,6 +14,8 @@ pub static NOISE_STD: MetricKey = MetricKey::new(
     Applies::Separable,
     "standard deviation of the samples about the signal: mean, fitted sine, or settled rate; over n less what is fitted",
 )
+.lower_is_better()
+.of_blocks(OfBlocks::Deviation)
 .synonyms(&["std", "noise", "noise_rms", "standard_deviation"])
 .heading("noise std")
 .pooled(Pool::RootMeanSquare)
@@ -29,6 +31,7 @@ pub static NOISE_GAIN: MetricKey = MetricKey::of_filters(
     Applies::Separable,
     "variance about the signal over that of raw",
 )
+.lower_is_better()
 .synonyms(&["noise_power_gain", "noise_reduction"])
 .heading("noise power gain")
 .needs(Needs::SettledStep)

@@ -16,6 +16,7 @@ pub static BIAS_REPEATABILITY: MetricKey = MetricKey::new(
     Applies::Steady,
     "standard deviation of the means of six repeats or more, each a start of its own",
 )
+.lower_is_better()
 .heading("bias repeatability")
 .pooled(Pool::ScatterOf(&MEAN))
 .by_choice()
@@ -28,6 +29,7 @@ pub static SCALE_FACTOR_REPEATABILITY: MetricKey = MetricKey::new(
     Applies::Steps,
     "standard deviation of the scale factors of six repeats or more over their mean",
 )
+.lower_is_better()
 .heading("scale factor repeatability")
 .pooled(Pool::RelativeScatterOf(&SCALE_FACTOR_ERROR))
 .of_turned_axis()

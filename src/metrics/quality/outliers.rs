@@ -16,6 +16,7 @@ pub static OUTLIERS: MetricKey = MetricKey::new(
     Applies::Log,
     "words, or bursts of them, farther out than Gaussian noise has one in a hundred records; listed with their sizes",
 )
+.lower_is_better()
 .synonyms(&["spikes", "glitches"])
 .needs(Needs::Samples);
 

@@ -15,6 +15,7 @@ pub static SETTLING_TIME: MetricKey = MetricKey::new(
     Applies::Steps,
     "time after the last step until the rate stays within max(1 % of the step, 5 sigma)",
 )
+.lower_is_better()
 .synonyms(&["settle_time", "settling"])
 .heading("settling time")
 .needs(Needs::Step)

@@ -17,6 +17,7 @@ pub static RISE_TIME: MetricKey = MetricKey::new(
     Applies::Steps,
     "time from 10 % to 90 % of the last step, linear between samples",
 )
+.lower_is_better()
 .synonyms(&["rise_time"])
 .heading("rise time")
 .needs(Needs::Step)
@@ -30,6 +31,7 @@ pub static OVERSHOOT: MetricKey = MetricKey::new(
     Applies::Steps,
     "largest excess over the settled rate after the last step, of the step; 0 within the noise",
 )
+.lower_is_better()
 .heading("overshoot")
 .needs(Needs::Step)
 .of_turned_axis()

@@ -20,6 +20,7 @@ pub static THRESHOLD: MetricKey = MetricKey::new(
     Applies::Steps,
     "smallest input of the record from which on all give half of themselves, from zero input",
 )
+.lower_is_better()
 .heading("threshold")
 .of_turned_axis()
 .by_choice()
@@ -32,6 +33,7 @@ pub static DEAD_BAND: MetricKey = MetricKey::new(
     Applies::Steps,
     "sum of the smallest such inputs of both senses: where the output stays below half",
 )
+.lower_is_better()
 .heading("dead band")
 .of_turned_axis()
 .by_choice()
@@ -44,6 +46,7 @@ pub static RESOLUTION: MetricKey = MetricKey::new(
     Applies::Steps,
     "the same from the rate held most often: smallest answered increment",
 )
+.lower_is_better()
 .heading("resolution")
 .of_turned_axis()
 .by_choice()

@@ -142,6 +142,7 @@ pub static SCALE_FACTOR_NONLINEARITY: MetricKey = MetricKey::new(
     Applies::Steps,
     "largest distance of a dwell from that line over the largest output (of full scale)",
 )
+.lower_is_better()
 .heading("nonlinearity")
 .needs(Needs::Dwells)
 .of_turned_axis()
@@ -155,6 +156,7 @@ pub static SCALE_FACTOR_NONLINEARITY_OF_READING: MetricKey = MetricKey::new(
     Applies::Steps,
     "largest distance of a dwell from that line over the line there (of reading)",
 )
+.lower_is_better()
 .heading("nonlinearity of reading")
 .needs(Needs::Dwells)
 .of_turned_axis()
@@ -168,6 +170,7 @@ pub static SCALE_FACTOR_ASYMMETRY: MetricKey = MetricKey::new(
     Applies::Steps,
     "difference of the slopes of separate lines for the two senses over their mean",
 )
+.lower_is_better()
 .heading("asymmetry")
 .needs(Needs::DwellsOfBothSenses)
 .of_turned_axis()

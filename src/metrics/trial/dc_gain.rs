@@ -48,6 +48,7 @@ pub static ANGLE_RANDOM_WALK_OVER_DC_GAIN: MetricKey = MetricKey::of_filters(
     Applies::Steady,
     "angle random walk once the scale factor is restored",
 )
+.lower_is_better()
 .heading("ARW / DC gain")
 .slow_noise()
 .needs(Needs::AllanFit)
@@ -60,6 +61,7 @@ pub static BIAS_STABILITY_OVER_DC_GAIN: MetricKey = MetricKey::of_filters(
     Applies::Steady,
     "bias stability once the scale factor is restored",
 )
+.lower_is_better()
 .heading("bias stability / DC gain")
 .slow_noise()
 .needs(Needs::ScenarioBlocks)

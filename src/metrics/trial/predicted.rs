@@ -32,6 +32,7 @@ pub static DELAY_AT_DC: MetricKey = MetricKey::of_filters(
     Applies::Steady,
     "delay at DC of the mean weights, register and latency included",
 )
+.lower_is_better()
 .heading("delay at DC")
 .tables(&[Table::Rest]);
 

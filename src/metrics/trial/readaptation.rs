@@ -27,6 +27,7 @@ pub static READAPTATION_TIME: MetricKey = MetricKey::of_filters(
     Applies::Onset,
     "time from the start of a motion until the gain stays within 1 % of what it teaches; of a filter that does not adapt its memory",
 )
+.lower_is_better()
 .heading("readaptation")
 .needs(Needs::SettledStep)
 .tables(&[Table::Swing, Table::Steps]);

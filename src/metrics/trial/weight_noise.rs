@@ -19,6 +19,7 @@ pub static WEIGHT_NOISE_RATIO: MetricKey = MetricKey::of_filters(
     Applies::Steady,
     "Allan deviation at averaging_time_s over DC gain times raw's: 1 when the weights stand still",
 )
+.lower_is_better()
 .heading("weight noise")
 .tables(&[Table::Rest]);
 

@@ -100,6 +100,47 @@ fn filled(schema_path: &str, table: &Table, absent: &dyn Fn(&str) -> Arc<Table>)
     result
 }
 
+/// What of a filled tree says more than [`fill`] would add.
+pub(crate) fn sparse(root: &Table) -> Table {
+    sparse_below("", root)
+}
+
+fn sparse_below(schema_path: &str, table: &Table) -> Table {
+    let group = schema::group_of(schema_path);
+    let mut result = table.clone();
+    for Entry { name, child, path } in schema::entries(schema_path).iter().copied() {
+        let is_alternative = group.is_some_and(|group| group.alternatives.contains(&name));
+        let would_be_added = if is_alternative {
+            group.and_then(Group::default) == Some(name)
+        } else {
+            !schema::is_optional_table(path)
+        };
+        let Some(node) = result.get_mut(name) else {
+            continue;
+        };
+        let says_nothing = match (&mut node.value, child) {
+            (value, Child::Leaf(_)) => default_of(path) == Some(&*value),
+            (Value::Table(inner), Child::Table) => {
+                *inner = Arc::new(sparse_below(path, inner));
+                inner.is_empty()
+            }
+            (Value::Array(elements), Child::Tables) => {
+                for element in Arc::make_mut(elements) {
+                    if let Some(table) = element.as_table_mut() {
+                        *table = sparse_below(path, table);
+                    }
+                }
+                false
+            }
+            _ => false,
+        };
+        if says_nothing && would_be_added {
+            result.remove(name);
+        }
+    }
+    result
+}
+
 /// A table of which nothing was written, filled. Those inside arrays are not kept.
 fn absent_in(path: &str, absent: &dyn Fn(&str) -> Arc<Table>) -> Arc<Table> {
     if path.contains("[]") {

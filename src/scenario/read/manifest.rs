@@ -33,11 +33,12 @@ pub(crate) fn is_manifest(root: &Table) -> bool {
 pub fn manifest_toml(resolved: &Resolved, tool_version: &str, build: &str) -> String {
     let text = |text: &str| Value::Text(text.to_owned()).to_toml();
     let mut manifest = format!(
-        "manifest = {MANIFEST_VERSION}\nbuild = {}\n\n[tool]\nname = \"fogbench\"\nversion = {}\n\n[origin]\nfile = {}\ndigest = {}\n",
+        "manifest = {MANIFEST_VERSION}\nbuild = {}\n\n[tool]\nname = \"fogbench\"\nversion = {}\n\n[origin]\nfile = {}\ndigest = {}\nconditions = {}\n",
         text(build),
         text(tool_version),
         text(&resolved.file),
-        text(&resolved.digest)
+        text(&resolved.digest),
+        text(&resolved.conditions())
     );
     let gates = 0..resolved.scenario.gates.len();
     let places: Vec<String> = gates

@@ -3,6 +3,7 @@
 pub(in crate::scenario) mod chain;
 pub(in crate::scenario) mod clashes;
 pub(in crate::scenario) mod compensation_source;
+pub(in crate::scenario) mod conditions;
 pub(in crate::scenario) mod discover;
 pub(in crate::scenario) mod draft;
 pub(in crate::scenario) mod input;

@@ -1,6 +1,7 @@
 //! `fogbench run`: runs scenarios, prints a line of each as they become ready, ends with the verdict.
 
 mod account;
+mod against;
 mod clock;
 mod progress;
 mod server_files;
@@ -14,6 +15,7 @@ use crate::cli::terminal::output;
 use crate::cli::terminal::signals::Interrupt;
 use crate::experiment::{Resume, SuiteOptions, run_suite};
 use crate::scenario::bounded;
+use against::Against;
 use progress::Progress;
 use server_files::ServerFiles;
 
@@ -37,11 +39,13 @@ pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Re
         resume: resume(options.resume),
         ..SuiteOptions::new(options.output.clone())
     };
-    let server = match ServerFiles::check(options, &plans) {
-        Ok(server) => server,
+    let beside = Against::read(options, &plans)
+        .and_then(|against| Ok((against, ServerFiles::check(options, &plans)?)));
+    let (against, server) = match beside {
+        Ok(beside) => beside,
         Err(exit) => return Ok(exit),
     };
-    let progress = Progress::new(&plans, (options, server), interrupt);
+    let progress = Progress::new(&plans, options, (against, server), interrupt);
     if let Some(text) = senseless_threads(options) {
         output::talk(&format!(
             "warning: RAYON_NUM_THREADS = `{}` is no number of threads: one per core",

@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::account::{Account, passed};
+use super::against::Against;
 use super::clock::SuiteClock;
 use super::server_files::ServerFiles;
 use crate::cli::options::arguments::RunOptions;
@@ -25,6 +26,7 @@ pub(super) struct Progress<'a> {
     bar: ProgressBar,
     clock: SuiteClock,
     options: &'a RunOptions,
+    against: Against<'a>,
     server: ServerFiles<'a>,
     interrupt: &'a Interrupt,
     pending: Mutex<Pending>,
@@ -41,7 +43,8 @@ struct Pending {
 impl<'a> Progress<'a> {
     pub(super) fn new(
         plans: &[Plan],
-        (options, server): (&'a RunOptions, ServerFiles<'a>),
+        options: &'a RunOptions,
+        (against, server): (Against<'a>, ServerFiles<'a>),
         interrupt: &'a Interrupt,
     ) -> Self {
         let total_s: f64 = plans.iter().map(Plan::simulated_s).sum();
@@ -63,6 +66,7 @@ impl<'a> Progress<'a> {
             bar,
             clock: SuiteClock::start(folders.collect(), total_s),
             options,
+            against,
             server,
             interrupt,
             pending: Mutex::new(pending),
@@ -82,9 +86,12 @@ impl<'a> Progress<'a> {
                 let printed = self.print_rest(suite);
                 self.talk_of(suite);
                 let unprinted = printed.err().map(io_failure);
+                let compared = self.beside_bar(|| self.against.compare(suite));
                 let times = self.clock.times();
-                let served = self.beside_bar(|| self.server.write(suite, &times));
-                let exit = exit_of(suite, self.is_cut_short()).worst(served);
+                let comparison = &compared.markdown;
+                let served = self.beside_bar(|| self.server.write(suite, &times, comparison));
+                let exit = exit_of(suite, self.is_cut_short());
+                let exit = exit.worst(compared.exit).worst(served);
                 exit.worst(unprinted.unwrap_or(Exit::Success))
             }
             Err(error) => {

@@ -70,12 +70,14 @@ impl<'a> ServerFiles<'a> {
     }
 
     /// Writes the files; success, or how the program ends for want of one.
-    pub(super) fn write(&self, suite: &SuiteOutcome, times: &SuiteTimes) -> Exit {
+    ///
+    /// * `comparison`: Markdown of a comparison with a baseline, empty without one.
+    pub(super) fn write(&self, suite: &SuiteOutcome, times: &SuiteTimes, comparison: &str) -> Exit {
         let mut exit = Exit::Success;
         for (kind, file) in files(self.options) {
             let text = match kind {
                 Kind::Junit => junit_xml(&suite.runs, Some(times)),
-                Kind::Markdown => suite_markdown(&suite.runs, ""),
+                Kind::Markdown => suite_markdown(&suite.runs, comparison),
                 Kind::Bencher => bencher_text(&self.options.output, suite),
             };
             if let Err(error) = file.write(&text) {

@@ -1,0 +1,52 @@
+//! `fogbench compare`: results against earlier ones.
+
+use std::io;
+use std::path::Path;
+
+use crate::baseline::{Comparison, Outcome, Side, compare as compare_sides};
+use crate::cli::options::baseline::{CompareOptions, ComparisonFormat, FailOn};
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
+use crate::experiment::{SideError, read_side};
+use crate::report::{
+    comparison_with_baseline_json, comparison_with_baseline_markdown, comparison_with_baseline_text,
+};
+
+/// Prints what differs, and fails on what it is to fail on.
+pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
+    let sides = side(&options.old).and_then(|old| Ok((old, side(&options.new)?)));
+    let (old, new) = match sides {
+        Ok(sides) => sides,
+        Err(exit) => return Ok(exit),
+    };
+    let fail_on = FailOn::outcomes(&options.fail_on);
+    let comparison = compare_sides(&old, &new);
+    output::data(&match options.format {
+        ComparisonFormat::Text => {
+            comparison_with_baseline_text(&comparison, &fail_on, output::colour())
+        }
+        ComparisonFormat::Json => comparison_with_baseline_json(&comparison, &fail_on),
+        ComparisonFormat::Markdown => comparison_with_baseline_markdown(&comparison),
+    })?;
+    Ok(exit_of(&comparison, &fail_on))
+}
+
+/// How a comparison ends.
+pub(in crate::cli) fn exit_of(comparison: &Comparison, fail_on: &[Outcome]) -> Exit {
+    if comparison.has_any(fail_on) {
+        Exit::GateFailed
+    } else {
+        Exit::Success
+    }
+}
+
+/// The side that a path leads to; a refusal is printed before its exit code is returned.
+pub(in crate::cli) fn side(path: &Path) -> Result<Side, Exit> {
+    read_side(path).map_err(|error| refused(&error))
+}
+
+/// Says why a side cannot be read.
+pub(in crate::cli) fn refused(error: &SideError) -> Exit {
+    output::talk(&format!("error: {error}"));
+    if error.is_io() { Exit::Io } else { Exit::Usage }
+}

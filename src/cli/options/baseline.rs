@@ -1,0 +1,136 @@
+//! Options of comparisons with earlier results.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+
+use crate::baseline::Outcome;
+
+/// What may be among the outcomes that fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum FailOn {
+    /// A change for the worse
+    Worse,
+    /// A figure that is gone
+    Removed,
+    /// A change where neither direction is better
+    Changed,
+    /// What does not decide
+    Unsure,
+    /// A scenario that differs
+    ChangedScenario,
+    /// A figure that was not there before
+    New,
+    /// A change for the better
+    Better,
+    /// Nothing
+    Never,
+}
+
+impl FailOn {
+    /// The outcomes of a list.
+    pub(in crate::cli) fn outcomes(list: &[Self]) -> Vec<Outcome> {
+        let outcomes = list.iter().filter_map(|fail_on| match fail_on {
+            Self::Worse => Some(Outcome::Worse),
+            Self::Removed => Some(Outcome::Removed),
+            Self::Changed => Some(Outcome::Changed),
+            Self::Unsure => Some(Outcome::Unsure),
+            Self::ChangedScenario => Some(Outcome::ChangedScenario),
+            Self::New => Some(Outcome::New),
+            Self::Better => Some(Outcome::Better),
+            Self::Never => None,
+        });
+        outcomes.collect()
+    }
+}
+
+/// Forms of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum ComparisonFormat {
+    /// Lines for people
+    Text,
+    /// One JSON document
+    Json,
+    /// A table in Markdown
+    Markdown,
+}
+
+/// Options of `compare`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct CompareOptions {
+    /// Earlier results: an output folder, the folder of a run, or a baseline
+    pub(in crate::cli) old: PathBuf,
+    /// Later results, as well
+    pub(in crate::cli) new: PathBuf,
+    /// Outcomes that end with 1, between commas
+    #[arg(
+        long,
+        value_enum,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "worse,removed"
+    )]
+    pub(in crate::cli) fail_on: Vec<FailOn>,
+    /// Form of the comparison
+    #[arg(long, value_enum, default_value_t = ComparisonFormat::Text)]
+    pub(in crate::cli) format: ComparisonFormat,
+}
+
+/// Commands on baselines.
+#[derive(Debug, Subcommand)]
+pub(in crate::cli) enum BaselineCommand {
+    /// Write the figures of an output folder into a new baseline
+    Save(SaveOptions),
+    /// Show how an output folder differs from a baseline, and bring that up to date if told to
+    Update(UpdateOptions),
+}
+
+/// Options of `baseline`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct BaselineOptions {
+    #[command(subcommand)]
+    pub(in crate::cli) command: BaselineCommand,
+}
+
+/// Options of `baseline save`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct SaveOptions {
+    /// Output folder of `run`, or the folder of a run
+    pub(in crate::cli) results: PathBuf,
+    /// File of the baseline
+    #[arg(short, long, value_name = "FILE")]
+    pub(in crate::cli) output: PathBuf,
+    /// Replace a file that stands there, be it a baseline
+    #[arg(long)]
+    pub(in crate::cli) force: bool,
+}
+
+/// Options of `baseline update`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct UpdateOptions {
+    /// File of the baseline
+    pub(in crate::cli) baseline: PathBuf,
+    /// Output folder of `run`, or the folder of a run
+    pub(in crate::cli) results: PathBuf,
+    /// Write the baseline; directions and tolerances in it stay
+    #[arg(long)]
+    pub(in crate::cli) write: bool,
+}
+
+/// What `run` compares its results with.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct AgainstOptions {
+    /// Compare the results with a baseline, or earlier results: end with 1 where one is worse or gone
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) baseline: Option<PathBuf>,
+    /// Outcomes of the comparison that end with 1, between commas
+    #[arg(
+        long,
+        value_enum,
+        value_name = "LIST",
+        value_delimiter = ',',
+        requires = "baseline",
+        default_value = "worse,removed"
+    )]
+    pub(in crate::cli) fail_on: Vec<FailOn>,
+}

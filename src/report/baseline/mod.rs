@@ -1,0 +1,6 @@
+//! A comparison with earlier results as text, JSON and Markdown.
+
+pub(super) mod json;
+pub(super) mod markdown;
+mod rows;
+pub(super) mod text;

@@ -1,0 +1,78 @@
+//! Parts of a row that text and Markdown share.
+
+use crate::baseline::{Comparison, Entry, Interval, Outcome, Row};
+use crate::metrics::{Estimate, estimate_text, plain};
+use crate::wording::counted;
+
+/// Significant digits of a half width.
+const DIGITS: i32 = 2;
+
+/// Rows with an outcome that says something, the worst first.
+pub(super) fn notable(comparison: &Comparison) -> Vec<&Row> {
+    let is_notable = |row: &&Row| row.outcome != Outcome::Same;
+    let mut rows: Vec<&Row> = comparison.rows.iter().filter(is_notable).collect();
+    rows.sort_by_key(|row| std::cmp::Reverse(row.outcome));
+    rows
+}
+
+/// `12 figures: 1 worse, 11 same`.
+pub(super) fn counts(comparison: &Comparison) -> String {
+    let counts = Outcome::ALL.map(|outcome| (outcome, comparison.count(outcome)));
+    let counts = counts.into_iter().filter(|(_, count)| *count > 0);
+    let counts: Vec<String> = counts
+        .map(|(outcome, count)| format!("{count} {}", outcome.as_str()))
+        .collect();
+    let total = counted(comparison.rows.len(), "figure");
+    if counts.is_empty() {
+        return total;
+    }
+    format!("{total}: {}", counts.join(", "))
+}
+
+/// A figure with its interval, without the unit; `-` where there is none.
+pub(super) fn figure(entry: Option<&Entry>) -> String {
+    match entry {
+        None => "-".to_owned(),
+        Some(entry) => match entry.interval {
+            Interval::Confidence { low, high } => {
+                let estimate = Estimate::with_interval(entry.value, low, high);
+                estimate_text(&estimate, DIGITS)
+            }
+            Interval::Exact | Interval::Absent => plain(entry.value),
+        },
+    }
+}
+
+/// Unit of a row, empty for a ratio.
+pub(super) fn unit(row: &Row) -> &str {
+    let entry = row.new.as_ref().or(row.old.as_ref());
+    match entry.map_or("", |entry| entry.unit.as_str()) {
+        "1" => "",
+        unit => unit,
+    }
+}
+
+/// `+9.0 %`; none where nothing is compared or the earlier value is zero.
+pub(super) fn change(row: &Row) -> Option<String> {
+    let (difference, old) = (row.difference?, row.old.as_ref()?.value);
+    (old != 0.0).then(|| format!("{:+.2} %", 100.0 * difference / old.abs()))
+}
+
+/// What it was judged by, and how likely that is by chance.
+pub(super) fn grounds(row: &Row) -> String {
+    let mut parts = Vec::new();
+    if row.old.is_some() && row.new.is_some() {
+        parts.push(row.basis.words());
+    }
+    if let Some(p_value) = row.p_value.filter(|p_value| *p_value < 1.0) {
+        parts.push(if p_value < 1e-6 {
+            "corrected p below 1e-6".to_owned()
+        } else {
+            format!("corrected p {p_value:.2e}")
+        });
+    }
+    if !row.reason.is_empty() {
+        parts.push(row.reason.clone());
+    }
+    parts.join("; ")
+}

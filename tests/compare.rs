@@ -1,0 +1,381 @@
+//! Results against earlier ones, as a user meets it: `compare`, `baseline`, `run --baseline`.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::support::transcript::Transcript;
+use crate::support::{code, fogbench, stderr, stdout, tree, write};
+
+const HEAD: &str = "schema = 1
+fidelity = \"rate\"
+duration_s = 4.0
+warm_up_s = 0.5
+[gyro.output]
+average_samples = 4
+";
+
+const FILTER: &str = "[[filter]]\nname = \"mean\"\n[filter.moving_average]\ntaps = 8\n";
+
+/// A folder with a scenario `one` with a filter and a sweep of two points.
+fn scratch() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let at = folder.path();
+    write(
+        at,
+        "scenarios/one.toml",
+        &format!("name = \"one\"\n{HEAD}{FILTER}"),
+    );
+    sweep(at, "[0.5, 1.0]");
+    folder
+}
+
+fn sweep(at: &Path, powers: &str) {
+    let matrix = format!("[matrix]\n\"gyro.source.power_uw\" = {powers}\n");
+    write(
+        at,
+        "scenarios/power.toml",
+        &format!("name = \"power\"\n{HEAD}{matrix}"),
+    );
+}
+
+fn run(at: &Path, output: &str, more: &[&str]) {
+    let arguments = [&["run", "scenarios", "-o", output], more].concat();
+    let output = fogbench(at, &arguments);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+}
+
+/// Compares two sides: exit code and what was found.
+fn compare(at: &Path, old: &str, new: &str) -> (i32, Value) {
+    let output = fogbench(at, &["compare", old, new, "--format", "json"]);
+    let found = serde_json::from_str(&stdout(&output));
+    (
+        code(&output),
+        found.unwrap_or_else(|_| panic!("{}", stderr(&output))),
+    )
+}
+
+fn count(found: &Value, outcome: &str) -> u64 {
+    found["counts"][outcome].as_u64().expect("a count")
+}
+
+/// Moves a figure of a summary, with its interval, by so many of its half widths.
+fn worsen(at: &Path, run: &str, channel: &str, metric: &str, half_widths: f64) {
+    let path = at.join(run).join("summary.json");
+    let text = fs::read_to_string(&path).expect("a summary");
+    let mut summary: Value = serde_json::from_str(&text).expect("JSON");
+    let figure = &mut summary["channels"][channel][metric];
+    let number = |key: &str| figure[key].as_f64().expect("a number");
+    let by = half_widths * (number("high") - number("low")) / 2.0;
+    for key in ["value", "low", "high"] {
+        figure[key] = (figure[key].as_f64().expect("a number") + by).into();
+    }
+    fs::write(&path, summary.to_string()).expect("writable");
+}
+
+#[test]
+fn an_output_is_the_same_as_itself_as_its_repetition_and_as_its_baseline() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "old", &[]);
+    run(at, "new", &[]);
+    let saved = fogbench(at, &["baseline", "save", "old", "-o", "baseline.toml"]);
+    assert_eq!(code(&saved), 0, "{}", stderr(&saved));
+    for (old, new) in [
+        ("old", "old"),
+        ("old", "new"),
+        ("baseline.toml", "new"),
+        ("old", "baseline.toml"),
+        ("old/one", "new/one"),
+    ] {
+        let (code, found) = compare(at, old, new);
+        assert_eq!(code, 0, "{old} {new}: {found}");
+        let all = found["metrics"].as_array().expect("rows").len();
+        assert_eq!(count(&found, "same"), all as u64, "{old} {new}");
+        assert!(all > 10);
+    }
+}
+
+#[test]
+fn a_worse_figure_ends_with_1_and_is_named_with_what_it_was_judged_by() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "old", &[]);
+    run(at, "new", &[]);
+    let arw = "angle_random_walk_deg_per_sqrt_h";
+    worsen(at, "new/one", "mean", arw, 3.0);
+    let (ended, found) = compare(at, "old", "new");
+    assert_eq!((ended, count(&found, "worse")), (1, 1), "{found}");
+    let rows = found["metrics"].as_array().expect("rows");
+    let worse = rows
+        .iter()
+        .find(|row| row["outcome"] == "worse")
+        .expect("a row");
+    assert_eq!(
+        (&worse["channel"], &worse["metric"]),
+        (&"mean".into(), &arw.into())
+    );
+    assert_eq!(worse["basis"], "same noise");
+    for (fail_on, ends) in [("never", 0), ("changed", 0), ("removed,worse", 1)] {
+        let output = fogbench(at, &["compare", "old", "new", "--fail-on", fail_on]);
+        assert_eq!(code(&output), ends, "{fail_on}");
+    }
+    // The other way round it is better.
+    let (ended, found) = compare(at, "new", "old");
+    assert_eq!((ended, count(&found, "better")), (0, 1), "{found}");
+}
+
+#[test]
+fn another_seed_is_compared_and_another_scenario_is_not_judged() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "old", &[]);
+    run(at, "seed", &["--set", "seed=2"]);
+    let (ended, found) = compare(at, "old", "seed");
+    assert_eq!(
+        (ended, count(&found, "changed-scenario")),
+        (0, 0),
+        "{found}"
+    );
+    let rows = found["metrics"].as_array().expect("rows");
+    assert!(rows.iter().any(|row| row["basis"] == "unpaired"), "{found}");
+    run(at, "longer", &["--set", "duration_s=5.0"]);
+    let (ended, found) = compare(at, "old", "longer");
+    assert_eq!(ended, 0, "{found}");
+    let judged = ["same", "worse", "better", "changed"];
+    assert!(
+        judged.iter().all(|outcome| count(&found, outcome) == 0),
+        "{found}"
+    );
+    assert!(count(&found, "changed-scenario") > 10);
+    let output = fogbench(at, &["compare", "old", "longer"]);
+    let text = stdout(&output);
+    // A line for each run, and the verdict.
+    assert_eq!(text.lines().count(), 4, "{text}");
+}
+
+#[test]
+fn points_of_a_sweep_match_by_their_values() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "old", &[]);
+    sweep(at, "[2.0, 1.0, 0.5]");
+    run(at, "new", &[]);
+    let (ended, found) = compare(at, "old", "new");
+    assert_eq!(ended, 0, "{found}");
+    let rows = found["metrics"].as_array().expect("rows");
+    for row in rows.iter().filter(|row| row["scenario"] == "power") {
+        let is_new = row["point"]["gyro.source.power_uw"].as_f64() == Some(2.0);
+        assert_eq!(row["outcome"], if is_new { "new" } else { "same" }, "{row}");
+    }
+    assert!(count(&found, "new") > 3);
+    let (ended, found) = compare(at, "new", "old");
+    assert_eq!(ended, 1, "a point is gone: {found}");
+    assert!(count(&found, "removed") > 3);
+}
+
+#[test]
+fn repeats_and_samples_of_the_same_seed_are_compared_pair_by_pair() {
+    let folder = scratch();
+    let at = folder.path();
+    let bases = |more: &[&str], name: &str| {
+        let more = [more, &["--force"]].concat();
+        run(at, "old", &more);
+        // The gyro's own noise is the same, and the filter's words are another program's.
+        run(at, "new", &more);
+        let path = at.join("new/one").join(name);
+        if name == "summary.json" {
+            let text = fs::read_to_string(&path).expect("a summary");
+            let mut summary: Value = serde_json::from_str(&text).expect("JSON");
+            let channel = &mut summary["channels"]["mean"];
+            let mut at = 0.0;
+            let repeats = channel["repeats"]["mean_deg_per_h"]["values"].as_array_mut();
+            for value in repeats.expect("repeats") {
+                at += 1e-4;
+                *value = (value.as_f64().expect("a number") + 0.01 + at).into();
+            }
+            let mean = &mut channel["mean_deg_per_h"]["value"];
+            *mean = (mean.as_f64().expect("a number") + 0.01).into();
+            fs::write(&path, summary.to_string()).expect("writable");
+        } else {
+            let bytes = fs::read(&path).expect("samples");
+            // A header of 128 bytes, then binary64.
+            let (head, words) = bytes.split_at(128);
+            let mut moved = head.to_vec();
+            for (index, word) in words.chunks_exact(8).enumerate() {
+                let word = f64::from_le_bytes(word.try_into().expect("8 bytes"));
+                let by = 0.01 + 1e-4 * (index % 7) as f64;
+                moved.extend((word + by).to_le_bytes());
+            }
+            fs::write(&path, moved).expect("writable");
+            worsen(at, "new/one", "mean", "mean_deg_per_h", 0.01);
+        }
+        let (_, found) = compare(at, "old", "new");
+        let rows = found["metrics"].as_array().expect("rows");
+        let row = rows.iter().find(|row| {
+            row["scenario"] == "one"
+                && row["channel"] == "mean"
+                && row["metric"] == "mean_deg_per_h"
+        });
+        row.expect("a row").clone()
+    };
+    let row = bases(&["--set", "repeats=6"], "summary.json");
+    assert_eq!(row["basis"], "6 pairs of repeats", "{row}");
+    assert_eq!(row["outcome"], "changed", "{row}");
+    let row = bases(&["--set", "output.samples=\"npy\""], "samples/mean.npy");
+    assert_eq!(row["basis"], "20 pairs of blocks", "{row}");
+    assert_eq!(row["outcome"], "changed", "{row}");
+}
+
+#[test]
+fn a_baseline_is_updated_only_when_told_and_keeps_what_the_user_wrote() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "old", &[]);
+    let save = ["baseline", "save", "old", "-o", "baseline.toml"];
+    assert_eq!(code(&fogbench(at, &save)), 0);
+    let saved = fs::read_to_string(at.join("baseline.toml")).expect("a baseline");
+    let again = fogbench(at, &save);
+    assert_eq!(code(&again), 2, "{}", stderr(&again));
+    let own = saved.replacen(
+        "direction = \"lower\"\n",
+        "direction = \"higher\"\nabsolute_tolerance = 0.25\n",
+        1,
+    );
+    fs::write(at.join("baseline.toml"), &own).expect("writable");
+    run(at, "new", &["--set", "seed=2"]);
+    let update = ["baseline", "update", "baseline.toml", "new"];
+    let shown = fogbench(at, &update);
+    assert_eq!(code(&shown), 0, "{}", stderr(&shown));
+    assert!(stdout(&shown).contains("figures"), "{}", stdout(&shown));
+    let read = || fs::read_to_string(at.join("baseline.toml")).expect("a baseline");
+    assert_eq!(read(), own, "nothing is written untold");
+    assert_eq!(
+        code(&fogbench(at, &[&update[..], &["--write"]].concat())),
+        0
+    );
+    let written = read();
+    assert_ne!(written, own);
+    assert!(written.contains("direction = \"higher\"\nabsolute_tolerance = 0.25\n"));
+    assert!(written.contains("seed = 2\n") && !written.contains("seed = 1\n"));
+    let (ended, found) = compare(at, "baseline.toml", "new");
+    assert_eq!((ended, count(&found, "unsure")), (0, 0), "{found}");
+}
+
+#[test]
+fn a_run_is_compared_with_its_baseline_and_never_writes_it() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "out", &[]);
+    let save = ["baseline", "save", "out", "-o", "baseline.toml"];
+    assert_eq!(code(&fogbench(at, &save)), 0);
+    let read = || fs::read_to_string(at.join("baseline.toml")).expect("a baseline");
+    let saved = read();
+    let against = ["-o", "out", "--baseline", "baseline.toml"];
+    // Of a part of the suite, nothing else is missed.
+    let part = fogbench(at, &[&["run", "scenarios/one.toml"], &against[..]].concat());
+    assert_eq!(code(&part), 0, "{}{}", stdout(&part), stderr(&part));
+    let before = tree(&at.join("out"));
+    let whole = fogbench(at, &[&["run", "scenarios"], &against[..]].concat());
+    assert_eq!(code(&whole), 0, "{}", stdout(&whole));
+    assert!(
+        stdout(&whole).contains("PASS  compared"),
+        "{}",
+        stdout(&whole)
+    );
+    run(at, "plain", &[]);
+    assert_eq!(
+        tree(&at.join("out")),
+        tree(&at.join("plain")),
+        "{}",
+        before.len()
+    );
+    // What was there and is not.
+    let lines = saved.replacen(
+        "metric = \"mean_deg_per_h\"",
+        "metric = \"gone_deg_per_h\"",
+        1,
+    );
+    fs::write(at.join("baseline.toml"), &lines).expect("writable");
+    let gone = fogbench(at, &[&["run", "scenarios"], &against[..]].concat());
+    assert_eq!(code(&gone), 1, "{}", stdout(&gone));
+    assert!(stdout(&gone).contains("removed"), "{}", stdout(&gone));
+    let json = [&["run", "scenarios", "--format", "json"], &against[..]].concat();
+    let json = fogbench(at, &json);
+    let _: Value = serde_json::from_str(&stdout(&json)).expect("one document");
+    assert!(stderr(&json).contains("removed") && code(&json) == 1);
+    assert_eq!(read(), lines);
+    let markdown = ["--summary-markdown", "summary.md"];
+    fogbench(
+        at,
+        &[&["run", "scenarios"], &against[..], &markdown].concat(),
+    );
+    let summary = fs::read_to_string(at.join("summary.md")).expect("a summary");
+    assert!(
+        summary.contains("### Compared with the baseline"),
+        "{summary}"
+    );
+    assert!(summary.contains("| removed |"), "{summary}");
+}
+
+#[test]
+fn a_run_that_failed_or_is_gone_is_removed() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "old", &[]);
+    fs::remove_file(at.join("scenarios/power.toml")).expect("removable");
+    run(at, "new", &[]);
+    let (ended, found) = compare(at, "old", "new");
+    assert_eq!(ended, 1, "{found}");
+    assert!(count(&found, "removed") > 3);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let folder = scratch();
+    let at = folder.path();
+    write(at, "empty/readme.txt", "nothing");
+    write(at, "thesis.txt", "mine");
+    write(
+        at,
+        "wrong.toml",
+        "schema = 1\n[tool]\nname = \"fogbench\"\nversion = \"0.1.0\"\n[[metric]]\nscenario = \"s\"\n",
+    );
+    run(at, "old", &[]);
+    let mut transcript = Transcript::of("compare", "Refusals");
+    let given: [(&[&str], i32); 8] = [
+        (&["compare", "old", "nowhere"], 74),
+        (&["compare", "old", "empty"], 2),
+        (&["compare", "wrong.toml", "old"], 2),
+        (&["baseline", "save", "old", "-o", "thesis.txt"], 2),
+        (&["baseline", "save", "thesis.txt", "-o", "new.toml"], 2),
+        (&["baseline", "update", "thesis.txt", "old"], 2),
+        (
+            &[
+                "run",
+                "scenarios",
+                "--baseline",
+                "wrong.toml",
+                "-o",
+                "never",
+            ],
+            2,
+        ),
+        (
+            &["run", "scenarios", "--fail-on", "worse", "-o", "never"],
+            2,
+        ),
+    ];
+    for (arguments, ends) in given {
+        let output = fogbench(at, arguments);
+        assert_eq!(code(&output), ends, "{arguments:?}: {}", stderr(&output));
+        transcript.case(arguments.join(" "), stderr(&output));
+    }
+    transcript.check();
+    assert!(!at.join("never").exists());
+    assert_eq!(
+        fs::read_to_string(at.join("thesis.txt")).expect("stands"),
+        "mine"
+    );
+}
