@@ -1,5 +1,9 @@
 //! Axes: where the ticks stand and what they say.
 
+use serde_json::Value;
+
+use crate::report::layout::json::object;
+
 /// Largest ratio of the ends of a logarithmic axis: values of rounding alone, hundreds of decades down,
 /// lie below the picture.
 const LOG_SPAN_MAX: f64 = 1e60;
@@ -86,6 +90,17 @@ impl Axis {
         } else {
             (value - self.low) / (self.high - self.low)
         }
+    }
+
+    /// What the axis measures, for programs.
+    pub(in crate::report::plot) fn json(&self) -> Value {
+        let record = object([
+            ("title", self.title.as_str().into()),
+            ("low", self.low.into()),
+            ("high", self.high.into()),
+            ("log", self.is_log.into()),
+        ]);
+        record.into()
     }
 
     /// The range.

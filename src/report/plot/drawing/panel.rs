@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::picture::{Anchor, BLACK, Colour, PALE, Picture, Point, Shape, Stroke};
+use crate::report::layout::json::object;
 
 /// Width of every picture, pixels.
 pub(in crate::report::plot) const WIDTH: f64 = 1200.0;
@@ -30,6 +31,15 @@ impl Panel {
         y: Axis,
     ) -> Self {
         let panel = Self { top, bottom, x, y };
+        let frame = object([
+            ("left", LEFT.into()),
+            ("right", RIGHT.into()),
+            ("top", top.into()),
+            ("bottom", bottom.into()),
+            ("x", panel.x.json()),
+            ("y", panel.y.json()),
+        ]);
+        picture.frame(frame.into());
         for (axis, is_x) in [(&panel.x, true), (&panel.y, false)] {
             for value in axis
                 .minor

@@ -1,9 +1,11 @@
 //! A list of things to draw, and the only code that knows plotters.
 
 use super::thin::thinned;
+use crate::report::layout::json::object;
 use crate::report::plot::SVG_BYTES_MAX;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use serde_json::Value;
 
 /// Distances from where they were that lines may be drawn at, pixels; the first at which the picture is
 /// small enough is taken.
@@ -12,6 +14,19 @@ const TOLERANCES: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 const SCALE: f64 = 4.0;
 /// Font sizes are given as the em; plotters divides what it is told by this.
 const FONT_FACTOR: f64 = 1.24;
+
+/// Beginning of what a picture says of itself.
+const METADATA: &str = "<metadata>";
+/// Room for where a picture comes from.
+const ORIGIN_BYTES_MAX: usize = 200;
+
+/// A picture with the version that drew it and, of one scenario, the digest of that.
+pub(in crate::report) fn stamped(svg: &str, version: &str, digest: Option<&str>) -> String {
+    let scenario = digest.map_or_else(String::new, |digest| format!("\"scenario\":\"{digest}\","));
+    let origin =
+        format!("{METADATA}{{\"program\":\"fogbench\",\"version\":\"{version}\",{scenario}");
+    svg.replacen(&format!("{METADATA}{{"), &origin, 1)
+}
 
 /// A colour.
 pub(in crate::report) type Colour = (u8, u8, u8);
@@ -102,6 +117,8 @@ enum Item {
 pub(in crate::report) struct Picture {
     size: (f64, f64),
     items: Vec<Item>,
+    /// Frames with their axes, in JSON.
+    frames: Vec<Value>,
 }
 
 impl Picture {
@@ -110,7 +127,13 @@ impl Picture {
         Self {
             size: (width, height),
             items: Vec::new(),
+            frames: Vec::new(),
         }
+    }
+
+    /// Notes a frame with its axes, by which a program reads values off the picture.
+    pub(in crate::report) fn frame(&mut self, frame: Value) {
+        self.frames.push(frame);
     }
 
     pub(in crate::report) fn line(&mut self, points: Vec<Point>, stroke: Stroke) {
@@ -182,7 +205,22 @@ impl Picture {
         let mut svgs = TOLERANCES
             .into_iter()
             .map(|tolerance| self.drawn(tolerance));
-        svgs.find(|svg| svg.len() <= SVG_BYTES_MAX)
+        svgs.find(|svg| svg.len() + ORIGIN_BYTES_MAX <= SVG_BYTES_MAX)
+    }
+
+    /// What the picture is, for programs: its size and its frames; [`stamped`] adds where it comes from.
+    fn metadata(&self) -> String {
+        let record = object([
+            ("width", self.size.0.into()),
+            ("height", self.size.1.into()),
+            ("panels", self.frames.clone().into()),
+        ]);
+        let text = Value::from(record).to_string();
+        let text = text
+            .replace('&', "&amp;")
+            .replace('<', "&lt;")
+            .replace('>', "&gt;");
+        format!("\n{METADATA}{text}</metadata>")
     }
 
     /// The picture with lines within a distance of where they were, pixels.
@@ -210,6 +248,8 @@ impl Picture {
             self.size.0, self.size.1
         );
         svg = svg.replacen(&head, &shown, 1);
+        let end = svg.find('>').map_or(0, |at| at + 1);
+        svg.insert_str(end, &self.metadata());
         for quarter_pixels in 1..=12_u32 {
             for dash in [Dash::Long, Dash::Mixed, Dash::Dotted] {
                 let coded = coded_width(quarter_pixels, dash);
