@@ -3,6 +3,10 @@
 use serde_json::Value;
 
 use crate::report::layout::json::object;
+use crate::wording::to_digits;
+
+/// Digits of the ends of an axis, for programs: finer than a pixel.
+const DIGITS: usize = 7;
 
 /// Largest ratio of the ends of a logarithmic axis: values of rounding alone, hundreds of decades down,
 /// lie below the picture.
@@ -96,8 +100,8 @@ impl Axis {
     pub(in crate::report::plot) fn json(&self) -> Value {
         let record = object([
             ("title", self.title.as_str().into()),
-            ("low", self.low.into()),
-            ("high", self.high.into()),
+            ("low", to_digits(self.low, DIGITS).into()),
+            ("high", to_digits(self.high, DIGITS).into()),
             ("log", self.is_log.into()),
         ]);
         record.into()
