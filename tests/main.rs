@@ -95,6 +95,7 @@ mod sign_lms_hardware;
 mod small_inputs_and_steps;
 mod suite;
 mod support;
+mod terminal;
 mod timing;
 mod trial;
 mod turntable_geometry;

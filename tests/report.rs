@@ -319,10 +319,10 @@ fn the_suite_is_counted() {
     let text = suite_text(&suite(), 100, false);
     let last = text.lines().last().unwrap();
     assert!(last.starts_with("FAIL  3 runs: 1 passed"), "{last}");
-    // The message of a failed channel stands below the grid and within the width.
-    assert!(text.contains("\n  bad failed at sample 5984: "), "{text}");
+    // The message of a failed channel stands below its line and within the width.
+    assert!(text.contains("channel bad at sample 5984: "), "{text}");
     let narrow = suite_text(&suite(), 40, false);
-    let message = narrow.split("bad failed").nth(1).unwrap();
+    let message = narrow.split("channel bad").nth(1).unwrap();
     assert!(message.lines().next().unwrap().len() <= 28, "{narrow}");
 }
 

@@ -29,6 +29,7 @@ pub fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return exit::usage(error),
     };
+    terminal::output::set_colour(arguments.color);
     // The panic hook has already printed what broke, and may have done so on another thread.
     let outcome = catch_unwind(AssertUnwindSafe(|| dispatch(&arguments, &interrupt)));
     let broken = panics::happened().then_some(Exit::Internal);

@@ -63,7 +63,20 @@ pub fn expects_failure(verdicts: &[Verdict], channel: &str) -> bool {
 struct Quotient {
     value: f64,
     interval: Option<(f64, f64)>,
+    /// Why there is no interval.
+    lack: &'static str,
     confidence: f64,
+}
+
+/// Why a quotient has no interval although both parts have one.
+const DIVISOR_AT_ZERO: &str = "the interval of the divisor touches 0";
+
+/// Why an estimate has no interval; none if it has one.
+fn lack(estimate: &Estimate) -> Option<&'static str> {
+    match estimate.interval {
+        IntervalKind::Absent(reason) => Some(reason),
+        _ => None,
+    }
 }
 
 /// Why there is no number to judge.
@@ -113,8 +126,10 @@ fn measured<'a>(
         None => Quotient {
             value: metric.estimate.value,
             // Without an interval nothing but the value can be judged.
-            interval: (!matches!(metric.estimate.interval, IntervalKind::Absent(_)))
+            interval: lack(&metric.estimate)
+                .is_none()
                 .then_some((metric.estimate.low, metric.estimate.high)),
+            lack: lack(&metric.estimate).unwrap_or_default(),
             confidence: metric.estimate.confidence,
         },
         Some(other) => {
@@ -184,10 +199,8 @@ fn lookup<'a>(
 /// Bonferroni's inequality, usually far more). It is unbounded where the divisor's interval
 /// touches zero.
 fn ratio(numerator: &Estimate, denominator: &Estimate) -> Quotient {
-    let is_absent = |of: &Estimate| matches!(of.interval, IntervalKind::Absent(_));
-    let bounded = (denominator.low > 0.0 || denominator.high < 0.0)
-        && !is_absent(numerator)
-        && !is_absent(denominator);
+    let missing = lack(numerator).or_else(|| lack(denominator));
+    let bounded = (denominator.low > 0.0 || denominator.high < 0.0) && missing.is_none();
     let interval = bounded.then(|| {
         let ends = [
             numerator.low / denominator.low,
@@ -202,6 +215,7 @@ fn ratio(numerator: &Estimate, denominator: &Estimate) -> Quotient {
     Quotient {
         value: numerator.value / denominator.value,
         interval,
+        lack: missing.unwrap_or(DIVISOR_AT_ZERO),
         confidence: numerator.confidence.min(denominator.confidence),
     }
 }
@@ -250,7 +264,7 @@ fn words(verdict: &Verdict, quotient: &Quotient, by_value: bool) -> String {
     });
     let number = match &estimate {
         Some(estimate) => estimate_text(estimate, REASON_DIGITS),
-        None => format!("{} (unbounded interval)", plain(quotient.value)),
+        None => plain(quotient.value),
     };
     let unit = match verdict.unit.as_str() {
         "" | "1" => String::new(),
@@ -273,5 +287,12 @@ fn words(verdict: &Verdict, quotient: &Quotient, by_value: bool) -> String {
         VerdictKind::Inconclusive => "straddles a limit of",
     };
     let limits = limits_text(verdict.min, verdict.max);
+    if estimate.is_none() && !by_value {
+        return format!(
+            "{number}{unit}{what} has no interval to compare with {limits}{unit}: {}; decide = \"value\" \
+             judges the value alone",
+            quotient.lack
+        );
+    }
     format!("{number}{unit}{what} ({basis}) {relation} {limits}{unit}")
 }

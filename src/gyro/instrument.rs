@@ -1,6 +1,6 @@
 //! The gyro as the rest of the bench sees it.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use crate::gyro::error::GyroError;
 use crate::gyro::loop_model::LoopModel;
@@ -15,7 +15,7 @@ use crate::gyro::rate_word::OutputQuantisation;
 use crate::gyro::{Fidelity, GyroConfig};
 use crate::random::Streams;
 use crate::signal::{GyroFacts, MotionSegment};
-use crate::units::{hz_to_khz, s_to_ms, s_to_us};
+use crate::units::{hz_to_khz, rad_per_s_to_deg_per_s, s_to_ms, s_to_us};
 
 /// A gyro: motion segments in, rate words out.
 ///
@@ -227,6 +227,7 @@ pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
         config.controller.automatic_gain_control || (condition.power_ratio - 1.0).abs() <= 0.0;
     Ok(GyroFacts {
         scale_factor_s: coil.scale_factor_s,
+        single_fringe_range_deg_per_s: rad_per_s_to_deg_per_s(PI / coil.scale_factor_s),
         transit_time_us: s_to_us(coil.transit_time_s),
         proper_frequency_khz: hz_to_khz(coil.proper_frequency_hz()),
         output_rate_hz: sample_period_s(config).recip(),

@@ -156,6 +156,9 @@ pub struct Section {
 pub struct GyroFacts {
     /// Sagnac scale factor `2 pi L D / (lambda c)`, s (rad per rad/s).
     pub scale_factor_s: f64,
+    /// Rate at which the Sagnac phase is pi, and beyond which the loop may lock onto another fringe:
+    /// `lambda c / 2 L D`, deg/s.
+    pub single_fringe_range_deg_per_s: f64,
     /// Coil transit time, us.
     pub transit_time_us: f64,
     /// Proper (eigen) frequency `1 / 2 tau`, kHz.

@@ -115,7 +115,7 @@ fn commands_print_what_the_pages_show() {
     assert!(complaints.is_empty(), "{complaints}");
 }
 
-/// `FOGBENCH_SUITE_TEXT` names a file with what `fogbench run` printed; without it this test says so.
+/// `FOGBENCH_SUITE_TEXT` names a file with what `fogbench run -v` printed; without it this test says so.
 #[test]
 fn excerpts_of_the_complete_job_are_what_it_printed() {
     let Some(path) = std::env::var_os("FOGBENCH_SUITE_TEXT") else {

@@ -39,6 +39,7 @@ pub(crate) fn scenario(motion: &str) -> Scenario {
 pub(crate) fn gyro() -> GyroFacts {
     GyroFacts {
         scale_factor_s: 0.895_934,
+        single_fringe_range_deg_per_s: 200.9,
         transit_time_us: 3.916_58,
         proper_frequency_khz: 127.66,
         output_rate_hz: 3989.45,

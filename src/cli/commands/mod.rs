@@ -11,5 +11,4 @@ pub(in crate::cli) mod log;
 pub(in crate::cli) mod run;
 pub(in crate::cli) mod schema;
 pub(in crate::cli) mod select;
-pub(in crate::cli) mod server_files;
 pub(in crate::cli) mod timing;

@@ -10,6 +10,7 @@ use crate::cli::options::claim::ClaimOptions;
 use crate::cli::options::format::Format;
 use crate::cli::options::hardware::{ExportOptions, TimingOptions};
 use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
+use crate::cli::terminal::output::Colour;
 
 /// Version and build of the program.
 const VERSION: &str = concat!(
@@ -36,6 +37,9 @@ pub(in crate::cli) struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub(in crate::cli) command: Command,
+    /// Colours: on terminals unless `NO_COLOR` is set, always or never
+    #[arg(long, value_name = "WHEN", value_enum, default_value_t = Colour::Auto, global = true)]
+    pub(in crate::cli) color: Colour,
 }
 
 /// Commands.
@@ -144,6 +148,12 @@ pub(in crate::cli) struct RunOptions {
     #[arg(short, long, value_name = "N", default_value_t = 0,
           value_parser = clap::value_parser!(u16).range(0..=256))]
     pub(in crate::cli) jobs: u16,
+    /// Print the full account of every run, as for a single one; else a line of each scenario
+    #[arg(short, long, conflicts_with = "quiet")]
+    pub(in crate::cli) verbose: bool,
+    /// Print what failed and the verdict alone, and no progress
+    #[arg(short, long)]
+    pub(in crate::cli) quiet: bool,
     /// Form of the results on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(in crate::cli) format: Format,

@@ -1,7 +1,5 @@
 //! Complaints about scenarios: one line that says all, then the text that it is about.
 
-use std::io::{self, IsTerminal};
-
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use crate::cli::terminal::output;
@@ -53,6 +51,6 @@ impl Complaint for CalibrateError {
 /// Prints complaints to stderr, in colours where that is a terminal: the first of them, and how many
 /// more there are.
 pub(in crate::cli) fn print<C: Complaint>(errors: &[C]) {
-    let is_coloured = io::stderr().is_terminal() && !output::refuses_colour();
+    let is_coloured = output::talk_colour();
     output::talk_first_as(errors.iter(), |error| error.shown(is_coloured));
 }

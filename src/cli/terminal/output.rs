@@ -2,7 +2,10 @@
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::ValueEnum;
 
 use crate::scenario::bounded;
 
@@ -69,14 +72,44 @@ pub(in crate::cli) fn talk_first_as<T>(
     }
 }
 
-/// Whether stdout may carry colours: a terminal, and `NO_COLOR` is not set.
-pub(in crate::cli) fn colour() -> bool {
-    !refuses_colour() && io::stdout().is_terminal()
+/// When output carries colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum Colour {
+    /// On a terminal, unless `NO_COLOR` is set
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
 }
 
-/// Whether `NO_COLOR` is set.
-pub(in crate::cli) fn refuses_colour() -> bool {
-    std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
+/// What the command line says of colours.
+static COLOUR: OnceLock<Colour> = OnceLock::new();
+
+/// Takes over what the command line says of colours.
+pub(in crate::cli) fn set_colour(colour: Colour) {
+    COLOUR.get_or_init(|| colour);
+}
+
+/// Whether stdout may carry colours.
+pub(in crate::cli) fn colour() -> bool {
+    is_coloured(&io::stdout())
+}
+
+/// Whether stderr may carry colours.
+pub(in crate::cli) fn talk_colour() -> bool {
+    is_coloured(&io::stderr())
+}
+
+fn is_coloured(stream: &impl IsTerminal) -> bool {
+    match COLOUR.get().copied().unwrap_or(Colour::Auto) {
+        Colour::Always => true,
+        Colour::Never => false,
+        Colour::Auto => {
+            let is_refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+            !is_refused && stream.is_terminal()
+        }
+    }
 }
 
 /// Width of tables in columns: `COLUMNS` where it is set, else 100.

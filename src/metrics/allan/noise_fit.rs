@@ -238,7 +238,8 @@ impl NoiseFit {
     /// variance of its own; `1.76 = (ln 100 + 3/2 - gamma)/pi` counts drift that is correlated over
     /// up to a hundred records, what is slower still being the bias itself. The walk starts at zero
     /// with the record, the ramp too. Exponentially correlated noise adds
-    /// `s^2 (2 Tc/T) (1 - (Tc/T) (1 - exp(-T/Tc)))`, counted pulses `2 Q^2/T^2`. No term of a fit that does
+    /// `s^2 (2 Tc/T) (1 - (Tc/T) (1 - exp(-T/Tc)))` and at most
+    /// `2 s^2 T/(3 Tc)`, the walk that begins with the record, counted pulses `2 Q^2/T^2`. No term of a fit that does
     /// not describe the curve counts.
     ///
     /// Source: derived, flicker as a superposition of Gauss-Markov processes of equal variance per
@@ -258,7 +259,11 @@ impl NoiseFit {
         };
         let correlated = self.correlated.as_ref().map_or(0.0, |noise| {
             let x = duration_s / noise.correlation_time_s.value;
-            square(&noise.deviation_deg_per_h) * 2.0 / x * (1.0 + (-x).exp_m1() / x)
+            let square = square(&noise.deviation_deg_per_h);
+            let stationary = square * 2.0 / x * (1.0 + (-x).exp_m1() / x);
+            // Of a correlation that outlasts the record, the record shows a random walk and no more: how
+            // far that strays in the end is not in it.
+            stationary.min(square * 2.0 * x / 3.0)
         });
         // The angle at either end is known to a pulse.
         let pulses = self.counted_pulses().map_or(0.0, |_| {

@@ -260,7 +260,11 @@ fn measure_mean(
     let mean = interval::mean_of_present(values);
     let duration_s = values.len() as f64 * record.sample_period_s;
     let slow = match (record.drift, fit) {
-        (None, Some(fit)) => fit.slow_mean_variance(duration_s),
+        (None, Some(fit)) => {
+            let means = blocks::equal_block_means(values, TENTHS);
+            let shown = SLOW_OVER_TENTHS * interval::sample_variance(&means);
+            fit.slow_mean_variance(duration_s).min(shown)
+        }
         _ => 0.0,
     };
     let estimate = match mean_spread_of(record, values, filter, true) {
@@ -279,6 +283,15 @@ fn measure_mean(
     }
     metrics.mark_exact(&[&MEAN, &MEAN_ERROR]);
 }
+
+/// Parts of a record of whose means slow noise makes some.
+const TENTHS: usize = 10;
+
+/// Most that slow noise adds to the variance of a mean, over the variance of the means of its tenths: a fit
+/// to short averaging times may find terms that the record as a whole refutes. A random walk adds
+/// `K^2 T/3` and shows `K^2 T/6`, a ramp `R^2 T^2/4` and `R^2 T^2/12`, flicker `1.76 B^2` and `0.81 B^2`;
+/// the rest is for the scatter of ten means.
+const SLOW_OVER_TENTHS: f64 = 6.0;
 
 /// Field of a mean: standard deviation, in its interval, of the input's slow noise in the mean.
 const SLOW_NOISE: &str = "slow_noise_deg_per_h";

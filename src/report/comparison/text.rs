@@ -5,8 +5,10 @@ use crate::gate::{estimate_text, plain};
 use crate::metrics::MetricKey;
 use crate::metrics::catalogue::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, MEAN_RATIO, NOISE_GAIN};
 use crate::metrics::{AgainstOne, Estimate, Finding, Metric};
+use crate::report::comparison::files::comparison_file_names;
 use crate::report::layout::text::{Grid, Tone, toned, wrapped};
 use crate::report::record::columns::{heading_of, unit_text};
+use crate::wording::counted;
 
 const INDENT: &str = "  ";
 const DEEP: &str = "    ";
@@ -56,6 +58,29 @@ pub fn comparison_text(across: &Comparison, width: usize, colour: bool) -> Strin
         for assumed in &across.assumptions {
             text.push_str(&assumption(assumed, width));
         }
+    }
+    text
+}
+
+/// A line for each table, with its file, and one for what the publication leaves open; empty without
+/// tables.
+#[must_use]
+pub fn comparison_lines(across: &Comparison, colour: bool) -> String {
+    if across.tables.is_empty() {
+        return String::new();
+    }
+    let mut grid = Grid::default();
+    for table in &across.tables {
+        let [file, _] = comparison_file_names(table.kind, &table.slug);
+        grid.row([table.name.clone(), table.title.clone(), file]);
+    }
+    let heading = toned("Tables", Tone::Heading, colour);
+    let mut text = format!("\n{heading}  -v prints them\n{}", grid.lines(INDENT));
+    if !across.assumptions.is_empty() {
+        text.push_str(&format!(
+            "{INDENT}{} where the publication leaves a reading open: -v prints them\n",
+            counted(across.assumptions.len(), "assumption")
+        ));
     }
     text
 }

@@ -105,3 +105,24 @@ pub(crate) fn wrapped(text: &str, indent: &str, width: usize) -> String {
     lines.push('\n');
     lines
 }
+
+/// `head`, then as many of `parts` as a line of `width` holds, the first in any case, then `aside`.
+pub(crate) fn fitted(head: &str, parts: &[String], aside: &str, width: usize) -> String {
+    let mut line = head.to_owned();
+    let room = width.saturating_sub(visible_width(aside) + 2);
+    for (index, part) in parts.iter().enumerate() {
+        let gap = if index == 0 { "  " } else { "; " };
+        if index > 0 && visible_width(&line) + gap.len() + visible_width(part) > room {
+            break;
+        }
+        line.push_str(gap);
+        line.push_str(part);
+    }
+    let mut line = line.trim_end().to_owned();
+    if !aside.is_empty() {
+        line.push_str("  ");
+        line.push_str(aside);
+    }
+    line.push('\n');
+    line
+}

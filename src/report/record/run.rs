@@ -1,10 +1,10 @@
 //! What a report is made of, and how one run ended.
 
-use crate::gate::{Verdict, VerdictKind, expects_failure};
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::metrics::{ChannelFailure, ChannelMetrics, Metric};
-use crate::report::record::columns::headline;
+use crate::gate::{Verdict, VerdictKind, estimate_text, expects_failure};
+use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric};
+use crate::report::record::columns::{DIGITS, heading_of, headline, unit_text, value_text};
 use crate::report::record::sweep::PointOfSweep;
 use crate::scenario::{ReportedRuns, Scenario};
 use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
@@ -117,6 +117,9 @@ pub struct RunOutcome {
     pub channels: Vec<ChannelOutcome>,
     /// Judged gates.
     pub verdicts: Vec<Verdict>,
+    /// The one or two figures that its gates or published rows are about, in words: channel, heading and
+    /// value with unit.
+    pub figures: Vec<String>,
     /// Metrics that a table of the suite asks for, by channel and key.
     pub kept: Vec<(String, BTreeMap<String, Metric>)>,
     /// Pictures in the folder of the run.
@@ -151,6 +154,7 @@ impl RunOutcome {
             has_page: false,
             channels,
             verdicts: report.verdicts.to_vec(),
+            figures: figures(report),
             kept: Vec::new(),
             pictures: Vec::new(),
             error: None,
@@ -184,6 +188,7 @@ impl RunOutcome {
             has_page: false,
             channels: Vec::new(),
             verdicts: Vec::new(),
+            figures: Vec::new(),
             kept: Vec::new(),
             pictures: Vec::new(),
             error: Some(error),
@@ -252,4 +257,60 @@ impl RunOutcome {
             .filter(|verdict| verdict.kind == kind)
             .count()
     }
+}
+
+/// Most figures that stand for a run in one line.
+const FIGURES_MAX: usize = 2;
+
+/// What the gates of a run judge, else what its publication prints, else the head of its last channel.
+fn figures(report: &RunReport) -> Vec<String> {
+    let judged = report.verdicts.iter().filter_map(judged_figure);
+    let published = report.scenario.published.iter();
+    let published = published.filter_map(|figure| {
+        let (channel, key) = figure.metric.rsplit_once('.')?;
+        let (_, metrics) = report.channels.iter().find(|(name, _)| name == channel)?;
+        let metric = metrics.metrics.get(key)?;
+        let value = format!("{} {}", value_text(metric), unit_text(metric));
+        Some(format!(
+            "{channel} {} {}",
+            heading_of(key),
+            value.trim_end()
+        ))
+    });
+    let motion = report.scenario.measured_motion();
+    let last = report.channels.iter().rev();
+    let head = last.flat_map(|(name, metrics)| {
+        let line = headline(&motion, metrics).into_iter().take(1);
+        line.map(move |(title, value)| format!("{name} {title} {value}"))
+    });
+    let mut shown: Vec<String> = Vec::new();
+    for figure in judged.chain(published).chain(head.take(1)) {
+        if shown.len() < FIGURES_MAX && !shown.contains(&figure) {
+            shown.push(figure);
+        }
+    }
+    shown
+}
+
+/// Channel, heading, value and unit of what a gate judged; none where there was no value.
+fn judged_figure(verdict: &Verdict) -> Option<String> {
+    let value = verdict.value?;
+    let estimate = match (verdict.low, verdict.high) {
+        (Some(low), Some(high)) => Estimate::with_interval(value, low, high),
+        _ => Estimate::exact(value),
+    };
+    let unit = if verdict.unit == "1" {
+        ""
+    } else {
+        &verdict.unit
+    };
+    let (channel, key) = verdict.metric.rsplit_once('.')?;
+    let over = verdict.relative_to.as_ref();
+    let over = over.map_or_else(String::new, |other| format!(" / {other}"));
+    let text = format!(
+        "{channel}{over} {} {} {unit}",
+        heading_of(key),
+        estimate_text(&estimate, DIGITS)
+    );
+    Some(text.trim_end().to_owned())
 }

@@ -3,7 +3,7 @@
 use crate::metrics::catalogue::{ANGLE_RANDOM_WALK, DELAY_VS_TRUTH};
 use std::collections::BTreeMap;
 
-use crate::gate::{Verdict, VerdictKind, estimate_text, plain};
+use crate::gate::{Verdict, VerdictKind, estimate_text, plain, three_digits};
 use crate::metrics::{ChannelMetrics, Metric, find};
 use crate::report::RunReport;
 use crate::report::calibration::text::calibration_text;
@@ -29,7 +29,7 @@ const INTERVALS: &str = "±: 95 % confidence for the mean over seeds of records 
 #[must_use]
 pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     let mut text = heading(report, width, colour);
-    text.push_str(&budget(report, width));
+    text.push_str(&gyro_text(report, width));
     if let Some(sheet) = report.compensation {
         text.push_str(&compensation_text(sheet, width));
     }
@@ -81,24 +81,34 @@ fn heading(report: &RunReport, width: usize, colour: bool) -> String {
     text
 }
 
-fn budget(report: &RunReport, width: usize) -> String {
-    let terms: Vec<String> = report
-        .gyro
+/// The gyro in closed form: rates, loop, range and the budget of its angle random walk.
+fn gyro_text(report: &RunReport, width: usize) -> String {
+    let gyro = report.gyro;
+    let line = format!(
+        "gyro: output rate {} Hz, proper frequency {} kHz, loop gain {}, loop bandwidth {} Hz, \
+         single-fringe range ±{} deg/s",
+        plain(gyro.output_rate_hz),
+        three_digits(gyro.proper_frequency_khz),
+        three_digits(gyro.loop_gain),
+        plain(gyro.loop_bandwidth_hz),
+        three_digits(gyro.single_fringe_range_deg_per_s),
+    );
+    let terms: Vec<String> = gyro
         .angle_random_walk_budget_deg_per_sqrt_h
         .iter()
-        .map(|(source, value)| format!("{source} {value:.5}"))
+        .map(|(source, value)| format!("{source} {}", three_digits(*value)))
         .collect();
-    let mut line = format!("ARW budget (theory), deg/sqrt(h): {}", terms.join(", "));
+    let mut budget = format!("ARW budget (theory), deg/sqrt(h): {}", terms.join(", "));
     for (name, metrics) in report.channels {
         if !report.scenario.is_raw(name) {
             continue;
         }
         if let Some(metric) = metrics.get(&ANGLE_RANDOM_WALK) {
             let value = estimate_text(&metric.estimate, DIGITS);
-            line.push_str(&format!("; simulated {name} {value}"));
+            budget.push_str(&format!("; simulated {name} {value}"));
         }
     }
-    wrapped(&line, INDENT, width)
+    wrapped(&line, INDENT, width) + &wrapped(&budget, INDENT, width)
 }
 
 /// The channels, their columns broken into as many blocks as the width asks for.

@@ -2,13 +2,10 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::{Instant, SystemTime};
 
 use crate::cli::options::arguments::RunOptions;
 use crate::cli::options::build_server::Annotations;
-use crate::cli::options::format::Format;
-use crate::cli::terminal::exit::{Exit, io_failure};
+use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::{output, place};
 use crate::experiment::{Plan, SuiteOutcome};
 use crate::report::{
@@ -17,27 +14,18 @@ use crate::report::{
 };
 use crate::store::SingleFile;
 
-/// What is asked for, and the clock of the suite.
-pub(in crate::cli) struct ServerFiles<'a> {
+/// What is asked for.
+pub(super) struct ServerFiles<'a> {
     options: &'a RunOptions,
     /// Scenario file of each run.
     scenario_files: Vec<String>,
-    began: Instant,
-    runs: Mutex<Vec<RunClock>>,
-}
-
-/// When a run began, and when it had ended.
-#[derive(Clone, Copy, Default)]
-struct RunClock {
-    began: Option<(SystemTime, Instant)>,
-    ended: Option<Instant>,
 }
 
 impl<'a> ServerFiles<'a> {
-    /// Starts the clock, once every file is known to be one that may be written.
+    /// Finds every file to be one that may be written.
     ///
     /// A refusal is printed before its exit code is returned.
-    pub(in crate::cli) fn check(options: &'a RunOptions, plans: &[Plan]) -> Result<Self, Exit> {
+    pub(super) fn check(options: &'a RunOptions, plans: &[Plan]) -> Result<Self, Exit> {
         let files: Vec<SingleFile> = files(options).map(|(_, file)| file).collect();
         let below = resolved(&options.output);
         for (index, file) in files.iter().enumerate() {
@@ -78,50 +66,15 @@ impl<'a> ServerFiles<'a> {
                 .iter()
                 .map(|plan| plan.resolved().shown_file())
                 .collect(),
-            began: Instant::now(),
-            runs: Mutex::new(vec![RunClock::default(); plans.len()]),
         })
     }
 
-    /// Notes that a run begins.
-    #[expect(
-        clippy::disallowed_methods,
-        reason = "a time stamp for the report of a build server, which is no result"
-    )]
-    pub(in crate::cli) fn started(&self, index: usize) {
-        if let Some(run) = self.clocks().get_mut(index) {
-            run.began = Some((SystemTime::now(), Instant::now()));
-        }
-    }
-
-    /// Notes that a run has ended.
-    pub(in crate::cli) fn ended(&self, index: usize) {
-        if let Some(run) = self.clocks().get_mut(index) {
-            run.ended = Some(Instant::now());
-        }
-    }
-
-    fn clocks(&self) -> MutexGuard<'_, Vec<RunClock>> {
-        self.runs.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn times(&self) -> SuiteTimes {
-        let of_run = |run: &RunClock| {
-            let (started, began) = run.began?;
-            Some((started, run.ended?.duration_since(began)))
-        };
-        SuiteTimes {
-            duration: self.began.elapsed(),
-            runs: self.clocks().iter().map(of_run).collect(),
-        }
-    }
-
-    /// Writes the files and prints the annotations; success, or how the program ends for want of one.
-    pub(in crate::cli) fn write(&self, suite: &SuiteOutcome) -> Exit {
+    /// Writes the files; success, or how the program ends for want of one.
+    pub(super) fn write(&self, suite: &SuiteOutcome, times: &SuiteTimes) -> Exit {
         let mut exit = Exit::Success;
         for (kind, file) in files(self.options) {
             let text = match kind {
-                Kind::Junit => junit_xml(&suite.runs, Some(&self.times())),
+                Kind::Junit => junit_xml(&suite.runs, Some(times)),
                 Kind::Markdown => suite_markdown(&suite.runs, ""),
                 Kind::Bencher => bencher_text(&self.options.output, suite),
             };
@@ -129,21 +82,17 @@ impl<'a> ServerFiles<'a> {
                 exit = exit.worst(place::refused(&error));
             }
         }
-        exit.worst(self.annotate(suite))
+        exit
     }
 
-    fn annotate(&self, suite: &SuiteOutcome) -> Exit {
-        let text = match self.options.server.annotations {
-            None => return Exit::Success,
+    /// What a build server reads of a suite among its output; empty if nothing is asked for.
+    pub(super) fn annotations(&self, suite: &SuiteOutcome) -> String {
+        match self.options.server.annotations {
+            None => String::new(),
             Some(Annotations::Github) => {
                 github_annotations(&suite.runs, &self.scenario_files, from_here)
             }
-        };
-        if self.options.format == Format::Text {
-            return output::data(&text).map_or_else(io_failure, |()| Exit::Success);
         }
-        text.lines().for_each(output::talk);
-        Exit::Success
     }
 }
 

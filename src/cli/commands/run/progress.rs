@@ -1,133 +1,29 @@
-//! `fogbench run`: runs scenarios, prints tables as they become ready, ends with the verdict.
+//! How far a suite is: progress on stderr, results on stdout in the order of the plan.
 
-use std::collections::BTreeMap;
 use std::io::{self, IsTerminal};
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::cli::commands::select;
-use crate::cli::commands::server_files::ServerFiles;
-use crate::cli::options::arguments::{ResumeFrom, RunOptions};
+use super::account::{Account, passed};
+use super::clock::SuiteClock;
+use super::server_files::ServerFiles;
+use crate::cli::options::arguments::RunOptions;
 use crate::cli::options::format::Format;
 use crate::cli::terminal::exit::{Exit, io_failure};
 use crate::cli::terminal::output;
 use crate::cli::terminal::place;
 use crate::cli::terminal::signals::Interrupt;
-use crate::experiment::{
-    self, Observer, Plan, Resume, SuiteError, SuiteOptions, SuiteOutcome, run_suite, thread_count,
-};
-use crate::report::{self, RunOutcome, RunReport, RunStatus};
-use crate::scenario::bounded;
+use crate::experiment::{self, Observer, Plan, SuiteError, SuiteOutcome, thread_count};
+use crate::report::{RunOutcome, RunReport, RunStatus};
 use crate::wording::counted;
 
-/// Plans, runs, prints and judges.
-pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exit> {
-    let plans = match select::plans(&options.select) {
-        Ok(plans) => plans,
-        Err(exit) => return Ok(exit),
-    };
-    if options.require_gates
-        && plans
-            .iter()
-            .all(|plan| plan.resolved().scenario.gates.is_empty())
-    {
-        output::talk("error: --require-gates: no selected scenario has a gate; nothing was run");
-        return Ok(Exit::GateFailed);
-    }
-    let suite = SuiteOptions {
-        threads: usize::from(options.jobs),
-        force: options.force,
-        resume: resume(options.resume),
-        ..SuiteOptions::new(options.output.clone())
-    };
-    let server = match ServerFiles::check(options, &plans) {
-        Ok(server) => server,
-        Err(exit) => return Ok(exit),
-    };
-    let progress = Progress::new(&plans, (options, server), interrupt);
-    if let Some(text) = senseless_threads(options) {
-        output::talk(&format!(
-            "warning: RAYON_NUM_THREADS = `{}` is no number of threads: one per core",
-            bounded(&text)
-        ));
-    }
-    interrupt.defer();
-    let result = run_suite(&plans, &suite, &progress);
-    Ok(progress.conclude(&result))
-}
-
-/// What the variable for the number of threads says in vain; none if it is not asked, or a number.
-fn senseless_threads(options: &RunOptions) -> Option<String> {
-    let text = std::env::var("RAYON_NUM_THREADS").ok()?;
-    let is_idle = options.jobs > 0 || text.is_empty() || text.parse::<usize>().is_ok();
-    (!is_idle).then_some(text)
-}
-
-/// Whose results the suite takes over.
-fn resume(from: Option<ResumeFrom>) -> Resume {
-    match from {
-        None => Resume::Never,
-        Some(ResumeFrom::SameBuild) => Resume::SameBuild,
-        Some(ResumeFrom::AnyBuild) => Resume::AnyBuild,
-    }
-}
-
-/// The verdict of the whole suite: the worst of its runs.
-///
-/// * `is_cut_short`: whether runs were left out because another one had failed.
-fn exit_of(suite: &SuiteOutcome, is_cut_short: bool) -> Exit {
-    if suite.broken {
-        return Exit::Internal;
-    }
-    if suite.unwritten || !suite.failures.is_empty() {
-        return Exit::Io;
-    }
-    let counts = |run: &&RunOutcome| !(is_cut_short && run.is_not_run);
-    match suite
-        .runs
-        .iter()
-        .filter(counts)
-        .map(RunOutcome::status)
-        .max()
-    {
-        None | Some(RunStatus::Pass) => Exit::Success,
-        Some(RunStatus::GateFailed) => Exit::GateFailed,
-        Some(RunStatus::ChannelFailed | RunStatus::NotRun | RunStatus::RunFailed) => {
-            Exit::RunFailed
-        }
-    }
-}
-
-/// What to do after a signal.
-fn interrupted(suite: &SuiteOutcome) -> String {
-    let runs = suite.runs.iter();
-    let finished = runs.filter(|run| !run.is_not_run).count();
-    format!(
-        "interrupted: {finished} of {} runs finished; the same command with --resume goes on",
-        suite.runs.len()
-    )
-}
-
-fn closing(suite: &SuiteOutcome, format: Format) -> String {
-    let (runs, across) = (&suite.runs, &suite.comparison);
-    match format {
-        Format::Text => {
-            let (width, colour) = (output::width(), output::colour());
-            let suite = report::suite_text(runs, width, colour);
-            suite + &report::comparison_text(across, width, colour)
-        }
-        // What could not be written is told as a failure of the suite.
-        Format::Json => suite.summary_json().unwrap_or_default(),
-        // Every run has been printed on its own line.
-        Format::Jsonl => String::new(),
-    }
-}
-
 /// Progress on stderr, results on stdout in the order of the plan.
-struct Progress<'a> {
+pub(super) struct Progress<'a> {
     bar: ProgressBar,
+    clock: SuiteClock,
     options: &'a RunOptions,
     server: ServerFiles<'a>,
     interrupt: &'a Interrupt,
@@ -138,19 +34,18 @@ struct Progress<'a> {
 
 /// Texts that wait for their turn.
 struct Pending {
-    next: usize,
-    texts: BTreeMap<usize, String>,
+    account: Account,
     failure: Option<io::Error>,
 }
 
 impl<'a> Progress<'a> {
-    fn new(
+    pub(super) fn new(
         plans: &[Plan],
         (options, server): (&'a RunOptions, ServerFiles<'a>),
         interrupt: &'a Interrupt,
     ) -> Self {
         let total_s: f64 = plans.iter().map(Plan::simulated_s).sum();
-        let bar = if io::stderr().is_terminal() {
+        let bar = if io::stderr().is_terminal() && !options.quiet {
             ProgressBar::new(whole(total_s))
         } else {
             ProgressBar::hidden()
@@ -160,12 +55,13 @@ impl<'a> Progress<'a> {
             bar.set_style(style);
         }
         let pending = Pending {
-            next: 0,
-            texts: BTreeMap::new(),
+            account: Account::new(plans, options),
             failure: None,
         };
+        let folders = plans.iter().map(|plan| plan.resolved().folder());
         Self {
             bar,
+            clock: SuiteClock::start(folders.collect(), total_s),
             options,
             server,
             interrupt,
@@ -175,7 +71,7 @@ impl<'a> Progress<'a> {
     }
 
     /// Says how the suite ended and gives its exit code.
-    fn conclude(&self, result: &Result<SuiteOutcome, SuiteError>) -> Exit {
+    pub(super) fn conclude(&self, result: &Result<SuiteOutcome, SuiteError>) -> Exit {
         let was_interrupted = self.interrupt.exit().is_some();
         let exit = match result {
             Ok(suite) => {
@@ -183,10 +79,11 @@ impl<'a> Progress<'a> {
                 if was_interrupted {
                     self.talk(&interrupted(suite));
                 }
-                let printed = self.print_rest(&closing(suite, self.options.format));
+                let printed = self.print_rest(suite);
                 self.talk_of(suite);
                 let unprinted = printed.err().map(io_failure);
-                let served = self.beside_bar(|| self.server.write(suite));
+                let times = self.clock.times();
+                let served = self.beside_bar(|| self.server.write(suite, &times));
                 let exit = exit_of(suite, self.is_cut_short()).worst(served);
                 exit.worst(unprinted.unwrap_or(Exit::Success))
             }
@@ -226,46 +123,54 @@ impl<'a> Progress<'a> {
                 suite.threads
             ));
         }
-        self.talk(&format!("results in {}", self.options.output.display()));
-    }
-
-    fn text(&self, run: &RunReport) -> String {
-        match self.options.format {
-            Format::Text => {
-                let table = report::table_text(run, output::width(), output::colour());
-                format!("{table}\n")
-            }
-            Format::Json => String::new(),
-            Format::Jsonl => {
-                let document = report::run_summary_json(run);
-                format!(
-                    "{}\n",
-                    document.lines().map(str::trim_start).collect::<String>()
-                )
-            }
+        if !self.options.quiet {
+            let runs = counted(suite.runs.len(), "run");
+            self.talk(&format!("{runs} in {}", self.clock.total()));
+            self.talk(&format!("results in {}", self.options.output.display()));
         }
     }
 
-    /// Prints every text whose predecessors have all been printed.
-    fn print_in_turn(&self, index: usize, text: String) {
+    /// Takes in what has ended and prints every text whose turn has come.
+    fn take_in(&self, index: usize, enter: impl FnOnce(&mut Account)) {
+        self.clock.ended(index);
         let mut pending = self.pending();
-        pending.texts.insert(index, text);
-        let mut ready = String::new();
-        let mut next = pending.next;
-        while let Some(text) = pending.texts.remove(&next) {
-            ready.push_str(&text);
-            next += 1;
-        }
-        pending.next = next;
-        self.print(&mut pending, &ready);
+        enter(&mut pending.account);
+        let text = pending.account.ready(|runs| self.seconds(runs));
+        self.print(&mut pending, &text);
+        drop(pending);
+        self.beat();
     }
 
-    /// Prints the texts that still wait for a run that has not ended, then `closing`.
-    fn print_rest(&self, closing: &str) -> io::Result<()> {
+    /// How long some runs took, for the end of their line on a terminal: elsewhere the same runs give the
+    /// same bytes.
+    fn seconds(&self, runs: Range<usize>) -> String {
+        let duration = self.clock.duration(runs);
+        let duration = duration.filter(|_| io::stdout().is_terminal());
+        duration.map_or_else(String::new, |time| format!("{:.1} s", time.as_secs_f64()))
+    }
+
+    /// Says now and then how far the suite is, where no bar does.
+    fn beat(&self) {
+        if self.options.quiet || !self.bar.is_hidden() {
+            return;
+        }
+        if let Some(line) = self.clock.beat() {
+            output::talk(&line);
+        }
+    }
+
+    /// Prints what still waits for a run that has not ended, then the end of the suite.
+    fn print_rest(&self, suite: &SuiteOutcome) -> io::Result<()> {
         let mut pending = self.pending();
-        let mut rest: String = std::mem::take(&mut pending.texts).into_values().collect();
-        rest.push_str(closing);
-        self.print(&mut pending, &rest);
+        let mut text = pending.account.rest();
+        let annotations = self.server.annotations(suite);
+        if self.options.format == Format::Text {
+            text.push_str(&annotations);
+        } else {
+            annotations.lines().for_each(|line| self.talk(line));
+        }
+        text.push_str(&pending.account.closing(suite));
+        self.print(&mut pending, &text);
         pending.failure.take().map_or(Ok(()), Err)
     }
 
@@ -298,6 +203,8 @@ impl<'a> Progress<'a> {
 impl experiment::Progress for Progress<'_> {
     fn advanced(&self, simulated_s: f64) {
         self.bar.inc(whole(simulated_s));
+        self.clock.advanced(simulated_s);
+        self.beat();
     }
 
     fn should_stop(&self) -> bool {
@@ -311,24 +218,21 @@ impl experiment::Progress for Progress<'_> {
 
 impl Observer for Progress<'_> {
     fn started(&self, index: usize) {
-        self.server.started(index);
+        self.clock.started(index);
     }
 
     fn finished(&self, index: usize, report: &RunReport) {
-        self.server.ended(index);
-        let status = || RunOutcome::from_report(report, "").status();
-        if self.options.fail_fast && status() != RunStatus::Pass {
+        if self.options.fail_fast && !passed(report) {
             self.has_failed.store(true, Ordering::Relaxed);
         }
-        self.print_in_turn(index, self.text(report));
+        self.take_in(index, |account| account.finished(index, report));
     }
 
     fn failed(&self, index: usize, outcome: &RunOutcome) {
-        self.server.ended(index);
         self.has_failed.store(true, Ordering::Relaxed);
         let reason = outcome.error.as_deref().unwrap_or_default();
         self.talk(&format!("error: {}: {reason}", outcome.folder));
-        self.print_in_turn(index, String::new());
+        self.take_in(index, |account| account.failed(index, outcome));
     }
 
     /// Ends the program: what is still being computed is not waited for.
@@ -357,4 +261,40 @@ impl Observer for Progress<'_> {
 )]
 fn whole(seconds: f64) -> u64 {
     seconds.round() as u64
+}
+
+/// The verdict of the whole suite: the worst of its runs.
+///
+/// * `is_cut_short`: whether runs were left out because another one had failed.
+fn exit_of(suite: &SuiteOutcome, is_cut_short: bool) -> Exit {
+    if suite.broken {
+        return Exit::Internal;
+    }
+    if suite.unwritten || !suite.failures.is_empty() {
+        return Exit::Io;
+    }
+    let counts = |run: &&RunOutcome| !(is_cut_short && run.is_not_run);
+    match suite
+        .runs
+        .iter()
+        .filter(counts)
+        .map(RunOutcome::status)
+        .max()
+    {
+        None | Some(RunStatus::Pass) => Exit::Success,
+        Some(RunStatus::GateFailed) => Exit::GateFailed,
+        Some(RunStatus::ChannelFailed | RunStatus::NotRun | RunStatus::RunFailed) => {
+            Exit::RunFailed
+        }
+    }
+}
+
+/// What to do after a signal.
+fn interrupted(suite: &SuiteOutcome) -> String {
+    let runs = suite.runs.iter();
+    let finished = runs.filter(|run| !run.is_not_run).count();
+    format!(
+        "interrupted: {finished} of {} runs finished; the same command with --resume goes on",
+        suite.runs.len()
+    )
 }
