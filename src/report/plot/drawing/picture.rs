@@ -93,6 +93,9 @@ pub(in crate::report) enum Shape {
     Circle,
     Square,
     Triangle,
+    /// A triangle on its point.
+    Wedge,
+    Diamond,
 }
 
 /// A point in pixels from the upper left corner.
@@ -111,6 +114,21 @@ enum Item {
         upright: bool,
         bold: bool,
     },
+}
+
+/// Width of a text of a size, pixels, as wide as sans-serif fonts of common systems draw it.
+pub(in crate::report) fn text_width(text: &str, size: f64) -> f64 {
+    const WIDE: f64 = 0.9;
+    const NARROW: f64 = 0.33;
+    const USUAL: f64 = 0.6;
+    let of = |letter: char| match letter {
+        'm' | 'w' | 'M' | 'W' | '%' => WIDE,
+        'i' | 'j' | 'l' | 't' | 'f' | 'r' | ' ' | '.' | ',' | ':' | '(' | ')' | '/' | '[' | ']' => {
+            NARROW + 0.05
+        }
+        _ => USUAL,
+    };
+    size * text.chars().map(of).sum::<f64>()
 }
 
 /// A picture under construction.
@@ -385,6 +403,14 @@ fn draw_marker<'a>(
             (-1.0, -1.0),
         ],
         Shape::Triangle => vec![(0.0, -1.2), (1.1, 0.9), (-1.1, 0.9), (0.0, -1.2)],
+        Shape::Wedge => vec![(0.0, 1.2), (1.1, -0.9), (-1.1, -0.9), (0.0, 1.2)],
+        Shape::Diamond => vec![
+            (0.0, -1.3),
+            (1.3, 0.0),
+            (0.0, 1.3),
+            (-1.3, 0.0),
+            (0.0, -1.3),
+        ],
     };
     let corners: Vec<Point> = corners
         .into_iter()
