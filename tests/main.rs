@@ -46,6 +46,7 @@ mod frequency_response;
 mod generated;
 mod growth;
 mod gyro_effects;
+mod html_pages;
 mod injection;
 mod interruption;
 mod kalman_export;

@@ -175,6 +175,7 @@ impl Fixture {
                 3,
                 vec![("gyro.source.power_uw".to_owned(), "0.87".to_owned())],
             )),
+            points: 5,
             gyro: &self.gyro,
             theory: &[],
             channels: &self.channels,

@@ -15,6 +15,7 @@
 //! | `comparison` | tables over several scenarios |
 //! | `csv` | metrics, curves and repeats |
 //! | `json` | `summary.json` of runs and suites |
+//! | `page` | pages for a browser |
 //! | `restore` | `summary.json` read back |
 //! | `build_server` | JUnit, annotations, Markdown and metrics for build servers |
 //! | `baseline` | a comparison with earlier results |
@@ -33,14 +34,16 @@ mod json;
 mod kalman;
 mod layout;
 mod log;
+mod page;
 mod plot;
 mod record;
 mod restore;
 mod text;
 
 pub use artefacts::{
-    Artefact, Contents, JUNIT, METRICS, OutputFile, Place, SUITE_SUMMARY, artefacts, budget_files,
-    calibration_files, log_files, plots, run_file_names, run_files, run_pictures, suite_files,
+    Artefact, Contents, INDEX, JUNIT, METRICS, OutputFile, PAGE, Place, SUITE_SUMMARY, artefacts,
+    budget_files, calibration_files, log_files, plots, run_file_names, run_files, run_pages,
+    run_pictures, suite_files,
 };
 pub use baseline::json::comparison_with_baseline_json;
 pub use baseline::markdown::comparison_with_baseline_markdown;
@@ -63,6 +66,7 @@ pub use json::suite::{SuiteReport, write_suite_summary};
 pub use json::summary::run_summary_json;
 pub use kalman::{KalmanReport, is_kalman_json, kalman_json};
 pub use log::{LogReport, log_json, log_text};
+pub use page::suite::suite_page;
 pub use plot::{Pictures, SVG_BYTES_MAX};
 pub use record::run::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
 pub use record::sweep::PointOfSweep;

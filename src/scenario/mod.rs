@@ -45,7 +45,8 @@ pub(crate) use check::cross::comparison::slug;
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, ComparisonColumn, ComparisonConfig,
     ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig, GateDecision,
-    InconclusivePolicy, OutputConfig, PublishedConfig, SamplesFormat, Scenario, TrialConfig,
+    InconclusivePolicy, OutputConfig, PublishedConfig, ReportedRuns, SamplesFormat, Scenario,
+    TrialConfig,
 };
 pub use document::setting::Setting;
 pub use generate::json_schema::json_schema;
@@ -54,6 +55,7 @@ pub use message::complaints::ScenarioErrors;
 pub use message::error::{Location, ScenarioError};
 pub(crate) use message::error::{in_both, in_order, portable_place};
 pub use message::excerpt::{bounded, excerpt};
+pub use read::assumed::AssumedValue;
 pub use read::compensation_source::load_calibration;
 pub use read::manifest::manifest_toml;
 pub(crate) use read::resolve::UnsoundReading;

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::entry::Suite;
 use super::ledger::Ledger;
 use super::outcome::SuiteOutcome;
-use super::output::{JUNIT, METRICS, SUMMARY, Settled, SuiteOutput};
+use super::output::{INDEX, JUNIT, METRICS, SUMMARY, Settled, SuiteOutput};
 use crate::comparison::{ComparedRun, Comparison, Layout};
 use crate::experiment::build::VERSION;
 use crate::experiment::plan::Plan;
@@ -40,7 +40,8 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
     let Settled { stale, failures } = output.settle();
     let mut failures: Vec<String> = failures.iter().map(ToString::to_string).collect();
     let tables = unbroken(ledger, || report::comparison_files(&comparison));
-    let mut files = tables.unwrap_or_default();
+    let tables = tables.unwrap_or_default();
+    let mut files = tables.clone();
     let junit = || report::junit_xml(&runs, None);
     files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
     let summary = SuiteReport {
@@ -49,6 +50,8 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
         across: &comparison,
         stale: &stale,
     };
+    let page = unbroken(ledger, || report::suite_page(&summary, &tables));
+    files.extend(page.map(|text| (INDEX.to_owned(), text)));
     let published = output.publish(|staged| {
         for (name, text) in &files {
             staged.write(name, text.as_bytes())?;

@@ -76,7 +76,7 @@ pub(crate) fn enter_result(
         notes: &notes,
         ..report
     };
-    let written = files::write_folder(report, &signals, &pictures, output)?;
+    let written = files::write_folder((plan, report), &signals, &pictures, output)?;
     let outcome = RunOutcome::from_report(report, &plan.resolved().folder());
     let pictures = pictures.drawn.into_iter().map(|(name, _)| name).collect();
     let outcome = RunOutcome {

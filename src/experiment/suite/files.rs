@@ -19,6 +19,7 @@ pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
         file: &resolved.file,
         digest: &resolved.digest,
         sweep: point_of(plan),
+        points: resolved.sweep.as_ref().map_or(0, |point| point.count),
         gyro: plan.facts(),
         compensation: None,
         theory: &[],
@@ -44,7 +45,7 @@ pub(super) fn failed(plan: &Plan, reason: String) -> RunOutcome {
 
 /// Writes everything of one run beside its place, to be swapped in whole.
 pub(crate) fn write_folder<'a>(
-    report: &RunReport,
+    (plan, report): (&Plan, &RunReport),
     signals: &[RunSignals],
     pictures: &Pictures,
     output: &'a SuiteOutput,
@@ -55,6 +56,10 @@ pub(crate) fn write_folder<'a>(
     }
     for (name, svg) in &pictures.drawn {
         folder.write(name, svg.as_bytes())?;
+    }
+    let assumed = plan.resolved().assumed();
+    for (name, page) in report::run_pages(report, pictures, &assumed) {
+        folder.write(name, page.as_bytes())?;
     }
     Ok(folder)
 }

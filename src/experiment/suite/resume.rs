@@ -84,7 +84,9 @@ fn is_of(plan: &Plan, folder: &Path, resume: Resume) -> bool {
 fn has_files(folder: &Path, report: &RunReport) -> bool {
     let record = Record::of_manifest(folder).unwrap_or_default();
     let known: BTreeSet<&str> = record.names().collect();
-    let mut names = report::run_file_names(report).into_iter();
+    let page = RunOutcome::from_report(report, "").has_page;
+    let page = page.then(|| report::PAGE.to_owned());
+    let mut names = report::run_file_names(report).into_iter().chain(page);
     names.all(|name| known.contains(name.as_str()))
 }
 

@@ -9,16 +9,18 @@ mod table;
 use std::borrow::Cow;
 
 use super::log::LogReport;
-use super::plot::{Picture, Pictures};
+use super::page::pictures::Shown;
+use super::page::run::Beside;
+use super::plot::{Picture, Pictures, stamped};
 use crate::metrics::{CurveKey, known_curves};
 use crate::report::calibration::documents::CalibrationProvenance;
 use crate::report::csv::curves::curve_csv;
 use crate::report::record::measured::Measured;
-use crate::report::record::run::RunReport;
-use crate::scenario::SamplesFormat;
+use crate::report::record::run::{RunOutcome, RunReport};
+use crate::scenario::{AssumedValue, SamplesFormat};
 use crate::signal::{BudgetSheet, CalibrationSheet, RunSignals};
 
-pub use table::{JUNIT, METRICS, SUITE_SUMMARY};
+pub use table::{INDEX, JUNIT, METRICS, PAGE, SUITE_SUMMARY};
 
 use samples::Samples;
 use table::{RUN_AND_LOG, SUITE, TABLE};
@@ -71,6 +73,16 @@ pub(super) struct Scene<'a> {
     run: Option<&'a RunReport<'a>>,
 }
 
+impl<'a> Scene<'a> {
+    /// Version of the tool and, of a run, the digest of its scenario.
+    fn origin(&self) -> (&'a str, Option<&'a str>) {
+        match self.run {
+            Some(run) => (run.tool_version, Some(run.digest)),
+            None => (env!("CARGO_PKG_VERSION"), None),
+        }
+    }
+}
+
 /// What makes a file.
 #[derive(Clone, Copy)]
 enum Made {
@@ -80,6 +92,8 @@ enum Made {
     Log(fn(&LogReport) -> Option<String>),
     /// CSV of a curve, of runs and logs.
     Curve(&'static CurveKey),
+    /// Page of a run with its pictures.
+    Page(for<'a> fn(&RunReport, &[Shown<'a>], &Beside<'a>) -> String),
     /// Picture of one gyro.
     Drawn(fn(&Scene) -> Option<Picture>),
     /// Text of a calibration, of a campaign or of groups.
@@ -164,6 +178,7 @@ impl Artefact {
             Made::Drawn(_) | Made::SheetDrawn(_) => "report::plot",
             Made::Curve(_) => "report::csv",
             Made::Samples(_) => "report::artefacts",
+            Made::Page(_) => "report::page",
             Made::Run(_) | Made::Log(_) | Made::Sheet(_) | Made::Budget(_) => "report",
         }
     }
@@ -240,6 +255,47 @@ fn files_of<'a>(
         }
     };
     of(place).flat_map(files).collect()
+}
+
+/// Pages of a run: name and text; none where it gets none.
+///
+/// * `assumed`: values that nobody set.
+#[must_use]
+pub fn run_pages(
+    report: &RunReport,
+    pictures: &Pictures,
+    assumed: &[AssumedValue],
+) -> Vec<(&'static str, String)> {
+    if !RunOutcome::from_report(report, "").has_page {
+        return Vec::new();
+    }
+    let rows: Vec<Artefact> = of(Place::Run).collect();
+    let holds = |name: &str| {
+        // Those of an assembly stand behind the axis.
+        let is_row = |row: &&Artefact| name == row.name || name.get(2..) == Some(row.name);
+        rows.iter().find(is_row).map_or("picture", |row| row.holds)
+    };
+    let drawn = pictures.drawn.iter();
+    let shown = drawn.map(|(name, svg)| Shown {
+        name,
+        holds: holds(name),
+        svg,
+    });
+    let shown: Vec<Shown> = shown.collect();
+    let drawn = pictures.drawn.iter().map(|(name, _)| name.clone());
+    let manifest = std::iter::once("manifest.toml".to_owned());
+    let beside = Beside {
+        files: &manifest
+            .chain(run_file_names(report))
+            .chain(drawn)
+            .collect::<Vec<_>>(),
+        assumed,
+    };
+    let pages = rows.iter().filter_map(|row| match row.made {
+        Made::Page(page) => Some((row.name, page(report, &shown, &beside))),
+        _ => None,
+    });
+    pages.collect()
 }
 
 /// Files and pictures of a log's folder, the samples as NPY, with `as_csv` as CSV as well. A picture
@@ -333,6 +389,7 @@ pub fn run_pictures(report: &RunReport, gyros: &[RunSignals]) -> Pictures {
         for artefact in of(Place::Run) {
             if let Made::SheetDrawn(draw) = artefact.made {
                 let svg = draw(&report.scenario.name, sheet);
+                let svg = svg.map(|svg| stamped(&svg, report.tool_version, Some(report.digest)));
                 pictures.add_svg(artefact.name.to_owned(), svg);
             }
         }
@@ -347,7 +404,9 @@ fn drawn_of(place: Place, scene: &Scene, axis: &str) -> Pictures {
         if let Made::Drawn(draw) = artefact.made
             && let Some(picture) = draw(scene)
         {
-            all.add(format!("{axis}{}", artefact.name), &picture);
+            let (version, digest) = scene.origin();
+            let svg = picture.svg().map(|svg| stamped(&svg, version, digest));
+            all.add_svg(format!("{axis}{}", artefact.name), svg);
         }
     }
     all

@@ -7,6 +7,7 @@ use crate::report::csv::metrics::metrics_csv;
 use crate::report::csv::runs::runs_csv;
 use crate::report::json::summary::run_summary_json;
 use crate::report::log::log_json;
+use crate::report::page::run::run_page;
 use crate::report::plot::{self, Picture};
 use crate::scenario::MotionClass;
 
@@ -26,10 +27,22 @@ pub const SUITE_SUMMARY: Artefact = Artefact {
     made: Made::By(SUITE),
 };
 
+/// Name of the page of a run.
+pub const PAGE: &str = "report.html";
+
 /// Metrics of a suite.
 pub const METRICS: Artefact = Artefact {
     name: "metrics.csv",
     holds: "every metric of every run, one a row, with the values of the swept keys",
+    when: "after every run, so that a stopped suite has one",
+    places: &[Place::Suite],
+    made: Made::By(SUITE),
+};
+
+/// Page of a suite.
+pub const INDEX: Artefact = Artefact {
+    name: "index.html",
+    holds: "the suite for a browser: outcomes, gates that failed, runs, points of sweeps, tables",
     when: "after every run, so that a stopped suite has one",
     places: &[Place::Suite],
     made: Made::By(SUITE),
@@ -48,6 +61,7 @@ pub const JUNIT: Artefact = Artefact {
 /// which those that are left out are told.
 pub(super) const TABLE: &[Artefact] = &[
     SUITE_SUMMARY,
+    INDEX,
     METRICS,
     JUNIT,
     Artefact {
@@ -105,6 +119,14 @@ pub(super) const TABLE: &[Artefact] = &[
         when: "several repeats",
         places: RUN,
         made: Made::Run(runs_csv),
+    },
+    Artefact {
+        name: PAGE,
+        holds: "the run for a browser: gates, metrics, pictures, noise budget, what was assumed",
+        when: "always; of a sweep of more than 100 points where the run failed, or with \
+               output.report = \"all\"",
+        places: RUN,
+        made: Made::Page(run_page),
     },
     Artefact {
         name: "calibration.toml",

@@ -92,6 +92,7 @@ pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
         let thin = Stroke::solid(stroke.colour, 0.75);
         panel.line(&mut picture, &fit_line(metrics, tau), thin);
         legend.line(&mut picture, stroke, name);
+        legend.gain(&mut picture, metrics);
         for reading in readings(metrics) {
             if is_read {
                 draw_reading(&mut picture, &panel, &reading, stroke);
@@ -108,7 +109,7 @@ pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
         }
         legend.space();
     }
-    notes(&mut legend, &mut picture, is_read);
+    notes(&mut legend, &mut picture, report, is_read);
     Some(picture)
 }
 
@@ -145,24 +146,33 @@ fn fit_line(metrics: &ChannelMetrics, tau: &[f64]) -> Vec<(f64, f64)> {
     points.filter(|(tau, _)| *tau >= first_s).collect()
 }
 
+/// Meaning of the marks, each where one is drawn.
+const MARKS: [(Shape, &str); 5] = [
+    (Shape::Diamond, "diamond: √3 Q/τ (slope -1)"),
+    (Shape::Circle, "circle: 60 N at 1 s (slope -1/2)"),
+    (Shape::Square, "square: 0.664 B (flat)"),
+    (Shape::Triangle, "triangle: K/60 at 3 s (slope 1/2)"),
+    (Shape::Wedge, "triangle on its point: R τ/√2 (slope 1)"),
+];
+
 /// What the reader of the picture must know, below the legend.
-fn notes(legend: &mut Legend, picture: &mut Picture, is_read: bool) {
-    let notes: &[&str] = if is_read {
-        &[
-            "bands: 95 % interval; thin: fit, dotted: its terms",
-            "circle: 60 N at 1 s (slope -1/2); √3 Q/τ (slope -1)",
-            "square: 0.664 B (flat)",
-            "triangle: K/60 at 3 s (slope 1/2); R τ/√2 (slope 1)",
-            "dash-dotted: correlated noise, sine",
-        ]
-    } else {
-        &[
-            "bands: 95 % interval",
-            "N, B, K: fit to the overlapping Allan deviation",
-        ]
-    };
-    for note in notes {
-        legend.text(picture, note);
+fn notes(legend: &mut Legend, picture: &mut Picture, report: &Measured, is_read: bool) {
+    legend.text(picture, "bands: 95 % interval");
+    if !is_read {
+        legend.text(picture, "N, B, K: fit to the overlapping Allan deviation");
+        return;
+    }
+    legend.text(picture, "thin: fit, dotted: its terms");
+    let channels = || report.channels.iter().map(|(_, metrics)| metrics);
+    let drawn: Vec<Reading> = channels().flat_map(readings).collect();
+    for (shape, text) in MARKS {
+        if drawn.iter().any(|reading| reading.shape == shape) {
+            legend.text(picture, text);
+        }
+    }
+    let extra = [&CORRELATED_NOISE, &SINE_AMPLITUDE];
+    if channels().any(|metrics| extra.iter().any(|key| metrics.get(key).is_some())) {
+        legend.text(picture, "dash-dotted: correlated noise, sine");
     }
 }
 
@@ -203,14 +213,14 @@ fn readings(metrics: &ChannelMetrics) -> Vec<Reading> {
     let angle = read(&QUANTISATION, "Q", "arcsec");
     // R tau / sqrt(2) at tau = sqrt(2) s is R in (deg/h)/s; sqrt(3) Q / tau at sqrt(3) s is Q.
     let ramp = ramp.map(|(value, text)| Reading {
-        shape: Shape::Triangle,
+        shape: Shape::Wedge,
         slope: 1.0,
         tau_s: Some(2.0_f64.sqrt()),
         deviation_deg_per_h: value / deg_per_h_per_s_to_deg_per_h_per_h(1.0),
         text,
     });
     let angle = angle.map(|(value, text)| Reading {
-        shape: Shape::Circle,
+        shape: Shape::Diamond,
         slope: -1.0,
         tau_s: Some(3.0_f64.sqrt()),
         deviation_deg_per_h: value,

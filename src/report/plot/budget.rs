@@ -6,6 +6,7 @@ use super::drawing::picture::{BLACK, Dash, Picture, Point, Shape, Stroke};
 use super::drawing::series::{extent, stroke_of};
 use crate::gate::plain;
 use crate::report::budget::{TOTAL, sources};
+use crate::report::plot::stamped;
 use crate::signal::{BudgetPoint, BudgetSheet};
 
 /// Sources below this part of the least total are cut off.
@@ -20,7 +21,8 @@ pub(crate) fn budget_svg(file: &str, sheet: &BudgetSheet) -> Option<String> {
     picture.heading((90.0, 28.0), &title, 18.0);
     against_depth(&mut picture, sheet, (56.0, 420.0));
     against_power(&mut picture, sheet, (500.0, 840.0));
-    picture.svg()
+    let svg = picture.svg()?;
+    Some(stamped(&svg, env!("CARGO_PKG_VERSION"), None))
 }
 
 fn total_stroke() -> Stroke {

@@ -17,8 +17,8 @@ use crate::units::gain_to_db;
 
 /// Gain down to which the response is shown, dB.
 const LOWEST_DB: f64 = -40.0;
-/// Gain above which a phase delay means something, dB.
-const DELAY_FROM_DB: f64 = -20.0;
+/// Fall of the gain from its first value up to which a phase delay means something, dB.
+const DELAY_FALL_DB: f64 = -20.0;
 
 /// Frequency, Hz, value and the ends of its interval.
 type Point = (f64, [f64; 3]);
@@ -103,6 +103,19 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     );
     legend.text(&mut picture, "or at those given; thin: 95 % interval");
     legend.text(&mut picture, "markers at the left edge: constant rate");
+    let mut gains = filters.iter().flat_map(|filter| GAIN.of(filter.frozen));
+    if gains.any(|gain| decibel(*gain) <= LOWEST_DB) {
+        let text = format!("gains below {LOWEST_DB} dB lie below the picture");
+        legend.text(&mut picture, &text);
+    }
+    let mut frozen = filters.iter().map(|filter| GAIN.of(filter.frozen));
+    if frozen.any(|gains| before_null(gains) < gains.len()) {
+        let text = format!(
+            "phase delay: until the gain has fallen by {} dB",
+            -DELAY_FALL_DB
+        );
+        legend.text(&mut picture, &text);
+    }
     if filters.iter().any(|filter| filter.live.is_some()) {
         legend.text(&mut picture, "other markers: live, several sines at once");
     }
@@ -113,15 +126,27 @@ fn at_dc(filter: &Filter, key: &MetricKey) -> Option<Estimate> {
     Some(filter.metrics.get(key)?.estimate)
 }
 
+/// Count of the gains before the first that has fallen to where the phase means nothing: at a null it jumps,
+/// and what a phase delay would be beyond it nobody can tell.
+fn before_null(gains: &[f64]) -> usize {
+    let first = gains.first().map_or(0.0, |gain| decibel(*gain));
+    let has_fallen = |gain: &f64| decibel(*gain) - first <= DELAY_FALL_DB;
+    gains.iter().position(has_fallen).unwrap_or(gains.len())
+}
+
 /// The points of a curve that the panel shows.
 fn points(curve: &Curve, quantity: &Quantity) -> Vec<Point> {
     let [value, low, high] = quantity.columns.map(|column| column.of(curve));
-    let frequencies = FREQUENCY.of(curve).iter().zip(GAIN.of(curve));
+    let gains = GAIN.of(curve);
+    let shown = match *quantity.at_dc == DC_GAIN {
+        true => gains.len(),
+        false => before_null(gains),
+    };
     let ends = value.iter().zip(low).zip(high);
+    let frequencies = FREQUENCY.of(curve).iter().take(shown);
     frequencies
         .zip(ends)
-        .filter(|((_, gain), _)| *quantity.at_dc == DC_GAIN || decibel(**gain) > DELAY_FROM_DB)
-        .map(|((frequency, _), ((value, low), high))| {
+        .map(|(frequency, ((value, low), high))| {
             (*frequency, [*value, *low, *high].map(quantity.convert))
         })
         .collect()

@@ -22,7 +22,7 @@ pub(super) mod thermal;
 pub(super) use budget::budget_svg;
 pub(super) use calibration::calibration_svg;
 
-pub(super) use drawing::picture::Picture;
+pub(super) use drawing::picture::{Picture, stamped};
 
 use crate::comparison::ComparedTable;
 
@@ -40,12 +40,7 @@ pub struct Pictures {
 }
 
 impl Pictures {
-    /// Enters a picture, or the note that it is left out.
-    pub(super) fn add(&mut self, name: String, picture: &Picture) {
-        self.add_svg(name, picture.svg());
-    }
-
-    /// Enters the text of a picture; none stands for one that is too large.
+    /// Enters the text of a picture, or the note that it is left out: none stands for one that is too large.
     pub fn add_svg(&mut self, name: String, svg: Option<String>) {
         match svg {
             Some(svg) => self.drawn.push((name, svg)),
@@ -66,5 +61,6 @@ impl Pictures {
 
 /// A table over several scenarios; nothing if the picture would be too large.
 pub(super) fn comparison_svg(table: &ComparedTable) -> Option<String> {
-    comparison::picture(table).svg()
+    let svg = comparison::picture(table).svg()?;
+    Some(stamped(&svg, env!("CARGO_PKG_VERSION"), None))
 }

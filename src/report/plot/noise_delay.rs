@@ -2,8 +2,9 @@
 //! least noise that its taps allow with unit DC gain.
 
 use super::drawing::axis::Axis;
+use super::drawing::labels::Labels;
 use super::drawing::panel::{Legend, Panel, WIDTH};
-use super::drawing::picture::{Anchor, Picture, Stroke};
+use super::drawing::picture::{Picture, Stroke};
 use super::drawing::series::{extent, real, shape_of, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::catalogue::NOISE_DELAY_BOUND;
@@ -59,16 +60,19 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
         (shape_of(0), stroke_of(0).colour),
         "raw: no delay, all of its noise",
     );
+    let mut labels = Labels::default();
+    labels.keep_clear(panel.place((0.0, 1.0)));
     for point in &points {
-        draw_point(&mut picture, &panel, point);
+        let at = (point.delay_ms.value, point.noise_gain.value);
+        labels.keep_clear(panel.place(at));
+    }
+    for point in &points {
+        draw_point(&mut picture, &panel, point, &mut labels);
         describe(&mut picture, &mut legend, point);
     }
     legend.space();
-    legend.text(
-        &mut picture,
-        "lines: least noise of as many weights in a row",
-    );
-    legend.text(&mut picture, "with unit DC gain; dotted: for white noise");
+    legend.text(&mut picture, "lines: least noise of as many weights");
+    legend.text(&mut picture, "in a row and unit DC gain; dotted: white");
     legend.text(&mut picture, "numbers at the points: DC gain");
     legend.text(&mut picture, "bars: 95 % intervals");
     Some(picture)
@@ -115,7 +119,7 @@ fn draw_bounds(picture: &mut Picture, panel: &Panel, point: &Point) {
 }
 
 /// Marker, bars, name and DC gain.
-fn draw_point(picture: &mut Picture, panel: &Panel, point: &Point) {
+fn draw_point(picture: &mut Picture, panel: &Panel, point: &Point, labels: &mut Labels) {
     let colour = stroke_of(point.index).colour;
     let bar = Stroke::solid(colour, 1.5);
     let (delay, gain) = (point.delay_ms, point.noise_gain);
@@ -126,15 +130,8 @@ fn draw_point(picture: &mut Picture, panel: &Panel, point: &Point) {
     let at = (delay.value, gain.value);
     panel.marker(picture, at, shape_of(point.index), colour);
     if let Some(dc_gain) = point.verdict.dc_gain {
-        let (x, y) = panel.place(at);
         let text = format!("{} {:.2}", point.name, dc_gain.estimate.value);
-        // Neighbours in the file often stand close together: their labels take turns.
-        let (shift, anchor) = match point.index % 3 {
-            0 => ((9.0, -10.0), Anchor::Start),
-            1 => ((9.0, 12.0), Anchor::Start),
-            _ => ((-9.0, -10.0), Anchor::End),
-        };
-        picture.text((x + shift.0, y + shift.1), &text, 12.5, anchor);
+        labels.place(picture, panel.place(at), &text);
     }
 }
 

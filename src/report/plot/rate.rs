@@ -139,7 +139,8 @@ impl Drawing<'_> {
                 .filter(|column| column.low.is_finite() && column.high.is_finite())
                 .map(|column| (self.time_s(column.index), column.low, column.high))
                 .collect();
-            panel.band(picture, &band, stroke.colour, 0.75);
+            // None may hide another.
+            panel.band(picture, &band, stroke.colour, 0.5);
         }
         let line: Vec<(f64, f64)> = truth
             .iter()

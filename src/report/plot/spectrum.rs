@@ -4,6 +4,7 @@ use super::drawing::axis::Axis;
 use super::drawing::panel::{Legend, Panel, WIDTH};
 use super::drawing::picture::{Picture, Point};
 use super::drawing::series::{extent, real, stroke_of};
+use crate::metrics::ChannelMetrics;
 use crate::metrics::catalogue::PSD;
 use crate::metrics::columns::spectrum::{DENSITY, FREQUENCY};
 use crate::report::record::measured::Measured;
@@ -13,17 +14,17 @@ const STEPS_PER_DECADE: f64 = 60.0;
 
 /// The spectrum of every channel that has one.
 pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
-    let curves: Vec<(usize, &str, Vec<Point>)> = report
+    let curves: Vec<(usize, &str, &ChannelMetrics, Vec<Point>)> = report
         .channels
         .iter()
         .enumerate()
         .filter_map(|(index, (name, metrics))| {
             let curve = metrics.curve(&PSD)?;
             let points = thinned(FREQUENCY.get(curve)?, DENSITY.get(curve)?);
-            Some((index, name.as_str(), points))
+            Some((index, name.as_str(), metrics, points))
         })
         .collect();
-    let points = || curves.iter().flat_map(|(_, _, points)| points);
+    let points = || curves.iter().flat_map(|(.., points)| points);
     let x = extent(points().map(|(frequency, _)| *frequency))?;
     let y = extent(points().map(|(_, density)| *density))?;
     let mut picture = Picture::new(WIDTH, 640.0);
@@ -33,9 +34,10 @@ pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
     let y = Axis::log(y, 0.04, "one-sided power spectral density [(deg/h)²/Hz]");
     let panel = Panel::new(&mut picture, (56.0, 580.0), x, y);
     let mut legend = Legend::new(56.0);
-    for (index, name, points) in &curves {
+    for (index, name, metrics, points) in &curves {
         panel.line(&mut picture, points, stroke_of(*index));
         legend.line(&mut picture, stroke_of(*index), name);
+        legend.gain(&mut picture, metrics);
     }
     legend.space();
     legend.text(&mut picture, "one-sided: the integral over positive");

@@ -6,7 +6,7 @@ use crate::gate::{Verdict, VerdictKind, estimate_text, expects_failure};
 use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 use crate::report::record::columns::{DIGITS, heading_of, headline, unit_text, value_text};
 use crate::report::record::sweep::PointOfSweep;
-use crate::scenario::Scenario;
+use crate::scenario::{ReportedRuns, Scenario};
 use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
 
 /// Everything the report of one run shows.
@@ -22,6 +22,8 @@ pub struct RunReport<'a> {
     pub digest: &'a str,
     /// Point of a sweep: its index and the keys it sets.
     pub sweep: Option<PointOfSweep>,
+    /// Points of the sweep; none without one.
+    pub points: usize,
     /// The gyro in closed form.
     pub gyro: &'a GyroFacts,
     /// What was taken out of the outputs, if anything was.
@@ -37,6 +39,9 @@ pub struct RunReport<'a> {
     /// Warnings for people, e.g. a filter that loses its digits.
     pub notes: &'a [String],
 }
+
+/// Most points of a sweep each of which gets a page, unless the scenario says otherwise.
+const POINTS_SHOWN_MAX: usize = 100;
 
 /// How a run ended, worst last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -104,6 +109,10 @@ pub struct RunOutcome {
     pub file: String,
     /// Point of a sweep: its index and the keys it sets.
     pub sweep: Option<PointOfSweep>,
+    /// What the scenario says it is.
+    pub description: Option<String>,
+    /// Whether the folder has a page.
+    pub has_page: bool,
     /// Channels, `raw` first.
     pub channels: Vec<ChannelOutcome>,
     /// Judged gates.
@@ -136,11 +145,13 @@ impl RunOutcome {
                 expected_failure: metrics.error.is_some() && expects(name),
             })
             .collect();
-        Self {
+        let outcome = Self {
             name: report.scenario.name.clone(),
             folder: folder.to_owned(),
             file: report.file.to_owned(),
             sweep: report.sweep.clone(),
+            description: report.scenario.description.clone(),
+            has_page: false,
             channels,
             verdicts: report.verdicts.to_vec(),
             figures: figures(report),
@@ -148,6 +159,20 @@ impl RunOutcome {
             pictures: Vec::new(),
             error: None,
             is_not_run: false,
+        };
+        let has_page = outcome.is_shown(report);
+        Self {
+            has_page,
+            ..outcome
+        }
+    }
+
+    /// Whether the run gets a page.
+    fn is_shown(&self, report: &RunReport) -> bool {
+        match report.scenario.output.report {
+            Some(ReportedRuns::All) => true,
+            None if report.points <= POINTS_SHOWN_MAX => true,
+            _ => self.status() != RunStatus::Pass,
         }
     }
 
@@ -159,6 +184,8 @@ impl RunOutcome {
             folder: folder.to_owned(),
             file: file.to_owned(),
             sweep: None,
+            description: None,
+            has_page: false,
             channels: Vec::new(),
             verdicts: Vec::new(),
             figures: Vec::new(),

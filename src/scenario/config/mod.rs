@@ -16,6 +16,6 @@ pub use comparison::{
     FigureConfig,
 };
 pub use judging::{GateConfig, GateDecision, InconclusivePolicy, PublishedConfig};
-pub use output::{OutputConfig, SamplesFormat};
+pub use output::{OutputConfig, ReportedRuns, SamplesFormat};
 pub use run::Scenario;
 pub use trial::{FilterState, TrialConfig};

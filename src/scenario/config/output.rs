@@ -8,6 +8,19 @@ table! {
     pub struct OutputConfig {
         /// Rate words of every channel and the truth, written as NPY or not.
         samples: SamplesFormat = "none";
+        /// Runs that get a `report.html`. Without it every run does, of a sweep of more than 100 points only
+        /// those that fail.
+        report: Option<ReportedRuns>, example "all";
+    }
+}
+
+words! {
+    /// Runs that get a page.
+    pub enum ReportedRuns {
+        /// Every run.
+        All = "all",
+        /// Those that fail, or of which a gate or a channel fails.
+        Failed = "failed",
     }
 }
 

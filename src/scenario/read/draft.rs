@@ -45,6 +45,8 @@ pub(crate) struct Recorded {
     pub(crate) sweep: Option<SweepPoint>,
     /// Where its gates were written.
     pub(crate) gate_places: Vec<String>,
+    /// Keys that nobody wrote; none in a manifest of an earlier build.
+    pub(crate) assumed_keys: Option<Vec<String>>,
 }
 
 impl Recorded {

@@ -47,6 +47,8 @@ pub fn manifest_toml(resolved: &Resolved, tool_version: &str, build: &str) -> St
     if !places.is_empty() {
         manifest.push_str(&format!("gates = [{}]\n", places.join(", ")));
     }
+    let assumed: Vec<String> = resolved.assumed().iter().map(|it| text(&it.key)).collect();
+    manifest.push_str(&format!("assumed = [{}]\n", assumed.join(", ")));
     if let Some(point) = &resolved.sweep {
         manifest.push_str(&format!(
             "\n[origin.sweep]\nindex = {}\ncount = {}\n",
@@ -259,6 +261,14 @@ fn record(root: &Table) -> Option<(String, Recorded)> {
         .iter()
         .map(|node| node.as_text().map(str::to_owned))
         .collect::<Option<Vec<_>>>()?;
+    let assumed_keys = match origin.get("assumed") {
+        None => None,
+        Some(node) => {
+            let keys = node.as_array()?.iter();
+            let keys = keys.map(|node| node.as_text().map(str::to_owned));
+            Some(keys.collect::<Option<Vec<_>>>()?)
+        }
+    };
     let inputs = root
         .get("input")
         .map_or(Some(&[][..]), Node::as_array)?
@@ -281,6 +291,7 @@ fn record(root: &Table) -> Option<(String, Recorded)> {
         inputs,
         sweep,
         gate_places,
+        assumed_keys,
     };
     Some((version, recorded))
 }

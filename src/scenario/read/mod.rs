@@ -1,5 +1,6 @@
 //! From files, arguments and manifests to resolved runs.
 
+pub(in crate::scenario) mod assumed;
 pub(in crate::scenario) mod chain;
 pub(in crate::scenario) mod clashes;
 pub(in crate::scenario) mod compensation_source;

@@ -155,6 +155,7 @@ impl Draft {
                     .and_then(|recorded| recorded.sweep)
                     .filter(|point| broken(&self.root, point).is_none()),
                 gate_places: Vec::new(),
+                assumed_keys: None,
             },
         };
         let resolved = Resolved {
@@ -168,6 +169,7 @@ impl Draft {
             is_base_point: false,
             campaign,
             gate_places: origin.gate_places,
+            assumed_keys: origin.assumed_keys,
             tree: self.root,
             sources: self.sources,
             root_mark: self.root_mark,

@@ -63,6 +63,8 @@ pub struct Resolved {
     pub campaign: Option<Arc<Resolved>>,
     /// Where its gates were written, if a manifest records that.
     pub(in crate::scenario) gate_places: Vec<String>,
+    /// Keys that nobody wrote, if a manifest records them.
+    pub(in crate::scenario) assumed_keys: Option<Vec<String>>,
     /// Every value, defaults included.
     pub(in crate::scenario) tree: Table,
     /// What the marks of the tree point into.

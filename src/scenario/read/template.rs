@@ -133,6 +133,7 @@ fn with_tree(run: &Resolved, tree: Table, text: &str) -> Result<Resolved, Vec<Sc
         is_base_point: false,
         campaign: run.campaign.clone(),
         gate_places: run.gate_places.clone(),
+        assumed_keys: None,
         sources: Arc::clone(&run.sources),
         root_mark: run.root_mark,
         is_record: run.is_record,

@@ -1,5 +1,13 @@
 //! Axes: where the ticks stand and what they say.
 
+use serde_json::Value;
+
+use crate::report::layout::json::object;
+use crate::wording::to_digits;
+
+/// Digits of the ends of an axis, for programs: finer than a pixel.
+const DIGITS: usize = 7;
+
 /// Largest ratio of the ends of a logarithmic axis: values of rounding alone, hundreds of decades down,
 /// lie below the picture.
 const LOG_SPAN_MAX: f64 = 1e60;
@@ -86,6 +94,17 @@ impl Axis {
         } else {
             (value - self.low) / (self.high - self.low)
         }
+    }
+
+    /// What the axis measures, for programs.
+    pub(in crate::report::plot) fn json(&self) -> Value {
+        let record = object([
+            ("title", self.title.as_str().into()),
+            ("low", to_digits(self.low, DIGITS).into()),
+            ("high", to_digits(self.high, DIGITS).into()),
+            ("log", self.is_log.into()),
+        ]);
+        record.into()
     }
 
     /// The range.

@@ -3,6 +3,7 @@
 //! plotters stands behind [`picture`] only.
 
 pub(in crate::report::plot) mod axis;
+pub(in crate::report::plot) mod labels;
 pub(in crate::report::plot) mod panel;
 pub(in crate::report) mod picture;
 pub(in crate::report::plot) mod series;

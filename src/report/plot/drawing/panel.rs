@@ -1,7 +1,11 @@
 //! A frame with two axes, and the legend beside it.
 
 use super::axis::Axis;
-use super::picture::{Anchor, BLACK, Colour, PALE, Picture, Point, Shape, Stroke};
+use super::picture::{Anchor, BLACK, Colour, PALE, Picture, Point, Shape, Stroke, text_width};
+use crate::gate::three_digits;
+use crate::metrics::ChannelMetrics;
+use crate::metrics::catalogue::DC_GAIN;
+use crate::report::layout::json::object;
 
 /// Width of every picture, pixels.
 pub(in crate::report::plot) const WIDTH: f64 = 1200.0;
@@ -12,6 +16,10 @@ pub(in crate::report::plot) const RIGHT: f64 = 880.0;
 /// Left edge of the legend.
 const LEGEND: f64 = 900.0;
 const SMALL: f64 = 13.0;
+/// What is left free at the right edge of a picture.
+const EDGE: f64 = 8.0;
+/// DC gains below this one are told beside the curves that they lower.
+const GAIN_MIN: f64 = 0.98;
 
 /// A frame that maps data to pixels.
 pub(in crate::report::plot) struct Panel {
@@ -30,6 +38,15 @@ impl Panel {
         y: Axis,
     ) -> Self {
         let panel = Self { top, bottom, x, y };
+        let frame = object([
+            ("left", LEFT.into()),
+            ("right", RIGHT.into()),
+            ("top", top.into()),
+            ("bottom", bottom.into()),
+            ("x", panel.x.json()),
+            ("y", panel.y.json()),
+        ]);
+        picture.frame(frame.into());
         for (axis, is_x) in [(&panel.x, true), (&panel.y, false)] {
             for value in axis
                 .minor
@@ -233,8 +250,37 @@ impl Legend {
         self.y += 10.0;
     }
 
+    /// Says of a channel that its DC gain lowers what is drawn of it.
+    pub(in crate::report::plot) fn gain(
+        &mut self,
+        picture: &mut Picture,
+        channel: &ChannelMetrics,
+    ) {
+        let gain = channel.get(&DC_GAIN).map(|metric| metric.estimate);
+        if let Some(gain) = gain.filter(|gain| gain.high.abs() < GAIN_MIN) {
+            let text = format!("DC gain {}: lower by that alone", three_digits(gain.value));
+            self.detail(picture, &text);
+        }
+    }
+
+    /// A text in as many lines as end before the edge of the picture.
     fn text_at(&mut self, picture: &mut Picture, x: f64, text: &str, size: f64) {
-        picture.text((x, self.y), text, size, Anchor::Start);
+        let room = WIDTH - x - EDGE;
+        let mut line = String::new();
+        for word in text.split(' ') {
+            let longer = match line.as_str() {
+                "" => word.to_owned(),
+                line => format!("{line} {word}"),
+            };
+            if !line.is_empty() && text_width(&longer, size) > room {
+                picture.text((x, self.y), &line, size, Anchor::Start);
+                self.y += size + 3.0;
+                word.clone_into(&mut line);
+            } else {
+                line = longer;
+            }
+        }
+        picture.text((x, self.y), &line, size, Anchor::Start);
         self.y += size + 7.0;
     }
 }

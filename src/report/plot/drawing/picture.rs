@@ -1,9 +1,11 @@
 //! A list of things to draw, and the only code that knows plotters.
 
 use super::thin::thinned;
+use crate::report::layout::json::object;
 use crate::report::plot::SVG_BYTES_MAX;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use serde_json::Value;
 
 /// Distances from where they were that lines may be drawn at, pixels; the first at which the picture is
 /// small enough is taken.
@@ -12,6 +14,19 @@ const TOLERANCES: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 const SCALE: f64 = 4.0;
 /// Font sizes are given as the em; plotters divides what it is told by this.
 const FONT_FACTOR: f64 = 1.24;
+
+/// Beginning of what a picture says of itself.
+const METADATA: &str = "<metadata>";
+/// Room for where a picture comes from.
+const ORIGIN_BYTES_MAX: usize = 200;
+
+/// A picture with the version that drew it and, of one scenario, the digest of that.
+pub(in crate::report) fn stamped(svg: &str, version: &str, digest: Option<&str>) -> String {
+    let scenario = digest.map_or_else(String::new, |digest| format!("\"scenario\":\"{digest}\","));
+    let origin =
+        format!("{METADATA}{{\"program\":\"fogbench\",\"version\":\"{version}\",{scenario}");
+    svg.replacen(&format!("{METADATA}{{"), &origin, 1)
+}
 
 /// A colour.
 pub(in crate::report) type Colour = (u8, u8, u8);
@@ -78,6 +93,9 @@ pub(in crate::report) enum Shape {
     Circle,
     Square,
     Triangle,
+    /// A triangle on its point.
+    Wedge,
+    Diamond,
 }
 
 /// A point in pixels from the upper left corner.
@@ -98,10 +116,27 @@ enum Item {
     },
 }
 
+/// Width of a text of a size, pixels, as wide as sans-serif fonts of common systems draw it.
+pub(in crate::report) fn text_width(text: &str, size: f64) -> f64 {
+    const WIDE: f64 = 0.9;
+    const NARROW: f64 = 0.33;
+    const USUAL: f64 = 0.6;
+    let of = |letter: char| match letter {
+        'm' | 'w' | 'M' | 'W' | '%' => WIDE,
+        'i' | 'j' | 'l' | 't' | 'f' | 'r' | ' ' | '.' | ',' | ':' | '(' | ')' | '/' | '[' | ']' => {
+            NARROW + 0.05
+        }
+        _ => USUAL,
+    };
+    size * text.chars().map(of).sum::<f64>()
+}
+
 /// A picture under construction.
 pub(in crate::report) struct Picture {
     size: (f64, f64),
     items: Vec<Item>,
+    /// Frames with their axes, in JSON.
+    frames: Vec<Value>,
 }
 
 impl Picture {
@@ -110,7 +145,13 @@ impl Picture {
         Self {
             size: (width, height),
             items: Vec::new(),
+            frames: Vec::new(),
         }
+    }
+
+    /// Notes a frame with its axes, by which a program reads values off the picture.
+    pub(in crate::report) fn frame(&mut self, frame: Value) {
+        self.frames.push(frame);
     }
 
     pub(in crate::report) fn line(&mut self, points: Vec<Point>, stroke: Stroke) {
@@ -182,7 +223,22 @@ impl Picture {
         let mut svgs = TOLERANCES
             .into_iter()
             .map(|tolerance| self.drawn(tolerance));
-        svgs.find(|svg| svg.len() <= SVG_BYTES_MAX)
+        svgs.find(|svg| svg.len() + ORIGIN_BYTES_MAX <= SVG_BYTES_MAX)
+    }
+
+    /// What the picture is, for programs: its size and its frames; [`stamped`] adds where it comes from.
+    fn metadata(&self) -> String {
+        let record = object([
+            ("width", self.size.0.into()),
+            ("height", self.size.1.into()),
+            ("panels", self.frames.clone().into()),
+        ]);
+        let text = Value::from(record).to_string();
+        let text = text
+            .replace('&', "&amp;")
+            .replace('<', "&lt;")
+            .replace('>', "&gt;");
+        format!("\n{METADATA}{text}</metadata>")
     }
 
     /// The picture with lines within a distance of where they were, pixels.
@@ -210,6 +266,8 @@ impl Picture {
             self.size.0, self.size.1
         );
         svg = svg.replacen(&head, &shown, 1);
+        let end = svg.find('>').map_or(0, |at| at + 1);
+        svg.insert_str(end, &self.metadata());
         for quarter_pixels in 1..=12_u32 {
             for dash in [Dash::Long, Dash::Mixed, Dash::Dotted] {
                 let coded = coded_width(quarter_pixels, dash);
@@ -345,6 +403,14 @@ fn draw_marker<'a>(
             (-1.0, -1.0),
         ],
         Shape::Triangle => vec![(0.0, -1.2), (1.1, 0.9), (-1.1, 0.9), (0.0, -1.2)],
+        Shape::Wedge => vec![(0.0, 1.2), (1.1, -0.9), (-1.1, -0.9), (0.0, 1.2)],
+        Shape::Diamond => vec![
+            (0.0, -1.3),
+            (1.3, 0.0),
+            (0.0, 1.3),
+            (-1.3, 0.0),
+            (0.0, -1.3),
+        ],
     };
     let corners: Vec<Point> = corners
         .into_iter()

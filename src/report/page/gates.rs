@@ -1,0 +1,151 @@
+//! Gates as intervals against their limits.
+
+use maud::{Markup, html};
+
+use super::document::{maybe, wide};
+use crate::gate::{Verdict, VerdictKind, limits_text, plain, three_digits};
+use crate::scenario::portable_place;
+
+/// Size of the picture of a gate, user units.
+const WIDTH: f64 = 240.0;
+const HEIGHT: f64 = 24.0;
+/// Free part of the scale on either side.
+const MARGIN: f64 = 0.12;
+
+/// Word and class of a verdict.
+pub(super) fn verdict_word(verdict: &Verdict) -> (&'static str, &'static str) {
+    match (verdict.kind, verdict.accepted) {
+        (VerdictKind::Pass, _) => ("PASS", "pass"),
+        (VerdictKind::Fail, _) => ("FAIL", "fail"),
+        (VerdictKind::Inconclusive, true) => ("allowed", "doubt"),
+        (VerdictKind::Inconclusive, false) => ("INCONCLUSIVE", "fail"),
+    }
+}
+
+/// Gates, each with the place that `place_of` gives it.
+pub(super) fn gates_table<'a>(
+    rows: impl IntoIterator<Item = (Option<Markup>, &'a Verdict)>,
+    label: &str,
+) -> Markup {
+    let rows: Vec<_> = rows.into_iter().collect();
+    let has_run = rows.iter().any(|(run, _)| run.is_some());
+    let table = html! {
+        table.sortable {
+            thead { tr {
+                th scope="col" { "verdict" }
+                @if has_run { th scope="col" { "run" } }
+                th scope="col" { "gate" }
+                th scope="col" { "interval against limits" }
+                th.num scope="col" { "value" }
+                th.num scope="col" { "limits" }
+                th scope="col" { "unit" }
+            } }
+            tbody { @for (run, verdict) in &rows { tr {
+                @let (word, class) = verdict_word(verdict);
+                td { span class={ "pill " (class) } { (word) } }
+                @if has_run { td { @if let Some(run) = run { (run) } } }
+                th scope="row" {
+                    code { (verdict.metric) }
+                    @if let Some(of) = &verdict.relative_to { span.soft { " relative to " (of) } }
+                    @if !verdict.accepted || verdict.value.is_none() {
+                        span.definition { (verdict.reason) @if let Some(place) = &verdict.location { " (" (portable_place(place)) ")" } }
+                    }
+                }
+                td data-v=(distance(verdict).map_or_else(String::new, |it| it.to_string())) { (maybe(bar(verdict, class))) }
+                td.num data-v=(verdict.value.map_or_else(String::new, |it| it.to_string())) { (interval_text(verdict)) }
+                td.num { (limits_text(verdict.min, verdict.max)) }
+                td { (unit_word(&verdict.unit)) }
+            } } }
+        }
+    };
+    wide(label, &table)
+}
+
+/// A unit as tables show it; nothing for a ratio.
+pub(super) fn unit_word(unit: &str) -> &str {
+    if unit == "1" { "" } else { unit }
+}
+
+/// Value and interval.
+fn interval_text(verdict: &Verdict) -> String {
+    let Some(value) = verdict.value else {
+        return "none".to_owned();
+    };
+    match (verdict.low, verdict.high) {
+        (Some(low), Some(high)) if low < high => {
+            format!(
+                "{} [{}, {}]",
+                plain(value),
+                three_digits(low),
+                three_digits(high)
+            )
+        }
+        _ => plain(value),
+    }
+}
+
+/// How far inside its limits a gate is, as a part of their size; negative outside. Gates sort by it.
+fn distance(verdict: &Verdict) -> Option<f64> {
+    let value = verdict.value?;
+    let scale = |limit: f64| match (verdict.min, verdict.max) {
+        (Some(min), Some(max)) => (max - min).abs(),
+        _ => limit.abs(),
+    };
+    let inside = [
+        verdict
+            .min
+            .map(|min| (value - min) / scale(min).max(f64::MIN_POSITIVE)),
+        verdict
+            .max
+            .map(|max| (max - value) / scale(max).max(f64::MIN_POSITIVE)),
+    ];
+    inside.into_iter().flatten().reduce(f64::min)
+}
+
+/// The interval on a line with the accepted part; nothing without a value.
+fn bar(verdict: &Verdict, class: &str) -> Option<Markup> {
+    let value = verdict.value.filter(|value| value.is_finite())?;
+    let known = [
+        Some(value),
+        verdict.low,
+        verdict.high,
+        verdict.min,
+        verdict.max,
+    ];
+    let known = known.into_iter().flatten().filter(|it| it.is_finite());
+    let (least, most) = known.fold((value, value), |(least, most), it| {
+        (least.min(it), most.max(it))
+    });
+    let span = match most - least {
+        span if span > 0.0 => span,
+        _ => value.abs().max(1.0),
+    };
+    let (start, end) = (least - MARGIN * span, most + MARGIN * span);
+    let x = |at: f64| WIDTH * (at - start) / (end - start);
+    let of = |at: Option<f64>, otherwise: f64| at.filter(|it| it.is_finite()).map_or(otherwise, x);
+    let zone = (of(verdict.min, 0.0), of(verdict.max, WIDTH));
+    let interval = (of(verdict.low, 0.0), of(verdict.high, WIDTH));
+    let text = |pixels: f64| format!("{pixels:.1}");
+    let middle = HEIGHT / 2.0;
+    let label = format!(
+        "{} against {} {}",
+        interval_text(verdict),
+        limits_text(verdict.min, verdict.max),
+        unit_word(&verdict.unit)
+    );
+    Some(html! {
+        svg class={ "bar " (class) } viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img" aria-label=(label.trim_end()) {
+            title { (label.trim_end()) }
+            rect.zone x=(text(zone.0)) y="4" width=(text((zone.1 - zone.0).max(1.0))) height=(text(HEIGHT - 8.0)) {}
+            line.base x1="0" x2=(WIDTH) y1=(middle) y2=(middle) {}
+            @for limit in [verdict.min, verdict.max].into_iter().flatten() {
+                line.limit x1=(text(x(limit))) x2=(text(x(limit))) y1="2" y2=(text(HEIGHT - 2.0)) {}
+            }
+            line.interval x1=(text(interval.0)) x2=(text(interval.1)) y1=(middle) y2=(middle) {}
+            @for end in [verdict.low, verdict.high].into_iter().flatten() {
+                line.interval x1=(text(x(end))) x2=(text(x(end))) y1="7" y2=(text(HEIGHT - 7.0)) {}
+            }
+            circle.value cx=(text(x(value))) cy=(middle) r="3" {}
+        }
+    })
+}
