@@ -139,7 +139,10 @@ fn assert_same_channel(log: &Value, run: &Value, channel: &str, of_truth: &[&str
     let (got, want) = (&log["channels"][channel], &run["channels"][channel]);
     let metrics = want.as_object().expect("a channel");
     let mut compared = 0;
-    for (name, value) in metrics.iter().filter(|(name, _)| !["unavailable", "metrics"].contains(&name.as_str())) {
+    for (name, value) in metrics
+        .iter()
+        .filter(|(name, _)| !["unavailable", "metrics"].contains(&name.as_str()))
+    {
         let reason = &got["unavailable"][name];
         if of_truth.contains(&name.as_str()) {
             assert!(got[name].is_null(), "{channel}.{name}");
