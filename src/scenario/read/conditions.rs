@@ -1,6 +1,7 @@
 //! What the results of a run depend on, but for the seed and the program.
 
 use crate::scenario::document::emit::to_toml;
+use crate::scenario::document::tree::parse_document;
 use crate::scenario::keys::defaults::sparse;
 use crate::scenario::read::resolved::{Resolved, digest};
 
@@ -30,7 +31,9 @@ impl Resolved {
     pub fn conditions(&self) -> String {
         let mut tree = self.tree.clone();
         tree.retain(|key, _| !WITHOUT_EFFECT.contains(&key.as_str()));
-        let mut text = to_toml(&sparse(&tree), "");
+        // In the canonical spelling, in which a manifest repeats it: `0` where a key takes a number is `0.0`.
+        let canonical = parse_document(0, &to_toml(&tree, ""));
+        let mut text = to_toml(&sparse(&canonical.unwrap_or(tree)), "");
         if let Some(campaign) = &self.campaign {
             text.push_str("campaign = ");
             text.push_str(&campaign.conditions());
