@@ -6,7 +6,7 @@
 //! A difference is judged by the best that both sides offer ([`Basis`]): figures that no noise moves by
 //! tolerance; repeats of the same seed pair by pair; figures of a run whose noise is the same by their own
 //! interval; else two intervals as independent. One call makes many such tests, and is to raise a false
-//! alarm in at most one of twenty: the p-values are corrected together ([`holm`]).
+//! alarm in at most one of twenty: the p-values are corrected together (Holm).
 
 mod difference;
 mod error;
