@@ -3,12 +3,10 @@
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor, Normal, StudentsT};
 
 use super::record::{Entry, Interval};
+use crate::metrics::NORMAL_QUANTILE;
 
 /// Repeats from which on pairs are compared.
 pub(super) const PAIRS_MIN: usize = 5;
-
-/// Quantile of the normal distribution at which a 95 % interval ends.
-const END: f64 = 1.959_963_984_540_054;
 
 /// How likely differences as large are between figures of the same ensemble value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,8 +106,8 @@ pub(super) fn unpaired(old: &Entry, new: &Entry, tolerance: f64) -> Option<Chanc
         });
     }
     let normal = Normal::standard();
-    let above = f64::hypot(new.value - new_ends.0, old_ends.1 - old.value) / END;
-    let below = f64::hypot(new_ends.1 - new.value, old.value - old_ends.0) / END;
+    let above = f64::hypot(new.value - new_ends.0, old_ends.1 - old.value) / NORMAL_QUANTILE;
+    let below = f64::hypot(new_ends.1 - new.value, old.value - old_ends.0) / NORMAL_QUANTILE;
     Some(of_deviates(difference, tolerance, |excess, is_above| {
         let error = if is_above { above } else { below };
         tail(excess, error, |z| normal.sf(z))

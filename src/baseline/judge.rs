@@ -521,34 +521,16 @@ mod tests {
 
     fn entry(metric: &str, value: f64, half_width: f64) -> Entry {
         Entry {
-            id: Id {
-                scenario: "s".to_owned(),
-                point: Point::new(),
-                channel: "raw".to_owned(),
-                metric: metric.to_owned(),
-            },
-            value,
             interval: Interval::Confidence {
                 low: value - half_width,
                 high: value + half_width,
             },
-            degrees_of_freedom: None,
-            unit: "deg/h".to_owned(),
-            seed: 1,
-            conditions: "c".to_owned(),
-            repeats: Vec::new(),
-            blocks: Vec::new(),
-            better: None,
-            absolute_tolerance: None,
-            relative_tolerance: None,
+            ..exact(metric, value)
         }
     }
 
     fn exact(metric: &str, value: f64) -> Entry {
-        Entry {
-            interval: Interval::Exact,
-            ..entry(metric, value, 0.0)
-        }
+        Entry::of_test("s", metric, value)
     }
 
     fn side(entries: &[Entry]) -> Side {

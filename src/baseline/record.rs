@@ -161,6 +161,32 @@ impl Side {
 }
 
 #[cfg(test)]
+impl Entry {
+    /// A figure of raw without noise, for tests.
+    pub(super) fn of_test(scenario: &str, metric: &str, value: f64) -> Self {
+        Self {
+            id: Id {
+                scenario: scenario.to_owned(),
+                point: Point::new(),
+                channel: "raw".to_owned(),
+                metric: metric.to_owned(),
+            },
+            value,
+            interval: Interval::Exact,
+            degrees_of_freedom: None,
+            unit: "deg/h".to_owned(),
+            seed: 1,
+            conditions: "c".to_owned(),
+            repeats: Vec::new(),
+            blocks: Vec::new(),
+            better: None,
+            absolute_tolerance: None,
+            relative_tolerance: None,
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

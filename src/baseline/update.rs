@@ -36,29 +36,10 @@ pub fn updated(baseline: &Side, later: &Side) -> Side {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::baseline::{Interval, Point};
     use crate::metrics::Better;
 
     fn entry(scenario: &str, value: f64) -> Entry {
-        Entry {
-            id: Id {
-                scenario: scenario.to_owned(),
-                point: Point::new(),
-                channel: "raw".to_owned(),
-                metric: "mean_deg_per_h".to_owned(),
-            },
-            value,
-            interval: Interval::Exact,
-            degrees_of_freedom: None,
-            unit: "deg/h".to_owned(),
-            seed: 1,
-            conditions: "c".to_owned(),
-            repeats: Vec::new(),
-            blocks: Vec::new(),
-            better: None,
-            absolute_tolerance: None,
-            relative_tolerance: None,
-        }
+        Entry::of_test(scenario, "mean_deg_per_h", value)
     }
 
     #[test]

@@ -10,4 +10,5 @@ mod verdict;
 pub(crate) use crate::metrics::{estimate_text, plain, three_digits};
 pub use judge::{expects_failure, judge, quotient};
 pub(crate) use number::limits_text;
+pub(crate) use verdict::count_accepted;
 pub use verdict::{Verdict, VerdictKind};

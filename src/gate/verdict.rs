@@ -53,3 +53,8 @@ pub struct Verdict {
     /// Where the gate stands, `file:line`.
     pub location: Option<String>,
 }
+
+/// Number of gates that let the run go on as good.
+pub(crate) fn count_accepted(verdicts: &[Verdict]) -> usize {
+    verdicts.iter().filter(|verdict| verdict.accepted).count()
+}

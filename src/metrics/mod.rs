@@ -69,6 +69,7 @@ pub use catalogue::support::{encoder_lack, requirement, support, truth_lack};
 pub use catalogue::{columns, find, known_curves, known_metrics, repeated_metrics};
 pub use estimate::blocks::{block_label_s, block_means, is_sample_or_longer, samples_in};
 pub use estimate::fit_sheet::{FitSheet, FitTerm};
+pub(crate) use estimate::interval::NORMAL_QUANTILE;
 pub use estimate::missing::MissingMetric;
 pub use estimate::outlier_sheet::OutlierEntry;
 pub use estimate::reason::Unavailable;

@@ -7,9 +7,7 @@ use super::estimate::blocks::RATIO_BLOCKS;
 use super::estimate::influence::Learned;
 use super::estimate::interval::round_to_count;
 use super::estimate::value::Estimate;
-use super::theory::learning::{
-    LearnedWeights, Learning, NOT_FROM_ONE_RECORD, remembers_the_record,
-};
+use super::theory::learning::{LearnedWeights, Learning, NOT_FROM_ONE_RECORD};
 use super::theory::prediction::Prediction;
 use crate::signal::{FilterShape, SlowDrift, WeightRule};
 
@@ -200,7 +198,7 @@ impl FilterFacts {
     /// How the weights scatter that the filter has in the mean over a record of so many samples,
     /// from the part `from` of it on.
     pub(crate) fn weight_scatter(&self, samples: usize, from: f64) -> WeightScatter {
-        if !remembers_the_record(&self.shape, samples) {
+        if !Learning::is_of(&self.shape, samples) {
             return WeightScatter::Blocks;
         }
         let learned = self.learning.as_ref().and_then(|learning| {

@@ -68,24 +68,19 @@ pub(crate) struct LearnedWeights {
     pub(crate) freedom: f64,
 }
 
-/// Whether the weights of a filter remember more than a tenth of a record.
-pub(crate) fn remembers_the_record(shape: &FilterShape, samples: usize) -> bool {
-    let memory = match shape.rule {
-        WeightRule::Adaptive {
-            forgetting_factor: Some(factor),
-            ..
-        } => 1.0 / (1.0 - factor),
-        _ => 0.0,
-    };
-    memory > MEMORY_PER_RECORD * samples as f64
-}
-
 impl Learning {
-    /// Whether a filter forgets so little that blocks of a record of so many samples do not tell how
-    /// its weights scatter.
+    /// Whether the weights of a filter remember more than a tenth of a record of so many samples, whose
+    /// blocks then do not tell how they scatter.
     #[must_use]
     pub fn is_of(shape: &FilterShape, samples: usize) -> bool {
-        remembers_the_record(shape, samples)
+        let memory = match shape.rule {
+            WeightRule::Adaptive {
+                forgetting_factor: Some(factor),
+                ..
+            } => 1.0 / (1.0 - factor),
+            _ => 0.0,
+        };
+        memory > MEMORY_PER_RECORD * samples as f64
     }
 
     /// Sums of a filter over all its words, of which the record begins at `first`.
@@ -114,7 +109,7 @@ impl Learning {
         let lag = shape.newest_age_samples - shape.register_samples;
         let reach = (lag + taps).max(desired_weights.len());
         let count = STRETCHES.min(record / (REACHES_MIN * reach));
-        if count < STRETCHES_MIN || !remembers_the_record(shape, record) {
+        if count < STRETCHES_MIN || !Self::is_of(shape, record) {
             return None;
         }
         let length = record / count;

@@ -1,6 +1,7 @@
 //! The files of a suite's tables: CSV and SVG beside the suite's summary.
 
 use crate::comparison::{ComparedTable, Comparison, file_stem};
+use crate::report::layout::csv::push_row;
 use crate::report::plot::comparison_svg;
 use crate::scenario::ComparisonKind;
 
@@ -34,7 +35,7 @@ fn csv(table: &ComparedTable) -> String {
             let estimate = cell.simulated.estimate;
             let published = cell.published.as_ref();
             let fields = [
-                quoted(&row.label),
+                row.label.clone(),
                 row.is_base.to_string(),
                 column.text(),
                 cell.simulated.unit.to_owned(),
@@ -45,13 +46,12 @@ fn csv(table: &ComparedTable) -> String {
                 estimate.confidence.to_string(),
                 cell.folder.clone(),
             ];
-            text.push_str(&fields.join(","));
-            text.push('\n');
+            push_row(&mut text, fields);
         }
     }
     for (column, change) in table.changes() {
         let fields = [
-            quoted(&table.change_heading().unwrap_or_default()),
+            table.change_heading().unwrap_or_default(),
             false.to_string(),
             column.text(),
             change.unit.clone(),
@@ -62,17 +62,7 @@ fn csv(table: &ComparedTable) -> String {
             change.estimate.confidence.to_string(),
             change.folder.clone(),
         ];
-        text.push_str(&fields.join(","));
-        text.push('\n');
+        push_row(&mut text, fields);
     }
     text
-}
-
-/// A text of people's, quoted where a comma or a quote would break the row.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
 }

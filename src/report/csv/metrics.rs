@@ -5,12 +5,10 @@
 //! takes the memory of one run.
 
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
-
-use serde_json::Value;
 
 use crate::metrics::{ChannelMetrics, Metric, find};
-use crate::report::record::sweep::{PointOfSweep, swept_value};
+use crate::report::layout::csv::push_row;
+use crate::report::record::sweep::{PointOfSweep, swept_text};
 use crate::report::{RunOutcome, RunReport, RunStatus};
 
 /// Columns before those of the swept keys.
@@ -58,7 +56,7 @@ pub(in crate::report) fn metrics_csv(report: &RunReport) -> String {
             if let Some(cells) = cells {
                 let first = [channel_name.clone(), metric_name.clone()];
                 let first = start(name, sweep).into_iter().chain(first);
-                row(&mut text, first.chain(cells).chain(swept(&keys, sweep)));
+                push_row(&mut text, first.chain(cells).chain(swept(&keys, sweep)));
             }
         }
     }
@@ -101,7 +99,7 @@ fn row_without_metrics(run: &RunOutcome, keys: &[String]) -> String {
     let sweep = run.sweep.as_ref();
     let mut text = String::new();
     let first = start(&run.name, sweep).into_iter();
-    row(&mut text, first.chain(cells).chain(swept(keys, sweep)));
+    push_row(&mut text, first.chain(cells).chain(swept(keys, sweep)));
     text
 }
 
@@ -119,10 +117,7 @@ fn swept<'a>(
     keys.iter().map(move |key| {
         let mut set = sweep.iter().flat_map(|(_, assignments)| assignments);
         let value = set.find(|(set, _)| set == key);
-        value.map_or_else(String::new, |(_, toml)| match swept_value(toml) {
-            Value::String(text) => text,
-            other => other.to_string(),
-        })
+        value.map_or_else(String::new, |(_, toml)| swept_text(toml))
     })
 }
 
@@ -140,24 +135,8 @@ fn swept_keys<'a>(points: impl IntoIterator<Item = Option<&'a PointOfSweep>>) ->
 fn head(keys: &[String]) -> String {
     let mut text = String::new();
     let columns = COLUMNS.iter().map(|column| (*column).to_owned());
-    row(&mut text, columns.chain(keys.iter().cloned()));
+    push_row(&mut text, columns.chain(keys.iter().cloned()));
     text
-}
-
-/// Adds a row.
-fn row(text: &mut String, cells: impl IntoIterator<Item = String>) {
-    for (index, cell) in cells.into_iter().enumerate() {
-        if index > 0 {
-            text.push(',');
-        }
-        if cell.contains([',', '"', '\n', '\r']) {
-            // Writing to a String cannot fail.
-            let _ = write!(text, "\"{}\"", cell.replace('"', "\"\""));
-        } else {
-            text.push_str(&cell);
-        }
-    }
-    text.push('\n');
 }
 
 /// Rows of a text, the head among them.
@@ -221,7 +200,7 @@ impl SuiteMetrics {
         let mut text = String::new();
         for cells in rows(own).into_iter().skip(1) {
             let first = cells.into_iter().take(COLUMNS.len());
-            row(&mut text, first.chain(swept(&self.keys, sweep)));
+            push_row(&mut text, first.chain(swept(&self.keys, sweep)));
         }
         text
     }
@@ -270,8 +249,8 @@ mod tests {
     fn cells_come_back_as_they_were() {
         let cells = ["plain", "a,b", "say \"so\"", "two\nlines", ""].map(str::to_owned);
         let mut text = String::new();
-        row(&mut text, cells.clone());
-        row(&mut text, cells.clone());
+        push_row(&mut text, cells.clone());
+        push_row(&mut text, cells.clone());
         assert_eq!(rows(&text), [cells.to_vec(), cells.to_vec()]);
     }
 

@@ -1,4 +1,5 @@
-//! How text is aligned and JSON is written.
+//! How text is aligned, and JSON and CSV are written.
 
+pub(super) mod csv;
 pub(super) mod json;
 pub(super) mod text;

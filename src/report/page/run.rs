@@ -7,12 +7,12 @@ use super::document::{document, facts, filter, maybe, section, wide};
 use super::gates::{gates_table, unit_word};
 use super::pictures::{Shown, capital, pictures};
 use super::repeats::repeats;
-use crate::gate::{Verdict, plain, three_digits};
+use crate::gate::{Verdict, count_accepted, plain, three_digits};
 use crate::metrics::catalogue::ANGLE_RANDOM_WALK;
 use crate::report::budget::TOTAL;
 use crate::report::record::columns::{heading_of, value_text};
 use crate::report::text::verdict::verdict_text;
-use crate::report::{RunOutcome, RunReport, RunStatus};
+use crate::report::{RunReport, RunStatus};
 use crate::scenario::{AssumedValue, Fidelity, PublishedConfig};
 
 /// Largest size of a page, bytes.
@@ -67,12 +67,8 @@ pub(super) fn status_word(status: RunStatus) -> (&'static str, &'static str) {
 
 fn head(report: &RunReport) -> Markup {
     let scenario = report.scenario;
-    let (word, class) = status_word(RunOutcome::from_report(report, "").status());
-    let accepted = report
-        .verdicts
-        .iter()
-        .filter(|verdict| verdict.accepted)
-        .count();
+    let (word, class) = status_word(report.status());
+    let accepted = count_accepted(report.verdicts);
     let said = match report.verdicts.len() {
         0 => "no gates".to_owned(),
         count => format!("{accepted} of {count} gates accepted"),

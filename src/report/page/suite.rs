@@ -3,17 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
-use serde_json::Value;
 
 use super::document::{document, facts, filter, maybe, section, wide};
 use super::gates::gates_table;
 use super::pictures::{Shown, pictures};
 use super::run::{PAGE_BYTES_MAX, status_word};
 use crate::comparison::{ComparedTable, Comparison};
-use crate::gate::{Verdict, VerdictKind, plain};
+use crate::gate::{Verdict, VerdictKind, count_accepted, plain};
 use crate::report::json::suite::SuiteReport;
 use crate::report::record::columns::value_text;
-use crate::report::record::sweep::swept_value;
+use crate::report::record::sweep::swept_text;
 use crate::report::{RunOutcome, RunStatus};
 
 /// Most points of a sweep that the page lists.
@@ -107,7 +106,7 @@ fn head(suite: &SuiteReport, sweeps: &[(&str, Points)]) -> Markup {
     let accepted: usize = suite
         .runs
         .iter()
-        .map(|run| run.verdicts.iter().filter(|it| it.accepted).count())
+        .map(|run| count_accepted(&run.verdicts))
         .sum();
     let mut pairs = vec![("runs", total.to_string()), ("passed", passed.to_string())];
     for (name, status) in [
@@ -231,11 +230,7 @@ fn outcome_cells(run: &RunOutcome) -> Markup {
 }
 
 fn gates_cell(run: &RunOutcome) -> Markup {
-    let accepted = run
-        .verdicts
-        .iter()
-        .filter(|verdict| verdict.accepted)
-        .count();
+    let accepted = count_accepted(&run.verdicts);
     html! {
         td.num data-v=(accepted) { @if run.verdicts.is_empty() { "\u{2013}" } @else { (accepted) " of " (run.verdicts.len()) } }
     }
@@ -286,8 +281,7 @@ fn chosen<'a>(points: &[&'a RunOutcome]) -> Vec<&'a RunOutcome> {
     if points.len() <= POINTS_MAX {
         return points.to_vec();
     }
-    let has_failed =
-        |index: usize| !matches!(points[index].status(), RunStatus::Pass | RunStatus::NotRun);
+    let has_failed = |index: usize| points[index].has_failed();
     let failed: Vec<usize> = (0..points.len())
         .filter(|index| has_failed(*index))
         .take(POINTS_MAX)
@@ -380,10 +374,7 @@ fn sweep(name: &str, points: &[&RunOutcome], left: &mut usize) -> Markup {
 
 fn point_row(run: &RunOutcome) -> Markup {
     let set = run.sweep.iter().flat_map(|(_, set)| set);
-    let values = set.map(|(_, toml)| match swept_value(toml) {
-        Value::String(text) => text,
-        other => other.to_string(),
-    });
+    let values = set.map(|(_, toml)| swept_text(toml));
     html! { tr {
         th scope="row" { (link(run)) }
         @for value in values { td.num data-v=(value) { (value) } }

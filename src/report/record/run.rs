@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::gate::{Verdict, VerdictKind, estimate_text, expects_failure};
+use crate::gate::{Verdict, VerdictKind, count_accepted, estimate_text, expects_failure};
 use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 use crate::report::record::columns::{DIGITS, heading_of, headline, unit_text, value_text};
 use crate::report::record::sweep::PointOfSweep;
@@ -43,6 +43,17 @@ pub struct RunReport<'a> {
 /// Most points of a sweep each of which gets a page, unless the scenario says otherwise.
 const POINTS_SHOWN_MAX: usize = 100;
 
+impl RunReport<'_> {
+    /// How the run ended.
+    #[must_use]
+    pub fn status(&self) -> RunStatus {
+        let unexpected = |(name, metrics): &(String, ChannelMetrics)| {
+            metrics.error.is_some() && !expects_failure(self.verdicts, name)
+        };
+        RunStatus::of_results(self.channels.iter().any(unexpected), self.verdicts)
+    }
+}
+
 /// How a run ended, worst last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RunStatus {
@@ -59,6 +70,17 @@ pub enum RunStatus {
 }
 
 impl RunStatus {
+    /// How a run ended that has results.
+    fn of_results(has_unexpected_failure: bool, verdicts: &[Verdict]) -> Self {
+        if has_unexpected_failure {
+            Self::ChannelFailed
+        } else if count_accepted(verdicts) < verdicts.len() {
+            Self::GateFailed
+        } else {
+            Self::Pass
+        }
+    }
+
     /// The word in files: `pass`, `gate_failed`, `channel_failed`, `not_run` or `run_failed`.
     #[must_use]
     pub fn as_str(self) -> &'static str {
@@ -240,13 +262,15 @@ impl RunOutcome {
             RunStatus::RunFailed
         } else if self.is_not_run {
             RunStatus::NotRun
-        } else if self.channels.iter().any(unexpected) {
-            RunStatus::ChannelFailed
-        } else if self.verdicts.iter().any(|verdict| !verdict.accepted) {
-            RunStatus::GateFailed
         } else {
-            RunStatus::Pass
+            RunStatus::of_results(self.channels.iter().any(unexpected), &self.verdicts)
         }
+    }
+
+    /// Whether the run was not accepted; one that a stopped suite has not run is neither.
+    #[must_use]
+    pub fn has_failed(&self) -> bool {
+        !matches!(self.status(), RunStatus::Pass | RunStatus::NotRun)
     }
 
     /// Number of gates with the verdict `kind`.

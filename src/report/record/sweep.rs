@@ -11,6 +11,21 @@ pub(in crate::report) fn swept_value(toml: &str) -> Value {
     serde_json::from_str(toml).unwrap_or_else(|_| toml.into())
 }
 
+/// The same as a text.
+pub(in crate::report) fn swept_text(toml: &str) -> String {
+    match swept_value(toml) {
+        Value::String(text) => text,
+        other => other.to_string(),
+    }
+}
+
+/// What a point sets, in words: `a = 1, b = "x"`.
+pub(in crate::report) fn assignments_text(assignments: &[(String, String)]) -> String {
+    let keys = assignments.iter();
+    let keys = keys.map(|(key, value)| format!("{key} = {value}"));
+    keys.collect::<Vec<_>>().join(", ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

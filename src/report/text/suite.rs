@@ -1,7 +1,8 @@
 //! A suite in text: a line for each scenario, what failed, the verdict.
 
-use crate::gate::VerdictKind;
+use crate::gate::{VerdictKind, count_accepted};
 use crate::report::layout::text::{Tone, fitted, toned, wrapped};
+use crate::report::record::sweep::assignments_text;
 use crate::report::text::table::gate_line;
 use crate::report::{RunOutcome, RunStatus};
 use crate::wording::counted;
@@ -66,7 +67,7 @@ pub fn scenario_text(runs: &[RunOutcome], style: SuiteStyle, aside: &str) -> Str
         return run_line(first, &first.name, style, aside) + &details(first, style, DETAILS_MAX);
     }
     let mut text = sweep_line(&first.name, &ended, style, aside);
-    let failed: Vec<_> = ended.iter().filter(|run| has_failed(run)).collect();
+    let failed: Vec<_> = ended.iter().filter(|run| run.has_failed()).collect();
     for run in failed.iter().take(POINT_FAILURES_MAX) {
         let point = format!("{}: {}", run.folder, point_text(run));
         text.push_str(&wrapped(&point, DEEP, style.width));
@@ -86,7 +87,7 @@ pub fn sweep_text(runs: &[RunOutcome], style: SuiteStyle) -> String {
     let mut text = sweep_line(&first.name, &ended, style, "");
     let mut shown: Vec<&&RunOutcome> = ended.iter().collect();
     if shown.len() > POINTS_MAX {
-        shown.sort_by_key(|run| !has_failed(run));
+        shown.sort_by_key(|run| !run.has_failed());
         shown.truncate(POINTS_MAX);
     }
     let points: Vec<String> = shown.iter().map(|run| point_text(run)).collect();
@@ -105,7 +106,7 @@ pub fn sweep_text(runs: &[RunOutcome], style: SuiteStyle) -> String {
 /// The end of a suite: what failed once more, then a line with the verdict and the counts.
 #[must_use]
 pub fn closing_text(runs: &[RunOutcome], style: SuiteStyle) -> String {
-    let failed: Vec<&RunOutcome> = runs.iter().filter(|run| has_failed(run)).collect();
+    let failed: Vec<&RunOutcome> = runs.iter().filter(|run| run.has_failed()).collect();
     let is_one_sweep = runs.windows(2).all(|two| two[0].name == two[1].name) && runs.len() > 1;
     let (most, details_max) = if is_one_sweep {
         (POINT_FAILURES_MAX, 1)
@@ -138,11 +139,6 @@ fn more(count: usize, shown: usize, of: &str) -> String {
     }
 }
 
-/// Whether a run was not accepted; one that a stopped suite has not run is neither.
-fn has_failed(run: &RunOutcome) -> bool {
-    !matches!(run.status(), RunStatus::Pass | RunStatus::NotRun)
-}
-
 fn word(is_failure: bool, colour: bool) -> String {
     if is_failure {
         toned("FAIL", Tone::Bad, colour)
@@ -155,7 +151,7 @@ fn word(is_failure: bool, colour: bool) -> String {
 fn run_line(run: &RunOutcome, name: &str, style: SuiteStyle, aside: &str) -> String {
     let head = format!(
         "{}  {name:width$}  {:12}",
-        word(has_failed(run), style.colour),
+        word(run.has_failed(), style.colour),
         how_it_ended(run),
         width = style.name_width,
     );
@@ -164,9 +160,12 @@ fn run_line(run: &RunOutcome, name: &str, style: SuiteStyle, aside: &str) -> Str
 
 /// Verdict, name, points and gates of a sweep.
 fn sweep_line(name: &str, points: &[&RunOutcome], style: SuiteStyle, aside: &str) -> String {
-    let failed = points.iter().filter(|run| has_failed(run)).count();
+    let failed = points.iter().filter(|run| run.has_failed()).count();
     let (gates, accepted) = points.iter().fold((0, 0), |(gates, accepted), run| {
-        (gates + run.verdicts.len(), accepted + count_accepted(run))
+        (
+            gates + run.verdicts.len(),
+            accepted + count_accepted(&run.verdicts),
+        )
     });
     let head = format!(
         "{}  {name:width$}  {:12}",
@@ -181,20 +180,13 @@ fn sweep_line(name: &str, points: &[&RunOutcome], style: SuiteStyle, aside: &str
     fitted(&head, &points, aside, style.width)
 }
 
-fn count_accepted(run: &RunOutcome) -> usize {
-    run.verdicts
-        .iter()
-        .filter(|verdict| verdict.accepted)
-        .count()
-}
-
 /// The gates that accept a run, or what kept it from being judged.
 fn how_it_ended(run: &RunOutcome) -> String {
     match run.status() {
         RunStatus::RunFailed => "not finished".to_owned(),
         RunStatus::NotRun => "not run".to_owned(),
         RunStatus::Pass | RunStatus::GateFailed | RunStatus::ChannelFailed => {
-            gates_text(count_accepted(run), run.verdicts.len())
+            gates_text(count_accepted(&run.verdicts), run.verdicts.len())
         }
     }
 }
@@ -208,11 +200,10 @@ fn gates_text(accepted: usize, gates: usize) -> String {
 }
 
 fn point_text(run: &RunOutcome) -> String {
-    let Some((_, point)) = &run.sweep else {
-        return run.folder.clone();
-    };
-    let keys = point.iter().map(|(key, value)| format!("{key} = {value}"));
-    keys.collect::<Vec<_>>().join(", ")
+    match &run.sweep {
+        Some((_, point)) => assignments_text(point),
+        None => run.folder.clone(),
+    }
 }
 
 /// Why a run failed: the run itself, its channels, its gates; no line of what passed.

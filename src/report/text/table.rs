@@ -10,6 +10,7 @@ use crate::report::calibration::text::calibration_text;
 use crate::report::layout::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::report::record::columns::{Column, DIGITS, columns, matters, unit_text, value_text};
 use crate::report::record::measured::Measured;
+use crate::report::record::sweep::assignments_text;
 use crate::report::text::compensation::compensation_text;
 use crate::report::text::repeats::repeats_text;
 use crate::report::text::scale_factor::scale_factor_text;
@@ -71,11 +72,7 @@ fn heading(report: &RunReport, width: usize, colour: bool) -> String {
         text.push_str(&wrapped(&printable(description), INDENT, width));
     }
     if let Some((index, point)) = &report.sweep {
-        let point: Vec<String> = point
-            .iter()
-            .map(|(key, value)| format!("{key} = {value}"))
-            .collect();
-        let line = format!("point {index:04}: {}", point.join(", "));
+        let line = format!("point {index:04}: {}", assignments_text(point));
         text.push_str(&wrapped(&line, INDENT, width));
     }
     text

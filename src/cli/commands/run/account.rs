@@ -7,7 +7,7 @@ use crate::cli::options::arguments::RunOptions;
 use crate::cli::options::format::Format;
 use crate::cli::terminal::output;
 use crate::experiment::{Plan, SuiteOutcome};
-use crate::report::{self, RunOutcome, RunReport, RunStatus, SuiteStyle};
+use crate::report::{self, RunOutcome, RunReport, SuiteStyle};
 
 /// How much is printed of each run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,11 +163,6 @@ impl Account {
             Format::Jsonl => String::new(),
         }
     }
-}
-
-/// Whether a run was accepted.
-pub(super) fn passed(report: &RunReport) -> bool {
-    RunOutcome::from_report(report, "").status() == RunStatus::Pass
 }
 
 /// The runs of each scenario.

@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::account::{Account, passed};
+use super::account::Account;
 use super::against::Against;
 use super::clock::SuiteClock;
 use super::server_files::ServerFiles;
@@ -229,7 +229,7 @@ impl Observer for Progress<'_> {
     }
 
     fn finished(&self, index: usize, report: &RunReport) {
-        if self.options.fail_fast && !passed(report) {
+        if report.status() != RunStatus::Pass {
             self.has_failed.store(true, Ordering::Relaxed);
         }
         self.take_in(index, |account| account.finished(index, report));
