@@ -73,15 +73,14 @@ fn means_in_each_mounting_are_those_of_equation_7_of_the_patent() {
     for point in 0..9 {
         let summary = summary(&folder.path().join("out"), &format!("mountings/{point:04}"));
         let values = &summary["scenario"]["sweep"]["point"];
-        let text = |key: &str| values[key].as_str().expect("a swept key").to_owned();
-        let along = match text("turntable.mounting.axis_along_table").trim_matches('"') {
+        let along = values["turntable.mounting.axis_along_table"].as_str();
+        let along = match along.expect("a swept text") {
             "x" => 0,
             "y" => 1,
             _ => 2,
         };
-        let rate: f64 = text("turntable.rotation.rate_deg_per_s")
-            .parse()
-            .expect("a rate");
+        let rate = values["turntable.rotation.rate_deg_per_s"].as_f64();
+        let rate = rate.expect("a swept number");
         let turning = 3600.0 * rate + 7.977_228_854;
         for (name, row) in ["x", "y", "z"].iter().zip(ROWS) {
             let expected = row[along] * turning + row[3];

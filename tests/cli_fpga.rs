@@ -171,7 +171,10 @@ fn waveforms_and_recorded_stimuli_are_exported() {
 fn the_audit_scenarios_pass_and_print_theory_beside_observation() {
     let folder = scratch();
     let audit = repository("scenarios/audit");
-    let output = fogbench(folder.path(), &["run", audit.to_str().expect("UTF-8")]);
+    let output = fogbench(
+        folder.path(),
+        &["run", "-v", audit.to_str().expect("UTF-8")],
+    );
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let words: Vec<String> = stdout(&output)
         .split_whitespace()

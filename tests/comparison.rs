@@ -107,7 +107,7 @@ fn suite_json(output: &Path) -> Value {
 #[test]
 fn a_table_holds_the_numbers_of_its_scenarios_beside_the_published_ones() {
     let folder = suite();
-    let output = fogbench(folder.path(), &["run", "."]);
+    let output = fogbench(folder.path(), &["run", "-v", "."]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let results = folder.path().join("output");
     let json = suite_json(&results);

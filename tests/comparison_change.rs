@@ -81,7 +81,7 @@ fn warmed() -> tempfile::TempDir {
 #[test]
 fn a_table_over_temperature_closes_with_the_temperature_sensitivity_of_the_coefficients() {
     let folder = warmed();
-    let output = fogbench(folder.path(), &["run", "."]);
+    let output = fogbench(folder.path(), &["run", "-v", "."]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let results = folder.path().join("output");
     let json = suite_json(&results);

@@ -243,6 +243,8 @@ fn check_loose(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
     let text = String::from_utf8_lossy(bytes);
     let is_whole = match name.as_str() {
         "summary.json" => serde_json::from_str::<serde_json::Value>(&text).is_ok(),
+        "index.html" => text.trim_end().ends_with("</html>"),
+        "metrics.csv" => is_whole_table(&text),
         "junit.xml" => text.trim_end().ends_with("</testsuites>"),
         ".fogbench.toml" => toml::from_str::<toml::Table>(&text).is_ok(),
         _ => return Err(Fault::new("stray file", name)),
@@ -252,6 +254,14 @@ fn check_loose(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
     } else {
         Err(Fault::new("half file", format!("{name}: {text}")))
     }
+}
+
+/// Whether a CSV ends with a whole row, as long as its first.
+fn is_whole_table(text: &str) -> bool {
+    let cells = |row: &str| row.matches(',').count();
+    let mut rows = text.lines();
+    let first = rows.next().map(cells);
+    text.ends_with('\n') && first.is_some() && rows.last().map(cells) == first
 }
 
 /// Takes the files below a folder out of a list.

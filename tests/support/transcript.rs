@@ -34,7 +34,8 @@ impl Transcript {
                 .push_str(format!("> {}", as_anywhere(line)).trim_end());
             self.text.push('\n');
         }
-        for line in said.to_string().trim_end().lines() {
+        let said = said.to_string();
+        for line in said.trim_end().lines().filter(|line| !is_time(line)) {
             self.text.push_str(as_anywhere(line).trim_end());
             self.text.push('\n');
         }
@@ -139,6 +140,16 @@ fn write(path: &Path, sections: &[(String, String)]) {
         .collect();
     let text = format!("{}\n", text.join("\n").trim_end());
     std::fs::write(path, text).expect("tests/snapshots is writable");
+}
+
+/// Whether a line tells how long runs took, which no two runs share: `2 runs in 0.3 s; ...`.
+fn is_time(line: &str) -> bool {
+    let mut words = line.split(' ');
+    let count = words
+        .next()
+        .is_some_and(|word| word.parse::<usize>().is_ok());
+    let noun = words.next();
+    count && matches!(noun, Some("run" | "runs")) && words.next() == Some("in")
 }
 
 /// A line without the folders of this run and of this computer, and without digests, which change
