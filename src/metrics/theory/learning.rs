@@ -14,6 +14,7 @@
 //! Source: derived; White, Econometrica 48 (1980), for the sandwich.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -55,6 +56,17 @@ pub struct Learning {
     moments: Vec<DMatrix<f64>>,
     /// What noise makes of them: less those of the motion and the mean of the rest.
     deviations: Vec<DMatrix<f64>>,
+    /// What follows for the whole record, which several metrics ask for; none where the words do not
+    /// determine the weights.
+    of_record: OnceLock<Option<OfRecord>>,
+}
+
+/// Weights of the words as they are, and what each stretch adds to their mean over the record.
+#[derive(Clone, Debug, PartialEq)]
+struct OfRecord {
+    solved: Solved,
+    parts: Vec<DVector<f64>>,
+    freedom: f64,
 }
 
 /// What each stretch adds to the mean weights over a part of the record.
@@ -154,6 +166,7 @@ impl Learning {
             drift_deg_per_h: 0.0,
             deviations,
             moments,
+            of_record: OnceLock::new(),
         })
     }
 
@@ -167,6 +180,19 @@ impl Learning {
         }
     }
 
+    fn of_record(&self) -> Option<&OfRecord> {
+        let solve = || {
+            let solved = Solved::of(self, 0.0)?;
+            let (parts, freedom) = solved.weight_parts(self, 0);
+            Some(OfRecord {
+                solved,
+                parts,
+                freedom,
+            })
+        };
+        self.of_record.get_or_init(solve).as_ref()
+    }
+
     /// Number of stretches of the record.
     #[must_use]
     pub(crate) fn stretches(&self) -> usize {
@@ -177,8 +203,12 @@ impl Learning {
     ///
     /// None where the words do not determine the weights.
     pub(crate) fn weights_from(&self, from: usize) -> Option<LearnedWeights> {
-        let solved = Solved::of(self, 0.0)?;
-        let (parts, freedom) = solved.weight_parts(self, from);
+        let whole = self.of_record()?;
+        let solved = &whole.solved;
+        let (parts, freedom) = match from {
+            0 => (whole.parts.clone(), whole.freedom),
+            _ => solved.weight_parts(self, from),
+        };
         let shift = self.drift_deg_per_h;
         let drift = if shift > 0.0 {
             let moved = Solved::of(self, shift)?;
@@ -203,14 +233,13 @@ impl Learning {
         if !self.is_even() {
             return None;
         }
-        let (without, with) = (Solved::of(self, 0.0)?, Solved::of(self, rate)?);
-        let (parts, freedom) = without.weight_parts(self, 0);
+        let (without, with) = (self.of_record()?, Solved::of(self, rate)?);
         let (moved, _) = with.weight_parts(self, 0);
         let means = self.mean_parts();
         let mean = self.mean();
         let gain = |solved: &Solved| self.gain(&solved.last);
-        let by_mean = gain(&with) - gain(&without);
-        let stretches = parts.iter().zip(&moved).zip(&means);
+        let by_mean = gain(&with) - gain(&without.solved);
+        let stretches = without.parts.iter().zip(&moved).zip(&means);
         let stretches = stretches.map(|((own, moved), part)| {
             let by_weights = moved.sum() * (mean + rate) - own.sum() * mean;
             (by_weights + part * by_mean) / rate
@@ -226,7 +255,7 @@ impl Learning {
         Some(Learned {
             parts: std::iter::once(by_drift).chain(stretches).collect(),
             warm_up: self.warm_up + 1,
-            freedom,
+            freedom: without.freedom,
         })
     }
 
@@ -235,7 +264,9 @@ impl Learning {
     ///
     /// * `with_input`: whether the input is at rest, so that its mean is noise and no motion.
     pub(crate) fn output_mean(&self, with_input: bool) -> Option<Learned> {
-        let solved = Solved::of(self, 0.0)?;
+        let OfRecord {
+            solved, freedom, ..
+        } = self.of_record()?;
         let last = self.taps + 1;
         let count = self.moments.len();
         let record = self.warm_up..count;
@@ -279,11 +310,10 @@ impl Learning {
             let (normal, right) = &solved.noise[stretch];
             parts[stretch] = reach.dot(right) - normal.dot(&by_weights.transpose()) + by_input;
         }
-        let (_, freedom) = solved.weight_parts(self, 0);
         Some(Learned {
             parts,
             warm_up: self.warm_up,
-            freedom,
+            freedom: *freedom,
         })
     }
 
@@ -378,6 +408,7 @@ impl Learning {
 }
 
 /// The weights of a filter at the end of every stretch, in the free ones.
+#[derive(Clone, Debug, PartialEq)]
 struct Solved {
     /// `R_c^-1`; none before the words determine the weights.
     inverses: Vec<Option<DMatrix<f64>>>,
