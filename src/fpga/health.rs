@@ -119,6 +119,10 @@ fn smallest_pivot(matrix: &[f64], p: usize) -> f64 {
     smallest
 }
 
+/// Largest element beside the diagonal, over the smallest on it, before the last sweep of rotations,
+/// which leaves its square: below a rounding error of the smallest eigenvalue.
+const OFF_DIAGONAL_MAX: f64 = 1e-12;
+
 /// Condition number of a symmetric matrix from its eigenvalues by cyclic Jacobi rotations.
 fn condition_number(matrix: &[f64], p: usize) -> f64 {
     let scale = matrix
@@ -136,7 +140,9 @@ fn condition_number(matrix: &[f64], p: usize) -> f64 {
                 rotate(&mut work, p, i, j);
             }
         }
-        if off_diagonal < 1e-300 {
+        // Eigenvalues move by no more than the elements beside the diagonal that are left.
+        let smallest = (0..p).fold(f64::INFINITY, |least, i| least.min(work[i * p + i].abs()));
+        if off_diagonal <= OFF_DIAGONAL_MAX * smallest {
             break;
         }
     }

@@ -1,6 +1,8 @@
 //! How overlapping Allan variances at different averaging times scatter and go together.
 
+use std::collections::VecDeque;
 use std::f64::consts::PI;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// `AVAR / B^2` of flicker noise, `2 ln 2 / pi`; its square root is the familiar 0.664.
 pub const FLICKER_ALLAN_VARIANCE: f64 = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;
@@ -54,10 +56,55 @@ pub(crate) struct Structure {
     products: Vec<[[f64; TERMS]; TERMS]>,
 }
 
+/// What a structure follows from: averaging factors, numbers of second differences, correlation time in
+/// samples.
+#[derive(Clone, Debug, PartialEq)]
+struct Lengths {
+    factors: Vec<usize>,
+    counts: Vec<usize>,
+    correlation: Option<f64>,
+}
+
+/// Structures asked for last, newest first: channels, repeats and points of a sweep have records of one
+/// length, and each of their fits asks for the same.
+static LAST: Mutex<VecDeque<(Lengths, Arc<Structure>)>> = Mutex::new(VecDeque::new());
+
+/// Most of them, of some 300 kB each.
+const LAST_MAX: usize = 32;
+
 impl Structure {
+    /// The structure of these lengths, as [`Structure::new`] makes it, or made a moment ago.
+    pub(crate) fn shared(
+        factors: Vec<usize>,
+        counts: Vec<usize>,
+        correlation: Option<f64>,
+    ) -> Arc<Self> {
+        let lengths = Lengths {
+            factors,
+            counts,
+            correlation,
+        };
+        let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+        {
+            let mut last = last();
+            let known = last.iter().position(|(known, _)| *known == lengths);
+            if let Some(entry) = known.and_then(|at| last.remove(at)) {
+                let structure = Arc::clone(&entry.1);
+                last.push_front(entry);
+                return structure;
+            }
+        }
+        // Not under the lock: two threads may make the same one, neither waits.
+        let made = Arc::new(Self::new(&lengths.factors, &lengths.counts, correlation));
+        let mut last = last();
+        last.truncate(LAST_MAX - 1);
+        last.push_front((lengths, Arc::clone(&made)));
+        made
+    }
+
     /// For averaging factors and numbers of second differences of one record; the correlation time,
     /// in samples, is that of the exponentially correlated noise, which without one has no products.
-    pub(crate) fn new(factors: &[usize], counts: &[usize], correlation: Option<f64>) -> Self {
+    fn new(factors: &[usize], counts: &[usize], correlation: Option<f64>) -> Self {
         let points = factors.len();
         let mut products = vec![[[0.0; TERMS]; TERMS]; points * points];
         for first in 0..points {
@@ -278,6 +325,20 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn lengths_asked_for_again_have_the_structure_made_before() {
+        let factors = vec![1, 2, 5];
+        let counts = vec![99, 97, 91];
+        let of = |time| Structure::shared(factors.clone(), counts.clone(), time);
+        let (without, with) = (of(None), of(Some(7.0)));
+        assert!(Arc::ptr_eq(&without, &of(None)) && Arc::ptr_eq(&with, &of(Some(7.0))));
+        assert_ne!(without.products, with.products);
+        assert_eq!(
+            with.products,
+            Structure::new(&factors, &counts, Some(7.0)).products
+        );
     }
 
     #[test]

@@ -115,7 +115,7 @@ impl Problem {
                 .map_or(1.0, |point| point.tau_s / point.averaged_samples as f64),
             tau: factors.iter().map(|&factor| factor as f64).collect(),
             variance: points.iter().map(AllanPoint::variance).collect(),
-            structure: Arc::new(Structure::new(&factors, &counts, None)),
+            structure: Structure::shared(factors, counts, None),
             correlation: None,
             records,
             known_inverse_square: None,
@@ -141,7 +141,7 @@ impl Problem {
     pub(crate) fn with_correlation(&self, points: &[AllanPoint], correlation: f64) -> Self {
         let (factors, counts) = lengths(points);
         Self {
-            structure: Arc::new(Structure::new(&factors, &counts, Some(correlation))),
+            structure: Structure::shared(factors, counts, Some(correlation)),
             correlation: Some(correlation),
             ..self.clone()
         }

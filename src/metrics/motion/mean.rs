@@ -1,5 +1,6 @@
 //! Mean of a record, its error, its ratio to that of raw, and the extremes.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use crate::metrics::estimate::influence::{Learned, Spread};
@@ -134,8 +135,7 @@ pub(crate) fn mean_spread_of(
     let drift = Spread::known(record.drift_variance()).scaled(gain);
     let fast = || {
         // What is missing is not waited for: noise on either side of a few words is hardly nearer.
-        let is_there = |word: &&f64| !word.is_nan();
-        let present: Vec<f64> = noise.iter().filter(is_there).copied().collect();
+        let present = present(noise);
         let count = samples - (noise.len() - present.len());
         MeanScatter::of(&present, filter_reach(filter)).over(count)
     };
@@ -157,6 +157,15 @@ pub(crate) fn mean_spread_of(
             })
         }
     }
+}
+
+/// The words that are there; no copy of a record that misses none.
+fn present(words: &[f64]) -> Cow<'_, [f64]> {
+    let is_there = |word: &&f64| !word.is_nan();
+    if words.iter().all(|word| !word.is_nan()) {
+        return Cow::Borrowed(words);
+    }
+    words.iter().filter(is_there).copied().collect()
 }
 
 /// Ratio of the means of the record, if raw's mean can be told from zero.

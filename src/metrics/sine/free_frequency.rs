@@ -12,6 +12,9 @@ const STEPS_MAX: usize = 30;
 /// Change of the phase at the ends of the record below which the fit stands, rad.
 const TOLERANCE_RAD: f64 = 1e-12;
 
+/// Samples over which sine and cosine are turned on from the last ones, before they are computed afresh.
+const TURNS: usize = 64;
+
 /// `offset + amplitude cos(2 pi f (t - centre) + phase)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -71,15 +74,7 @@ pub(crate) fn fit_sine_to(
     let (sine, cosine) = start.phase_rad.sin_cos();
     let (mut a, mut b) = (start.amplitude * cosine, -start.amplitude * sine);
     for _ in 0..STEPS_MAX {
-        let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
-        for (index, value) in values.iter().enumerate() {
-            // From -1 to 1 over the record, so that the columns have one scale.
-            let from_centre = (index as f64 - middle) / middle;
-            let (s, c) = (angular * half_s * from_centre).sin_cos();
-            let column = Vector4::new(c, s, 1.0, from_centre * (b * c - a * s));
-            normal += column * column.transpose();
-            right += column * *value;
-        }
+        let (normal, right) = normal_equations(values, angular * half_s, (a, b));
         let solved = normal.cholesky()?.solve(&right);
         (a, b) = (solved[0], solved[1]);
         let step_rad = solved[3];
@@ -98,4 +93,32 @@ pub(crate) fn fit_sine_to(
         }
     }
     None
+}
+
+/// Normal equations of a Newton step: `half_rad` is the phase from the centre of the record to its ends,
+/// `a cos + b sin` the sine so far.
+fn normal_equations(
+    values: &[f64],
+    half_rad: f64,
+    (a, b): (f64, f64),
+) -> (Matrix4<f64>, Vector4<f64>) {
+    let middle = (values.len() as f64 - 1.0) / 2.0;
+    let (step_sine, step_cosine) = (half_rad / middle).sin_cos();
+    let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+    for (chunk, part) in values.chunks(TURNS).enumerate() {
+        let first = (chunk * TURNS) as f64 - middle;
+        let (mut s, mut c) = (half_rad * (first / middle)).sin_cos();
+        for (index, value) in part.iter().enumerate() {
+            // From -1 to 1 over the record, so that the columns have one scale.
+            let from_centre = (first + index as f64) / middle;
+            let column = Vector4::new(c, s, 1.0, from_centre * (b * c - a * s));
+            normal += column * column.transpose();
+            right += column * *value;
+            (s, c) = (
+                s * step_cosine + c * step_sine,
+                c * step_cosine - s * step_sine,
+            );
+        }
+    }
+    (normal, right)
 }
