@@ -285,12 +285,14 @@ fn a_run_is_compared_with_its_baseline_and_never_writes_it() {
         stdout(&whole)
     );
     run(at, "plain", &[]);
-    assert_eq!(
-        tree(&at.join("out")),
-        tree(&at.join("plain")),
-        "{}",
-        before.len()
-    );
+    // The page of the suite shows the baseline, and its record has the page's digest.
+    let own = |output: &str| {
+        let mut files = tree(&at.join(output));
+        let shows = ["index.html", ".fogbench.toml"].map(Path::new);
+        files.retain(|(name, _)| !shows.contains(&name.as_path()));
+        files
+    };
+    assert!(own("out") == own("plain"), "{}", before.len());
     // What was there and is not.
     let lines = saved.replacen(
         "metric = \"mean_deg_per_h\"",
@@ -378,4 +380,82 @@ fn what_cannot_be_compared_is_refused() {
         fs::read_to_string(at.join("thesis.txt")).expect("stands"),
         "mine"
     );
+}
+
+#[test]
+fn a_page_lays_figures_gates_and_curves_of_both_sides_over_each_other() {
+    let folder = scratch();
+    let at = folder.path();
+    let gate = "[[gate]]\nmetric = \"raw.noise_std_deg_per_h\"\nmin = 0.001\nmax = 1000.0\n";
+    write(
+        at,
+        "scenarios/one.toml",
+        &format!("name = \"one\"\n{HEAD}{FILTER}{gate}"),
+    );
+    run(at, "old", &[]);
+    run(at, "new", &[]);
+    worsen(at, "new/one", "raw", "noise_std_deg_per_h", 8.0);
+    let output = fogbench(at, &["compare", "old", "new", "--html", "page.html"]);
+    assert_eq!(code(&output), 1, "{}", stderr(&output));
+    let page = fs::read_to_string(at.join("page.html")).expect("a page");
+    let figures = page.split("id=\"figures\"").nth(1).expect("figures");
+    let first = figures.split("<tbody>").nth(1).expect("rows");
+    let first = first.split("</tr>").next().expect("a row");
+    assert!(first.contains("raw.noise_std_deg_per_h") || first.contains("noise_std_deg_per_h"));
+    for part in [
+        "worse",
+        "class=\"zone\"",
+        "class=\"before\"",
+        "class=\"now\"",
+    ] {
+        assert!(first.contains(part), "{part} in {first}");
+    }
+    let curves = page.split("id=\"curves\"").nth(1).expect("curves");
+    for part in [
+        "raw, before",
+        "raw, now",
+        "mean, before",
+        "one: Allan deviation",
+    ] {
+        assert!(curves.contains(part), "{part}");
+    }
+    // The run in which something differs comes first.
+    let place = |name: &str| curves.find(&format!("{name}: Allan deviation"));
+    assert!(place("one") < place("power(gyro.source.power_uw = 0.5)"));
+    // It is replaced as often as one likes; a file of the user's is not.
+    let again = fogbench(at, &["compare", "old", "old", "--html", "page.html"]);
+    assert_eq!(code(&again), 0, "{}", stderr(&again));
+    fs::write(at.join("notes.html"), "my notes").expect("writable");
+    let refused = fogbench(at, &["compare", "old", "new", "--html", "notes.html"]);
+    assert_eq!(code(&refused), 2, "{}", stderr(&refused));
+    assert_eq!(
+        fs::read_to_string(at.join("notes.html")).expect("a file"),
+        "my notes"
+    );
+}
+
+#[test]
+fn the_page_of_a_suite_shows_its_baseline_and_no_folder_of_a_run_does() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "plain", &[]);
+    run(at, "against", &["--baseline", "plain"]);
+    let index = |output: &str| {
+        fs::read_to_string(at.join(output).join("index.html")).expect("a page of the suite")
+    };
+    assert!(!index("plain").contains("Against the baseline"));
+    for part in ["id=\"against\"", "raw, before", "raw, now"] {
+        assert!(index("against").contains(part), "{part}");
+    }
+    for run in ["one", "power"] {
+        assert_eq!(
+            tree(&at.join("plain").join(run)),
+            tree(&at.join("against").join(run))
+        );
+    }
+    // A baseline in a file has figures and no curves.
+    let saved = fogbench(at, &["baseline", "save", "plain", "-o", "b.toml"]);
+    assert_eq!(code(&saved), 0, "{}", stderr(&saved));
+    run(at, "file", &["--baseline", "b.toml"]);
+    assert!(index("file").contains("id=\"against\"") && !index("file").contains("raw, before"));
 }

@@ -226,6 +226,7 @@ fn writes_the_files_of_a_suite() {
         runs: &runs,
         across: &Comparison::default(),
         stale: &[],
+        against: None,
     };
     let mut json = Counts(0);
     let own = |run: &RunOutcome| {

@@ -144,6 +144,7 @@ fn the_index_of_ten_thousand_points_is_small_and_shows_what_failed() {
         runs: &runs,
         across: &Comparison::default(),
         stale: &[],
+        against: None,
     };
     let page = suite_page(&suite, &[]);
     assert!(page.len() < BYTES_MAX, "{} bytes", page.len());

@@ -308,6 +308,7 @@ fn the_suite_is_counted() {
         runs: &suite(),
         across: &Comparison::default(),
         stale: &[],
+        against: None,
     };
     let mut text = Vec::new();
     write_suite_summary(&mut text, &report, &|_| Ok(None)).unwrap();

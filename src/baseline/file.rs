@@ -151,7 +151,7 @@ pub fn read_baseline(text: &str) -> Result<Side, BaselineError> {
     Ok(Side {
         tool_version: document.tool.version,
         entries,
-        lacks: BTreeMap::new(),
+        ..Side::default()
     })
 }
 

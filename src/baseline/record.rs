@@ -118,6 +118,15 @@ pub struct Lack {
     pub is_failure: bool,
 }
 
+/// Limits of a gate, in the unit of its metric.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Least accepted value.
+    pub min: Option<f64>,
+    /// Largest accepted value.
+    pub max: Option<f64>,
+}
+
 /// One side of a comparison.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Side {
@@ -127,6 +136,11 @@ pub struct Side {
     pub entries: Vec<Entry>,
     /// Why others are not there: of a metric, of a whole channel, of a whole run.
     pub lacks: BTreeMap<Id, Lack>,
+    /// Gates on figures of its own, which pictures show them against; none in a baseline.
+    pub limits: BTreeMap<Id, Limits>,
+    /// Curves that pictures lay over each other: averaging time, s, and Allan deviation, deg/h; none in a
+    /// baseline.
+    pub curves: BTreeMap<Id, Vec<(f64, f64)>>,
 }
 
 impl Side {
@@ -156,6 +170,8 @@ impl Side {
         self.entries
             .retain(|entry| holds(&entry.id.scenario, &entry.id.point));
         self.lacks.retain(|id, _| holds(&id.scenario, &id.point));
+        self.limits.retain(|id, _| holds(&id.scenario, &id.point));
+        self.curves.retain(|id, _| holds(&id.scenario, &id.point));
         self
     }
 }

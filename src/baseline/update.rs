@@ -29,7 +29,7 @@ pub fn updated(baseline: &Side, later: &Side) -> Side {
     Side {
         tool_version: later.tool_version.clone(),
         entries,
-        lacks: BTreeMap::new(),
+        ..Side::default()
     }
 }
 

@@ -9,10 +9,12 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::baseline::{
-    BaselineError, Entry, Id, Interval, Lack, Point, Side, point_of, read_baseline,
+    BaselineError, Entry, Id, Interval, Lack, Limits, Point, Side, point_of, read_baseline,
 };
 use crate::experiment::build::VERSION;
 use crate::experiment::run::Run;
+use crate::metrics::catalogue::ALLAN;
+use crate::metrics::columns::allan as column;
 use crate::metrics::{ChannelMetrics, IntervalKind, Metric, RepeatStatistics, find};
 use crate::recording::read_stimulus;
 use crate::report::{RestoredRun, RunStatus, SUITE_SUMMARY};
@@ -99,6 +101,14 @@ pub fn read_output(folder: &Path) -> Result<Side, SideError> {
     } else {
         runs_of_suite(folder)?
     };
+    read_runs(&runs)
+}
+
+/// What stands in the folders of runs with these statuses.
+///
+/// # Errors
+/// [`SideError`].
+pub(super) fn read_runs(runs: &[(PathBuf, String)]) -> Result<Side, SideError> {
     let read = runs
         .par_iter()
         .map(|(folder, status)| read_run(folder, status));
@@ -107,6 +117,8 @@ pub fn read_output(folder: &Path) -> Result<Side, SideError> {
         side.tool_version.clone_from(&run.tool_version);
         side.entries.extend(run.entries);
         side.lacks.extend(run.lacks);
+        side.limits.extend(run.limits);
+        side.curves.extend(run.curves);
     }
     Ok(side)
 }
@@ -154,6 +166,7 @@ pub fn side_of_runs(runs: &[Run]) -> Side {
             seed: resolved.scenario.seed,
             conditions: None,
             measured_part: 1.0,
+            gates: Vec::new(),
         };
         let conditions = resolved.conditions();
         for (name, channel) in run.channels() {
@@ -174,6 +187,8 @@ struct Origin {
     conditions: Option<String>,
     /// Part of the samples that lies behind the warm-up.
     measured_part: f64,
+    /// Gates on figures that are not relative to another channel, by channel and metric.
+    gates: Vec<((String, String), Limits)>,
 }
 
 impl Origin {
@@ -197,6 +212,7 @@ impl Origin {
             conditions: text(origin, "conditions"),
             measured_part: number(scenario, "duration_s")?
                 / (number(scenario, "duration_s")? + number(scenario, "warm_up_s")?),
+            gates: gates(scenario),
         })
     }
 
@@ -208,6 +224,23 @@ impl Origin {
             metric: metric.to_owned(),
         }
     }
+}
+
+/// Limits of the gates of a scenario, but of those relative to another channel.
+fn gates(scenario: &toml::Value) -> Vec<((String, String), Limits)> {
+    let gates = scenario.get("gate").and_then(toml::Value::as_array);
+    let gates = gates.into_iter().flatten();
+    let gates = gates.filter(|gate| gate.get("relative_to").is_none());
+    let limits = gates.filter_map(|gate| {
+        let (channel, metric) = gate.get("metric")?.as_str()?.split_once('.')?;
+        let limit = |key: &str| gate.get(key).and_then(toml::Value::as_float);
+        let limits = Limits {
+            min: limit("min"),
+            max: limit("max"),
+        };
+        Some(((channel.to_owned(), metric.to_owned()), limits))
+    });
+    limits.collect()
 }
 
 /// What stands in the folder of a run.
@@ -244,7 +277,13 @@ fn read_run(folder: &Path, status: &str) -> Result<Side, SideError> {
     let Some(restored) = RestoredRun::of_summary(&text) else {
         return Err(SideError::Damaged(path));
     };
+    let limits = origin.gates.iter();
+    let limits = limits.map(|((channel, metric), limits)| (origin.id(channel, metric), *limits));
+    side.limits.extend(limits);
     for (name, channel) in &restored.channels {
+        if let Some(curve) = allan_curve(channel) {
+            side.curves.insert(origin.id(name, ALLAN.name), curve);
+        }
         let words = measured_words(folder, name, origin.measured_part);
         let own = entries(&origin, conditions, name, channel);
         side.entries.extend(own.map(|entry| match &words {
@@ -254,6 +293,17 @@ fn read_run(folder: &Path, status: &str) -> Result<Side, SideError> {
         side.lacks.extend(lacks(&origin, name, channel));
     }
     Ok(side)
+}
+
+/// Averaging times, s, and Allan deviations, deg/h.
+fn allan_curve(channel: &ChannelMetrics) -> Option<Vec<(f64, f64)>> {
+    let curve = channel.curve(&ALLAN)?;
+    let times = column::TAU.get(curve)?.iter().copied();
+    Some(
+        times
+            .zip(column::DEVIATION.get(curve)?.iter().copied())
+            .collect(),
+    )
 }
 
 /// Words of a channel behind the warm-up; none if the run kept no samples.

@@ -42,6 +42,6 @@ pub use scenario::Scenario;
 pub use stimulus::scenario_stimulus;
 #[cfg(feature = "report")]
 pub use suite::{
-    Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX, run_suite,
+    Against, Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX, run_suite,
     start_threads, thread_count, write_runs,
 };

@@ -14,11 +14,11 @@
 //! | `plot` | pictures |
 //! | `comparison` | tables over several scenarios |
 //! | `csv` | metrics, curves and repeats |
+//! | `build_server` | JUnit, annotations, Markdown and metrics for build servers |
+//! | `baseline` | a comparison with earlier results |
 //! | `json` | `summary.json` of runs and suites |
 //! | `page` | pages for a browser |
 //! | `restore` | `summary.json` read back |
-//! | `build_server` | JUnit, annotations, Markdown and metrics for build servers |
-//! | `baseline` | a comparison with earlier results |
 //!
 //! [`artefacts`](fn@artefacts) lists every file that is written, with what makes it.
 
@@ -47,6 +47,7 @@ pub use artefacts::{
 };
 pub use baseline::json::comparison_with_baseline_json;
 pub use baseline::markdown::comparison_with_baseline_markdown;
+pub use baseline::rows::ComparedSides;
 pub use baseline::text::comparison_with_baseline_text;
 pub use budget::{budget_json, budget_text};
 pub use build_server::bencher::{BencherMetrics, is_bencher_metrics};
@@ -66,6 +67,7 @@ pub use json::suite::{SuiteReport, write_suite_summary};
 pub use json::summary::run_summary_json;
 pub use kalman::{KalmanReport, is_kalman_json, kalman_json};
 pub use log::{LogReport, log_json, log_text};
+pub use page::against::{comparison_page, is_comparison_page};
 pub use page::suite::suite_page;
 pub use plot::{Pictures, SVG_BYTES_MAX};
 pub use record::run::{ChannelOutcome, RunOutcome, RunReport, RunStatus};

@@ -6,14 +6,24 @@ use std::path::Path;
 use crate::baseline::{Comparison, Outcome, Side, compare as compare_sides};
 use crate::cli::options::baseline::{CompareOptions, ComparisonFormat, FailOn};
 use crate::cli::terminal::exit::Exit;
-use crate::cli::terminal::output;
+use crate::cli::terminal::{output, place};
 use crate::experiment::{SideError, read_side};
 use crate::report::{
-    comparison_with_baseline_json, comparison_with_baseline_markdown, comparison_with_baseline_text,
+    ComparedSides, comparison_page, comparison_with_baseline_json,
+    comparison_with_baseline_markdown, comparison_with_baseline_text, is_comparison_page,
 };
+use crate::store::SingleFile;
 
 /// Prints what differs, and fails on what it is to fail on.
 pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
+    let page = options.html.as_deref().map(|path| SingleFile {
+        path,
+        is_ours: is_comparison_page,
+        force: options.force,
+    });
+    if let Some(Err(error)) = page.as_ref().map(SingleFile::check) {
+        return Ok(place::refused(&error));
+    }
     let sides = side(&options.old).and_then(|old| Ok((old, side(&options.new)?)));
     let (old, new) = match sides {
         Ok(sides) => sides,
@@ -28,7 +38,19 @@ pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
         ComparisonFormat::Json => comparison_with_baseline_json(&comparison, &fail_on),
         ComparisonFormat::Markdown => comparison_with_baseline_markdown(&comparison),
     })?;
-    Ok(exit_of(&comparison, &fail_on))
+    let exit = exit_of(&comparison, &fail_on);
+    let Some(page) = page else {
+        return Ok(exit);
+    };
+    let compared = ComparedSides {
+        comparison: &comparison,
+        old: &old,
+        new: &new,
+    };
+    Ok(match page.write(&comparison_page(&compared, &fail_on)) {
+        Ok(()) => exit,
+        Err(error) => exit.worst(place::refused(&error)),
+    })
 }
 
 /// How a comparison ends.

@@ -74,6 +74,12 @@ pub(in crate::cli) struct CompareOptions {
     /// Form of the comparison
     #[arg(long, value_enum, default_value_t = ComparisonFormat::Text)]
     pub(in crate::cli) format: ComparisonFormat,
+    /// Write a page for a browser as well, with curves and gates of both on one another
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) html: Option<PathBuf>,
+    /// Replace a file that stands there, be it no such page
+    #[arg(long, requires = "html")]
+    pub(in crate::cli) force: bool,
 }
 
 /// Commands on baselines.

@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use super::against::Sides;
 use super::entry::Suite;
 use super::ledger::Ledger;
 use super::outcome::SuiteOutcome;
@@ -34,7 +35,12 @@ fn compare(plans: &[Plan], layout: &Layout, runs: &[RunOutcome]) -> Comparison {
 /// Closes the ledger and writes the files of the suite. What breaks an invariant is left out, and
 /// the rest is written all the same.
 pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteOutcome {
-    let Suite { output, ledger, .. } = *suite;
+    let Suite {
+        output,
+        ledger,
+        earlier,
+        ..
+    } = *suite;
     let runs = ledger.close(plans);
     let comparison = unbroken(ledger, || compare(plans, layout, &runs)).unwrap_or_default();
     let Settled { stale, failures } = output.settle();
@@ -44,11 +50,15 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
     let mut files = tables.clone();
     let junit = || report::junit_xml(&runs, None);
     files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
+    let sides =
+        earlier.map(|earlier| unbroken(ledger, || Sides::of(earlier, plans, &runs, output.path())));
+    let sides = sides.flatten().unwrap_or_default();
     let summary = SuiteReport {
         tool_version: VERSION,
         runs: &runs,
         across: &comparison,
         stale: &stale,
+        against: sides.shown(),
     };
     let page = unbroken(ledger, || report::suite_page(&summary, &tables));
     files.extend(page.map(|text| (INDEX.to_owned(), text)));
@@ -66,6 +76,7 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
         comparison,
         broken: ledger.is_broken(),
         threads: 0,
+        against: sides.outcome,
         stale,
         unwritten: ledger.is_unwritten(),
         failures,

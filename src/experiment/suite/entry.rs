@@ -6,6 +6,7 @@ use super::options::Resume;
 use super::outcome::Observer;
 use super::output::SuiteOutput;
 use super::resume::take_over;
+use crate::baseline::Side;
 use crate::comparison::Layout;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{Results, Unfinished, run_plan};
@@ -18,6 +19,8 @@ pub(crate) struct Suite<'a> {
     pub(crate) output: &'a SuiteOutput,
     /// Whose results are taken over.
     pub(crate) resume: Resume,
+    /// Earlier results that they are compared with.
+    pub(crate) earlier: Option<&'a Side>,
     /// Which of them have ended.
     pub(crate) ledger: &'a Ledger,
 }

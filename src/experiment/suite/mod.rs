@@ -1,5 +1,6 @@
 //! Many runs at once: threads, files, what an earlier suite left, and the moment it ends.
 
+mod against;
 mod conclude;
 mod entry;
 mod files;
@@ -12,6 +13,7 @@ mod runner;
 mod threads;
 mod write;
 
+pub use against::Against;
 pub use options::{Resume, SuiteOptions};
 pub use outcome::{Observer, SuiteError, SuiteOutcome};
 pub use runner::run_suite;

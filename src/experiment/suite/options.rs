@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::baseline::Side;
+
 /// How a suite is run.
 #[derive(Clone, Debug)]
 pub struct SuiteOptions {
@@ -13,6 +15,8 @@ pub struct SuiteOptions {
     pub force: bool,
     /// Which results of an earlier suite to take over.
     pub resume: Resume,
+    /// Earlier results that those of the suite are compared with.
+    pub earlier: Option<Side>,
 }
 
 impl SuiteOptions {
@@ -24,6 +28,7 @@ impl SuiteOptions {
             threads: 0,
             force: false,
             resume: Resume::Never,
+            earlier: None,
         }
     }
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::io;
 use std::path::PathBuf;
 
+use super::against::Against;
 use super::output::SUMMARY;
 use crate::comparison::Comparison;
 use crate::experiment::run::Progress;
@@ -51,6 +52,8 @@ pub struct SuiteOutcome {
     pub stale: Vec<String>,
     /// Whether the result of a run could not be written; its outcome says why.
     pub unwritten: bool,
+    /// How the results compare with earlier ones.
+    pub against: Against,
     /// Why files of the suite could not be written, or results of an earlier one not removed.
     pub failures: Vec<String>,
 }

@@ -46,6 +46,7 @@ pub fn run_suite(
     let suite = &Suite {
         output,
         resume: options.resume,
+        earlier: options.earlier.as_ref(),
         ledger,
     };
     let conclude = || {

@@ -38,6 +38,7 @@ pub fn write_runs(runs: &[Run], options: &SuiteOptions) -> Result<SuiteOutcome, 
     let suite = &Suite {
         output: &SuiteOutput::open(&plans, layout, options)?,
         resume: Resume::Never,
+        earlier: options.earlier.as_ref(),
         ledger: &Ledger::new(plans.len()),
     };
     for (index, run) in runs.iter().enumerate() {

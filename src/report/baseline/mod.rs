@@ -2,5 +2,5 @@
 
 pub(super) mod json;
 pub(super) mod markdown;
-mod rows;
+pub(super) mod rows;
 pub(super) mod text;

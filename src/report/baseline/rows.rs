@@ -1,11 +1,22 @@
 //! Parts of a row that text and Markdown share.
 
-use crate::baseline::{Comparison, Entry, Interval, Outcome, Row};
+use crate::baseline::{Comparison, Entry, Interval, Outcome, Row, Side};
 use crate::metrics::{Estimate, estimate_text, plain};
 use crate::wording::counted;
 
 /// Significant digits of a half width.
 const DIGITS: i32 = 2;
+
+/// A comparison with the sides that it is of.
+#[derive(Clone, Copy, Debug)]
+pub struct ComparedSides<'a> {
+    /// What was judged.
+    pub comparison: &'a Comparison,
+    /// Earlier results.
+    pub old: &'a Side,
+    /// Later results.
+    pub new: &'a Side,
+}
 
 /// Rows with an outcome that says something, the worst first.
 pub(super) fn notable(comparison: &Comparison) -> Vec<&Row> {
@@ -16,7 +27,7 @@ pub(super) fn notable(comparison: &Comparison) -> Vec<&Row> {
 }
 
 /// `12 figures: 1 worse, 11 same`.
-pub(super) fn counts(comparison: &Comparison) -> String {
+pub(in crate::report) fn counts(comparison: &Comparison) -> String {
     let counts = Outcome::ALL.map(|outcome| (outcome, comparison.count(outcome)));
     let counts = counts.into_iter().filter(|(_, count)| *count > 0);
     let counts: Vec<String> = counts
@@ -30,7 +41,7 @@ pub(super) fn counts(comparison: &Comparison) -> String {
 }
 
 /// A figure with its interval, without the unit; `-` where there is none.
-pub(super) fn figure(entry: Option<&Entry>) -> String {
+pub(in crate::report) fn figure(entry: Option<&Entry>) -> String {
     match entry {
         None => "-".to_owned(),
         Some(entry) => match entry.interval {
@@ -44,7 +55,7 @@ pub(super) fn figure(entry: Option<&Entry>) -> String {
 }
 
 /// Unit of a row, empty for a ratio.
-pub(super) fn unit(row: &Row) -> &str {
+pub(in crate::report) fn unit(row: &Row) -> &str {
     let entry = row.new.as_ref().or(row.old.as_ref());
     match entry.map_or("", |entry| entry.unit.as_str()) {
         "1" => "",
@@ -53,13 +64,13 @@ pub(super) fn unit(row: &Row) -> &str {
 }
 
 /// `+9.0 %`; none where nothing is compared or the earlier value is zero.
-pub(super) fn change(row: &Row) -> Option<String> {
+pub(in crate::report) fn change(row: &Row) -> Option<String> {
     let (difference, old) = (row.difference?, row.old.as_ref()?.value);
     (old != 0.0).then(|| format!("{:+.2} %", 100.0 * difference / old.abs()))
 }
 
 /// What it was judged by, and how likely that is by chance.
-pub(super) fn grounds(row: &Row) -> String {
+pub(in crate::report) fn grounds(row: &Row) -> String {
     let mut parts = Vec::new();
     if row.old.is_some() && row.new.is_some() {
         parts.push(row.basis.words());

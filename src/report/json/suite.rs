@@ -6,6 +6,7 @@ use serde_json::{Map, Value};
 
 use crate::comparison::Comparison;
 use crate::gate::VerdictKind;
+use crate::report::baseline::rows::ComparedSides;
 use crate::report::comparison::json::comparison;
 use crate::report::csv::metrics::metric_rows;
 use crate::report::json::summary::point_json;
@@ -24,6 +25,8 @@ pub struct SuiteReport<'a> {
     pub across: &'a Comparison,
     /// Folders that hold results of earlier scenarios of these names.
     pub stale: &'a [String],
+    /// How they compare with earlier results; none if that was not asked. The page alone shows it.
+    pub against: Option<ComparedSides<'a>>,
 }
 
 /// Stands for the runs in the text around them.

@@ -3,6 +3,7 @@
 //! What a scenario says is text and never markup: every value goes through the escaping of the templates.
 //! All can be read without the script, which sorts, filters and reads values under the cursor.
 
+pub(super) mod against;
 mod channels;
 mod document;
 mod gates;

@@ -34,16 +34,31 @@ pub(super) fn pictures(all: &[Shown], room: usize) -> Markup {
 }
 
 fn figure(picture: &Shown) -> Markup {
+    let name =
+        html! { (capital(picture.holds)) " " a.small href=(picture.name) { (picture.name) } };
+    framed(&name, (picture.holds, picture.name), picture.svg)
+}
+
+/// A picture that stands in no file of its own.
+pub(super) fn figure_of_page(holds: &str, title: &str, svg: &str) -> Markup {
+    framed(
+        &html! { (capital(holds)) ": " (title) },
+        (holds, title),
+        svg,
+    )
+}
+
+fn framed(caption: &Markup, (holds, name): (&str, &str), svg: &str) -> Markup {
     // Within a page the picture takes the width of its column.
-    let label = format!("<svg role=\"img\" aria-label=\"{}\" ", picture.holds);
-    let svg = picture.svg.replacen("<svg ", &label, 1);
+    let label = format!("<svg role=\"img\" aria-label=\"{holds}\" ");
+    let svg = svg.replacen("<svg ", &label, 1);
     html! {
         figure.picture {
             figcaption {
-                span { (capital(picture.holds)) " " a.small href=(picture.name) { (picture.name) } }
+                span { (caption) }
                 output.small {}
             }
-            div.frame role="group" aria-label=(picture.name) tabindex="0" { (PreEscaped(svg)) }
+            div.frame role="group" aria-label=(name) tabindex="0" { (PreEscaped(svg)) }
         }
     }
 }

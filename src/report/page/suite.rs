@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
 
+use super::against::comparison_section;
 use super::document::{document, facts, filter, maybe, section, wide};
 use super::gates::gates_table;
 use super::pictures::{Shown, pictures};
@@ -35,7 +36,9 @@ pub fn suite_page(suite: &SuiteReport, files: &[(String, String)]) -> String {
     let sweeps = html! { @for (name, points) in &sweeps { (sweep(name, points, &mut left)) } };
     let tables = tables(suite.across);
     let behind = html! { (maybe(assumptions(suite.across))) (origin(suite, files)) };
-    let used = [&head, &gates, &runs, &sweeps, &tables, &behind];
+    let against = suite.against.as_ref().map(comparison_section);
+    let against = maybe(against);
+    let used = [&head, &against, &gates, &runs, &sweeps, &tables, &behind];
     let used = used.iter().map(|part| part.0.len()).sum::<usize>() + RESERVE_BYTES;
     let shown = files.iter().filter(|(name, _)| name.ends_with(".svg"));
     let shown: Vec<Shown> = shown
@@ -51,7 +54,7 @@ pub fn suite_page(suite: &SuiteReport, files: &[(String, String)]) -> String {
             (section("tables", "Across scenarios", &html! { (tables) (drawn) }))
         }
     };
-    let body = html! { (gates) (runs) (sweeps) (tables) (behind) };
+    let body = html! { (against) (gates) (runs) (sweeps) (tables) (behind) };
     let foot = html! { p { "Written by fogbench " (suite.tool_version) ". The same scenarios, seeds and version give the same bytes." } };
     document("fogbench results", &head, &body, &foot)
 }
@@ -125,6 +128,7 @@ fn head(suite: &SuiteReport, sweeps: &[(&str, Points)]) -> Markup {
         div.verdict { span class={ "pill " (class) } { (word) } span { (passed) " of " (total) " runs passed" } }
         (facts(&pairs))
         nav aria-label="sections" {
+            @if suite.against.is_some() { a href="#against" { "Against the baseline" } }
             @if gates > 0 { a href="#gates" { "Gates" } }
             a href="#runs" { "Runs" }
             @for (name, _) in sweeps { a href=(format!("#sweep-{name}")) { (name) } }

@@ -2,6 +2,7 @@
 //!
 //! A file for each picture; what they are drawn with stands in [`drawing`].
 
+pub(super) mod against;
 pub(super) mod allan;
 pub(super) mod before_after;
 pub(super) mod bode;

@@ -15,7 +15,6 @@ use crate::cli::terminal::output;
 use crate::cli::terminal::signals::Interrupt;
 use crate::experiment::{Resume, SuiteOptions, run_suite};
 use crate::scenario::bounded;
-use against::Against;
 use progress::Progress;
 use server_files::ServerFiles;
 
@@ -33,19 +32,20 @@ pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Re
         output::talk("error: --require-gates: no selected scenario has a gate; nothing was run");
         return Ok(Exit::GateFailed);
     }
+    let beside = against::earlier(options)
+        .and_then(|earlier| Ok((earlier, ServerFiles::check(options, &plans)?)));
+    let (earlier, server) = match beside {
+        Ok(beside) => beside,
+        Err(exit) => return Ok(exit),
+    };
     let suite = SuiteOptions {
+        earlier,
         threads: usize::from(options.jobs),
         force: options.force,
         resume: resume(options.resume),
         ..SuiteOptions::new(options.output.clone())
     };
-    let beside = Against::read(options, &plans)
-        .and_then(|against| Ok((against, ServerFiles::check(options, &plans)?)));
-    let (against, server) = match beside {
-        Ok(beside) => beside,
-        Err(exit) => return Ok(exit),
-    };
-    let progress = Progress::new(&plans, options, (against, server), interrupt);
+    let progress = Progress::new(&plans, options, server, interrupt);
     if let Some(text) = senseless_threads(options) {
         output::talk(&format!(
             "warning: RAYON_NUM_THREADS = `{}` is no number of threads: one per core",

@@ -8,7 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::account::Account;
-use super::against::Against;
+use super::against::Compared;
 use super::clock::SuiteClock;
 use super::server_files::ServerFiles;
 use crate::cli::options::arguments::RunOptions;
@@ -26,7 +26,6 @@ pub(super) struct Progress<'a> {
     bar: ProgressBar,
     clock: SuiteClock,
     options: &'a RunOptions,
-    against: Against<'a>,
     server: ServerFiles<'a>,
     interrupt: &'a Interrupt,
     pending: Mutex<Pending>,
@@ -44,7 +43,7 @@ impl<'a> Progress<'a> {
     pub(super) fn new(
         plans: &[Plan],
         options: &'a RunOptions,
-        (against, server): (Against<'a>, ServerFiles<'a>),
+        server: ServerFiles<'a>,
         interrupt: &'a Interrupt,
     ) -> Self {
         let total_s: f64 = plans.iter().map(Plan::simulated_s).sum();
@@ -66,7 +65,6 @@ impl<'a> Progress<'a> {
             bar,
             clock: SuiteClock::start(folders.collect(), total_s),
             options,
-            against,
             server,
             interrupt,
             pending: Mutex::new(pending),
@@ -86,7 +84,7 @@ impl<'a> Progress<'a> {
                 let printed = self.print_rest(suite);
                 self.talk_of(suite);
                 let unprinted = printed.err().map(io_failure);
-                let compared = self.beside_bar(|| self.against.compare(suite));
+                let compared = self.beside_bar(|| Compared::print(suite, self.options));
                 let times = self.clock.times();
                 let comparison = &compared.markdown;
                 let served = self.beside_bar(|| self.server.write(suite, &times, comparison));
