@@ -95,7 +95,6 @@ fn figures(compared: &ComparedSides, most: usize, id: &str) -> Markup {
                 th scope="col" { "unit" }
                 th.num scope="col" { "change" }
                 th scope="col" { "before above, now below, accepted part behind" }
-                th scope="col" { "judged by" }
             } }
             tbody { @for row in &rows { (figure_row(row, compared)) } }
         }
@@ -124,13 +123,13 @@ fn figure_row(row: &Row, compared: &ComparedSides) -> Markup {
         td data-v=(severity(row.outcome)) { span class={ "pill " (class(row.outcome)) } { (row.outcome.as_str()) } }
         th scope="row" {
             (row.id.run_text()) " " code { (row.id.channel) "." (row.id.metric) }
+            span.definition { (grounds(row)) }
         }
         td.num data-v=(value(&row.old)) { (figure(row.old.as_ref())) }
         td.num data-v=(value(&row.new)) { (figure(row.new.as_ref())) }
         td { (unit_word(unit(row))) }
         td.num data-v=(relative.unwrap_or_default()) { (change(row).unwrap_or_default()) }
         td data-v="" { (bars(row, compared)) }
-        td.small.soft { (grounds(row)) }
     } }
 }
 
