@@ -45,8 +45,8 @@ pub(crate) use check::cross::comparison::slug;
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, ComparisonColumn, ComparisonConfig,
     ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig, GateDecision,
-    InconclusivePolicy, OutputConfig, PublishedConfig, ReportedRuns, SamplesFormat, Scenario,
-    TrialConfig,
+    InconclusivePolicy, OutputConfig, PublishedConfig, RangeConfig, ReportedRuns, SamplesFormat,
+    Scenario, Spacing, TrialConfig,
 };
 pub use document::setting::Setting;
 pub use generate::json_schema::json_schema;
