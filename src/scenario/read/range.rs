@@ -174,7 +174,8 @@ fn read(written: &str, key: &Key, table: &Table) -> Result<RangeConfig, RangeErr
     let refuse = |name: &str, message: &str| RangeError::of(written, table.get(name), message);
     if !matches!(key.kind, Kind::Float(_) | Kind::Integer(_)) {
         let allowed = key.allowed();
-        let message = format!("only numbers have ranges: expected an array of values, each {allowed}");
+        let message =
+            format!("only numbers have ranges: expected an array of values, each {allowed}");
         return Err(refuse("", &message));
     }
     let parts = complete(table).map_err(|(name, message)| refuse(name, &message))?;

@@ -132,6 +132,23 @@ impl Panel {
         picture.line(piece, stroke);
     }
 
+    /// Draws an upright interval, cut off at the frame.
+    pub(in crate::report::plot) fn bar(
+        &self,
+        picture: &mut Picture,
+        x: f64,
+        (low, high): (f64, f64),
+        stroke: Stroke,
+    ) {
+        // What has no place on a logarithmic axis lies below it.
+        let low = if self.place_y(low).is_finite() {
+            low
+        } else {
+            self.y.range().0
+        };
+        self.line(picture, &[(x, low), (x, high)], stroke);
+    }
+
     /// Fills between two lines over the same abscissae, cut off at the frame.
     pub(in crate::report::plot) fn band(
         &self,
@@ -232,6 +249,33 @@ impl Legend {
         text: &str,
     ) {
         picture.marker((LEGEND + 17.0, self.y), look.0, look.1);
+        self.text_at(picture, LEGEND + 42.0, text, 12.5);
+    }
+
+    /// A line sample with the marker on it.
+    pub(in crate::report::plot) fn curve(
+        &mut self,
+        picture: &mut Picture,
+        stroke: Stroke,
+        shape: Shape,
+        text: &str,
+    ) {
+        let y = self.y;
+        self.line(picture, stroke, text);
+        picture.marker((LEGEND + 17.0, y), shape, stroke.colour);
+    }
+
+    /// A filled sample with its meaning, for a band or an area of a colour.
+    pub(in crate::report::plot) fn area(
+        &mut self,
+        picture: &mut Picture,
+        (colour, opacity): (Colour, f64),
+        text: &str,
+    ) {
+        let (left, right) = (LEGEND, LEGEND + 34.0);
+        let (top, bottom) = (self.y - 6.0, self.y + 6.0);
+        let corners = vec![(left, top), (right, top), (right, bottom), (left, bottom)];
+        picture.area(corners, colour, opacity);
         self.text_at(picture, LEGEND + 42.0, text, 12.5);
     }
 

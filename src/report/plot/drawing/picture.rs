@@ -186,6 +186,17 @@ impl Picture {
         self.push_text(at, text, size, Anchor::Start, (colour, false, false));
     }
 
+    /// Level text in a colour with its middle at a point.
+    pub(in crate::report) fn centred_text(
+        &mut self,
+        at: Point,
+        text: &str,
+        size: f64,
+        colour: Colour,
+    ) {
+        self.push_text(at, text, size, Anchor::Middle, (colour, false, false));
+    }
+
     /// Bold level text.
     pub(in crate::report) fn heading(&mut self, at: Point, text: &str, size: f64) {
         self.push_text(at, text, size, Anchor::Start, (BLACK, false, true));
