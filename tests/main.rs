@@ -97,6 +97,7 @@ mod sign_lms_hardware;
 mod small_inputs_and_steps;
 mod suite;
 mod support;
+mod sweep_pictures;
 mod terminal;
 mod timing;
 mod trial;

@@ -118,6 +118,15 @@ impl Axis {
         }
     }
 
+    /// A value that stands a part of the axis further on.
+    pub(in crate::report::plot) fn moved(&self, value: f64, part: f64) -> f64 {
+        if self.is_log {
+            value * (self.high / self.low).powf(part)
+        } else {
+            value + (self.high - self.low) * part
+        }
+    }
+
     /// What the axis measures, for programs.
     pub(in crate::report::plot) fn json(&self) -> Value {
         let record = object([

@@ -65,6 +65,16 @@ impl Panel {
                 }
             }
         }
+        panel.outline(picture);
+        let below = (0.5 * (LEFT + RIGHT), bottom + 34.0);
+        picture.text(below, &panel.x.title, 14.0, Anchor::Middle);
+        picture.upright_text((22.0, 0.5 * (top + bottom)), &panel.y.title, 14.0);
+        panel
+    }
+
+    /// Draws the frame, once more over what fills it to its edges.
+    pub(in crate::report::plot) fn outline(&self, picture: &mut Picture) {
+        let (top, bottom) = (self.top, self.bottom);
         let corners = [
             (LEFT, top),
             (RIGHT, top),
@@ -73,10 +83,11 @@ impl Panel {
             (LEFT, top),
         ];
         picture.line(corners.to_vec(), Stroke::solid(BLACK, 1.0));
-        let below = (0.5 * (LEFT + RIGHT), bottom + 34.0);
-        picture.text(below, &panel.x.title, 14.0, Anchor::Middle);
-        picture.upright_text((22.0, 0.5 * (top + bottom)), &panel.y.title, 14.0);
-        panel
+    }
+
+    /// The abscissa that stands some pixels beside another.
+    pub(in crate::report::plot) fn beside(&self, x: f64, pixels: f64) -> f64 {
+        self.x.moved(x, pixels / (RIGHT - LEFT))
     }
 
     fn grid_line(&self, value: f64, is_x: bool) -> Vec<Point> {

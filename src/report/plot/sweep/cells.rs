@@ -111,6 +111,7 @@ pub(super) fn draw(
             start = column + 1;
         }
     }
+    panel.outline(picture);
     write_values(picture, &panel, (&columns, &rows), (&grid, &classes));
     explain(picture, frame.0, (sheet, channel), &classes);
 }

@@ -9,7 +9,7 @@ use super::super::drawing::series::real;
 use crate::report::record::run::RunOutcome;
 use crate::report::record::sweep::{swept_text, swept_value};
 use crate::scenario::unit_of_written;
-use crate::wording::plain;
+use crate::wording::{plain, to_digits};
 
 /// A key with the values that it takes.
 pub(super) struct SweptKey {
@@ -65,10 +65,10 @@ impl SweptKey {
         for (place, index) in order.iter().enumerate() {
             rank[*index] = place;
         }
-        let labels = order.iter().map(|index| match &numbers {
-            Some(numbers) => plain(numbers[*index]),
-            None => swept_text(distinct[*index]),
-        });
+        let labels = match &numbers {
+            Some(numbers) => number_labels(order.iter().map(|index| numbers[*index])),
+            None => order.iter().map(|at| swept_text(distinct[*at])).collect(),
+        };
         let places = order
             .iter()
             .enumerate()
@@ -80,7 +80,7 @@ impl SweptKey {
             name: name.to_owned(),
             unit: unit_of_written(name),
             is_number: numbers.is_some(),
-            labels: labels.collect(),
+            labels,
             places: places.collect(),
             value_of: values.iter().map(|value| rank[known[value]]).collect(),
         }
@@ -117,6 +117,16 @@ impl SweptKey {
             Axis::linear((first, last), 0.03, &title)
         };
         axis.labelled_at(&labels().collect::<Vec<_>>(), RIGHT - LEFT)
+    }
+}
+
+/// Labels of different numbers, with three digits where these tell them apart.
+fn number_labels(numbers: impl Iterator<Item = f64> + Clone) -> Vec<String> {
+    let short: Vec<String> = numbers.clone().map(|it| plain(to_digits(it, 3))).collect();
+    if short.windows(2).all(|pair| pair[0] != pair[1]) {
+        short
+    } else {
+        numbers.map(plain).collect()
     }
 }
 
@@ -177,6 +187,10 @@ mod tests {
         assert_eq!(numbers.labels, ["0.5", "2", "20"]);
         assert_eq!(numbers.value_of, [1, 0, 2, 0]);
         assert_eq!(numbers.title(), "gyro.source.power_uw [uW]");
+        let close = SweptKey::new("seed", &["10001", "10002"]);
+        assert_eq!(close.labels, ["10001", "10002"]);
+        let long = SweptKey::new("gyro.source.power_uw", &["0.104354", "0.217794"]);
+        assert_eq!(long.labels, ["0.104", "0.218"]);
         let words = SweptKey::new("fidelity", &["\"rate\"", "\"loop\""]);
         assert!(!words.is_number);
         assert_eq!(words.labels, ["rate", "loop"]);

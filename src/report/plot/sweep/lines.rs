@@ -8,8 +8,10 @@ use crate::metrics::Estimate;
 
 /// Most points of a line that have markers and intervals: more would be a band of ink.
 const MARKED_MAX: usize = 60;
-/// Part of a word's room over which what stands at it is spread.
+/// Part of the room between two values over which what stands at each is spread, and the most between
+/// neighbours, pixels: lines that coincide then lie side by side.
 const SPREAD: f64 = 0.5;
+const BESIDE: f64 = 8.0;
 
 /// A line of a panel.
 struct Line<'a> {
@@ -35,7 +37,8 @@ pub(super) fn channels(picture: &mut Picture, frame: (f64, f64), sheet: &Sheet, 
         })
         .collect();
     for (place, line) in lines.iter().enumerate() {
-        draw(picture, &panel, line, dodge(plan, place, lines.len()), plan);
+        let aside = beside(plan, &panel, &lines, place);
+        draw(picture, &panel, line, aside, plan);
     }
     for (line, channel) in lines.iter().zip(&sheet.channels) {
         name(picture, &mut legend, line, plan);
@@ -43,7 +46,7 @@ pub(super) fn channels(picture: &mut Picture, frame: (f64, f64), sheet: &Sheet, 
             legend.detail(picture, &lack);
         }
     }
-    say_intervals(picture, &mut legend, &lines);
+    explain(picture, &mut legend, &lines);
 }
 
 /// The panel of a channel with a line for each setting of the other keys.
@@ -69,7 +72,8 @@ pub(super) fn settings(
         })
         .collect();
     for (place, line) in lines.iter().enumerate() {
-        draw(picture, &panel, line, dodge(plan, place, lines.len()), plan);
+        let aside = beside(plan, &panel, &lines, place);
+        draw(picture, &panel, line, aside, plan);
     }
     for line in &lines {
         name(picture, &mut legend, line, plan);
@@ -77,7 +81,7 @@ pub(super) fn settings(
     if let Some(lack) = lack(channel) {
         legend.text(picture, &lack);
     }
-    say_intervals(picture, &mut legend, &lines);
+    explain(picture, &mut legend, &lines);
 }
 
 /// The chosen points of a channel, in the order of their places.
@@ -95,13 +99,18 @@ fn points(
     points
 }
 
-/// How far off its place a line stands: words have room beside them, numbers have none.
-fn dodge(plan: &Layout, place: usize, count: usize) -> f64 {
-    if plan.along.is_number {
-        0.0
-    } else {
-        SPREAD * ((real(place) + 0.5) / real(count) - 0.5)
+/// How far beside its place the line `place` of `count` stands, pixels; without markers nothing would show
+/// that it does.
+fn beside(plan: &Layout, panel: &Panel, lines: &[Line], place: usize) -> f64 {
+    if !lines.iter().all(is_marked) {
+        return 0.0;
     }
+    let places = plan.along.places.iter();
+    let pixels: Vec<f64> = places.map(|x| panel.place((*x, 1.0)).0).collect();
+    let gaps = pixels.windows(2).map(|pair| pair[1] - pair[0]);
+    let room = SPREAD * gaps.fold(f64::INFINITY, f64::min);
+    let step = (room / real(lines.len())).min(BESIDE);
+    step * (real(place) - 0.5 * real(lines.len() - 1))
 }
 
 fn is_marked(line: &Line) -> bool {
@@ -126,7 +135,7 @@ fn draw(picture: &mut Picture, panel: &Panel, line: &Line, aside: f64, plan: &La
     };
     let shape = shape_of(line.index);
     for piece in line.points.split(|(_, value)| value.is_none()) {
-        let place = |at: &(f64, Option<Estimate>)| Some((at.0 + aside, at.1?));
+        let place = |at: &(f64, Option<Estimate>)| Some((panel.beside(at.0, aside), at.1?));
         let piece: Vec<(f64, Estimate)> = piece.iter().filter_map(place).collect();
         if plan.along.is_number {
             let values: Vec<(f64, f64)> = piece.iter().map(|(x, it)| (*x, it.value)).collect();
@@ -151,13 +160,16 @@ fn name(picture: &mut Picture, legend: &mut Legend, line: &Line, plan: &Layout) 
     }
 }
 
-/// What stands for the uncertainty, if anything has one.
-fn say_intervals(picture: &mut Picture, legend: &mut Legend, lines: &[Line]) {
+/// What stands for the uncertainty, if anything has one, and that marks stand beside their places.
+fn explain(picture: &mut Picture, legend: &mut Legend, lines: &[Line]) {
     let mut values = lines.iter().flat_map(|line| &line.points);
     let has_interval = values.any(|(_, value)| value.is_some_and(|it| it.low < it.high));
+    let are_drawn = lines.iter().all(is_marked);
+    legend.space();
+    if are_drawn && lines.len() > 1 {
+        legend.text(picture, "marks of one value stand side by side");
+    }
     if has_interval {
-        legend.space();
-        let are_drawn = lines.iter().all(is_marked);
         legend.text(
             picture,
             if are_drawn {
