@@ -18,6 +18,7 @@ are kept.
 /// Folders in the order of the page.
 const PLACES: [Place; 5] = [
     Place::Suite,
+    Place::Sweep,
     Place::Run,
     Place::Log,
     Place::Calibration,

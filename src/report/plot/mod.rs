@@ -80,8 +80,8 @@ pub struct SweepPictures {
     pub notes: Vec<String>,
 }
 
-/// The pictures of every sweep of which all points have ended; `is_whole` says of a name whether the runs
-/// are all of its points.
+/// The pictures of every sweep of two points or more of which all have ended; `is_whole` says of a name
+/// whether the runs are all of its points.
 #[must_use]
 pub fn sweep_pictures(runs: &[RunOutcome], is_whole: &dyn Fn(&str) -> bool) -> Vec<SweepPictures> {
     let mut sweeps: BTreeMap<&str, Vec<&RunOutcome>> = BTreeMap::new();
@@ -90,7 +90,8 @@ pub fn sweep_pictures(runs: &[RunOutcome], is_whole: &dyn Fn(&str) -> bool) -> V
     }
     let has_ended = |points: &[&RunOutcome]| points.iter().all(|point| !point.is_not_run);
     let ended = sweeps.into_iter();
-    let ended = ended.filter(|(name, points)| is_whole(name) && has_ended(points));
+    let ended =
+        ended.filter(|(name, points)| points.len() > 1 && is_whole(name) && has_ended(points));
     ended
         .map(|(name, points)| pictures_of(name, &points))
         .collect()

@@ -178,7 +178,7 @@ fn read(written: &str, key: &Key, table: &Table) -> Result<RangeConfig, RangeErr
             format!("only numbers have ranges: expected an array of values, each {allowed}");
         return Err(refuse("", &message));
     }
-    let parts = complete(table).map_err(|(name, message)| refuse(name, &message))?;
+    let parts = complete(written, table)?;
     for name in ["from", "to"] {
         if !is_end(key, &parts[name].value) {
             let got = parts[name].value.to_toml();
@@ -230,25 +230,22 @@ fn read(written: &str, key: &Key, table: &Table) -> Result<RangeConfig, RangeErr
     Ok(config)
 }
 
-/// The parts of a range with defaults for those that are not given; else the name of the part that is
-/// wrong, and what is wrong with it.
-fn complete(table: &Table) -> Result<Table, (&str, String)> {
+/// The parts of a range with defaults for those that are not given.
+fn complete(written: &str, table: &Table) -> Result<Table, RangeError> {
     let rows = || RangeConfig::TABLE.rows.iter();
-    for name in table.keys() {
+    for (name, node) in table {
         if !rows().any(|row| row.name == name) {
             let names: Vec<&str> = rows().map(|row| row.name).collect();
             let (unknown, names) = (excerpt(name), names.join(", "));
-            return Err((
-                name,
-                format!("unknown key {unknown} of a range: expected {names}"),
-            ));
+            let message = format!("unknown key {unknown} of a range: expected {names}");
+            return Err(RangeError::of(written, Some(node), &message));
         }
     }
     let mut parts = table.clone();
     for row in rows().filter(|row| !table.contains_key(row.name)) {
         if row.presence == Presence::Required {
             let message = format!("the range lacks {}: expected one as {EXAMPLE}", row.name);
-            return Err(("", message));
+            return Err(RangeError::of(written, None, &message));
         }
         let value = Value::Text(row.literal.trim_matches('"').to_owned());
         parts.insert(row.name.to_owned(), Node { value, mark: None });
