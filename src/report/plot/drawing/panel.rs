@@ -234,6 +234,13 @@ impl Legend {
         Self { y: top + 10.0 }
     }
 
+    /// A legend that starts at a height, or below another that reaches further down.
+    pub(in crate::report::plot) fn below(above: &Self, top: f64) -> Self {
+        Self {
+            y: above.y.max(top + 10.0),
+        }
+    }
+
     /// A line sample with its name.
     pub(in crate::report::plot) fn line(
         &mut self,
@@ -336,6 +343,7 @@ impl Legend {
             }
         }
         picture.text((x, self.y), &line, size, Anchor::Start);
+        picture.reach(self.y + size);
         self.y += size + 7.0;
     }
 }

@@ -149,6 +149,11 @@ impl Picture {
         }
     }
 
+    /// Makes the picture high enough for what ends at a height, pixels.
+    pub(in crate::report) fn reach(&mut self, bottom: f64) {
+        self.size.1 = self.size.1.max(bottom.ceil());
+    }
+
     /// Notes a frame with its axes, by which a program reads values off the picture.
     pub(in crate::report) fn frame(&mut self, frame: Value) {
         self.frames.push(frame);
