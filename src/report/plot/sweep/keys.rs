@@ -120,9 +120,9 @@ impl SweptKey {
     }
 }
 
-/// Labels of different numbers, with three digits where these tell them apart.
+/// Labels of different numbers, with four digits where these tell them apart.
 fn number_labels(numbers: impl Iterator<Item = f64> + Clone) -> Vec<String> {
-    let short: Vec<String> = numbers.clone().map(|it| plain(to_digits(it, 3))).collect();
+    let short: Vec<String> = numbers.clone().map(|it| plain(to_digits(it, 4))).collect();
     if short.windows(2).all(|pair| pair[0] != pair[1]) {
         short
     } else {
@@ -190,7 +190,7 @@ mod tests {
         let close = SweptKey::new("seed", &["10001", "10002"]);
         assert_eq!(close.labels, ["10001", "10002"]);
         let long = SweptKey::new("gyro.source.power_uw", &["0.104354", "0.217794"]);
-        assert_eq!(long.labels, ["0.104", "0.218"]);
+        assert_eq!(long.labels, ["0.1044", "0.2178"]);
         let words = SweptKey::new("fidelity", &["\"rate\"", "\"loop\""]);
         assert!(!words.is_number);
         assert_eq!(words.labels, ["rate", "loop"]);

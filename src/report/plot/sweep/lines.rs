@@ -2,7 +2,7 @@
 
 use super::super::drawing::panel::{Legend, Panel};
 use super::super::drawing::picture::{Dash, Picture, Stroke};
-use super::super::drawing::series::{real, shape_of, stroke_of};
+use super::super::drawing::series::{SIDE_BY_SIDE, real, shape_of, stroke_of};
 use super::sheet::{Channel, Layout, Sheet, lack};
 use crate::metrics::Estimate;
 
@@ -167,7 +167,7 @@ fn explain(picture: &mut Picture, legend: &mut Legend, lines: &[Line]) {
     let are_drawn = lines.iter().all(is_marked);
     legend.space();
     if are_drawn && lines.len() > 1 {
-        legend.text(picture, "marks of one value stand side by side");
+        legend.text(picture, SIDE_BY_SIDE);
     }
     if has_interval {
         legend.text(
