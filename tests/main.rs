@@ -78,6 +78,7 @@ mod packages;
 mod patent_calibration;
 mod patent_filter;
 mod patent_known_answers;
+mod pictures;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::support::svg::Svg;
-use crate::support::{code, fogbench, stderr, tree, write};
+use crate::support::{code, fogbench, stderr, stdout, tree, write};
 
 const SHORT: &str = "schema = 1\nduration_s = 1.0\nwarm_up_s = 0.5\nfidelity = \"rate\"\n\
                      [[filter]]\nname = \"l\"\n[filter.lms]\n";
@@ -59,6 +59,22 @@ fn a_sweep_draws_its_headline_metrics_beside_its_points_and_in_the_page() {
     assert!(page.contains("aria-label=\"mean over gyro.source.power_uw\""));
     let record = fs::read_to_string(at.join("output/s/.fogbench.toml")).expect("a record");
     assert!(record.contains(PICTURE) && record.contains("holds = \"sweep\""));
+}
+
+#[test]
+fn a_list_says_what_each_point_sets() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let at = folder.path();
+    let range = "{ from = 0.5, to = 2.0, count = 3, spacing = \"log\" }";
+    sweep(at, &format!("\"gyro.source.power_uw\" = {range}"));
+    let text = stdout(&fogbench(at, &["list", "s.toml"]));
+    assert!(
+        text.contains("s/0001  1 s  gyro.source.power_uw = 1.0\n"),
+        "{text}"
+    );
+    let json = stdout(&fogbench(at, &["list", "s.toml", "--format", "json"]));
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json[2]["sweep"]["gyro.source.power_uw"], 2.0);
 }
 
 #[test]

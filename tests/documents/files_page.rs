@@ -16,7 +16,7 @@ are kept.
 ";
 
 /// Folders in the order of the page.
-const PLACES: [Place; 5] = [
+const PLACES: [Place; 6] = [
     Place::Suite,
     Place::Sweep,
     Place::Run,
