@@ -69,7 +69,7 @@ pub use log::{LogReport, log_json, log_text};
 pub use page::suite::suite_page;
 pub use plot::{Pictures, SVG_BYTES_MAX, SweepPictures, sweep_pictures};
 pub use record::run::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
-pub use record::sweep::{PointFigure, PointOfSweep};
+pub use record::sweep::{PointFigure, PointOfSweep, assignments_text, swept_value};
 pub use restore::run::RestoredRun;
 pub use text::suite::{SuiteStyle, closing_text, scenario_text, suite_text, sweep_text};
 pub use text::table::table_text;

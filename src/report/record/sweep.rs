@@ -44,7 +44,8 @@ pub(in crate::report) fn point_figures(report: &RunReport) -> Vec<PointFigure> {
 
 /// A value that a sweep sets, out of its TOML: numbers and truth values as such, texts without their
 /// quotes. What JSON has no type for keeps its spelling.
-pub(in crate::report) fn swept_value(toml: &str) -> Value {
+#[must_use]
+pub fn swept_value(toml: &str) -> Value {
     serde_json::from_str(toml).unwrap_or_else(|_| toml.into())
 }
 
@@ -57,7 +58,8 @@ pub(in crate::report) fn swept_text(toml: &str) -> String {
 }
 
 /// What a point sets, in words: `a = 1, b = "x"`.
-pub(in crate::report) fn assignments_text(assignments: &[(String, String)]) -> String {
+#[must_use]
+pub fn assignments_text(assignments: &[(String, String)]) -> String {
     let keys = assignments.iter();
     let keys = keys.map(|(key, value)| format!("{key} = {value}"));
     keys.collect::<Vec<_>>().join(", ")
