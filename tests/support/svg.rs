@@ -7,6 +7,9 @@ use serde_json::Value;
 /// Units of a picture per pixel.
 const SCALE: f64 = 4.0;
 
+/// Corners of a line or an area.
+pub(crate) type Points = Vec<(f64, f64)>;
+
 /// A text: the point that it stands at, its anchor, its size and what it says.
 #[derive(Clone, Debug)]
 pub(crate) struct Label {
@@ -25,9 +28,9 @@ pub(crate) struct Svg {
     /// Middles of the circles.
     pub(crate) circles: Vec<(f64, f64)>,
     /// Lines: colour and points.
-    pub(crate) lines: Vec<(String, Vec<(f64, f64)>)>,
+    pub(crate) lines: Vec<(String, Points)>,
     /// Areas: colour, opacity and corners.
-    pub(crate) areas: Vec<(String, f64, Vec<(f64, f64)>)>,
+    pub(crate) areas: Vec<(String, f64, Points)>,
     /// What it says of its frames.
     pub(crate) panels: Vec<Value>,
 }

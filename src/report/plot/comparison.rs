@@ -79,27 +79,12 @@ fn panel(picture: &mut Picture, table: &ComparedTable, columns: &[usize], top: f
         return;
     };
     let count = table.rows.len();
+    // The labels are written below: an axis has one line for them.
+    let labels = labels(table);
     let mut x = Axis::linear((-0.5, real(count) - 0.5), 0.0, "");
-    let labels = table.rows.iter().enumerate();
-    let labels = labels.map(|(index, row)| {
-        let mark = if row.is_base { " (as read)" } else { "" };
-        // What the points of a sweep have in common, the title says.
-        let label = row.label.rsplit(": ").next().unwrap_or(&row.label);
-        (real(index), format!("{label}{mark}"))
-    });
-    // Written below: an axis has one line for its labels.
-    let labels: Vec<(f64, String)> = labels.collect();
     x.ticks.clear();
     x.minor = labels.iter().map(|(place, _)| *place).collect();
-    let definition = &table.columns[columns[0]];
-    let unit = table.sample(columns[0]).map_or_else(String::new, unit_text);
-    let ratio = if definition.relative_to.is_some() {
-        ", ratio"
-    } else {
-        ""
-    };
-    let title = format!("{}{ratio} [{unit}]", heading_of(&definition.metric)).replace(" []", "");
-    let y = Axis::linear(range, 0.08, &title);
+    let y = Axis::linear(range, 0.08, &title(table, columns[0]));
     let bottom = top + PANEL - 62.0;
     let panel = Panel::new(picture, (top, bottom), x, y);
     write_labels(picture, bottom, &panel, &labels);
@@ -139,6 +124,30 @@ fn panel(picture: &mut Picture, table: &ComparedTable, columns: &[usize], top: f
     if cells().any(is_open) {
         legend.text(picture, "bars: 95 % interval");
     }
+}
+
+/// Places and labels of the rows.
+fn labels(table: &ComparedTable) -> Vec<(f64, String)> {
+    let rows = table.rows.iter().enumerate();
+    rows.map(|(index, row)| {
+        let mark = if row.is_base { " (as read)" } else { "" };
+        // What the points of a sweep have in common, the title says.
+        let label = row.label.rsplit(": ").next().unwrap_or(&row.label);
+        (real(index), format!("{label}{mark}"))
+    })
+    .collect()
+}
+
+/// Metric and unit of a column.
+fn title(table: &ComparedTable, column: usize) -> String {
+    let definition = &table.columns[column];
+    let unit = table.sample(column).map_or_else(String::new, unit_text);
+    let ratio = if definition.relative_to.is_some() {
+        ", ratio"
+    } else {
+        ""
+    };
+    format!("{}{ratio} [{unit}]", heading_of(&definition.metric)).replace(" []", "")
 }
 
 /// Labels of the rows below a frame, in as many lines as each needs so that none meets its neighbours.

@@ -21,6 +21,9 @@ pub(super) const EXAMPLE: &str = "{ from = 100, to = 2000, count = 9, spacing = 
 /// Digits of a step that are kept, at least.
 const DIGITS: i32 = 6;
 
+/// Decimal places of the smallest binary64 and its digits.
+const PLACES_MAX: i32 = 340;
+
 /// Whole numbers that binary64 tells apart.
 const WHOLE_MAX: i64 = 1 << 53;
 
@@ -144,8 +147,8 @@ fn value(config: &RangeConfig, index: u32) -> f64 {
         Spacing::Linear => {
             let step = (to - from) / f64::from(last);
             // The digit of the step that is the last kept; far above 1 all digits before the point are.
-            let places = (DIGITS - 1 - exponent(step)).max(0);
-            let places = usize::try_from(places).unwrap_or(0);
+            let places = (DIGITS - 1).saturating_sub(exponent(step));
+            let places = usize::try_from(places.min(PLACES_MAX)).unwrap_or(0);
             let text = format!("{:.places$}", from + (to - from) * part);
             // No value is -0.
             text.parse().unwrap_or(from) + 0.0
@@ -153,7 +156,7 @@ fn value(config: &RangeConfig, index: u32) -> f64 {
         Spacing::Log => {
             let ratio = (to.ln() - from.ln()) / f64::from(last);
             // Ratios close to 1 need as many digits more as their distance from 1 is small.
-            let more = (-exponent(ratio) - 1).max(0);
+            let more = (-1_i32).saturating_sub(exponent(ratio)).clamp(0, 17);
             let digits = usize::try_from((DIGITS + more).min(17)).unwrap_or(17);
             to_digits((from.ln() + (to.ln() - from.ln()) * part).exp(), digits)
         }
@@ -220,7 +223,7 @@ fn read(written: &str, key: &Key, table: &Table) -> Result<RangeConfig, RangeErr
             return Err(refuse(name, &message));
         }
     }
-    if config.from == config.to {
+    if config.to - config.from == 0.0 {
         let message = format!(
             "to = {} is what from is: expected another value, or an array of one",
             exact(config.to)
@@ -298,6 +301,10 @@ mod tests {
 
     #[test]
     fn values_differ_however_close_they_are() {
+        // Steps below the smallest number are no steps, and no panic.
+        for spacing in [Spacing::Linear, Spacing::Log] {
+            assert_eq!(range(5e-324, 1e-323, 3, spacing).len(), 3);
+        }
         for (from, to) in [(1.0, 1.001), (2000.0, 1999.5), (1e-12, 1e12)] {
             for spacing in [Spacing::Linear, Spacing::Log] {
                 let values = range(from, to, 10_000, spacing);

@@ -138,7 +138,7 @@ mod tests {
         let lone = |index: usize| {
             let set = [("gyro.coil.length_m", format!("{:?}", 100.0 + real(index)))];
             let noise = (real(index) * 12.9898).sin();
-            point(index, &set, (index % 97 > 0).then_some(noise))
+            point(index, &set, (!index.is_multiple_of(97)).then_some(noise))
         };
         let line: Vec<RunOutcome> = (0..10_000).map(lone).collect();
         let line = svg(&line);
