@@ -11,7 +11,7 @@ use super::flush::flush_tree;
 use super::journal::{UpdateJournal, displaced};
 use super::output_folder::OutputFolder;
 use super::ownership::clear;
-use super::record::{RECORD_FILE, Record};
+use super::record::{MANIFEST_FILE, RECORD_FILE, Record};
 use super::{WORKSHOP, files, swap, sweep_files};
 
 /// A folder being built; dropped before it is put in place, it goes.
@@ -159,6 +159,10 @@ impl<'a> Staged<'a> {
         let output = self.output.path().to_owned();
         let at = StoreError::at(&output);
         let below = |name: &str| format!("{place}/{name}");
+        if output.join(below(MANIFEST_FILE)).is_file() {
+            // A result that is no sweep could not be replaced: its record knows no files of others.
+            return Ok(());
+        }
         let own = sweep_files::known(&output.join(place)).map_err(&at)?;
         let staged = self.path.join(place);
         let mut installed = Vec::new();

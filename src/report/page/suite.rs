@@ -394,6 +394,7 @@ fn sweep_pictures(own: &SweepPictures, room: &mut usize) -> Markup {
         .map(|(name, [_, holds, svg])| Shown { name, holds, svg })
         .collect();
     html! {
+        @if !shown.is_empty() { h3 { "Over what is swept" } }
         (pictures(&shown, room))
         @for note in &own.notes { p.soft { (note) } }
     }
