@@ -146,7 +146,7 @@ fn the_index_of_ten_thousand_points_is_small_and_shows_what_failed() {
         stale: &[],
         against: None,
     };
-    let page = suite_page(&suite, &[]);
+    let page = suite_page(&suite, &[], &[]);
     assert!(page.len() < BYTES_MAX, "{} bytes", page.len());
     assert_eq!(
         page.matches("<th scope=\"row\">m/").count() + failed.len(),

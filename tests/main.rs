@@ -78,6 +78,7 @@ mod packages;
 mod patent_calibration;
 mod patent_filter;
 mod patent_known_answers;
+mod pictures;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
@@ -97,6 +98,7 @@ mod sign_lms_hardware;
 mod small_inputs_and_steps;
 mod suite;
 mod support;
+mod sweep_pictures;
 mod terminal;
 mod timing;
 mod trial;

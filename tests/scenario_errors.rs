@@ -447,6 +447,65 @@ fn a_matrix_is_the_product_of_its_keys_in_the_order_of_the_file() {
 }
 
 #[test]
+fn a_range_of_a_matrix_stands_for_the_array_of_its_values() {
+    let expanded = |matrix: &str| {
+        let text = scenario(matrix);
+        let runs = Suite::new(&[("x.toml", &text)]).load(&["x.toml"], &[]);
+        let runs = runs.unwrap().into_iter();
+        runs.map(|run| (run.digest, run.sweep.unwrap().assignments))
+            .collect::<Vec<_>>()
+    };
+    for (range, array) in [
+        (
+            "\"gyro.source.power_uw\" = { from = 0.5, to = 2, count = 4 }\n",
+            "\"gyro.source.power_uw\" = [0.5, 1.0, 1.5, 2]\n",
+        ),
+        (
+            "gyro.source.power_uw = { from = 0.5, to = 2, count = 3, spacing = \"log\" }\n",
+            "\"gyro.source.power_uw\" = [0.5, 1.0, 2.0]\n",
+        ),
+        (
+            "seed = { from = 7, to = 1, count = 3 }\n",
+            "seed = [7, 4, 1]\n",
+        ),
+        (
+            "[matrix.repeats]\nfrom = 1\nto = 50\ncount = 3\nspacing = \"log\"\n",
+            "repeats = [1, 7, 50]\n",
+        ),
+    ] {
+        let [range, array] = [range, array].map(|it| expanded(&format!("[matrix]\n{it}")));
+        assert_eq!(range, array);
+    }
+}
+
+#[test]
+fn wrong_ranges_are_refused_where_they_are_wrong() {
+    let mut transcript = Transcript::of(SCENARIO, "Wrong ranges are refused where they are wrong");
+    for range in [
+        "\"gyro.source.power_uw\" = { from = 0.5, to = 0.5, count = 3 }",
+        "\"gyro.source.power_uw\" = { from = 0.5, to = -2.0, count = 3 }",
+        "\"gyro.source.power_uw\" = { from = 0.5, to = inf, count = 3 }",
+        "\"gyro.source.power_uw\" = { from = 0.5, to = 2.0, count = 1 }",
+        "\"gyro.source.power_uw\" = { from = 0.5, to = 2.0, count = 10001 }",
+        "\"gyro.source.power_uw\" = { from = 0.5, to = 2.0, count = 2.5 }",
+        "\"gyro.source.power_uw\" = { from = 0.5, to = 2.0 }",
+        "\"gyro.source.power_uw\" = { from = 0.5, to = 2.0, step = 0.1 }",
+        "\"gyro.source.power_uw\" = { from = 0.5, to = 2.0, count = 3, spacing = \"cubic\" }",
+        "\"gyro.source.powr_uw\" = { from = 0.5, to = 2.0, count = 3 }",
+        "\"turntable.site.latitude_deg\" = { from = 0.0, to = 80.0, count = 3, spacing = \"log\" }",
+        "seed = { from = 1, to = 10, count = 5 }",
+        "seed = { from = 1, to = 5, count = 9, spacing = \"log\" }",
+        "seed = { from = 1.0, to = 5, count = 5 }",
+        "fidelity = { from = 1, to = 5, count = 5 }",
+        "seed = { from = 1, to = 5000, count = 5000 }\nrepeats = { from = 1, to = 3, count = 3 }",
+    ] {
+        let text = format!("[matrix]\n{range}\n");
+        transcript.case(&text, complaints(&text).join("\n"));
+    }
+    transcript.check();
+}
+
+#[test]
 fn wrong_matrices_are_refused_where_they_are_wrong() {
     let mut transcript =
         Transcript::of(SCENARIO, "Wrong matrices are refused where they are wrong");

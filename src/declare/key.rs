@@ -130,7 +130,7 @@ impl Key {
             Kind::Name => "[a-z0-9][a-z0-9_-]{0,63}".to_owned(),
             Kind::Choice(words) | Kind::Choices(words) => quoted(words),
             Kind::EmptyTable => "a table without keys".to_owned(),
-            Kind::Matrix => "a table of arrays".to_owned(),
+            Kind::Matrix => "a table of arrays and ranges".to_owned(),
         };
         self.with_unit(&range)
     }
@@ -177,7 +177,7 @@ impl Key {
             Kind::Choice(words) => format!("Choice {}", quoted(words)),
             Kind::Choices(words) => format!("Array of choices {}", quoted(words)),
             Kind::EmptyTable => "Table without keys".to_owned(),
-            Kind::Matrix => "Table of arrays, quoted key = values".to_owned(),
+            Kind::Matrix => "Table of arrays and ranges, quoted key = values".to_owned(),
         };
         if !self.unit.is_empty() {
             let _ = write!(line, "; unit {}", self.unit);

@@ -45,12 +45,13 @@ pub(crate) use check::cross::comparison::slug;
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, ComparisonColumn, ComparisonConfig,
     ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig, GateDecision,
-    InconclusivePolicy, OutputConfig, PublishedConfig, ReportedRuns, SamplesFormat, Scenario,
-    TrialConfig,
+    InconclusivePolicy, OutputConfig, PublishedConfig, RangeConfig, ReportedRuns, SamplesFormat,
+    Scenario, Spacing, TrialConfig,
 };
 pub use document::setting::Setting;
 pub use generate::json_schema::json_schema;
 pub use generate::reference::reference_toml;
+pub(crate) use keys::schema::unit_of_written;
 pub use message::complaints::ScenarioErrors;
 pub use message::error::{Location, ScenarioError};
 pub(crate) use message::error::{in_both, in_order, portable_place};

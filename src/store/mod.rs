@@ -20,6 +20,7 @@ mod single_file;
 mod staged;
 mod suite_files;
 mod swap;
+mod sweep_files;
 mod update;
 
 pub use error::{Foreign, Spared, StoreError};
@@ -31,6 +32,7 @@ pub use single_file::SingleFile;
 pub use staged::Staged;
 pub use suite_files::SuiteFileNames;
 pub use swap::Swap;
+pub use sweep_files::sweep_files;
 
 /// Folder of the lock, the journals and what is being written.
 pub const WORKSHOP: &str = ".fogbench";

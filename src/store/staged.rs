@@ -1,5 +1,6 @@
 //! A folder being built in the workshop.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -10,8 +11,8 @@ use super::flush::flush_tree;
 use super::journal::{UpdateJournal, displaced};
 use super::output_folder::OutputFolder;
 use super::ownership::clear;
-use super::record::{RECORD_FILE, Record};
-use super::{WORKSHOP, files, swap};
+use super::record::{MANIFEST_FILE, RECORD_FILE, Record};
+use super::{WORKSHOP, files, swap, sweep_files};
 
 /// A folder being built; dropped before it is put in place, it goes.
 #[derive(Debug)]
@@ -94,13 +95,7 @@ impl<'a> Staged<'a> {
     /// # Errors
     /// Whatever the file system says.
     pub fn seal_plainly(&self) -> Result<(), StoreError> {
-        let holds = self.output.holds();
-        let head = format!(
-            "# Written by fogbench: the files of this folder. A command replaces them only while they are\n\
-             # unchanged.\nschema = 1\nholds = \"{holds}\"\n\n[tool]\nname = \"fogbench\"\nversion = \"{}\"\n",
-            env!("CARGO_PKG_VERSION")
-        );
-        self.seal(RECORD_FILE, &head)
+        self.seal(RECORD_FILE, &head_of_record(self.output.holds()))
     }
 
     /// Makes the files of a finished folder of the output stand here as well, under `name`.
@@ -153,6 +148,55 @@ impl<'a> Staged<'a> {
         self.output.change_files(&change)
     }
 
+    /// Flushes the files and makes them those of a sweep's folder, beside the folders of its points, in place
+    /// of those that an earlier sweep had there, with a record of their own; without files these only go.
+    ///
+    /// The files stand below `place` in this folder as they will in the output folder.
+    ///
+    /// # Errors
+    /// As [`Staged::put_files_in_place`].
+    pub fn put_beside_points(mut self, place: &str) -> Result<(), StoreError> {
+        let output = self.output.path().to_owned();
+        let at = StoreError::at(&output);
+        let below = |name: &str| format!("{place}/{name}");
+        if output.join(below(MANIFEST_FILE)).is_file() {
+            // A result that is no sweep could not be replaced: its record knows no files of others.
+            return Ok(());
+        }
+        let own = sweep_files::known(&output.join(place)).map_err(&at)?;
+        let staged = self.path.join(place);
+        let mut installed = Vec::new();
+        if staged.is_dir() {
+            let record = Record::of(&staged).map_err(&at)?;
+            installed.extend(record.names().map(below));
+            let text = record.sealed(&head_of_record(sweep_files::HOLDS));
+            // The record last, once what it tells of is there.
+            installed.push(below(RECORD_FILE));
+            self.write(&below(RECORD_FILE), text.as_bytes())?;
+        }
+        let own: BTreeMap<String, String> = own
+            .into_iter()
+            .map(|(name, digest)| (below(&name), digest))
+            .collect();
+        let mut removed: Vec<String> = own.keys().cloned().collect();
+        removed.retain(|name| !installed.contains(name) && output.join(name).is_file());
+        // The record goes last, as the others are known by it.
+        removed.sort_by_key(|name| name.ends_with(RECORD_FILE));
+        if removed.is_empty() && installed.is_empty() {
+            return Ok(());
+        }
+        let change = UpdateJournal {
+            new: self.name.clone(),
+            removed,
+            installed,
+            own,
+        };
+        flush_tree(&self.path).map_err(&at)?;
+        // From here on a journal may tell of the folder, and then the next run needs it.
+        self.is_in_place = true;
+        self.output.change_files(&change)
+    }
+
     fn place(&self, name: &str) -> Result<PathBuf, StoreError> {
         let path = self.path.join(name);
         if let Some(folder) = path.parent() {
@@ -167,6 +211,15 @@ impl<'a> Staged<'a> {
             source,
         }
     }
+}
+
+/// Text above the record of a folder without a manifest.
+fn head_of_record(holds: &str) -> String {
+    format!(
+        "# Written by fogbench: the files of this folder. A command replaces them only while they are\n\
+         # unchanged.\nschema = 1\nholds = \"{holds}\"\n\n[tool]\nname = \"fogbench\"\nversion = \"{}\"\n",
+        env!("CARGO_PKG_VERSION")
+    )
 }
 
 impl Drop for Staged<'_> {

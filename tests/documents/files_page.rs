@@ -16,8 +16,9 @@ are kept.
 ";
 
 /// Folders in the order of the page.
-const PLACES: [Place; 5] = [
+const PLACES: [Place; 6] = [
     Place::Suite,
+    Place::Sweep,
     Place::Run,
     Place::Log,
     Place::Calibration,

@@ -13,6 +13,7 @@ pub(crate) mod reference_gyro;
 pub(crate) mod run;
 pub(crate) mod seeded;
 pub(crate) mod stimulus;
+pub(crate) mod svg;
 pub(crate) mod tables;
 pub(crate) mod transcript;
 pub(crate) mod turntable_cases;

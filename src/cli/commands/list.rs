@@ -11,9 +11,10 @@ use crate::cli::options::format::Format;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::experiment::Plan;
+use crate::report::{assignments_text, swept_value};
 use crate::wording::printable;
 
-/// Prints folder, length, channels and file of each run.
+/// Prints folder, length and description of each run; of a point of a sweep what it sets.
 pub(in crate::cli) fn list(options: &ListOptions) -> io::Result<Exit> {
     let plans = match select::plans(&options.select) {
         Ok(plans) => plans,
@@ -45,6 +46,11 @@ fn row(plan: &Plan) -> serde_json::Value {
         "channels": plan.channel_names(),
         "gates": scenario.gates.len(),
         "description": scenario.description,
+        "sweep": resolved.sweep.as_ref().map(|point| {
+            let set = point.assignments.iter();
+            let set = set.map(|(key, toml)| (key.clone(), swept_value(toml)));
+            set.collect::<serde_json::Map<_, _>>()
+        }),
     })
 }
 
@@ -63,14 +69,19 @@ fn text(plans: &[Plan]) -> String {
         } else {
             String::new()
         };
-        let file = resolved.shown_file();
+        // Points of a sweep differ in nothing else.
+        let about = match (&resolved.sweep, &scenario.description) {
+            (Some(point), _) => assignments_text(&point.assignments),
+            (None, Some(description)) => description.clone(),
+            (None, None) => resolved.shown_file(),
+        };
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
             "{:width$}  {repeats}{} s  {}",
             resolved.folder(),
             scenario.duration_s,
-            printable(scenario.description.as_deref().unwrap_or(&file)),
+            printable(&about),
         );
     }
     text

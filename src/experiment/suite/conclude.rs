@@ -10,7 +10,7 @@ use super::output::{INDEX, JUNIT, METRICS, SUMMARY, Settled, SuiteOutput};
 use crate::comparison::{ComparedRun, Comparison, Layout};
 use crate::experiment::build::VERSION;
 use crate::experiment::plan::Plan;
-use crate::report::{self, RunOutcome, SuiteMetrics, SuiteReport};
+use crate::report::{self, RunOutcome, SuiteMetrics, SuiteReport, SweepPictures};
 use crate::scenario::Resolved;
 use crate::store::{Staged, StoreError};
 
@@ -48,6 +48,7 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
     let tables = unbroken(ledger, || report::comparison_files(&comparison));
     let tables = tables.unwrap_or_default();
     let mut files = tables.clone();
+    let sweeps = draw_sweeps(&runs, suite, &mut failures);
     let junit = || report::junit_xml(&runs, None);
     files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
     let sides =
@@ -60,7 +61,7 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
         stale: &stale,
         against: sides.shown(),
     };
-    let page = unbroken(ledger, || report::suite_page(&summary, &tables));
+    let page = unbroken(ledger, || report::suite_page(&summary, &tables, &sweeps));
     files.extend(page.map(|text| (INDEX.to_owned(), text)));
     let published = output.publish(|staged| {
         for (name, text) in &files {
@@ -81,6 +82,25 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
         unwritten: ledger.is_unwritten(),
         failures,
     }
+}
+
+/// Draws the sweeps whose points have all ended and writes the pictures beside these; `failures` say what
+/// could not be written.
+fn draw_sweeps(
+    runs: &[RunOutcome],
+    suite: &Suite,
+    failures: &mut Vec<String>,
+) -> Vec<SweepPictures> {
+    let Suite { output, ledger, .. } = *suite;
+    let is_whole = |name: &str| output.is_whole_sweep(name);
+    let drawn = unbroken(ledger, || report::sweep_pictures(runs, &is_whole)).unwrap_or_default();
+    for sweep in &drawn {
+        let files = sweep.drawn.iter();
+        let files: Vec<(&str, &str)> = files.map(|[name, _, svg]| (&name[..], &svg[..])).collect();
+        let written = output.put_pictures(&sweep.sweep, &files);
+        failures.extend(written.err().map(|error| error.to_string()));
+    }
+    drawn
 }
 
 /// Writes the files that hold the metrics of every run, which are read out of the runs' folders one after

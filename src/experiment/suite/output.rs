@@ -63,12 +63,14 @@ impl Scenario {
             entries => entries?,
         };
         let mut stale = BTreeSet::new();
+        let own = store::sweep_files(&output.join(&self.name))?;
         for entry in entries {
             let entry = entry?;
             let name = entry.file_name().to_string_lossy().into_owned();
             let index: Option<usize> = name.parse().ok().filter(|_| name.len() >= 4);
             match (index, self.points) {
                 (Some(index), Some(count)) if index < count => {}
+                (None, Some(_)) if own.contains(&name) => {}
                 (Some(_), _) => drop(stale.insert(format!("{}/{name}", self.name))),
                 (None, Some(_)) => drop(stale.insert(self.name.clone())),
                 (None, None) => {}
@@ -105,11 +107,13 @@ impl SuiteOutput {
         };
         let folder = OutputFolder::of_suite(&options.output, store, SuiteFileNames(names), &check)?;
         folder.forget_suite_files()?;
-        Ok(Self {
+        let output = Self {
             folder,
             scenarios,
             placed: Mutex::new(BTreeSet::new()),
-        })
+        };
+        output.forget_sweep_pictures()?;
+        Ok(output)
     }
 
     /// What is worth saying of the folder.
@@ -218,6 +222,32 @@ impl SuiteOutput {
         write(&staged)?;
         staged.seal_plainly()?;
         staged.put_files_in_place()
+    }
+
+    /// Whether the runs of a scenario are all of its points.
+    pub(crate) fn is_whole_sweep(&self, name: &str) -> bool {
+        let mut scenarios = self.scenarios.iter();
+        scenarios.any(|scenario| scenario.name == name && scenario.is_complete())
+    }
+
+    /// Removes the pictures of sweeps that are run anew, so that none outlives its points.
+    fn forget_sweep_pictures(&self) -> Result<(), StoreError> {
+        let swept = self.scenarios.iter().filter(|it| it.points.is_some());
+        let mut whole = swept.filter(|scenario| scenario.is_complete());
+        whole.try_for_each(|scenario| self.put_pictures(&scenario.name, &[]))
+    }
+
+    /// Puts the pictures of a sweep, name and text, beside its points, in place of earlier ones.
+    pub(crate) fn put_pictures(
+        &self,
+        sweep: &str,
+        pictures: &[(&str, &str)],
+    ) -> Result<(), StoreError> {
+        let staged = self.stage()?;
+        for (name, svg) in pictures {
+            staged.write(&format!("{sweep}/{name}"), svg.as_bytes())?;
+        }
+        staged.put_beside_points(sweep)
     }
 
     /// The metrics of a run out of its folder; none of one that has not ended with a result.

@@ -30,6 +30,8 @@ use table::{RUN_AND_LOG, SUITE, TABLE};
 pub enum Place {
     /// Output folder of a suite.
     Suite,
+    /// Folder of a sweep, beside the folders of its points.
+    Sweep,
     /// Folder of a run.
     Run,
     /// Folder of a recorded log.
@@ -45,7 +47,7 @@ impl Place {
     #[must_use]
     pub fn commands(self) -> &'static [&'static str] {
         match self {
-            Self::Suite | Self::Run => &["run"],
+            Self::Suite | Self::Sweep | Self::Run => &["run"],
             Self::Log => &["analyze", "filter"],
             Self::Calibration => &["calibrate"],
             Self::Budget => &["budget"],
@@ -57,6 +59,7 @@ impl Place {
     pub fn words(self) -> &'static str {
         match self {
             Self::Suite => "output folder",
+            Self::Sweep => "folder of a sweep",
             Self::Run => "folder of a run",
             Self::Log => "folder of a log",
             Self::Calibration => "folder of a calibration",

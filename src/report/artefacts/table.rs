@@ -42,7 +42,7 @@ pub const METRICS: Artefact = Artefact {
 /// Page of a suite.
 pub const INDEX: Artefact = Artefact {
     name: "index.html",
-    holds: "the suite for a browser: outcomes, gates that failed, runs, points of sweeps, tables",
+    holds: "the suite for a browser: outcomes, gates that failed, runs, sweeps with their pictures, tables",
     when: "after every run, so that a stopped suite has one",
     places: &[Place::Suite],
     made: Made::By(SUITE),
@@ -79,6 +79,13 @@ pub(super) const TABLE: &[Artefact] = &[
         made: Made::By("report::comparison_files"),
     },
     Artefact {
+        name: "<metric>.svg",
+        holds: "a headline metric of every channel over what is swept, with its intervals",
+        when: "every point of the sweep has ended in one suite",
+        places: &[Place::Sweep],
+        made: Made::By("report::plot"),
+    },
+    Artefact {
         name: "manifest.toml",
         holds: "scenario as resolved, seed, version and build, digests of the folder's files",
         when: ALWAYS,
@@ -89,7 +96,13 @@ pub(super) const TABLE: &[Artefact] = &[
         name: ".fogbench.toml",
         holds: "digests of the folder's files",
         when: "where no manifest holds them",
-        places: &[Place::Suite, Place::Log, Place::Calibration, Place::Budget],
+        places: &[
+            Place::Suite,
+            Place::Sweep,
+            Place::Log,
+            Place::Calibration,
+            Place::Budget,
+        ],
         made: Made::By("store"),
     },
     Artefact {

@@ -13,14 +13,14 @@ pub(in crate::report) struct Shown<'a> {
     pub(in crate::report) svg: &'a str,
 }
 
-/// The pictures that fit into `room` bytes, in their order; the others are named.
-pub(super) fn pictures(all: &[Shown], room: usize) -> Markup {
+/// The pictures that fit into `room` bytes, in their order, which is less by them then; the others are
+/// named.
+pub(super) fn pictures(all: &[Shown], room: &mut usize) -> Markup {
     const FRAME_BYTES: usize = 500;
-    let mut left = room;
     let mut fits = |picture: &Shown| {
         let bytes = picture.svg.len() + FRAME_BYTES;
-        let fits = bytes <= left;
-        left -= if fits { bytes } else { 0 };
+        let fits = bytes <= *room;
+        *room -= if fits { bytes } else { 0 };
         fits
     };
     html! {

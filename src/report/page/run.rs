@@ -163,8 +163,8 @@ fn drawn(report: &RunReport, shown: &[Shown], room: usize) -> Markup {
     let sentences: Vec<(&String, String)> = sentences
         .filter_map(|(name, channel)| Some((name, verdict_text(channel)?)))
         .collect();
-    let room = room.saturating_sub(sentences.iter().map(|(_, text)| text.len() + 100).sum());
-    let all = pictures(shown, room);
+    let mut room = room.saturating_sub(sentences.iter().map(|(_, text)| text.len() + 100).sum());
+    let all = pictures(shown, &mut room);
     section(
         "pictures",
         "What the filters do",

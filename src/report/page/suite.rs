@@ -14,7 +14,7 @@ use crate::gate::{Verdict, VerdictKind, count_accepted, plain};
 use crate::report::json::suite::SuiteReport;
 use crate::report::record::columns::value_text;
 use crate::report::record::sweep::swept_text;
-use crate::report::{RunOutcome, RunStatus};
+use crate::report::{RunOutcome, RunStatus, SweepPictures};
 
 /// Most points of a sweep that the page lists.
 const POINTS_MAX: usize = 500;
@@ -25,21 +25,36 @@ const GATES_MAX: usize = 300;
 const TABLE_BYTES_MAX: usize = 1_500_000;
 const RESERVE_BYTES: usize = 50_000;
 
-/// The page of a suite; `files` are the files of its tables, name and text.
+/// The page of a suite; `files` are the files of its tables, name and text, `drawn` the pictures of its
+/// sweeps.
 #[must_use]
-pub fn suite_page(suite: &SuiteReport, files: &[(String, String)]) -> String {
+pub fn suite_page(
+    suite: &SuiteReport,
+    files: &[(String, String)],
+    drawn: &[SweepPictures],
+) -> String {
     let (sweeps, alone) = grouped(suite.runs);
     let mut left = TABLE_BYTES_MAX;
     let head = head(suite, &sweeps);
     let gates = failed_gates(suite.runs);
     let runs = runs(&alone, suite.runs.len(), &mut left);
-    let sweeps = html! { @for (name, points) in &sweeps { (sweep(name, points, &mut left)) } };
+    let swept: Vec<Markup> = sweeps
+        .iter()
+        .map(|(name, points)| sweep(name, points, &mut left))
+        .collect();
     let tables = tables(suite.across);
     let behind = html! { (maybe(assumptions(suite.across))) (origin(suite, files)) };
     let against = suite.against.as_ref().map(comparison_section);
     let against = maybe(against);
-    let used = [&head, &against, &gates, &runs, &sweeps, &tables, &behind];
-    let used = used.iter().map(|part| part.0.len()).sum::<usize>() + RESERVE_BYTES;
+    let used = [&head, &against, &gates, &runs, &tables, &behind].into_iter();
+    let used = used.chain(&swept).map(|part| part.0.len()).sum::<usize>() + RESERVE_BYTES;
+    let mut room = PAGE_BYTES_MAX.saturating_sub(used);
+    let sweeps = html! { @for ((name, _), table) in sweeps.iter().zip(&swept) {
+        (section(&format!("sweep-{name}"), &format!("Sweep {name}"), &html! {
+            (table)
+            @for own in drawn.iter().filter(|own| own.sweep == *name) { (sweep_pictures(own, &mut room)) }
+        }))
+    } };
     let shown = files.iter().filter(|(name, _)| name.ends_with(".svg"));
     let shown: Vec<Shown> = shown
         .map(|(name, svg)| Shown {
@@ -48,7 +63,7 @@ pub fn suite_page(suite: &SuiteReport, files: &[(String, String)]) -> String {
             svg,
         })
         .collect();
-    let drawn = pictures(&shown, PAGE_BYTES_MAX.saturating_sub(used));
+    let drawn = pictures(&shown, &mut room);
     let tables = html! {
         @if !suite.across.tables.is_empty() {
             (section("tables", "Across scenarios", &html! { (tables) (drawn) }))
@@ -361,19 +376,32 @@ fn sweep(name: &str, points: &[&RunOutcome], left: &mut usize) -> Markup {
         }
     };
     let heading = format!("Sweep {name}");
-    section(
-        &format!("sweep-{name}"),
-        &heading,
-        &html! {
-            p { (passed) " of " (points.len()) " points passed."
-                @if rows.len() < points.len() {
-                    " The table has " (rows.len()) " of them, those that failed first, then the extreme ones; all stand in "
-                    a href="metrics.csv" { "metrics.csv" } "."
-                } }
-            (filter(&id, "value, outcome, figure"))
-            (wide(&heading, &table))
-        },
-    )
+    html! {
+        p { (passed) " of " (points.len()) " points passed."
+            @if rows.len() < points.len() {
+                " The table has " (rows.len()) " of them, those that failed first, then the extreme ones; all stand in "
+                a href="metrics.csv" { "metrics.csv" } "."
+            } }
+        (filter(&id, "value, outcome, figure"))
+        (wide(&heading, &table))
+    }
+}
+
+/// The pictures of a sweep, which lie in its folder.
+fn sweep_pictures(own: &SweepPictures, room: &mut usize) -> Markup {
+    let places = own.drawn.iter();
+    let places: Vec<String> = places
+        .map(|[name, ..]| format!("{}/{name}", own.sweep))
+        .collect();
+    let shown = places.iter().zip(&own.drawn);
+    let shown: Vec<Shown> = shown
+        .map(|(name, [_, holds, svg])| Shown { name, holds, svg })
+        .collect();
+    html! {
+        @if !shown.is_empty() { h3 { "Over what is swept" } }
+        (pictures(&shown, room))
+        @for note in &own.notes { p.soft { (note) } }
+    }
 }
 
 fn point_row(run: &RunOutcome) -> Markup {

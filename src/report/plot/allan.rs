@@ -2,8 +2,8 @@
 
 use super::drawing::axis::Axis;
 use super::drawing::panel::{Legend, Panel, WIDTH};
-use super::drawing::picture::{Dash, Picture, Shape, Stroke};
-use super::drawing::series::{extent, stroke_of};
+use super::drawing::picture::{Dash, GREY, Picture, Shape, Stroke};
+use super::drawing::series::{extent, real, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::ChannelMetrics;
 use crate::metrics::Estimate;
@@ -80,13 +80,14 @@ pub(in crate::report) fn picture(report: &Measured) -> Option<Picture> {
     let y = Axis::log(y, 0.04, &format!("{quantity} σ(τ) [deg/h]"));
     let panel = Panel::new(&mut picture, (56.0, 640.0), x, y);
     let mut legend = Legend::new(56.0);
+    let opacity = band_opacity(tables().count());
     for (index, name, metrics, tau, [deviation, low, high]) in tables() {
         let stroke = stroke_of(index);
         let band: Vec<(f64, f64, f64)> = (0..tau.len())
             .filter_map(|at| Some((tau[at], *low.get(at)?, *high.get(at)?)))
             .filter(|(_, low, high)| *low > 0.0 && *high > 0.0)
             .collect();
-        panel.band(&mut picture, &band, stroke.colour, 0.22);
+        panel.band(&mut picture, &band, stroke.colour, opacity);
         let line: Vec<(f64, f64)> = tau.iter().copied().zip(deviation.iter().copied()).collect();
         panel.line(&mut picture, &line, stroke);
         let thin = Stroke::solid(stroke.colour, 0.75);
@@ -157,12 +158,16 @@ const MARKS: [(Shape, &str); 5] = [
 
 /// What the reader of the picture must know, below the legend.
 fn notes(legend: &mut Legend, picture: &mut Picture, report: &Measured, is_read: bool) {
-    legend.text(picture, "bands: 95 % interval");
+    let curves = report.channels.iter();
+    let curves = curves.filter(|(_, metrics)| metrics.curve(&ALLAN).is_some());
+    let sample = (GREY, 2.0 * band_opacity(curves.count()));
+    legend.area(picture, sample, "95 % interval");
     if !is_read {
         legend.text(picture, "N, B, K: fit to the overlapping Allan deviation");
         return;
     }
-    legend.text(picture, "thin: fit, dotted: its terms");
+    legend.line(picture, Stroke::solid(GREY, 0.75), "fit");
+    legend.line(picture, dotted(Stroke::solid(GREY, 1.0)), "its terms");
     let channels = || report.channels.iter().map(|(_, metrics)| metrics);
     let drawn: Vec<Reading> = channels().flat_map(readings).collect();
     for (shape, text) in MARKS {
@@ -172,7 +177,8 @@ fn notes(legend: &mut Legend, picture: &mut Picture, report: &Measured, is_read:
     }
     let extra = [&CORRELATED_NOISE, &SINE_AMPLITUDE];
     if channels().any(|metrics| extra.iter().any(|key| metrics.get(key).is_some())) {
-        legend.text(picture, "dash-dotted: correlated noise, sine");
+        let sample = mixed(Stroke::solid(GREY, 1.0));
+        legend.line(picture, sample, "correlated noise, sine");
     }
 }
 
@@ -271,6 +277,21 @@ fn mixed(stroke: Stroke) -> Stroke {
     }
 }
 
+/// The stroke of a term that is a straight line.
+fn dotted(stroke: Stroke) -> Stroke {
+    Stroke {
+        width: 1.0,
+        dash: Dash::Dotted,
+        opacity: 0.8,
+        ..stroke
+    }
+}
+
+/// Opacity of the bands of so many curves: where all of them coincide, lines are still seen through them.
+fn band_opacity(curves: usize) -> f64 {
+    (0.7 / real(curves.max(1))).min(0.22)
+}
+
 /// The line of a term over the whole frame, and its marker.
 fn draw_reading(picture: &mut Picture, panel: &Panel, reading: &Reading, stroke: Stroke) {
     let (low, high) = panel.x_range();
@@ -279,13 +300,8 @@ fn draw_reading(picture: &mut Picture, panel: &Panel, reading: &Reading, stroke:
         .tau_s
         .unwrap_or_else(|| high.powf(0.85) * low.powf(0.15));
     let level = |tau: f64| reading.deviation_deg_per_h * (tau / tau_s).powf(reading.slope);
-    let thin = Stroke {
-        width: 1.0,
-        dash: Dash::Dotted,
-        opacity: 0.8,
-        ..stroke
-    };
-    panel.line(picture, &[(low, level(low)), (high, level(high))], thin);
+    let line = [(low, level(low)), (high, level(high))];
+    panel.line(picture, &line, dotted(stroke));
     let at = (tau_s, reading.deviation_deg_per_h);
     panel.marker(picture, at, reading.shape, stroke.colour);
 }

@@ -1,8 +1,8 @@
 //! A table over several scenarios as a picture: intervals beside published figures.
 
 use super::drawing::axis::Axis;
-use super::drawing::panel::{Legend, Panel, WIDTH};
-use super::drawing::picture::{BLACK, Picture, Shape, Stroke};
+use super::drawing::panel::{LEFT, Legend, Panel, RIGHT, WIDTH};
+use super::drawing::picture::{Anchor, GREY, Picture, Shape, Stroke, text_width};
 use super::drawing::series::{extent, real, stroke_of};
 use crate::comparison::{ComparedCell, ComparedColumn, ComparedTable};
 use crate::report::record::columns::{heading_of, unit_text};
@@ -44,7 +44,8 @@ fn panels(table: &ComparedTable) -> Vec<Vec<usize>> {
 
 /// Number of a column's channel among the channels of the table: one colour in every panel.
 fn ordinal(table: &ComparedTable, column: usize) -> usize {
-    let mut seen: Vec<String> = Vec::new();
+    // Grey stands for raw in every picture.
+    let mut seen = vec!["raw".to_owned()];
     for channels in table.columns.iter().map(ComparedColumn::channels) {
         if !seen.contains(&channels) {
             seen.push(channels);
@@ -78,25 +79,15 @@ fn panel(picture: &mut Picture, table: &ComparedTable, columns: &[usize], top: f
         return;
     };
     let count = table.rows.len();
+    // The labels are written below: an axis has one line for them.
+    let labels = labels(table);
     let mut x = Axis::linear((-0.5, real(count) - 0.5), 0.0, "");
-    let labels = table.rows.iter().enumerate();
-    let labels = labels.map(|(index, row)| {
-        let mark = if row.is_base { " (as read)" } else { "" };
-        // What the points of a sweep have in common, the title says.
-        let label = row.label.rsplit(": ").next().unwrap_or(&row.label);
-        (real(index), format!("{label}{mark}"))
-    });
-    x.ticks = labels.collect();
-    let definition = &table.columns[columns[0]];
-    let unit = table.sample(columns[0]).map_or_else(String::new, unit_text);
-    let ratio = if definition.relative_to.is_some() {
-        ", ratio"
-    } else {
-        ""
-    };
-    let title = format!("{}{ratio} [{unit}]", heading_of(&definition.metric)).replace(" []", "");
-    let y = Axis::linear(range, 0.08, &title);
-    let panel = Panel::new(picture, (top, top + PANEL - 62.0), x, y);
+    x.ticks.clear();
+    x.minor = labels.iter().map(|(place, _)| *place).collect();
+    let y = Axis::linear(range, 0.08, &title(table, columns[0]));
+    let bottom = top + PANEL - 62.0;
+    let panel = Panel::new(picture, (top, bottom), x, y);
+    write_labels(picture, bottom, &panel, &labels);
     let mut legend = Legend::new(top);
     let mut has_published = false;
     for (place, column) in columns.iter().enumerate() {
@@ -116,14 +107,108 @@ fn panel(picture: &mut Picture, table: &ComparedTable, columns: &[usize], top: f
             if let Some((value, _)) = &cell.published {
                 has_published = true;
                 let beside = at + BESIDE;
-                panel.marker(picture, (beside, *value), Shape::Square, BLACK);
+                panel.marker(picture, (beside, *value), Shape::Square, stroke.colour);
             }
         }
         let name = table.columns[*column].channels();
         legend.marker(picture, (Shape::Circle, stroke.colour), &name);
     }
     if has_published {
-        legend.marker(picture, (Shape::Square, BLACK), "published");
+        let text = "published, in the colour of its column";
+        legend.marker(picture, (Shape::Square, GREY), text);
     }
-    legend.text(picture, "lines: 95 % interval");
+    let is_open = |cell: &ComparedCell| {
+        let estimate = cell.simulated.estimate;
+        estimate.low < estimate.high
+    };
+    if cells().any(is_open) {
+        legend.text(picture, "bars: 95 % interval");
+    }
+}
+
+/// Places and labels of the rows.
+fn labels(table: &ComparedTable) -> Vec<(f64, String)> {
+    let rows = table.rows.iter().enumerate();
+    rows.map(|(index, row)| {
+        let mark = if row.is_base { " (as read)" } else { "" };
+        // What the points of a sweep have in common, the title says.
+        let label = row.label.rsplit(": ").next().unwrap_or(&row.label);
+        (real(index), format!("{label}{mark}"))
+    })
+    .collect()
+}
+
+/// Metric and unit of a column.
+fn title(table: &ComparedTable, column: usize) -> String {
+    let definition = &table.columns[column];
+    let unit = table.sample(column).map_or_else(String::new, unit_text);
+    let ratio = if definition.relative_to.is_some() {
+        ", ratio"
+    } else {
+        ""
+    };
+    format!("{}{ratio} [{unit}]", heading_of(&definition.metric)).replace(" []", "")
+}
+
+/// Labels of the rows below a frame, in as many lines as each needs so that none meets its neighbours.
+fn write_labels(picture: &mut Picture, bottom: f64, panel: &Panel, labels: &[(f64, String)]) {
+    const SIZE: f64 = 12.0;
+    const LINES_MAX: usize = 3;
+    let room = (RIGHT - LEFT) / real(labels.len().max(1)) - 8.0;
+    for (place, label) in labels {
+        let x = panel.place((*place, 1.0)).0;
+        for (index, line) in wrapped(label, SIZE, room, LINES_MAX).iter().enumerate() {
+            let at = (x, bottom + 14.0 + (SIZE + 2.0) * real(index));
+            picture.text(at, line, SIZE, Anchor::Middle);
+        }
+    }
+}
+
+/// A text in lines of at most a width, pixels, the last of them cut short where it is too long.
+fn wrapped(text: &str, size: f64, width: f64, lines_max: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        let longer = lines.last().map(|line| format!("{line} {word}"));
+        match longer {
+            Some(longer) if text_width(&longer, size) <= width => {
+                lines.pop();
+                lines.push(longer);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    if lines.len() > lines_max {
+        let rest = lines.split_off(lines_max - 1).join(" ");
+        lines.push(rest);
+    }
+    for line in &mut lines {
+        if text_width(line, size) > width {
+            while !line.is_empty() && text_width(line, size) > width - size {
+                line.pop();
+            }
+            line.push('\u{2026}');
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_side_by_side_stay_within_their_room() {
+        let lines = wrapped("5 Hz, 1 deg/s (as read)", 12.0, 70.0, 3);
+        assert!(
+            lines.len() > 1 && lines.join(" ") == "5 Hz, 1 deg/s (as read)",
+            "{lines:?}"
+        );
+        for text in [
+            "one-word-that-is-far-too-long",
+            "a b c d e f g h i j k l m n o p q r s t",
+        ] {
+            let lines = wrapped(text, 12.0, 40.0, 3);
+            assert!(lines.len() <= 3 && lines.iter().all(|line| text_width(line, 12.0) <= 40.0));
+        }
+    }
 }

@@ -59,9 +59,9 @@ const QUANTITIES: [Quantity; 2] = [
     },
 ];
 
-/// Decibel, cut off where the picture ends.
+/// Decibel; of a gain that is none a number all the same.
 fn decibel(gain: f64) -> f64 {
-    gain_to_db(gain.max(1e-9)).max(LOWEST_DB)
+    gain_to_db(gain.max(1e-9))
 }
 
 /// Both panels; `None` where no filter has a response.
@@ -90,7 +90,8 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     }
     let mut legend = Legend::new(56.0);
     for filter in &filters {
-        legend.line(&mut picture, stroke_of(filter.index), filter.name);
+        let stroke = stroke_of(filter.index);
+        legend.curve(&mut picture, stroke, shape_of(filter.index), filter.name);
         if let Some(gain) = at_dc(filter, &DC_GAIN) {
             let text = format!("DC gain {}", estimate_text(&gain, 2));
             legend.detail(&mut picture, &text);
@@ -104,7 +105,7 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     legend.text(&mut picture, "or at those given; thin: 95 % interval");
     legend.text(&mut picture, "markers at the left edge: constant rate");
     let mut gains = filters.iter().flat_map(|filter| GAIN.of(filter.frozen));
-    if gains.any(|gain| decibel(*gain) <= LOWEST_DB) {
+    if gains.any(|gain| decibel(*gain) < LOWEST_DB) {
         let text = format!("gains below {LOWEST_DB} dB lie below the picture");
         legend.text(&mut picture, &text);
     }
@@ -172,9 +173,13 @@ fn draw(
         .collect();
     let values = lines.iter().flatten().map(|(_, ends)| ends[0]);
     let measured = live.iter().flatten().flat_map(|(_, ends)| *ends);
-    let y = extent(values.chain(measured).chain([0.0]))?;
+    let (low, high) = extent(values.chain(measured).chain([0.0]))?;
     let axis = Axis::log(x, 0.03, "frequency [Hz]");
-    let y = Axis::linear(y, 0.06, quantity.title);
+    // Lines end at the frame: what lies below it nobody takes for a value.
+    let y = match *quantity.at_dc == DC_GAIN && low < LOWEST_DB {
+        true => Axis::linear((LOWEST_DB, high - 0.06 * LOWEST_DB), 0.0, quantity.title),
+        false => Axis::linear((low, high), 0.06, quantity.title),
+    };
     let panel = Panel::new(picture, quantity.frame, axis, y);
     for (filter, (line, live)) in filters.iter().zip(lines.iter().zip(&live)) {
         let stroke = stroke_of(filter.index);

@@ -4,7 +4,7 @@
 use super::drawing::axis::Axis;
 use super::drawing::labels::Labels;
 use super::drawing::panel::{Legend, Panel, WIDTH};
-use super::drawing::picture::{Picture, Stroke};
+use super::drawing::picture::{Colour, Dash, GREY, Picture, Stroke};
 use super::drawing::series::{extent, real, shape_of, stroke_of};
 use crate::gate::estimate_text;
 use crate::metrics::catalogue::NOISE_DELAY_BOUND;
@@ -70,12 +70,30 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
         draw_point(&mut picture, &panel, point, &mut labels);
         describe(&mut picture, &mut legend, point);
     }
-    legend.space();
-    legend.text(&mut picture, "lines: least noise of as many weights");
-    legend.text(&mut picture, "in a row and unit DC gain; dotted: white");
-    legend.text(&mut picture, "numbers at the points: DC gain");
-    legend.text(&mut picture, "bars: 95 % intervals");
+    explain(&mut picture, &mut legend, &points);
     Some(picture)
+}
+
+/// What the lines, numbers and bars are, of those that are drawn.
+fn explain(picture: &mut Picture, legend: &mut Legend, points: &[Point]) {
+    legend.space();
+    if points.iter().any(|point| point.bound.len() > 1) {
+        let text = "bound: least noise of as many weights in a row with unit DC gain";
+        legend.line(picture, bound_stroke(GREY), text);
+    }
+    if points.iter().any(|point| point.white.len() > 1) {
+        legend.line(picture, white_stroke(GREY), "the same in white noise");
+    }
+    if points.iter().any(|point| point.verdict.dc_gain.is_some()) {
+        legend.text(picture, "numbers at the points: DC gain");
+    }
+    let is_open = |it: Estimate| it.low < it.high;
+    if points
+        .iter()
+        .any(|point| is_open(point.delay_ms) || is_open(point.noise_gain))
+    {
+        legend.text(picture, "bars: 95 % intervals");
+    }
 }
 
 /// The filters that have a place on a logarithmic plane.
@@ -104,18 +122,26 @@ fn points<'a>(report: &RunReport<'a>) -> Vec<Point<'a>> {
 }
 
 fn draw_bounds(picture: &mut Picture, panel: &Panel, point: &Point) {
-    let stroke = Stroke {
-        width: 1.25,
+    let colour = stroke_of(point.index).colour;
+    panel.line(picture, &point.bound, bound_stroke(colour));
+    panel.line(picture, &point.white, white_stroke(colour));
+}
+
+/// The line of a bound.
+fn bound_stroke(colour: Colour) -> Stroke {
+    Stroke {
         opacity: 0.8,
-        ..Stroke::solid(stroke_of(point.index).colour, 1.25)
-    };
-    panel.line(picture, &point.bound, stroke);
-    let dotted = Stroke {
+        ..Stroke::solid(colour, 1.25)
+    }
+}
+
+/// The line of a bound in white noise.
+fn white_stroke(colour: Colour) -> Stroke {
+    Stroke {
         opacity: 0.5,
-        dash: super::drawing::series::truth_stroke().dash,
-        ..stroke
-    };
-    panel.line(picture, &point.white, dotted);
+        dash: Dash::Dotted,
+        ..bound_stroke(colour)
+    }
 }
 
 /// Marker, bars, name and DC gain.
@@ -137,8 +163,12 @@ fn draw_point(picture: &mut Picture, panel: &Panel, point: &Point, labels: &mut 
 
 /// What the legend says of a filter.
 fn describe(picture: &mut Picture, legend: &mut Legend, point: &Point) {
-    let look = (shape_of(point.index), stroke_of(point.index).colour);
-    legend.marker(picture, look, point.name);
+    let (shape, colour) = (shape_of(point.index), stroke_of(point.index).colour);
+    if point.bound.len() > 1 {
+        legend.curve(picture, bound_stroke(colour), shape, point.name);
+    } else {
+        legend.marker(picture, (shape, colour), point.name);
+    }
     let noise = estimate_text(&point.noise_gain, 2);
     legend.detail(picture, &format!("noise {noise}"));
     let is_below = |finding: Option<crate::metrics::Finding>| {

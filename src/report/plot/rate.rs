@@ -14,6 +14,8 @@ use crate::wording::to_digits;
 const ENVELOPE_COLUMNS: usize = 6000;
 /// Points of the lines of a panel, all series together.
 const LINE_POINTS: usize = 12_000;
+/// Opacity of the bands: none may hide another.
+const BAND_OPACITY: f64 = 0.5;
 /// Means drawn over a long record.
 const MEANS: usize = 200;
 /// Time before and after a step that its window shows, s.
@@ -44,18 +46,8 @@ pub(in crate::report) fn picture(report: &Measured, signals: &RunSignals) -> Opt
     let title = format!("{}: rate against time", report.name);
     picture.heading((90.0, 28.0), &title, 18.0);
     let mut legend = Legend::new(56.0);
-    for channel in &drawing.channels {
-        legend.line(&mut picture, channel.stroke, channel.name);
-        if let Some(failure) = channel.failure() {
-            legend.detail(&mut picture, &failure);
-        }
-    }
-    if !truth.is_empty() {
-        legend.line(&mut picture, truth_stroke(), "true rate");
-    }
-    legend.space();
     drawing.envelope(&mut picture, (56.0, 400.0), &mut legend);
-    let mut legend = Legend::new(476.0);
+    let mut legend = Legend::below(&legend, 476.0);
     let lower = (476.0, 800.0);
     match window(&report.motion, truth, samples, signals.sample_period_s) {
         Some((range, name)) => drawing.window(&mut picture, lower, range, (&mut legend, &name)),
@@ -139,8 +131,13 @@ impl Drawing<'_> {
                 .filter(|column| column.low.is_finite() && column.high.is_finite())
                 .map(|column| (self.time_s(column.index), column.low, column.high))
                 .collect();
-            // None may hide another.
-            panel.band(picture, &band, stroke.colour, 0.5);
+            panel.band(picture, &band, stroke.colour, BAND_OPACITY);
+        }
+        for channel in &self.channels {
+            match channel.failure() {
+                None => legend.area(picture, (channel.stroke.colour, BAND_OPACITY), channel.name),
+                Some(failure) => legend.text(picture, &format!("{}: {failure}", channel.name)),
+            }
         }
         let line: Vec<(f64, f64)> = truth
             .iter()
@@ -155,7 +152,9 @@ impl Drawing<'_> {
                 .all(|column| column.high - column.low < 0.2 * panel_span(&truth));
         if is_quiet {
             panel.line(picture, &line, truth_stroke());
+            legend.line(picture, truth_stroke(), "true rate");
         }
+        legend.space();
         let step_s = self.period_s * real(self.samples.div_ceil(share));
         legend.text(picture, "above: smallest to largest value");
         let each = format!("in each {} s", crate::gate::plain(to_digits(step_s, 2)));
@@ -172,7 +171,7 @@ impl Drawing<'_> {
                 .collect()
         };
         let x = Axis::linear((self.start_s, self.end_s()), 0.0, "time [s]");
-        self.lines(picture, frame, x, &line_of);
+        self.lines(picture, frame, (x, legend), &line_of);
         let step_s = self.period_s * real(self.samples.div_ceil(MEANS));
         let each = format!(
             "below: means over {} s",
@@ -203,7 +202,7 @@ impl Drawing<'_> {
         };
         let start = format!("time after {:.4} s [ms]", self.time_s(real(range.start)));
         let x = Axis::linear((0.0, time_ms(range.end - 1)), 0.0, &start);
-        self.lines(picture, frame, x, &line_of);
+        self.lines(picture, frame, (x, legend), &line_of);
         legend.text(picture, "below: samples");
         legend.text(picture, name);
     }
@@ -212,7 +211,7 @@ impl Drawing<'_> {
         &self,
         picture: &mut Picture,
         frame: (f64, f64),
-        x: Axis,
+        (x, legend): (Axis, &mut Legend),
         line_of: &dyn Fn(&[f64]) -> Vec<Point>,
     ) {
         let truth = line_of(self.truth);
@@ -226,12 +225,17 @@ impl Drawing<'_> {
             return;
         };
         let panel = Panel::new(picture, frame, x, Axis::linear(y, 0.05, "rate [deg/h]"));
-        for (line, stroke) in &lines {
+        for ((line, stroke), channel) in lines.iter().zip(&self.channels) {
             panel.line(picture, line, *stroke);
+            if line.len() > 1 {
+                legend.line(picture, *stroke, channel.name);
+            }
         }
-        if !truth.is_empty() {
+        if truth.len() > 1 {
             panel.line(picture, &truth, truth_stroke());
+            legend.line(picture, truth_stroke(), "true rate");
         }
+        legend.space();
     }
 }
 

@@ -3,7 +3,9 @@
 use super::drawing::axis::Axis;
 use super::drawing::panel::{Legend, Panel, WIDTH};
 use super::drawing::picture::{Picture, Stroke};
-use super::drawing::series::{extent, shape_of, stroke_of, truth_stroke};
+use super::drawing::series::{
+    SIDE_BY_SIDE, extent, shape_of, side_by_side, stroke_of, truth_stroke,
+};
 use crate::metrics::Column;
 use crate::metrics::catalogue::RATE_GAIN;
 use crate::metrics::columns::rate_gain::{MEAN_RATIO, MEAN_RATIO_HIGH, MEAN_RATIO_LOW, RATE};
@@ -30,23 +32,27 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     let panel = Panel::new(&mut picture, (56.0, 460.0), x_axis, y_axis);
     panel.line(&mut picture, &[(x.0, 1.0), (x.1, 1.0)], truth_stroke());
     let mut legend = Legend::new(56.0);
-    for channel in &channels {
+    for (place, channel) in channels.iter().enumerate() {
+        let aside = |x: f64| panel.beside(x, side_by_side(place, channels.len()));
         let stroke = stroke_of(channel.index);
         let bar = Stroke::solid(stroke.colour, 1.25);
         let points = channel.points.iter();
-        let line: Vec<_> = points.map(|point| (point.0, point.1)).collect();
+        let line: Vec<_> = points.map(|point| (aside(point.0), point.1)).collect();
         panel.line(&mut picture, &line, stroke);
         for (rate, ratio, low, high) in &channel.points {
-            panel.line(&mut picture, &[(*rate, *low), (*rate, *high)], bar);
+            panel.bar(&mut picture, aside(*rate), (*low, *high), bar);
             let shape = shape_of(channel.index);
-            panel.marker(&mut picture, (*rate, *ratio), shape, stroke.colour);
+            panel.marker(&mut picture, (aside(*rate), *ratio), shape, stroke.colour);
         }
-        legend.line(&mut picture, stroke, channel.name);
+        legend.curve(&mut picture, stroke, shape_of(channel.index), channel.name);
     }
-    legend.line(&mut picture, truth_stroke(), "as it was");
+    legend.line(&mut picture, truth_stroke(), "rate as it was");
     legend.text(&mut picture, "filters free to adapt, rate present");
     legend.text(&mut picture, "from the first sample on");
     legend.text(&mut picture, "bars: 95 % intervals");
+    if channels.len() > 1 {
+        legend.text(&mut picture, SIDE_BY_SIDE);
+    }
     Some(picture)
 }
 

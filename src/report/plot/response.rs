@@ -3,7 +3,9 @@
 use super::drawing::axis::Axis;
 use super::drawing::panel::{Legend, Panel, WIDTH};
 use super::drawing::picture::{Picture, Stroke};
-use super::drawing::series::{extent, shape_of, stroke_of, truth_stroke};
+use super::drawing::series::{
+    SIDE_BY_SIDE, extent, shape_of, side_by_side, stroke_of, truth_stroke,
+};
 use super::drawing::theory::{curves, draw, legend_of};
 use crate::gate::estimate_text;
 use crate::metrics::catalogue::{
@@ -79,13 +81,13 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     let mut legend = Legend::new(56.0);
     for channel in &channels {
         let stroke = stroke_of(channel.index);
-        legend.line(&mut picture, stroke, channel.name);
+        legend.curve(&mut picture, stroke, shape_of(channel.index), channel.name);
         for text in remarks(channel.metrics) {
             legend.detail(&mut picture, &text);
         }
     }
     legend.line(&mut picture, truth_stroke(), "output = true rate");
-    let mut legend = Legend::new(466.0);
+    let mut legend = Legend::below(&legend, 466.0);
     legend_of(
         &mut picture,
         &mut legend,
@@ -93,6 +95,9 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
         TheoryQuantity::RateErrorDegPerH,
     );
     legend.text(&mut picture, "bars: 95 % interval of the mean");
+    if channels.len() > 1 {
+        legend.text(&mut picture, SIDE_BY_SIDE);
+    }
     Some(picture)
 }
 
@@ -117,10 +122,16 @@ fn outputs(
     let y = Axis::linear(y, 0.05, &format!("mean output [{}]", scale.unit));
     let panel = Panel::new(picture, (56.0, 400.0), x_axis(scale, x), y);
     panel.line(picture, &[(x.0, x.0), (x.1, x.1)], truth_stroke());
-    for channel in channels {
+    for (place, channel) in channels.iter().enumerate() {
+        let aside = side_by_side(place, channels.len());
         let points = channel.points.iter();
         let line: Vec<(f64, f64)> = points
-            .map(|point| (convert(point.input), convert(point.output)))
+            .map(|point| {
+                (
+                    panel.beside(convert(point.input), aside),
+                    convert(point.output),
+                )
+            })
             .collect();
         draw_line(picture, &panel, &line, channel.index);
     }
@@ -143,13 +154,14 @@ fn errors(
     let panel = Panel::new(picture, (466.0, 810.0), x_axis(scale, x), y);
     panel.line(picture, &[(x.0, 0.0), (x.1, 0.0)], truth_stroke());
     draw(picture, &panel, &theory, scale.convert);
-    for channel in channels {
+    for (place, channel) in channels.iter().enumerate() {
+        let aside = side_by_side(place, channels.len());
         let bar = Stroke::solid(stroke_of(channel.index).colour, 1.25);
         let mut line = Vec::with_capacity(channel.points.len());
         for point in &channel.points {
-            let x = (scale.convert)(point.input);
+            let x = panel.beside((scale.convert)(point.input), aside);
             let [error, low, high] = point.error;
-            panel.line(picture, &[(x, low), (x, high)], bar);
+            panel.bar(picture, x, (low, high), bar);
             line.push((x, error));
         }
         draw_line(picture, &panel, &line, channel.index);

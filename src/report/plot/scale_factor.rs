@@ -3,8 +3,10 @@
 use super::drawing::axis::Axis;
 use super::drawing::panel::{Legend, Panel, WIDTH};
 use super::drawing::picture::{Picture, Stroke};
-use super::drawing::series::{extent, shape_of, stroke_of, truth_stroke};
-use crate::gate::estimate_text;
+use super::drawing::series::{
+    SIDE_BY_SIDE, extent, shape_of, side_by_side, stroke_of, truth_stroke,
+};
+use crate::gate::{estimate_text, three_digits};
 use crate::metrics::catalogue::{
     SCALE_FACTOR, SCALE_FACTOR_NONLINEARITY, SCALE_FACTOR_NONLINEARITY_OF_READING,
 };
@@ -55,14 +57,15 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
         &[(sizes.0, 0.0), (sizes.1, 0.0)],
         truth_stroke(),
     );
-    for channel in &channels {
+    for (place, channel) in channels.iter().enumerate() {
+        let aside = side_by_side(place, channels.len());
         let points = channel.points.iter();
         let of_full_scale: Vec<_> = points.clone().map(|point| (point.0, point.1)).collect();
-        draw(&mut picture, &upper, channel.index, &of_full_scale);
+        draw(&mut picture, &upper, (channel.index, aside), &of_full_scale);
         for sense in [1.0, -1.0] {
             let own = points.clone().filter(|point| sense * point.0 > 0.0);
             let of_reading: Vec<_> = own.map(|point| (point.0.abs(), point.2)).collect();
-            draw(&mut picture, &lower, channel.index, &of_reading);
+            draw(&mut picture, &lower, (channel.index, aside), &of_reading);
         }
     }
     legends(&mut picture, report, &channels);
@@ -72,7 +75,8 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
 fn legends(picture: &mut Picture, report: &RunReport, channels: &[Channel]) {
     let mut legend = Legend::new(56.0);
     for channel in channels {
-        legend.line(picture, stroke_of(channel.index), channel.name);
+        let stroke = stroke_of(channel.index);
+        legend.curve(picture, stroke, shape_of(channel.index), channel.name);
         for (key, title) in [
             (&SCALE_FACTOR_NONLINEARITY, "of full scale"),
             (&SCALE_FACTOR_NONLINEARITY_OF_READING, "of reading"),
@@ -83,26 +87,36 @@ fn legends(picture: &mut Picture, report: &RunReport, channels: &[Channel]) {
             let value = estimate_text(&metric.estimate, 2);
             legend.detail(picture, &format!("{title}: {value} ppm"));
             if let Some(floor) = metric.fields.get("noise_floor_ppm") {
-                legend.detail(picture, &format!("noise alone: {floor:.3} ppm"));
+                legend.detail(
+                    picture,
+                    &format!("noise alone: {} ppm", three_digits(*floor)),
+                );
             }
         }
     }
-    let mut legend = Legend::new(466.0);
+    let mut legend = Legend::below(&legend, 466.0);
     legend.text(picture, "bars: 95 % interval of each rate");
     let state = filter_state_word(report.scenario.trial.filter_state);
     legend.text(picture, &format!("filter state: {state}"));
+    if channels.len() > 1 {
+        legend.text(picture, SIDE_BY_SIDE);
+    }
 }
 
-/// A line through the points of one channel with their bars.
-fn draw(picture: &mut Picture, panel: &Panel, index: usize, points: &[(f64, Bar)]) {
+/// A line through the points of one channel with their bars, some pixels beside their places.
+fn draw(picture: &mut Picture, panel: &Panel, (index, aside): (usize, f64), points: &[(f64, Bar)]) {
     let stroke = stroke_of(index);
     let bar = Stroke::solid(stroke.colour, 1.25);
-    let mut line: Vec<(f64, f64)> = points.iter().map(|(x, bar)| (*x, bar[0])).collect();
+    let mut line: Vec<(f64, f64)> = points
+        .iter()
+        .map(|(x, bar)| (panel.beside(*x, aside), bar[0]))
+        .collect();
     line.sort_by(|a, b| a.0.total_cmp(&b.0));
     panel.line(picture, &line, stroke);
     for (x, [value, low, high]) in points {
-        panel.line(picture, &[(*x, *low), (*x, *high)], bar);
-        panel.marker(picture, (*x, *value), shape_of(index), stroke.colour);
+        let x = panel.beside(*x, aside);
+        panel.bar(picture, x, (*low, *high), bar);
+        panel.marker(picture, (x, *value), shape_of(index), stroke.colour);
     }
 }
 

@@ -92,12 +92,18 @@ pub(crate) fn value_text(metric: &Metric) -> String {
     }
 }
 
+/// The metrics that stand for a channel in the suite's table, in the order of the catalogue.
+pub(crate) fn headline_metrics(motion: &MotionConfig) -> Vec<&'static MetricKey> {
+    let line = headline_of(motion);
+    let keys = known_metrics().iter();
+    keys.filter(|key| key.headlines.contains(&line))
+        .copied()
+        .collect()
+}
+
 /// The few figures of a channel that stand for it in the suite's table: heading, value and unit.
 pub(crate) fn headline(motion: &MotionConfig, metrics: &ChannelMetrics) -> Vec<(String, String)> {
-    let line = headline_of(motion);
-    let keys = known_metrics()
-        .iter()
-        .filter(|key| key.headlines.contains(&line));
+    let keys = headline_metrics(motion).into_iter();
     keys.filter_map(|key| {
         let metric = metrics.get(key)?;
         let value = value_text(metric);

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::gate::{Verdict, VerdictKind, count_accepted, estimate_text, expects_failure};
 use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 use crate::report::record::columns::{DIGITS, heading_of, headline, unit_text, value_text};
-use crate::report::record::sweep::PointOfSweep;
+use crate::report::record::sweep::{PointFigure, PointOfSweep, point_figures};
 use crate::scenario::{ReportedRuns, Scenario};
 use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
 
@@ -144,6 +144,8 @@ pub struct RunOutcome {
     pub figures: Vec<String>,
     /// Metrics that a table of the suite asks for, by channel and key.
     pub kept: Vec<(String, BTreeMap<String, Metric>)>,
+    /// Headline metrics of a point of a sweep.
+    pub swept: Vec<PointFigure>,
     /// Pictures in the folder of the run.
     pub pictures: Vec<String>,
     /// Why the run could not finish, if it could not.
@@ -178,6 +180,7 @@ impl RunOutcome {
             verdicts: report.verdicts.to_vec(),
             figures: figures(report),
             kept: Vec::new(),
+            swept: point_figures(report),
             pictures: Vec::new(),
             error: None,
             is_not_run: false,
@@ -212,6 +215,7 @@ impl RunOutcome {
             verdicts: Vec::new(),
             figures: Vec::new(),
             kept: Vec::new(),
+            swept: Vec::new(),
             pictures: Vec::new(),
             error: Some(error),
             is_not_run: false,

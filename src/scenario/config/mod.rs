@@ -7,6 +7,7 @@ pub(in crate::scenario) mod channels;
 mod comparison;
 mod judging;
 mod output;
+mod range;
 mod run;
 mod trial;
 
@@ -17,5 +18,6 @@ pub use comparison::{
 };
 pub use judging::{GateConfig, GateDecision, InconclusivePolicy, PublishedConfig};
 pub use output::{OutputConfig, ReportedRuns, SamplesFormat};
+pub use range::{RangeConfig, Spacing};
 pub use run::Scenario;
 pub use trial::{FilterState, TrialConfig};

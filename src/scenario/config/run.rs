@@ -53,7 +53,10 @@ table! {
         figures as "figure": Vec<FigureConfig>;
         output: OutputConfig;
         /// Swept keys and their values; the runs are the Cartesian product, the last key fastest. All points
-        /// share the noise (common random numbers), so that they compare in pairs.
+        /// share the noise (common random numbers), so that they compare in pairs. Values are an array, or a
+        /// range with both ends in it: { from = 100, to = 2000, count = 9, spacing = "log" }, whose spacing
+        /// is "linear" if it is not given. A range is rounded to six digits of its step; that of a whole
+        /// number keeps to whole numbers, to which "log" rounds.
         matrix: Option<String>, example "\"gyro.source.power_uw\" = [0.5, 0.87, 2.0]", kind Matrix,
             apart "each point of it is a scenario of its own";
     }

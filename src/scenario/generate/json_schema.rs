@@ -2,7 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::declare::Content;
 use crate::scenario::check::cross::RESERVED;
+use crate::scenario::config::RangeConfig;
 use crate::scenario::document::tree;
 use crate::scenario::keys::defaults::default_of;
 use crate::scenario::keys::schema::{self, Child, Group, Key, Kind, Presence, join};
@@ -157,7 +159,7 @@ fn leaf(key: &Key) -> Value {
         Kind::EmptyTable => {
             json!({"type": "object", "additionalProperties": false, "properties": {}})
         }
-        Kind::Matrix => json!({"type": "object", "minProperties": 1}),
+        Kind::Matrix => matrix(),
     };
     schema["description"] = json!(format!("{} {}", key.sentence(), key.line()));
     if key.successor.is_some() {
@@ -167,6 +169,33 @@ fn leaf(key: &Key) -> Value {
         schema["default"] = default;
     }
     schema
+}
+
+/// Schema of the table of swept keys: of each its values, or a range of them. A key that is written
+/// without quotes makes tables in tables.
+fn matrix() -> Value {
+    let rows = || RangeConfig::TABLE.rows.iter();
+    let properties = rows().filter_map(|row| match row.content {
+        Content::Value(kind) => Some((row.name.to_owned(), leaf(&Key::of(row, row.name, kind)))),
+        _ => None,
+    });
+    let properties: Map<String, Value> = properties.collect();
+    let required = rows().filter(|row| row.presence == Presence::Required);
+    let required: Vec<&str> = required.map(|row| row.name).collect();
+    json!({
+        "type": "object",
+        "minProperties": 1,
+        "additionalProperties": {"anyOf": [
+            {"type": "array", "minItems": 1},
+            {
+                "type": "object",
+                "additionalProperties": false,
+                "properties": properties,
+                "required": required,
+            },
+            {"type": "object", "minProperties": 1, "additionalProperties": {"type": ["object", "array"]}},
+        ]},
+    })
 }
 
 /// Schema of a number.

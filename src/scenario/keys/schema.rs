@@ -97,6 +97,23 @@ fn tables() -> &'static Tables {
     })
 }
 
+/// Unit of a key as a sweep writes its path, where an element stands by its index or its name; none where
+/// it is no number, or keys of its name differ in their units.
+pub(crate) fn unit_of_written(written: &str) -> &'static str {
+    if let Some(key) = keys().find(|key| key.path == written) {
+        return key.unit;
+    }
+    let last = |path: &str| path.rsplit('.').next().map(str::to_owned);
+    let name = last(written);
+    let mut units = keys().filter(|key| last(key.path) == name);
+    let unit = units.next().map_or("", |key| key.unit);
+    if units.all(|key| key.unit == unit) {
+        unit
+    } else {
+        ""
+    }
+}
+
 /// What a table may hold, in the order of the key table.
 pub(crate) fn entries(schema_path: &str) -> &'static [Entry] {
     tables().get(schema_path).map_or(&[], Vec::as_slice)

@@ -38,7 +38,10 @@ const ROWS: &[Row] = &[
     (
         &["sweep", "scan", "grid"],
         In(&[""]),
-        Advice("points are listed in [matrix], as in \"gyro.coil.length_m\" = [500, 1000]"),
+        Advice(
+            "points are listed in [matrix], as in \"gyro.coil.length_m\" = [500, 1000], or given as a \
+             range, { from = 500, to = 1000, count = 6 }",
+        ),
     ),
     (
         &["angle_random_walk", "angular_random_walk", "random_walk"],

@@ -1,4 +1,4 @@
-//! Sweeps: the Cartesian product of the arrays in `[matrix]`.
+//! Sweeps: the Cartesian product of the arrays and ranges in `[matrix]`.
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
@@ -11,6 +11,7 @@ use crate::scenario::keys::schema::Key;
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::read::draft::Draft;
+use crate::scenario::read::range::{self, RangeError};
 use crate::scenario::read::resolve::Unsound;
 use crate::scenario::read::resolved::{Resolved, SweepPoint};
 use crate::scenario::read::script;
@@ -261,7 +262,8 @@ fn axes(
         return Err(vec![sources.error(matrix_mark, message)]);
     };
     let mut entries = Vec::new();
-    flatten("", table, matrix_mark, &mut entries);
+    let root = &draft.root;
+    flatten(root, "", table, matrix_mark, &mut entries);
     entries.sort_by_key(|(_, mark, _)| (Reverse(mark.source), mark.start));
     let mut axes: Vec<Axis> = Vec::new();
     let mut errors = Vec::new();
@@ -274,7 +276,10 @@ fn axes(
                 mark,
                 values,
             }),
-            Err(error) => errors.push(sources.error(mark, format!("matrix: {error}"))),
+            Err(error) => {
+                let mark = error.mark().unwrap_or(mark);
+                errors.push(sources.error(mark, format!("matrix: {error}")));
+            }
         }
     }
     if axes.is_empty() && errors.is_empty() {
@@ -307,13 +312,29 @@ enum AxisError {
     Set(String),
     #[error("{0} has no values: expected a non-empty array")]
     Empty(String),
-    #[error("{written} has the wrong type: expected an array of values, got {got}")]
+    #[error(
+        "{written} has the wrong type: expected an array of values, or a range as in {example}, \
+         got {got}",
+        example = range::EXAMPLE
+    )]
     NotAnArray {
         /// The key as it is written.
         written: String,
         /// Type of what stands there.
         got: &'static str,
     },
+    #[error(transparent)]
+    Range(#[from] RangeError),
+}
+
+impl AxisError {
+    /// The place inside the values, if one is meant.
+    fn mark(&self) -> Option<Mark> {
+        match self {
+            Self::Range(error) => error.mark,
+            _ => None,
+        }
+    }
 }
 
 /// Checks one swept key.
@@ -345,6 +366,7 @@ fn axis(
     match &node.value {
         Value::Array(values) if values.is_empty() => Err(AxisError::Empty(shown())),
         Value::Array(values) => Ok((path, key, values.to_vec())),
+        Value::Table(table) => Ok((path, key, range::values(written, key, table)?)),
         other => Err(AxisError::NotAnArray {
             written: shown(),
             got: other.type_name(),
@@ -352,8 +374,10 @@ fn axis(
     }
 }
 
-/// Gathers the arrays of a matrix; unquoted keys make nested tables, which are joined with dots.
+/// Gathers the arrays and ranges of a matrix; unquoted keys make nested tables, which are joined with
+/// dots.
 fn flatten<'a>(
+    root: &Table,
     prefix: &str,
     table: &'a Table,
     mark: Mark,
@@ -363,7 +387,9 @@ fn flatten<'a>(
         let path = crate::scenario::keys::schema::join(prefix, name);
         let mark = node.mark.unwrap_or(mark);
         match &node.value {
-            Value::Table(inner) => flatten(&path, inner, mark, entries),
+            Value::Table(inner) if !range::is_meant(root, &path, inner) => {
+                flatten(root, &path, inner, mark, entries);
+            }
             _ => entries.push((path, mark, node)),
         }
     }

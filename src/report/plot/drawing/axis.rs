@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::picture::text_width;
 use crate::report::layout::json::object;
 use crate::wording::to_digits;
 
@@ -87,12 +88,42 @@ impl Axis {
         }
     }
 
+    /// The axis with labels at the given values in place of round ones, if they fit side by side into a
+    /// length in pixels.
+    pub(in crate::report::plot) fn labelled_at(
+        mut self,
+        ticks: &[(f64, String)],
+        length: f64,
+    ) -> Self {
+        const SIZE: f64 = 13.0;
+        const GAP: f64 = 10.0;
+        let place = |value: f64| self.fraction(value) * length;
+        let fits = ticks.windows(2).all(|pair| {
+            let half = |text: &str| 0.5 * text_width(text, SIZE);
+            let distance = (place(pair[1].0) - place(pair[0].0)).abs();
+            distance >= half(&pair[0].1) + half(&pair[1].1) + GAP
+        });
+        if fits {
+            self.ticks = ticks.to_vec();
+        }
+        self
+    }
+
     /// Where a value stands: 0 at the low end, 1 at the high end.
     pub(in crate::report::plot) fn fraction(&self, value: f64) -> f64 {
         if self.is_log {
             (value / self.low).ln() / (self.high / self.low).ln()
         } else {
             (value - self.low) / (self.high - self.low)
+        }
+    }
+
+    /// A value that stands a part of the axis further on.
+    pub(in crate::report::plot) fn moved(&self, value: f64, part: f64) -> f64 {
+        if self.is_log {
+            value * (self.high / self.low).powf(part)
+        } else {
+            value + (self.high - self.low) * part
         }
     }
 

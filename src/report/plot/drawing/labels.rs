@@ -78,11 +78,17 @@ impl Labels {
                 1.0,
             ),
         };
+        // Fonts differ in width: the end that is nearer to the point is the one that keeps its place.
+        let (x, anchor) = if cover[2] < point.0 {
+            (cover[2], Anchor::End)
+        } else {
+            (at.0, Anchor::Start)
+        };
         if step > 1.0 {
             let end = (point.0.clamp(cover[0], cover[2]), at.1);
             picture.line(vec![point, end], Stroke::solid(BLACK, 0.5));
         }
-        picture.text(at, text, SIZE, Anchor::Start);
+        picture.text((x, at.1), text, SIZE, anchor);
         self.covered.push(cover);
     }
 }

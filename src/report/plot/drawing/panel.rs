@@ -65,6 +65,16 @@ impl Panel {
                 }
             }
         }
+        panel.outline(picture);
+        let below = (0.5 * (LEFT + RIGHT), bottom + 34.0);
+        picture.text(below, &panel.x.title, 14.0, Anchor::Middle);
+        picture.upright_text((22.0, 0.5 * (top + bottom)), &panel.y.title, 14.0);
+        panel
+    }
+
+    /// Draws the frame, once more over what fills it to its edges.
+    pub(in crate::report::plot) fn outline(&self, picture: &mut Picture) {
+        let (top, bottom) = (self.top, self.bottom);
         let corners = [
             (LEFT, top),
             (RIGHT, top),
@@ -73,10 +83,11 @@ impl Panel {
             (LEFT, top),
         ];
         picture.line(corners.to_vec(), Stroke::solid(BLACK, 1.0));
-        let below = (0.5 * (LEFT + RIGHT), bottom + 34.0);
-        picture.text(below, &panel.x.title, 14.0, Anchor::Middle);
-        picture.upright_text((22.0, 0.5 * (top + bottom)), &panel.y.title, 14.0);
-        panel
+    }
+
+    /// The abscissa that stands some pixels beside another.
+    pub(in crate::report::plot) fn beside(&self, x: f64, pixels: f64) -> f64 {
+        self.x.moved(x, pixels / (RIGHT - LEFT))
     }
 
     fn grid_line(&self, value: f64, is_x: bool) -> Vec<Point> {
@@ -130,6 +141,23 @@ impl Panel {
             piece.push(end);
         }
         picture.line(piece, stroke);
+    }
+
+    /// Draws an upright interval, cut off at the frame.
+    pub(in crate::report::plot) fn bar(
+        &self,
+        picture: &mut Picture,
+        x: f64,
+        (low, high): (f64, f64),
+        stroke: Stroke,
+    ) {
+        // What has no place on a logarithmic axis lies below it.
+        let low = if self.place_y(low).is_finite() {
+            low
+        } else {
+            self.y.range().0
+        };
+        self.line(picture, &[(x, low), (x, high)], stroke);
     }
 
     /// Fills between two lines over the same abscissae, cut off at the frame.
@@ -206,6 +234,13 @@ impl Legend {
         Self { y: top + 10.0 }
     }
 
+    /// A legend that starts at a height, or below another that reaches further down.
+    pub(in crate::report::plot) fn below(above: &Self, top: f64) -> Self {
+        Self {
+            y: above.y.max(top + 10.0),
+        }
+    }
+
     /// A line sample with its name.
     pub(in crate::report::plot) fn line(
         &mut self,
@@ -232,6 +267,33 @@ impl Legend {
         text: &str,
     ) {
         picture.marker((LEGEND + 17.0, self.y), look.0, look.1);
+        self.text_at(picture, LEGEND + 42.0, text, 12.5);
+    }
+
+    /// A line sample with the marker on it.
+    pub(in crate::report::plot) fn curve(
+        &mut self,
+        picture: &mut Picture,
+        stroke: Stroke,
+        shape: Shape,
+        text: &str,
+    ) {
+        let y = self.y;
+        self.line(picture, stroke, text);
+        picture.marker((LEGEND + 17.0, y), shape, stroke.colour);
+    }
+
+    /// A filled sample with its meaning, for a band or an area of a colour.
+    pub(in crate::report::plot) fn area(
+        &mut self,
+        picture: &mut Picture,
+        (colour, opacity): (Colour, f64),
+        text: &str,
+    ) {
+        let (left, right) = (LEGEND, LEGEND + 34.0);
+        let (top, bottom) = (self.y - 6.0, self.y + 6.0);
+        let corners = vec![(left, top), (right, top), (right, bottom), (left, bottom)];
+        picture.area(corners, colour, opacity);
         self.text_at(picture, LEGEND + 42.0, text, 12.5);
     }
 
@@ -281,6 +343,7 @@ impl Legend {
             }
         }
         picture.text((x, self.y), &line, size, Anchor::Start);
+        picture.reach(self.y + size);
         self.y += size + 7.0;
     }
 }

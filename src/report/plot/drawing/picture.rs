@@ -149,6 +149,11 @@ impl Picture {
         }
     }
 
+    /// Makes the picture high enough for what ends at a height, pixels.
+    pub(in crate::report) fn reach(&mut self, bottom: f64) {
+        self.size.1 = self.size.1.max(bottom.ceil());
+    }
+
     /// Notes a frame with its axes, by which a program reads values off the picture.
     pub(in crate::report) fn frame(&mut self, frame: Value) {
         self.frames.push(frame);
@@ -184,6 +189,17 @@ impl Picture {
         colour: Colour,
     ) {
         self.push_text(at, text, size, Anchor::Start, (colour, false, false));
+    }
+
+    /// Level text in a colour with its middle at a point.
+    pub(in crate::report) fn centred_text(
+        &mut self,
+        at: Point,
+        text: &str,
+        size: f64,
+        colour: Colour,
+    ) {
+        self.push_text(at, text, size, Anchor::Middle, (colour, false, false));
     }
 
     /// Bold level text.

@@ -61,6 +61,23 @@ pub(in crate::report::plot) fn shape_of(index: usize) -> Shape {
     [Shape::Circle, Shape::Square, Shape::Triangle][index % 3]
 }
 
+/// What is said where marks stand beside their places.
+pub(in crate::report::plot) const SIDE_BY_SIDE: &str = "marks of one place stand side by side";
+
+/// How far beside its place channel number `place` of `count` is drawn, pixels, so that none covers another
+/// that it coincides with.
+pub(in crate::report::plot) fn side_by_side(place: usize, count: usize) -> f64 {
+    /// From the first to the last, and between neighbours, at most.
+    const SPREAD: f64 = 18.0;
+    const STEP: f64 = 6.0;
+    let gaps = real(count.saturating_sub(1));
+    if gaps > 0.0 {
+        (SPREAD / gaps).min(STEP) * (real(place) - 0.5 * gaps)
+    } else {
+        0.0
+    }
+}
+
 /// Line of the true rate.
 pub(in crate::report::plot) fn truth_stroke() -> Stroke {
     Stroke {

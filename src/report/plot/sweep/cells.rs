@@ -1,0 +1,239 @@
+//! Values over several swept keys as cells, coloured by a scale.
+
+use super::super::drawing::axis::Axis;
+use super::super::drawing::panel::{LEFT, Legend, Panel, RIGHT};
+use super::super::drawing::picture::{BLACK, Colour, PALE, Picture, text_width};
+use super::super::drawing::series::{extent, index, real};
+use super::keys::{SweptKey, is_log_span};
+use super::sheet::{Channel, Layout, Sheet, lack};
+use crate::gate::three_digits;
+
+/// Colours from low to high that rise evenly in lightness, for colour-blind readers as well (viridis,
+/// van der Walt and Smith, 2015).
+const SCALE: [Colour; 8] = [
+    (0x44, 0x01, 0x54),
+    (0x46, 0x32, 0x7e),
+    (0x36, 0x5c, 0x8d),
+    (0x27, 0x7f, 0x8e),
+    (0x1f, 0xa1, 0x87),
+    (0x4a, 0xc1, 0x6d),
+    (0xa0, 0xda, 0x39),
+    (0xfd, 0xe7, 0x25),
+];
+/// Classes below this one are dark.
+const DARK_MAX: usize = 4;
+const WHITE: Colour = (0xff, 0xff, 0xff);
+/// Size of the values in the cells, and the room that they need around them, pixels.
+const SIZE: f64 = 12.0;
+const AROUND: f64 = 6.0;
+/// Room for the label of a row, pixels.
+const LABEL: f64 = 56.0;
+
+/// The classes of a scale.
+struct Classes {
+    low: f64,
+    high: f64,
+    is_log: bool,
+}
+
+impl Classes {
+    fn of(channel: &Channel) -> Self {
+        let values = channel.values.iter().flatten().map(|it| it.value);
+        let (low, high) = extent(values).unwrap_or((0.0, 1.0));
+        Self {
+            low,
+            high,
+            is_log: is_log_span((low, high)),
+        }
+    }
+
+    /// Lower end of a class.
+    fn end(&self, class: usize) -> f64 {
+        let part = real(class) / real(SCALE.len());
+        if self.is_log {
+            self.low * (self.high / self.low).powf(part)
+        } else {
+            self.low + (self.high - self.low) * part
+        }
+    }
+
+    fn class(&self, value: f64) -> usize {
+        let part = if self.is_log {
+            (value / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        };
+        // Values that are all the same have no part.
+        let part = if part.is_finite() { part } else { 0.0 };
+        index(part * real(SCALE.len())).min(SCALE.len() - 1)
+    }
+}
+
+/// The panel of a channel: a cell for each point, the key along and the settings of the others upwards.
+pub(super) fn draw(
+    picture: &mut Picture,
+    frame: (f64, f64),
+    (sheet, channel): (&Sheet, &Channel),
+    plan: &Layout,
+) {
+    let (columns, x) = edges(plan.along);
+    let (rows, y, row_of) = match plan.others[..] {
+        [other] => {
+            let (edges, axis) = edges(other);
+            (edges, axis, other.value_of.clone())
+        }
+        _ => settings_axis(plan),
+    };
+    let panel = Panel::new(picture, frame, x, y);
+    let classes = Classes::of(channel);
+    let mut grid = vec![vec![None; columns.len() - 1]; rows.len() - 1];
+    for (point, value) in channel.values.iter().enumerate() {
+        if let Some(value) = value {
+            grid[row_of[point]][plan.along.value_of[point]] = Some(value.value);
+        }
+    }
+    for (row, values) in grid.iter().enumerate() {
+        let class = |column: usize| values[column].map(|value| classes.class(value));
+        let mut start = 0;
+        // Neighbours of one colour are one area: a picture of ten thousand points stays small.
+        for column in 0..values.len() {
+            if column + 1 < values.len() && class(column + 1) == class(start) {
+                continue;
+            }
+            let corners = [
+                panel.place((columns[start], rows[row])),
+                panel.place((columns[column + 1], rows[row + 1])),
+            ];
+            let colour = class(start).map_or(PALE, |class| SCALE[class]);
+            let [(left, bottom), (right, top)] = corners;
+            let area = vec![(left, top), (right, top), (right, bottom), (left, bottom)];
+            picture.area(area, colour, 1.0);
+            start = column + 1;
+        }
+    }
+    panel.outline(picture);
+    write_values(picture, &panel, (&columns, &rows), (&grid, &classes));
+    explain(picture, frame.0, (sheet, channel), &classes);
+}
+
+/// Edges of the cells of a key, and its axis.
+fn edges(key: &SweptKey) -> (Vec<f64>, Axis) {
+    let (is_log, title) = (key.is_log(), key.title());
+    let to = |value: f64| if is_log { value.ln() } else { value };
+    let back = |value: f64| if is_log { value.exp() } else { value };
+    let places: Vec<f64> = key.places.iter().map(|place| to(*place)).collect();
+    let half = |at: usize| match places[..] {
+        [] | [_] => 0.5,
+        _ => 0.5 * (places[at.max(1)] - places[at.max(1) - 1]),
+    };
+    let last = places.len() - 1;
+    let mut edges = vec![back(places[0] - half(0))];
+    edges.extend(
+        places
+            .windows(2)
+            .map(|pair| back(0.5 * (pair[0] + pair[1]))),
+    );
+    edges.push(back(places[last] + half(last)));
+    let range = (edges[0], edges[edges.len() - 1]);
+    let mut axis = if is_log {
+        Axis::log(range, 0.0, &title)
+    } else {
+        Axis::linear(range, 0.0, &title)
+    };
+    let labels = key.places.iter().copied().zip(key.labels.iter().cloned());
+    let labels: Vec<(f64, String)> = labels.collect();
+    if key.is_number {
+        axis = axis.labelled_at(&labels, RIGHT - LEFT);
+    } else {
+        axis.ticks = labels;
+    }
+    axis.minor.clear();
+    (edges, axis)
+}
+
+/// Rows for the settings of several keys: edges, axis and the row of every point.
+fn settings_axis(plan: &Layout) -> (Vec<f64>, Axis, Vec<usize>) {
+    let count = plan.settings.len();
+    let names: Vec<&str> = plan.others.iter().map(|key| key.name.as_str()).collect();
+    let mut axis = Axis::linear((-0.5, real(count) - 0.5), 0.0, &names.join(", "));
+    // The axis names the keys: their values alone say which.
+    let values = |text: &str| -> String {
+        let settings = text.split(", ");
+        let values = settings.filter_map(|setting| setting.split(" = ").nth(1));
+        values.collect::<Vec<_>>().join(", ")
+    };
+    let step = count.div_ceil(16).max(1);
+    let rows = plan.settings.iter().enumerate().step_by(step);
+    axis.ticks = rows
+        .map(|(row, text)| (real(row), shortened(&values(text))))
+        .collect();
+    let edges = (0..=count).map(|edge| real(edge) - 0.5).collect();
+    (edges, axis, plan.setting_of.clone())
+}
+
+/// A label that fits beside the frame.
+fn shortened(text: &str) -> String {
+    let mut kept: Vec<char> = text.chars().collect();
+    if text_width(text, 13.0) <= LABEL {
+        return text.to_owned();
+    }
+    while text_width(&kept.iter().collect::<String>(), 13.0) > LABEL - 8.0 {
+        kept.pop();
+    }
+    kept.iter().collect::<String>() + "\u{2026}"
+}
+
+/// The values in their cells, where every one has room.
+fn write_values(
+    picture: &mut Picture,
+    panel: &Panel,
+    (columns, rows): (&[f64], &[f64]),
+    (grid, classes): (&[Vec<Option<f64>>], &Classes),
+) {
+    let mut texts = Vec::new();
+    for (row, values) in grid.iter().enumerate() {
+        for (column, value) in values.iter().enumerate() {
+            let Some(value) = value else { continue };
+            let (left, bottom) = panel.place((columns[column], rows[row]));
+            let (right, top) = panel.place((columns[column + 1], rows[row + 1]));
+            let text = three_digits(*value);
+            let has_room = right - left >= text_width(&text, SIZE) + AROUND
+                && (bottom - top).abs() >= SIZE + AROUND;
+            if !has_room {
+                return;
+            }
+            let colour = if classes.class(*value) < DARK_MAX {
+                WHITE
+            } else {
+                BLACK
+            };
+            texts.push(((0.5 * (left + right), 0.5 * (top + bottom)), text, colour));
+        }
+    }
+    for (at, text, colour) in texts {
+        picture.centred_text(at, &text, SIZE, colour);
+    }
+}
+
+/// What the colours mean.
+fn explain(
+    picture: &mut Picture,
+    top: f64,
+    (sheet, channel): (&Sheet, &Channel),
+    classes: &Classes,
+) {
+    let mut legend = Legend::new(top);
+    legend.text(picture, &format!("{}: {}", channel.name, sheet.title));
+    for class in (0..SCALE.len()).rev() {
+        let ends = [classes.end(class), classes.end(class + 1)].map(three_digits);
+        let text = format!("{} to {}", ends[0], ends[1]);
+        legend.area(picture, (SCALE[class], 1.0), &text);
+        if classes.low >= classes.high {
+            break;
+        }
+    }
+    if let Some(lack) = lack(channel) {
+        legend.area(picture, (PALE, 1.0), &lack);
+    }
+    legend.text(picture, "intervals: in metrics.csv");
+}

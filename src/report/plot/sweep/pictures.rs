@@ -1,0 +1,189 @@
+//! One picture for each headline metric.
+
+use super::super::drawing::panel::WIDTH;
+use super::super::drawing::picture::{Anchor, Picture};
+use super::super::drawing::series::real;
+use super::keys::SweptKey;
+use super::sheet::{Layout, Sheet};
+use super::{cells, lines};
+use crate::metrics::{MetricKey, known_metrics};
+use crate::report::record::run::RunOutcome;
+
+/// Most settings of the other keys that have lines of their own.
+const LINES_MAX: usize = 6;
+/// First line of a picture below its heading, and room below it for the keys that stay the same.
+const TOP: f64 = 64.0;
+/// Heights of a lone panel, of one of several, and of what stands below each.
+const LONE: f64 = 430.0;
+const PANEL: f64 = 270.0;
+const BELOW: f64 = 78.0;
+
+/// A picture of a sweep.
+pub(in crate::report) struct SweepPicture {
+    /// Name of its file, in the folder of the sweep.
+    pub(in crate::report) name: String,
+    /// What it shows.
+    pub(in crate::report) holds: String,
+    pub(in crate::report) picture: Picture,
+}
+
+/// The pictures of the points of a sweep, in their order: one for each headline metric that a channel has.
+pub(in crate::report) fn pictures(name: &str, points: &[&RunOutcome]) -> Vec<SweepPicture> {
+    let keys = SweptKey::of(points);
+    let Some(plan) = Layout::of(&keys, points.len()) else {
+        return Vec::new();
+    };
+    let is_shown = |key: &&&MetricKey| {
+        let mut figures = points.iter().flat_map(|point| &point.swept);
+        figures.any(|figure| figure.key == **key)
+    };
+    let shown = known_metrics().iter().filter(is_shown);
+    let drawn = shown.map(|key| {
+        let sheet = Sheet::of(points, key, &plan);
+        let title = format!("{name}: {} over {}", key.title(), plan.names());
+        SweepPicture {
+            name: format!("{}.svg", key.name.replace('_', "-")),
+            holds: format!("{} over {}", key.title(), plan.names()),
+            picture: picture(&sheet, &title, &plan),
+        }
+    });
+    drawn.collect()
+}
+
+/// The picture of a metric.
+fn picture(sheet: &Sheet, title: &str, plan: &Layout) -> Picture {
+    let is_lone = plan.others.is_empty();
+    let (panels, height) = if is_lone {
+        (1, LONE)
+    } else {
+        (sheet.channels.len(), PANEL)
+    };
+    let mut picture = Picture::new(WIDTH, TOP + (height + BELOW) * real(panels));
+    picture.heading((90.0, 26.0), title, 18.0);
+    let fixed = plan.fixed_text();
+    if !fixed.is_empty() {
+        picture.text((90.0, 46.0), &fixed, 12.5, Anchor::Start);
+    }
+    for (place, channel) in sheet.channels.iter().enumerate() {
+        let top = TOP + (height + BELOW) * real(place);
+        let frame = (top, top + height);
+        if is_lone {
+            lines::channels(&mut picture, frame, sheet, plan);
+            break;
+        } else if plan.settings.len() <= LINES_MAX {
+            lines::settings(&mut picture, frame, (sheet, channel), plan);
+        } else {
+            cells::draw(&mut picture, frame, (sheet, channel), plan);
+        }
+    }
+    picture
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::{Estimate, find};
+    use crate::report::plot::SVG_BYTES_MAX;
+    use crate::report::record::run::ChannelOutcome;
+    use crate::report::record::sweep::PointFigure;
+
+    /// A point with the mean of one channel; none has no value.
+    fn point(index: usize, set: &[(&str, String)], mean: Option<f64>) -> RunOutcome {
+        let set = set
+            .iter()
+            .map(|(key, toml)| ((*key).to_owned(), toml.clone()));
+        let key = find("mean_deg_per_h").expect("a metric");
+        let figure = mean.map(|mean| PointFigure {
+            channel: 0,
+            key,
+            estimate: Estimate::with_interval(mean, mean - 0.1, mean + 0.1),
+            averaging_time_s: None,
+        });
+        RunOutcome {
+            sweep: Some((index, set.collect())),
+            channels: vec![ChannelOutcome {
+                name: "raw".to_owned(),
+                headline: Vec::new(),
+                failure: None,
+                expected_failure: false,
+            }],
+            swept: figure.into_iter().collect(),
+            ..RunOutcome::not_run("s", "s", "s.toml")
+        }
+    }
+
+    fn svg(points: &[RunOutcome]) -> String {
+        let points: Vec<&RunOutcome> = points.iter().collect();
+        let mut pictures = pictures("s", &points);
+        assert_eq!(pictures.len(), 1);
+        let only = pictures.remove(0);
+        assert_eq!(only.name, "mean-deg-per-h.svg");
+        only.picture.svg().expect("small enough")
+    }
+
+    fn grid(columns: usize, rows: usize) -> Vec<RunOutcome> {
+        let points = (0..columns * rows).map(|index| {
+            let (x, y) = (real(index / rows), real(index % rows));
+            let set = [
+                ("gyro.source.power_uw", format!("{:?}", 1.0 + x)),
+                ("gyro.coil.length_m", format!("{:?}", 100.0 + y)),
+            ];
+            point(index, &set, Some((0.01 * x).sin() * (0.01 * y).cos()))
+        });
+        points.collect()
+    }
+
+    #[test]
+    fn ten_thousand_points_make_a_picture_of_either_kind() {
+        let lone = |index: usize| {
+            let set = [("gyro.coil.length_m", format!("{:?}", 100.0 + real(index)))];
+            let noise = (real(index) * 12.9898).sin();
+            point(index, &set, (!index.is_multiple_of(97)).then_some(noise))
+        };
+        let line: Vec<RunOutcome> = (0..10_000).map(lone).collect();
+        let line = svg(&line);
+        assert!(line.contains("no value at 104 of 10000 points"));
+        assert!(line.contains("95 % intervals: in metrics.csv"));
+        let cells = svg(&grid(100, 100));
+        for svg in [line, cells] {
+            assert!(svg.len() < SVG_BYTES_MAX, "{}", svg.len());
+        }
+    }
+
+    #[test]
+    fn a_second_key_has_lines_where_it_is_short_and_cells_where_it_is_long() {
+        let lines = svg(&grid(9, 6));
+        assert!(
+            lines.contains("length_m = 105")
+                && !lines.contains("<polygon opacity=\"1\" fill=\"#440154\"")
+        );
+        let cells = svg(&grid(9, 7));
+        assert!(!cells.contains("length_m = 105"));
+        assert!(cells.contains("gyro.coil.length_m [m]"));
+        // The values stand in the cells, the classes beside them.
+        assert!(cells.contains("#440154") && cells.contains(" to "));
+        assert!(cells.contains("0.0798"), "a value in its cell");
+    }
+
+    #[test]
+    fn lines_end_where_a_value_is_lacking() {
+        let at = |index: usize, mean| {
+            let set = [("gyro.coil.length_m", format!("{:?}", 100.0 + real(index)))];
+            point(index, &set, mean)
+        };
+        let whole: Vec<_> = (0..5).map(|index| at(index, Some(real(index)))).collect();
+        let gap: Vec<_> = (0..5)
+            .map(|index| at(index, (index != 2).then_some(real(index))))
+            .collect();
+        let pieces = |points: &[RunOutcome]| {
+            let svg = svg(points);
+            let lines = svg.lines().filter(|line| {
+                line.starts_with("<polyline")
+                    && line.contains("stroke=\"#8A8A8A\" stroke-width=\"7\"")
+            });
+            // The sample of the legend is one of them.
+            lines.count() - 1
+        };
+        assert_eq!((pieces(&whole), pieces(&gap)), (1, 2));
+    }
+}

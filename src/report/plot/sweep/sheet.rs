@@ -1,0 +1,159 @@
+//! The values of a metric at the points of a sweep, and how they are laid out.
+
+use std::collections::BTreeMap;
+
+use super::super::drawing::axis::Axis;
+use super::super::drawing::series::extent;
+use super::keys::{SweptKey, is_log_span, others_text};
+use crate::metrics::{Estimate, MetricKey};
+use crate::report::record::run::RunOutcome;
+use crate::wording::{counted, plain};
+
+/// Which key is the axis, and how the settings of the others are told apart.
+pub(super) struct Layout<'a> {
+    pub(super) along: &'a SweptKey,
+    /// The other keys that differ.
+    pub(super) others: Vec<&'a SweptKey>,
+    /// Settings of the others: their texts, in the order in which they occur.
+    pub(super) settings: Vec<String>,
+    /// Number of the setting of every point.
+    pub(super) setting_of: Vec<usize>,
+    /// Keys that are the same at every point.
+    fixed: Vec<&'a SweptKey>,
+}
+
+impl<'a> Layout<'a> {
+    pub(super) fn of(keys: &'a [SweptKey], points: usize) -> Option<Self> {
+        let (differing, fixed): (Vec<&SweptKey>, Vec<&SweptKey>) =
+            keys.iter().partition(|key| key.labels.len() > 1);
+        // A number before a word, and of two of them the one with more values; the first of equals.
+        let rank = |key: &&&SweptKey| (key.is_number, key.labels.len());
+        let all = || differing.iter().rev();
+        let along = *all().max_by_key(rank).or(fixed.first())?;
+        let others: Vec<&SweptKey> = differing
+            .iter()
+            .copied()
+            .filter(|key| !std::ptr::eq(*key, along))
+            .collect();
+        let mut settings = Vec::new();
+        let mut known = BTreeMap::new();
+        let setting_of = (0..points).map(|point| {
+            let text = others_text(&others, point);
+            *known.entry(text.clone()).or_insert_with(|| {
+                settings.push(text);
+                settings.len() - 1
+            })
+        });
+        let setting_of = setting_of.collect();
+        Some(Self {
+            along,
+            others,
+            settings,
+            setting_of,
+            fixed: fixed
+                .into_iter()
+                .filter(|key| !std::ptr::eq(*key, along))
+                .collect(),
+        })
+    }
+
+    /// The keys that differ, in words.
+    pub(super) fn names(&self) -> String {
+        let others = self.others.iter().map(|key| key.name.as_str());
+        let names = std::iter::once(self.along.name.as_str()).chain(others);
+        names.collect::<Vec<_>>().join(" and ")
+    }
+
+    /// What is the same at every point, in words.
+    pub(super) fn fixed_text(&self) -> String {
+        let fixed = self.fixed.iter();
+        let fixed = fixed.map(|key| format!("{} = {}", key.title(), key.labels[0]));
+        fixed.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// A channel's values, by point.
+pub(super) struct Channel {
+    pub(super) name: String,
+    /// Number among the channels of the sweep: its colour.
+    pub(super) index: usize,
+    pub(super) values: Vec<Option<Estimate>>,
+}
+
+/// The values of a metric.
+pub(super) struct Sheet {
+    /// Heading with unit.
+    pub(super) title: String,
+    pub(super) channels: Vec<Channel>,
+}
+
+impl Sheet {
+    pub(super) fn of(points: &[&RunOutcome], key: &'static MetricKey, plan: &Layout) -> Self {
+        let mut channels: Vec<Channel> = Vec::new();
+        let mut times_s = Vec::new();
+        for (place, point) in points.iter().enumerate() {
+            for (own, outcome) in point.channels.iter().enumerate() {
+                let index = match channels.iter().position(|it| it.name == outcome.name) {
+                    Some(index) => index,
+                    None => {
+                        channels.push(Channel {
+                            name: outcome.name.clone(),
+                            index: channels.len(),
+                            values: vec![None; plan.setting_of.len()],
+                        });
+                        channels.len() - 1
+                    }
+                };
+                let mut figures = point.swept.iter();
+                let figure = figures.find(|figure| figure.channel == own && figure.key == key);
+                if let Some(figure) = figure.filter(|figure| figure.estimate.value.is_finite()) {
+                    channels[index].values[place] = Some(figure.estimate);
+                    times_s.push(figure.averaging_time_s);
+                }
+            }
+        }
+        channels.retain(|channel| channel.values.iter().any(Option::is_some));
+        times_s.dedup();
+        let time = match times_s[..] {
+            [Some(time_s)] => format!(", {} s", plain(time_s)),
+            _ => String::new(),
+        };
+        let unit = if key.unit == "1" { "" } else { key.unit };
+        let unit = format!(" [{unit}{time}]")
+            .replace("[, ", "[")
+            .replace(" []", "");
+        Self {
+            title: format!("{}{unit}", key.title()),
+            channels,
+        }
+    }
+
+    /// The axis of the values of some channels: logarithmic where they span more than a decade and a half.
+    pub(super) fn axis<'a>(
+        &self,
+        channels: impl Iterator<Item = &'a Channel> + Clone,
+        title: &str,
+    ) -> Axis {
+        let values = channels.flat_map(|channel| channel.values.iter().flatten());
+        let is_log = extent(values.clone().map(|it| it.value)).is_some_and(is_log_span);
+        let ends = values.flat_map(|it| [it.value, it.low, it.high]);
+        let ends = ends.filter(|end| !is_log || *end > 0.0);
+        let range = extent(ends).unwrap_or((0.0, 1.0));
+        if is_log {
+            Axis::log(range, 0.06, title)
+        } else {
+            Axis::linear(range, 0.08, title)
+        }
+    }
+}
+
+/// What is said of points at which a channel has no value; none if it has one everywhere.
+pub(super) fn lack(channel: &Channel) -> Option<String> {
+    let lacking = channel
+        .values
+        .iter()
+        .filter(|value| value.is_none())
+        .count();
+    let of = counted(channel.values.len(), "point");
+    (lacking > 0).then(|| format!("no value at {lacking} of {of}"))
+}
