@@ -33,6 +33,7 @@ mod comparison_filters;
 mod compensation;
 mod coverage;
 mod cycle_exact;
+mod data_sheet_noise;
 mod determinism;
 mod documents;
 mod encoder;

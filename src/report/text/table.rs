@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use crate::gate::{Verdict, VerdictKind, estimate_text, plain, three_digits};
 use crate::metrics::{ChannelMetrics, Metric, find};
 use crate::report::RunReport;
+use crate::report::budget::replacement;
 use crate::report::calibration::text::calibration_text;
 use crate::report::layout::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::report::record::columns::{Column, DIGITS, columns, matters, unit_text, value_text};
@@ -105,7 +106,11 @@ fn gyro_text(report: &RunReport, width: usize) -> String {
             budget.push_str(&format!("; simulated {name} {value}"));
         }
     }
-    wrapped(&line, INDENT, width) + &wrapped(&budget, INDENT, width)
+    let mut text = wrapped(&line, INDENT, width) + &wrapped(&budget, INDENT, width);
+    if let Some(said) = replacement(&gyro.replaced_noise_sources) {
+        text.push_str(&wrapped(&said, INDENT, width));
+    }
+    text
 }
 
 /// The channels, their columns broken into as many blocks as the width asks for.
