@@ -24,6 +24,7 @@ mod cli_budget;
 mod cli_claim;
 mod cli_fpga;
 mod cli_log_quality;
+mod cli_manual;
 mod cli_words;
 mod closed_loop;
 mod compare;

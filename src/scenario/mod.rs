@@ -51,6 +51,7 @@ pub use config::{
 pub use document::setting::Setting;
 pub use generate::json_schema::json_schema;
 pub use generate::reference::reference_toml;
+pub use generate::reference_part::{UnknownKey, reference_part};
 pub use message::complaints::ScenarioErrors;
 pub use message::error::{Location, ScenarioError};
 pub(crate) use message::error::{in_both, in_order, portable_place};

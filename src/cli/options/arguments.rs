@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 use crate::cli::options::baseline::{AgainstOptions, BaselineOptions, CompareOptions};
 use crate::cli::options::build_server::BuildServerOptions;
@@ -54,6 +55,8 @@ pub(in crate::cli) enum Command {
     Expand(SelectOptions),
     /// List the runs that a selection holds
     List(ListOptions),
+    /// Print what a scenario may hold: every key with type, range, unit, default and meaning
+    Reference(ReferenceOptions),
     /// Print the JSON Schema of scenario files
     Schema,
     /// Compare results with earlier ones or with a baseline, metric by metric
@@ -74,6 +77,10 @@ pub(in crate::cli) enum Command {
     Timing(TimingOptions),
     /// Write golden vectors, waveforms or RTL of a hardware pipeline into a folder
     Export(ExportOptions),
+    /// Print completions of this command line for a shell
+    Completions(CompletionsOptions),
+    /// Print a page of the manual, as roff
+    Man(ManOptions),
 }
 
 /// Which scenarios.
@@ -96,6 +103,28 @@ pub(in crate::cli) enum ResumeFrom {
     SameBuild,
     /// Those of any build of this version
     AnyBuild,
+}
+
+/// Options of `reference`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct ReferenceOptions {
+    /// A key or a table, as in gyro.noise or filter.rls.taps [default: all]
+    pub(in crate::cli) key: Option<String>,
+}
+
+/// Options of `completions`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct CompletionsOptions {
+    /// Shell that completes
+    #[arg(value_enum)]
+    pub(in crate::cli) shell: Shell,
+}
+
+/// Options of `man`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct ManOptions {
+    /// Command, as in baseline save [default: the program]
+    pub(in crate::cli) command: Vec<String>,
 }
 
 /// Options of `budget`.

@@ -56,11 +56,14 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
         | Command::Check(_)
         | Command::Expand(_)
         | Command::List(_)
+        | Command::Reference(_)
         | Command::Schema
         | Command::Compare(_)
         | Command::Baseline(_)
         | Command::Budget(_)
-        | Command::Claim(_) => Vec::new(),
+        | Command::Claim(_)
+        | Command::Completions(_)
+        | Command::Man(_) => Vec::new(),
     }
 }
 
