@@ -11,8 +11,8 @@ use std::process::ExitCode;
 
 use crate::experiment::start_threads;
 use commands::{
-    baseline, budget, calibrate, check, claim, compare, completions, expand, export, list, log,
-    man, reference, run, schema, timing,
+    baseline, budget, calibrate, check, claim, compare, completions, expand, export, init, list,
+    log, man, reference, run, schema, timing,
 };
 use options::arguments::{Arguments, Command};
 use options::idle;
@@ -46,6 +46,7 @@ fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
         start_threads();
     }
     let result = match &arguments.command {
+        Command::Init(options) => init::init(options),
         Command::Run(options) => run::run(options, interrupt),
         Command::Check(options) => check::check(options),
         Command::Expand(options) => expand::expand(options),

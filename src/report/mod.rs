@@ -38,6 +38,7 @@ mod page;
 mod plot;
 mod record;
 mod restore;
+mod starter;
 mod text;
 
 pub use artefacts::{
@@ -71,5 +72,6 @@ pub use plot::{Pictures, SVG_BYTES_MAX};
 pub use record::run::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
 pub use record::sweep::PointOfSweep;
 pub use restore::run::RestoredRun;
+pub use starter::{Starter, starter_toml};
 pub use text::suite::{SuiteStyle, closing_text, scenario_text, suite_text, sweep_text};
 pub use text::table::table_text;

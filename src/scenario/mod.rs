@@ -42,6 +42,7 @@ pub use crate::turntable::{
     TrapezoidConfig, TurntableConfig,
 };
 pub(crate) use check::cross::comparison::slug;
+pub(crate) use check::leaf::is_name;
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, ComparisonColumn, ComparisonConfig,
     ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig, GateDecision,
@@ -52,6 +53,7 @@ pub use document::setting::Setting;
 pub use generate::json_schema::json_schema;
 pub use generate::reference::reference_toml;
 pub use generate::reference_part::{UnknownKey, reference_part};
+pub(crate) use keys::schema::declared_key;
 pub use message::complaints::ScenarioErrors;
 pub use message::error::{Location, ScenarioError};
 pub(crate) use message::error::{in_both, in_order, portable_place};

@@ -9,6 +9,7 @@ pub(in crate::cli) mod compare;
 pub(in crate::cli) mod completions;
 pub(in crate::cli) mod expand;
 pub(in crate::cli) mod export;
+pub(in crate::cli) mod init;
 pub(in crate::cli) mod list;
 pub(in crate::cli) mod log;
 pub(in crate::cli) mod man;

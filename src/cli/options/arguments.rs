@@ -11,6 +11,7 @@ use crate::cli::options::calibrate::CalibrateOptions;
 use crate::cli::options::claim::ClaimOptions;
 use crate::cli::options::format::Format;
 use crate::cli::options::hardware::{ExportOptions, TimingOptions};
+use crate::cli::options::init::InitOptions;
 use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
 use crate::cli::terminal::output::Colour;
 
@@ -47,6 +48,8 @@ pub(in crate::cli) struct Arguments {
 /// Commands.
 #[derive(Debug, Subcommand)]
 pub(in crate::cli) enum Command {
+    /// Begin a scenario for a gyro of your own
+    Init(InitOptions),
     /// Run scenarios in parallel, write results and evaluate gates
     Run(RunOptions),
     /// Check scenario files without running them

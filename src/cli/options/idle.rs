@@ -52,7 +52,8 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
         Command::Timing(options) => of_timing(options, given),
         Command::Export(options) => of_export(options, given),
         Command::Calibrate(options) => of_calibrate(options),
-        Command::Run(_)
+        Command::Init(_)
+        | Command::Run(_)
         | Command::Check(_)
         | Command::Expand(_)
         | Command::List(_)
