@@ -9,6 +9,7 @@ mod allan_coverage;
 mod allan_curves;
 mod architecture;
 mod assembly;
+mod assumed_values;
 mod average_output;
 mod bit_exact;
 mod bounds;

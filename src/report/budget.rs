@@ -6,7 +6,8 @@ use serde_json::{Map, Value};
 
 use crate::gate::{plain, three_digits};
 use crate::report::layout::json::{number, numbers, object, pretty, put};
-use crate::report::layout::text::Grid;
+use crate::report::layout::text::{Grid, wrapped};
+use crate::scenario::AssumedValue;
 use crate::signal::{BudgetPoint, BudgetSheet};
 
 /// Name of the sum of all sources.
@@ -55,6 +56,17 @@ pub fn budget_text(file: &str, sheet: &BudgetSheet) -> String {
         let _ = writeln!(text, "\nnote: {caution}");
     }
     text
+}
+
+/// What nobody set, on which a budget rests; nothing if all was set.
+#[must_use]
+pub fn budget_assumed_text(assumed: &[AssumedValue], width: usize) -> String {
+    if assumed.is_empty() {
+        return String::new();
+    }
+    let shown: Vec<String> = assumed.iter().map(AssumedValue::shown).collect();
+    let text = format!("assumed, as nobody set it: {}", shown.join(", "));
+    format!("\n{}", wrapped(&text, "", width))
 }
 
 /// A table by source at the configured point.

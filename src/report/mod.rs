@@ -49,7 +49,7 @@ pub use artefacts::{
 pub use baseline::json::comparison_with_baseline_json;
 pub use baseline::markdown::comparison_with_baseline_markdown;
 pub use baseline::text::comparison_with_baseline_text;
-pub use budget::{budget_json, budget_text};
+pub use budget::{budget_assumed_text, budget_json, budget_text};
 pub use build_server::bencher::{BencherMetrics, is_bencher_metrics};
 pub use build_server::github::github_annotations;
 pub use build_server::junit::{SuiteTimes, is_junit_xml, junit_xml};

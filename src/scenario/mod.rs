@@ -58,7 +58,7 @@ pub use message::complaints::ScenarioErrors;
 pub use message::error::{Location, ScenarioError};
 pub(crate) use message::error::{in_both, in_order, portable_place};
 pub use message::excerpt::{bounded, excerpt};
-pub use read::assumed::AssumedValue;
+pub use read::assumed::{AssumedInShort, AssumedValue};
 pub use read::compensation_source::load_calibration;
 pub use read::manifest::manifest_toml;
 pub(crate) use read::resolve::UnsoundReading;

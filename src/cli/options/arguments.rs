@@ -55,7 +55,7 @@ pub(in crate::cli) enum Command {
     /// Check scenario files without running them
     Check(SelectOptions),
     /// Print every resolved run of scenario files, defaults and sweeps included
-    Expand(SelectOptions),
+    Expand(ExpandOptions),
     /// List the runs that a selection holds
     List(ListOptions),
     /// Print what a scenario may hold: every key with type, range, unit, default and meaning
@@ -97,6 +97,17 @@ pub(in crate::cli) struct SelectOptions {
     /// Only scenarios of these names, in which `*` stands for any text and `?` for one character
     #[arg(long = "filter", value_name = "GLOB")]
     pub(in crate::cli) names: Vec<String>,
+}
+
+/// Options of `expand`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct ExpandOptions {
+    #[command(flatten)]
+    pub(in crate::cli) select: SelectOptions,
+    /// Say behind each value of a single run where it comes from: `assumed` where nobody set it, the base
+    /// that says it, or --set
+    #[arg(long)]
+    pub(in crate::cli) origins: bool,
 }
 
 /// Whose results `run --resume` takes over.
