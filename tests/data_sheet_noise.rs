@@ -23,6 +23,9 @@ fn sheet(walk: f64) -> GyroConfig {
     config
 }
 
+/// How a gyro is changed.
+type Change = fn(&mut GyroConfig);
+
 /// Angle random walks of the words at rest of both models, deg/sqrt(h).
 fn walks(config: &GyroConfig) -> [(&'static str, f64); 2] {
     let period_s = fogbench::gyro::sample_period_s(config);
@@ -48,7 +51,7 @@ fn walks(config: &GyroConfig) -> [(&'static str, f64); 2] {
 
 #[test]
 fn the_words_have_the_walk_of_the_data_sheet_whatever_the_gyro() {
-    let cases: [(&str, fn(&mut GyroConfig)); 8] = [
+    let cases: [(&str, Change); 8] = [
         ("as the reference", |_| {}),
         ("no latency", |gyro| {
             gyro.controller.loop_latency_periods = 0

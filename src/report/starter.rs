@@ -205,7 +205,13 @@ fn gyro(file: &mut File, starter: &Starter) {
         _ => "assumed",
     };
     file.key("gyro.adc.bits", &gyro.adc.bits.to_string(), remark);
+    electronics(file, starter);
+}
 
+/// The tables of modulator, loop, words and slow noise.
+fn electronics(file: &mut File, starter: &Starter) {
+    let gyro = starter.gyro;
+    let number = |value: f64| format!("{value:?}");
     file.line("\n[gyro.modulator]");
     file.key(
         "gyro.modulator.dac_bits",
