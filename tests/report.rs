@@ -11,7 +11,7 @@ use fogbench::report::{
     RunOutcome, RunReport, RunStatus, SVG_BYTES_MAX, SuiteReport, curve_csv, junit_xml, plots,
     run_summary_json, suite_text, table_text, write_suite_summary,
 };
-use fogbench::scenario::{GateConfig, GateDecision, InconclusivePolicy, Scenario};
+use fogbench::scenario::{AssumedInShort, GateConfig, GateDecision, InconclusivePolicy, Scenario};
 use fogbench::signal::{GyroFacts, RunSignals, TheoryCurve, TheoryQuantity};
 
 fn gate(metric: &str, min: Option<f64>, max: Option<f64>) -> GateConfig {
@@ -182,6 +182,7 @@ impl Fixture {
             calibration: None,
             verdicts: &self.verdicts,
             notes: &[],
+            assumed: AssumedInShort::default(),
         }
     }
 }

@@ -11,8 +11,8 @@ use std::process::ExitCode;
 
 use crate::experiment::start_threads;
 use commands::{
-    baseline, budget, calibrate, check, claim, compare, expand, export, list, log, run, schema,
-    timing,
+    baseline, budget, calibrate, check, claim, compare, completions, expand, export, init, list,
+    log, man, reference, run, schema, timing,
 };
 use options::arguments::{Arguments, Command};
 use options::idle;
@@ -46,10 +46,12 @@ fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
         start_threads();
     }
     let result = match &arguments.command {
+        Command::Init(options) => init::init(options),
         Command::Run(options) => run::run(options, interrupt),
         Command::Check(options) => check::check(options),
         Command::Expand(options) => expand::expand(options),
         Command::List(options) => list::list(options),
+        Command::Reference(options) => reference::reference(options),
         Command::Schema => schema::schema(),
         Command::Compare(options) => compare::compare(options),
         Command::Baseline(options) => baseline::baseline(options),
@@ -60,6 +62,8 @@ fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
         Command::Calibrate(options) => calibrate::calibrate(options),
         Command::Timing(options) => timing::timing(options),
         Command::Export(options) => export::export(options),
+        Command::Completions(options) => completions::completions(options),
+        Command::Man(options) => man::man(options),
     };
     result.unwrap_or_else(exit::io_failure)
 }

@@ -15,7 +15,7 @@ use crate::metrics::catalogue::{
 use crate::metrics::{Estimate, Finding, Metric, MetricKey, find, paired_ratio};
 use crate::scenario::{
     AssumptionConfig, ComparisonColumn, ComparisonConfig, ComparisonKind, ComparisonRowConfig,
-    FigureConfig, Resolved, ScenarioError, slug,
+    FigureConfig, Resolved, Scenario, ScenarioError, slug,
 };
 
 /// Metrics that bear on the cause of a lower noise, beside those of the columns.
@@ -46,7 +46,9 @@ impl<'a> Layout<'a> {
             let scenario = &resolved.scenario;
             add(&mut layout.comparisons, &scenario.comparisons);
             add(&mut layout.rows, &scenario.comparison_rows);
-            add(&mut layout.assumptions, &scenario.assumptions);
+            if reproduces(scenario) {
+                add(&mut layout.assumptions, &scenario.assumptions);
+            }
             add(&mut layout.figures, &scenario.figures);
         }
         let columns = layout.comparisons.iter().flat_map(|one| &one.columns);
@@ -346,6 +348,19 @@ fn causes(row: &ComparedRow, columns: &[ComparedColumn], suite: &[ComparedRun]) 
         })
     });
     found.collect()
+}
+
+/// Whether a scenario has to do with the publication whose open readings it carries: it has published
+/// figures or is one of its tables or figures. One that only builds on the same base carries tables and figures
+/// of others alone.
+fn reproduces(scenario: &Scenario) -> bool {
+    let rows = scenario.comparison_rows.iter();
+    let of_rows = rows.flat_map(|row| &row.scenarios);
+    let of_figures = scenario.figures.iter().map(|figure| &figure.scenario);
+    let mut named = of_rows.chain(of_figures).peekable();
+    !scenario.published.is_empty()
+        || named.peek().is_none()
+        || named.any(|name| *name == scenario.name)
 }
 
 /// An assumption with the values that the runs have; none if no run has the key.

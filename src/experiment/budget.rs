@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::gyro;
+use crate::scenario::AssumedValue;
 use crate::scenario::{ScenarioError, load_base_or_scenario};
 use crate::signal::BudgetSheet;
 
@@ -14,6 +15,8 @@ pub struct GyroBudget {
     pub file: String,
     /// The budget.
     pub sheet: BudgetSheet,
+    /// What nobody set, and it rests on.
+    pub assumed: Vec<AssumedValue>,
 }
 
 /// Reads the gyro of a scenario or base file, `--set` overrides applied, and works out its budget.
@@ -46,5 +49,6 @@ pub fn gyro_budget(path: &Path, sets: &[String]) -> Result<GyroBudget, Vec<Scena
     Ok(GyroBudget {
         file: first.file.clone(),
         sheet,
+        assumed: first.assumed_of_budget(),
     })
 }

@@ -17,6 +17,8 @@ mod pipeline_metrics;
 mod plan;
 mod run;
 mod scenario;
+#[cfg(feature = "report")]
+mod starter;
 #[cfg(feature = "hdl")]
 mod stimulus;
 #[cfg(feature = "report")]
@@ -38,6 +40,8 @@ pub use log::{
 pub use plan::{Plan, Sound, check_suite, plan_suite};
 pub use run::{Progress, Run, RunError, Samples, UnknownName};
 pub use scenario::Scenario;
+#[cfg(feature = "report")]
+pub use starter::{StarterGyro, starter_scenario};
 #[cfg(feature = "hdl")]
 pub use stimulus::scenario_stimulus;
 #[cfg(feature = "report")]

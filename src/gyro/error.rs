@@ -188,6 +188,22 @@ pub enum GyroError {
         /// Slope of the mean level between two codes, nominal 1.
         slope_max: f64,
     },
+    /// A data sheet's angle random walk that rounding alone nearly reaches.
+    #[error(
+        "rounding alone makes an angle random walk of {:.3e} deg/sqrt(h) ({converter_deg_per_sqrt_h:.3e} in the \
+         converter, {words_deg_per_sqrt_h:.3e} of the rate words), too much of the {walk_deg_per_sqrt_h} deg/sqrt(h) \
+         asked for to be white noise: {}, or ask for a greater walk",
+        converter_deg_per_sqrt_h.hypot(*words_deg_per_sqrt_h),
+        remedy(*converter_deg_per_sqrt_h, *words_deg_per_sqrt_h)
+    )]
+    RoundingBeyondWalk {
+        /// Walk asked for, deg/sqrt(h).
+        walk_deg_per_sqrt_h: f64,
+        /// Walk of the rounding in the converter, deg/sqrt(h).
+        converter_deg_per_sqrt_h: f64,
+        /// Walk of the rounding of the words, deg/sqrt(h).
+        words_deg_per_sqrt_h: f64,
+    },
     /// The rate model is asked for a ramp converter whose rounding it leaves out.
     #[error(
         "the ramp converter steps by {step_rad:.3e} rad, up to {rounding_deg_per_h:.3} deg/h rms per word \
@@ -227,7 +243,17 @@ impl GyroError {
             Self::RateBeyondFringe { .. } | Self::PhaseErrorBeyondSlope { .. } => "turntable",
             Self::ConverterTooCoarse { .. } => "gyro.adc.bits",
             Self::RampTooCoarse { .. } => "gyro.modulator.dac_bits",
+            Self::RoundingBeyondWalk { .. } => "gyro.noise.angle_random_walk_deg_per_sqrt_h",
         }
+    }
+}
+
+/// What to do about rounding, the greater part of it first.
+fn remedy(converter: f64, words: f64) -> &'static str {
+    if converter > words {
+        "raise gyro.source.power_uw or gyro.adc.bits (0 rounds nothing)"
+    } else {
+        "lower gyro.output.rate_lsb_deg_per_s (0 rounds nothing)"
     }
 }
 

@@ -243,5 +243,6 @@ pub fn facts(config: &GyroConfig) -> Result<GyroFacts, GyroError> {
             config,
         )
         .entries(),
+        replaced_noise_sources: detector.densities.replaced(),
     })
 }

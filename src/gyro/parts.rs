@@ -92,7 +92,7 @@ impl Parts {
         if config.detector.gate_spikes {
             // The gate cannot be longer than what is left between the spikes.
             let plateau = 1.0 - spike_share(optics.mismatch);
-            detector.gate_duty = detector.gate_duty.min(plateau);
+            detector = detector.with_gate_within(plateau);
         }
         let half_period_s = half_period_s(config);
         let mut controller = Controller::new(
@@ -142,7 +142,7 @@ impl Parts {
 /// Half modulation period of a configuration, s.
 pub(super) fn half_period_s(config: &GyroConfig) -> f64 {
     let coil = Coil::new(&config.coil, &config.source);
-    coil.transit_time_s * (1.0 + config.modulator.half_period_mismatch)
+    coil.half_period_s(config.modulator.half_period_mismatch)
 }
 
 /// The cubic that an instant of a sample falls into, and its normalised time there.

@@ -6,7 +6,8 @@ use serde_json::{Map, Value};
 
 use crate::gate::{plain, three_digits};
 use crate::report::layout::json::{number, numbers, object, pretty, put};
-use crate::report::layout::text::Grid;
+use crate::report::layout::text::{Grid, wrapped};
+use crate::scenario::AssumedValue;
 use crate::signal::{BudgetPoint, BudgetSheet};
 
 /// Name of the sum of all sources.
@@ -14,6 +15,16 @@ pub(crate) const TOTAL: &str = "total";
 /// Every how many points of its curve the text has a row.
 const DEPTHS_PER_ROW: usize = 15;
 const POWERS_PER_ROW: usize = 5;
+
+/// What stands in the place of which sources, if the walk of a data sheet does.
+pub(in crate::report) fn replacement(replaced: &[&str]) -> Option<String> {
+    let (last, others) = replaced.split_last()?;
+    Some(format!(
+        "equivalent: one white source of the data sheet's walk (gyro.noise.angle_random_walk_deg_per_sqrt_h) \
+         in the place of {} and {last}",
+        others.join(", ")
+    ))
+}
 
 /// The budget for people.
 #[must_use]
@@ -25,21 +36,37 @@ pub fn budget_text(file: &str, sheet: &BudgetSheet) -> String {
         plain(configured.modulation_depth_deg),
     );
     text.push_str(&entries(sheet));
+    if let Some(said) = replacement(&sheet.replaced_sources) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {said}");
+    }
     text.push('\n');
     text.push_str(&optimum(sheet));
     let depth = |point: &BudgetPoint| point.modulation_depth_deg;
     text.push_str("\nagainst modulation depth at the configured power\n");
-    text.push_str(&curve(&sheet.by_depth, "deg", depth, DEPTHS_PER_ROW));
+    let gap = gap(sheet);
+    text.push_str(&curve(&sheet.by_depth, ("deg", gap), depth, DEPTHS_PER_ROW));
     text.push_str(&largest(&sheet.by_depth, "deg", depth));
     let power = |point: &BudgetPoint| point.power_uw;
     text.push_str("\nagainst power at the configured depth\n");
-    text.push_str(&curve(&sheet.by_power, "uW", power, POWERS_PER_ROW));
+    text.push_str(&curve(&sheet.by_power, ("uW", gap), power, POWERS_PER_ROW));
     text.push_str(&largest(&sheet.by_power, "uW", power));
     for caution in &sheet.cautions {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "\nnote: {caution}");
     }
     text
+}
+
+/// What nobody set, on which a budget rests; nothing if all was set.
+#[must_use]
+pub fn budget_assumed_text(assumed: &[AssumedValue], width: usize) -> String {
+    if assumed.is_empty() {
+        return String::new();
+    }
+    let shown: Vec<String> = assumed.iter().map(AssumedValue::shown).collect();
+    let text = format!("assumed, as nobody set it: {}", shown.join(", "));
+    format!("\n{}", wrapped(&text, "", width))
 }
 
 /// A table by source at the configured point.
@@ -66,6 +93,10 @@ fn entries(sheet: &BudgetSheet) -> String {
 }
 
 fn optimum(sheet: &BudgetSheet) -> String {
+    if !sheet.replaced_sources.is_empty() {
+        return "the walk is that of the data sheet at every modulation depth and power\n"
+            .to_owned();
+    }
     let Some(closed_form) = sheet.closed_form_optimum_depth_deg else {
         return "no source depends on the modulation depth\n".to_owned();
     };
@@ -86,10 +117,19 @@ fn optimum(sheet: &BudgetSheet) -> String {
     )
 }
 
+/// Where a budget has no point.
+fn gap(sheet: &BudgetSheet) -> &'static str {
+    if sheet.replaced_sources.is_empty() {
+        "the bias point lies beyond the converter's range"
+    } else {
+        "rounding takes most of the walk, or the bias point lies beyond the converter's range"
+    }
+}
+
 /// Every so many points of a curve as a table.
 fn curve(
     points: &[BudgetPoint],
-    unit: &str,
+    (unit, gap): (&str, &str),
     abscissa: impl Fn(&BudgetPoint) -> f64,
     step: usize,
 ) -> String {
@@ -104,7 +144,7 @@ fn curve(
     let mut text = grid.lines("  ");
     let beyond = |point: &BudgetPoint| point.angle_random_walk_deg_per_sqrt_h.is_none();
     if points.iter().any(beyond) {
-        text.push_str("  -: the bias point lies beyond the converter's range\n");
+        text.push_str(&format!("  -: {gap}\n"));
     }
     text
 }
@@ -175,8 +215,12 @@ pub fn budget_json(file: &str, sheet: &BudgetSheet) -> String {
     put(&mut document, "power_uw", sheet.configured.power_uw);
     let depth_deg = sheet.configured.modulation_depth_deg;
     put(&mut document, "modulation_depth_deg", depth_deg);
+    document.insert("sources".to_owned(), entries_json(sheet));
+    if !sheet.replaced_sources.is_empty() {
+        let replaced = sheet.replaced_sources.clone();
+        document.insert("replaced_sources".to_owned(), replaced.into());
+    }
     document.extend(object([
-        ("sources", entries_json(sheet)),
         ("optimum", optimum_json(sheet)),
         ("by_depth", curve_json(&sheet.by_depth)),
         ("by_power", curve_json(&sheet.by_power)),

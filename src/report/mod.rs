@@ -38,6 +38,7 @@ mod page;
 mod plot;
 mod record;
 mod restore;
+mod starter;
 mod text;
 
 pub use artefacts::{
@@ -49,7 +50,7 @@ pub use baseline::json::comparison_with_baseline_json;
 pub use baseline::markdown::comparison_with_baseline_markdown;
 pub use baseline::rows::ComparedSides;
 pub use baseline::text::comparison_with_baseline_text;
-pub use budget::{budget_json, budget_text};
+pub use budget::{budget_assumed_text, budget_json, budget_text};
 pub use build_server::bencher::{BencherMetrics, is_bencher_metrics};
 pub use build_server::github::github_annotations;
 pub use build_server::junit::{SuiteTimes, is_junit_xml, junit_xml};
@@ -73,5 +74,6 @@ pub use plot::{Pictures, SVG_BYTES_MAX, SweepPictures, sweep_pictures};
 pub use record::run::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
 pub use record::sweep::{PointFigure, PointOfSweep, assignments_text, swept_value};
 pub use restore::run::RestoredRun;
+pub use starter::{Starter, starter_toml};
 pub use text::suite::{SuiteStyle, closing_text, scenario_text, suite_text, sweep_text};
 pub use text::table::table_text;

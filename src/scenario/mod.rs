@@ -42,6 +42,7 @@ pub use crate::turntable::{
     TrapezoidConfig, TurntableConfig,
 };
 pub(crate) use check::cross::comparison::slug;
+pub(crate) use check::leaf::is_name;
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, ComparisonColumn, ComparisonConfig,
     ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig, GateDecision,
@@ -51,12 +52,13 @@ pub use config::{
 pub use document::setting::Setting;
 pub use generate::json_schema::json_schema;
 pub use generate::reference::reference_toml;
-pub(crate) use keys::schema::unit_of_written;
+pub use generate::reference_part::{UnknownKey, reference_part};
+pub(crate) use keys::schema::{declared_key, unit_of_written};
 pub use message::complaints::ScenarioErrors;
 pub use message::error::{Location, ScenarioError};
 pub(crate) use message::error::{in_both, in_order, portable_place};
 pub use message::excerpt::{bounded, excerpt};
-pub use read::assumed::AssumedValue;
+pub use read::assumed::{AssumedInShort, AssumedValue};
 pub use read::compensation_source::load_calibration;
 pub use read::manifest::manifest_toml;
 pub(crate) use read::resolve::UnsoundReading;

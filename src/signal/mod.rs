@@ -174,6 +174,8 @@ pub struct GyroFacts {
     /// Angle random walk by source of the detector, in the order of the gyro's list, and `total`;
     /// deg/sqrt(h).
     pub angle_random_walk_budget_deg_per_sqrt_h: Vec<(&'static str, f64)>,
+    /// Sources in whose place one of the angle random walk of a data sheet stands; none where none is given.
+    pub replaced_noise_sources: Vec<&'static str>,
 }
 
 /// A line of theory that a picture draws beside measured points.
@@ -263,6 +265,8 @@ pub struct BudgetSheet {
     pub configured: BudgetPoint,
     /// Its sources, `total` last.
     pub entries: Vec<BudgetEntry>,
+    /// As [`GyroFacts::replaced_noise_sources`].
+    pub replaced_sources: Vec<&'static str>,
     /// Depth of least total at the configured power, searched for; `None` if no source depends on it.
     pub optimum: Option<BudgetPoint>,
     /// The same depth from its closed form, deg, whether the converter reaches it or not.

@@ -54,6 +54,7 @@ pub(crate) fn gyro() -> GyroFacts {
             ("adc", 0.002_94),
             ("total", 0.006),
         ],
+        replaced_noise_sources: Vec::new(),
     }
 }
 

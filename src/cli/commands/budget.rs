@@ -9,7 +9,7 @@ use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::cli::terminal::place::Place;
 use crate::experiment::{GyroBudget, gyro_budget};
-use crate::report::{budget_files, budget_json, budget_text};
+use crate::report::{budget_assumed_text as assumed_text, budget_files, budget_json, budget_text};
 use crate::store::{OutputFolder, StoreError};
 
 /// Prints the budget; with a folder, writes `budget.svg` and `budget.csv` into it as well.
@@ -25,12 +25,16 @@ pub(in crate::cli) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
             return Ok(Exit::Usage);
         }
     };
-    let GyroBudget { file, sheet } = &budget;
+    let GyroBudget {
+        file,
+        sheet,
+        assumed,
+    } = &budget;
     if let Err(exit) = place.fill(|folder| write(folder, &budget)) {
         return Ok(exit);
     }
     output::data(&match options.format {
-        Format::Text => budget_text(file, sheet),
+        Format::Text => budget_text(file, sheet) + &assumed_text(assumed, output::width()),
         Format::Json => budget_json(file, sheet),
         Format::Jsonl => {
             let document: serde_json::Value = serde_json::from_str(&budget_json(file, sheet))?;
@@ -41,7 +45,7 @@ pub(in crate::cli) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
 }
 
 fn write(folder: &OutputFolder, budget: &GyroBudget) -> Result<(), StoreError> {
-    let GyroBudget { file, sheet } = budget;
+    let GyroBudget { file, sheet, .. } = budget;
     let staged = folder.stage()?;
     for (name, text) in budget_files(file, sheet) {
         staged.write(&name, text.as_bytes())?;

@@ -4,19 +4,27 @@ use std::fmt::Write;
 use std::io;
 
 use crate::cli::commands::select;
-use crate::cli::options::arguments::SelectOptions;
+use crate::cli::options::arguments::ExpandOptions;
+use crate::cli::terminal::complaint;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 
 /// Prints each resolved run under a comment that names its folder: a single one as a scenario file,
 /// several as the array of tables `run`.
-pub(in crate::cli) fn expand(options: &SelectOptions) -> io::Result<Exit> {
-    let plans = match select::plans(options) {
+pub(in crate::cli) fn expand(options: &ExpandOptions) -> io::Result<Exit> {
+    let plans = match select::plans(&options.select) {
         Ok(plans) => plans,
         Err(exit) => return Ok(exit),
     };
     let mut text = String::new();
     let is_single = plans.len() == 1;
+    if options.origins && !is_single {
+        let count = plans.len();
+        complaint::print(&[format!(
+            "--origins tells of a single run, and the selection holds {count}: name a file without [matrix]"
+        )]);
+        return Ok(Exit::Usage);
+    }
     for (index, plan) in plans.iter().enumerate() {
         let resolved = plan.resolved();
         let gap = if index == 0 { "" } else { "\n" };
@@ -27,7 +35,9 @@ pub(in crate::cli) fn expand(options: &SelectOptions) -> io::Result<Exit> {
             resolved.folder(),
             resolved.shown_file()
         );
-        text.push_str(&if is_single {
+        text.push_str(&if is_single && options.origins {
+            resolved.to_toml_with_origins()
+        } else if is_single {
             resolved.to_toml()
         } else {
             resolved.to_toml_in_array("run")

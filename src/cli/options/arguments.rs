@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 use crate::cli::options::baseline::{AgainstOptions, BaselineOptions, CompareOptions};
 use crate::cli::options::build_server::BuildServerOptions;
@@ -10,6 +11,7 @@ use crate::cli::options::calibrate::CalibrateOptions;
 use crate::cli::options::claim::ClaimOptions;
 use crate::cli::options::format::Format;
 use crate::cli::options::hardware::{ExportOptions, TimingOptions};
+use crate::cli::options::init::InitOptions;
 use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
 use crate::cli::terminal::output::Colour;
 
@@ -46,14 +48,18 @@ pub(in crate::cli) struct Arguments {
 /// Commands.
 #[derive(Debug, Subcommand)]
 pub(in crate::cli) enum Command {
+    /// Begin a scenario for a gyro of your own
+    Init(InitOptions),
     /// Run scenarios in parallel, write results and evaluate gates
     Run(RunOptions),
     /// Check scenario files without running them
     Check(SelectOptions),
     /// Print every resolved run of scenario files, defaults and sweeps included
-    Expand(SelectOptions),
+    Expand(ExpandOptions),
     /// List the runs that a selection holds
     List(ListOptions),
+    /// Print what a scenario may hold: every key with type, range, unit, default and meaning
+    Reference(ReferenceOptions),
     /// Print the JSON Schema of scenario files
     Schema,
     /// Compare results with earlier ones or with a baseline, metric by metric
@@ -74,6 +80,10 @@ pub(in crate::cli) enum Command {
     Timing(TimingOptions),
     /// Write golden vectors, waveforms or RTL of a hardware pipeline into a folder
     Export(ExportOptions),
+    /// Print completions of this command line for a shell
+    Completions(CompletionsOptions),
+    /// Print a page of the manual, as roff
+    Man(ManOptions),
 }
 
 /// Which scenarios.
@@ -89,6 +99,17 @@ pub(in crate::cli) struct SelectOptions {
     pub(in crate::cli) names: Vec<String>,
 }
 
+/// Options of `expand`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct ExpandOptions {
+    #[command(flatten)]
+    pub(in crate::cli) select: SelectOptions,
+    /// Say behind each value of a single run where it comes from: `assumed` where nobody set it, the base
+    /// that says it, or --set
+    #[arg(long)]
+    pub(in crate::cli) origins: bool,
+}
+
 /// Whose results `run --resume` takes over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum ResumeFrom {
@@ -96,6 +117,28 @@ pub(in crate::cli) enum ResumeFrom {
     SameBuild,
     /// Those of any build of this version
     AnyBuild,
+}
+
+/// Options of `reference`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct ReferenceOptions {
+    /// A key or a table, as in gyro.noise or filter.rls.taps [default: all]
+    pub(in crate::cli) key: Option<String>,
+}
+
+/// Options of `completions`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct CompletionsOptions {
+    /// Shell that completes
+    #[arg(value_enum)]
+    pub(in crate::cli) shell: Shell,
+}
+
+/// Options of `man`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct ManOptions {
+    /// Command, as in baseline save [default: the program]
+    pub(in crate::cli) command: Vec<String>,
 }
 
 /// Options of `budget`.

@@ -52,15 +52,19 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
         Command::Timing(options) => of_timing(options, given),
         Command::Export(options) => of_export(options, given),
         Command::Calibrate(options) => of_calibrate(options),
-        Command::Run(_)
+        Command::Init(_)
+        | Command::Run(_)
         | Command::Check(_)
         | Command::Expand(_)
         | Command::List(_)
+        | Command::Reference(_)
         | Command::Schema
         | Command::Compare(_)
         | Command::Baseline(_)
         | Command::Budget(_)
-        | Command::Claim(_) => Vec::new(),
+        | Command::Claim(_)
+        | Command::Completions(_)
+        | Command::Man(_) => Vec::new(),
     }
 }
 

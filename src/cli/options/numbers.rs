@@ -2,6 +2,9 @@
 
 use thiserror::Error;
 
+use crate::declare::Kind;
+use crate::scenario::{declared_key, is_name};
+
 /// A value that its option does not take; clap names the option and the value before it.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub(in crate::cli) enum OptionError {
@@ -34,6 +37,11 @@ pub(in crate::cli) enum OptionError {
     /// No latitude.
     #[error("expected a latitude from -90 to 90 deg")]
     Latitude,
+    /// No name of a scenario.
+    #[error(
+        "expected a name of 1 to 64 of the characters a-z, 0-9, _ and -, the first a letter or digit"
+    )]
+    Name,
     /// No axis of an assembly.
     #[error("expected x, y or z")]
     Axis,
@@ -51,6 +59,28 @@ pub(in crate::cli) fn within(
         let in_range = |number: &f64| (least..=most).contains(number);
         let number = text.trim().parse::<f64>().ok().filter(in_range);
         number.ok_or(OptionError::Number { least, most, unit })
+    }
+}
+
+/// A parser of numbers in the range of a declared key.
+///
+/// # Panics
+/// If there is no such key, or one that takes no number.
+pub(in crate::cli) fn within_key(
+    path: &str,
+) -> impl Fn(&str) -> Result<f64, OptionError> + Clone + Send + Sync + 'static {
+    let key = declared_key(path).expect("the path of a key");
+    match key.kind {
+        Kind::Float(range) => within(range.low, range.high, key.unit),
+        _ => panic!("{path} is no number"),
+    }
+}
+
+/// A parser of names of scenarios.
+pub(in crate::cli) fn name() -> impl Fn(&str) -> Result<String, OptionError> + Clone + Send + Sync {
+    |text| match is_name(text) {
+        true => Ok(text.to_owned()),
+        false => Err(OptionError::Name),
     }
 }
 

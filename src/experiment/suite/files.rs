@@ -26,6 +26,7 @@ pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
         channels: &[],
         calibration: None,
         verdicts: &[],
+        assumed: resolved.assumed_in_short(),
         notes: &[],
     }
 }

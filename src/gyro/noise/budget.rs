@@ -1,31 +1,26 @@
 //! Angle random walk by source, in closed form.
 
-use std::f64::consts::PI;
-
-use crate::gyro::noise::SOURCES;
 use crate::gyro::noise::law::Density;
+use crate::gyro::noise::word_rounding::rate_word_walk;
+use crate::gyro::noise::{COUNT, name_of};
 use crate::gyro::optics::coil::Coil;
 use crate::gyro::optics::detector::Detector;
 use crate::gyro::rate_word::RateOutputConfig;
-use crate::units::{
-    deg_per_h_sqrt_s_to_deg_per_sqrt_h, deg_per_sqrt_h_to_deg_per_h_sqrt_s,
-    rad_per_sqrt_s_to_deg_per_sqrt_h,
-};
+use crate::units::rad_per_sqrt_s_to_deg_per_sqrt_h;
 
 /// Name of the rounding of the rate word.
 const RATE_WORD: &str = "rate_word";
-/// Noise of a word in steps below which the series of its rounding is as good as its limit (1e-11).
-const SMALL_NOISE_STEPS: f64 = 0.1;
-/// Terms of the series above: the next is `exp(-4 pi^2 121 / 100)`.
-const ROUNDING_TERMS: u32 = 10;
 /// Name of the sum of all sources.
 const TOTAL: &str = "total";
 
 /// Angle random walk of each source, deg/sqrt(h); a source switched off has 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseBudget {
-    /// Of the detection, in the order of [`SOURCES`].
-    walks_deg_per_sqrt_h: [f64; SOURCES.len()],
+    /// Of the detection, in the order of the densities.
+    walks_deg_per_sqrt_h: [f64; COUNT],
+    /// Whether each has a line: neither one that the equivalent source replaces nor that one, if it replaces
+    /// none.
+    is_listed: [bool; COUNT],
     /// Of the rounding of the words, which the loop does not see.
     rate_word_deg_per_sqrt_h: f64,
 }
@@ -50,36 +45,23 @@ impl NoiseBudget {
         let slope = coil.scale_factor_s * detector.slope_a_per_rad;
         let walk_rad_per_sqrt_s = |density: Density| match density {
             Density::Phase { rad2_per_hz } => (0.5 * rad2_per_hz).sqrt() / coil.scale_factor_s,
-            Density::Rounding { step_v } => {
-                let step_a = step_v / detector.transimpedance_v_per_a;
-                let count = detector.samples_per_half_period;
-                (coil.transit_time_s / (12.0 * count)).sqrt() * step_a / slope
-            }
+            Density::Rounding { .. } => detector.converter_walk_rad_per_sqrt_s(coil),
             Density::Intensity { .. } | Density::OfCurrent { .. } | Density::Current { .. } => {
                 let a2_per_hz = density.a2_per_hz(detector.bias_current_a, detector.dark_current_a);
                 (a2_per_hz / (2.0 * detector.gate_duty)).sqrt() / slope
             }
         };
-        let densities = detector.densities.0;
+        let densities = &detector.densities;
         Self {
             walks_deg_per_sqrt_h: densities
+                .0
                 .map(|density| rad_per_sqrt_s_to_deg_per_sqrt_h(walk_rad_per_sqrt_s(density))),
+            is_listed: std::array::from_fn(|index| densities.is_listed(index)),
             rate_word_deg_per_sqrt_h: 0.0,
         }
     }
 
     /// The budget with the rounding of the rate words.
-    ///
-    /// A word of period T behind a loop of time constant `t` scatters by
-    /// `s^2 = (N^2 / T) (1 - (t / T) (1 - exp(-T / t)))`. Rounded to a step q it has, in the mean over
-    /// the rates, `q^2 (1/12 - sum exp(-4 pi^2 k^2 s^2 / q^2) / (2 pi^2 k^2))` more: `q^2 / 12` where the
-    /// noise of a word exceeds a third of the step, and nothing without noise, which moves no word.
-    /// White from word to word, that is an angle random walk of `q sqrt(T / 12)`. Pulses carry their
-    /// remainder over and have none.
-    ///
-    /// # Source
-    /// Derived: Fourier series of the error of rounding, as in Widrow and Kollar, Quantization Noise,
-    /// chapter 4.
     #[must_use]
     pub fn with_rate_word(
         self,
@@ -87,29 +69,10 @@ impl NoiseBudget {
         word_period_s: f64,
         loop_time_constant_s: f64,
     ) -> Self {
-        let step = config.word_step_deg_per_h();
-        if step <= 0.0 {
-            return self;
-        }
-        let walk = deg_per_sqrt_h_to_deg_per_h_sqrt_s(self.total_deg_per_sqrt_h());
-        let ratio = loop_time_constant_s / word_period_s;
-        let kept = 1.0 + ratio * (-1.0 / ratio).exp_m1();
-        let squared = walk * walk * kept / (word_period_s * step * step);
-        let added = if squared < SMALL_NOISE_STEPS * SMALL_NOISE_STEPS {
-            // Of words near the border between two steps, s / sqrt(pi) in all.
-            (squared / PI).sqrt() - squared
-        } else {
-            let regular = (1..=ROUNDING_TERMS).map(|k| {
-                let k_squared = f64::from(k * k);
-                (-4.0 * PI * PI * k_squared * squared).exp() / (2.0 * PI * PI * k_squared)
-            });
-            1.0 / 12.0 - regular.sum::<f64>()
-        };
-        let variance = step * step * added;
+        let detected = self.detection_deg_per_sqrt_h();
+        let periods = (word_period_s, loop_time_constant_s);
         Self {
-            rate_word_deg_per_sqrt_h: deg_per_h_sqrt_s_to_deg_per_sqrt_h(
-                (variance * word_period_s).sqrt(),
-            ),
+            rate_word_deg_per_sqrt_h: rate_word_walk(detected, config, periods),
             ..self
         }
     }
@@ -131,9 +94,10 @@ impl NoiseBudget {
     /// Name and angle random walk of each source and of the total, deg/sqrt(h), in report order.
     #[must_use]
     pub fn entries(&self) -> Vec<(&'static str, f64)> {
-        let names = SOURCES.iter().map(|source| source.name());
-        names
-            .zip(self.walks_deg_per_sqrt_h)
+        let walks = self.walks_deg_per_sqrt_h.into_iter().enumerate();
+        walks
+            .filter(|(index, _)| self.is_listed[*index])
+            .map(|(index, walk)| (name_of(index), walk))
             .chain([(RATE_WORD, self.rate_word_deg_per_sqrt_h)])
             .chain([(TOTAL, self.total_deg_per_sqrt_h())])
             .collect()

@@ -96,7 +96,12 @@ pub fn budget_sheet(config: &GyroConfig) -> Result<BudgetSheet, GyroError> {
     let Parts { coil, detector, .. } = Parts::new(config)?;
     let (power_uw, depth_deg) = (config.source.power_uw, config.modulator.depth_deg);
     let budget = with_rate_word(NoiseBudget::new(&detector, &coil), config);
-    let ratio = power_independent_ratio(&detector, &coil);
+    let ratio = if detector.densities.has_equivalent() {
+        // A walk that is given is that at every depth.
+        f64::NAN
+    } else {
+        power_independent_ratio(&detector, &coil)
+    };
     // NaN: no source depends on the depth.
     let closed_form = (!ratio.is_nan()).then(|| rad_to_deg(optimum_depth_rad(ratio)));
     let best = |power_uw: f64| {
@@ -107,6 +112,7 @@ pub fn budget_sheet(config: &GyroConfig) -> Result<BudgetSheet, GyroError> {
     Ok(BudgetSheet {
         configured: point(config, power_uw, depth_deg),
         entries: entries(&budget, &coil),
+        replaced_sources: detector.densities.replaced(),
         optimum: best(power_uw),
         closed_form_optimum_depth_deg: closed_form,
         by_depth: DEPTHS_DEG

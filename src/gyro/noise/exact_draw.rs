@@ -1,7 +1,7 @@
 //! Every noise source drawn on its own, each from the stream of its name.
 
-use crate::gyro::noise::SOURCES;
 use crate::gyro::noise::law::Density;
+use crate::gyro::noise::{COUNT, name_of};
 use crate::gyro::optics::detector::{Detector, half_period_phase_variance_rad2};
 use crate::random::{Stream, Streams};
 
@@ -18,10 +18,10 @@ pub(in crate::gyro) struct DrawUnits {
 
 /// Draws of all sources, sorted by the place where they enter.
 ///
-/// Within a place they keep the order of [`SOURCES`]; the levels are summed in that order.
+/// Within a place they keep the order of the densities; the levels are summed in that order.
 #[derive(Clone, Debug)]
 pub(in crate::gyro) struct ExactDraw {
-    drawn: [Drawn; SOURCES.len()],
+    drawn: [Drawn; COUNT],
     /// Where phase, light, photocurrent and current end in `drawn`; the rest is not drawn.
     ends: [usize; 4],
 }
@@ -52,7 +52,7 @@ impl ExactDraw {
     pub(in crate::gyro) fn new(detector: &Detector, units: DrawUnits, streams: &Streams) -> Self {
         let mut drawn = std::array::from_fn(|index| {
             let (place, scale) = scaled(detector.densities.0[index], detector, units);
-            let name = SOURCES[index].name();
+            let name = name_of(index);
             Drawn {
                 name,
                 place: if scale > 0.0 { place } else { Place::Nowhere },

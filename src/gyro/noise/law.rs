@@ -21,6 +21,8 @@ pub(in crate::gyro) struct WorkingPoint<'a> {
     pub(in crate::gyro) adc: &'a AdcConfig,
     /// Temperature of case and electronics, deg C.
     pub(in crate::gyro) case_c: f64,
+    /// Density of the current that stands in the place of all sources, A^2/Hz; 0 where none does.
+    pub(in crate::gyro) equivalent_a2_per_hz: f64,
 }
 
 /// One-sided noise density of a source at the place where it enters; 0 where it is switched off.

@@ -53,6 +53,12 @@ impl Coil {
         0.5 / self.transit_time_s
     }
 
+    /// Half modulation period: the transit time but for a relative mismatch, s.
+    #[must_use]
+    pub fn half_period_s(&self, mismatch: f64) -> f64 {
+        self.transit_time_s * (1.0 + mismatch)
+    }
+
     /// Loop period `T_L = 2 tau`, s.
     #[must_use]
     pub fn loop_period_s(&self) -> f64 {

@@ -3,7 +3,9 @@
 use crate::gyro::GyroConfig;
 use crate::gyro::error::GyroError;
 use crate::gyro::noise::Densities;
+use crate::gyro::noise::equivalent::equivalent_walk_rad_per_sqrt_s;
 use crate::gyro::noise::law::WorkingPoint;
+use crate::gyro::optics::coil::Coil;
 use crate::gyro::optics::converter::{converter_code_max, converter_step_v};
 use crate::gyro::optics::modulator::Modulator;
 use crate::gyro::thermal::condition::Condition;
@@ -47,7 +49,8 @@ impl Detector {
     ///
     /// # Errors
     /// [`GyroError::NoSlope`] if the slope at the bias point is not positive;
-    /// [`GyroError::ConverterRange`] if the bias point lies outside the converter's range.
+    /// [`GyroError::ConverterRange`] if the bias point lies outside the converter's range;
+    /// [`GyroError::RoundingBeyondWalk`] if rounding is most of the angle random walk that is asked for.
     pub fn new(
         config: &GyroConfig,
         modulator: &Modulator,
@@ -61,13 +64,14 @@ impl Detector {
         let transimpedance_v_per_a = config.detector.transimpedance_v_per_a();
         let bits = config.adc.bits;
         let bias_current_a = mean_current_a * (1.0 + visibility * cosine);
-        let point = WorkingPoint {
+        let mut point = WorkingPoint {
             source: &config.source,
             detector: &config.detector,
             adc: &config.adc,
             case_c: condition.case_c,
+            equivalent_a2_per_hz: 0.0,
         };
-        let detector = Self {
+        let mut detector = Self {
             nominal_current_a,
             mean_current_a,
             visibility,
@@ -93,7 +97,36 @@ impl Detector {
                 range_v: config.adc.range_v,
             });
         }
+        if let Some(walk) = config.noise.angle_random_walk_deg_per_sqrt_h {
+            let coil = Coil::new(&config.coil, &config.source);
+            let converter = detector.converter_walk_rad_per_sqrt_s(&coil);
+            let walk = equivalent_walk_rad_per_sqrt_s(walk, config, &coil, converter)?;
+            let current_a = walk * coil.scale_factor_s * detector.slope_a_per_rad;
+            point.equivalent_a2_per_hz = 2.0 * detector.gate_duty * current_a * current_a;
+            detector.densities = Densities::new(&config.noise, &point);
+        }
         Ok(detector)
+    }
+
+    /// The chain behind a gate of at most so much of a half period.
+    #[must_use]
+    pub(in crate::gyro) fn with_gate_within(self, plateau: f64) -> Self {
+        let gate_duty = self.gate_duty.min(plateau);
+        Self {
+            densities: self.densities.behind_gate(gate_duty / self.gate_duty),
+            gate_duty,
+            ..self
+        }
+    }
+
+    /// Angle random walk of the rounding in the converter, `sqrt(tau / (12 n)) q / (G Ks slope)`,
+    /// rad/sqrt(s).
+    #[must_use]
+    pub fn converter_walk_rad_per_sqrt_s(&self, coil: &Coil) -> f64 {
+        let slope = coil.scale_factor_s * self.slope_a_per_rad;
+        let step_a = self.converter_step_v / self.transimpedance_v_per_a;
+        let count = self.samples_per_half_period;
+        (coil.transit_time_s / (12.0 * count)).sqrt() * step_a / slope
     }
 
     /// Variance of the mean current over the gate of one half period, A^2.

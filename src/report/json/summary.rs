@@ -104,6 +104,12 @@ fn gyro(facts: &GyroFacts) -> Value {
         "angle_random_walk_budget_deg_per_sqrt_h".to_owned(),
         budget.into(),
     );
+    if !facts.replaced_noise_sources.is_empty() {
+        record.insert(
+            "replaced_noise_sources".to_owned(),
+            facts.replaced_noise_sources.clone().into(),
+        );
+    }
     record.into()
 }
 

@@ -9,7 +9,7 @@ use super::pictures::{Shown, capital, pictures};
 use super::repeats::repeats;
 use crate::gate::{Verdict, count_accepted, plain, three_digits};
 use crate::metrics::catalogue::ANGLE_RANDOM_WALK;
-use crate::report::budget::TOTAL;
+use crate::report::budget::{TOTAL, replacement};
 use crate::report::record::columns::{heading_of, value_text};
 use crate::report::text::verdict::verdict_text;
 use crate::report::{RunReport, RunStatus};
@@ -237,6 +237,7 @@ fn budget(report: &RunReport) -> Markup {
                 }
                 "." }
             (wide("noise budget", &table))
+            @if let Some(said) = replacement(&report.gyro.replaced_noise_sources) { p { (said) "." } }
         },
     )
 }

@@ -83,6 +83,10 @@ fn against_depth(picture: &mut Picture, sheet: &BudgetSheet, place: (f64, f64)) 
             legend.detail(picture, &format!("{walk:.2e} deg/sqrt(h) as configured"));
         }
     }
+    if let Some((last, others)) = sheet.replaced_sources.split_last() {
+        legend.text(picture, "equivalent: of a data sheet, for");
+        legend.text(picture, &format!("{} and {last}", others.join(", ")));
+    }
     legend.space();
     let configured = &sheet.configured;
     let looks = [
@@ -97,13 +101,26 @@ fn against_depth(picture: &mut Picture, sheet: &BudgetSheet, place: (f64, f64)) 
         let text = format!("{name}: {:.1} deg, {total:.2e}", depth(point));
         legend.marker(picture, (shape, BLACK), &text);
     }
-    say_where_lines_end(picture, &mut legend, &sheet.by_depth);
+    say_where_lines_end(picture, &mut legend, &sheet.by_depth, is_replaced(sheet));
 }
 
-fn say_where_lines_end(picture: &mut Picture, legend: &mut Legend, points: &[BudgetPoint]) {
+/// Whether the walk of a data sheet stands in the place of sources.
+fn is_replaced(sheet: &BudgetSheet) -> bool {
+    !sheet.replaced_sources.is_empty()
+}
+
+fn say_where_lines_end(
+    picture: &mut Picture,
+    legend: &mut Legend,
+    points: &[BudgetPoint],
+    is_replaced: bool,
+) {
     if points.iter().any(|point| point.walk(TOTAL).is_none()) {
         legend.text(picture, "a line ends where the bias point leaves");
         legend.text(picture, "the converter's range");
+        if is_replaced {
+            legend.text(picture, "or rounding takes most of the walk");
+        }
     }
 }
 
@@ -141,5 +158,5 @@ fn against_power(picture: &mut Picture, sheet: &BudgetSheet, place: (f64, f64)) 
         let text = format!("configured: {} uW", plain(power(configured)));
         legend.marker(picture, (Shape::Circle, BLACK), &text);
     }
-    say_where_lines_end(picture, &mut legend, &sheet.by_power);
+    say_where_lines_end(picture, &mut legend, &sheet.by_power, is_replaced(sheet));
 }

@@ -6,7 +6,7 @@ use crate::gate::{Verdict, VerdictKind, count_accepted, estimate_text, expects_f
 use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric};
 use crate::report::record::columns::{DIGITS, heading_of, headline, unit_text, value_text};
 use crate::report::record::sweep::{PointFigure, PointOfSweep, point_figures};
-use crate::scenario::{ReportedRuns, Scenario};
+use crate::scenario::{AssumedInShort, ReportedRuns, Scenario};
 use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
 
 /// Everything the report of one run shows.
@@ -38,6 +38,8 @@ pub struct RunReport<'a> {
     pub verdicts: &'a [Verdict],
     /// Warnings for people, e.g. a filter that loses its digits.
     pub notes: &'a [String],
+    /// What nobody set.
+    pub assumed: AssumedInShort,
 }
 
 /// Most points of a sweep each of which gets a page, unless the scenario says otherwise.

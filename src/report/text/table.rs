@@ -1,11 +1,14 @@
 //! What `run` prints for one scenario.
 
-use crate::metrics::catalogue::{ANGLE_RANDOM_WALK, DELAY_VS_TRUTH};
+use crate::metrics::catalogue::{
+    ANGLE_RANDOM_WALK, BIAS_INSTABILITY, DELAY_VS_TRUTH, RATE_RANDOM_WALK,
+};
 use std::collections::BTreeMap;
 
 use crate::gate::{Verdict, VerdictKind, estimate_text, plain, three_digits};
-use crate::metrics::{ChannelMetrics, Metric, find};
+use crate::metrics::{ChannelMetrics, Metric, MetricKey, find};
 use crate::report::RunReport;
+use crate::report::budget::replacement;
 use crate::report::calibration::text::calibration_text;
 use crate::report::layout::text::{Grid, Tone, toned, visible_width, wrapped};
 use crate::report::record::columns::{Column, DIGITS, columns, matters, unit_text, value_text};
@@ -15,12 +18,23 @@ use crate::report::text::compensation::compensation_text;
 use crate::report::text::repeats::repeats_text;
 use crate::report::text::scale_factor::scale_factor_text;
 use crate::report::text::verdict::verdict_text;
-use crate::scenario::{Fidelity, PublishedConfig};
-use crate::wording::printable;
+use crate::scenario::{AssumedValue, Fidelity, PublishedConfig};
+use crate::wording::{counted, printable};
 
 /// What stands where there is no number.
 const NOTHING: &str = "-";
 const INDENT: &str = "  ";
+/// Metrics of the raw output that say again what a key of the slow noise says.
+const ECHOES: [(&MetricKey, &str); 2] = [
+    (
+        &BIAS_INSTABILITY,
+        "gyro.slow_noise.bias_instability_deg_per_h",
+    ),
+    (
+        &RATE_RANDOM_WALK,
+        "gyro.slow_noise.rate_random_walk_deg_per_h_per_sqrt_h",
+    ),
+];
 /// What the intervals of the table are.
 const INTERVALS: &str = "±: 95 % confidence for the mean over seeds of records like this one; a figure \
      without is exact or, as summary.json then says, has none";
@@ -81,8 +95,16 @@ fn heading(report: &RunReport, width: usize, colour: bool) -> String {
 /// The gyro in closed form: rates, loop, range and the budget of its angle random walk.
 fn gyro_text(report: &RunReport, width: usize) -> String {
     let gyro = report.gyro;
+    let mark = |key: &str| {
+        if report.assumed.names(key) {
+            " (assumed)"
+        } else {
+            ""
+        }
+    };
+    let bandwidth = mark("gyro.controller.loop_bandwidth_hz");
     let line = format!(
-        "gyro: output rate {} Hz, proper frequency {} kHz, loop gain {}, loop bandwidth {} Hz, \
+        "gyro: output rate {} Hz, proper frequency {} kHz, loop gain {}, loop bandwidth {} Hz{bandwidth}, \
          single-fringe range ±{} deg/s",
         plain(gyro.output_rate_hz),
         three_digits(gyro.proper_frequency_khz),
@@ -95,7 +117,15 @@ fn gyro_text(report: &RunReport, width: usize) -> String {
         .iter()
         .map(|(source, value)| format!("{source} {}", three_digits(*value)))
         .collect();
-    let mut budget = format!("ARW budget (theory), deg/sqrt(h): {}", terms.join(", "));
+    let of_power = if report.assumed.names("gyro.source.power_uw") {
+        ", at a power that is assumed"
+    } else {
+        ""
+    };
+    let mut budget = format!(
+        "ARW budget (theory{of_power}), deg/sqrt(h): {}",
+        terms.join(", ")
+    );
     for (name, metrics) in report.channels {
         if !report.scenario.is_raw(name) {
             continue;
@@ -105,7 +135,39 @@ fn gyro_text(report: &RunReport, width: usize) -> String {
             budget.push_str(&format!("; simulated {name} {value}"));
         }
     }
-    wrapped(&line, INDENT, width) + &wrapped(&budget, INDENT, width)
+    let mut text = wrapped(&line, INDENT, width) + &wrapped(&budget, INDENT, width);
+    if let Some(said) = replacement(&gyro.replaced_noise_sources) {
+        text.push_str(&wrapped(&said, INDENT, width));
+    }
+    text + &wrapped(&assumed_text(report), INDENT, width)
+}
+
+/// What nobody set: the figures above and below rest on it, and some only say it again.
+fn assumed_text(report: &RunReport) -> String {
+    let assumed = &report.assumed;
+    if assumed.count == 0 {
+        return String::new();
+    }
+    let named: Vec<String> = assumed.named.iter().map(AssumedValue::shown).collect();
+    let named = match named[..] {
+        [] => String::new(),
+        _ => format!("{}; ", named.join(", ")),
+    };
+    let echoes = ECHOES.iter().filter(|(metric, key)| {
+        let is_shown = |(name, metrics): &(String, ChannelMetrics)| {
+            report.scenario.is_raw(name) && metrics.get(metric).is_some()
+        };
+        assumed.names(key) && report.channels.iter().any(is_shown)
+    });
+    let echoes: Vec<String> = echoes.map(|(metric, _)| metric.title()).collect();
+    let echoed = match echoes[..] {
+        [] => String::new(),
+        _ => format!("the measured {} say it again; ", echoes.join(" and ")),
+    };
+    format!(
+        "assumed, as nobody set it: {named}{echoed}{} in all, which report.html and `fogbench expand --origins` list",
+        counted(assumed.count, "value")
+    )
 }
 
 /// The channels, their columns broken into as many blocks as the width asks for.

@@ -114,6 +114,12 @@ impl IdleSets {
     }
 }
 
+/// Whether a key acts on nothing in a run.
+pub(crate) fn is_idle(run: &Resolved, schema_path: &str) -> bool {
+    let mut own = rules().iter().filter(|rule| rule.path == schema_path);
+    own.any(|rule| matches!(rule.acts, Acts::Run(acts) if !acts(&run.scenario)))
+}
+
 /// Whether the key of a rule acts in a run, at a path.
 fn acts(run: &Resolved, rule: &Rule, path: &[Step]) -> bool {
     let scenario = &run.scenario;

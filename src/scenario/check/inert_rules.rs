@@ -72,6 +72,13 @@ const EXPANDING: &str = "a temperature that changes (gyro.temperature.ramp or pr
                          follows it (gyro.thermal.index_per_k or length_ppm_per_k other than 0)";
 const DEPARTURE: &str = "a temperature other than gyro.thermal.reference_c: gyro.temperature or \
                          gyro.thermal.self_heating_c";
+/// Why a source of noise does not act.
+const REPLACED: &str = "gyro.noise.angle_random_walk_deg_per_sqrt_h stands in the place of the sources of noise; \
+                        the sources instead of it";
+const LIGHT: &str = "no gyro.noise.angle_random_walk_deg_per_sqrt_h, or with gyro.adc.bits above 0";
+const RIN: &str = "gyro.noise.rin = true and no gyro.noise.angle_random_walk_deg_per_sqrt_h";
+const AMPLIFIER: &str =
+    "gyro.noise.amplifier = true and no gyro.noise.angle_random_walk_deg_per_sqrt_h";
 const STEADY: &str = "a steady motion, [turntable.static] or [turntable.rotation]";
 const TURNING: &str = "a motion other than [turntable.static]";
 
@@ -131,8 +138,10 @@ const RULES: &[Rule] = &[
     run("turntable.mounting.axis_along_table",
         "gyro.assembly and a motion other than [turntable.calibration], whose axes say it for each group",
         |s| s.gyro.assembly.is_some() && !is_campaign(s)),
-    run("gyro.source.linewidth_nm", "gyro.noise.rin = true", |s| s.gyro.noise.rin),
-    run("gyro.source.polarisation_degree", "gyro.noise.rin = true", |s| s.gyro.noise.rin),
+    run("gyro.source.power_uw", LIGHT, |s| is_by_source(s) || s.gyro.adc.bits > 0),
+    run("gyro.source.linewidth_nm", RIN, |s| s.gyro.noise.rin && is_by_source(s)),
+    run("gyro.source.polarisation_degree", RIN, |s| s.gyro.noise.rin && is_by_source(s)),
+    run("gyro.detector.responsivity_a_per_w", LIGHT, |s| is_by_source(s) || s.gyro.adc.bits > 0),
     run("gyro.modulator.cross_coupling_phase_deg", "gyro.modulator.cross_coupling_urad above 0",
         |s| s.gyro.modulator.cross_coupling_urad > 0.0),
     run("gyro.modulator.dither_interval_periods", "gyro.modulator.dither_deg above 0",
@@ -142,16 +151,18 @@ const RULES: &[Rule] = &[
         |s| !s.gyro.detector.gate_spikes && !is_zero(s.gyro.modulator.half_period_mismatch)),
     run("gyro.detector.gate_spikes", "gyro.modulator.half_period_mismatch other than 0",
         |s| !is_zero(s.gyro.modulator.half_period_mismatch)),
-    run("gyro.detector.dark_current_na", "gyro.noise.shot = true or gyro.adc.bits above 0",
-        |s| s.gyro.noise.shot || s.gyro.adc.bits > 0),
+    run("gyro.detector.dark_current_na",
+        "gyro.noise.shot = true and no gyro.noise.angle_random_walk_deg_per_sqrt_h, or gyro.adc.bits above 0",
+        |s| s.gyro.noise.shot && is_by_source(s) || s.gyro.adc.bits > 0),
     run("gyro.detector.transimpedance_kohm",
-        "gyro.noise.thermal or gyro.noise.amplifier = true, or gyro.adc.bits above 0",
-        |s| s.gyro.noise.thermal || s.gyro.noise.amplifier || s.gyro.adc.bits > 0),
+        "gyro.noise.thermal or gyro.noise.amplifier = true and no \
+         gyro.noise.angle_random_walk_deg_per_sqrt_h, or gyro.adc.bits above 0",
+        |s| (s.gyro.noise.thermal || s.gyro.noise.amplifier) && is_by_source(s) || s.gyro.adc.bits > 0),
     run("gyro.detector.post_gain", "gyro.adc.bits above 0", |s| s.gyro.adc.bits > 0),
-    run("gyro.detector.voltage_noise_nv_per_sqrt_hz", "gyro.noise.amplifier = true",
-        |s| s.gyro.noise.amplifier),
-    run("gyro.detector.current_noise_pa_per_sqrt_hz", "gyro.noise.amplifier = true",
-        |s| s.gyro.noise.amplifier),
+    run("gyro.detector.voltage_noise_nv_per_sqrt_hz", AMPLIFIER,
+        |s| s.gyro.noise.amplifier && is_by_source(s)),
+    run("gyro.detector.current_noise_pa_per_sqrt_hz", AMPLIFIER,
+        |s| s.gyro.noise.amplifier && is_by_source(s)),
     run("gyro.adc.range_v", "gyro.adc.bits above 0", |s| s.gyro.adc.bits > 0),
     run("gyro.adc.samples_per_half_period", "gyro.adc.bits above 0 or gyro.noise.draw = \"exact\"",
         |s| s.gyro.adc.bits > 0 || s.gyro.noise.draw == NoiseDraw::Exact),
@@ -159,6 +170,11 @@ const RULES: &[Rule] = &[
         "a detected power that changes: a temperature other than gyro.thermal.reference_c and \
          gyro.thermal.power other than constant",
         |s| departs(s) && !matches!(s.gyro.thermal.power, PowerConfig::Constant(_))),
+    run("gyro.noise.shot", REPLACED, is_by_source),
+    run("gyro.noise.thermal", REPLACED, is_by_source),
+    run("gyro.noise.amplifier", REPLACED, is_by_source),
+    run("gyro.noise.rin", REPLACED, is_by_source),
+    run("gyro.noise.technical_phase_urad_per_sqrt_hz", REPLACED, is_by_source),
     run("gyro.noise.draw", "fidelity = \"loop\"", |s| s.fidelity == Fidelity::Loop),
     run("gyro.slow_noise.gauss_markov_correlation_time_s", "gyro.slow_noise.gauss_markov_deg_per_h above 0",
         |s| s.gyro.slow_noise.gauss_markov_deg_per_h > 0.0),
@@ -250,6 +266,12 @@ const RULES: &[Rule] = &[
 
 fn is_zero(value: f64) -> bool {
     value.abs() <= 0.0
+}
+
+/// Whether the gyro's white noise is made of its sources, and not of the walk of a data sheet.
+fn is_by_source(scenario: &Scenario) -> bool {
+    let noise = &scenario.gyro.noise;
+    noise.angle_random_walk_deg_per_sqrt_h.is_none()
 }
 
 fn is_steady(scenario: &Scenario) -> bool {

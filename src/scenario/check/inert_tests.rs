@@ -38,6 +38,8 @@ const NO_FORGETTING: &str = "turntable.calibration.axes = [\"x\", \"y\", \"z\"]\
      calibration.estimators = [\"batch\"]\ncalibration.apply = \"batch\"\n";
 const SWING: &str =
     "turntable.swing.frequency_hz = 5.0\nturntable.swing.rate_amplitude_deg_per_s = 1.0\n";
+/// A walk as a data sheet states it, behind a converter that does not round.
+const DATA_SHEET: &str = "gyro.noise.angle_random_walk_deg_per_sqrt_h = 0.005\ngyro.adc.bits = 0\n";
 const STATIC: &str = "turntable.static = {}\n";
 const AT_REFERENCE: &str = "gyro.thermal.reference_c = 25.0\ngyro.temperature.soak.temperature_c = 25.0\n\
                             gyro.thermal.self_heating_c = 0.0\n";
@@ -122,6 +124,13 @@ const CASES: &[Case] = &[
         "turntable.mounting.misalignment_arcsec = 1.0\n"),
     case("turntable.mounting.start_angle_deg", "33.0", "", ENCODER),
     case("turntable.mounting.axis_along_table", "\"x\"", "", "gyro.assembly = {}\n"),
+    case("gyro.source.power_uw", "1.5", DATA_SHEET, ""),
+    case("gyro.detector.responsivity_a_per_w", "0.8", DATA_SHEET, "gyro.noise.angle_random_walk_deg_per_sqrt_h = 0.01\n"),
+    case("gyro.noise.shot", "false", DATA_SHEET, ""),
+    case("gyro.noise.thermal", "false", DATA_SHEET, ""),
+    case("gyro.noise.amplifier", "false", DATA_SHEET, ""),
+    case("gyro.noise.rin", "false", DATA_SHEET, ""),
+    case("gyro.noise.technical_phase_urad_per_sqrt_hz", "2.0", DATA_SHEET, ""),
     case("gyro.source.linewidth_nm", "33.0", "gyro.noise.rin = false\n", "gyro.noise.rin = true\n"),
     case("gyro.source.polarisation_degree", "0.33", "gyro.noise.rin = false\n", "gyro.noise.rin = true\n"),
     case("gyro.modulator.cross_coupling_phase_deg", "33.0", "", "gyro.modulator.cross_coupling_urad = 1.0\n"),
@@ -311,6 +320,26 @@ fn every_row_is_refused_alone_and_accepted_with_its_partner() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert_eq!(CASES.len(), rules().len());
+}
+
+#[test]
+fn constants_of_the_sources_are_refused_beside_the_walk_of_a_data_sheet() {
+    for (key, value) in [
+        ("gyro.source.linewidth_nm", "33.0"),
+        ("gyro.source.polarisation_degree", "0.33"),
+        ("gyro.detector.dark_current_na", "33.0"),
+        ("gyro.detector.transimpedance_kohm", "33.0"),
+        ("gyro.detector.voltage_noise_nv_per_sqrt_hz", "33.0"),
+        ("gyro.detector.current_noise_pa_per_sqrt_hz", "33.0"),
+    ] {
+        let text = case(key, value, DATA_SHEET, "").text(DATA_SHEET);
+        let said = idle(&text, "", &[]);
+        let names_it = said.iter().any(|text| {
+            text.starts_with(&format!("{key} = "))
+                && text.contains("angle_random_walk_deg_per_sqrt_h")
+        });
+        assert!(names_it, "{key}: {said:?}");
+    }
 }
 
 #[test]

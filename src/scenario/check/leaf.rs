@@ -206,7 +206,7 @@ fn check_float(key: &Key, shown: &str, range: schema::Range, value: &Value) -> R
 }
 
 /// Whether a text is a valid name of a scenario or channel.
-fn is_name(name: &str) -> bool {
+pub(crate) fn is_name(name: &str) -> bool {
     let is_first = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit();
     let is_rest = |c: u8| is_first(c) || c == b'_' || c == b'-';
     match name.as_bytes() {

@@ -2,3 +2,4 @@
 
 pub(in crate::scenario) mod json_schema;
 pub(in crate::scenario) mod reference;
+pub(in crate::scenario) mod reference_part;

@@ -10,7 +10,7 @@ use crate::scenario::config::Scenario;
 use crate::scenario::keys::schema::{Group, Key, Kind, Presence, join};
 
 /// How a line of a commented alternative begins.
-const ALTERNATIVE: &str = "#| ";
+pub(in crate::scenario::generate) const ALTERNATIVE: &str = "#| ";
 
 /// The line above each section.
 const RULE: &str = "# ---------------------------------------------------------------------------------------------";
@@ -53,7 +53,8 @@ pub fn reference_toml() -> &'static str {
 }
 
 /// A text on its way.
-struct Print {
+#[derive(Default)]
+pub(in crate::scenario::generate) struct Print {
     text: String,
 }
 
@@ -97,10 +98,8 @@ impl Print {
         for row in root.rows {
             match row.content {
                 Content::Value(kind) => {
-                    let key = Key::of(row, row.name, kind);
                     self.blank();
-                    self.meaning("", &key);
-                    self.root_value(&key);
+                    self.root_key(&Key::of(row, row.name, kind));
                 }
                 Content::Tables(table) if table.beside.starts_with("[[") => {
                     // Without the array before it, it would be no document.
@@ -123,6 +122,40 @@ impl Print {
         }
     }
 
+    /// Writes a key that stands in no table.
+    pub(in crate::scenario::generate) fn root_key(&mut self, key: &Key) {
+        self.meaning("", key);
+        self.root_value(key);
+    }
+
+    /// Writes one key below the header of its table.
+    pub(in crate::scenario::generate) fn lone(&mut self, table: &str, key: &Key, is_live: bool) {
+        if table.is_empty() {
+            return self.root_key(key);
+        }
+        let mark = if is_live { "" } else { ALTERNATIVE };
+        self.line(&format!("{mark}[{table}]"));
+        self.documented(mark, key);
+    }
+
+    /// Writes one table that does not stand by default, with its alternatives.
+    pub(in crate::scenario::generate) fn lone_example(
+        &mut self,
+        path: &str,
+        is_element: bool,
+        table: &'static Table,
+        about: &[&str],
+    ) {
+        self.comment("", about);
+        self.examples(path, is_element, table, "");
+    }
+
+    /// The text, without what sets it off from a text before it.
+    pub(in crate::scenario::generate) fn into_text(self) -> String {
+        let text = self.text.trim();
+        format!("{text}\n")
+    }
+
     /// Writes the value of a key that stands in no table.
     fn root_value(&mut self, key: &Key) {
         let Key { path, literal, .. } = *key;
@@ -138,7 +171,12 @@ impl Print {
     }
 
     /// Writes a table that stands by default, then what stands inside; `about` was not said yet.
-    fn live(&mut self, path: &str, table: &'static Table, about: &[&str]) {
+    pub(in crate::scenario::generate) fn live(
+        &mut self,
+        path: &str,
+        table: &'static Table,
+        about: &[&str],
+    ) {
         let values = || table.current_rows().filter_map(value_key);
         let is_live = |key: &Key| key.presence == Presence::Defaulted;
         let (has_live, has_others) = (
@@ -196,7 +234,12 @@ impl Print {
     }
 
     /// Writes a table without keys.
-    fn empty(&mut self, mark: &str, path: &str, row: &'static Row) {
+    pub(in crate::scenario::generate) fn empty(
+        &mut self,
+        mark: &str,
+        path: &str,
+        row: &'static Row,
+    ) {
         self.meaning(mark, &Key::of_empty_table(row, ""));
         self.line(&format!("{mark}[{path}]"));
     }

@@ -30,6 +30,11 @@ pub(crate) fn keys() -> impl Iterator<Item = &'static Key> {
     declared().keys.iter()
 }
 
+/// The key at a schema path.
+pub(crate) fn declared_key(path: &str) -> Option<&'static Key> {
+    keys().find(|key| key.path == path)
+}
+
 /// Tables of which exactly one alternative stands.
 pub(crate) fn groups() -> &'static [Group] {
     &declared().groups

@@ -45,12 +45,16 @@ const ROWS: &[Row] = &[
     ),
     (
         &["angle_random_walk", "angular_random_walk", "random_walk"],
-        Below(""),
-        Advice(
-            "the angle random walk is no key: it follows from gyro.source, gyro.detector, the sources \
-             in gyro.noise and gyro.noise.technical_phase_urad_per_sqrt_hz; `fogbench budget FILE` \
-             prints it",
-        ),
+        In(&[
+            "",
+            "gyro",
+            "gyro.noise",
+            "gyro.slow_noise",
+            "gyro.source",
+            "gyro.detector",
+            "gyro.coil",
+        ]),
+        Key("gyro.noise.angle_random_walk_deg_per_sqrt_h"),
     ),
     (
         &[
@@ -286,8 +290,7 @@ mod tests {
             Some(Advice(advice)) => advice,
             None => "",
         };
-        assert!(found("gyro.noise", "arw").contains("fogbench budget"));
-        assert!(found("gyro.noise", "angle_random_walk_deg_per_sqrt_h").contains("no key"));
+        assert!(found("gyro.noise", "arw").contains("gyro.noise.angle_random_walk"));
         assert!(found("gyro", "rrw").ends_with("rate_random_walk_deg_per_h_per_sqrt_h"));
         assert!(found("gyro.slow_noise", "BI").ends_with("bias_instability_deg_per_h"));
         assert!(found("filter[].lms", "mu").ends_with("step_size"));
