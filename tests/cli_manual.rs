@@ -67,8 +67,18 @@ fn every_command_has_a_page_of_the_manual() {
     for part in whole {
         assert!(main.contains(part), "{part}: {main}");
     }
-    assert!(said("man run").contains("\\-\\-require\\-gates"));
-    assert!(said("man baseline save").contains("fogbench\\-baseline\\-save"));
-    let unknown = ["man rnu", "man baseline svae", "man run x"];
-    said_to_each("commands", "Pages of no command", unknown, said);
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let at = folder.path();
+    let pages = || fogbench(at, &["man", "pages"]);
+    assert_eq!(code(&pages()), 0, "{}", stderr(&pages()));
+    let page = |name: &str| std::fs::read_to_string(at.join("pages").join(name)).expect("a page");
+    assert_eq!(page("fogbench.1"), main);
+    assert!(page("fogbench-run.1").contains("\\-\\-require\\-gates"));
+    assert!(page("fogbench-baseline-save.1").contains("fogbench\\-baseline\\-save"));
+    // A file of the user's stays, and no other page is written.
+    std::fs::write(at.join("pages/fogbench-run.1"), "mine").expect("writable");
+    std::fs::remove_file(at.join("pages/fogbench.1")).expect("it is there");
+    assert_eq!(code(&pages()), 2, "{}", stderr(&pages()));
+    assert_eq!(page("fogbench-run.1"), "mine");
+    assert!(!at.join("pages/fogbench.1").exists());
 }

@@ -82,7 +82,7 @@ pub(in crate::cli) enum Command {
     Export(ExportOptions),
     /// Print completions of this command line for a shell
     Completions(CompletionsOptions),
-    /// Print a page of the manual, as roff
+    /// Print the page of the manual, or write those of all commands, as roff
     Man(ManOptions),
 }
 
@@ -137,8 +137,12 @@ pub(in crate::cli) struct CompletionsOptions {
 /// Options of `man`.
 #[derive(Args, Debug)]
 pub(in crate::cli) struct ManOptions {
-    /// Command, as in baseline save [default: the program]
-    pub(in crate::cli) command: Vec<String>,
+    /// Folder that receives a page for each command [default: print that of the program]
+    #[arg(value_name = "DIR")]
+    pub(in crate::cli) folder: Option<PathBuf>,
+    /// Replace files that stand there, be they no such pages
+    #[arg(long, requires = "folder")]
+    pub(in crate::cli) force: bool,
 }
 
 /// Options of `budget`.

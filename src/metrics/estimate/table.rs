@@ -12,6 +12,8 @@ use crate::metrics::key::metric::MetricKey;
 
 /// Field of a bias stability: correlation of its means with those of raw.
 pub(crate) const RAW_CORRELATION: &str = "raw_correlation";
+/// Field of a delay: the same in samples.
+pub(crate) const DELAY_SAMPLES: &str = "delay_samples";
 /// Field of every metric whose interval is a chi-square one.
 pub(crate) const DEGREES_OF_FREEDOM: &str = "degrees_of_freedom";
 

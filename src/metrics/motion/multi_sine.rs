@@ -7,7 +7,7 @@ use super::tracking::TRACKING_ERROR_RMS;
 use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
-use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::table::{ChannelMetrics, DELAY_SAMPLES};
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::curve::CurveKey;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
@@ -106,10 +106,11 @@ pub(crate) fn measure_multi_sine(
     );
     let latency_s = filter.map_or(0.0, |facts| facts.latency_s);
     let behind_truth = later(fits.response(CHANNEL, TRUTH), latency_s);
-    put_lowest(&DELAY_VS_TRUTH, &behind_truth, metrics);
+    let period_s = record.sample_period_s;
+    put_lowest(&DELAY_VS_TRUTH, &behind_truth, period_s, metrics);
     let reference = if filter.is_some() {
         let behind_raw = later(fits.response(CHANNEL, RAW), latency_s);
-        put_lowest(&DELAY_VS_RAW, &behind_raw, metrics);
+        put_lowest(&DELAY_VS_RAW, &behind_raw, period_s, metrics);
         put_responses(&FREQUENCY_RESPONSE_VS_RAW, &behind_raw, metrics);
         behind_raw
     } else {
@@ -146,11 +147,18 @@ fn later(responses: Vec<ToneResponse>, latency_s: f64) -> Vec<ToneResponse> {
 }
 
 /// Enters the delay at the lowest tone.
-fn put_lowest(key: &MetricKey, responses: &[ToneResponse], metrics: &mut ChannelMetrics) {
+fn put_lowest(
+    key: &MetricKey,
+    responses: &[ToneResponse],
+    sample_period_s: f64,
+    metrics: &mut ChannelMetrics,
+) {
     if let Some(lowest) = responses.first() {
         let delay_ms = lowest.delay_s.scaled(units::s_to_ms(1.0));
         let metric = metrics.put(key, delay_ms);
         metric.fields.insert("frequency_hz", lowest.frequency_hz);
+        let delay_samples = lowest.delay_s.value / sample_period_s;
+        metric.fields.insert(DELAY_SAMPLES, delay_samples);
     }
 }
 

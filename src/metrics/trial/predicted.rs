@@ -6,7 +6,7 @@ use super::noise_delay::{
 };
 use crate::metrics::estimate::influence::{Spread, spread};
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::table::{ChannelMetrics, DELAY_SAMPLES};
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
@@ -157,6 +157,8 @@ fn put_delay_at_dc(
     let delay_s = samples
         .scaled(record.sample_period_s)
         .shifted(facts.latency_s);
-    metrics.put(&DELAY_AT_DC, delay_s.scaled(units::s_to_ms(1.0)));
+    let metric = metrics.put(&DELAY_AT_DC, delay_s.scaled(units::s_to_ms(1.0)));
+    let delay_samples = delay_s.value / record.sample_period_s;
+    metric.fields.insert(DELAY_SAMPLES, delay_samples);
     samples
 }

@@ -11,3 +11,4 @@ pub(super) mod pictures;
 mod repeats;
 pub(super) mod run;
 pub(super) mod suite;
+mod units;

@@ -7,6 +7,7 @@ use super::document::{document, facts, filter, maybe, section, wide};
 use super::gates::{gates_table, unit_word};
 use super::pictures::{Shown, capital, pictures};
 use super::repeats::repeats;
+use super::units::units;
 use crate::gate::{Verdict, count_accepted, plain, three_digits};
 use crate::metrics::catalogue::ANGLE_RANDOM_WALK;
 use crate::report::budget::{TOTAL, replacement};
@@ -36,7 +37,7 @@ pub(in crate::report) fn run_page(report: &RunReport, shown: &[Shown], beside: &
     let before = html! { (maybe(failures(report))) (gates(report)) (channels(report)) };
     let behind = html! {
         (more_metrics(report)) (budget(report)) (maybe(published(report))) (maybe(over_repeats(report)))
-        (assumed(beside.assumed)) (origin(report, beside.files))
+        (assumed(beside.assumed)) (units()) (origin(report, beside.files))
     };
     let head = head(report);
     let used = before.0.len() + behind.0.len() + head.0.len() + RESERVE_BYTES;
