@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
 
-use super::document::{document, facts, filter, section, wide};
+use super::document::{by_value, document, facts, filter, section, wide};
 use super::gates::unit_word;
 use super::pictures::figure_of_page;
 use super::run::PAGE_BYTES_MAX;
@@ -111,14 +111,14 @@ fn figures(compared: &ComparedSides, most: usize, id: &str) -> Markup {
 
 fn figure_row(row: &Row, compared: &ComparedSides) -> Markup {
     let value = |entry: &Option<Entry>| {
-        let value = entry.as_ref().map(|entry| entry.value.to_string());
+        let value = entry.as_ref().map(|entry| by_value(entry.value));
         value.unwrap_or_default()
     };
     let relative = row
         .difference
         .zip(row.old.as_ref())
         .filter(|(_, old)| old.value != 0.0);
-    let relative = relative.map(|(difference, old)| (difference / old.value.abs()).to_string());
+    let relative = relative.map(|(difference, old)| by_value(difference / old.value.abs()));
     html! { tr {
         td data-v=(severity(row.outcome)) { span class={ "pill " (class(row.outcome)) } { (row.outcome.as_str()) } }
         th scope="row" {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use maud::{Markup, html};
 
-use super::document::{filter, wide};
+use super::document::{by_value, filter, wide};
 use super::gates::unit_word;
 use crate::metrics::{ChannelMetrics, Metric, MetricKey, known_metrics};
 use crate::report::RunReport;
@@ -14,7 +14,7 @@ use crate::report::record::columns::{columns, unit_text, value_text};
 fn cell(channel: &ChannelMetrics, name: &str) -> Markup {
     match channel.metrics.get(name) {
         Some(metric) => html! {
-            td.num data-v=(metric.estimate.value) title=(ends(metric)) { (value_text(metric)) }
+            td.num data-v=(by_value(metric.estimate.value)) title=(ends(metric)) { (value_text(metric)) }
         },
         None => {
             let reason = channel.unavailable.get(name).map(|reason| reason.as_str());

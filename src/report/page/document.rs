@@ -59,6 +59,15 @@ pub(super) fn filter(table: &str, what: &str) -> Markup {
     }
 }
 
+/// A value that a table sorts by; empty, and last, where it is no number.
+pub(super) fn by_value(value: f64) -> String {
+    if value.is_finite() {
+        value.to_string()
+    } else {
+        String::new()
+    }
+}
+
 /// What there is, or nothing.
 pub(super) fn maybe(markup: Option<Markup>) -> Markup {
     markup.unwrap_or_else(|| html! {})

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::document::{maybe, wide};
+use super::document::{by_value, maybe, wide};
 use crate::gate::{Verdict, VerdictKind, limits_text, plain, three_digits};
 use crate::scenario::portable_place;
 
@@ -51,8 +51,8 @@ pub(super) fn gates_table<'a>(
                         span.definition { (verdict.reason) @if let Some(place) = &verdict.location { " (" (portable_place(place)) ")" } }
                     }
                 }
-                td data-v=(distance(verdict).map_or_else(String::new, |it| it.to_string())) { (maybe(bar(verdict, class))) }
-                td.num data-v=(verdict.value.map_or_else(String::new, |it| it.to_string())) { (interval_text(verdict)) }
+                td data-v=(distance(verdict).map_or_else(String::new, by_value)) { (maybe(bar(verdict, class))) }
+                td.num data-v=(verdict.value.map_or_else(String::new, by_value)) { (interval_text(verdict)) }
                 td.num { (limits_text(verdict.min, verdict.max)) }
                 td { (unit_word(&verdict.unit)) }
             } } }
@@ -85,19 +85,18 @@ fn interval_text(verdict: &Verdict) -> String {
 }
 
 /// How far inside its limits a gate is, as a part of their size; negative outside. Gates sort by it.
+///
+/// A limit of zero has no size: the value has then.
 fn distance(verdict: &Verdict) -> Option<f64> {
     let value = verdict.value?;
     let scale = |limit: f64| match (verdict.min, verdict.max) {
-        (Some(min), Some(max)) => (max - min).abs(),
-        _ => limit.abs(),
+        (Some(min), Some(max)) if min < max => max - min,
+        _ if limit.abs() > 0.0 => limit.abs(),
+        _ => value.abs().max(f64::MIN_POSITIVE),
     };
     let inside = [
-        verdict
-            .min
-            .map(|min| (value - min) / scale(min).max(f64::MIN_POSITIVE)),
-        verdict
-            .max
-            .map(|max| (max - value) / scale(max).max(f64::MIN_POSITIVE)),
+        verdict.min.map(|min| (value - min) / scale(min)),
+        verdict.max.map(|max| (max - value) / scale(max)),
     ];
     inside.into_iter().flatten().reduce(f64::min)
 }
@@ -148,4 +147,38 @@ fn bar(verdict: &Verdict, class: &str) -> Option<Markup> {
             circle.value cx=(text(x(value))) cy=(middle) r="3" {}
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_distance_is_a_number_that_sorts() {
+        let of = |value: f64, min: Option<f64>, max: Option<f64>| {
+            distance(&Verdict {
+                metric: "raw.mean_deg_per_h".to_owned(),
+                kind: VerdictKind::Fail,
+                accepted: false,
+                value: Some(value),
+                low: None,
+                high: None,
+                min,
+                max,
+                unit: "deg/h".to_owned(),
+                relative_to: None,
+                reason: String::new(),
+                location: None,
+            })
+        };
+        assert_eq!(of(1299.0, None, Some(0.0)), Some(-1.0));
+        assert_eq!(of(0.0, None, Some(0.0)), Some(0.0));
+        assert_eq!(of(2.0, Some(0.0), None), Some(1.0));
+        assert_eq!(of(3.0, Some(3.0), Some(3.0)), Some(0.0));
+        assert_eq!(of(1.5, Some(1.0), Some(2.0)), Some(0.5));
+        assert_eq!(
+            of(1e300, None, Some(1e-300)).map(by_value),
+            Some(String::new())
+        );
+    }
 }

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::document::{filter, maybe, wide};
+use super::document::{by_value, filter, maybe, wide};
 use super::gates::unit_word;
 use crate::gate::{plain, three_digits};
 use crate::metrics::{RepeatStatistics, repeated_metrics};
@@ -40,12 +40,12 @@ pub(super) fn repeats(report: &RunReport) -> Option<Markup> {
             tbody { @for (key, name, of) in &rows { tr {
                 th scope="row" title=(key.definition) { (key.title()) }
                 td { (name) }
-                td data-v=(of.standard_deviation) { (maybe(histogram(of))) }
-                td.num data-v=(of.mean) { (plain(of.mean)) }
-                td.num data-v=(of.standard_deviation) { (three_digits(of.standard_deviation)) }
+                td data-v=(by_value(of.standard_deviation)) { (maybe(histogram(of))) }
+                td.num data-v=(by_value(of.mean)) { (plain(of.mean)) }
+                td.num data-v=(by_value(of.standard_deviation)) { (three_digits(of.standard_deviation)) }
                 @for percent in PERCENTS {
                     @let value = of.percentile(percent);
-                    td.num data-v=(value) { (plain(value)) }
+                    td.num data-v=(by_value(value)) { (plain(value)) }
                 }
                 td { (unit_word(of.unit)) }
             } } }

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::channels::{all_metrics, main_metrics, missing};
-use super::document::{document, facts, filter, maybe, section, wide};
+use super::document::{by_value, document, facts, filter, maybe, section, wide};
 use super::gates::{gates_table, unit_word};
 use super::pictures::{Shown, capital, pictures};
 use super::repeats::repeats;
@@ -221,8 +221,8 @@ fn budget(report: &RunReport) -> Markup {
             } }
             tbody { @for (source, walk) in terms { tr {
                 th scope="row" { (source) }
-                td.num data-v=(walk) { (three_digits(*walk)) }
-                td.num data-v=(share(*walk)) { (format!("{:.1}", share(*walk))) }
+                td.num data-v=(by_value(*walk)) { (three_digits(*walk)) }
+                td.num data-v=(by_value(share(*walk))) { (format!("{:.1}", share(*walk))) }
                 td.share-cell { @if *source != TOTAL { span.share style=(format!("width:{:.1}%", share(*walk))) {} } }
             } } }
         }
@@ -266,10 +266,10 @@ fn published(report: &RunReport) -> Option<Markup> {
                     @let metric = simulated(figure);
                     @let key = figure.metric.rsplit_once('.').map_or("", |(_, key)| key);
                     th scope="row" { code { (figure.metric) } span.definition { (heading_of(key)) } }
-                    td.num data-v=(figure.value) { (figure.value) }
+                    td.num data-v=(by_value(figure.value)) { (figure.value) }
                     @match metric {
                         Some(metric) => {
-                            td.num data-v=(metric.estimate.value) { (value_text(metric)) }
+                            td.num data-v=(by_value(metric.estimate.value)) { (value_text(metric)) }
                             td.num { @if metric.unit == figure.unit || (metric.unit == "1" && figure.unit.is_empty()) {
                                 (format!("{}{}", if metric.estimate.value < figure.value { "" } else { "+" }, three_digits(metric.estimate.value - figure.value)))
                             } @else { "other unit" } }

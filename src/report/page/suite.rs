@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use maud::{Markup, html};
 
 use super::against::comparison_section;
-use super::document::{document, facts, filter, maybe, section, wide};
+use super::document::{by_value, document, facts, filter, maybe, section, wide};
 use super::gates::gates_table;
 use super::pictures::{Shown, pictures};
 use super::run::{PAGE_BYTES_MAX, status_word};
@@ -432,7 +432,7 @@ fn compared(table: &ComparedTable) -> Markup {
                 th scope="row" { (row.label) }
                 @for cell in &row.cells {
                     @match cell {
-                        Some(cell) => td.num data-v=(cell.simulated.estimate.value) {
+                        Some(cell) => td.num data-v=(by_value(cell.simulated.estimate.value)) {
                             (value_text(&cell.simulated))
                             @if let Some((published, source)) = &cell.published {
                                 span.definition title=(source) { "published " (plain(*published)) }
