@@ -457,7 +457,7 @@ fn assumptions(across: &Comparison) -> Option<Markup> {
         section("assumptions", "What the publication leaves open", &html! {
             dl.words { @for assumed in &across.assumptions {
                 dt { code { (assumed.key) } @if !assumed.values.is_empty() { " = " (assumed.values.join(" or ")) } " " span.pill.doubt { "assumed" } }
-                dd { (assumed.statement) " " span.soft { (assumed.silence) " " (assumed.alternatives) } }
+                dd { (assumed.statement) div.soft { (assumed.silence) } div.soft { (assumed.alternatives) } }
             } }
         })
     })
