@@ -1,5 +1,7 @@
 //! Whether the intervals of the metrics hold the truth as often as they say.
 
+use fogbench::Scenario;
+use fogbench::metrics::catalogue::MEAN_RATIO;
 use fogbench::metrics::{AllanOptions, ChannelMetrics, Motion, Record, Settings, measure};
 use fogbench::random::Streams;
 use fogbench::signal::SlowDrift;
@@ -176,4 +178,29 @@ fn bias_stability_stands_beside_what_the_fitted_noise_makes_one_expect() {
         let expected = metrics.metrics[name].fields["expected_deg_per_h"];
         assert_close(expected, 0.36 / averaging_time_s.sqrt(), 0.06, 0.0);
     }
+}
+
+#[test]
+fn the_ratio_of_means_in_a_short_swing_scatters_as_its_interval_says() {
+    const SEEDS: i64 = 16;
+    let swing = "schema = 1\nname = \"short\"\nfidelity = \"rate\"\nduration_s = 2.0\nwarm_up_s = 1.0\n\
+                 [turntable.swing]\nrate_amplitude_deg_per_s = 1.0\nfrequency_hz = 10.0\n\
+                 [[filter]]\nname = \"rls\"\n[filter.rls]\n";
+    let scenario = Scenario::from_toml(swing).expect("a sound scenario");
+    let (mut ratios, mut errors) = (Vec::new(), Vec::new());
+    for seed in 1..=SEEDS {
+        let seeded = scenario.clone().set("seed", seed).expect("a key");
+        let run = seeded.run().expect("a run");
+        let ratio = run.channel("rls").expect("a channel").get(&MEAN_RATIO);
+        let ratio = ratio.expect("the mean is known").estimate;
+        ratios.push(ratio.value);
+        errors.push((ratio.high - ratio.low) / 2.0 / 1.96);
+    }
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let centre = mean(&ratios);
+    let squares: Vec<f64> = ratios.iter().map(|it| (it - centre).powi(2)).collect();
+    let scatter = (mean(&squares) * SEEDS as f64 / (SEEDS as f64 - 1.0)).sqrt();
+    // Sixteen seeds tell a scatter to 18 %; the interval was 0.004 of it.
+    let stated = mean(&errors) / scatter;
+    assert!((0.6..1.8).contains(&stated), "{stated}, {scatter}");
 }

@@ -17,6 +17,9 @@ use super::interval;
 /// Tapered blocks that fit beside each other; they overlap by half.
 const LONG_BLOCKS: usize = 16;
 
+/// Cycles of a swing from which on a tapered block tells its frequency from zero.
+const CYCLES_APART: f64 = 4.0;
+
 /// Plain blocks, at most, and the reaches of the filter that each spans at least.
 const SHORT_BLOCKS_MAX: usize = 2000;
 const REACHES_PER_BLOCK: usize = 16;
@@ -79,8 +82,8 @@ impl MeanScatter {
         reach: usize,
         cycle: Option<f64>,
     ) -> Self {
-        let long = aligned.len() / LONG_BLOCKS;
-        if long < SAMPLES_MIN {
+        let long = tapered_length(aligned.len(), cycle);
+        if long < SAMPLES_MIN || 2 * long > aligned.len() {
             return Self::of(differences, reach);
         }
         let density = tapered_density(aligned, long);
@@ -149,6 +152,22 @@ pub(crate) fn covariance_at_lags(values: &[f64], largest_lag: usize) -> Vec<f64>
 /// Spread of the mean of values whose ends reach over `reach` samples.
 pub(crate) fn mean_spread(values: &[f64], reach: usize) -> Spread {
     MeanScatter::of(values, reach).over(values.len())
+}
+
+/// Samples of a tapered block.
+///
+/// In a swing's noise, what weights on their way add stands about the frequency of the swing. A block of
+/// few cycles does not tell it from frequency zero, but where it holds two whole ones or more: these are
+/// zeros of its window.
+fn tapered_length(samples: usize, cycle: Option<f64>) -> usize {
+    let long = samples / LONG_BLOCKS;
+    match cycle {
+        Some(cycle) if (long as f64) < CYCLES_APART * cycle => {
+            let cycles = (long as f64 / cycle).ceil().max(2.0);
+            interval::round_to_count(cycles * cycle)
+        }
+        _ => long,
+    }
 }
 
 /// Shortest block of so many samples at least, in whole cycles of a swing, samples.

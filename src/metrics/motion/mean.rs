@@ -222,7 +222,7 @@ pub(crate) fn paired_ratio(
     let own = &record.channel_deg_per_h[settled.clone()];
     let raw = &record.raw_deg_per_h[settled];
     let gain = interval::mean(own) / interval::mean(raw);
-    let scatter = paired_scatter((own, raw), gain, facts);
+    let scatter = paired_scatter((own, raw), gain, facts, None);
     let over_level = 1.0 / of.raw_deg_per_h;
     match (
         facts.weight_scatter(record.raw_deg_per_h.len(), 0.0),
@@ -241,10 +241,13 @@ pub(crate) fn paired_ratio(
 ///
 /// Of given weights with the gain G the density at zero frequency is `(G - gain)^2` times raw's: blocks
 /// of a short record do not tell it from what is near it.
+///
+/// * `cycle`: samples of a swing that was taken out, whose phase the ends share.
 pub(crate) fn paired_scatter(
     (own, raw): (&[f64], &[f64]),
     gain: f64,
     facts: &FilterFacts,
+    cycle: Option<f64>,
 ) -> MeanScatter {
     let minus = |raw: &[f64]| -> Vec<f64> {
         own.iter()
@@ -262,7 +265,7 @@ pub(crate) fn paired_scatter(
     // Delayed, the first samples have no input.
     let aligned = minus(&delayed(raw, delay));
     let whole = reach.min(aligned.len() / 2);
-    MeanScatter::of_paired(&minus(raw), &aligned[whole..], reach, None)
+    MeanScatter::of_paired(&minus(raw), &aligned[whole..], reach, cycle)
 }
 
 /// Samples at the end of a record that show the rounding of a filter in hardware.

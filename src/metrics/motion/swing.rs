@@ -188,7 +188,7 @@ pub(crate) fn measure_swing(
     if let (Some(facts), Some(raw)) = (filter, raw) {
         let level = fits.raw.whole.amplitude + fits.raw.whole.offset.abs();
         put_noise_gain(&channel, &raw, &by_weights, level, metrics);
-        measure_mean_ratio(record, &fits, facts, metrics);
+        measure_mean_ratio(record, &fits, &clock, facts, metrics);
         measure_predictions(&fits, &clock, facts, &raw, metrics);
         measure_bound(&fits, &response, facts, (&channel, &raw), metrics);
         let predicted = metrics.get(&DELAY_PREDICTED);
@@ -344,6 +344,7 @@ const TRACKING_BLOCKS: usize = 150;
 fn measure_mean_ratio(
     record: &Record,
     fits: &Fits,
+    clock: &SwingClock,
     facts: &FilterFacts,
     metrics: &mut ChannelMetrics,
 ) {
@@ -358,7 +359,8 @@ fn measure_mean_ratio(
     }
     let ratio = fits.channel.whole.offset / offset;
     let own = fits.channel.residuals(record.channel_deg_per_h);
-    let scatter = paired_scatter((&own, &raw), ratio, facts);
+    let cycle = 1.0 / (clock.frequency_hz * clock.sample_period_s);
+    let scatter = paired_scatter((&own, &raw), ratio, facts, Some(cycle));
     let samples = own.len();
     // The offset is a constant rate beside the swing: the mean weights make it what it is.
     let weights = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
