@@ -133,6 +133,7 @@ fn a_begun_scenario_and_what_is_refused_are_as_the_transcript_holds_them() {
         "init --length-m 1000 --diameter-mm 120 --wavelength-nm 1550 --arw 1 --power-uw 2",
         "init --length-m 1000 --diameter-mm 120 --wavelength-nm 1550 --arw 10000",
         "init --length-m 1000 --diameter-mm 120 --wavelength-nm 1550 --name Mine",
+        "init --length-m 1000 --diameter-mm 120 --wavelength-nm 1550 --name raw",
         "init --length-m 1000 --diameter-mm 120 --wavelength-nm 1550 --force",
     ];
     let folder = scratch();

@@ -75,6 +75,14 @@ fn every_command_has_a_page_of_the_manual() {
     assert_eq!(page("fogbench.1"), main);
     assert!(page("fogbench-run.1").contains("\\-\\-require\\-gates"));
     assert!(page("fogbench-baseline-save.1").contains("fogbench\\-baseline\\-save"));
+    std::fs::write(at.join("file"), "").expect("writable");
+    let output = fogbench(at, &["man", "file"]);
+    assert_eq!(code(&output), 74, "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("file can be no folder"),
+        "{}",
+        stderr(&output)
+    );
     // A file of the user's stays, and no other page is written.
     std::fs::write(at.join("pages/fogbench-run.1"), "mine").expect("writable");
     std::fs::remove_file(at.join("pages/fogbench.1")).expect("it is there");

@@ -285,10 +285,10 @@ fn a_run_is_compared_with_its_baseline_and_never_writes_it() {
         stdout(&whole)
     );
     run(at, "plain", &[]);
-    // The page of the suite shows the baseline, and its record has the page's digest.
+    // The page of the suite and its JUnit file show the baseline, and its record has their digests.
     let own = |output: &str| {
         let mut files = tree(&at.join(output));
-        let shows = ["index.html", ".fogbench.toml"].map(Path::new);
+        let shows = ["index.html", "junit.xml", ".fogbench.toml"].map(Path::new);
         files.retain(|(name, _)| !shows.contains(&name.as_path()));
         files
     };
@@ -458,4 +458,122 @@ fn the_page_of_a_suite_shows_its_baseline_and_no_folder_of_a_run_does() {
     assert_eq!(code(&saved), 0, "{}", stderr(&saved));
     run(at, "file", &["--baseline", "b.toml"]);
     assert!(index("file").contains("id=\"against\"") && !index("file").contains("raw, before"));
+}
+
+#[test]
+fn a_scenario_that_is_gone_from_a_folder_fails_and_one_that_was_not_asked_for_does_not() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "out", &[]);
+    let save = fogbench(at, &["baseline", "save", "out", "-o", "b.toml"]);
+    assert_eq!(code(&save), 0, "{}", stderr(&save));
+    let against = |paths: &[&str]| {
+        let rest = ["-o", "later", "--baseline", "b.toml"];
+        fogbench(at, &[&["run"], paths, &rest[..]].concat())
+    };
+    for asked in [
+        &["scenarios/one.toml"][..],
+        &["scenarios", "--filter", "one"],
+    ] {
+        let output = against(asked);
+        assert_eq!(code(&output), 0, "{}", stdout(&output));
+    }
+    fs::remove_file(at.join("scenarios/power.toml")).expect("it is there");
+    let output = against(&["scenarios"]);
+    assert_eq!(code(&output), 1, "{}", stdout(&output));
+    assert!(stdout(&output).contains("removed"), "{}", stdout(&output));
+}
+
+#[test]
+fn what_fails_against_a_baseline_is_told_wherever_a_server_looks() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "out", &[]);
+    let save = fogbench(at, &["baseline", "save", "out", "-o", "b.toml"]);
+    assert_eq!(code(&save), 0, "{}", stderr(&save));
+    let files = ["--junit", "j.xml", "--summary-markdown", "s.md"];
+    let against = || {
+        let rest = ["--annotations", "github", "--baseline", "b.toml"];
+        fogbench(
+            at,
+            &[&["run", "scenarios", "-o", "out"], &files[..], &rest].concat(),
+        )
+    };
+    let text = |name: &str| fs::read_to_string(at.join(name)).expect("a file");
+    let good = against();
+    assert_eq!(code(&good), 0, "{}", stdout(&good));
+    assert!(text("j.xml").contains("<testcase name=\"compared\" classname=\"baseline\""));
+    assert!(
+        text("s.md").starts_with("<!-- written by fogbench -->\n## fogbench: 3 of 3 runs passed\n")
+    );
+    // A figure that was far better before.
+    let baseline = text("b.toml");
+    let mut table: toml::Table = baseline.parse().expect("TOML");
+    let metrics = table["metric"].as_array_mut().expect("figures");
+    let noise = metrics.iter_mut().find(|it| {
+        it["scenario"].as_str() == Some("one")
+            && it["metric"].as_str() == Some("noise_std_deg_per_h")
+            && it["channel"].as_str() == Some("raw")
+    });
+    let noise = noise.expect("it is there").as_table_mut().expect("a table");
+    for key in ["value", "low", "high"] {
+        let before = noise[key].as_float().expect("a number");
+        noise.insert(key.to_owned(), (before / 2.0).into());
+    }
+    fs::write(at.join("b.toml"), toml::to_string(&table).expect("TOML")).expect("writable");
+    let bad = against();
+    assert_eq!(code(&bad), 1, "{}", stdout(&bad));
+    let figure = "one raw.noise_std_deg_per_h";
+    assert!(
+        stdout(&bad).contains(
+            "::error file=scenarios/one.toml,title=worse against the baseline::one raw.noise_std"
+        ),
+        "{}",
+        stdout(&bad)
+    );
+    for junit in [text("j.xml"), text("out/junit.xml")] {
+        let case = format!("<testcase name=\"{figure}\" classname=\"baseline\"");
+        assert!(
+            junit.contains(&case) && junit.contains("type=\"worse\""),
+            "{junit}"
+        );
+    }
+    assert!(text("s.md").contains("3 of 3 runs passed, 1 figure failed against the baseline"));
+    let index = text("out/index.html");
+    let badge = index.split("class=\"verdict\"").nth(1).expect("a verdict");
+    assert!(badge.contains(">FAIL<"));
+}
+
+#[test]
+fn no_file_that_is_read_is_written_be_it_by_force() {
+    let folder = scratch();
+    let at = folder.path();
+    run(at, "out", &[]);
+    let save = fogbench(at, &["baseline", "save", "out", "-o", "b.toml"]);
+    assert_eq!(code(&save), 0, "{}", stderr(&save));
+    let before = (
+        tree(&at.join("scenarios")),
+        fs::read(at.join("b.toml")).expect("a file"),
+    );
+    for arguments in [
+        "compare b.toml out --html b.toml --force",
+        "compare b.toml out --html ./scenarios/../b.toml --force",
+        "run scenarios -o out --baseline b.toml --junit b.toml --force",
+        "run scenarios -o out --junit scenarios/one.toml --force",
+        "run scenarios -o out --summary-markdown scenarios/one.toml --force",
+        "run scenarios -o out --bmf scenarios/../scenarios/power.toml --force",
+    ] {
+        let words: Vec<&str> = arguments.split(' ').collect();
+        let output = fogbench(at, &words);
+        assert_eq!(code(&output), 2, "{arguments}: {}", stderr(&output));
+        assert!(
+            stderr(&output).contains("is read: nothing was done"),
+            "{arguments}"
+        );
+    }
+    let after = (
+        tree(&at.join("scenarios")),
+        fs::read(at.join("b.toml")).expect("a file"),
+    );
+    assert!(before == after);
 }

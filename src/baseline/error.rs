@@ -30,6 +30,9 @@ pub enum BaselineError {
         /// What may stand there.
         expected: &'static str,
     },
+    /// A name that no scenario can have.
+    #[error("`{0}` holds a character that no name has")]
+    Name(String),
     /// The same metric twice.
     #[error("{0} stands twice")]
     Twice(String),

@@ -155,18 +155,8 @@ pub fn read_baseline(text: &str) -> Result<Side, BaselineError> {
     })
 }
 
-fn entry(written: Written) -> Result<Entry, BaselineError> {
-    let point: Vec<(&str, String)> = written
-        .point
-        .iter()
-        .map(|(key, value)| (key.as_str(), value.to_string()))
-        .collect();
-    let id = Id {
-        point: point_of(point.iter().map(|(key, value)| (*key, value.as_str()))),
-        scenario: written.scenario.clone(),
-        channel: written.channel.clone(),
-        metric: written.metric.clone(),
-    };
+/// Checks names and numbers but the interval.
+fn check(id: &Id, written: &Written) -> Result<(), BaselineError> {
     let range = |key, value: f64, is_good: bool, expected| {
         let id = id.to_string();
         let error = BaselineError::Range {
@@ -191,6 +181,36 @@ fn entry(written: Written) -> Result<Entry, BaselineError> {
         let is_good = tolerance >= 0.0 && tolerance.is_finite();
         range(key, tolerance, is_good, "0 or more")?;
     }
+    if let Some(freedom) = written.degrees_of_freedom {
+        let is_good = freedom > 0.0 && freedom.is_finite();
+        range(
+            "degrees_of_freedom",
+            freedom,
+            is_good,
+            "above 0, or left out",
+        )?;
+    }
+    if id.to_string().chars().any(char::is_control) {
+        return Err(BaselineError::Name(
+            id.to_string().escape_debug().to_string(),
+        ));
+    }
+    Ok(())
+}
+
+fn entry(written: Written) -> Result<Entry, BaselineError> {
+    let point: Vec<(&str, String)> = written
+        .point
+        .iter()
+        .map(|(key, value)| (key.as_str(), value.to_string()))
+        .collect();
+    let id = Id {
+        point: point_of(point.iter().map(|(key, value)| (*key, value.as_str()))),
+        scenario: written.scenario.clone(),
+        channel: written.channel.clone(),
+        metric: written.metric.clone(),
+    };
+    check(&id, &written)?;
     let interval = interval(&id, &written)?;
     let better = match written.direction {
         None => None,

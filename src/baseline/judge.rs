@@ -129,6 +129,23 @@ pub struct Row {
     pub reason: String,
 }
 
+/// A comparison with the outcomes that fail.
+#[derive(Clone, Copy, Debug)]
+pub struct Judged<'a> {
+    /// Every figure.
+    pub comparison: &'a Comparison,
+    /// What fails.
+    pub fail_on: &'a [Outcome],
+}
+
+impl<'a> Judged<'a> {
+    /// The figures that fail.
+    pub fn failed(self) -> impl Iterator<Item = &'a Row> {
+        let rows = self.comparison.rows.iter();
+        rows.filter(move |row| self.fail_on.contains(&row.outcome))
+    }
+}
+
 /// Two sides, compared.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

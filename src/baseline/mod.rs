@@ -19,6 +19,6 @@ mod update;
 pub use error::BaselineError;
 pub use file::{is_baseline_toml, read_baseline, to_toml};
 pub use holm::{FAMILY_ERROR, HEADLINE_WEIGHT, OTHER_WEIGHT};
-pub use judge::{Basis, Comparison, Outcome, Row, compare};
+pub use judge::{Basis, Comparison, Judged, Outcome, Row, compare};
 pub use record::{Entry, Id, Interval, Lack, Limits, Point, Side, point_of};
 pub use update::updated;

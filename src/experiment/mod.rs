@@ -46,6 +46,6 @@ pub use starter::{StarterGyro, starter_scenario};
 pub use stimulus::scenario_stimulus;
 #[cfg(feature = "report")]
 pub use suite::{
-    Against, Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX, run_suite,
-    start_threads, thread_count, write_runs,
+    Against, Earlier, Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX,
+    run_suite, start_threads, thread_count, write_runs,
 };

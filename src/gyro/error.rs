@@ -101,7 +101,8 @@ pub enum GyroError {
     #[error(
         "white noise of {noise_deg_per_s:.3e} deg/s rms in a rate word, as much as the single-fringe range of \
          +-{limit_deg_per_s:.3e} deg/s: this gyro shows nothing else; \
-         lower gyro.noise or raise gyro.source.power_uw"
+         lower the noise of gyro.noise: raise gyro.source.power_uw, or lower its angle random walk where that \
+         is given"
     )]
     NoiseBeyondFringe {
         /// Standard deviation of a word, deg/s.
@@ -192,11 +193,14 @@ pub enum GyroError {
     #[error(
         "rounding alone makes an angle random walk of {:.3e} deg/sqrt(h) ({converter_deg_per_sqrt_h:.3e} in the \
          converter, {words_deg_per_sqrt_h:.3e} of the rate words), too much of the {walk_deg_per_sqrt_h} deg/sqrt(h) \
-         asked for to be white noise: {}, or ask for a greater walk",
+         asked for to be white noise: {}, or ask for {:.3e} or more",
         converter_deg_per_sqrt_h.hypot(*words_deg_per_sqrt_h),
-        remedy(*converter_deg_per_sqrt_h, *words_deg_per_sqrt_h)
+        remedy(*converter_deg_per_sqrt_h, *words_deg_per_sqrt_h),
+        least_deg_per_sqrt_h
     )]
     RoundingBeyondWalk {
+        /// Least walk of which such rounding is a small enough part, deg/sqrt(h).
+        least_deg_per_sqrt_h: f64,
         /// Walk asked for, deg/sqrt(h).
         walk_deg_per_sqrt_h: f64,
         /// Walk of the rounding in the converter, deg/sqrt(h).

@@ -14,8 +14,8 @@
 //! | `plot` | pictures |
 //! | `comparison` | tables over several scenarios |
 //! | `csv` | metrics, curves and repeats |
-//! | `build_server` | JUnit, annotations, Markdown and metrics for build servers |
 //! | `baseline` | a comparison with earlier results |
+//! | `build_server` | JUnit, annotations, Markdown and metrics for build servers |
 //! | `json` | `summary.json` of runs and suites |
 //! | `page` | pages for a browser |
 //! | `restore` | `summary.json` read back |

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use crate::baseline::{Comparison, Outcome, Side, compare as compare_sides};
+use crate::baseline::{Comparison, Judged, Outcome, Side, compare as compare_sides};
 use crate::cli::options::baseline::{CompareOptions, ComparisonFormat, FailOn};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::{output, place};
@@ -21,6 +21,10 @@ pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
         is_ours: is_comparison_page,
         force: options.force,
     });
+    let read = [options.old.as_path(), options.new.as_path()];
+    if let Some(Err(exit)) = page.map(|page| place::check_unread(page.path, &read)) {
+        return Ok(exit);
+    }
     if let Some(Err(error)) = page.as_ref().map(SingleFile::check) {
         return Ok(place::refused(&error));
     }
@@ -43,11 +47,14 @@ pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
         return Ok(exit);
     };
     let compared = ComparedSides {
-        comparison: &comparison,
+        judged: Judged {
+            comparison: &comparison,
+            fail_on: &fail_on,
+        },
         old: &old,
         new: &new,
     };
-    Ok(match page.write(&comparison_page(&compared, &fail_on)) {
+    Ok(match page.write(&comparison_page(&compared)) {
         Ok(()) => exit,
         Err(error) => exit.worst(place::refused(&error)),
     })

@@ -64,13 +64,7 @@ fn write_kalman(trial: &LogTrial, file: SingleFile) -> Result<(), Exit> {
 
 /// Checks the place of a file that stands alone before anything is computed.
 fn check_file(file: SingleFile, inputs: &[&Path]) -> Result<(), Exit> {
-    if inputs.contains(&file.path) {
-        output::talk(&format!(
-            "error: {} is read: nothing was done; choose another name",
-            file.path.display()
-        ));
-        return Err(Exit::Usage);
-    }
+    place::check_unread(file.path, inputs)?;
     file.check().map_err(|error| place::refused(&error))
 }
 

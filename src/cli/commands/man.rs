@@ -32,7 +32,13 @@ pub(in crate::cli) fn man(options: &ManOptions) -> io::Result<Exit> {
     if let Some(error) = paths.iter().find_map(|path| file(path).check().err()) {
         return Ok(place::refused(&error));
     }
-    fs::create_dir_all(folder)?;
+    if let Err(error) = fs::create_dir_all(folder) {
+        let folder = folder.display();
+        output::talk(&format!(
+            "error: {folder} can be no folder: {error}: nothing was done"
+        ));
+        return Ok(Exit::Io);
+    }
     for (path, (_, text)) in paths.iter().zip(&pages) {
         if let Err(error) = file(path).write(text) {
             return Ok(place::refused(&error));

@@ -1,10 +1,37 @@
 //! Where a command writes its one result.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::store::{OutputFolder, StoreError, StoreOptions, holds_result};
+
+/// A path with its links resolved as far as it exists.
+pub(in crate::cli) fn real(path: &Path) -> PathBuf {
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mut ancestors = whole.ancestors();
+    let found = ancestors.find_map(|it| Some((it, fs::canonicalize(it).ok()?)));
+    match found {
+        Some((stands, real)) => real.join(whole.strip_prefix(stands).unwrap_or(Path::new(""))),
+        None => whole,
+    }
+}
+
+/// Checks that a file that would be written is none of those that are read, be it with `--force`.
+///
+/// A refusal is printed before its exit code is returned.
+pub(in crate::cli) fn check_unread(path: &Path, inputs: &[&Path]) -> Result<(), Exit> {
+    let own = real(path);
+    if inputs.iter().all(|input| real(input) != own) {
+        return Ok(());
+    }
+    output::talk(&format!(
+        "error: {} is read: nothing was done; choose another name",
+        path.display()
+    ));
+    Err(Exit::Usage)
+}
 
 /// The folder of a result, if one is asked for.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::baseline::{Comparison, Side, compare};
+use super::options::Earlier;
+use crate::baseline::{Comparison, Judged, Outcome, Side, compare};
 use crate::experiment::baseline::{SideError, read_runs};
 use crate::experiment::plan::Plan;
 use crate::report::{ComparedSides, RunOutcome};
@@ -18,10 +19,24 @@ pub enum Against {
     Nothing,
     /// The suite was stopped before its end: what is missing says nothing.
     Stopped,
-    /// Figure by figure.
-    Compared(Arc<Comparison>),
+    /// Figure by figure, with the outcomes that fail.
+    Compared(Arc<Comparison>, Vec<Outcome>),
     /// The results cannot be read back.
     Unreadable(Arc<SideError>),
+}
+
+impl Against {
+    /// The comparison, if there is one.
+    #[must_use]
+    pub fn judged(&self) -> Option<Judged<'_>> {
+        match self {
+            Self::Compared(comparison, fail_on) => Some(Judged {
+                comparison,
+                fail_on,
+            }),
+            Self::Nothing | Self::Stopped | Self::Unreadable(_) => None,
+        }
+    }
 }
 
 /// What was compared, and what came of it.
@@ -34,7 +49,12 @@ pub(super) struct Sides {
 
 impl Sides {
     /// Of runs whose folders stand in `output`, with what `earlier` has of the same scenarios.
-    pub(super) fn of(earlier: &Side, plans: &[Plan], runs: &[RunOutcome], output: &Path) -> Self {
+    pub(super) fn of(
+        earlier: &Earlier,
+        plans: &[Plan],
+        runs: &[RunOutcome],
+        output: &Path,
+    ) -> Self {
         if runs.iter().any(|run| run.is_not_run) {
             return Self {
                 outcome: Against::Stopped,
@@ -49,7 +69,8 @@ impl Sides {
         match read_runs(&places) {
             Ok(new) => {
                 let old = asked_for(earlier, &new, plans);
-                let outcome = Against::Compared(Arc::new(compare(&old, &new)));
+                let comparison = Arc::new(compare(&old, &new));
+                let outcome = Against::Compared(comparison, earlier.fail_on.clone());
                 Self { old, new, outcome }
             }
             Err(error) => Self {
@@ -61,20 +82,17 @@ impl Sides {
 
     /// What the page of the suite shows; nothing without a comparison.
     pub(super) fn shown(&self) -> Option<ComparedSides<'_>> {
-        match &self.outcome {
-            Against::Compared(comparison) => Some(ComparedSides {
-                comparison,
-                old: &self.old,
-                new: &self.new,
-            }),
-            Against::Nothing | Against::Stopped | Against::Unreadable(_) => None,
-        }
+        self.outcome.judged().map(|judged| ComparedSides {
+            judged,
+            old: &self.old,
+            new: &self.new,
+        })
     }
 }
 
 /// The earlier results of what the suite ran: of a scenario that it holds whole, points that are missing
-/// are gone.
-fn asked_for(earlier: &Side, later: &Side, plans: &[Plan]) -> Side {
+/// are gone; of a suite that is whole, scenarios are.
+fn asked_for(earlier: &Earlier, later: &Side, plans: &[Plan]) -> Side {
     let mut points: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
     for plan in plans {
         let resolved = plan.resolved();
@@ -83,13 +101,16 @@ fn asked_for(earlier: &Side, later: &Side, plans: &[Plan]) -> Side {
         *held += 1;
         *count = all;
     }
-    let is_whole = |scenario: &str| points.get(scenario).is_some_and(|(held, all)| held == all);
+    let is_whole = |scenario: &str| match points.get(scenario) {
+        Some((held, all)) => held == all,
+        None => earlier.is_whole,
+    };
     let of_later = later.entries.iter().map(|entry| &entry.id);
     let ran: BTreeSet<_> = of_later
         .chain(later.lacks.keys())
         .map(|id| (id.scenario.clone(), id.point.clone()))
         .collect();
-    earlier.clone().of_scenarios(|scenario, point| {
+    earlier.side.clone().of_scenarios(|scenario, point| {
         is_whole(scenario) || ran.contains(&(scenario.to_owned(), point.clone()))
     })
 }

@@ -49,11 +49,11 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
     let tables = tables.unwrap_or_default();
     let mut files = tables.clone();
     let sweeps = draw_sweeps(&runs, suite, &mut failures);
-    let junit = || report::junit_xml(&runs, None);
-    files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
     let sides =
         earlier.map(|earlier| unbroken(ledger, || Sides::of(earlier, plans, &runs, output.path())));
     let sides = sides.flatten().unwrap_or_default();
+    let junit = || report::junit_xml(&runs, sides.outcome.judged(), None);
+    files.extend(unbroken(ledger, junit).map(|text| (JUNIT.to_owned(), text)));
     let summary = SuiteReport {
         tool_version: VERSION,
         runs: &runs,

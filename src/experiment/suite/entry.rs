@@ -2,11 +2,10 @@
 
 use super::files::{self, Names};
 use super::ledger::Ledger;
-use super::options::Resume;
+use super::options::{Earlier, Resume};
 use super::outcome::Observer;
 use super::output::SuiteOutput;
 use super::resume::take_over;
-use crate::baseline::Side;
 use crate::comparison::Layout;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{Results, Unfinished, run_plan};
@@ -20,7 +19,7 @@ pub(crate) struct Suite<'a> {
     /// Whose results are taken over.
     pub(crate) resume: Resume,
     /// Earlier results that they are compared with.
-    pub(crate) earlier: Option<&'a Side>,
+    pub(crate) earlier: Option<&'a Earlier>,
     /// Which of them have ended.
     pub(crate) ledger: &'a Ledger,
 }

@@ -14,7 +14,7 @@ mod threads;
 mod write;
 
 pub use against::Against;
-pub use options::{Resume, SuiteOptions};
+pub use options::{Earlier, Resume, SuiteOptions};
 pub use outcome::{Observer, SuiteError, SuiteOutcome};
 pub use runner::run_suite;
 pub use threads::{THREADS_MAX, start_threads, thread_count};

@@ -2,7 +2,18 @@
 
 use std::path::PathBuf;
 
-use crate::baseline::Side;
+use crate::baseline::{Outcome, Side};
+
+/// Earlier results, and how those of a suite are judged by them.
+#[derive(Clone, Debug)]
+pub struct Earlier {
+    /// The results.
+    pub side: Side,
+    /// Outcomes that fail.
+    pub fail_on: Vec<Outcome>,
+    /// Whether the suite holds all there is, so that a scenario that it lacks is gone.
+    pub is_whole: bool,
+}
 
 /// How a suite is run.
 #[derive(Clone, Debug)]
@@ -16,7 +27,7 @@ pub struct SuiteOptions {
     /// Which results of an earlier suite to take over.
     pub resume: Resume,
     /// Earlier results that those of the suite are compared with.
-    pub earlier: Option<Side>,
+    pub earlier: Option<Earlier>,
 }
 
 impl SuiteOptions {

@@ -44,6 +44,7 @@ pub(in crate::gyro) fn equivalent_walk_rad_per_sqrt_s(
     let words = of_words(walk);
     if converter.hypot(words).powi(2) > ROUNDING_SHARE_MAX * walk * walk {
         return Err(GyroError::RoundingBeyondWalk {
+            least_deg_per_sqrt_h: converter.hypot(words) / ROUNDING_SHARE_MAX.sqrt(),
             walk_deg_per_sqrt_h: walk,
             converter_deg_per_sqrt_h: converter,
             words_deg_per_sqrt_h: words,

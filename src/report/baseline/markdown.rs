@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::rows::{change, counts, figure, grounds, notable, unit};
 use crate::baseline::Comparison;
-use crate::report::build_server::markdown::cell;
+use crate::report::layout::markdown::cell;
 
 /// Rows of the table.
 const ROWS_MAX: usize = 200;

@@ -1,6 +1,6 @@
 //! Parts of a row that text and Markdown share.
 
-use crate::baseline::{Comparison, Entry, Interval, Outcome, Row, Side};
+use crate::baseline::{Comparison, Entry, Interval, Judged, Outcome, Row, Side};
 use crate::metrics::{Estimate, estimate_text, plain};
 use crate::wording::counted;
 
@@ -11,7 +11,7 @@ const DIGITS: i32 = 2;
 #[derive(Clone, Copy, Debug)]
 pub struct ComparedSides<'a> {
     /// What was judged.
-    pub comparison: &'a Comparison,
+    pub judged: Judged<'a>,
     /// Earlier results.
     pub old: &'a Side,
     /// Later results.
@@ -86,4 +86,27 @@ pub(in crate::report) fn grounds(row: &Row) -> String {
         parts.push(row.reason.clone());
     }
     parts.join("; ")
+}
+
+/// A figure in one line: what it was, what it is, by how much it changed and what says so.
+pub(in crate::report) fn row_line(row: &Row) -> String {
+    let unit = match unit(row) {
+        "" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    let change = change(row).map_or_else(String::new, |change| format!("  {change}"));
+    let grounds = match grounds(row).as_str() {
+        "" => String::new(),
+        grounds => format!("  ({grounds})"),
+    };
+    let figures = match (&row.old, &row.new) {
+        (Some(_), None) => format!("was {}{unit}", figure(row.old.as_ref())),
+        (None, _) => format!("{}{unit}", figure(row.new.as_ref())),
+        _ => format!(
+            "{} -> {}{unit}",
+            figure(row.old.as_ref()),
+            figure(row.new.as_ref())
+        ),
+    };
+    format!("{}  {figures}{change}{grounds}", row.id)
 }

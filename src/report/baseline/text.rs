@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::rows::{change, counts, figure, grounds, notable, unit};
+use super::rows::{counts, notable, row_line};
 use crate::baseline::{Comparison, Outcome, Row};
 use crate::report::layout::text::{Tone, toned};
 use crate::scenario::bounded;
@@ -37,7 +37,7 @@ pub fn comparison_with_baseline_text(
             };
             let word = toned(&format!("{:16}", outcome.as_str()), tone, colour);
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{word} {}", bounded(&line(row)));
+            let _ = writeln!(text, "{word} {}", bounded(&row_line(row)));
         }
         if let Some(more) = of.count().checked_sub(ROWS_MAX).filter(|more| *more > 0) {
             let _ = writeln!(text, "and {more} more are {}", outcome.as_str());
@@ -81,26 +81,4 @@ fn changed_scenarios(rows: &[&Row]) -> String {
         let _ = writeln!(text, "and {more} more scenarios differ");
     }
     text
-}
-
-fn line(row: &Row) -> String {
-    let unit = match unit(row) {
-        "" => String::new(),
-        unit => format!(" {unit}"),
-    };
-    let change = change(row).map_or_else(String::new, |change| format!("  {change}"));
-    let grounds = match grounds(row).as_str() {
-        "" => String::new(),
-        grounds => format!("  ({grounds})"),
-    };
-    let figures = match (&row.old, &row.new) {
-        (Some(_), None) => format!("was {}{unit}", figure(row.old.as_ref())),
-        (None, _) => format!("{}{unit}", figure(row.new.as_ref())),
-        _ => format!(
-            "{} -> {}{unit}",
-            figure(row.old.as_ref()),
-            figure(row.new.as_ref())
-        ),
-    };
-    format!("{}  {figures}{change}{grounds}", row.id)
 }

@@ -1,15 +1,19 @@
 //! Annotations of GitHub Actions: commands in the log that mark lines of files.
 
+use std::collections::BTreeMap;
+
 use super::junit::gate_names;
 use super::place::file_and_line;
+use crate::baseline::Judged;
 use crate::report::RunOutcome;
+use crate::report::baseline::rows::row_line;
 use crate::scenario::bounded;
 
 /// Annotations that GitHub shows of one step and kind.
 const ANNOTATIONS_MAX: usize = 10;
 
-/// One `::error` line for each gate that is not accepted, each failed channel and each failed run; the
-/// tenth of more says how many are left.
+/// One `::error` line for each gate that is not accepted, each failed channel, each failed run and each
+/// figure that fails against earlier results; the tenth of more says how many are left.
 ///
 /// * `files`: scenario file of each run, in their order.
 /// * `shown`: a path as the repository names it.
@@ -18,17 +22,28 @@ const ANNOTATIONS_MAX: usize = 10;
 /// GitHub Docs, "Workflow commands for GitHub Actions"; escapes as in its `@actions/core`.
 #[must_use]
 pub fn github_annotations(
-    runs: &[RunOutcome],
+    (runs, judged): (&[RunOutcome], Option<Judged>),
     files: &[String],
     shown: impl Fn(&str) -> String,
 ) -> String {
     let no_file = String::new();
     let files = files.iter().chain(std::iter::repeat(&no_file));
+    let of_scenario: BTreeMap<&str, &String> = runs
+        .iter()
+        .map(|run| run.name.as_str())
+        .zip(files.clone())
+        .collect();
     let mut lines: Vec<String> = runs
         .iter()
         .zip(files)
         .flat_map(|(run, file)| of_run(run, file, &shown))
         .collect();
+    for row in judged.into_iter().flat_map(Judged::failed) {
+        let file = of_scenario.get(row.id.scenario.as_str()).copied();
+        let title = format!("{} against the baseline", row.outcome.as_str());
+        let file = file.map_or_else(String::new, |file| shown(file));
+        lines.push(annotation(&file, None, &title, &row_line(row)));
+    }
     if lines.len() > ANNOTATIONS_MAX {
         let left = lines.len() - (ANNOTATIONS_MAX - 1);
         lines.truncate(ANNOTATIONS_MAX - 1);
@@ -103,10 +118,10 @@ mod tests {
         };
         let runs: Vec<_> = (0..12).map(failed).collect();
         let files = vec!["a.toml".to_owned(); 12];
-        let text = github_annotations(&runs, &files, str::to_owned);
+        let text = github_annotations((&runs, None), &files, str::to_owned);
         assert_eq!(text.lines().count(), ANNOTATIONS_MAX);
         assert_eq!(text.lines().last(), Some("::error::and 3 more failures"));
-        let text = github_annotations(&runs[..10], &files, str::to_owned);
+        let text = github_annotations((&runs[..10], None), &files, str::to_owned);
         assert_eq!(text.lines().count(), 10);
         assert!(!text.contains("more"), "{text}");
     }

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::time::{Duration, SystemTime};
 
 use super::place::file_and_line;
+use crate::baseline::Judged;
 use crate::gate::{Verdict, VerdictKind};
+use crate::report::baseline::rows::{counts, row_line};
 use crate::report::{ChannelOutcome, RunOutcome};
 use crate::scenario::portable_place;
 use chrono::{DateTime, Utc};
@@ -31,6 +33,7 @@ pub fn is_junit_xml(text: &str) -> bool {
 /// The JUnit report of a suite: one test suite per run; one case that it ran, one per failed channel and
 /// one per gate. A run that a stopped suite has not run is *skipped*.
 ///
+/// * `judged`: a comparison with earlier results, a suite of its own with a case for each figure that fails.
 /// * `times`: wall times; without them the same results give the same bytes, as in `output/junit.xml`.
 ///
 /// An inconclusive gate that its scenario allows is *skipped*: neither a pass nor a failure. The schema of
@@ -43,7 +46,11 @@ pub fn is_junit_xml(text: &str) -> bool {
 /// # Source
 /// `junit-10.xsd` of the Jenkins plugin xUnit 3.1.6; GitLab, "Unit test reports".
 #[must_use]
-pub fn junit_xml(runs: &[RunOutcome], times: Option<&SuiteTimes>) -> String {
+pub fn junit_xml(
+    runs: &[RunOutcome],
+    judged: Option<Judged>,
+    times: Option<&SuiteTimes>,
+) -> String {
     let mut report = Report::new("fogbench");
     if let Some(times) = times {
         report.set_time(times.duration);
@@ -52,12 +59,44 @@ pub fn junit_xml(runs: &[RunOutcome], times: Option<&SuiteTimes>) -> String {
         let time = times.and_then(|times| *times.runs.get(index)?);
         report.add_test_suite(test_suite(run, time));
     }
+    report.add_test_suites(judged.map(baseline_suite));
     let skipped = format!(" skipped=\"{}\"", report.skipped);
     let text = report.to_string();
     // The root's count of skipped cases, which the schema does not know, is the first in the text.
     text.expect("writing XML to memory cannot fail")
         .replacen(&skipped, "", 1)
 }
+
+/// Most figures that have a case; one more says how many there are.
+const FIGURES_MAX: usize = 500;
+
+/// The comparison as a case of its own, and one for each figure that fails.
+fn baseline_suite(judged: Judged) -> TestSuite {
+    let mut suite = TestSuite::new(BASELINE);
+    let summary = counts(judged.comparison);
+    let has_failed = judged.failed().next().is_some();
+    let status = if has_failed {
+        non_success(NonSuccessKind::Failure, "baseline", &summary, &summary)
+    } else {
+        TestCaseStatus::success()
+    };
+    let mut add = |name: &str, status| {
+        let mut case = TestCase::new(name, status);
+        case.set_classname(BASELINE);
+        suite.add_test_case(case);
+    };
+    add("compared", status);
+    for row in judged.failed().take(FIGURES_MAX) {
+        let text = row_line(row);
+        let word = row.outcome.as_str();
+        let status = non_success(NonSuccessKind::Failure, word, &text, &text);
+        add(&row.id.to_string(), status);
+    }
+    suite
+}
+
+/// Name of the suite of a comparison.
+const BASELINE: &str = "baseline";
 
 fn test_suite(run: &RunOutcome, time: Option<(SystemTime, Duration)>) -> TestSuite {
     let mut suite = TestSuite::new(run.folder.as_str());

@@ -4,8 +4,10 @@ use std::fmt::Write as _;
 
 use super::junit::gate_names;
 use crate::gate::{VerdictKind, limits_text};
+use crate::report::layout::markdown::cell;
 use crate::report::{RunOutcome, RunStatus};
-use crate::scenario::{bounded, portable_place};
+use crate::scenario::portable_place;
+use crate::wording::counted;
 
 /// First line of every summary; by it a file is known as one.
 const MARK: &str = "<!-- written by fogbench -->\n";
@@ -21,12 +23,20 @@ pub fn is_suite_markdown(text: &str) -> bool {
 
 /// The verdict of every run, failed ones first, and what failed with value, interval, limits and place.
 ///
+/// * `failed`: figures that fail against a baseline.
 /// * `appendix`: Markdown that follows, as of a comparison with a baseline.
 #[must_use]
-pub fn suite_markdown(runs: &[RunOutcome], appendix: &str) -> String {
+pub fn suite_markdown(runs: &[RunOutcome], failed: usize, appendix: &str) -> String {
     let is_good = |run: &&RunOutcome| run.status() == RunStatus::Pass;
     let good = runs.iter().filter(is_good).count();
-    let mut text = format!("{MARK}## fogbench: {good} of {} runs passed\n", runs.len());
+    let total = runs.len();
+    let mut text = format!("{MARK}## fogbench: {good} of {total} runs passed");
+    if failed > 0 {
+        let figures = counted(failed, "figure");
+        // Writing to a String cannot fail.
+        let _ = write!(text, ", {figures} failed against the baseline");
+    }
+    text.push('\n');
     let mut sorted: Vec<&RunOutcome> = runs.iter().collect();
     sorted.sort_by_key(|run| std::cmp::Reverse(run.status()));
     let rows = sorted.iter().map(|run| {
@@ -90,22 +100,6 @@ fn failures(run: &RunOutcome) -> Vec<String> {
     broken.chain(channels).chain(gates).collect()
 }
 
-/// A text that stays within its cell, whatever it holds.
-pub(in crate::report) fn cell(text: &str) -> String {
-    let mut cell = String::new();
-    for c in bounded(text).chars() {
-        match c {
-            '&' => cell.push_str("&amp;"),
-            '<' => cell.push_str("&lt;"),
-            '>' => cell.push_str("&gt;"),
-            '|' | '`' | '*' | '_' | '[' | ']' | '\\' | '~' => cell.extend(['\\', c]),
-            '\n' | '\r' => cell.push(' '),
-            c => cell.push(c),
-        }
-    }
-    cell
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,7 +108,7 @@ mod tests {
     fn a_table_stays_one_whatever_its_texts_hold() {
         let error = "a | b\n<script>*x*</script>".to_owned();
         let run = RunOutcome::failed("bad", "bad", "bad.toml", error);
-        let text = suite_markdown(&[run], "");
+        let text = suite_markdown(&[run], 0, "");
         assert!(
             is_suite_markdown(&text) && text.contains("0 of 1 runs passed"),
             "{text}"
@@ -138,7 +132,7 @@ mod tests {
             "bad.toml",
             "broken".to_owned(),
         ));
-        let text = suite_markdown(&runs, "");
+        let text = suite_markdown(&runs, 2, "");
         let first = text.lines().find(|line| line.starts_with("| bad"));
         let at = |word: &str| text.find(word).expect("a row");
         assert!(first.is_some() && at("| bad") < at("| n0"), "{text}");

@@ -2,4 +2,5 @@
 
 pub(super) mod csv;
 pub(super) mod json;
+pub(super) mod markdown;
 pub(super) mod text;

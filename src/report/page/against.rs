@@ -8,7 +8,7 @@ use super::document::{by_value, document, facts, filter, section, wide};
 use super::gates::unit_word;
 use super::pictures::figure_of_page;
 use super::run::PAGE_BYTES_MAX;
-use crate::baseline::{Entry, Id, Interval, Limits, Outcome, Point, Row, Side};
+use crate::baseline::{Entry, Id, Interval, Judged, Limits, Outcome, Point, Row, Side};
 use crate::report::baseline::rows::{ComparedSides, change, counts, figure, grounds, unit};
 use crate::report::plot::against::{Overlaid, picture};
 
@@ -29,11 +29,12 @@ const HEIGHT: f64 = 30.0;
 const MARGIN: f64 = 0.12;
 
 /// The page of a comparison.
-///
-/// * `fail_on`: outcomes that fail.
 #[must_use]
-pub fn comparison_page(compared: &ComparedSides, fail_on: &[Outcome]) -> String {
-    let comparison = compared.comparison;
+pub fn comparison_page(compared: &ComparedSides) -> String {
+    let Judged {
+        comparison,
+        fail_on,
+    } = compared.judged;
     let (word, class) = if comparison.has_any(fail_on) {
         ("FAIL", "fail")
     } else {
@@ -72,7 +73,7 @@ pub fn is_comparison_page(text: &str) -> bool {
 /// The section of a suite's page.
 pub(super) fn comparison_section(compared: &ComparedSides) -> Markup {
     let body = html! {
-        p { (counts(compared.comparison)) }
+        p { (counts(compared.judged.comparison)) }
         (figures(compared, NOTABLE_MAX, "against-table"))
         (overlaid(compared, SECTION_BYTES_MAX))
     };
@@ -81,7 +82,7 @@ pub(super) fn comparison_section(compared: &ComparedSides) -> Markup {
 
 /// The figures as a table, the worst first.
 fn figures(compared: &ComparedSides, most: usize, id: &str) -> Markup {
-    let mut rows: Vec<&Row> = compared.comparison.rows.iter().collect();
+    let mut rows: Vec<&Row> = compared.judged.comparison.rows.iter().collect();
     rows.sort_by_key(|row| std::cmp::Reverse(row.outcome));
     let total = rows.len();
     rows.truncate(most);
@@ -212,6 +213,7 @@ fn ends(entry: &Entry) -> [f64; 3] {
 /// something differs first.
 fn overlaid(compared: &ComparedSides, room: usize) -> Markup {
     let differs: BTreeSet<(&str, &Point)> = compared
+        .judged
         .comparison
         .rows
         .iter()

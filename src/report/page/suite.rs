@@ -115,7 +115,8 @@ fn head(suite: &SuiteReport, sweeps: &[(&str, Points)]) -> Markup {
     };
     let total = suite.runs.len();
     let passed = with(RunStatus::Pass);
-    let (word, class) = if passed == total {
+    let failed = suite.against.map_or(0, |it| it.judged.failed().count());
+    let (word, class) = if passed == total && failed == 0 {
         ("PASS", "pass")
     } else {
         ("FAIL", "fail")
@@ -136,6 +137,9 @@ fn head(suite: &SuiteReport, sweeps: &[(&str, Points)]) -> Markup {
         if with(status) > 0 {
             pairs.push((name, with(status).to_string()));
         }
+    }
+    if suite.against.is_some() {
+        pairs.push(("figures that fail against the baseline", failed.to_string()));
     }
     pairs.push(("gates accepted", format!("{accepted} of {gates}")));
     html! {

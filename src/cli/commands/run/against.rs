@@ -1,20 +1,27 @@
 //! What `run --baseline` prints: how the results of a suite compare with earlier ones.
 
-use crate::baseline::{Comparison, Outcome, Side};
+use crate::baseline::{Comparison, Outcome};
 use crate::cli::commands::compare::{exit_of, refused, side};
 use crate::cli::options::arguments::RunOptions;
 use crate::cli::options::baseline::FailOn;
 use crate::cli::options::format::Format;
 use crate::cli::terminal::exit::{Exit, io_failure};
 use crate::cli::terminal::output;
-use crate::experiment::{Against, SuiteOutcome};
+use crate::experiment::{Against, Earlier, SuiteOutcome};
 use crate::report::{comparison_with_baseline_markdown, comparison_with_baseline_text};
 
 /// Reads the earlier results before anything runs, which may replace them; none if none are asked for.
 ///
 /// A refusal is printed before its exit code is returned.
-pub(super) fn earlier(options: &RunOptions) -> Result<Option<Side>, Exit> {
-    options.against.baseline.as_deref().map(side).transpose()
+pub(super) fn earlier(options: &RunOptions) -> Result<Option<Earlier>, Exit> {
+    let select = &options.select;
+    let side = options.against.baseline.as_deref().map(side).transpose()?;
+    Ok(side.map(|side| Earlier {
+        side,
+        fail_on: FailOn::outcomes(&options.against.fail_on),
+        // Whoever names a file or a scenario asks for that alone.
+        is_whole: select.names.is_empty() && select.paths.iter().all(|path| path.is_dir()),
+    }))
 }
 
 /// What came of the comparison.
@@ -35,8 +42,8 @@ impl Compared {
 
     /// Prints what differs: on stdout where that is text.
     pub(super) fn print(suite: &SuiteOutcome, options: &RunOptions) -> Self {
-        let comparison = match &suite.against {
-            Against::Compared(comparison) => comparison,
+        let (comparison, fail_on) = match &suite.against {
+            Against::Compared(comparison, fail_on) => (comparison, fail_on),
             Against::Unreadable(error) => return Self::nothing(refused(error)),
             Against::Stopped => {
                 output::talk(
@@ -46,10 +53,9 @@ impl Compared {
             }
             _ => return Self::nothing(Exit::Success),
         };
-        let fail_on = FailOn::outcomes(&options.against.fail_on);
-        let exit = exit_of(comparison, &fail_on);
+        let exit = exit_of(comparison, fail_on);
         Self {
-            exit: exit.worst(printed(comparison, &fail_on, options)),
+            exit: exit.worst(printed(comparison, fail_on, options)),
             markdown: comparison_with_baseline_markdown(comparison),
         }
     }

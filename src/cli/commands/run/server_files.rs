@@ -1,7 +1,7 @@
 //! What a build server gets of a suite: files beside the output folder, and annotations.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::cli::options::arguments::RunOptions;
 use crate::cli::options::build_server::Annotations;
@@ -26,10 +26,17 @@ impl<'a> ServerFiles<'a> {
     ///
     /// A refusal is printed before its exit code is returned.
     pub(super) fn check(options: &'a RunOptions, plans: &[Plan]) -> Result<Self, Exit> {
+        let scenario_files: Vec<String> = plans
+            .iter()
+            .map(|plan| plan.resolved().shown_file())
+            .collect();
+        let read = scenario_files.iter().map(Path::new);
+        let read: Vec<&Path> = read.chain(options.against.baseline.as_deref()).collect();
         let files: Vec<SingleFile> = files(options).map(|(_, file)| file).collect();
-        let below = resolved(&options.output);
+        let below = place::real(&options.output);
         for (index, file) in files.iter().enumerate() {
-            let path = resolved(file.path);
+            place::check_unread(file.path, &read)?;
+            let path = place::real(file.path);
             if path.starts_with(&below) {
                 output::talk(&format!(
                     "error: {} lies in the output folder, where nothing depends on the time or place of \
@@ -41,7 +48,7 @@ impl<'a> ServerFiles<'a> {
             }
             if files[..index]
                 .iter()
-                .any(|other| resolved(other.path) == path)
+                .any(|other| place::real(other.path) == path)
             {
                 output::talk(&format!(
                     "error: {} is asked for twice: nothing was run",
@@ -62,10 +69,7 @@ impl<'a> ServerFiles<'a> {
         }
         Ok(Self {
             options,
-            scenario_files: plans
-                .iter()
-                .map(|plan| plan.resolved().shown_file())
-                .collect(),
+            scenario_files,
         })
     }
 
@@ -76,8 +80,11 @@ impl<'a> ServerFiles<'a> {
         let mut exit = Exit::Success;
         for (kind, file) in files(self.options) {
             let text = match kind {
-                Kind::Junit => junit_xml(&suite.runs, Some(times)),
-                Kind::Markdown => suite_markdown(&suite.runs, comparison),
+                Kind::Junit => junit_xml(&suite.runs, suite.against.judged(), Some(times)),
+                Kind::Markdown => {
+                    let failed = suite.against.judged().map_or(0, |it| it.failed().count());
+                    suite_markdown(&suite.runs, failed, comparison)
+                }
                 Kind::Bencher => bencher_text(&self.options.output, suite),
             };
             if let Err(error) = file.write(&text) {
@@ -92,7 +99,8 @@ impl<'a> ServerFiles<'a> {
         match self.options.server.annotations {
             None => String::new(),
             Some(Annotations::Github) => {
-                github_annotations(&suite.runs, &self.scenario_files, from_here)
+                let judged = suite.against.judged();
+                github_annotations((&suite.runs, judged), &self.scenario_files, from_here)
             }
         }
     }
@@ -147,17 +155,6 @@ fn bencher_text(folder: &Path, suite: &SuiteOutcome) -> String {
         }
     }
     metrics.text()
-}
-
-/// A path with its links resolved as far as it exists.
-fn resolved(path: &Path) -> PathBuf {
-    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let mut ancestors = whole.ancestors();
-    let found = ancestors.find_map(|it| Some((it, fs::canonicalize(it).ok()?)));
-    match found {
-        Some((stands, real)) => real.join(whole.strip_prefix(stands).unwrap_or(Path::new(""))),
-        None => whole,
-    }
 }
 
 /// A path from the working directory, `/` between its parts; as it is where it leads out of it.
