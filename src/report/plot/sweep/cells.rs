@@ -7,6 +7,7 @@ use super::super::drawing::series::{extent, index, real};
 use super::keys::{SweptKey, is_log_span};
 use super::sheet::{Channel, Layout, Sheet, lack};
 use crate::gate::three_digits;
+use crate::wording::{exact, to_digits};
 
 /// Colours from low to high that rise evenly in lightness, for colour-blind readers as well (viridis,
 /// van der Walt and Smith, 2015).
@@ -29,21 +30,51 @@ const AROUND: f64 = 6.0;
 /// Room for the label of a row, pixels.
 const LABEL: f64 = 56.0;
 
+/// Digits of the values: as many as tell the classes apart, three at least.
+const DIGITS: std::ops::RangeInclusive<usize> = 3..=12;
+/// Values that differ by no more than this part of them are the same but for rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// The classes of a scale.
 struct Classes {
     low: f64,
     high: f64,
     is_log: bool,
+    digits: usize,
 }
 
 impl Classes {
     fn of(channel: &Channel) -> Self {
         let values = channel.values.iter().flatten().map(|it| it.value);
         let (low, high) = extent(values).unwrap_or((0.0, 1.0));
-        Self {
+        let mut classes = Self {
             low,
             high,
             is_log: is_log_span((low, high)),
+            digits: *DIGITS.start(),
+        };
+        let tells_apart = |classes: &Self| {
+            let texts = (0..=SCALE.len()).map(|class| classes.text(classes.end(class)));
+            let texts: Vec<String> = texts.collect();
+            texts.windows(2).all(|pair| pair[0] != pair[1])
+        };
+        while !classes.are_one() && !tells_apart(&classes) && classes.digits < *DIGITS.end() {
+            classes.digits += 1;
+        }
+        classes
+    }
+
+    /// Whether all values are the same: they have one colour then.
+    fn are_one(&self) -> bool {
+        self.high - self.low <= ROUNDING * self.high.abs().max(self.low.abs())
+    }
+
+    /// A value in as many digits as tell the classes apart.
+    fn text(&self, value: f64) -> String {
+        if self.digits == *DIGITS.start() {
+            three_digits(value)
+        } else {
+            exact(to_digits(value, self.digits))
         }
     }
 
@@ -58,13 +89,14 @@ impl Classes {
     }
 
     fn class(&self, value: f64) -> usize {
+        if self.are_one() {
+            return SCALE.len() / 2;
+        }
         let part = if self.is_log {
             (value / self.low).ln() / (self.high / self.low).ln()
         } else {
             (value - self.low) / (self.high - self.low)
         };
-        // Values that are all the same have no part.
-        let part = if part.is_finite() { part } else { 0.0 };
         index(part * real(SCALE.len())).min(SCALE.len() - 1)
     }
 }
@@ -196,7 +228,7 @@ fn write_values(
             let Some(value) = value else { continue };
             let (left, bottom) = panel.place((columns[column], rows[row]));
             let (right, top) = panel.place((columns[column + 1], rows[row + 1]));
-            let text = three_digits(*value);
+            let text = classes.text(*value);
             let has_room = right - left >= text_width(&text, SIZE) + AROUND
                 && (bottom - top).abs() >= SIZE + AROUND;
             if !has_room {
@@ -224,12 +256,13 @@ fn explain(
 ) {
     let mut legend = Legend::new(top);
     legend.text(picture, &format!("{}: {}", channel.name, sheet.title));
-    for class in (0..SCALE.len()).rev() {
-        let ends = [classes.end(class), classes.end(class + 1)].map(three_digits);
-        let text = format!("{} to {}", ends[0], ends[1]);
-        legend.area(picture, (SCALE[class], 1.0), &text);
-        if classes.low >= classes.high {
-            break;
+    if classes.are_one() {
+        let text = format!("{} everywhere", classes.text(classes.low));
+        legend.area(picture, (SCALE[classes.class(classes.low)], 1.0), &text);
+    } else {
+        for class in (0..SCALE.len()).rev() {
+            let [low, high] = [class, class + 1].map(|end| classes.text(classes.end(end)));
+            legend.area(picture, (SCALE[class], 1.0), &format!("{low} to {high}"));
         }
     }
     if let Some(lack) = lack(channel) {

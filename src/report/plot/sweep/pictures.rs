@@ -165,6 +165,48 @@ mod tests {
         assert!(cells.contains("0.0798"), "a value in its cell");
     }
 
+    /// A grid of nine by seven, by a figure of each point.
+    fn map(figure: impl Fn(usize) -> Option<f64>) -> String {
+        let mut points = grid(9, 7);
+        for (index, point) in points.iter_mut().enumerate() {
+            let value = figure(index);
+            point.swept.retain(|_| value.is_some());
+            for own in &mut point.swept {
+                own.estimate = Estimate::exact(value.unwrap_or_default());
+            }
+        }
+        svg(&points)
+    }
+
+    fn colours(svg: &str) -> std::collections::BTreeSet<&str> {
+        let areas = svg.lines().filter(|line| line.starts_with("<polygon"));
+        areas
+            .filter_map(|line| line.split("fill=\"").nth(1)?.split('"').next())
+            .collect()
+    }
+
+    #[test]
+    fn a_map_of_one_value_has_one_colour_which_its_legend_names() {
+        for (low, text) in [(0.0, "0 everywhere"), (-12.5, "-12.5 everywhere")] {
+            for other in [low, low * (1.0 + 1e-15)] {
+                let svg = map(|index| Some(if index == 5 { other } else { low }));
+                assert!(svg.contains(text), "{low}");
+                assert_eq!(colours(&svg).len(), 1, "{low}: {:?}", colours(&svg));
+            }
+        }
+        let lacking = map(|index| (index != 5).then_some(7.0));
+        assert!(lacking.contains("no value at 1 of 63 points"));
+        assert_eq!(colours(&lacking).len(), 2);
+    }
+
+    #[test]
+    fn the_classes_of_close_values_are_told_apart() {
+        let svg = map(|index| Some(1.0 + 1e-6 * real(index)));
+        assert!(svg.contains("1.000008 to 1.000015"));
+        assert!(!svg.contains("1.00 to 1.00"));
+        assert_eq!(colours(&svg).len(), 8);
+    }
+
     #[test]
     fn lines_end_where_a_value_is_lacking() {
         let at = |index: usize, mean| {
