@@ -151,13 +151,16 @@ pub(super) fn others_text(keys: &[&SweptKey], point: usize) -> String {
     settings.collect::<Vec<_>>().join(", ")
 }
 
+/// Least ratio of the ends of values that are spaced by factors.
+const LOG_SPACED_MIN: f64 = 4.0;
+
 /// Whether values span more than a decade and a half, all above 0.
 pub(super) fn is_log_span((low, high): (f64, f64)) -> bool {
     low > 0.0 && high / low > 10_f64.powf(1.5)
 }
 
-/// Whether ascending values span more than a decade and a half, all above 0, and their ratios differ less
-/// from one another than their differences.
+/// Whether three ascending values or more, all above 0, are spaced by factors rather than by steps: their
+/// ratios differ less from one another than their differences. Over less than two octaves the two look alike.
 fn is_log_spaced(values: &[f64]) -> bool {
     let (Some(first), Some(last)) = (values.first(), values.last()) else {
         return false;
@@ -170,10 +173,12 @@ fn is_log_spaced(values: &[f64]) -> bool {
     let steps = |of: fn(f64, f64) -> f64| -> Vec<f64> {
         values.windows(2).map(|pair| of(pair[0], pair[1])).collect()
     };
-    is_log_span((*first, *last)) && {
+    // An end that was computed may lie a rounding off.
+    let is_wide = *first > 0.0 && last / first > LOG_SPACED_MIN * (1.0 - 1e-9);
+    is_wide && values.len() > 2 && {
         let ratios = steps(|a, b| (b / a).ln());
         let differences = steps(|a, b| b - a);
-        values.len() > 2 && spread(&ratios) < spread(&differences)
+        spread(&ratios) < spread(&differences)
     }
 }
 
@@ -206,7 +211,17 @@ mod tests {
         assert!(is_log_spaced(&[0.5, 1.0, 5.0, 20.0]));
         assert!(!is_log_spaced(&[1.0, 50.0, 100.0]));
         assert!(!is_log_spaced(&[0.0, 10.0, 100.0]));
-        assert!(!is_log_spaced(&[1.0, 5.0, 20.0]));
+        assert!(is_log_spaced(&[1.0, 5.0, 20.0]));
+        assert!(is_log_spaced(&[0.5, 1.0, 2.0]));
+        for low in [100.0_f64, 200.0] {
+            let even = |at: u32| low * (2000.0 / low).powf(f64::from(at) / 8.0);
+            assert!(is_log_spaced(&(0..9).map(even).collect::<Vec<_>>()));
+            let steps = |at: u32| low + (2000.0 - low) * f64::from(at) / 8.0;
+            assert!(!is_log_spaced(&(0..9).map(steps).collect::<Vec<_>>()));
+        }
+        assert!(!is_log_spaced(&[100.0, 2000.0]));
+        assert!(!is_log_spaced(&[1.0, 1.5, 2.25]));
+        assert!(!is_log_spaced(&[1.0, 2.0, 3.0, 4.0, 5.0]));
         assert!(!is_log_spaced(&[-1.0, 10.0]));
         assert!(!is_log_spaced(&[]));
     }
