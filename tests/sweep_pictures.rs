@@ -87,6 +87,11 @@ fn an_axis_is_logarithmic_where_the_values_are_spaced_so() {
             true,
         ),
         ("{ from = 0.1, to = 10.0, count = 3 }", false),
+        (
+            "{ from = 0.1, to = 2.0, count = 9, spacing = \"log\" }",
+            true,
+        ),
+        ("{ from = 0.1, to = 2.0, count = 9 }", false),
     ] {
         sweep(at, &format!("\"gyro.source.power_uw\" = {range}"));
         run(at, &["s.toml", "--set", "gyro.adc.bits=0"], 0);

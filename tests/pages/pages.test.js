@@ -149,6 +149,24 @@ test("no page is wider than its screen", async () => {
   }
 });
 
+test("a comparison fits a wide screen", async () => {
+  await look("compared.html", { viewport: { width: 1400, height: 900 } }, async ({ page }) => {
+    const [wide, room] = await page
+      .locator(".scroll:has(#figures-table)")
+      .evaluate((scroll) => [scroll.scrollWidth, scroll.clientWidth]);
+    assert.ok(wide <= room, `${wide} pixels of ${room}`);
+  });
+});
+
+test("the rows of a sweep are low on a phone", async () => {
+  await look("index.html", { viewport: { width: 390, height: 900 } }, async ({ page }) => {
+    const rows = page.locator("#points-sweep tbody tr");
+    const heights = await rows.evaluateAll((all) => all.map((row) => row.getBoundingClientRect().height));
+    assert.ok(heights.length > 0);
+    assert.ok(Math.max(...heights) < 100, `${heights}`);
+  });
+});
+
 test("everything can be read without the script", async () => {
   for (const name of PAGES) {
     const shown = {};

@@ -93,9 +93,8 @@ fn figures(compared: &ComparedSides, most: usize, id: &str) -> Markup {
                 th scope="col" { "figure" }
                 th.num scope="col" { "was" }
                 th.num scope="col" { "is" }
-                th scope="col" { "unit" }
                 th.num scope="col" { "change" }
-                th scope="col" { "before above, now below, accepted part behind" }
+                th scope="col" { "before / now" }
             } }
             tbody { @for row in &rows { (figure_row(row, compared)) } }
         }
@@ -104,6 +103,7 @@ fn figures(compared: &ComparedSides, most: usize, id: &str) -> Markup {
         @if rows.is_empty() { p.soft { "No figure stands on either side." } }
         @else {
             (filter(id, "outcome, run, metric"))
+            p.soft.small { "Bars: before above, now below, what a gate accepts behind them." }
             (wide("figures compared", &table))
             @if rows.len() < total { p { "The first " (rows.len()) " of " (total) " figures, the worst first; " code { "compare --format json" } " lists all." } }
         }
@@ -120,15 +120,17 @@ fn figure_row(row: &Row, compared: &ComparedSides) -> Markup {
         .zip(row.old.as_ref())
         .filter(|(_, old)| old.value != 0.0);
     let relative = relative.map(|(difference, old)| by_value(difference / old.value.abs()));
+    let unit_of = |entry: &Option<Entry>| {
+        html! { @if entry.is_some() { " " span.unit { (unit_word(unit(row))) } } }
+    };
     html! { tr {
         td data-v=(severity(row.outcome)) { span class={ "pill " (class(row.outcome)) } { (row.outcome.as_str()) } }
         th scope="row" {
-            (row.id.run_text()) " " code { (row.id.channel) "." (row.id.metric) }
+            div { (row.id.run_text()) } code { (row.id.channel) "." (row.id.metric) }
             span.definition { (grounds(row)) }
         }
-        td.num data-v=(value(&row.old)) { (figure(row.old.as_ref())) }
-        td.num data-v=(value(&row.new)) { (figure(row.new.as_ref())) }
-        td { (unit_word(unit(row))) }
+        td.num data-v=(value(&row.old)) { (figure(row.old.as_ref())) (unit_of(&row.old)) }
+        td.num data-v=(value(&row.new)) { (figure(row.new.as_ref())) (unit_of(&row.new)) }
         td.num data-v=(relative.unwrap_or_default()) { (change(row).unwrap_or_default()) }
         td data-v="" { (bars(row, compared)) }
     } }

@@ -267,7 +267,7 @@ fn run_row(run: &RunOutcome) -> Markup {
             @if let Some(description) = &run.description { span.definition { (description) } }
         }
         (gates_cell(run))
-        td { (figures(run)) }
+        td.figures { (figures(run)) }
     } }
 }
 
@@ -416,7 +416,7 @@ fn point_row(run: &RunOutcome) -> Markup {
         @for value in values { td.num data-v=(value) { (value) } }
         (outcome_cells(run))
         (gates_cell(run))
-        td { (figures(run)) }
+        td.figures { (figures(run)) }
     } }
 }
 

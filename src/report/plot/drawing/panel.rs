@@ -23,6 +23,7 @@ const GAIN_MIN: f64 = 0.98;
 
 /// A frame that maps data to pixels.
 pub(in crate::report::plot) struct Panel {
+    left: f64,
     top: f64,
     bottom: f64,
     x: Axis,
@@ -33,13 +34,29 @@ impl Panel {
     /// Draws frame, grid, ticks and titles, and returns the frame.
     pub(in crate::report::plot) fn new(
         picture: &mut Picture,
-        (top, bottom): (f64, f64),
+        frame: (f64, f64),
         x: Axis,
         y: Axis,
     ) -> Self {
-        let panel = Self { top, bottom, x, y };
+        Self::from_left(picture, LEFT, frame, (x, y))
+    }
+
+    /// As [`Self::new`], with a left edge that leaves room for long labels.
+    pub(in crate::report::plot) fn from_left(
+        picture: &mut Picture,
+        left: f64,
+        (top, bottom): (f64, f64),
+        (x, y): (Axis, Axis),
+    ) -> Self {
+        let panel = Self {
+            left,
+            top,
+            bottom,
+            x,
+            y,
+        };
         let frame = object([
-            ("left", LEFT.into()),
+            ("left", left.into()),
             ("right", RIGHT.into()),
             ("top", top.into()),
             ("bottom", bottom.into()),
@@ -60,13 +77,13 @@ impl Panel {
                     let at = (panel.place_x(*value), bottom + 14.0);
                     picture.text(at, label, SMALL, Anchor::Middle);
                 } else {
-                    let at = (LEFT - 7.0, panel.place_y(*value));
+                    let at = (left - 7.0, panel.place_y(*value));
                     picture.text(at, label, SMALL, Anchor::End);
                 }
             }
         }
         panel.outline(picture);
-        let below = (0.5 * (LEFT + RIGHT), bottom + 34.0);
+        let below = (0.5 * (left + RIGHT), bottom + 34.0);
         picture.text(below, &panel.x.title, 14.0, Anchor::Middle);
         picture.upright_text((22.0, 0.5 * (top + bottom)), &panel.y.title, 14.0);
         panel
@@ -76,18 +93,18 @@ impl Panel {
     pub(in crate::report::plot) fn outline(&self, picture: &mut Picture) {
         let (top, bottom) = (self.top, self.bottom);
         let corners = [
-            (LEFT, top),
+            (self.left, top),
             (RIGHT, top),
             (RIGHT, bottom),
-            (LEFT, bottom),
-            (LEFT, top),
+            (self.left, bottom),
+            (self.left, top),
         ];
         picture.line(corners.to_vec(), Stroke::solid(BLACK, 1.0));
     }
 
     /// The abscissa that stands some pixels beside another.
     pub(in crate::report::plot) fn beside(&self, x: f64, pixels: f64) -> f64 {
-        self.x.moved(x, pixels / (RIGHT - LEFT))
+        self.x.moved(x, pixels / (RIGHT - self.left))
     }
 
     fn grid_line(&self, value: f64, is_x: bool) -> Vec<Point> {
@@ -96,12 +113,12 @@ impl Panel {
             vec![(x, self.top), (x, self.bottom)]
         } else {
             let y = self.place_y(value);
-            vec![(LEFT, y), (RIGHT, y)]
+            vec![(self.left, y), (RIGHT, y)]
         }
     }
 
     fn place_x(&self, value: f64) -> f64 {
-        LEFT + self.x.fraction(value) * (RIGHT - LEFT)
+        self.left + self.x.fraction(value) * (RIGHT - self.left)
     }
 
     fn place_y(&self, value: f64) -> f64 {
@@ -168,7 +185,7 @@ impl Panel {
         colour: Colour,
         opacity: f64,
     ) {
-        let inside = |(x, y): Point| (x.clamp(LEFT, RIGHT), y.clamp(self.top, self.bottom));
+        let inside = |(x, y): Point| (x.clamp(self.left, RIGHT), y.clamp(self.top, self.bottom));
         let lower = data
             .iter()
             .map(|(x, low, _)| inside(self.place((*x, *low))));
@@ -188,7 +205,7 @@ impl Panel {
         colour: Colour,
     ) {
         let (x, y) = self.place(data);
-        if (LEFT..=RIGHT).contains(&x) && (self.top..=self.bottom).contains(&y) {
+        if (self.left..=RIGHT).contains(&x) && (self.top..=self.bottom).contains(&y) {
             picture.marker((x, y), shape, colour);
         }
     }
@@ -199,7 +216,7 @@ impl Panel {
         let mut enter = 0.0_f64;
         let mut leave = 1.0_f64;
         let edges = [
-            (-dx, start.0 - LEFT),
+            (-dx, start.0 - self.left),
             (dx, RIGHT - start.0),
             (-dy, start.1 - self.top),
             (dy, self.bottom - start.1),
@@ -222,6 +239,11 @@ impl Panel {
         (enter <= leave).then(|| (at(enter), at(leave)))
     }
 }
+
+/// Room for the name beside a sample, and its size, pixels.
+pub(in crate::report::plot) const NAME_ROOM: f64 = WIDTH - LEGEND - SAMPLE - EDGE;
+pub(in crate::report::plot) const NAME_SIZE: f64 = 14.0;
+const SAMPLE: f64 = 42.0;
 
 /// Text and samples to the right of the frames.
 pub(in crate::report::plot) struct Legend {
@@ -256,7 +278,7 @@ impl Legend {
                 ..stroke
             },
         );
-        self.text_at(picture, LEGEND + 42.0, text, 14.0);
+        self.text_at(picture, LEGEND + SAMPLE, text, NAME_SIZE);
     }
 
     /// A marker with its meaning.
@@ -267,7 +289,7 @@ impl Legend {
         text: &str,
     ) {
         picture.marker((LEGEND + 17.0, self.y), look.0, look.1);
-        self.text_at(picture, LEGEND + 42.0, text, 12.5);
+        self.text_at(picture, LEGEND + SAMPLE, text, 12.5);
     }
 
     /// A line sample with the marker on it.
@@ -294,7 +316,7 @@ impl Legend {
         let (top, bottom) = (self.y - 6.0, self.y + 6.0);
         let corners = vec![(left, top), (right, top), (right, bottom), (left, bottom)];
         picture.area(corners, colour, opacity);
-        self.text_at(picture, LEGEND + 42.0, text, 12.5);
+        self.text_at(picture, LEGEND + SAMPLE, text, 12.5);
     }
 
     /// A remark.
@@ -304,7 +326,7 @@ impl Legend {
 
     /// An indented remark that belongs to the entry above.
     pub(in crate::report::plot) fn detail(&mut self, picture: &mut Picture, text: &str) {
-        self.text_at(picture, LEGEND + 42.0, text, 12.5);
+        self.text_at(picture, LEGEND + SAMPLE, text, 12.5);
     }
 
     /// Leaves room.
@@ -329,9 +351,9 @@ impl Legend {
     fn text_at(&mut self, picture: &mut Picture, x: f64, text: &str, size: f64) {
         let room = WIDTH - x - EDGE;
         let mut line = String::new();
-        for word in text.split(' ') {
+        for word in unbroken(text) {
             let longer = match line.as_str() {
-                "" => word.to_owned(),
+                "" => word.clone(),
                 line => format!("{line} {word}"),
             };
             if !line.is_empty() && text_width(&longer, size) > room {
@@ -345,5 +367,31 @@ impl Legend {
         picture.text((x, self.y), &line, size, Anchor::Start);
         picture.reach(self.y + size);
         self.y += size + 7.0;
+    }
+}
+
+/// The parts of a text between which a line may end: words, and of a setting all three.
+fn unbroken(text: &str) -> Vec<String> {
+    let mut parts: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match parts.last_mut() {
+            Some(last) if word == "=" || last.ends_with(" =") => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => parts.push(word.to_owned()),
+        }
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_setting_stays_on_one_line() {
+        let parts = unbroken("rls.taps = 2, mean.taps = 4 at rest");
+        assert_eq!(parts, ["rls.taps = 2,", "mean.taps = 4", "at", "rest"]);
     }
 }

@@ -6,15 +6,21 @@ use super::super::drawing::axis::Axis;
 use super::super::drawing::panel::{LEFT, RIGHT};
 use super::super::drawing::picture::text_width;
 use super::super::drawing::series::real;
+use super::names::{self, short_names};
 use crate::report::record::run::RunOutcome;
 use crate::report::record::sweep::{swept_text, swept_value};
 use crate::scenario::unit_of_written;
 use crate::wording::{plain, to_digits};
 
+/// Size of the titles of axes, pixels.
+pub(super) const TITLE_SIZE: f64 = 14.0;
+
 /// A key with the values that it takes.
 pub(super) struct SweptKey {
     /// Its path as the matrix writes it.
     pub(super) name: String,
+    /// The end of the path that no other swept key has.
+    pub(super) short: String,
     unit: &'static str,
     /// Whether every value is a finite number.
     pub(super) is_number: bool,
@@ -33,14 +39,19 @@ impl SweptKey {
         let Some(first) = points.first().copied().and_then(set) else {
             return Vec::new();
         };
-        let names = first.iter().map(|(name, _)| name.as_str()).enumerate();
+        let names: Vec<&str> = first.iter().map(|(name, _)| name.as_str()).collect();
+        let shorts = short_names(&names).into_iter();
+        let names = names.iter().zip(shorts).enumerate();
         names
-            .map(|(index, name)| {
+            .map(|(index, (name, short))| {
                 let values = points.iter().map(|point| {
                     let set = point.sweep.as_ref().map_or(&[][..], |(_, set)| set);
                     set.get(index).map_or("", |(_, toml)| toml.as_str())
                 });
-                Self::new(name, &values.collect::<Vec<_>>())
+                Self {
+                    short,
+                    ..Self::new(name, &values.collect::<Vec<_>>())
+                }
             })
             .collect()
     }
@@ -78,6 +89,7 @@ impl SweptKey {
             });
         Self {
             name: name.to_owned(),
+            short: name.to_owned(),
             unit: unit_of_written(name),
             is_number: numbers.is_some(),
             labels,
@@ -88,7 +100,27 @@ impl SweptKey {
 
     /// Name and unit.
     pub(super) fn title(&self) -> String {
-        format!("{} [{}]", self.name, self.unit).replace(" []", "")
+        self.titled(&self.name)
+    }
+
+    /// Name and unit, the name as short as a room in pixels asks for.
+    pub(super) fn title_within(&self, room: f64) -> String {
+        let titles = [self.title(), self.short_title()];
+        names::fitting(&titles, TITLE_SIZE, room)
+    }
+
+    /// Short name and unit.
+    pub(super) fn short_title(&self) -> String {
+        self.titled(&self.short)
+    }
+
+    fn titled(&self, name: &str) -> String {
+        format!("{name} [{}]", self.unit).replace(" []", "")
+    }
+
+    /// The value of a point as text.
+    pub(super) fn label(&self, point: usize) -> &str {
+        &self.labels[self.value_of[point]]
     }
 
     /// Place of the value of a point.
@@ -104,7 +136,7 @@ impl SweptKey {
     /// The axis of its values.
     pub(super) fn axis(&self) -> Axis {
         let (first, last) = (self.places[0], self.places[self.places.len() - 1]);
-        let title = self.title();
+        let title = self.title_within(RIGHT - LEFT);
         let labels = || self.places.iter().copied().zip(self.labels.iter().cloned());
         if !self.is_number {
             let mut axis = Axis::linear((-0.5, last + 0.5), 0.0, &title);
@@ -131,7 +163,7 @@ fn number_labels(numbers: impl Iterator<Item = f64> + Clone) -> Vec<String> {
 }
 
 /// Of labels that stand side by side every one, or every second, third ... so that none meets another.
-fn fitting(labels: Vec<(f64, String)>) -> Vec<(f64, String)> {
+pub(super) fn fitting(labels: Vec<(f64, String)>) -> Vec<(f64, String)> {
     let widths = labels.iter().map(|(_, label)| text_width(label, 13.0));
     let widest = widths.fold(0.0, f64::max) + 10.0;
     let room = (RIGHT - LEFT) / real(labels.len());
@@ -142,22 +174,23 @@ fn fitting(labels: Vec<(f64, String)>) -> Vec<(f64, String)> {
     labels.into_iter().step_by(step).collect()
 }
 
-/// Settings of keys at a point: a lone one by its value with name, several by name and value each.
+/// Settings of keys at a point, by short name and value each.
 pub(super) fn others_text(keys: &[&SweptKey], point: usize) -> String {
-    let settings = keys.iter().map(|key| {
-        let name = key.name.rsplit('.').next().unwrap_or_default();
-        format!("{name} = {}", key.labels[key.value_of[point]])
-    });
+    let settings = keys.iter();
+    let settings = settings.map(|key| format!("{} = {}", key.short, key.label(point)));
     settings.collect::<Vec<_>>().join(", ")
 }
+
+/// Least ratio of the ends of values that are spaced by factors.
+const LOG_SPACED_MIN: f64 = 4.0;
 
 /// Whether values span more than a decade and a half, all above 0.
 pub(super) fn is_log_span((low, high): (f64, f64)) -> bool {
     low > 0.0 && high / low > 10_f64.powf(1.5)
 }
 
-/// Whether ascending values span more than a decade and a half, all above 0, and their ratios differ less
-/// from one another than their differences.
+/// Whether three ascending values or more, all above 0, are spaced by factors rather than by steps: their
+/// ratios differ less from one another than their differences. Over less than two octaves the two look alike.
 fn is_log_spaced(values: &[f64]) -> bool {
     let (Some(first), Some(last)) = (values.first(), values.last()) else {
         return false;
@@ -170,10 +203,12 @@ fn is_log_spaced(values: &[f64]) -> bool {
     let steps = |of: fn(f64, f64) -> f64| -> Vec<f64> {
         values.windows(2).map(|pair| of(pair[0], pair[1])).collect()
     };
-    is_log_span((*first, *last)) && {
+    // An end that was computed may lie a rounding off.
+    let is_wide = *first > 0.0 && last / first > LOG_SPACED_MIN * (1.0 - 1e-9);
+    is_wide && values.len() > 2 && {
         let ratios = steps(|a, b| (b / a).ln());
         let differences = steps(|a, b| b - a);
-        values.len() > 2 && spread(&ratios) < spread(&differences)
+        spread(&ratios) < spread(&differences)
     }
 }
 
@@ -206,7 +241,17 @@ mod tests {
         assert!(is_log_spaced(&[0.5, 1.0, 5.0, 20.0]));
         assert!(!is_log_spaced(&[1.0, 50.0, 100.0]));
         assert!(!is_log_spaced(&[0.0, 10.0, 100.0]));
-        assert!(!is_log_spaced(&[1.0, 5.0, 20.0]));
+        assert!(is_log_spaced(&[1.0, 5.0, 20.0]));
+        assert!(is_log_spaced(&[0.5, 1.0, 2.0]));
+        for low in [100.0_f64, 200.0] {
+            let even = |at: u32| low * (2000.0 / low).powf(f64::from(at) / 8.0);
+            assert!(is_log_spaced(&(0..9).map(even).collect::<Vec<_>>()));
+            let steps = |at: u32| low + (2000.0 - low) * f64::from(at) / 8.0;
+            assert!(!is_log_spaced(&(0..9).map(steps).collect::<Vec<_>>()));
+        }
+        assert!(!is_log_spaced(&[100.0, 2000.0]));
+        assert!(!is_log_spaced(&[1.0, 1.5, 2.25]));
+        assert!(!is_log_spaced(&[1.0, 2.0, 3.0, 4.0, 5.0]));
         assert!(!is_log_spaced(&[-1.0, 10.0]));
         assert!(!is_log_spaced(&[]));
     }

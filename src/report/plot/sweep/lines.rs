@@ -1,8 +1,10 @@
 //! Values over a swept key as lines with intervals.
 
-use super::super::drawing::panel::{Legend, Panel};
-use super::super::drawing::picture::{Dash, Picture, Stroke};
+use super::super::drawing::panel::{Legend, NAME_ROOM, NAME_SIZE, Panel};
+use super::super::drawing::picture::{Dash, Picture, Stroke, text_width};
 use super::super::drawing::series::{SIDE_BY_SIDE, real, shape_of, stroke_of};
+use super::keys::TITLE_SIZE;
+use super::names;
 use super::sheet::{Channel, Layout, Sheet, lack};
 use crate::metrics::Estimate;
 
@@ -12,6 +14,11 @@ const MARKED_MAX: usize = 60;
 /// neighbours, pixels: lines that coincide then lie side by side.
 const SPREAD: f64 = 0.5;
 const BESIDE: f64 = 8.0;
+
+/// How far the title of an axis may reach beyond its panel, pixels.
+const BEYOND: f64 = 40.0;
+/// Most lines that the name of a setting takes in the legend.
+const LINES: f64 = 1.8;
 
 /// A line of a panel.
 struct Line<'a> {
@@ -57,11 +64,24 @@ pub(super) fn settings(
     plan: &Layout,
 ) {
     let title = format!("{}: {}", channel.name, sheet.title);
+    let room = frame.1 - frame.0 + BEYOND;
+    let is_named = text_width(&title, TITLE_SIZE) <= room;
+    let title = names::fitting(&[title, sheet.title.clone()], TITLE_SIZE, room);
     let y = sheet.axis(std::iter::once(channel), &title);
     let panel = Panel::new(picture, frame, plan.along.axis(), y);
     let mut legend = Legend::new(frame.0);
-    let lines: Vec<Line> = plan
-        .settings
+    if !is_named {
+        legend.text(picture, &channel.name);
+    }
+    for heading in keys_heading(plan) {
+        legend.text(picture, &heading);
+    }
+    let names = if keys_heading(plan).is_empty() {
+        &plan.settings
+    } else {
+        &plan.values
+    };
+    let lines: Vec<Line> = names
         .iter()
         .enumerate()
         .map(|(index, name)| Line {
@@ -82,6 +102,22 @@ pub(super) fn settings(
         legend.text(picture, &lack);
     }
     explain(picture, &mut legend, &lines);
+}
+
+/// Names of the keys above the lines, where name and value of each have no room beside a line: the lines then
+/// have the values alone.
+fn keys_heading(plan: &Layout) -> Vec<String> {
+    let width = |text: &str| text_width(text, NAME_SIZE);
+    let is_wide = |text: &String| {
+        let mut settings = text.split(", ");
+        settings.any(|setting| width(setting) > NAME_ROOM) || width(text) > LINES * NAME_ROOM
+    };
+    if !plan.settings.iter().any(is_wide) {
+        return Vec::new();
+    }
+    let names = plan.others.iter();
+    let names = names.map(|key| names::fitting(&[key.short.clone()], NAME_SIZE, NAME_ROOM));
+    names.collect()
 }
 
 /// The chosen points of a channel, in the order of their places.

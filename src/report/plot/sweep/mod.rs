@@ -7,6 +7,7 @@
 mod cells;
 mod keys;
 mod lines;
+mod names;
 mod pictures;
 mod sheet;
 

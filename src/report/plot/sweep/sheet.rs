@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::super::drawing::axis::Axis;
+use super::super::drawing::picture::text_width;
 use super::super::drawing::series::extent;
 use super::keys::{SweptKey, is_log_span, others_text};
+use super::names;
 use crate::metrics::{Estimate, MetricKey};
 use crate::report::record::run::RunOutcome;
 use crate::wording::{counted, plain};
@@ -16,6 +18,8 @@ pub(super) struct Layout<'a> {
     pub(super) others: Vec<&'a SweptKey>,
     /// Settings of the others: their texts, in the order in which they occur.
     pub(super) settings: Vec<String>,
+    /// Values alone of each setting, in the order of the others.
+    pub(super) values: Vec<String>,
     /// Number of the setting of every point.
     pub(super) setting_of: Vec<usize>,
     /// Keys that are the same at every point.
@@ -35,12 +39,14 @@ impl<'a> Layout<'a> {
             .copied()
             .filter(|key| !std::ptr::eq(*key, along))
             .collect();
-        let mut settings = Vec::new();
+        let (mut settings, mut values) = (Vec::new(), Vec::new());
         let mut known = BTreeMap::new();
         let setting_of = (0..points).map(|point| {
             let text = others_text(&others, point);
             *known.entry(text.clone()).or_insert_with(|| {
                 settings.push(text);
+                let own = others.iter().map(|key| key.label(point));
+                values.push(own.collect::<Vec<_>>().join(", "));
                 settings.len() - 1
             })
         });
@@ -49,6 +55,7 @@ impl<'a> Layout<'a> {
             along,
             others,
             settings,
+            values,
             setting_of,
             fixed: fixed
                 .into_iter()
@@ -64,11 +71,25 @@ impl<'a> Layout<'a> {
         names.collect::<Vec<_>>().join(" and ")
     }
 
-    /// What is the same at every point, in words.
-    pub(super) fn fixed_text(&self) -> String {
-        let fixed = self.fixed.iter();
-        let fixed = fixed.map(|key| format!("{} = {}", key.title(), key.labels[0]));
-        fixed.collect::<Vec<_>>().join(", ")
+    /// As [`Self::names`], by their short names.
+    pub(super) fn short_names(&self) -> String {
+        let others = self.others.iter().map(|key| key.short.as_str());
+        let names = std::iter::once(self.along.short.as_str()).chain(others);
+        names.collect::<Vec<_>>().join(" and ")
+    }
+
+    /// What is the same at every point, in words that fit a room in pixels.
+    pub(super) fn fixed_text(&self, size: f64, room: f64) -> String {
+        let text = |title: fn(&SweptKey) -> String| {
+            let fixed = self.fixed.iter();
+            let fixed = fixed.map(|key| format!("{} = {}", title(key), key.labels[0]));
+            fixed.collect::<Vec<_>>().join(", ")
+        };
+        let whole = text(SweptKey::title);
+        if text_width(&whole, size) <= room {
+            return whole;
+        }
+        names::start(&text(SweptKey::short_title), size, room)
     }
 }
 
