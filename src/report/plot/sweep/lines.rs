@@ -116,7 +116,8 @@ fn keys_heading(plan: &Layout) -> Vec<String> {
         return Vec::new();
     }
     let names = plan.others.iter();
-    let names = names.map(|key| names::fitting(&[key.short.clone()], NAME_SIZE, NAME_ROOM));
+    let names =
+        names.map(|key| names::fitting(std::slice::from_ref(&key.short), NAME_SIZE, NAME_ROOM));
     names.collect()
 }
 
