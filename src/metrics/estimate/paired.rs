@@ -82,12 +82,33 @@ impl MeanScatter {
         reach: usize,
         cycle: Option<f64>,
     ) -> Self {
-        let long = tapered_length(aligned.len(), cycle);
-        if long < SAMPLES_MIN || 2 * long > aligned.len() {
+        let long = aligned.len() / LONG_BLOCKS;
+        if long < SAMPLES_MIN {
             return Self::of(differences, reach);
         }
         let density = tapered_density(aligned, long);
         Self::of_blocks(differences, density, REACHES_PER_BLOCK * reach, cycle)
+    }
+
+    /// Of the differences that are left of a swing, of so many samples a cycle.
+    ///
+    /// What weights on their way add to its noise stands about the frequency of the swing. A tapered block
+    /// of few cycles does not tell it from frequency zero, but where it holds two whole ones or more: these
+    /// are zeros of its window.
+    pub(crate) fn of_paired_about_swing(
+        differences: &[f64],
+        aligned: &[f64],
+        reach: usize,
+        cycle: f64,
+    ) -> Self {
+        let long = (aligned.len() / LONG_BLOCKS) as f64;
+        let whole = interval::round_to_count((long / cycle).ceil().max(2.0) * cycle);
+        if long >= CYCLES_APART * cycle || 2 * whole > aligned.len() {
+            return Self::of_paired(differences, aligned, reach, None);
+        }
+        let density = tapered_density(aligned, whole);
+        let least = REACHES_PER_BLOCK * reach;
+        Self::of_blocks(differences, density, least, Some(cycle))
     }
 
     /// Of differences whose spectral density at zero frequency is known.
@@ -152,22 +173,6 @@ pub(crate) fn covariance_at_lags(values: &[f64], largest_lag: usize) -> Vec<f64>
 /// Spread of the mean of values whose ends reach over `reach` samples.
 pub(crate) fn mean_spread(values: &[f64], reach: usize) -> Spread {
     MeanScatter::of(values, reach).over(values.len())
-}
-
-/// Samples of a tapered block.
-///
-/// In a swing's noise, what weights on their way add stands about the frequency of the swing. A block of
-/// few cycles does not tell it from frequency zero, but where it holds two whole ones or more: these are
-/// zeros of its window.
-fn tapered_length(samples: usize, cycle: Option<f64>) -> usize {
-    let long = samples / LONG_BLOCKS;
-    match cycle {
-        Some(cycle) if (long as f64) < CYCLES_APART * cycle => {
-            let cycles = (long as f64 / cycle).ceil().max(2.0);
-            interval::round_to_count(cycles * cycle)
-        }
-        _ => long,
-    }
 }
 
 /// Shortest block of so many samples at least, in whole cycles of a swing, samples.

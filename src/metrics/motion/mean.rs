@@ -265,7 +265,11 @@ pub(crate) fn paired_scatter(
     // Delayed, the first samples have no input.
     let aligned = minus(&delayed(raw, delay));
     let whole = reach.min(aligned.len() / 2);
-    MeanScatter::of_paired(&minus(raw), &aligned[whole..], reach, cycle)
+    let (plain, aligned) = (minus(raw), &aligned[whole..]);
+    match cycle {
+        Some(cycle) => MeanScatter::of_paired_about_swing(&plain, aligned, reach, cycle),
+        None => MeanScatter::of_paired(&plain, aligned, reach, None),
+    }
 }
 
 /// Samples at the end of a record that show the rounding of a filter in hardware.
