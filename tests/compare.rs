@@ -46,6 +46,12 @@ fn run(at: &Path, output: &str, more: &[&str]) {
     assert_eq!(code(&output), 0, "{}", stderr(&output));
 }
 
+/// Keeps the figures of an output folder in `b.toml`.
+fn save(at: &Path, output: &str) {
+    let output = fogbench(at, &["baseline", "save", output, "-o", "b.toml"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+}
+
 /// Compares two sides: exit code and what was found.
 fn compare(at: &Path, old: &str, new: &str) -> (i32, Value) {
     let output = fogbench(at, &["compare", old, new, "--format", "json"]);
@@ -454,8 +460,7 @@ fn the_page_of_a_suite_shows_its_baseline_and_no_folder_of_a_run_does() {
         );
     }
     // A baseline in a file has figures and no curves.
-    let saved = fogbench(at, &["baseline", "save", "plain", "-o", "b.toml"]);
-    assert_eq!(code(&saved), 0, "{}", stderr(&saved));
+    save(at, "plain");
     run(at, "file", &["--baseline", "b.toml"]);
     assert!(index("file").contains("id=\"against\"") && !index("file").contains("raw, before"));
 }
@@ -465,8 +470,7 @@ fn a_scenario_that_is_gone_from_a_folder_fails_and_one_that_was_not_asked_for_do
     let folder = scratch();
     let at = folder.path();
     run(at, "out", &[]);
-    let save = fogbench(at, &["baseline", "save", "out", "-o", "b.toml"]);
-    assert_eq!(code(&save), 0, "{}", stderr(&save));
+    save(at, "out");
     let against = |paths: &[&str]| {
         let rest = ["-o", "later", "--baseline", "b.toml"];
         fogbench(at, &[&["run"], paths, &rest[..]].concat())
@@ -489,8 +493,7 @@ fn what_fails_against_a_baseline_is_told_wherever_a_server_looks() {
     let folder = scratch();
     let at = folder.path();
     run(at, "out", &[]);
-    let save = fogbench(at, &["baseline", "save", "out", "-o", "b.toml"]);
-    assert_eq!(code(&save), 0, "{}", stderr(&save));
+    save(at, "out");
     let files = ["--junit", "j.xml", "--summary-markdown", "s.md"];
     let against = || {
         let rest = ["--annotations", "github", "--baseline", "b.toml"];
@@ -549,8 +552,7 @@ fn no_file_that_is_read_is_written_be_it_by_force() {
     let folder = scratch();
     let at = folder.path();
     run(at, "out", &[]);
-    let save = fogbench(at, &["baseline", "save", "out", "-o", "b.toml"]);
-    assert_eq!(code(&save), 0, "{}", stderr(&save));
+    save(at, "out");
     let before = (
         tree(&at.join("scenarios")),
         fs::read(at.join("b.toml")).expect("a file"),

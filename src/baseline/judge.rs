@@ -144,6 +144,12 @@ impl<'a> Judged<'a> {
         let rows = self.comparison.rows.iter();
         rows.filter(move |row| self.fail_on.contains(&row.outcome))
     }
+
+    /// Whether a figure fails.
+    #[must_use]
+    pub fn has_failed(self) -> bool {
+        self.failed().next().is_some()
+    }
 }
 
 /// Two sides, compared.
@@ -168,10 +174,13 @@ impl Comparison {
             .count()
     }
 
-    /// Whether an outcome of the list is among the rows.
+    /// The same with the outcomes that fail.
     #[must_use]
-    pub fn has_any(&self, outcomes: &[Outcome]) -> bool {
-        self.rows.iter().any(|row| outcomes.contains(&row.outcome))
+    pub fn judged<'a>(&'a self, fail_on: &'a [Outcome]) -> Judged<'a> {
+        Judged {
+            comparison: self,
+            fail_on,
+        }
     }
 }
 

@@ -55,8 +55,7 @@ fn update(options: &UpdateOptions) -> io::Result<Exit> {
     let later = updated(&old, &new);
     let comparison = compare(&old, &later);
     output::data(&comparison_with_baseline_text(
-        &comparison,
-        &[],
+        comparison.judged(&[]),
         output::colour(),
     ))?;
     let path = options.baseline.as_path();

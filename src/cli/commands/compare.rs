@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use crate::baseline::{Comparison, Judged, Outcome, Side, compare as compare_sides};
+use crate::baseline::{Judged, Side, compare as compare_sides};
 use crate::cli::options::baseline::{CompareOptions, ComparisonFormat, FailOn};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::{output, place};
@@ -22,11 +22,8 @@ pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
         force: options.force,
     });
     let read = [options.old.as_path(), options.new.as_path()];
-    if let Some(Err(exit)) = page.map(|page| place::check_unread(page.path, &read)) {
+    if let Some(Err(exit)) = page.map(|page| place::check_file(page, &read)) {
         return Ok(exit);
-    }
-    if let Some(Err(error)) = page.as_ref().map(SingleFile::check) {
-        return Ok(place::refused(&error));
     }
     let sides = side(&options.old).and_then(|old| Ok((old, side(&options.new)?)));
     let (old, new) = match sides {
@@ -35,22 +32,18 @@ pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
     };
     let fail_on = FailOn::outcomes(&options.fail_on);
     let comparison = compare_sides(&old, &new);
+    let judged = comparison.judged(&fail_on);
     output::data(&match options.format {
-        ComparisonFormat::Text => {
-            comparison_with_baseline_text(&comparison, &fail_on, output::colour())
-        }
-        ComparisonFormat::Json => comparison_with_baseline_json(&comparison, &fail_on),
+        ComparisonFormat::Text => comparison_with_baseline_text(judged, output::colour()),
+        ComparisonFormat::Json => comparison_with_baseline_json(judged),
         ComparisonFormat::Markdown => comparison_with_baseline_markdown(&comparison),
     })?;
-    let exit = exit_of(&comparison, &fail_on);
+    let exit = exit_of(judged);
     let Some(page) = page else {
         return Ok(exit);
     };
     let compared = ComparedSides {
-        judged: Judged {
-            comparison: &comparison,
-            fail_on: &fail_on,
-        },
+        judged,
         old: &old,
         new: &new,
     };
@@ -61,8 +54,8 @@ pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
 }
 
 /// How a comparison ends.
-pub(in crate::cli) fn exit_of(comparison: &Comparison, fail_on: &[Outcome]) -> Exit {
-    if comparison.has_any(fail_on) {
+pub(in crate::cli) fn exit_of(judged: Judged) -> Exit {
+    if judged.has_failed() {
         Exit::GateFailed
     } else {
         Exit::Success

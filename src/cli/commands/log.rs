@@ -30,7 +30,7 @@ pub(in crate::cli) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
         force: options.log.force,
     });
     if let Some(file) = kalman
-        && let Err(exit) = check_file(file, &inputs)
+        && let Err(exit) = place::check_file(file, &inputs)
     {
         return Ok(exit);
     }
@@ -60,12 +60,6 @@ fn write_kalman(trial: &LogTrial, file: SingleFile) -> Result<(), Exit> {
         file.path.display()
     ));
     Ok(())
-}
-
-/// Checks the place of a file that stands alone before anything is computed.
-fn check_file(file: SingleFile, inputs: &[&Path]) -> Result<(), Exit> {
-    place::check_unread(file.path, inputs)?;
-    file.check().map_err(|error| place::refused(&error))
 }
 
 /// Puts a log through the filters of a scenario and measures what they make of it.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
-use crate::store::{OutputFolder, StoreError, StoreOptions, holds_result};
+use crate::store::{OutputFolder, SingleFile, StoreError, StoreOptions, holds_result};
 
 /// A path with its links resolved as far as it exists.
 pub(in crate::cli) fn real(path: &Path) -> PathBuf {
@@ -31,6 +31,14 @@ pub(in crate::cli) fn check_unread(path: &Path, inputs: &[&Path]) -> Result<(), 
         path.display()
     ));
     Err(Exit::Usage)
+}
+
+/// Checks the place of a file that stands alone before anything is computed.
+///
+/// A refusal is printed before its exit code is returned.
+pub(in crate::cli) fn check_file(file: SingleFile, inputs: &[&Path]) -> Result<(), Exit> {
+    check_unread(file.path, inputs)?;
+    file.check().map_err(|error| refused(&error))
 }
 
 /// The folder of a result, if one is asked for.

@@ -30,10 +30,7 @@ impl Against {
     #[must_use]
     pub fn judged(&self) -> Option<Judged<'_>> {
         match self {
-            Self::Compared(comparison, fail_on) => Some(Judged {
-                comparison,
-                fail_on,
-            }),
+            Self::Compared(comparison, fail_on) => Some(comparison.judged(fail_on)),
             Self::Nothing | Self::Stopped | Self::Unreadable(_) => None,
         }
     }

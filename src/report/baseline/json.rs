@@ -2,12 +2,16 @@
 
 use serde_json::{Map, Value};
 
-use crate::baseline::{Comparison, Entry, Interval, Outcome, Row};
+use crate::baseline::{Entry, Interval, Judged, Outcome, Row};
 use crate::report::layout::json::{object, pretty, put};
 
 /// Every figure of either side with its outcome, and how many have which.
 #[must_use]
-pub fn comparison_with_baseline_json(comparison: &Comparison, fail_on: &[Outcome]) -> String {
+pub fn comparison_with_baseline_json(judged: Judged) -> String {
+    let Judged {
+        comparison,
+        fail_on,
+    } = judged;
     let counts = Outcome::ALL.map(|outcome| {
         let count = comparison.count(outcome);
         (outcome.as_str().to_owned(), Value::from(count))
@@ -22,7 +26,7 @@ pub fn comparison_with_baseline_json(comparison: &Comparison, fail_on: &[Outcome
         ("old_version", comparison.old_version.as_str().into()),
         ("new_version", comparison.new_version.as_str().into()),
         ("fail_on", words.into()),
-        ("failed", comparison.has_any(fail_on).into()),
+        ("failed", judged.has_failed().into()),
         ("counts", Value::Object(counts.into_iter().collect())),
         ("metrics", rows.into()),
     ]);

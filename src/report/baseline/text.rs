@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::rows::{counts, notable, row_line};
-use crate::baseline::{Comparison, Outcome, Row};
+use crate::baseline::{Judged, Outcome, Row};
 use crate::report::layout::text::{Tone, toned};
 use crate::scenario::bounded;
 use crate::wording::counted;
@@ -12,15 +12,10 @@ use crate::wording::counted;
 /// Rows of an outcome that are printed.
 const ROWS_MAX: usize = 50;
 
-/// What differs, the worst first, and how much of what there is.
-///
-/// * `fail_on`: outcomes that fail; the last line says whether one is there.
+/// What differs, the worst first, and how much of what there is; the last line says whether a figure fails.
 #[must_use]
-pub fn comparison_with_baseline_text(
-    comparison: &Comparison,
-    fail_on: &[Outcome],
-    colour: bool,
-) -> String {
+pub fn comparison_with_baseline_text(judged: Judged, colour: bool) -> String {
+    let comparison = judged.comparison;
     let mut text = String::new();
     let rows = notable(comparison);
     for outcome in Outcome::ALL {
@@ -31,7 +26,7 @@ pub fn comparison_with_baseline_text(
         let of = rows.iter().filter(|row| row.outcome == outcome);
         for row in of.clone().take(ROWS_MAX) {
             let tone = match outcome {
-                _ if fail_on.contains(&outcome) => Tone::Bad,
+                _ if judged.fail_on.contains(&outcome) => Tone::Bad,
                 Outcome::Better => Tone::Good,
                 _ => Tone::Doubt,
             };
@@ -43,8 +38,7 @@ pub fn comparison_with_baseline_text(
             let _ = writeln!(text, "and {more} more are {}", outcome.as_str());
         }
     }
-    let has_failed = comparison.has_any(fail_on);
-    let (verdict, tone) = if has_failed {
+    let (verdict, tone) = if judged.has_failed() {
         ("FAIL", Tone::Bad)
     } else {
         ("PASS", Tone::Good)

@@ -74,8 +74,7 @@ const FIGURES_MAX: usize = 500;
 fn baseline_suite(judged: Judged) -> TestSuite {
     let mut suite = TestSuite::new(BASELINE);
     let summary = counts(judged.comparison);
-    let has_failed = judged.failed().next().is_some();
-    let status = if has_failed {
+    let status = if judged.has_failed() {
         non_success(NonSuccessKind::Failure, "baseline", &summary, &summary)
     } else {
         TestCaseStatus::success()

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use maud::{Markup, html};
 
 use super::document::{by_value, document, facts, filter, section, wide};
-use super::gates::unit_word;
+use super::gates::{Scale, WIDTH, pixels_text, unit_word};
 use super::pictures::figure_of_page;
 use super::run::PAGE_BYTES_MAX;
 use crate::baseline::{Entry, Id, Interval, Judged, Limits, Outcome, Point, Row, Side};
@@ -22,11 +22,8 @@ const SECTION_BYTES_MAX: usize = 250_000;
 /// Mark of a page of its own, by which it is known.
 const TITLE: &str = "fogbench comparison";
 
-/// Size of the picture of two figures, user units.
-const WIDTH: f64 = 240.0;
+/// Height of the picture of two figures, user units.
 const HEIGHT: f64 = 30.0;
-/// Free part of the scale on either side.
-const MARGIN: f64 = 0.12;
 
 /// The page of a comparison.
 #[must_use]
@@ -35,7 +32,7 @@ pub fn comparison_page(compared: &ComparedSides) -> String {
         comparison,
         fail_on,
     } = compared.judged;
-    let (word, class) = if comparison.has_any(fail_on) {
+    let (word, class) = if compared.judged.has_failed() {
         ("FAIL", "fail")
     } else {
         ("PASS", "pass")
@@ -163,23 +160,11 @@ fn bars(row: &Row, compared: &ComparedSides) -> Markup {
     let drawn = [&row.old, &row.new].map(|entry| entry.as_ref().map(ends));
     let all = drawn.iter().flatten().flatten().copied();
     let all = all.chain([min, max].into_iter().flatten());
-    let finite = all.filter(|value| value.is_finite());
-    let range = finite.fold(None, |range: Option<(f64, f64)>, value| {
-        let (least, most) = range.unwrap_or((value, value));
-        Some((least.min(value), most.max(value)))
-    });
-    let Some((least, most)) = range.filter(|(least, most)| least < most) else {
+    let Some(scale) = Scale::over(all).filter(|scale| !scale.is_point) else {
         return html! {};
     };
-    let (start, span) = (
-        least - MARGIN * (most - least),
-        (1.0 + 2.0 * MARGIN) * (most - least),
-    );
-    let x = |at: f64| format!("{:.1}", WIDTH * (at - start) / span);
-    let zone = (
-        min.map_or(0.0, |min| WIDTH * (min - start) / span),
-        max.map_or(WIDTH, |max| WIDTH * (max - start) / span),
-    );
+    let x = |at: f64| pixels_text(scale.x(at));
+    let zone = scale.between(min, max);
     let is_gated = min.is_some() || max.is_some();
     let label = format!(
         "was {}, is {}",
@@ -189,7 +174,7 @@ fn bars(row: &Row, compared: &ComparedSides) -> Markup {
     html! {
         svg.bar viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img" aria-label=(label) {
             title { (label) }
-            @if is_gated { rect.zone x=(format!("{:.1}", zone.0)) y="2" width=(format!("{:.1}", (zone.1 - zone.0).max(1.0))) height=(HEIGHT - 4.0) {} }
+            @if is_gated { rect.zone x=(pixels_text(zone.0)) y="2" width=(pixels_text((zone.1 - zone.0).max(1.0))) height=(HEIGHT - 4.0) {} }
             @for limit in [min, max].into_iter().flatten() { line.limit x1=(x(limit)) x2=(x(limit)) y1="1" y2=(HEIGHT - 1.0) {} }
             @for (ends, y, class) in [(drawn[0], 10.0, "before"), (drawn[1], 20.0, "now")] {
                 @if let Some([low, value, high]) = ends {
@@ -228,22 +213,16 @@ fn overlaid(compared: &ComparedSides, room: usize) -> Markup {
         let key = (!differs.contains(&run), run.0, run.1);
         runs.entry(key).or_default().push(id);
     }
-    let curve = |side: &'_ Side, id: &Id| side.curves.get(id).cloned().unwrap_or_default();
     let both = runs
         .values()
         .filter(|ids| ids.iter().any(|id| compared.old.curves.contains_key(id)));
     let drawn = both.take(PICTURES_MAX).filter_map(|ids| {
-        let curves: Vec<_> = ids
-            .iter()
-            .map(|id| (curve(compared.old, id), curve(compared.new, id)))
-            .collect();
         let channels: Vec<Overlaid> = ids
             .iter()
-            .zip(&curves)
-            .map(|(id, (old, new))| Overlaid {
+            .map(|id| Overlaid {
                 name: &id.channel,
-                old,
-                new,
+                old: curve(compared.old, id),
+                new: curve(compared.new, id),
             })
             .collect();
         let title = ids.first()?.run_text();
@@ -260,4 +239,9 @@ fn overlaid(compared: &ComparedSides, room: usize) -> Markup {
             @if fits(&svg) { (figure_of_page("Allan deviation, before and now", &title, &svg)) }
         }
     }
+}
+
+/// The curve of a channel; empty if there is none.
+fn curve<'a>(side: &'a Side, id: &Id) -> &'a [(f64, f64)] {
+    side.curves.get(id).map_or(&[], Vec::as_slice)
 }

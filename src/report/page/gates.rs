@@ -7,10 +7,57 @@ use crate::gate::{Verdict, VerdictKind, limits_text, plain, three_digits};
 use crate::scenario::portable_place;
 
 /// Size of the picture of a gate, user units.
-const WIDTH: f64 = 240.0;
+pub(super) const WIDTH: f64 = 240.0;
 const HEIGHT: f64 = 24.0;
 /// Free part of the scale on either side.
 const MARGIN: f64 = 0.12;
+
+/// A line of user units over some values.
+pub(super) struct Scale {
+    start: f64,
+    span: f64,
+    /// Whether all values are one.
+    pub(super) is_point: bool,
+}
+
+impl Scale {
+    /// Over the finite ones of some values; none where there is none.
+    pub(super) fn over(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut finite = values.filter(|value| value.is_finite());
+        let first = finite.next()?;
+        let (least, most) = finite.fold((first, first), |(least, most), value| {
+            (least.min(value), most.max(value))
+        });
+        let span = match most - least {
+            span if span > 0.0 => span,
+            _ => first.abs().max(1.0),
+        };
+        let (start, end) = (least - MARGIN * span, most + MARGIN * span);
+        Some(Self {
+            start,
+            span: end - start,
+            is_point: least >= most,
+        })
+    }
+
+    /// Place of a value.
+    pub(super) fn x(&self, at: f64) -> f64 {
+        WIDTH * (at - self.start) / self.span
+    }
+
+    /// Places of two ends; those of the line where there is no end.
+    pub(super) fn between(&self, low: Option<f64>, high: Option<f64>) -> (f64, f64) {
+        let finite = |end: Option<f64>| end.filter(|it| it.is_finite());
+        let place =
+            |end: Option<f64>, otherwise: f64| finite(end).map_or(otherwise, |end| self.x(end));
+        (place(low, 0.0), place(high, WIDTH))
+    }
+}
+
+/// User units as text.
+pub(super) fn pixels_text(pixels: f64) -> String {
+    format!("{pixels:.1}")
+}
 
 /// Word and class of a verdict.
 pub(super) fn verdict_word(verdict: &Verdict) -> (&'static str, &'static str) {
@@ -111,20 +158,11 @@ fn bar(verdict: &Verdict, class: &str) -> Option<Markup> {
         verdict.min,
         verdict.max,
     ];
-    let known = known.into_iter().flatten().filter(|it| it.is_finite());
-    let (least, most) = known.fold((value, value), |(least, most), it| {
-        (least.min(it), most.max(it))
-    });
-    let span = match most - least {
-        span if span > 0.0 => span,
-        _ => value.abs().max(1.0),
-    };
-    let (start, end) = (least - MARGIN * span, most + MARGIN * span);
-    let x = |at: f64| WIDTH * (at - start) / (end - start);
-    let of = |at: Option<f64>, otherwise: f64| at.filter(|it| it.is_finite()).map_or(otherwise, x);
-    let zone = (of(verdict.min, 0.0), of(verdict.max, WIDTH));
-    let interval = (of(verdict.low, 0.0), of(verdict.high, WIDTH));
-    let text = |pixels: f64| format!("{pixels:.1}");
+    let scale = Scale::over(known.into_iter().flatten())?;
+    let x = |at: f64| scale.x(at);
+    let zone = scale.between(verdict.min, verdict.max);
+    let interval = scale.between(verdict.low, verdict.high);
+    let text = pixels_text;
     let middle = HEIGHT / 2.0;
     let label = format!(
         "{} against {} {}",

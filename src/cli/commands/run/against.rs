@@ -1,6 +1,6 @@
 //! What `run --baseline` prints: how the results of a suite compare with earlier ones.
 
-use crate::baseline::{Comparison, Outcome};
+use crate::baseline::Judged;
 use crate::cli::commands::compare::{exit_of, refused, side};
 use crate::cli::options::arguments::RunOptions;
 use crate::cli::options::baseline::FailOn;
@@ -42,29 +42,29 @@ impl Compared {
 
     /// Prints what differs: on stdout where that is text.
     pub(super) fn print(suite: &SuiteOutcome, options: &RunOptions) -> Self {
-        let (comparison, fail_on) = match &suite.against {
-            Against::Compared(comparison, fail_on) => (comparison, fail_on),
-            Against::Unreadable(error) => return Self::nothing(refused(error)),
-            Against::Stopped => {
-                output::talk(
-                    "not compared with the baseline: the suite was stopped before its end",
-                );
-                return Self::nothing(Exit::Success);
-            }
-            _ => return Self::nothing(Exit::Success),
+        let Some(judged) = suite.against.judged() else {
+            return Self::nothing(match &suite.against {
+                Against::Unreadable(error) => refused(error),
+                Against::Stopped => {
+                    output::talk(
+                        "not compared with the baseline: the suite was stopped before its end",
+                    );
+                    Exit::Success
+                }
+                _ => Exit::Success,
+            });
         };
-        let exit = exit_of(comparison, fail_on);
         Self {
-            exit: exit.worst(printed(comparison, fail_on, options)),
-            markdown: comparison_with_baseline_markdown(comparison),
+            exit: exit_of(judged).worst(printed(judged, options)),
+            markdown: comparison_with_baseline_markdown(judged.comparison),
         }
     }
 }
 
-fn printed(comparison: &Comparison, fail_on: &[Outcome], options: &RunOptions) -> Exit {
+fn printed(judged: Judged, options: &RunOptions) -> Exit {
     let is_text = options.format == Format::Text;
     let colour = is_text && output::colour();
-    let text = comparison_with_baseline_text(comparison, fail_on, colour);
+    let text = comparison_with_baseline_text(judged, colour);
     if is_text {
         return output::data(&text).map_or_else(io_failure, |()| Exit::Success);
     }
