@@ -9,11 +9,12 @@ use super::repeat_statistics::RepeatStatistics;
 use super::value::{Estimate, Metric};
 use crate::metrics::key::curve::{Column, Curve, CurveKey};
 use crate::metrics::key::metric::MetricKey;
+use crate::units::s_to_ms;
 
 /// Field of a bias stability: correlation of its means with those of raw.
 pub(crate) const RAW_CORRELATION: &str = "raw_correlation";
 /// Field of a delay: the same in samples.
-pub(crate) const DELAY_SAMPLES: &str = "delay_samples";
+const DELAY_SAMPLES: &str = "delay_samples";
 /// Field of every metric whose interval is a chi-square one.
 pub(crate) const DEGREES_OF_FREEDOM: &str = "degrees_of_freedom";
 
@@ -78,6 +79,19 @@ impl ChannelMetrics {
         self.metrics
             .entry(key.name.to_owned())
             .or_insert_with(|| Metric::new(estimate, key.unit))
+    }
+
+    /// Enters a delay of a metric in ms, and beside it the same in samples.
+    pub(crate) fn put_delay(
+        &mut self,
+        key: &MetricKey,
+        delay_s: Estimate,
+        sample_period_s: f64,
+    ) -> &mut Metric {
+        let metric = self.put(key, delay_s.scaled(s_to_ms(1.0)));
+        let delay_samples = delay_s.value / sample_period_s;
+        metric.fields.insert(DELAY_SAMPLES, delay_samples);
+        metric
     }
 
     /// Enters a curve, in place of an earlier one.

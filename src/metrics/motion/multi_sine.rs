@@ -7,7 +7,7 @@ use super::tracking::TRACKING_ERROR_RMS;
 use crate::metrics::estimate::blocks::{RATIO_BLOCKS, equal_block_means};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
-use crate::metrics::estimate::table::{ChannelMetrics, DELAY_SAMPLES};
+use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::curve::CurveKey;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
@@ -19,7 +19,6 @@ use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::sine::tones::{
     RESPONSE_COLUMNS, ToneClock, ToneFits, ToneResponse, fit_tones, put_responses,
 };
-use crate::units;
 
 /// Frequency response to the true rate.
 pub static FREQUENCY_RESPONSE: CurveKey = CurveKey::new(
@@ -154,11 +153,8 @@ fn put_lowest(
     metrics: &mut ChannelMetrics,
 ) {
     if let Some(lowest) = responses.first() {
-        let delay_ms = lowest.delay_s.scaled(units::s_to_ms(1.0));
-        let metric = metrics.put(key, delay_ms);
+        let metric = metrics.put_delay(key, lowest.delay_s, sample_period_s);
         metric.fields.insert("frequency_hz", lowest.frequency_hz);
-        let delay_samples = lowest.delay_s.value / sample_period_s;
-        metric.fields.insert(DELAY_SAMPLES, delay_samples);
     }
 }
 

@@ -12,7 +12,7 @@ use crate::metrics::estimate::influence::{Learned, Spread};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::paired::mean_spread;
 use crate::metrics::estimate::reason::Unavailable;
-use crate::metrics::estimate::table::{ChannelMetrics, DELAY_SAMPLES};
+use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::{Estimate, Metric};
 use crate::metrics::key::metric::{Against as Compared, Applies, Headline, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
@@ -252,10 +252,8 @@ fn measure_sines(
     let mut put_delay = |key: &MetricKey, reference: &SwingFit, against: Against| {
         let delay_s = fits.channel.delay_behind_s(reference);
         let delay_s = response.delay(delay_s, against).shifted(latency_s);
-        let metric = metrics.put(key, delay_s.scaled(units::s_to_ms(1.0)));
+        let metric = metrics.put_delay(key, delay_s, clock.sample_period_s);
         describe(metric);
-        let delay_samples = delay_s.value / clock.sample_period_s;
-        metric.fields.insert(DELAY_SAMPLES, delay_samples);
         if latency_s > 0.0 {
             let latency_us = units::s_to_us(latency_s);
             metric.fields.insert(LATENCY.name, latency_us);

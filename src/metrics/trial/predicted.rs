@@ -6,14 +6,13 @@ use super::noise_delay::{
 };
 use crate::metrics::estimate::influence::{Spread, spread};
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::table::{ChannelMetrics, DELAY_SAMPLES};
+use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::theory::bound::{NO_DELAY_AT_DC, filter_bound_at, noise_power_gain};
 use crate::metrics::theory::prediction::{Prediction, predict};
-use crate::units;
 
 /// DC gain predicted.
 pub static DC_GAIN_PREDICTED: MetricKey = MetricKey::of_filters(
@@ -157,8 +156,6 @@ fn put_delay_at_dc(
     let delay_s = samples
         .scaled(record.sample_period_s)
         .shifted(facts.latency_s);
-    let metric = metrics.put(&DELAY_AT_DC, delay_s.scaled(units::s_to_ms(1.0)));
-    let delay_samples = delay_s.value / record.sample_period_s;
-    metric.fields.insert(DELAY_SAMPLES, delay_samples);
+    metrics.put_delay(&DELAY_AT_DC, delay_s, record.sample_period_s);
     samples
 }

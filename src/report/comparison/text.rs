@@ -6,7 +6,7 @@ use crate::metrics::MetricKey;
 use crate::metrics::catalogue::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, MEAN_RATIO, NOISE_GAIN};
 use crate::metrics::{AgainstOne, Estimate, Finding, Metric};
 use crate::report::comparison::files::comparison_file_names;
-use crate::report::layout::text::{Grid, Tone, toned, wrapped};
+use crate::report::layout::text::{Grid, Tone, toned, with_unit, wrapped};
 use crate::report::record::columns::{heading_of, unit_text};
 use crate::wording::counted;
 
@@ -94,7 +94,8 @@ fn blocks(text: &mut String, table: &ComparedTable, colour: bool) {
             .chain(&columns)
             .find_map(|column| table.sample(*column))
             .map_or_else(String::new, unit_text);
-        text.push_str(&format!("{INDENT}{} [{unit}]\n", heading_of(metric)).replace(" []", ""));
+        let heading = with_unit(&heading_of(metric), &unit);
+        text.push_str(&format!("{INDENT}{heading}\n"));
         let mut grid = Grid::default();
         let mut heads = vec![String::new()];
         for column in &columns {
@@ -139,7 +140,7 @@ fn plain_grid(table: &ComparedTable, colour: bool) -> String {
         let definition = &table.columns[*column];
         let heading = heading_of(&definition.metric);
         let unit = table.sample(*column).map_or_else(String::new, unit_text);
-        format!("{} {heading} [{unit}]", definition.channels()).replace(" []", "")
+        with_unit(&format!("{} {heading}", definition.channels()), &unit)
     });
     let heads = std::iter::once(String::new()).chain(heads);
     grid.row(heads.map(|head| toned(&head, Tone::Heading, colour)));

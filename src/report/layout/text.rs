@@ -126,3 +126,11 @@ pub(crate) fn fitted(head: &str, parts: &[String], aside: &str, width: usize) ->
     line.push('\n');
     line
 }
+
+/// A name with its unit in brackets, where it has one.
+pub(crate) fn with_unit(name: &str, unit: &str) -> String {
+    match unit {
+        "" => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
+    }
+}

@@ -5,6 +5,7 @@ use super::drawing::panel::{LEFT, Legend, Panel, RIGHT, WIDTH};
 use super::drawing::picture::{Anchor, GREY, Picture, Shape, Stroke, text_width};
 use super::drawing::series::{extent, real, stroke_of};
 use crate::comparison::{ComparedCell, ComparedColumn, ComparedTable};
+use crate::report::layout::text::with_unit;
 use crate::report::record::columns::{heading_of, unit_text};
 
 /// Height of one panel with its titles, pixels.
@@ -147,7 +148,7 @@ fn title(table: &ComparedTable, column: usize) -> String {
     } else {
         ""
     };
-    format!("{}{ratio} [{unit}]", heading_of(&definition.metric)).replace(" []", "")
+    with_unit(&format!("{}{ratio}", heading_of(&definition.metric)), &unit)
 }
 
 /// Labels of the rows below a frame, in as many lines as each needs so that none meets its neighbours.

@@ -7,6 +7,7 @@ use super::super::drawing::panel::{LEFT, RIGHT};
 use super::super::drawing::picture::text_width;
 use super::super::drawing::series::real;
 use super::names::{self, short_names};
+use crate::report::layout::text::with_unit;
 use crate::report::record::run::RunOutcome;
 use crate::report::record::sweep::{swept_text, swept_value};
 use crate::scenario::unit_of_written;
@@ -115,7 +116,7 @@ impl SweptKey {
     }
 
     fn titled(&self, name: &str) -> String {
-        format!("{name} [{}]", self.unit).replace(" []", "")
+        with_unit(name, self.unit)
     }
 
     /// The value of a point as text.

@@ -73,10 +73,11 @@ pub(super) fn settings(
     if !is_named {
         legend.text(picture, &channel.name);
     }
-    for heading in keys_heading(plan) {
-        legend.text(picture, &heading);
+    let headings = keys_heading(plan);
+    for heading in &headings {
+        legend.text(picture, heading);
     }
-    let names = if keys_heading(plan).is_empty() {
+    let names = if headings.is_empty() {
         &plan.settings
     } else {
         &plan.values

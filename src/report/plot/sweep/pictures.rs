@@ -49,7 +49,7 @@ pub(in crate::report) fn pictures(name: &str, points: &[&RunOutcome]) -> Vec<Swe
         let title = heading(name, &key.title(), &plan);
         SweepPicture {
             name: format!("{}.svg", key.name.replace('_', "-")),
-            holds: format!("{} over {}", key.title(), plan.names()),
+            holds: format!("{} over {}", key.title(), plan.names(|key| &key.name)),
             picture: picture(&sheet, &title, &plan),
         }
     });
@@ -59,11 +59,11 @@ pub(in crate::report) fn pictures(name: &str, points: &[&RunOutcome]) -> Vec<Swe
 /// What a picture shows, in words that end before its edge.
 fn heading(name: &str, metric: &str, plan: &Layout) -> String {
     let text = |keys: String| format!("{name}: {metric} over {keys}");
-    let whole = text(plan.names());
+    let whole = text(plan.names(|key| &key.name));
     if text_width(&whole, HEADING_SIZE) <= ROOM {
         return whole;
     }
-    start(&text(plan.short_names()), HEADING_SIZE, ROOM)
+    start(&text(plan.names(|key| &key.short)), HEADING_SIZE, ROOM)
 }
 
 /// Whether the settings of the other keys have lines of their own, or else are the rows of a map.

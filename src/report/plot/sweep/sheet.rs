@@ -8,6 +8,7 @@ use super::super::drawing::series::extent;
 use super::keys::{SweptKey, is_log_span, others_text};
 use super::names;
 use crate::metrics::{Estimate, MetricKey};
+use crate::report::layout::text::with_unit;
 use crate::report::record::run::RunOutcome;
 use crate::wording::{counted, plain};
 
@@ -64,17 +65,10 @@ impl<'a> Layout<'a> {
         })
     }
 
-    /// The keys that differ, in words.
-    pub(super) fn names(&self) -> String {
-        let others = self.others.iter().map(|key| key.name.as_str());
-        let names = std::iter::once(self.along.name.as_str()).chain(others);
-        names.collect::<Vec<_>>().join(" and ")
-    }
-
-    /// As [`Self::names`], by their short names.
-    pub(super) fn short_names(&self) -> String {
-        let others = self.others.iter().map(|key| key.short.as_str());
-        let names = std::iter::once(self.along.short.as_str()).chain(others);
+    /// The keys that differ in words, each by the name that is taken of it.
+    pub(super) fn names(&self, name: fn(&SweptKey) -> &str) -> String {
+        let others = self.others.iter().map(|key| name(key));
+        let names = std::iter::once(name(self.along)).chain(others);
         names.collect::<Vec<_>>().join(" and ")
     }
 
@@ -135,16 +129,14 @@ impl Sheet {
         }
         channels.retain(|channel| channel.values.iter().any(Option::is_some));
         times_s.dedup();
+        let unit = Some(key.unit.to_owned()).filter(|unit| unit != "1");
         let time = match times_s[..] {
-            [Some(time_s)] => format!(", {} s", plain(time_s)),
-            _ => String::new(),
+            [Some(time_s)] => Some(format!("{} s", plain(time_s))),
+            _ => None,
         };
-        let unit = if key.unit == "1" { "" } else { key.unit };
-        let unit = format!(" [{unit}{time}]")
-            .replace("[, ", "[")
-            .replace(" []", "");
+        let parts: Vec<String> = unit.into_iter().chain(time).collect();
         Self {
-            title: format!("{}{unit}", key.title()),
+            title: with_unit(&key.title(), &parts.join(", ")),
             channels,
         }
     }
