@@ -5,7 +5,9 @@
 
 use crate::gyro::{self, Fidelity, GyroConfig, GyroError, MotionExtremes};
 use crate::report::{Starter, starter_toml};
-use crate::units::{deg_per_h_to_deg_per_s, deg_per_sqrt_h_to_deg_per_h_sqrt_s};
+use crate::units::{
+    EARTH_RATE_RAD_PER_S, deg_per_h_to_deg_per_s, deg_per_sqrt_h_to_deg_per_h_sqrt_s,
+};
 
 /// Highest output rate, Hz: that of the paper's gyro.
 const OUTPUT_RATE_MAX_HZ: f64 = 4000.0;
@@ -22,8 +24,6 @@ const DURATION_S: f64 = 100.0;
 const WARM_UP_S: f64 = 5.0;
 /// Most half periods that the loop model is asked for: some seconds.
 const HALF_PERIODS_MAX: f64 = 2e8;
-/// Most rotation of the Earth on the input axis, rad/s.
-const EARTH_RAD_PER_S: f64 = 7.3e-5;
 
 /// What somebody knows of a gyro.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,8 +110,8 @@ fn set_clocks(config: &mut GyroConfig) {
 /// The coarsest converters under which neither model has anything to say.
 fn with_converters(config: &GyroConfig) -> Result<GyroConfig, GyroError> {
     let rest = MotionExtremes {
-        rate_rad_per_s: EARTH_RAD_PER_S,
-        jump_rad_per_s: EARTH_RAD_PER_S,
+        rate_rad_per_s: EARTH_RATE_RAD_PER_S,
+        jump_rad_per_s: EARTH_RATE_RAD_PER_S,
         ..MotionExtremes::default()
     };
     // The walk of a data sheet has the rounding in it.

@@ -41,8 +41,8 @@ pub use crate::turntable::{
     ServoConfig, SiteConfig, Stairs, StaticConfig, StepsConfig, SwingConfig, TEST_RATES_MIN,
     TrapezoidConfig, TurntableConfig,
 };
-pub(crate) use check::cross::RESERVED;
 pub(crate) use check::cross::comparison::slug;
+pub(crate) use check::cross::{RESERVED, reserved};
 pub(crate) use check::leaf::is_name;
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, ComparisonColumn, ComparisonConfig,

@@ -6,17 +6,13 @@ use crate::cli::options::init::InitOptions;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::{complaint, output, place};
 use crate::experiment::starter_scenario;
-use crate::scenario::RESERVED;
+use crate::scenario::{RESERVED, reserved};
 use crate::store::SingleFile;
 
 /// Prints the scenario, or writes it where nothing stands yet.
 pub(in crate::cli) fn init(options: &InitOptions) -> io::Result<Exit> {
     if RESERVED.contains(&options.name.as_str()) {
-        complaint::print(&[format!(
-            "--name {} is a reserved name: {} have a meaning of their own",
-            options.name,
-            RESERVED.join(", ")
-        )]);
+        complaint::print(&[reserved(&format!("--name {}", options.name))]);
         return Ok(Exit::Usage);
     }
     let text = match starter_scenario(&options.name, &options.gyro()) {

@@ -75,12 +75,12 @@ impl Checks<'_> {
     fn names(&mut self) {
         let scenario = &self.resolved.scenario;
         if RESERVED.contains(&scenario.name.as_str()) {
-            self.complain("name", reserved("name", &scenario.name));
+            self.complain("name", reserved(&format!("name = \"{}\"", scenario.name)));
         }
         for (index, filter) in scenario.filters.iter().enumerate() {
             let path = format!("filter[{index}].name");
             if RESERVED.contains(&filter.name.as_str()) {
-                self.complain(&path, reserved(&path, &filter.name));
+                self.complain(&path, reserved(&format!("{path} = \"{}\"", filter.name)));
             }
             let earlier = scenario.filters[..index]
                 .iter()
@@ -244,10 +244,8 @@ impl Checks<'_> {
     }
 }
 
-/// The complaint about a reserved name.
-fn reserved(path: &str, name: &str) -> String {
-    format!(
-        "{path} = \"{name}\" is a reserved name: {} have a meaning of their own",
-        RESERVED.join(", ")
-    )
+/// The complaint about a reserved name, which `said` gives with where it stands.
+pub(crate) fn reserved(said: &str) -> String {
+    let names = RESERVED.join(", ");
+    format!("{said} is a reserved name: {names} have a meaning of their own")
 }
