@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::support::{code, fogbench, repository, stderr, stdout, write};
+use crate::support::{code, fogbench, repository, stderr, stdout, summary, write};
 
 /// A scenario that sets next to nothing.
 const BARE: &str = "schema = 1
@@ -75,11 +75,29 @@ fn a_bias_instability_that_says_an_assumption_again_is_told() {
     write(
         folder.path(),
         "bare.toml",
-        &format!("{long}[gyro.output]\nhalf_periods_per_sample = 6400\n"),
+        &format!(
+            "{long}[gyro.output]\nhalf_periods_per_sample = 6400\n\
+             [[gate]]\nmetric = \"raw.bias_instability_deg_per_h\"\nmax = 1.0\n\
+             [[gate]]\nmetric = \"raw.angle_random_walk_deg_per_sqrt_h\"\nmax = 1.0\n"
+        ),
     );
-    let text = in_a_row(&said(folder.path(), "run bare.toml"));
-    assert!(text.contains("the measured bias instability"), "{text}");
-    assert!(text.contains("say it again"), "{text}");
+    let text = in_a_row(&said(folder.path(), "run bare.toml -o out"));
+    let told = "the measured bias instability and rate random walk say it again";
+    assert!(text.contains(told), "{text}");
+    let key = "gyro.slow_noise.bias_instability_deg_per_h";
+    let told = format!("this says an assumption again: nobody set {key}");
+    assert_eq!(text.matches(&told).count(), 1, "{text}");
+    let result = summary(&folder.path().join("out"), "bare");
+    assert_eq!(result["gates"][0]["says_again"], key);
+    assert!(result["gates"][1]["says_again"].is_null());
+    let shaping = result["assumed"]["shaping"].as_array().expect("a list");
+    let entry = shaping.iter().find(|entry| entry["key"] == key);
+    let entry = entry.expect("the bias instability");
+    assert_eq!(
+        (&entry["value"], &entry["unit"]),
+        (&0.045.into(), &"deg/h".into())
+    );
+    assert!(result["assumed"]["count"].as_u64() > Some(100), "{result}");
     let set = "run bare.toml --set gyro.slow_noise.bias_instability_deg_per_h=0.1";
     assert!(!in_a_row(&said(folder.path(), set)).contains("the measured bias instability"));
 }

@@ -54,6 +54,14 @@ pub struct Verdict {
     pub location: Option<String>,
 }
 
+impl Verdict {
+    /// The metric without its channel.
+    pub(crate) fn metric_name(&self) -> &str {
+        let metric = self.metric.as_str();
+        metric.rsplit_once('.').map_or(metric, |(_, name)| name)
+    }
+}
+
 /// Number of gates that let the run go on as good.
 pub(crate) fn count_accepted(verdicts: &[Verdict]) -> usize {
     verdicts.iter().filter(|verdict| verdict.accepted).count()

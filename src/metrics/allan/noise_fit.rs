@@ -41,6 +41,7 @@ pub static BIAS_INSTABILITY: MetricKey = MetricKey::new(
 .heading("bias instability")
 .needs(Needs::SlowNoiseFit)
 .pooled(Pool::AllanFit)
+.echoing("gyro.slow_noise.bias_instability_deg_per_h")
 .tables(&[Table::Rest]);
 
 /// Rate random walk.
@@ -55,6 +56,7 @@ pub static RATE_RANDOM_WALK: MetricKey = MetricKey::new(
 .heading("rate random walk")
 .needs(Needs::SlowNoiseFit)
 .pooled(Pool::AllanFit)
+.echoing("gyro.slow_noise.rate_random_walk_deg_per_h_per_sqrt_h")
 .closing_tables();
 
 /// Rate ramp.

@@ -291,6 +291,8 @@ pub struct MetricKey {
     pub(crate) is_by_choice: bool,
     /// Whether it is slow noise, which the DC gain scales and no short filter of unit gain can lower.
     pub(crate) is_slow_noise: bool,
+    /// Key of a scenario that a record of its gyro gives back: assumed there, the metric says the assumption again.
+    pub(crate) echoes: Option<&'static str>,
     pub(crate) tables: &'static [Table],
     pub(crate) headlines: &'static [Headline],
     /// Whether it closes the table of every motion, where a channel has it.
@@ -330,6 +332,7 @@ impl MetricKey {
             is_of_one_motion: false,
             is_by_choice: false,
             is_slow_noise: false,
+            echoes: None,
             tables: &[],
             headlines: &[],
             closes_tables: false,
@@ -403,6 +406,14 @@ impl MetricKey {
     pub(crate) const fn of_blocks(self, of_blocks: OfBlocks) -> Self {
         Self {
             of_blocks: Some(of_blocks),
+            ..self
+        }
+    }
+
+    /// The same, giving back what a key of the scenario says.
+    pub(crate) const fn echoing(self, key: &'static str) -> Self {
+        Self {
+            echoes: Some(key),
             ..self
         }
     }

@@ -25,7 +25,8 @@ pub fn run_summary_json(report: &RunReport) -> String {
         .map(|(name, metrics)| (name.clone(), channel(metrics)))
         .collect();
     let published = report.scenario.published.iter().map(published).collect();
-    let gates = report.verdicts.iter().map(gate).collect();
+    let gates = report.verdicts.iter();
+    let gates = gates.map(|verdict| gate(report, verdict)).collect();
     let mut root = object([
         ("schema", SCHEMA.into()),
         ("tool", tool(report.tool_version)),
@@ -41,6 +42,9 @@ pub fn run_summary_json(report: &RunReport) -> String {
     }
     if let Some(sheet) = report.calibration {
         root.insert("calibration".to_owned(), calibration_json(sheet));
+    }
+    if report.assumed.count > 0 {
+        root.insert("assumed".to_owned(), assumed(report));
     }
     if !report.notes.is_empty() {
         root.insert("notes".to_owned(), report.notes.to_vec().into());
@@ -113,6 +117,23 @@ fn gyro(facts: &GyroFacts) -> Value {
     record.into()
 }
 
+/// What nobody set: the keys that shape the figures, and how many there are in all.
+fn assumed(report: &RunReport) -> Value {
+    let named = report.assumed.named.iter().map(|assumed| {
+        object([
+            ("key", assumed.key.as_str().into()),
+            ("value", swept_value(&assumed.value)),
+            ("unit", assumed.unit.into()),
+        ])
+    });
+    let named = named.map(Value::from).collect();
+    object([
+        ("count", report.assumed.count.into()),
+        ("shaping", Value::Array(named)),
+    ])
+    .into()
+}
+
 fn published(figure: &PublishedConfig) -> Value {
     let mut record = object([("metric", figure.metric.as_str().into())]);
     put(&mut record, "value", figure.value);
@@ -123,7 +144,7 @@ fn published(figure: &PublishedConfig) -> Value {
     record.into()
 }
 
-fn gate(verdict: &Verdict) -> Value {
+fn gate(report: &RunReport, verdict: &Verdict) -> Value {
     let mut record = object([
         ("metric", verdict.metric.as_str().into()),
         ("verdict", verdict.kind.as_str().into()),
@@ -149,6 +170,9 @@ fn gate(verdict: &Verdict) -> Value {
         if let Some(value) = value.filter(|value| !value.is_empty()) {
             record.insert(key.to_owned(), value.into());
         }
+    }
+    if let Some(key) = report.assumption_behind(verdict.metric_name()) {
+        record.insert("says_again".to_owned(), key.into());
     }
     record.into()
 }

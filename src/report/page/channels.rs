@@ -86,6 +86,9 @@ pub(super) fn all_metrics(report: &RunReport) -> Markup {
             tbody { @for key in known_metrics().iter().filter(has) { tr {
                 th scope="row" {
                     (key.title()) " " code.soft { (key.name) }
+                    @if let Some(assumption) = report.assumption_behind(key.name) {
+                        " " span.pill.doubt title={ "says again what nobody set: " (assumption) } { "assumed" }
+                    }
                     span.definition { (key.definition) }
                 }
                 td { (unit_word(key.unit)) }

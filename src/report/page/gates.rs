@@ -69,13 +69,19 @@ pub(super) fn verdict_word(verdict: &Verdict) -> (&'static str, &'static str) {
     }
 }
 
-/// Gates, each with the place that `place_of` gives it.
-pub(super) fn gates_table<'a>(
-    rows: impl IntoIterator<Item = (Option<Markup>, &'a Verdict)>,
-    label: &str,
-) -> Markup {
-    let rows: Vec<_> = rows.into_iter().collect();
-    let has_run = rows.iter().any(|(run, _)| run.is_some());
+/// A gate in a table.
+pub(super) struct GateRow<'a> {
+    /// Link to its run, in a table of several.
+    pub(super) run: Option<Markup>,
+    /// How it was judged.
+    pub(super) verdict: &'a Verdict,
+    /// The key that nobody set and that its metric says again.
+    pub(super) assumption: Option<&'static str>,
+}
+
+/// Gates, as intervals against their limits.
+pub(super) fn gates_table(rows: &[GateRow], label: &str) -> Markup {
+    let has_run = rows.iter().any(|row| row.run.is_some());
     let table = html! {
         table.sortable {
             thead { tr {
@@ -87,13 +93,14 @@ pub(super) fn gates_table<'a>(
                 th.num scope="col" { "limits" }
                 th scope="col" { "unit" }
             } }
-            tbody { @for (run, verdict) in &rows { tr {
+            tbody { @for GateRow { run, verdict, assumption } in rows { tr {
                 @let (word, class) = verdict_word(verdict);
                 td { span class={ "pill " (class) } { (word) } }
                 @if has_run { td { @if let Some(run) = run { (run) } } }
                 th scope="row" {
                     code { (verdict.metric) }
                     @if let Some(of) = &verdict.relative_to { span.soft { " relative to " (of) } }
+                    @if let Some(key) = assumption { " " span.pill.doubt title={ "says again what nobody set: " (key) } { "assumed" } }
                     @if !verdict.accepted || verdict.value.is_none() {
                         span.definition { (verdict.reason) @if let Some(place) = &verdict.location { " (" (portable_place(place)) ")" } }
                     }

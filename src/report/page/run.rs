@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::channels::{all_metrics, main_metrics, missing};
 use super::document::{by_value, document, facts, filter, maybe, section, wide};
-use super::gates::{gates_table, unit_word};
+use super::gates::{GateRow, gates_table, unit_word};
 use super::pictures::{Shown, capital, pictures};
 use super::repeats::repeats;
 use super::units::units;
@@ -142,12 +142,18 @@ fn gates(report: &RunReport) -> Markup {
         verdicts.sort_by_key(|verdict| verdict.accepted);
         verdicts.truncate(GATES_MAX);
     }
+    let rows = verdicts.into_iter().map(|verdict| GateRow {
+        run: None,
+        verdict,
+        assumption: report.assumption_behind(verdict.metric_name()),
+    });
+    let rows: Vec<GateRow> = rows.collect();
     section(
         "gates",
         "Gates",
         &html! {
             @if count == 0 { p.soft { "The scenario has no gates." } }
-            @else { (gates_table(verdicts.into_iter().map(|verdict| (None, verdict)), "gates")) }
+            @else { (gates_table(&rows, "gates")) }
             @if count > GATES_MAX { p { "The first " (GATES_MAX) " of " (count) " gates; all stand in " a href="summary.json" { "summary.json" } "." } }
         },
     )

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use super::against::comparison_section;
 use super::document::{by_value, document, facts, filter, maybe, section, wide};
-use super::gates::gates_table;
+use super::gates::{GateRow, gates_table};
 use super::pictures::{Shown, pictures};
 use super::run::{PAGE_BYTES_MAX, status_word};
 use crate::comparison::{ComparedTable, Comparison};
@@ -168,16 +168,18 @@ fn failed_gates(runs: &[RunOutcome]) -> Markup {
     let undecided = all()
         .filter(|(_, it)| it.accepted && it.kind == VerdictKind::Inconclusive)
         .count();
-    let rows = failed
-        .iter()
-        .take(GATES_MAX)
-        .map(|(run, verdict)| (Some(link(run)), *verdict));
+    let rows = failed.iter().take(GATES_MAX).map(|(run, verdict)| GateRow {
+        run: Some(link(run)),
+        verdict,
+        assumption: None,
+    });
+    let rows: Vec<GateRow> = rows.collect();
     section(
         "gates",
         "Gates that failed",
         &html! {
             @if failed.is_empty() { p { "None of " (all().count()) "." } }
-            @else { (gates_table(rows, "gates that failed")) }
+            @else { (gates_table(&rows, "gates that failed")) }
             @if failed.len() > GATES_MAX { p { "The first " (GATES_MAX) " of " (failed.len()) "; all stand in " a href="junit.xml" { "junit.xml" } "." } }
             @if undecided > 0 { p.soft { (undecided) " more were inconclusive, which their scenarios allow." } }
         },

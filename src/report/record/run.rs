@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::gate::{Verdict, VerdictKind, count_accepted, estimate_text, expects_failure};
-use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric};
+use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric, find};
 use crate::report::record::columns::{DIGITS, heading_of, headline, unit_text, value_text};
 use crate::report::record::sweep::{PointFigure, PointOfSweep, point_figures};
 use crate::scenario::{AssumedInShort, ReportedRuns, Scenario};
@@ -46,6 +46,13 @@ pub struct RunReport<'a> {
 const POINTS_SHOWN_MAX: usize = 100;
 
 impl RunReport<'_> {
+    /// The key that nobody set and that a metric only says again.
+    #[must_use]
+    pub(crate) fn assumption_behind(&self, metric: &str) -> Option<&'static str> {
+        let key = find(metric)?.echoes?;
+        self.assumed.names(key).then_some(key)
+    }
+
     /// How the run ended.
     #[must_use]
     pub fn status(&self) -> RunStatus {

@@ -1,12 +1,10 @@
 //! What `run` prints for one scenario.
 
-use crate::metrics::catalogue::{
-    ANGLE_RANDOM_WALK, BIAS_INSTABILITY, DELAY_VS_TRUTH, RATE_RANDOM_WALK,
-};
+use crate::metrics::catalogue::{ANGLE_RANDOM_WALK, DELAY_VS_TRUTH};
 use std::collections::BTreeMap;
 
 use crate::gate::{Verdict, VerdictKind, estimate_text, plain, three_digits};
-use crate::metrics::{ChannelMetrics, Metric, MetricKey, find};
+use crate::metrics::{ChannelMetrics, Metric, MetricKey, find, known_metrics};
 use crate::report::RunReport;
 use crate::report::budget::replacement;
 use crate::report::calibration::text::calibration_text;
@@ -24,17 +22,6 @@ use crate::wording::{counted, printable};
 /// What stands where there is no number.
 const NOTHING: &str = "-";
 const INDENT: &str = "  ";
-/// Metrics of the raw output that say again what a key of the slow noise says.
-const ECHOES: [(&MetricKey, &str); 2] = [
-    (
-        &BIAS_INSTABILITY,
-        "gyro.slow_noise.bias_instability_deg_per_h",
-    ),
-    (
-        &RATE_RANDOM_WALK,
-        "gyro.slow_noise.rate_random_walk_deg_per_h_per_sqrt_h",
-    ),
-];
 /// What the intervals of the table are.
 const INTERVALS: &str = "±: 95 % confidence for the mean over seeds of records like this one; a figure \
      without is exact or, as summary.json then says, has none";
@@ -60,7 +47,7 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
         text.push_str(&calibration_text(sheet, width, colour));
     }
     text.push_str(&published(report, colour));
-    text.push_str(&gates(report.verdicts, width, colour));
+    text.push_str(&gates(report, width, colour));
     for note in report.notes {
         let note = format!("{} {note}", toned("note:", Tone::Doubt, colour));
         text.push_str(&wrapped(&note, INDENT, width));
@@ -153,13 +140,17 @@ fn assumed_text(report: &RunReport) -> String {
         [] => String::new(),
         _ => format!("{}; ", named.join(", ")),
     };
-    let echoes = ECHOES.iter().filter(|(metric, key)| {
-        let is_shown = |(name, metrics): &(String, ChannelMetrics)| {
-            report.scenario.is_raw(name) && metrics.get(metric).is_some()
-        };
-        assumed.names(key) && report.channels.iter().any(is_shown)
-    });
-    let echoes: Vec<String> = echoes.map(|(metric, _)| metric.title()).collect();
+    let is_shown = |metric: &MetricKey| {
+        let mut raw = report
+            .channels
+            .iter()
+            .filter(|(name, _)| report.scenario.is_raw(name));
+        raw.any(|(_, metrics)| metrics.get(metric).is_some())
+    };
+    let echoes = known_metrics().iter();
+    let echoes = echoes.filter(|metric| report.assumption_behind(metric.name).is_some());
+    let echoes = echoes.filter(|metric| is_shown(metric));
+    let echoes: Vec<String> = echoes.map(|metric| metric.title()).collect();
     let echoed = match echoes[..] {
         [] => String::new(),
         _ => format!("the measured {} say it again; ", echoes.join(" and ")),
@@ -453,13 +444,19 @@ fn simulated<'a>(
 }
 
 /// One line per gate: `PASS  rls.delay_vs_raw_ms: 0.340 ms ... lies inside [0.33, 0.35] ms`.
-fn gates(verdicts: &[Verdict], width: usize, colour: bool) -> String {
-    if verdicts.is_empty() {
+fn gates(report: &RunReport, width: usize, colour: bool) -> String {
+    if report.verdicts.is_empty() {
         return String::new();
     }
     let mut text = String::from("\n");
-    for verdict in verdicts {
-        text.push_str(&wrapped(&gate_line(verdict, colour), INDENT, width));
+    for verdict in report.verdicts {
+        let mut line = gate_line(verdict, colour);
+        if let Some(key) = report.assumption_behind(verdict.metric_name()) {
+            line.push_str(&format!(
+                "; this says an assumption again: nobody set {key}"
+            ));
+        }
+        text.push_str(&wrapped(&line, INDENT, width));
     }
     text
 }
