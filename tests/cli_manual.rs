@@ -25,6 +25,7 @@ fn the_reference_is_printed_by_key_and_by_table() {
         "reference filter.rls.taps",
         "reference filter.moving_average",
         "reference duration_s",
+        "reference gate.max",
         "reference gyro.nosie",
         "reference filter.rls.tap",
         "reference gyro.noise.shot.x",

@@ -129,12 +129,14 @@ impl Print {
     }
 
     /// Writes one key below the header of its table.
-    pub(in crate::scenario::generate) fn lone(&mut self, table: &str, key: &Key, is_live: bool) {
-        if table.is_empty() {
+    ///
+    /// `header` is that of its table, brackets and all; empty at the root.
+    pub(in crate::scenario::generate) fn lone(&mut self, header: &str, key: &Key, is_live: bool) {
+        if header.is_empty() {
             return self.root_key(key);
         }
         let mark = if is_live { "" } else { ALTERNATIVE };
-        self.line(&format!("{mark}[{table}]"));
+        self.line(&format!("{mark}{header}"));
         self.documented(mark, key);
     }
 

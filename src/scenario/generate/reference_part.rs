@@ -36,7 +36,7 @@ struct Reached {
     schema_path: String,
     /// The row, unless it is the whole file.
     row: Option<&'static Row>,
-    /// Path of the table that it stands in.
+    /// Header of the table that it stands in; empty at the root.
     parent: String,
     /// Whether it stands by default.
     is_live: bool,
@@ -85,7 +85,11 @@ impl Reached {
             path: join(&self.path, name),
             schema_path: join(&self.schema_path, name) + schema_name,
             row: Some(row),
-            parent: self.path,
+            parent: match self.path.as_str() {
+                "" => String::new(),
+                path if self.is_element => format!("[[{path}]]"),
+                path => format!("[{path}]"),
+            },
             is_live: self.is_live && !is_other && !is_element && row.presence != Presence::Optional,
             is_element,
         })
