@@ -30,6 +30,14 @@ pub enum BaselineError {
         /// What may stand there.
         expected: &'static str,
     },
+    /// A digest that no scenario has.
+    #[error("{id}: digest = {digest:?} is no digest of a scenario: expected hexadecimal digits, as `baseline save` writes them")]
+    Digest {
+        /// Figure.
+        id: String,
+        /// What stands there.
+        digest: String,
+    },
     /// A name that no scenario can have.
     #[error("`{0}` holds a character that no name has")]
     Name(String),

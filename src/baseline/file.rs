@@ -190,6 +190,13 @@ fn check(id: &Id, written: &Written) -> Result<(), BaselineError> {
             "above 0, or left out",
         )?;
     }
+    let is_hex = |digit| matches!(digit, '0'..='9' | 'a'..='f');
+    if written.digest.is_empty() || !written.digest.chars().all(is_hex) {
+        return Err(BaselineError::Digest {
+            id: id.to_string(),
+            digest: written.digest.clone(),
+        });
+    }
     if id.to_string().chars().any(char::is_control) {
         return Err(BaselineError::Name(
             id.to_string().escape_debug().to_string(),

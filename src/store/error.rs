@@ -13,6 +13,8 @@ pub enum Foreign {
     Changed,
     /// It stands where a record belongs, and holds none.
     NoRecord,
+    /// It is a file in a place where none is replaced unasked.
+    Present,
     /// It is a symbolic link.
     Link,
     /// It is a file that goes by another name as well.
@@ -33,6 +35,7 @@ impl fmt::Display for Foreign {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.write_str(match self {
             Self::Unknown => "was not written by fogbench",
+            Self::Present => "stands there already",
             Self::Changed => "was changed after fogbench wrote it",
             Self::NoRecord => "is no record that fogbench wrote, or was damaged",
             Self::Link => "is a symbolic link",
@@ -77,7 +80,7 @@ pub enum StoreError {
     #[error(
         "{} {reason}: nothing was done; choose another name{}",
         path.display(),
-        if *reason == Foreign::Unknown { ", or replace it with --force" } else { "" }
+        if matches!(reason, Foreign::Unknown | Foreign::Present) { ", or replace it with --force" } else { "" }
     )]
     FileNotOurs {
         /// The file.

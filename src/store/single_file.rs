@@ -13,8 +13,9 @@ use super::flush::flush_folder;
 pub struct SingleFile<'a> {
     /// Its path.
     pub path: &'a Path,
-    /// Whether a text is one that the tool wrote here.
-    pub is_ours: fn(&str) -> bool,
+    /// Whether a text is one that the tool wrote here, and may replace; none where it replaces nothing
+    /// unasked but an empty file.
+    pub is_ours: Option<fn(&str) -> bool>,
     /// Whether another file is replaced too; links and folders never are.
     pub force: bool,
 }
@@ -43,10 +44,11 @@ impl SingleFile<'_> {
             return refused(Foreign::NoFile);
         }
         let text = read_text(self.path).map_err(&at)?;
-        if self.force || text.is_some_and(|text| (self.is_ours)(&text)) {
+        let is_ours = self.is_ours.unwrap_or(str::is_empty);
+        if self.force || text.is_some_and(|text| is_ours(&text)) {
             return Ok(());
         }
-        refused(Foreign::Unknown)
+        refused(self.is_ours.map_or(Foreign::Present, |_| Foreign::Unknown))
     }
 
     /// Writes the file whole or not at all.
@@ -92,7 +94,7 @@ mod tests {
     fn file(path: &Path) -> SingleFile<'_> {
         SingleFile {
             path,
-            is_ours: |text| text.starts_with("ours"),
+            is_ours: Some(|text| text.starts_with("ours")),
             force: false,
         }
     }

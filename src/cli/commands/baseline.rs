@@ -26,7 +26,7 @@ fn save(options: &SaveOptions) -> Result<(), Exit> {
     let path = options.output.as_path();
     let file = SingleFile {
         path,
-        is_ours: str::is_empty,
+        is_ours: None,
         force: options.force,
     };
     let is_baseline = std::fs::read_to_string(path).is_ok_and(|text| is_baseline_toml(&text));
@@ -68,7 +68,7 @@ fn update(options: &UpdateOptions) -> io::Result<Exit> {
     }
     let file = SingleFile {
         path,
-        is_ours: is_baseline_toml,
+        is_ours: Some(is_baseline_toml),
         force: false,
     };
     Ok(match file.write(&to_toml(&later)) {

@@ -3,10 +3,10 @@
 use std::io;
 use std::path::Path;
 
-use crate::baseline::{Judged, Side, compare as compare_sides};
+use crate::baseline::{Judged, Outcome, Side, compare as compare_sides};
 use crate::cli::options::baseline::{CompareOptions, ComparisonFormat, FailOn};
 use crate::cli::terminal::exit::Exit;
-use crate::cli::terminal::{output, place};
+use crate::cli::terminal::{complaint, output, place};
 use crate::experiment::{SideError, read_side};
 use crate::report::{
     ComparedSides, comparison_page, comparison_with_baseline_json,
@@ -16,9 +16,13 @@ use crate::store::SingleFile;
 
 /// Prints what differs, and fails on what it is to fail on.
 pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
+    let fail_on = match outcomes(&options.fail_on) {
+        Ok(fail_on) => fail_on,
+        Err(exit) => return Ok(exit),
+    };
     let page = options.html.as_deref().map(|path| SingleFile {
         path,
-        is_ours: is_comparison_page,
+        is_ours: Some(is_comparison_page),
         force: options.force,
     });
     let read = [options.old.as_path(), options.new.as_path()];
@@ -30,7 +34,6 @@ pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
         Ok(sides) => sides,
         Err(exit) => return Ok(exit),
     };
-    let fail_on = FailOn::outcomes(&options.fail_on);
     let comparison = compare_sides(&old, &new);
     let judged = comparison.judged(&fail_on);
     output::data(&match options.format {
@@ -50,6 +53,17 @@ pub(in crate::cli) fn compare(options: &CompareOptions) -> io::Result<Exit> {
     Ok(match page.write(&comparison_page(&compared)) {
         Ok(()) => exit,
         Err(error) => exit.worst(place::refused(&error)),
+    })
+}
+
+/// The outcomes that are to fail.
+///
+/// A refusal is printed before its exit code is returned.
+pub(in crate::cli) fn outcomes(list: &[FailOn]) -> Result<Vec<Outcome>, Exit> {
+    FailOn::outcomes(list).ok_or_else(|| {
+        let said = "--fail-on never stands alone: it says that nothing fails";
+        complaint::print(&[said.to_owned()]);
+        Exit::Usage
     })
 }
 

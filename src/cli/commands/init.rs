@@ -29,7 +29,7 @@ pub(in crate::cli) fn init(options: &InitOptions) -> io::Result<Exit> {
     let file = SingleFile {
         path,
         // A scenario is its owner's to edit: none is replaced unasked, be it one that was begun here.
-        is_ours: str::is_empty,
+        is_ours: None,
         force: options.force,
     };
     Ok(match file.write(&text) {

@@ -72,7 +72,8 @@ fn text(plans: &[Plan]) -> String {
         // Points of a sweep differ in nothing else.
         let about = match (&resolved.sweep, &scenario.description) {
             (Some(point), _) => assignments_text(&point.assignments),
-            (None, Some(description)) => description.clone(),
+            // A line for each run, however many its description has.
+            (None, Some(description)) => description.lines().collect::<Vec<_>>().join(" "),
             (None, None) => resolved.shown_file(),
         };
         // Writing to a string cannot fail.

@@ -26,7 +26,7 @@ pub(in crate::cli) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
     }
     let kalman = options.kalman.as_deref().map(|path| SingleFile {
         path,
-        is_ours: is_kalman_json,
+        is_ours: Some(is_kalman_json),
         force: options.log.force,
     });
     if let Some(file) = kalman

@@ -25,7 +25,7 @@ pub(in crate::cli) fn man(options: &ManOptions) -> io::Result<Exit> {
     let paths: Vec<_> = paths.collect();
     let file = |path| SingleFile {
         path,
-        is_ours: is_page,
+        is_ours: Some(is_page),
         force: options.force,
     };
     // Everything is looked at before anything is written.

@@ -28,8 +28,11 @@ pub(in crate::cli) enum FailOn {
 }
 
 impl FailOn {
-    /// The outcomes of a list.
-    pub(in crate::cli) fn outcomes(list: &[Self]) -> Vec<Outcome> {
+    /// The outcomes of a list; none where it says that something fails and that nothing does.
+    pub(in crate::cli) fn outcomes(list: &[Self]) -> Option<Vec<Outcome>> {
+        if list.contains(&Self::Never) && list.iter().any(|fail_on| *fail_on != Self::Never) {
+            return None;
+        }
         let outcomes = list.iter().filter_map(|fail_on| match fail_on {
             Self::Worse => Some(Outcome::Worse),
             Self::Removed => Some(Outcome::Removed),
@@ -40,7 +43,7 @@ impl FailOn {
             Self::Better => Some(Outcome::Better),
             Self::Never => None,
         });
-        outcomes.collect()
+        Some(outcomes.collect())
     }
 }
 

@@ -1,9 +1,8 @@
 //! What `run --baseline` prints: how the results of a suite compare with earlier ones.
 
 use crate::baseline::Judged;
-use crate::cli::commands::compare::{exit_of, refused, side};
+use crate::cli::commands::compare::{exit_of, outcomes, refused, side};
 use crate::cli::options::arguments::RunOptions;
-use crate::cli::options::baseline::FailOn;
 use crate::cli::options::format::Format;
 use crate::cli::terminal::exit::{Exit, io_failure};
 use crate::cli::terminal::output;
@@ -15,10 +14,11 @@ use crate::report::{comparison_with_baseline_markdown, comparison_with_baseline_
 /// A refusal is printed before its exit code is returned.
 pub(super) fn earlier(options: &RunOptions) -> Result<Option<Earlier>, Exit> {
     let select = &options.select;
+    let fail_on = outcomes(&options.against.fail_on)?;
     let side = options.against.baseline.as_deref().map(side).transpose()?;
     Ok(side.map(|side| Earlier {
         side,
-        fail_on: FailOn::outcomes(&options.against.fail_on),
+        fail_on: fail_on.clone(),
         // Whoever names a file or a scenario asks for that alone.
         is_whole: select.names.is_empty() && select.paths.iter().all(|path| path.is_dir()),
     }))

@@ -137,7 +137,7 @@ fn files(options: &RunOptions) -> impl Iterator<Item = (Kind, SingleFile<'_>)> {
     asked.into_iter().filter_map(|(kind, path)| {
         let file = SingleFile {
             path: path.as_deref()?,
-            is_ours: kind.is_ours(),
+            is_ours: Some(kind.is_ours()),
             force: options.force,
         };
         Some((kind, file))
