@@ -123,7 +123,12 @@ fn a_worse_figure_ends_with_1_and_is_named_with_what_it_was_judged_by() {
         (&"mean".into(), &arw.into())
     );
     assert_eq!(worse["basis"], "same noise");
-    for (fail_on, ends) in [("never", 0), ("changed", 0), ("removed,worse", 1), ("worse,never", 2)] {
+    for (fail_on, ends) in [
+        ("never", 0),
+        ("changed", 0),
+        ("removed,worse", 1),
+        ("worse,never", 2),
+    ] {
         let output = fogbench(at, &["compare", "old", "new", "--fail-on", fail_on]);
         assert_eq!(code(&output), ends, "{fail_on}");
     }

@@ -169,6 +169,7 @@ fn facts() -> FilterFacts {
         block_weights: Vec::new(),
         block_dc_gains_adapted: Vec::new(),
         learning: None,
+        weights_of_other_runs: Vec::new(),
         added_rate_deg_per_h: 1.0,
         rate_gains: vec![RateGain {
             rate_deg_per_s: 1.0,

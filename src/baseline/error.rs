@@ -31,7 +31,9 @@ pub enum BaselineError {
         expected: &'static str,
     },
     /// A digest that no scenario has.
-    #[error("{id}: digest = {digest:?} is no digest of a scenario: expected hexadecimal digits, as `baseline save` writes them")]
+    #[error(
+        "{id}: digest = {digest:?} is no digest of a scenario: expected hexadecimal digits, as `baseline save` writes them"
+    )]
     Digest {
         /// Figure.
         id: String,

@@ -20,6 +20,7 @@ const WEIGHT_BLOCKS: usize = 10;
 /// Filter channel state during a run.
 pub(super) struct ChannelFilter {
     name: String,
+    kind: FilterKind,
     settings: Option<PipelineSettings>,
     shape: FilterShape,
     filter: Arithmetic,
@@ -78,6 +79,8 @@ impl Restarts {
 pub(super) struct FinishedFilter {
     /// Channel name.
     pub(super) name: String,
+    /// What it is.
+    pub(super) kind: FilterKind,
     /// Input samples that the filter weighs, and the rule of its weights.
     pub(super) shape: FilterShape,
     /// Whether it started afresh within the record.
@@ -183,6 +186,7 @@ impl ChannelFilter {
         let adapts = matches!(shape.rule, WeightRule::Adaptive { .. });
         Self {
             name,
+            kind: kind.clone(),
             settings: kind.settings().hardware(),
             shape,
             weight_totals: std::array::from_fn(|_| vec![0.0; filter.as_filter().weights().len()]),
@@ -337,6 +341,7 @@ impl ChannelFilter {
         };
         FinishedFilter {
             name: self.name,
+            kind: self.kind,
             shape: self.shape,
             restarts: self.restarts.is_some(),
             words,

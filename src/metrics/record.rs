@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::allan::variants::AllanOptions;
 use super::estimate::blocks::RATIO_BLOCKS;
 use super::estimate::influence::Learned;
-use super::estimate::interval::round_to_count;
+use super::estimate::interval::{self, round_to_count};
 use super::estimate::value::Estimate;
 use super::theory::learning::{LearnedWeights, Learning, NOT_FROM_ONE_RECORD};
 use super::theory::prediction::Prediction;
@@ -152,6 +152,9 @@ pub struct FilterFacts {
     /// What it has learned from each stretch of its words, if it is a least-squares filter that
     /// remembers more than a tenth of the record.
     pub learning: Option<Learning>,
+    /// Mean weights of runs from its initial state on the same motion and other noise, if these differ
+    /// by more than the blocks of the record show; else empty.
+    pub weights_of_other_runs: Vec<Vec<f64>>,
     /// The added rate, deg/h.
     pub added_rate_deg_per_h: f64,
     /// Gains for constant rates of other sizes; empty where none was asked for.
@@ -168,6 +171,8 @@ pub(crate) enum WeightScatter {
     Blocks,
     /// They forget nothing, and what they learned is known.
     Learned(LearnedWeights),
+    /// They are what noise made of them before the record: those of runs on other noise.
+    Runs(Vec<Vec<f64>>),
     /// They forget nothing, and one record does not tell; why.
     Unknown(&'static str),
 }
@@ -181,6 +186,7 @@ impl WeightScatter {
     ) -> Option<Learned> {
         match (self, weights) {
             (Self::Learned(learned), Some(weights)) => Some(learned.scatter(weights, of)),
+            (Self::Runs(runs), _) => Some(scatter_of_runs(runs, of)),
             _ => None,
         }
     }
@@ -194,10 +200,26 @@ impl WeightScatter {
     }
 }
 
+/// What each of two runs or more adds to the scatter of a function of the weights, a record being one.
+fn scatter_of_runs(runs: &[Vec<f64>], of: impl Fn(&[f64]) -> f64) -> Learned {
+    let values: Vec<f64> = runs.iter().map(|weights| of(weights)).collect();
+    let mean = interval::mean(&values);
+    let freedom = values.len() as f64 - 1.0;
+    let parts = values.iter().map(|value| (value - mean) / freedom.sqrt());
+    Learned {
+        parts: parts.collect(),
+        warm_up: runs.len(),
+        freedom,
+    }
+}
+
 impl FilterFacts {
     /// How the weights scatter that the filter has in the mean over a record of so many samples,
     /// from the part `from` of it on.
     pub(crate) fn weight_scatter(&self, samples: usize, from: f64) -> WeightScatter {
+        if self.weights_of_other_runs.len() > 1 {
+            return WeightScatter::Runs(self.weights_of_other_runs.clone());
+        }
         if !Learning::is_of(&self.shape, samples) {
             return WeightScatter::Blocks;
         }

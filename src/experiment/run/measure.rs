@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::allan_settings::allan_options;
 use super::assembly_motion::drop_lacking;
 use super::motion::motion;
+use super::other_runs::runs_that_differ;
 use super::progress::{Progress, Unfinished, unless_stopped};
 use super::records::{RecordLength, stamp_s};
 use super::simulate::{GyroRecord, Simulation};
@@ -19,7 +20,7 @@ use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Learning, Motion, Record, Settings,
     known_motion, measure,
 };
-use crate::signal::SlowDrift;
+use crate::signal::{SlowDrift, WeightRule};
 
 /// Channels of one repeat with their metrics.
 pub(crate) type Channels = Vec<(String, ChannelMetrics)>;
@@ -153,17 +154,43 @@ impl Cut<'_> {
         if !Learning::is_of(&filter.shape, input.len() - first) {
             return None;
         }
-        let truth = &self.record.truth_deg_per_h;
         let is_at_rest = self.settings.motion == Motion::Steady;
-        if truth.is_empty() && !is_at_rest {
+        if self.record.truth_deg_per_h.is_empty() && !is_at_rest {
             return None;
         }
+        Learning::of(
+            &filter.shape,
+            input,
+            self.motion_in(input).as_deref(),
+            first,
+        )
+    }
+
+    /// What of the words is no noise; none at a rate that never changes.
+    fn motion_in(&self, words: &[f64]) -> Option<Vec<f64>> {
+        let truth = &self.record.truth_deg_per_h;
         let moves = truth
             .windows(2)
             .any(|two| two[0] < two[1] || two[1] < two[0]);
         let response = self.record.response_deg_per_h.as_deref();
-        let motion = moves.then(|| known_motion(input, response, truth));
-        Learning::of(&filter.shape, input, motion.as_deref(), first)
+        moves.then(|| known_motion(words, response, truth))
+    }
+
+    /// Mean weights of runs of a filter on other noise, if the blocks of its record do not show how they
+    /// scatter; of one that follows a gradient while the table moves.
+    fn weights_of_other_runs(&self, filter: &FinishedFilter, input: &[f64]) -> Vec<Vec<f64>> {
+        let follows_gradient = matches!(
+            filter.shape.rule,
+            WeightRule::Adaptive {
+                forgetting_factor: None,
+                ..
+            }
+        );
+        let tries = || {
+            let words = (input, &*self.motion_in(input)?);
+            runs_that_differ(filter, words, self.length, self.sample_period_s)
+        };
+        follows_gradient.then(tries).flatten().unwrap_or_default()
     }
 
     /// Variance over seeds of the slow noise in the mean of the record, (deg/h)^2.
@@ -186,6 +213,7 @@ impl Cut<'_> {
                         .then(|| self.learning(filter, input))
                         .flatten()
                         .map(|learning| learning.with_drift(self.drift_variance())),
+                    weights_of_other_runs: self.weights_of_other_runs(filter, input),
                     ..filter_facts(filter, words)
                 };
                 self.measure(&words.output_deg_per_h, input, Some(&facts))
@@ -209,6 +237,7 @@ fn filter_facts(filter: &FinishedFilter, words: &FilterWords) -> FilterFacts {
         block_weights: words.block_weights.clone(),
         block_dc_gains_adapted: words.block_dc_gains_adapted.clone(),
         learning: None,
+        weights_of_other_runs: Vec::new(),
         added_rate_deg_per_h: ADDED_RATE_DEG_PER_H,
         rate_gains: words.rate_gains.clone(),
         latency_s: pipeline_metrics::latency_s(filter.pipeline.as_ref()),

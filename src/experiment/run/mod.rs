@@ -5,6 +5,7 @@ pub(crate) mod assembly_motion;
 mod in_memory;
 mod measure;
 mod motion;
+mod other_runs;
 mod output_average;
 mod progress;
 mod rate_twins;

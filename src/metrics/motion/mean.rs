@@ -145,6 +145,12 @@ pub(crate) fn mean_spread_of(
     match scatter {
         WeightScatter::Blocks => Ok(fast().plus(drift)),
         WeightScatter::Unknown(reason) => Err(reason),
+        WeightScatter::Runs(_) => {
+            let gain = scatter.of(None, |weights| weights.iter().sum());
+            let level = interval::mean(record.raw_deg_per_h);
+            let by_gain = gain.map_or(Spread::known(0.0), |gain| gain.scaled(level).spread());
+            Ok(fast().plus(drift).plus(by_gain))
+        }
         WeightScatter::Learned(_) => {
             let learning = filter.and_then(|facts| facts.learning.as_ref());
             let learned = learning.and_then(|known| known.output_mean(is_at_rest));
@@ -229,7 +235,7 @@ pub(crate) fn paired_ratio(
         learned,
     ) {
         (WeightScatter::Blocks, _) => scatter.over(of.samples).scaled(over_level).about(of.ratio),
-        (WeightScatter::Learned(_), Some(learned)) => {
+        (WeightScatter::Learned(_) | WeightScatter::Runs(_), Some(learned)) => {
             let ends = scatter.ends_over(of.samples).scaled(over_level);
             learned.spread().plus(ends).about(of.ratio)
         }

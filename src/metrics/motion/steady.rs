@@ -98,7 +98,8 @@ pub(crate) fn measure_steady(
         ] {
             put_over_dc_gain(key, over, facts.dc_gain, metrics);
         }
-        if let WeightScatter::Learned(_) = facts.weight_scatter(samples, 0.0) {
+        let scatter = facts.weight_scatter(samples, 0.0);
+        if matches!(scatter, WeightScatter::Learned(_) | WeightScatter::Runs(_)) {
             widen_by_gain(&ANGLE_RANDOM_WALK, metrics);
         }
     }

@@ -367,7 +367,7 @@ fn measure_mean_ratio(
     });
     let estimate = match (weights, learned) {
         (WeightScatter::Blocks, _) => scatter.over(samples).scaled(1.0 / offset).about(ratio),
-        (WeightScatter::Learned(_), Some(learned)) => {
+        (WeightScatter::Learned(_) | WeightScatter::Runs(_), Some(learned)) => {
             let ends = scatter.ends_over(samples).scaled(1.0 / offset);
             learned.spread().plus(ends).about(ratio)
         }

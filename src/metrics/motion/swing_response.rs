@@ -54,7 +54,7 @@ impl Response {
         let scatter = filter.map_or(WeightScatter::Blocks, |facts| {
             facts.weight_scatter(samples, 0.0)
         });
-        let is_learned = matches!(scatter, WeightScatter::Learned(_));
+        let is_learned = matches!(scatter, WeightScatter::Learned(_) | WeightScatter::Runs(_));
         let learned = filter.filter(|_| is_learned).and_then(|facts| {
             let weights = facts.mean_weights.as_deref();
             let newest = facts.shape.newest_age_samples;
