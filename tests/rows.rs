@@ -170,6 +170,7 @@ fn facts() -> FilterFacts {
         block_dc_gains_adapted: Vec::new(),
         learning: None,
         weights_of_other_runs: Vec::new(),
+        two_runs: None,
         added_rate_deg_per_h: 1.0,
         rate_gains: vec![RateGain {
             rate_deg_per_s: 1.0,

@@ -129,7 +129,7 @@ pub(super) enum Arithmetic {
 }
 
 impl Arithmetic {
-    fn new(kind: &FilterKind, length: RecordLength, sample_period_s: f64) -> Self {
+    pub(super) fn new(kind: &FilterKind, length: RecordLength, sample_period_s: f64) -> Self {
         if let Some(settings) = kind.settings().hardware() {
             let filter = settings.filter(length.warm_up as u64);
             return Self::Hardware(filter.expect(CHECKED));
@@ -137,7 +137,7 @@ impl Arithmetic {
         Self::Textbook(kind.settings().build(sample_period_s))
     }
 
-    fn as_filter(&self) -> &dyn Filter {
+    pub(super) fn as_filter(&self) -> &dyn Filter {
         match self {
             Self::Textbook(filter) => filter.as_ref(),
             Self::Hardware(filter) => filter.as_ref(),

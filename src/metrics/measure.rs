@@ -11,6 +11,7 @@ use super::motion::steps::measure_steps;
 use super::motion::swing::measure_swing;
 use super::motion::tracking::measure_tracking;
 use super::noise::spectrum::{log_binned, put_spectrum, segment_samples, welch};
+use super::noise::two_runs::{TWO_RUN_NOISE_STD, put_two_runs};
 use super::pipeline::PIPELINE_ONLY;
 use super::pool::repeatability::repeats_lack;
 use super::record::{FilterFacts, Motion, Record, SAMPLES_MIN, Settings};
@@ -114,6 +115,9 @@ pub fn measure(
     if let Some(facts) = filter {
         put_dc_gains(record, facts, &mut metrics);
         put_rate_gains(facts, &mut metrics);
+        if check_motion(&TWO_RUN_NOISE_STD, &settings.motion).is_ok() {
+            put_two_runs(facts, samples, &mut metrics);
+        }
         put_frozen_response(facts, record.sample_period_s, &mut metrics);
     }
     metrics.keep_finite();

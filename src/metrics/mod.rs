@@ -76,6 +76,7 @@ pub use estimate::reason::Unavailable;
 pub use estimate::repeat_statistics::RepeatStatistics;
 pub use estimate::table::{ChannelFailure, ChannelMetrics};
 pub(crate) use estimate::text::{estimate_text, is_exact, plain, three_digits, wants_exponent};
+pub use estimate::two_runs::{DifferenceSums, TwoRuns};
 pub use estimate::value::{Estimate, IntervalKind, Metric};
 pub use key::curve::{Column, Curve, CurveKey};
 pub(crate) use key::metric::{Against, Headline, Table};

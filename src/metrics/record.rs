@@ -6,6 +6,7 @@ use super::allan::variants::AllanOptions;
 use super::estimate::blocks::RATIO_BLOCKS;
 use super::estimate::influence::Learned;
 use super::estimate::interval::{self, round_to_count};
+use super::estimate::two_runs::TwoRuns;
 use super::estimate::value::Estimate;
 use super::theory::learning::{LearnedWeights, Learning, NOT_FROM_ONE_RECORD};
 use super::theory::prediction::Prediction;
@@ -155,6 +156,9 @@ pub struct FilterFacts {
     /// Mean weights of runs from its initial state on the same motion and other noise, if these differ
     /// by more than the blocks of the record show; else empty.
     pub weights_of_other_runs: Vec<Vec<f64>>,
+    /// How its output differs from that of a run on the same motion and other noise, if it adapts and the
+    /// table moves.
+    pub two_runs: Option<TwoRuns>,
     /// The added rate, deg/h.
     pub added_rate_deg_per_h: f64,
     /// Gains for constant rates of other sizes; empty where none was asked for.
@@ -171,8 +175,13 @@ pub(crate) enum WeightScatter {
     Blocks,
     /// They forget nothing, and what they learned is known.
     Learned(LearnedWeights),
-    /// They are what noise made of them before the record: those of runs on other noise.
-    Runs(Vec<Vec<f64>>),
+    /// They are what noise made of them before the record.
+    Runs {
+        /// Those of runs on other noise, over a block.
+        runs: Vec<Vec<f64>>,
+        /// Those of the blocks of the record.
+        blocks: Vec<Vec<f64>>,
+    },
     /// They forget nothing, and one record does not tell; why.
     Unknown(&'static str),
 }
@@ -186,7 +195,7 @@ impl WeightScatter {
     ) -> Option<Learned> {
         match (self, weights) {
             (Self::Learned(learned), Some(weights)) => Some(learned.scatter(weights, of)),
-            (Self::Runs(runs), _) => Some(scatter_of_runs(runs, of)),
+            (Self::Runs { runs, blocks }, _) => Some(beyond_blocks(runs, blocks, of)),
             _ => None,
         }
     }
@@ -200,14 +209,26 @@ impl WeightScatter {
     }
 }
 
-/// What each of two runs or more adds to the scatter of a function of the weights, a record being one.
-fn scatter_of_runs(runs: &[Vec<f64>], of: impl Fn(&[f64]) -> f64) -> Learned {
-    let values: Vec<f64> = runs.iter().map(|weights| of(weights)).collect();
+/// Variance of a function of the weights over runs on that over blocks, from which it is told to be greater:
+/// of seven runs and ten blocks it is exceeded by chance in one case of thirty.
+const RUNS_OVER_BLOCKS: f64 = 4.0;
+
+/// What each of two runs or more adds to the scatter of a function of the weights, a record being one,
+/// beyond what differs from block to block, which the blocks themselves tell.
+fn beyond_blocks(runs: &[Vec<f64>], blocks: &[Vec<f64>], of: impl Fn(&[f64]) -> f64) -> Learned {
+    let values = |weights: &[Vec<f64>]| weights.iter().map(|own| of(own)).collect::<Vec<f64>>();
+    let (values, of_blocks) = (values(runs), interval::sample_variance(&values(blocks)));
+    let variance = interval::sample_variance(&values);
+    let share = if variance > RUNS_OVER_BLOCKS * of_blocks {
+        1.0 - of_blocks / variance
+    } else {
+        0.0
+    };
     let mean = interval::mean(&values);
     let freedom = values.len() as f64 - 1.0;
-    let parts = values.iter().map(|value| (value - mean) / freedom.sqrt());
+    let scale = (share / freedom).sqrt();
     Learned {
-        parts: parts.collect(),
+        parts: values.iter().map(|value| (value - mean) * scale).collect(),
         warm_up: runs.len(),
         freedom,
     }
@@ -218,7 +239,10 @@ impl FilterFacts {
     /// from the part `from` of it on.
     pub(crate) fn weight_scatter(&self, samples: usize, from: f64) -> WeightScatter {
         if self.weights_of_other_runs.len() > 1 {
-            return WeightScatter::Runs(self.weights_of_other_runs.clone());
+            return WeightScatter::Runs {
+                runs: self.weights_of_other_runs.clone(),
+                blocks: self.block_weights.clone(),
+            };
         }
         if !Learning::is_of(&self.shape, samples) {
             return WeightScatter::Blocks;

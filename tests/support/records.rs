@@ -64,6 +64,7 @@ pub(crate) fn facts() -> FilterFacts {
         block_dc_gains_adapted: Vec::new(),
         learning: None,
         weights_of_other_runs: Vec::new(),
+        two_runs: None,
         mean_weights: None,
         added_rate_deg_per_h: 1.0,
         rate_gains: Vec::new(),

@@ -10,6 +10,7 @@ use super::other_runs::runs_that_differ;
 use super::progress::{Progress, Unfinished, unless_stopped};
 use super::records::{RecordLength, stamp_s};
 use super::simulate::{GyroRecord, Simulation};
+use super::two_runs::two_runs;
 use crate::experiment::campaign;
 use crate::experiment::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use crate::experiment::pipeline_metrics;
@@ -149,7 +150,12 @@ impl Cut<'_> {
     }
 
     /// What a filter has learned from its input; none where its motion is not known.
-    fn learning(&self, filter: &FinishedFilter, input: &[f64]) -> Option<Learning> {
+    fn learning(
+        &self,
+        filter: &FinishedFilter,
+        input: &[f64],
+        motion: Option<&[f64]>,
+    ) -> Option<Learning> {
         let first = self.length.warm_up;
         if !Learning::is_of(&filter.shape, input.len() - first) {
             return None;
@@ -158,12 +164,7 @@ impl Cut<'_> {
         if self.record.truth_deg_per_h.is_empty() && !is_at_rest {
             return None;
         }
-        Learning::of(
-            &filter.shape,
-            input,
-            self.motion_in(input).as_deref(),
-            first,
-        )
+        Learning::of(&filter.shape, input, motion, first)
     }
 
     /// What of the words is no noise; none at a rate that never changes.
@@ -177,8 +178,12 @@ impl Cut<'_> {
     }
 
     /// Mean weights of runs of a filter on other noise, if the blocks of its record do not show how they
-    /// scatter; of one that follows a gradient while the table moves.
-    fn weights_of_other_runs(&self, filter: &FinishedFilter, input: &[f64]) -> Vec<Vec<f64>> {
+    /// scatter; of one that follows a gradient.
+    fn weights_of_other_runs(
+        &self,
+        filter: &FinishedFilter,
+        words: (&[f64], &[f64]),
+    ) -> Vec<Vec<f64>> {
         let follows_gradient = matches!(
             filter.shape.rule,
             WeightRule::Adaptive {
@@ -186,10 +191,7 @@ impl Cut<'_> {
                 ..
             }
         );
-        let tries = || {
-            let words = (input, &*self.motion_in(input)?);
-            runs_that_differ(filter, words, self.length, self.sample_period_s)
-        };
+        let tries = || runs_that_differ(filter, words, self.length, self.sample_period_s);
         follows_gradient.then(tries).flatten().unwrap_or_default()
     }
 
@@ -207,13 +209,21 @@ impl Cut<'_> {
         let mut metrics = match &filter.words {
             Ok(words) => {
                 let input = self.record.filter_input_deg_per_h();
+                let adapts = matches!(filter.shape.rule, WeightRule::Adaptive { .. });
+                let motion = adapts.then(|| self.motion_in(input)).flatten();
+                let on_motion = motion.as_deref().map(|motion| (input, motion));
                 let facts = FilterFacts {
                     // What a filter learned before it started afresh is gone.
                     learning: (!filter.restarts)
-                        .then(|| self.learning(filter, input))
+                        .then(|| self.learning(filter, input, motion.as_deref()))
                         .flatten()
                         .map(|learning| learning.with_drift(self.drift_variance())),
-                    weights_of_other_runs: self.weights_of_other_runs(filter, input),
+                    weights_of_other_runs: on_motion
+                        .map(|words| self.weights_of_other_runs(filter, words))
+                        .unwrap_or_default(),
+                    two_runs: on_motion.and_then(|words| {
+                        two_runs(filter, words, self.length, self.sample_period_s)
+                    }),
                     ..filter_facts(filter, words)
                 };
                 self.measure(&words.output_deg_per_h, input, Some(&facts))
@@ -238,6 +248,7 @@ fn filter_facts(filter: &FinishedFilter, words: &FilterWords) -> FilterFacts {
         block_dc_gains_adapted: words.block_dc_gains_adapted.clone(),
         learning: None,
         weights_of_other_runs: Vec::new(),
+        two_runs: None,
         added_rate_deg_per_h: ADDED_RATE_DEG_PER_H,
         rate_gains: words.rate_gains.clone(),
         latency_s: pipeline_metrics::latency_s(filter.pipeline.as_ref()),

@@ -13,6 +13,7 @@ mod records;
 mod results;
 mod simulate;
 mod theory;
+mod two_runs;
 
 pub(crate) use allan_settings::allan_options;
 pub(crate) use assembly_motion::axis_index;

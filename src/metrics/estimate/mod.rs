@@ -11,4 +11,5 @@ pub(super) mod reason;
 pub(super) mod repeat_statistics;
 pub(super) mod table;
 pub(super) mod text;
+pub(super) mod two_runs;
 pub(super) mod value;

@@ -145,7 +145,7 @@ pub(crate) fn mean_spread_of(
     match scatter {
         WeightScatter::Blocks => Ok(fast().plus(drift)),
         WeightScatter::Unknown(reason) => Err(reason),
-        WeightScatter::Runs(_) => {
+        WeightScatter::Runs { .. } => {
             let gain = scatter.of(None, |weights| weights.iter().sum());
             let level = interval::mean(record.raw_deg_per_h);
             let by_gain = gain.map_or(Spread::known(0.0), |gain| gain.scaled(level).spread());
@@ -235,7 +235,11 @@ pub(crate) fn paired_ratio(
         learned,
     ) {
         (WeightScatter::Blocks, _) => scatter.over(of.samples).scaled(over_level).about(of.ratio),
-        (WeightScatter::Learned(_) | WeightScatter::Runs(_), Some(learned)) => {
+        (WeightScatter::Runs { .. }, Some(learned)) => {
+            let blocks = scatter.over(of.samples).scaled(over_level);
+            learned.spread().plus(blocks).about(of.ratio)
+        }
+        (WeightScatter::Learned(_), Some(learned)) => {
             let ends = scatter.ends_over(of.samples).scaled(over_level);
             learned.spread().plus(ends).about(of.ratio)
         }

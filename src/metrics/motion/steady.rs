@@ -99,7 +99,10 @@ pub(crate) fn measure_steady(
             put_over_dc_gain(key, over, facts.dc_gain, metrics);
         }
         let scatter = facts.weight_scatter(samples, 0.0);
-        if matches!(scatter, WeightScatter::Learned(_) | WeightScatter::Runs(_)) {
+        if matches!(
+            scatter,
+            WeightScatter::Learned(_) | WeightScatter::Runs { .. }
+        ) {
             widen_by_gain(&ANGLE_RANDOM_WALK, metrics);
         }
     }

@@ -367,7 +367,11 @@ fn measure_mean_ratio(
     });
     let estimate = match (weights, learned) {
         (WeightScatter::Blocks, _) => scatter.over(samples).scaled(1.0 / offset).about(ratio),
-        (WeightScatter::Learned(_) | WeightScatter::Runs(_), Some(learned)) => {
+        (WeightScatter::Runs { .. }, Some(learned)) => {
+            let blocks = scatter.over(samples).scaled(1.0 / offset);
+            learned.spread().plus(blocks).about(ratio)
+        }
+        (WeightScatter::Learned(_), Some(learned)) => {
             let ends = scatter.ends_over(samples).scaled(1.0 / offset);
             learned.spread().plus(ends).about(ratio)
         }

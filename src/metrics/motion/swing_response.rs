@@ -54,8 +54,7 @@ impl Response {
         let scatter = filter.map_or(WeightScatter::Blocks, |facts| {
             facts.weight_scatter(samples, 0.0)
         });
-        let is_learned = matches!(scatter, WeightScatter::Learned(_) | WeightScatter::Runs(_));
-        let learned = filter.filter(|_| is_learned).and_then(|facts| {
+        let learned = filter.and_then(|facts| {
             let weights = facts.mean_weights.as_deref();
             let newest = facts.shape.newest_age_samples;
             let frozen = |weights: &[f64]| Prediction::of_weights(weights.to_vec(), newest);
@@ -71,7 +70,7 @@ impl Response {
             paired_scatter(record, fits, clock, filter).map(|part| {
                 let count = fits.channel.samples();
                 // Weights that are still on their way show in the blocks, not in the ensemble.
-                if is_learned {
+                if matches!(scatter, WeightScatter::Learned(_)) {
                     part.ends_over(count)
                 } else {
                     part.over(count)

@@ -9,3 +9,4 @@ pub(super) mod memory;
 pub(super) mod pulse_fit;
 pub(super) mod spectrum;
 pub(super) mod truth_response;
+pub(super) mod two_runs;

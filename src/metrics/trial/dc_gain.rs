@@ -1,6 +1,6 @@
 //! DC gain of a filter, found by replay, and metrics restored by it.
 
-use crate::metrics::estimate::influence::Learned;
+use crate::metrics::estimate::influence::{Learned, Spread};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::{ChannelMetrics, EXPECTED};
@@ -79,6 +79,9 @@ pub(crate) fn put_dc_gains(record: &Record, facts: &FilterFacts, metrics: &mut C
         }
         let of_blocks = interval::from_parts(gain, blocks);
         match learned {
+            Some(learned) if matches!(scatter, WeightScatter::Runs { .. }) => {
+                learned.spread().plus(Spread::of(&of_blocks)).about(gain)
+            }
             Some(learned) => learned.spread().about(gain),
             None if matches!(scatter, WeightScatter::Learned(_)) => {
                 Estimate::without_interval(gain, NOT_FROM_ONE_RECORD)

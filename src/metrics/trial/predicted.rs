@@ -10,7 +10,7 @@ use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
-use crate::metrics::record::{FilterFacts, Record};
+use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::theory::bound::{NO_DELAY_AT_DC, filter_bound_at, noise_power_gain};
 use crate::metrics::theory::prediction::{Prediction, predict};
 
@@ -141,17 +141,19 @@ fn put_delay_at_dc(
     let delay =
         |weights: &[f64]| Prediction::of_weights(weights.to_vec(), newest).delay_at_dc_samples();
     let scatter = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
+    let of_blocks = || {
+        let blocks = facts.block_weights.iter();
+        let blocks: Vec<f64> = blocks.map(|block| delay(block)).collect();
+        interval::from_parts(delay_samples, &blocks)
+    };
     let samples = match scatter.of(facts.mean_weights.as_deref(), delay) {
+        Some(learned) if matches!(scatter, WeightScatter::Runs { .. }) => {
+            let blocks = Spread::of(&of_blocks());
+            learned.spread().plus(blocks).about(delay_samples)
+        }
         Some(learned) => learned.spread().about(delay_samples),
         None if facts.block_weights.is_empty() => interval::jackknife(delay_samples, left_out),
-        None => {
-            let blocks: Vec<f64> = facts
-                .block_weights
-                .iter()
-                .map(|block| delay(block))
-                .collect();
-            scatter.unless_unknown(interval::from_parts(delay_samples, &blocks))
-        }
+        None => scatter.unless_unknown(of_blocks()),
     };
     let delay_s = samples
         .scaled(record.sample_period_s)
