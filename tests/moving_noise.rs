@@ -32,8 +32,24 @@ cutoff_hz = 20.0
 /// A table of mass and friction.
 const DIRECT_DRIVE: &str = "[turntable.servo.direct_drive]\n";
 
-/// Printed noise and that of two seeds over the root of two, of every channel.
-fn printed_and_of_two_seeds(folder: &Path, name: &str, motion: &str) -> Vec<(String, f64, f64)> {
+/// Filters that adapt within a tenth of the record.
+const ADAPTIVE: &str = r#"
+[[filter]]
+name = "rls"
+[filter.rls]
+forgetting_factor = 0.98
+[[filter]]
+name = "lms"
+[filter.lms]
+"#;
+
+/// A metric of channels as printed, and the noise of two seeds over the root of two.
+fn printed_and_of_two_seeds(
+    folder: &Path,
+    (name, motion): (&str, &str),
+    channels: &[&str],
+    metric: &str,
+) -> Vec<(String, f64, f64)> {
     let base = repository("scenarios/base/fog70.toml");
     let text = format!(
         "schema = 1\nname = \"{name}\"\ndescription = \"Noise in motion.\"\nextends = {base:?}\n\
@@ -48,7 +64,7 @@ fn printed_and_of_two_seeds(folder: &Path, name: &str, motion: &str) -> Vec<(Str
         assert_eq!(code(&run), 0, "{}", stderr(&run));
     }
     let result = summary(&folder.join("out1"), name);
-    ["raw", "mean", "pole"]
+    channels
         .iter()
         .map(|channel| {
             let words =
@@ -65,7 +81,7 @@ fn printed_and_of_two_seeds(folder: &Path, name: &str, motion: &str) -> Vec<(Str
             let count = differences.len() as f64;
             let mean = differences.iter().sum::<f64>() / count;
             let square: f64 = differences.iter().map(|it| (it - mean).powi(2)).sum();
-            let printed = field(&result, &format!("{channel}.noise_std_deg_per_h"), "value");
+            let printed = field(&result, &format!("{channel}.{metric}"), "value");
             (
                 (*channel).to_owned(),
                 printed,
@@ -92,7 +108,14 @@ fn motion_of_the_table_never_counts_as_noise() {
         ("rotation", format!("{rotation}{DIRECT_DRIVE}")),
         ("steps", format!("{steps}{DIRECT_DRIVE}")),
     ] {
-        for (channel, printed, wanted) in printed_and_of_two_seeds(folder.path(), name, &motion) {
+        let channels = ["raw", "mean", "pole"];
+        let found = printed_and_of_two_seeds(
+            folder.path(),
+            (name, &motion),
+            &channels,
+            "noise_std_deg_per_h",
+        );
+        for (channel, printed, wanted) in found {
             // 10 s of 997 Hz, of the pole 600 independent samples: 3 %.
             let tolerance = match (channel.as_str(), name) {
                 ("pole", "steps") => 0.35,
@@ -102,5 +125,27 @@ fn motion_of_the_table_never_counts_as_noise() {
             println!("{name} {channel} {printed} {wanted}");
             assert_close(printed, wanted, tolerance, 0.0);
         }
+    }
+}
+
+#[test]
+fn two_runs_of_an_adaptive_filter_differ_as_two_seeds_do_and_the_parts_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let swing = "[turntable.swing]\nrate_amplitude_deg_per_s = 10.0\nfrequency_hz = 2.0\n";
+    let motion = format!("{swing}{ADAPTIVE}");
+    let metric = "two_run_noise_std_deg_per_h";
+    let found =
+        printed_and_of_two_seeds(folder.path(), ("swing", &motion), &["rls", "lms"], metric);
+    let result = summary(&folder.path().join("out1"), "swing");
+    for (channel, printed, wanted) in found {
+        println!("{channel} {printed} {wanted}");
+        assert_close(printed, wanted, 0.1, 0.0);
+        let part = |name: &str| field(&result, &format!("{channel}.{name}"), "value");
+        let through = part("noise_through_weights_deg_per_h");
+        let of_weights = part("weight_noise_times_motion_deg_per_h");
+        println!("{channel} {through} {of_weights}");
+        // The parts go together or against each other, by no more than their sizes.
+        assert!(printed <= through + of_weights, "{channel}");
+        assert!(printed >= (through - of_weights).abs(), "{channel}");
     }
 }

@@ -9,8 +9,8 @@ use std::sync::LazyLock;
 use fogbench::Scenario;
 use fogbench::metrics::catalogue::{BIAS_REPEATABILITY, SCALE_FACTOR_REPEATABILITY};
 use fogbench::metrics::{
-    Applies, ChannelMetrics, Dwell, FilterFacts, Motion, RateGain, Record, Staircase, aggregate,
-    known_curves, known_metrics, measure,
+    Applies, ChannelMetrics, Dwell, FilterFacts, Motion, RateGain, Record, Staircase, TwoRuns,
+    aggregate, known_curves, known_metrics, measure,
 };
 use fogbench::report::{Place, artefacts, curve_csv};
 use fogbench::signal::{FilterShape, WeightRule};
@@ -154,6 +154,23 @@ fn cases() -> Vec<Case> {
     ]
 }
 
+/// Two runs of a filter that differ by noise in all they can differ by.
+fn two_runs() -> TwoRuns {
+    let mut runs = TwoRuns::of_blocks(4);
+    for sums in [
+        &mut runs.whole,
+        &mut runs.through_weights,
+        &mut runs.of_weights,
+    ] {
+        for (block, sums) in sums.iter_mut().enumerate() {
+            white(block as u64, 50, 1.0)
+                .iter()
+                .for_each(|it| sums.take(*it));
+        }
+    }
+    runs
+}
+
 fn facts() -> FilterFacts {
     let weight = 1.0 / TAPS as f64;
     FilterFacts {
@@ -170,7 +187,7 @@ fn facts() -> FilterFacts {
         block_dc_gains_adapted: Vec::new(),
         learning: None,
         weights_of_other_runs: Vec::new(),
-        two_runs: None,
+        two_runs: Some(two_runs()),
         added_rate_deg_per_h: 1.0,
         rate_gains: vec![RateGain {
             rate_deg_per_s: 1.0,

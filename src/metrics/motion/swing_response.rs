@@ -54,7 +54,9 @@ impl Response {
         let scatter = filter.map_or(WeightScatter::Blocks, |facts| {
             facts.weight_scatter(samples, 0.0)
         });
-        let learned = filter.and_then(|facts| {
+        // What a gradient sees, the swing, it learns within a block, whatever noise left across it.
+        let is_learned = matches!(scatter, WeightScatter::Learned(_));
+        let learned = filter.filter(|_| is_learned).and_then(|facts| {
             let weights = facts.mean_weights.as_deref();
             let newest = facts.shape.newest_age_samples;
             let frozen = |weights: &[f64]| Prediction::of_weights(weights.to_vec(), newest);
@@ -70,7 +72,7 @@ impl Response {
             paired_scatter(record, fits, clock, filter).map(|part| {
                 let count = fits.channel.samples();
                 // Weights that are still on their way show in the blocks, not in the ensemble.
-                if matches!(scatter, WeightScatter::Learned(_)) {
+                if is_learned {
                     part.ends_over(count)
                 } else {
                     part.over(count)
