@@ -72,6 +72,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
             "comparison",
             "baseline",
             "report",
+            "seal",
             "store",
             "wording",
         ],

@@ -91,6 +91,7 @@ mod pulse_words;
 mod readers;
 mod recording;
 mod registry;
+mod replay;
 mod report;
 mod resume;
 mod rows;

@@ -27,6 +27,10 @@ pub enum Kind {
     Floats(Range),
     /// Non-empty array of texts, none of them empty.
     Texts,
+    /// Path of a file, relative to the file that names it.
+    File,
+    /// BLAKE3 digest in small hexadecimal digits.
+    Digest,
     /// Array of three binary64, one for each case axis x, y, z.
     Triple(Range),
     /// A table that holds no keys (an alternative with nothing to set).
@@ -34,6 +38,17 @@ pub enum Kind {
     /// The table of swept keys.
     Matrix,
 }
+
+impl Kind {
+    /// Whether it names files, which are found when the scenario is read.
+    #[must_use]
+    pub fn names_files(self) -> bool {
+        matches!(self, Self::File)
+    }
+}
+
+/// Digits of a [`Kind::Digest`].
+pub const DIGEST_DIGITS: usize = 64;
 
 /// Closed interval of finite binary64 values.
 ///

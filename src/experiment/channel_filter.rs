@@ -8,7 +8,7 @@
 use crate::experiment::run::{RateTwins, RecordLength};
 use crate::filters::hardware::{HardwareFilter, HealthSummary, PipelineSettings, PipelineTiming};
 use crate::filters::{Divergence, Filter, FilterKind, Output};
-use crate::metrics::RateGain;
+use crate::metrics::{ChannelFailure, RateGain};
 use crate::signal::{FilterShape, Section, WeightRule};
 
 /// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
@@ -83,7 +83,7 @@ pub(super) struct FinishedFilter {
     /// Whether it started afresh within the record.
     pub(super) restarts: bool,
     /// The words, or why there are none.
-    pub(super) words: Result<FilterWords, Divergence>,
+    pub(super) words: Result<FilterWords, ChannelFailure>,
     /// The hardware, if it is one.
     pub(super) pipeline: Option<FinishedPipeline>,
 }
@@ -119,6 +119,21 @@ pub(super) struct FilterWords {
     pub(super) block_weights: Vec<Vec<f64>>,
 }
 
+impl FilterWords {
+    /// Words of a filter that shows nothing else.
+    pub(super) fn alone(output_deg_per_h: Vec<f64>) -> Self {
+        Self {
+            output_deg_per_h,
+            dc_gain: None,
+            dc_gain_adapted: None,
+            block_dc_gains_adapted: Vec::new(),
+            rate_gains: Vec::new(),
+            mean_weights: None,
+            block_weights: Vec::new(),
+        }
+    }
+}
+
 /// Arithmetic that makes the words.
 pub(super) enum Arithmetic {
     Textbook(Box<dyn Filter>),
@@ -131,7 +146,8 @@ impl Arithmetic {
             let filter = settings.filter(length.warm_up as u64);
             return Self::Hardware(filter.expect(CHECKED));
         }
-        Self::Textbook(kind.settings().build(sample_period_s))
+        let filter = kind.settings().build(sample_period_s);
+        Self::Textbook(filter.expect("words from outside have no channel filter"))
     }
 
     fn as_filter(&self) -> &dyn Filter {
@@ -307,7 +323,7 @@ impl ChannelFilter {
         let measured = self.measured as f64;
         let mean = |total: f64| (self.measured > 0).then(|| total / measured);
         let words = match self.failure {
-            Some(divergence) => Err(divergence),
+            Some(divergence) => Err(diverged(&divergence)),
             None => Ok(FilterWords {
                 // Given weights have the gain that they settle on; their sum starts from nothing.
                 dc_gain: given_gain(&self.shape.rule).or_else(|| mean(self.weight_sum_total)),
@@ -320,11 +336,11 @@ impl ChannelFilter {
                         .map(|tap| mean(self.weight_totals.iter().map(|block| block[tap]).sum()))
                         .collect(),
                     WeightRule::Fixed(weights) => Some(weights.clone()),
-                    WeightRule::Sections(_) => None,
+                    WeightRule::Sections(_) | WeightRule::Hidden(_) => None,
                 },
                 block_weights: match &self.shape.rule {
                     WeightRule::Adaptive { .. } => self.block_weights(),
-                    WeightRule::Fixed(_) | WeightRule::Sections(_) => Vec::new(),
+                    _ => Vec::new(),
                 },
                 dc_gain_adapted: given_gain(&self.shape.rule).or_else(|| {
                     self.twin.as_ref().and_then(|_| {
@@ -381,6 +397,17 @@ impl ChannelFilter {
     }
 }
 
+/// Kind of the failure of a filter that diverged.
+pub(super) const DIVERGED: &str = "diverged";
+
+fn diverged(divergence: &Divergence) -> ChannelFailure {
+    ChannelFailure {
+        kind: DIVERGED.to_owned(),
+        sample: divergence.sample,
+        message: divergence.to_string(),
+    }
+}
+
 /// Gain of given weights for a rate that never changes; none of weights that adapt.
 fn given_gain(rule: &WeightRule) -> Option<f64> {
     let of_section = |section: &Section| {
@@ -390,6 +417,6 @@ fn given_gain(rule: &WeightRule) -> Option<f64> {
     match rule {
         WeightRule::Fixed(weights) => Some(weights.iter().sum()),
         WeightRule::Sections(sections) => Some(sections.iter().map(of_section).product()),
-        WeightRule::Adaptive { .. } => None,
+        WeightRule::Adaptive { .. } | WeightRule::Hidden(_) => None,
     }
 }

@@ -13,6 +13,7 @@ mod channel_filter;
 mod log;
 #[cfg(feature = "report")]
 mod output_file;
+mod outside;
 mod pipeline_metrics;
 mod plan;
 mod run;
@@ -43,7 +44,7 @@ pub use scenario::Scenario;
 #[cfg(feature = "report")]
 pub use starter::{StarterGyro, starter_scenario};
 #[cfg(feature = "hdl")]
-pub use stimulus::scenario_stimulus;
+pub use stimulus::{input_digest, scenario_stimulus};
 #[cfg(feature = "report")]
 pub use suite::{
     Against, Earlier, Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX,

@@ -66,6 +66,11 @@ impl LogFilters {
         &self.resolved.scenario.filters
     }
 
+    /// The scenario they are from.
+    pub(crate) fn resolved(&self) -> &Resolved {
+        &self.resolved
+    }
+
     /// Name and digest of the scenario they are from.
     pub(crate) fn source(&self) -> (String, String) {
         (self.resolved.file.clone(), self.resolved.digest.clone())

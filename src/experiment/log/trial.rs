@@ -9,6 +9,7 @@ use super::filters::LogFilters;
 use crate::experiment::build::VERSION;
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
 use crate::experiment::output_file::write_file;
+use crate::experiment::outside::{self, OutsideFilter};
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
 use crate::metrics::{
@@ -18,6 +19,7 @@ use crate::metrics::{
 use crate::recording::Log;
 use crate::report::{KalmanReport, LogReport, kalman_json, log_files};
 use crate::scenario::{AllanConfig, MotionConfig, SwingConfig};
+use crate::seal::digest_of_words;
 use crate::signal::RunSignals;
 use crate::store::{OutputFolder, StoreError};
 use crate::turntable::first_measured_index;
@@ -190,8 +192,10 @@ pub fn try_log(
     notes.splice(0..0, log.notes());
     if let Some(filters) = filters {
         notes.extend(filters.warnings(&record.raw_deg_per_h));
-        let of_pipelines = finished.iter();
-        notes.extend(of_pipelines.flat_map(|it| pipeline_metrics::notes(it, sample_period_s)));
+        for filter in &finished {
+            notes.extend(pipeline_metrics::notes(filter, sample_period_s));
+            notes.extend(outside::note(filter));
+        }
     }
     let compensated = is_compensated.then(|| {
         let measured = cut.measure_compensated();
@@ -262,9 +266,13 @@ fn run(
     sample_period_s: f64,
     words: &[f64],
 ) -> Vec<FinishedFilter> {
-    let configs = filters.configs().par_iter();
+    let configs = filters.configs().par_iter().enumerate();
     configs
-        .map(|config| {
+        .map(|(index, config)| {
+            if let Some(outside) = config.kind.settings().outside() {
+                let filter = OutsideFilter::of_log(filters.resolved(), index);
+                return filter.run(outside, words, length);
+            }
             let name = config.name.clone();
             let mut filter = ChannelFilter::new(name, &config.kind, length, sample_period_s, false);
             filter.process(words);
@@ -418,6 +426,8 @@ impl LogTrial {
             prefix: "",
             truth_deg_per_h: &[],
             encoder_rad: None,
+            input_digest: (!self.filters.is_empty())
+                .then(|| digest_of_words(self.record.filter_input_deg_per_h())),
             channels: std::iter::once(raw)
                 .chain(self.compensated_words())
                 .chain(self.filter_words())

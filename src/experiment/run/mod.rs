@@ -19,7 +19,7 @@ pub use in_memory::{Run, RunError, Samples, UnknownName};
 pub(crate) use measure::Cut;
 pub(crate) use motion::{motion, motion_extremes, rate_deg_per_h_max};
 pub use progress::Progress;
-pub(crate) use progress::Unfinished;
+pub(crate) use progress::{Unfinished, unless_stopped};
 pub(crate) use rate_twins::RateTwins;
 pub(crate) use records::{RecordLength, count};
 pub(crate) use results::{Results, run_plan};

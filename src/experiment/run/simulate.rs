@@ -24,7 +24,8 @@ const BLOCK_SAMPLES: usize = 1 << 14;
 pub(crate) struct Simulation {
     /// One gyro, or those of the case axes x, y, z.
     pub(crate) gyros: Vec<GyroRecord>,
-    /// The filters in the order of the file, each on every gyro in turn, with the index of the gyro.
+    /// The filters in the order of the file, each on every gyro in turn, with the index of the gyro; until
+    /// [`outside::complete`](crate::experiment::outside::complete) those of the bench alone.
     pub(in crate::experiment) filters: Vec<(usize, FinishedFilter)>,
     /// What the table's encoder shows at each stamp, rad; none if the table has none.
     pub(crate) encoder_rad: Option<Vec<f64>>,
@@ -188,7 +189,10 @@ fn channel_filters(
     sample_period_s: f64,
 ) -> Vec<(usize, ChannelFilter)> {
     let prefixes = scenario.axis_prefixes();
-    let filters = scenario.filters.iter().flat_map(|config| {
+    // Words from outside are put in place when the record stands.
+    let inside = scenario.filters.iter();
+    let inside = inside.filter(|config| config.kind.settings().outside().is_none());
+    let filters = inside.flat_map(|config| {
         let gyros = prefixes.iter().enumerate();
         gyros.map(move |(gyro, prefix)| {
             let name = format!("{prefix}{}", config.name);

@@ -1,5 +1,6 @@
 //! Checks of single values: type and range.
 
+use crate::declare::DIGEST_DIGITS;
 use crate::scenario::document::source::Mark;
 use crate::scenario::document::tree::{Node, Value};
 use crate::scenario::keys::schema::{self, Key, Kind, join};
@@ -71,6 +72,7 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
             true
         }
         (Kind::Name, Value::Text(name)) => is_name(name),
+        (Kind::Digest, Value::Text(digest)) => is_digest(digest),
         (Kind::Choice(words), Value::Text(word)) => words.contains(&word.as_str()),
         (Kind::EmptyTable, Value::Table(table)) => {
             if let Some(name) = table.keys().next() {
@@ -82,7 +84,7 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
             }
             true
         }
-        (Kind::Text, Value::Text(text)) => !text.trim().is_empty(),
+        (Kind::Text | Kind::File, Value::Text(text)) => !text.trim().is_empty(),
         (Kind::FreeText, Value::Text(_)) | (Kind::Boolean, Value::Boolean(_)) => true,
         (_, value) => return Err(wrong_type(key, shown, value).into()),
     };
@@ -217,6 +219,12 @@ pub(crate) fn is_name(name: &str) -> bool {
     }
 }
 
+/// Whether a text is a digest as it is spelt here.
+fn is_digest(text: &str) -> bool {
+    let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+    text.len() == DIGEST_DIGITS && text.bytes().all(is_digit)
+}
+
 /// The complaint about a value outside the allowed ones.
 fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
     let text = value.to_toml();
@@ -229,6 +237,7 @@ fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
                 hint(words, word)
             )
         }
+        (Kind::Digest, _) => format!("{shown} = {text} is no digest: expected {}", key.expected()),
         (Kind::Name, _) => format!(
             "{shown} = {text} is not a valid name: allowed {}",
             key.allowed()

@@ -17,7 +17,8 @@ use crate::scenario::keys::schema::Key;
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::read::resolved::{Resolved, configuration, digest};
 
-/// First names of keys that stand for files, which each point reads for itself.
+/// First names of keys that stand for files which are read with the scenario: each point reads them for
+/// itself, as it finds those that others name.
 const FILES: [&str; 2] = ["compensation", "turntable.script"];
 
 /// A resolved point and the places of its swept values.
@@ -48,7 +49,9 @@ impl Template {
                 key,
             })
             .collect();
-        let is_file = |slot: &Slot| FILES.iter().any(|name| slot.key.path.starts_with(name));
+        let is_file = |slot: &Slot| {
+            slot.key.kind.names_files() || FILES.iter().any(|name| slot.key.path.starts_with(name))
+        };
         if slots.iter().any(is_file) {
             return None;
         }
@@ -127,6 +130,7 @@ fn with_tree(run: &Resolved, tree: Table, text: &str) -> Result<Resolved, Vec<Sc
         tree,
         file: run.file.clone(),
         inputs: run.inputs.clone(),
+        named_files: run.named_files.clone(),
         sweep: None,
         warnings,
         remarks: run.remarks.clone(),
