@@ -10,6 +10,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
     ("declare", &[]),
     ("wording", &[]),
     ("seal", &[]),
+    ("program", &[]),
     ("linear_algebra", &[]),
     ("random", &["units"]),
     ("signal", &["units"]),
@@ -72,6 +73,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
             "comparison",
             "baseline",
             "report",
+            "program",
             "seal",
             "store",
             "wording",
@@ -81,6 +83,7 @@ const IMPORTS: &[(&str, &[&str])] = &[
         "cli",
         &[
             "units",
+            "program",
             "experiment",
             "filters",
             "metrics",

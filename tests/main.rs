@@ -86,6 +86,7 @@ mod pictures;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
+mod process;
 mod properties;
 mod pulse_words;
 mod readers;

@@ -128,6 +128,9 @@ impl Key {
             Kind::Boolean => "true or false".to_owned(),
             Kind::Text | Kind::FreeText | Kind::Texts => "text".to_owned(),
             Kind::File => "the path of a file".to_owned(),
+            Kind::Files => "paths of files".to_owned(),
+            Kind::Command => "a program and its arguments".to_owned(),
+            Kind::Parameters => "numbers, texts, booleans and arrays of them".to_owned(),
             Kind::Digest => format!("{DIGEST_DIGITS} digits of 0-9 and a-f"),
             Kind::Name => "[a-z0-9][a-z0-9_-]{0,63}".to_owned(),
             Kind::Choice(words) | Kind::Choices(words) => quoted(words),
@@ -147,7 +150,10 @@ impl Key {
             Kind::Choice(_) => format!("one of {allowed}"),
             Kind::Choices(_) => format!("an array of words, each one of {allowed}"),
             Kind::Floats(_) => format!("an array of numbers, each {allowed}"),
-            Kind::Texts => "an array of texts, none of them empty".to_owned(),
+            Kind::Texts | Kind::Files | Kind::Command => {
+                "an array of texts, none of them empty".to_owned()
+            }
+            Kind::Parameters => format!("a table of {allowed}"),
             Kind::Triple(_) => format!("an array of three numbers (x, y, z), each {allowed}"),
             Kind::Name => format!("a name {allowed}"),
             Kind::Digest => format!("a BLAKE3 digest, {allowed}"),
@@ -176,6 +182,9 @@ impl Key {
             Kind::Boolean => "Boolean true or false".to_owned(),
             Kind::Text | Kind::FreeText => "Text".to_owned(),
             Kind::File => "Path of a file".to_owned(),
+            Kind::Files => "Array of paths of files".to_owned(),
+            Kind::Command => "Array of texts, a program and its arguments".to_owned(),
+            Kind::Parameters => format!("Table of {}", self.allowed()),
             Kind::Digest => format!("Digest {}", self.allowed()),
             Kind::Texts => "Array of texts".to_owned(),
             Kind::Name => format!("Name {}", self.allowed()),

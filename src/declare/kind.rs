@@ -29,6 +29,12 @@ pub enum Kind {
     Texts,
     /// Path of a file, relative to the file that names it.
     File,
+    /// Paths of files, likewise.
+    Files,
+    /// Program and arguments, of which those that begin with `./` or `../` are paths of files, likewise.
+    Command,
+    /// Table of settings that the bench passes on and does not know.
+    Parameters,
     /// BLAKE3 digest in small hexadecimal digits.
     Digest,
     /// Array of three binary64, one for each case axis x, y, z.
@@ -43,7 +49,7 @@ impl Kind {
     /// Whether it names files, which are found when the scenario is read.
     #[must_use]
     pub fn names_files(self) -> bool {
-        matches!(self, Self::File)
+        matches!(self, Self::File | Self::Files | Self::Command)
     }
 }
 

@@ -15,7 +15,7 @@ use crate::signal::{FilterShape, Section, WeightRule};
 pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
 
 /// Blocks of the record whose mean weights are kept.
-const WEIGHT_BLOCKS: usize = 10;
+pub(super) const WEIGHT_BLOCKS: usize = 10;
 
 /// Filter channel state during a run.
 pub(super) struct ChannelFilter {
@@ -409,7 +409,7 @@ fn diverged(divergence: &Divergence) -> ChannelFailure {
 }
 
 /// Gain of given weights for a rate that never changes; none of weights that adapt.
-fn given_gain(rule: &WeightRule) -> Option<f64> {
+pub(super) fn given_gain(rule: &WeightRule) -> Option<f64> {
     let of_section = |section: &Section| {
         let [a1, a2] = section.denominator;
         section.numerator.iter().sum::<f64>() / (1.0 + a1 + a2)

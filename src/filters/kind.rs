@@ -3,7 +3,6 @@
 use super::FilterKind;
 use super::common::{Complaint, Complaints, Filter};
 use super::hardware::PipelineSettings;
-use super::replay::ReplayFilterConfig;
 use crate::declare::table;
 
 /// Settings of a filter of one kind, and all that follows from them.
@@ -28,28 +27,16 @@ pub trait FilterSettings {
     }
 
     /// The textbook filter for words that come every `sample_period_s`; none where no filter of the
-    /// bench makes the words, see [`Self::outside`].
+    /// bench makes the words.
     ///
     /// # Panics
     /// If a setting is one that the reader or [`Self::check_on`] refuses.
     fn build(&self, sample_period_s: f64) -> Option<Box<dyn Filter>>;
 
-    /// What makes the words where no filter of the bench does.
-    fn outside(&self) -> Option<Outside<'_>> {
-        None
-    }
-
     /// The hardware that filters in its place; none for the arithmetic of the textbook.
     fn hardware(&self) -> Option<PipelineSettings> {
         None
     }
-}
-
-/// What makes the words of a channel in the place of a filter of the bench.
-#[derive(Clone, Copy, Debug)]
-pub enum Outside<'a> {
-    /// They were computed elsewhere.
-    Replay(&'a ReplayFilterConfig),
 }
 
 /// A key of a kind of filter that other settings can leave without effect.

@@ -15,7 +15,8 @@
 //! [`ConstrainedRls`], least squares among the filters that leave a constant rate alone. A filter
 //! that diverges says so in every step from then on and never returns another number.
 //!
-//! Beside these, words may come from [outside](Outside): computed elsewhere ([`ReplayFilterConfig`]).
+//! Beside these, words may come from outside: computed elsewhere ([`ReplayFilterConfig`]),
+//! or made by a program of the user's ([`ProcessFilterConfig`]).
 //!
 //! A kind of filter is one file: the keys of its table, their checks, the filter they stand for and
 //! its equations. [`FilterKind`] lists the kinds; [`hardware`] puts the pipelines of
@@ -36,6 +37,7 @@ mod kind;
 mod lms;
 mod moving_average;
 mod one_pole;
+mod process;
 mod replay;
 mod rls;
 mod savitzky_golay;
@@ -53,7 +55,7 @@ pub use kalman::{
 };
 use kind::kinds;
 pub use kind::{
-    Condition, ConditionalKey, ExpectedRun, ExpectedWords, FilterConfig, FilterSettings, Outside,
+    Condition, ConditionalKey, ExpectedRun, ExpectedWords, FilterConfig, FilterSettings,
 };
 pub use lms::{
     Lms, LmsConfig, LmsCore, LmsFilterConfig, Normalisation, constant_eigenvalue_max,
@@ -61,6 +63,7 @@ pub use lms::{
 };
 pub use moving_average::{MovingAverageFilterConfig, moving_average};
 pub use one_pole::{OnePoleFilterConfig, one_pole};
+pub use process::{Parameter, Parameters, ProcessFilterConfig, ProcessMode, is_file_argument};
 pub use replay::ReplayFilterConfig;
 pub use rls::{Rls, RlsConfig, RlsCore, RlsFilterConfig, covariance_digits_warning};
 pub use savitzky_golay::{SavitzkyGolayFilterConfig, savitzky_golay};
@@ -81,4 +84,5 @@ kinds! {
     Butterworth(ButterworthFilterConfig) = "butterworth",
     Kalman(KalmanFilterConfig) = "kalman",
     Replay(ReplayFilterConfig) = "replay",
+    Process(ProcessFilterConfig) = "process",
 }

@@ -1,7 +1,7 @@
 //! Words that were computed elsewhere: by another program, on a board, in a simulation of hardware.
 
 use super::common::Filter;
-use super::kind::{FilterSettings, Outside};
+use super::kind::FilterSettings;
 use crate::declare::table;
 use crate::vocabulary::OutputRegister;
 
@@ -23,9 +23,5 @@ table! {
 impl FilterSettings for ReplayFilterConfig {
     fn build(&self, _sample_period_s: f64) -> Option<Box<dyn Filter>> {
         None
-    }
-
-    fn outside(&self) -> Option<Outside<'_>> {
-        Some(Outside::Replay(self))
     }
 }

@@ -23,7 +23,8 @@ pub use crate::calibration::{CalibrationConfig, CompensationConfig, Compensation
 pub use crate::filters::{
     ButterworthFilterConfig, ConstrainedRlsFilterConfig, FilterConfig, FilterKind,
     KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, OnePoleFilterConfig,
-    ReplayFilterConfig, RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig,
+    ProcessFilterConfig, ReplayFilterConfig, RlsFilterConfig, SavitzkyGolayFilterConfig,
+    SignLmsFilterConfig,
 };
 pub use crate::gyro::{
     AdcConfig, AssemblyConfig, CoilConfig, ConstantPowerConfig, ControllerConfig, DetectorConfig,

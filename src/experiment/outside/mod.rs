@@ -2,17 +2,42 @@
 //! that they are made from stands.
 
 mod failure;
+mod probe;
+mod process;
+mod programs;
 mod replay;
 
 use rayon::prelude::*;
 
 use super::channel_filter::FinishedFilter;
 use super::run::{Progress, RecordLength, Simulation, Unfinished, unless_stopped};
-use crate::filters::Outside;
-use crate::scenario::Resolved;
+use crate::filters::{FilterKind, ProcessFilterConfig, ReplayFilterConfig};
+use crate::gyro;
+use crate::scenario::{NamedFile, Resolved};
 
-pub(super) use failure::is_from_outside;
+pub(super) use failure::{is_from_outside, is_of_the_moment};
+pub use programs::{ProgramFiles, program_files};
 pub(super) use replay::read as read_replay;
+
+/// What makes the words of a channel in the place of a filter of the bench.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Outside<'a> {
+    /// They were computed elsewhere.
+    Replay(&'a ReplayFilterConfig),
+    /// A program makes them.
+    Process(&'a ProcessFilterConfig),
+}
+
+impl<'a> Outside<'a> {
+    /// What makes the words of a filter of a kind; none where the bench does.
+    pub(super) fn of(kind: &'a FilterKind) -> Option<Self> {
+        match kind {
+            FilterKind::Replay(config) => Some(Self::Replay(config)),
+            FilterKind::Process(config) => Some(Self::Process(config)),
+            _ => None,
+        }
+    }
+}
 
 /// A filter of a scenario that is not the bench's, on one gyro.
 #[derive(Clone, Debug)]
@@ -23,6 +48,19 @@ pub(super) struct OutsideFilter<'a> {
     index: usize,
     /// Name of the channel.
     name: String,
+}
+
+/// The words that a filter is given.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Input<'a> {
+    /// The words, deg/h, warm-up included.
+    pub(super) words_deg_per_h: &'a [f64],
+    /// Name of the channel that they are of.
+    pub(super) channel: &'a str,
+    /// How many of them are warm-up and record.
+    pub(super) length: RecordLength,
+    /// Sample period, s.
+    pub(super) sample_period_s: f64,
 }
 
 /// Channels of one filter from outside, with the gyro of each.
@@ -40,7 +78,7 @@ pub(super) fn complete(
     let gyros = &simulation.gyros;
     let made = |index: usize| -> Result<Option<Channels>, Unfinished> {
         let config = &scenario.filters[index];
-        let Some(outside) = config.kind.settings().outside() else {
+        let Some(outside) = Outside::of(&config.kind) else {
             return Ok(None);
         };
         let channels = prefixes.iter().zip(gyros).enumerate();
@@ -51,8 +89,19 @@ pub(super) fn complete(
                 index,
                 name: format!("{prefix}{}", config.name),
             };
-            let finished = filter.run(outside, record.filter_input_deg_per_h(), length);
-            Ok((gyro, finished))
+            let channels = scenario.compensated_channels();
+            let channels = if channels.is_empty() {
+                scenario.raw_channels()
+            } else {
+                channels
+            };
+            let input = Input {
+                words_deg_per_h: record.filter_input_deg_per_h(),
+                channel: &channels[gyro],
+                length,
+                sample_period_s: gyro::sample_period_s(&scenario.gyro),
+            };
+            Ok((gyro, filter.run(outside, &input, progress)?))
         });
         channels.collect::<Result<_, _>>().map(Some)
     };
@@ -90,22 +139,30 @@ impl<'a> OutsideFilter<'a> {
         }
     }
 
-    /// What comes of the words of the gyro, deg/h, warm-up included.
+    /// What comes of the words of the gyro.
+    ///
+    /// # Errors
+    /// [`Unfinished::Stopped`] once the listener wants the run to stop.
     pub(super) fn run(
         &self,
         outside: Outside<'_>,
-        input_deg_per_h: &[f64],
-        length: RecordLength,
-    ) -> FinishedFilter {
+        input: &Input,
+        progress: &dyn Progress,
+    ) -> Result<FinishedFilter, Unfinished> {
         match outside {
-            Outside::Replay(config) => self.replay(config, input_deg_per_h, length),
+            Outside::Replay(config) => Ok(self.replay(config, input)),
+            Outside::Process(config) => self.process(config, input, progress),
         }
     }
 
-    /// The file that a key of the filter names.
-    fn file(&self, key: &str) -> Option<&'a crate::scenario::NamedFile> {
+    /// Path of a key of the filter.
+    fn key(&self, key: &str) -> String {
         let kind = self.resolved.scenario.filters[self.index].kind.name();
-        let key = format!("filter[{}].{kind}.{key}", self.index);
-        self.resolved.named_file(&key)
+        format!("filter[{}].{kind}.{key}", self.index)
+    }
+
+    /// The file that a key of the filter names.
+    fn file(&self, key: &str) -> Option<&'a NamedFile> {
+        self.resolved.named_file(&self.key(key))
     }
 }

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use super::OutsideFilter;
 use super::failure::FailureKind;
+use super::{Input, OutsideFilter};
 use crate::experiment::channel_filter::{FilterWords, FinishedFilter};
-use crate::experiment::run::RecordLength;
 use crate::filters::ReplayFilterConfig;
 use crate::metrics::{ChannelFailure, correlation_length_samples};
 use crate::recording::read_words;
@@ -19,17 +18,12 @@ const NOT_RUN: &str =
     "the words were computed elsewhere: it needs the filter to run again, or its weights";
 
 impl OutsideFilter<'_> {
-    /// The channel of words that were computed elsewhere from `input_deg_per_h`.
-    pub(super) fn replay(
-        &self,
-        config: &ReplayFilterConfig,
-        input_deg_per_h: &[f64],
-        length: RecordLength,
-    ) -> FinishedFilter {
-        let words = self.replayed(config, input_deg_per_h);
+    /// The channel of words that were computed elsewhere from the input.
+    pub(super) fn replay(&self, config: &ReplayFilterConfig, input: &Input) -> FinishedFilter {
+        let words = self.replayed(config, input.words_deg_per_h);
         let measured = words
             .as_ref()
-            .map_or(&[][..], |words| &words[length.warm_up..]);
+            .map_or(&[][..], |words| &words[input.length.warm_up..]);
         let hidden = HiddenWeights {
             reason: NOT_RUN,
             memory_samples: correlation_length_samples(measured).unwrap_or(1),
@@ -109,7 +103,7 @@ pub(in crate::experiment) fn read(
 }
 
 /// The words as they appear behind an output register.
-fn registered(mut words: Vec<f64>, register: OutputRegister) -> Vec<f64> {
+pub(super) fn registered(mut words: Vec<f64>, register: OutputRegister) -> Vec<f64> {
     if register == OutputRegister::NextSample && !words.is_empty() {
         words.rotate_right(1);
         words[0] = 0.0;

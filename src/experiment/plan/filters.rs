@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use super::checker::Checker;
-use crate::experiment::outside::read_replay;
+use crate::experiment::outside::{Outside, read_replay};
 use crate::experiment::run::{RecordLength, rate_deg_per_h_max};
-use crate::filters::{ExpectedRun, ExpectedWords, FilterConfig, Outside};
+use crate::filters::{ExpectedRun, ExpectedWords, FilterConfig};
 use crate::gyro;
 use crate::scenario::{FilterState, MotionClass};
 use crate::signal::GyroFacts;
@@ -33,7 +33,7 @@ impl Checker<'_> {
 
     /// Refuses words from outside that are not those of this record, or that no one record has.
     fn from_outside(&mut self, index: usize, filter: &FilterConfig) {
-        let Some(Outside::Replay(config)) = filter.kind.settings().outside() else {
+        let Some(Outside::Replay(config)) = Outside::of(&filter.kind) else {
             return;
         };
         let scenario = &self.resolved.scenario;

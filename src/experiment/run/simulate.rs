@@ -7,6 +7,7 @@ use super::progress::{Progress, Unfinished, unless_stopped};
 use super::records::{RecordLength, count};
 use crate::experiment::campaign::{Compensator, Parameters};
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter, Restarts};
+use crate::experiment::outside::Outside;
 use crate::filters::FilterKind;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
@@ -191,7 +192,7 @@ fn channel_filters(
     let prefixes = scenario.axis_prefixes();
     // Words from outside are put in place when the record stands.
     let inside = scenario.filters.iter();
-    let inside = inside.filter(|config| config.kind.settings().outside().is_none());
+    let inside = inside.filter(|config| Outside::of(&config.kind).is_none());
     let filters = inside.flat_map(|config| {
         let gyros = prefixes.iter().enumerate();
         gyros.map(move |(gyro, prefix)| {

@@ -2,7 +2,7 @@
 
 use crate::declare::DIGEST_DIGITS;
 use crate::scenario::document::source::Mark;
-use crate::scenario::document::tree::{Node, Value};
+use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::keys::schema::{self, Key, Kind, join};
 use crate::scenario::message::excerpt::excerpt;
 use crate::wording::is_misspelling;
@@ -49,7 +49,7 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
             check_elements(key, shown, range, values)?;
             true
         }
-        (Kind::Texts, Value::Array(values)) => {
+        (Kind::Texts | Kind::Files | Kind::Command, Value::Array(values)) => {
             let is_text = |node: &Node| node.as_text().is_some_and(|text| !text.trim().is_empty());
             if values.is_empty() || !values.iter().all(is_text) {
                 let value = node.value.to_toml();
@@ -84,6 +84,10 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
             }
             true
         }
+        (Kind::Parameters, Value::Table(table)) => {
+            check_parameters(key, shown, table)?;
+            true
+        }
         (Kind::Text | Kind::File, Value::Text(text)) => !text.trim().is_empty(),
         (Kind::FreeText, Value::Text(_)) | (Kind::Boolean, Value::Boolean(_)) => true,
         (_, value) => return Err(wrong_type(key, shown, value).into()),
@@ -92,6 +96,39 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
         Ok(())
     } else {
         Err(out_of_range(key, shown, &node.value).into())
+    }
+}
+
+/// Checks settings that are passed on: names that need no quotes, and values that JSON can say.
+fn check_parameters(key: &Key, shown: &str, table: &Table) -> Result<(), Fault> {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    for (name, node) in table {
+        let shown = join(shown, name);
+        let shown = excerpt(&shown);
+        let mark = node.mark;
+        if name.is_empty() || !name.chars().all(is_bare) {
+            let message = format!("{shown} is not a valid name: allowed A-Z, a-z, 0-9, _ and -");
+            return Err(Fault { mark, message });
+        }
+        if !is_parameter(&node.value) {
+            let message = format!(
+                "{shown} has the wrong type: expected one of {}, got {}",
+                key.allowed(),
+                node.value.type_name()
+            );
+            return Err(Fault { mark, message });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a value can be passed on.
+fn is_parameter(value: &Value) -> bool {
+    match value {
+        Value::Text(_) | Value::Integer(_) | Value::Boolean(_) => true,
+        Value::Float(number) => number.is_finite(),
+        Value::Array(values) => values.iter().all(|node| is_parameter(&node.value)),
+        Value::Beyond(..) | Value::Date(_) | Value::Table(_) => false,
     }
 }
 

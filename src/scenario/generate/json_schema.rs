@@ -134,7 +134,7 @@ fn leaf(key: &Key) -> Value {
         Kind::Floats(range) => {
             json!({"type": "array", "minItems": 1, "items": number(range)})
         }
-        Kind::Texts => {
+        Kind::Texts | Kind::Files | Kind::Command => {
             json!({"type": "array", "minItems": 1, "items": {"type": "string", "minLength": 1}})
         }
         Kind::Triple(range) => {
@@ -165,6 +165,10 @@ fn leaf(key: &Key) -> Value {
         Kind::EmptyTable => {
             json!({"type": "object", "additionalProperties": false, "properties": {}})
         }
+        Kind::Parameters => json!({
+            "type": "object",
+            "additionalProperties": {"type": ["string", "number", "boolean", "array"]},
+        }),
         Kind::Matrix => matrix(),
     };
     schema["description"] = json!(format!("{} {}", key.sentence(), key.line()));

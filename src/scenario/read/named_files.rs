@@ -4,8 +4,9 @@
 //! scenario's own folder, so that neither results nor digests depend on where the scenario lies; the
 //! path by which the file is found stays beside the scenario.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use crate::filters::is_file_argument;
 use crate::scenario::document::source::{Mark, Sources, shown_path};
 use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::keys::schema::{self, Child, Kind, join};
@@ -67,7 +68,7 @@ fn holds_file(schema_path: &str, table: &Table) -> bool {
     table
         .iter()
         .any(|(name, node)| match schema::child(schema_path, name) {
-            Some(Child::Leaf(key)) => matches!(key.kind, Kind::File),
+            Some(Child::Leaf(key)) => key.kind.names_files(),
             Some(Child::Table) => node
                 .as_table()
                 .is_some_and(|inner| holds_file(&join(schema_path, name), inner)),
@@ -98,9 +99,7 @@ impl Search<'_> {
         for (name, node) in table {
             let (path, shown) = (join(schema_path, name), join(shown, name));
             match schema::child(schema_path, name) {
-                Some(Child::Leaf(key)) if matches!(key.kind, Kind::File) => {
-                    self.file(&shown, node);
-                }
+                Some(Child::Leaf(key)) => self.leaf(key.kind, &shown, node),
                 Some(Child::Table) => {
                     if let Some(inner) = node.as_table_mut() {
                         self.table(&path, &shown, inner);
@@ -111,8 +110,69 @@ impl Search<'_> {
         }
     }
 
-    /// Finds one file. A value that is no text is refused with the other types.
-    fn file(&mut self, key: &str, node: &mut Node) {
+    /// Finds the files of a key, if it names any.
+    fn leaf(&mut self, kind: Kind, shown: &str, node: &mut Node) {
+        if let Kind::File = kind {
+            return self.file(shown, node, "");
+        }
+        if !matches!(kind, Kind::Files | Kind::Command) {
+            return;
+        }
+        let elements = node.as_array_mut().into_iter().flatten();
+        for (index, element) in elements.enumerate() {
+            let shown = format!("{shown}[{index}]");
+            match (kind, element.as_text()) {
+                (Kind::Files, _) => self.file(&shown, element, ""),
+                (_, Some(argument)) if is_file_argument(argument) => {
+                    self.file(&shown, element, "./");
+                }
+                (_, Some(argument)) if Path::new(argument).is_absolute() => {
+                    self.absolute(&shown, element);
+                }
+                _ => self.argument(&shown, element),
+            }
+        }
+    }
+
+    /// Takes the digest of an argument that is an absolute path, if there is such a file. What the user
+    /// writes so stays so.
+    fn absolute(&mut self, key: &str, node: &Node) {
+        let (Some(written), Some(mark)) = (node.as_text(), node.mark) else {
+            return;
+        };
+        let path = Path::new(written);
+        if !path.is_file() {
+            return;
+        }
+        let (_, label) = self.sources.beside(mark, written);
+        match self.digest(key, mark, path, &label.text()) {
+            Ok(digest) => self.found.push(NamedFile {
+                key: key.to_owned(),
+                path: path.to_owned(),
+                digest,
+            }),
+            Err(error) => self.errors.push(error),
+        }
+    }
+
+    /// Refuses an argument that is meant as a file beside the scenario and would not be found.
+    fn argument(&mut self, key: &str, node: &Node) {
+        let (Some(written), Some(mark)) = (node.as_text(), node.mark) else {
+            return;
+        };
+        let (path, _) = self.sources.beside(mark, written);
+        if !written.is_empty() && path.is_file() {
+            let message = format!(
+                "{key} = \"{written}\" is a file beside the scenario: write \"./{written}\", as a \
+                 program works in a folder of its own",
+                written = excerpt(written)
+            );
+            self.errors.push(self.sources.error(mark, message));
+        }
+    }
+
+    /// Finds one file; what its path begins with beside the scenario is put before it. A value that is no text is refused with the other types.
+    fn file(&mut self, key: &str, node: &mut Node, before: &str) {
         let (Some(written), Some(mark)) = (node.as_text(), node.mark) else {
             return;
         };
@@ -122,7 +182,9 @@ impl Search<'_> {
                 let path = std::path::absolute(&path).unwrap_or(path);
                 let key = key.to_owned();
                 self.found.push(NamedFile { key, path, digest });
-                node.value = Value::Text(label.text());
+                let label = label.text();
+                let before = if label.starts_with("../") { "" } else { before };
+                node.value = Value::Text(format!("{before}{label}"));
             }
             Err(error) => self.errors.push(error),
         }
@@ -133,7 +195,7 @@ impl Search<'_> {
         &mut self,
         key: &str,
         mark: Mark,
-        path: &std::path::Path,
+        path: &Path,
         label: &str,
     ) -> Result<String, ScenarioError> {
         let complain = |message: &str| {

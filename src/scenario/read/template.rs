@@ -13,7 +13,7 @@ use crate::scenario::document::address::{self, Step};
 use crate::scenario::document::emit::to_toml_around;
 use crate::scenario::document::tree::{Node, Table};
 use crate::scenario::keys::renamed;
-use crate::scenario::keys::schema::Key;
+use crate::scenario::keys::schema::{Key, Kind};
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::read::resolved::{Resolved, configuration, digest};
 
@@ -49,10 +49,13 @@ impl Template {
                 key,
             })
             .collect();
-        let is_file = |slot: &Slot| {
-            slot.key.kind.names_files() || FILES.iter().any(|name| slot.key.path.starts_with(name))
+        let is_own = |slot: &Slot| {
+            let kind = slot.key.kind;
+            kind.names_files()
+                || matches!(kind, Kind::Parameters)
+                || FILES.iter().any(|name| slot.key.path.starts_with(name))
         };
-        if slots.iter().any(is_file) {
+        if slots.iter().any(is_own) {
             return None;
         }
         let nodes = slots
