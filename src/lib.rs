@@ -74,6 +74,8 @@
 
 pub mod declare;
 mod linear_algebra;
+#[cfg(feature = "scenario")]
+mod program;
 pub mod random;
 #[cfg(feature = "scenario")]
 mod seal;

@@ -1,11 +1,26 @@
-//! The seal of a text: a digest of it at its end, by which any change shows.
+//! Digests by which any change shows: of words, and at the end of a text as its seal.
 //!
-//! Invariant: knows lines, not what they mean; imports nothing.
+//! Invariant: knows lines and numbers, not what they mean; imports nothing.
 
 /// How a seal begins.
 const SEAL: &str = "\n[record]\n";
 /// The one line that a seal leaves out: two builds of one version give the same.
 const BUILD_LINE: &str = "build = ";
+
+/// BLAKE3 of words, as little-endian binary64 one after another, hexadecimal.
+pub(crate) fn digest_of_words(words: &[f64]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut bytes = Vec::with_capacity(8 * WORDS_AT_ONCE);
+    for words in words.chunks(WORDS_AT_ONCE) {
+        bytes.clear();
+        bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+        hasher.update(&bytes);
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+/// Words that are hashed together.
+const WORDS_AT_ONCE: usize = 1 << 12;
 
 /// What the seal of a text says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

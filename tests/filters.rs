@@ -14,7 +14,7 @@ use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::{ProptestConfig, prop_assert, proptest};
 
-use crate::support::{assert_close, repository};
+use crate::support::{assert_close, kinds_of_the_bench, repository};
 
 const PERIOD_S: f64 = 0.000_25;
 
@@ -529,6 +529,8 @@ fn every_kind_is_read_built_and_run_with_its_defaults_and_stands_in_the_page_of_
             page.contains(&format!("`{kind}`")),
             "docs/filters.md lacks `{kind}`"
         );
+    }
+    for kind in &kinds_of_the_bench() {
         let text = format!(
             "schema = 1\nname = \"one\"\nduration_s = 1.0\n[[filter]]\nname = \"f\"\n[filter.{kind}]\n"
         );
@@ -546,7 +548,8 @@ fn every_kind_is_read_built_and_run_with_its_defaults_and_stands_in_the_page_of_
         assert_eq!(filter.check(0), []);
         assert_eq!(filter.check_on(0, &words), []);
         // A word enters the output and is forgotten, or is the rate that was always there.
-        let mut built = filter.kind.settings().build(PERIOD_S);
+        let built = filter.kind.settings().build(PERIOD_S);
+        let mut built = built.expect("a filter of the bench");
         let noise = white(kind, 2000);
         let outputs: Vec<f64> = noise
             .iter()

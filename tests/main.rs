@@ -86,11 +86,13 @@ mod pictures;
 mod pipeline;
 #[path = "../benches/plain_loop.rs"]
 mod plain_loop;
+mod process;
 mod properties;
 mod pulse_words;
 mod readers;
 mod recording;
 mod registry;
+mod replay;
 mod report;
 mod resume;
 mod rows;

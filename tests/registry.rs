@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::campaign::schema::{Child, Kind, Table, leaves, root};
 use crate::extremes::shortest;
-use crate::support::{code, fogbench, npy, stderr, stdout, summary, write};
+use crate::support::{code, fogbench, kinds_of_the_bench, npy, stderr, stdout, summary, write};
 
 /// The alternatives of a table of the root.
 fn alternatives(table: &str, among: &str) -> Vec<String> {
@@ -37,7 +37,7 @@ fn run(folder: &Path, text: &str) -> String {
 
 #[test]
 fn every_filter_kind_filters_the_words_and_is_measured_and_judged() {
-    let kinds = alternatives("filter", "rls");
+    let kinds = kinds_of_the_bench();
     let filters: String = kinds
         .iter()
         .map(|kind| format!("[[filter]]\nname = \"{kind}\"\n[filter.{kind}]\n"))
@@ -52,7 +52,7 @@ fn every_filter_kind_filters_the_words_and_is_measured_and_judged() {
     let raw = words("raw");
     assert!(kinds.len() >= 9, "{kinds:?}");
     for kind in &kinds {
-        let channel = &result["channels"][kind];
+        let channel = &result["channels"][*kind];
         assert!(channel["error"].is_null(), "{kind}: {channel}");
         let noise_gain = channel["noise_gain"]["value"].as_f64();
         assert!(
@@ -61,7 +61,7 @@ fn every_filter_kind_filters_the_words_and_is_measured_and_judged() {
         );
         assert!(channel["dc_gain"]["value"].is_number(), "{kind}");
         assert!(channel["verdict"].is_string(), "{kind} is not judged");
-        assert!(printed.contains(kind.as_str()), "{kind} is not printed");
+        assert!(printed.contains(kind), "{kind} is not printed");
         let filtered = words(kind);
         assert_eq!(filtered.len(), raw.len(), "{kind}");
         assert!(filtered.iter().all(|word| word.is_finite()), "{kind}");

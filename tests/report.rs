@@ -377,6 +377,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
         prefix: "",
         truth_deg_per_h: &truth,
         encoder_rad: None,
+        input_digest: None,
         channels: vec![("raw", &raw), ("lms", &lms), ("rls", &raw), ("bad", &raw)],
         temperature: None,
     };
@@ -405,6 +406,7 @@ fn quiet_signals(zeros: &[f64]) -> RunSignals<'_> {
         prefix: "",
         encoder_rad: None,
         truth_deg_per_h: zeros,
+        input_digest: None,
         channels: vec![("raw", zeros), ("lms", zeros)],
         temperature: None,
     }

@@ -120,7 +120,8 @@ fn the_verdict_on_every_filter_stands_in_text_and_summary() {
     let scenario = &load_suite(&[path], &[]).expect("a scenario")[0].scenario;
     // No filter whose weights are given learns the rate away.
     let given = scenario.filters.iter().filter(|filter| {
-        let shape = filter.kind.settings().build(1e-4).shape();
+        let built = filter.kind.settings().build(1e-4);
+        let shape = built.expect("a filter of the bench").shape();
         !matches!(shape.rule, WeightRule::Adaptive { .. })
     });
     let given: Vec<&str> = given.map(|filter| filter.name.as_str()).collect();

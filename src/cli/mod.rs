@@ -10,6 +10,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use crate::experiment::start_threads;
+#[cfg(unix)]
+use crate::program::supervise;
 use commands::{
     baseline, budget, calibrate, check, claim, compare, completions, expand, export, init, list,
     log, man, reference, run, schema, timing,
@@ -23,6 +25,10 @@ use terminal::signals::Interrupt;
 /// Runs the program: parses the arguments, dispatches the command and returns the exit code.
 #[must_use]
 pub fn main() -> ExitCode {
+    #[cfg(unix)]
+    if supervise(std::env::args_os()).is_some() {
+        return ExitCode::SUCCESS;
+    }
     panics::install();
     let interrupt = match Interrupt::install() {
         Ok(interrupt) => interrupt,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::kind::{Content, Kind};
+use super::kind::{Content, DIGEST_DIGITS, Kind};
 use super::row::{Group, Presence, Row, Successor, Table};
 
 /// One key of a file.
@@ -127,6 +127,11 @@ impl Key {
             Kind::Integer(range) => range.to_string(),
             Kind::Boolean => "true or false".to_owned(),
             Kind::Text | Kind::FreeText | Kind::Texts => "text".to_owned(),
+            Kind::File => "the path of a file".to_owned(),
+            Kind::Files => "paths of files".to_owned(),
+            Kind::Command => "a program and its arguments".to_owned(),
+            Kind::Parameters => "numbers, texts, booleans and arrays of them".to_owned(),
+            Kind::Digest => format!("{DIGEST_DIGITS} digits of 0-9 and a-f"),
             Kind::Name => "[a-z0-9][a-z0-9_-]{0,63}".to_owned(),
             Kind::Choice(words) | Kind::Choices(words) => quoted(words),
             Kind::EmptyTable => "a table without keys".to_owned(),
@@ -145,9 +150,13 @@ impl Key {
             Kind::Choice(_) => format!("one of {allowed}"),
             Kind::Choices(_) => format!("an array of words, each one of {allowed}"),
             Kind::Floats(_) => format!("an array of numbers, each {allowed}"),
-            Kind::Texts => "an array of texts, none of them empty".to_owned(),
+            Kind::Texts | Kind::Files | Kind::Command => {
+                "an array of texts, none of them empty".to_owned()
+            }
+            Kind::Parameters => format!("a table of {allowed}"),
             Kind::Triple(_) => format!("an array of three numbers (x, y, z), each {allowed}"),
             Kind::Name => format!("a name {allowed}"),
+            Kind::Digest => format!("a BLAKE3 digest, {allowed}"),
             _ => allowed,
         }
     }
@@ -172,6 +181,11 @@ impl Key {
             Kind::Integer(range) => format!("Integer {range}"),
             Kind::Boolean => "Boolean true or false".to_owned(),
             Kind::Text | Kind::FreeText => "Text".to_owned(),
+            Kind::File => "Path of a file".to_owned(),
+            Kind::Files => "Array of paths of files".to_owned(),
+            Kind::Command => "Array of texts, a program and its arguments".to_owned(),
+            Kind::Parameters => format!("Table of {}", self.allowed()),
+            Kind::Digest => format!("Digest {}", self.allowed()),
             Kind::Texts => "Array of texts".to_owned(),
             Kind::Name => format!("Name {}", self.allowed()),
             Kind::Choice(words) => format!("Choice {}", quoted(words)),

@@ -27,6 +27,16 @@ pub enum Kind {
     Floats(Range),
     /// Non-empty array of texts, none of them empty.
     Texts,
+    /// Path of a file, relative to the file that names it.
+    File,
+    /// Paths of files, likewise.
+    Files,
+    /// Program and arguments, of which those that begin with `./` or `../` are paths of files, likewise.
+    Command,
+    /// Table of settings that the bench passes on and does not know.
+    Parameters,
+    /// BLAKE3 digest in small hexadecimal digits.
+    Digest,
     /// Array of three binary64, one for each case axis x, y, z.
     Triple(Range),
     /// A table that holds no keys (an alternative with nothing to set).
@@ -34,6 +44,17 @@ pub enum Kind {
     /// The table of swept keys.
     Matrix,
 }
+
+impl Kind {
+    /// Whether it names files, which are found when the scenario is read.
+    #[must_use]
+    pub fn names_files(self) -> bool {
+        matches!(self, Self::File | Self::Files | Self::Command)
+    }
+}
+
+/// Digits of a [`Kind::Digest`].
+pub const DIGEST_DIGITS: usize = 64;
 
 /// Closed interval of finite binary64 values.
 ///

@@ -13,7 +13,7 @@ mod setting;
 mod table;
 
 pub use key::{Key, Keys};
-pub use kind::{Content, Integers, Kind, Limits, Range, Shape};
+pub use kind::{Content, DIGEST_DIGITS, Integers, Kind, Limits, Range, Shape};
 pub use row::{Group, Presence, Row, Successor, Table};
 pub use setting::{FromLiteral, Reference, Setting};
 pub(crate) use table::{alternatives, renamed, table};

@@ -8,14 +8,14 @@
 use crate::experiment::run::{RateTwins, RecordLength};
 use crate::filters::hardware::{HardwareFilter, HealthSummary, PipelineSettings, PipelineTiming};
 use crate::filters::{Divergence, Filter, FilterKind, Output};
-use crate::metrics::RateGain;
+use crate::metrics::{ChannelFailure, RateGain};
 use crate::signal::{FilterShape, Section, WeightRule};
 
 /// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
 pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
 
 /// Blocks of the record whose mean weights are kept.
-const WEIGHT_BLOCKS: usize = 10;
+pub(super) const WEIGHT_BLOCKS: usize = 10;
 
 /// Filter channel state during a run.
 pub(super) struct ChannelFilter {
@@ -79,14 +79,14 @@ impl Restarts {
 pub(super) struct FinishedFilter {
     /// Channel name.
     pub(super) name: String,
-    /// What it is.
-    pub(super) kind: FilterKind,
+    /// What runs it again; none of words that were made elsewhere.
+    pub(super) kind: Option<FilterKind>,
     /// Input samples that the filter weighs, and the rule of its weights.
     pub(super) shape: FilterShape,
     /// Whether it started afresh within the record.
     pub(super) restarts: bool,
     /// The words, or why there are none.
-    pub(super) words: Result<FilterWords, Divergence>,
+    pub(super) words: Result<FilterWords, ChannelFailure>,
     /// The hardware, if it is one.
     pub(super) pipeline: Option<FinishedPipeline>,
 }
@@ -122,6 +122,21 @@ pub(super) struct FilterWords {
     pub(super) block_weights: Vec<Vec<f64>>,
 }
 
+impl FilterWords {
+    /// Words of a filter that shows nothing else.
+    pub(super) fn alone(output_deg_per_h: Vec<f64>) -> Self {
+        Self {
+            output_deg_per_h,
+            dc_gain: None,
+            dc_gain_adapted: None,
+            block_dc_gains_adapted: Vec::new(),
+            rate_gains: Vec::new(),
+            mean_weights: None,
+            block_weights: Vec::new(),
+        }
+    }
+}
+
 /// Arithmetic that makes the words.
 pub(super) enum Arithmetic {
     Textbook(Box<dyn Filter>),
@@ -134,7 +149,8 @@ impl Arithmetic {
             let filter = settings.filter(length.warm_up as u64);
             return Self::Hardware(filter.expect(CHECKED));
         }
-        Self::Textbook(kind.settings().build(sample_period_s))
+        let filter = kind.settings().build(sample_period_s);
+        Self::Textbook(filter.expect("words from outside have no channel filter"))
     }
 
     pub(super) fn as_filter(&self) -> &dyn Filter {
@@ -311,7 +327,7 @@ impl ChannelFilter {
         let measured = self.measured as f64;
         let mean = |total: f64| (self.measured > 0).then(|| total / measured);
         let words = match self.failure {
-            Some(divergence) => Err(divergence),
+            Some(divergence) => Err(diverged(&divergence)),
             None => Ok(FilterWords {
                 // Given weights have the gain that they settle on; their sum starts from nothing.
                 dc_gain: given_gain(&self.shape.rule).or_else(|| mean(self.weight_sum_total)),
@@ -324,11 +340,11 @@ impl ChannelFilter {
                         .map(|tap| mean(self.weight_totals.iter().map(|block| block[tap]).sum()))
                         .collect(),
                     WeightRule::Fixed(weights) => Some(weights.clone()),
-                    WeightRule::Sections(_) => None,
+                    WeightRule::Sections(_) | WeightRule::Hidden(_) => None,
                 },
                 block_weights: match &self.shape.rule {
                     WeightRule::Adaptive { .. } => self.block_weights(),
-                    WeightRule::Fixed(_) | WeightRule::Sections(_) => Vec::new(),
+                    _ => Vec::new(),
                 },
                 dc_gain_adapted: given_gain(&self.shape.rule).or_else(|| {
                     self.twin.as_ref().and_then(|_| {
@@ -341,7 +357,7 @@ impl ChannelFilter {
         };
         FinishedFilter {
             name: self.name,
-            kind: self.kind,
+            kind: Some(self.kind),
             shape: self.shape,
             restarts: self.restarts.is_some(),
             words,
@@ -386,8 +402,19 @@ impl ChannelFilter {
     }
 }
 
+/// Kind of the failure of a filter that diverged.
+pub(super) const DIVERGED: &str = "diverged";
+
+fn diverged(divergence: &Divergence) -> ChannelFailure {
+    ChannelFailure {
+        kind: DIVERGED.to_owned(),
+        sample: divergence.sample,
+        message: divergence.to_string(),
+    }
+}
+
 /// Gain of given weights for a rate that never changes; none of weights that adapt.
-fn given_gain(rule: &WeightRule) -> Option<f64> {
+pub(super) fn given_gain(rule: &WeightRule) -> Option<f64> {
     let of_section = |section: &Section| {
         let [a1, a2] = section.denominator;
         section.numerator.iter().sum::<f64>() / (1.0 + a1 + a2)
@@ -395,6 +422,6 @@ fn given_gain(rule: &WeightRule) -> Option<f64> {
     match rule {
         WeightRule::Fixed(weights) => Some(weights.iter().sum()),
         WeightRule::Sections(sections) => Some(sections.iter().map(of_section).product()),
-        WeightRule::Adaptive { .. } => None,
+        WeightRule::Adaptive { .. } | WeightRule::Hidden(_) => None,
     }
 }

@@ -13,6 +13,7 @@ mod channel_filter;
 mod log;
 #[cfg(feature = "report")]
 mod output_file;
+mod outside;
 mod pipeline_metrics;
 mod plan;
 mod run;
@@ -37,13 +38,14 @@ pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogInput, LogMotion, LogSettings, LogTrial,
     LogTrialError, compensate_log, load_log_compensation, load_log_filters, try_log,
 };
+pub use outside::{ProgramFiles, program_files};
 pub use plan::{Plan, Sound, check_suite, plan_suite};
 pub use run::{Progress, Run, RunError, Samples, UnknownName};
 pub use scenario::Scenario;
 #[cfg(feature = "report")]
 pub use starter::{StarterGyro, starter_scenario};
 #[cfg(feature = "hdl")]
-pub use stimulus::scenario_stimulus;
+pub use stimulus::{input_digest, scenario_stimulus};
 #[cfg(feature = "report")]
 pub use suite::{
     Against, Earlier, Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX,

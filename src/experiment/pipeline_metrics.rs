@@ -110,10 +110,10 @@ pub(super) fn notes(filter: &FinishedFilter, sample_period_s: f64) -> Vec<String
     if let Some(samples) = pipeline.settings.failure_samples() {
         let observed = match &filter.words {
             Ok(_) => "it has not failed in this run".to_owned(),
-            Err(divergence) => format!(
+            Err(failure) => format!(
                 "it failed after {} ({:.3} s)",
-                counted(divergence.sample + 1, "sample"),
-                whole(divergence.sample + 1) * sample_period_s
+                counted(failure.sample + 1, "sample"),
+                whole(failure.sample + 1) * sample_period_s
             ),
         };
         notes.push(format!(

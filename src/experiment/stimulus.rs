@@ -6,7 +6,14 @@ use crate::filters::hardware::Stimulus;
 use crate::fpga::export::IntegerCodes;
 use crate::gyro::{self, GyroError};
 use crate::scenario::OutputQuantisation;
+use crate::seal::digest_of_words;
 use crate::units::{arcsec_per_s_to_deg_per_h, deg_per_h_to_deg_per_s};
+
+/// Digest of samples, as a filter whose words were computed elsewhere states it.
+#[must_use]
+pub fn input_digest(words: &[f64]) -> String {
+    digest_of_words(words)
+}
 
 /// The first rate words of a scenario's gyro, warm-up included, deg/h, and their integer codes.
 ///

@@ -35,9 +35,12 @@ impl FilterSettings for ButterworthFilterConfig {
         );
     }
 
-    fn build(&self, sample_period_s: f64) -> Box<dyn Filter> {
+    fn build(&self, sample_period_s: f64) -> Option<Box<dyn Filter>> {
         let sections = butterworth(self.order as usize, self.cutoff_hz * sample_period_s);
-        Box::new(RecursiveFilter::new(sections, self.output_register))
+        Some(Box::new(RecursiveFilter::new(
+            sections,
+            self.output_register,
+        )))
     }
 }
 

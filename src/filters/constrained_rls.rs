@@ -26,8 +26,8 @@ table! {
 }
 
 impl FilterSettings for ConstrainedRlsFilterConfig {
-    fn build(&self, _sample_period_s: f64) -> Box<dyn Filter> {
-        Box::new(ConstrainedRls::new(&RlsConfig {
+    fn build(&self, _sample_period_s: f64) -> Option<Box<dyn Filter>> {
+        Some(Box::new(ConstrainedRls::new(&RlsConfig {
             taps: self.taps as usize,
             forgetting_factor: self.forgetting_factor,
             initial_inverse_correlation: self.initial_inverse_correlation,
@@ -37,7 +37,7 @@ impl FilterSettings for ConstrainedRlsFilterConfig {
                 input_lag_samples: self.input_lag_samples as usize,
                 output_register: self.output_register,
             },
-        }))
+        })))
     }
 }
 

@@ -43,12 +43,12 @@ impl RateRandomWalk {
 }
 
 impl FilterSettings for KalmanFilterConfig {
-    fn build(&self, sample_period_s: f64) -> Box<dyn Filter> {
-        Box::new(Kalman::new(&KalmanConfig {
+    fn build(&self, sample_period_s: f64) -> Option<Box<dyn Filter>> {
+        Some(Box::new(Kalman::new(&KalmanConfig {
             noise_deg_per_h: self.measurement_noise_deg_per_h,
             step_deg_per_h: self.rate_random_walk.after(sample_period_s),
             output_register: self.output_register,
-        }))
+        })))
     }
 }
 

@@ -26,11 +26,12 @@ pub trait FilterSettings {
         Vec::new()
     }
 
-    /// The textbook filter for words that come every `sample_period_s`.
+    /// The textbook filter for words that come every `sample_period_s`; none where no filter of the
+    /// bench makes the words.
     ///
     /// # Panics
     /// If a setting is one that the reader or [`Self::check_on`] refuses.
-    fn build(&self, sample_period_s: f64) -> Box<dyn Filter>;
+    fn build(&self, sample_period_s: f64) -> Option<Box<dyn Filter>>;
 
     /// The hardware that filters in its place; none for the arithmetic of the textbook.
     fn hardware(&self) -> Option<PipelineSettings> {

@@ -83,9 +83,9 @@ impl FilterSettings for LmsFilterConfig {
         }
     }
 
-    fn build(&self, _sample_period_s: f64) -> Box<dyn Filter> {
+    fn build(&self, _sample_period_s: f64) -> Option<Box<dyn Filter>> {
         let regularisation_deg2_per_h2 = self.regularisation_deg2_per_h2;
-        Box::new(Lms::new(&LmsConfig {
+        Some(Box::new(Lms::new(&LmsConfig {
             taps: self.taps as usize,
             step_size: self.step_size,
             normalisation: if self.normalised {
@@ -101,7 +101,7 @@ impl FilterSettings for LmsFilterConfig {
                 input_lag_samples: self.input_lag_samples as usize,
                 output_register: self.output_register,
             },
-        }))
+        })))
     }
 
     fn hardware(&self) -> Option<PipelineSettings> {

@@ -15,6 +15,9 @@
 //! [`ConstrainedRls`], least squares among the filters that leave a constant rate alone. A filter
 //! that diverges says so in every step from then on and never returns another number.
 //!
+//! Beside these, words may come from outside: computed elsewhere ([`ReplayFilterConfig`]),
+//! or made by a program of the user's ([`ProcessFilterConfig`]).
+//!
 //! A kind of filter is one file: the keys of its table, their checks, the filter they stand for and
 //! its equations. [`FilterKind`] lists the kinds; [`hardware`] puts the pipelines of
 //! [`fpga`](crate::fpga) on the bench and is the only part that knows them.
@@ -34,6 +37,8 @@ mod kind;
 mod lms;
 mod moving_average;
 mod one_pole;
+mod process;
+mod replay;
 mod rls;
 mod savitzky_golay;
 mod sign_lms;
@@ -58,6 +63,8 @@ pub use lms::{
 };
 pub use moving_average::{MovingAverageFilterConfig, moving_average};
 pub use one_pole::{OnePoleFilterConfig, one_pole};
+pub use process::{Parameter, Parameters, ProcessFilterConfig, ProcessMode, is_file_argument};
+pub use replay::ReplayFilterConfig;
 pub use rls::{Rls, RlsConfig, RlsCore, RlsFilterConfig, covariance_digits_warning};
 pub use savitzky_golay::{SavitzkyGolayFilterConfig, savitzky_golay};
 pub use sign_lms::{
@@ -76,4 +83,6 @@ kinds! {
     OnePole(OnePoleFilterConfig) = "one_pole",
     Butterworth(ButterworthFilterConfig) = "butterworth",
     Kalman(KalmanFilterConfig) = "kalman",
+    Replay(ReplayFilterConfig) = "replay",
+    Process(ProcessFilterConfig) = "process",
 }

@@ -18,12 +18,12 @@ table! {
 }
 
 impl FilterSettings for MovingAverageFilterConfig {
-    fn build(&self, _sample_period_s: f64) -> Box<dyn Filter> {
-        Box::new(FixedFilter::delayed(
+    fn build(&self, _sample_period_s: f64) -> Option<Box<dyn Filter>> {
+        Some(Box::new(FixedFilter::delayed(
             moving_average(self.taps as usize),
             self.delay_samples as usize,
             self.output_register,
-        ))
+        )))
     }
 }
 

@@ -33,9 +33,12 @@ impl FilterSettings for OnePoleFilterConfig {
         );
     }
 
-    fn build(&self, sample_period_s: f64) -> Box<dyn Filter> {
+    fn build(&self, sample_period_s: f64) -> Option<Box<dyn Filter>> {
         let sections = one_pole(self.cutoff_hz * sample_period_s);
-        Box::new(RecursiveFilter::new(sections, self.output_register))
+        Some(Box::new(RecursiveFilter::new(
+            sections,
+            self.output_register,
+        )))
     }
 }
 

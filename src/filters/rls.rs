@@ -71,8 +71,8 @@ impl FilterSettings for RlsFilterConfig {
             .collect()
     }
 
-    fn build(&self, _sample_period_s: f64) -> Box<dyn Filter> {
-        Box::new(Rls::new(&RlsConfig {
+    fn build(&self, _sample_period_s: f64) -> Option<Box<dyn Filter>> {
+        Some(Box::new(Rls::new(&RlsConfig {
             taps: self.taps as usize,
             forgetting_factor: self.forgetting_factor,
             initial_inverse_correlation: self.initial_inverse_correlation,
@@ -82,7 +82,7 @@ impl FilterSettings for RlsFilterConfig {
                 input_lag_samples: self.input_lag_samples as usize,
                 output_register: self.output_register,
             },
-        }))
+        })))
     }
 
     fn hardware(&self) -> Option<PipelineSettings> {

@@ -31,9 +31,9 @@ impl FilterSettings for SavitzkyGolayFilterConfig {
         }
     }
 
-    fn build(&self, _sample_period_s: f64) -> Box<dyn Filter> {
+    fn build(&self, _sample_period_s: f64) -> Option<Box<dyn Filter>> {
         let weights = savitzky_golay(self.taps as usize, self.polynomial_order as usize);
-        Box::new(FixedFilter::new(weights, self.output_register))
+        Some(Box::new(FixedFilter::new(weights, self.output_register)))
     }
 }
 

@@ -19,9 +19,7 @@ use super::steps::staircase::measure_scale_factor;
 use super::trial::dc_gain::put_dc_gains;
 use super::trial::frozen_response::put_frozen_response;
 use super::trial::rate_gain::put_rate_gains;
-use super::trial::readaptation::{
-    READAPTATION_TIME, adapts, measure_after_step, onset, put_memory,
-};
+use super::trial::readaptation::{READAPTATION_TIME, measure_after_step, onset, put_memory};
 use crate::metrics::catalogue::known_metrics;
 use crate::wording::counted;
 
@@ -104,7 +102,7 @@ pub fn measure(
     match measure_motion(record, settings, filter, &mut metrics) {
         Err(reason) => refuse_rest(&reason, &mut metrics),
         Ok(()) => {
-            let fixed = filter.filter(|facts| !adapts(&facts.shape));
+            let fixed = filter.filter(|facts| facts.given().is_some());
             if let Some(facts) =
                 fixed.filter(|_| check_motion(&READAPTATION_TIME, &settings.motion).is_ok())
             {
@@ -121,7 +119,7 @@ pub fn measure(
         put_frozen_response(facts, record.sample_period_s, &mut metrics);
     }
     metrics.keep_finite();
-    explain_missing(record, settings, filter.is_some(), &mut metrics);
+    explain_missing(record, settings, filter, &mut metrics);
     metrics
 }
 
@@ -132,7 +130,7 @@ pub(crate) fn measure_present(record: &Record, settings: &Settings) -> ChannelMe
         refuse_rest(&reason, &mut metrics);
     }
     metrics.keep_finite();
-    explain_missing(record, settings, false, &mut metrics);
+    explain_missing(record, settings, None, &mut metrics);
     metrics
 }
 
@@ -230,9 +228,11 @@ fn refuse_rest(reason: &Unavailable, metrics: &mut ChannelMetrics) {
 fn explain_missing(
     record: &Record,
     settings: &Settings,
-    is_filter: bool,
+    filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
+    let is_filter = filter.is_some();
+    let hidden = filter.and_then(|facts| facts.shape.hidden_reason());
     let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
     for known in known_metrics() {
         if **known == DIVERGED_AT
@@ -256,7 +256,7 @@ fn explain_missing(
         .or_else(|| encoder_lack(known, record.encoder_rad.is_some()).map(Unavailable::from))
         .unwrap_or_else(|| match known.applies {
             Applies::Pipeline => PIPELINE_ONLY.into(),
-            _ => "the record is too short for it".into(),
+            _ => hidden.unwrap_or("the record is too short for it").into(),
         });
         metrics.miss(known, reason);
     }

@@ -288,7 +288,7 @@ impl FilterFacts {
             (WeightRule::Fixed(weights), _) | (WeightRule::Adaptive { .. }, Some(weights)) => {
                 Some(Prediction::of_weights(weights.clone(), newest))
             }
-            (WeightRule::Adaptive { .. }, None) => None,
+            (WeightRule::Adaptive { .. }, None) | (WeightRule::Hidden(_), _) => None,
         }
     }
 

@@ -18,6 +18,7 @@ mod npy_heading;
 mod text;
 mod timing;
 mod unit;
+mod words;
 
 pub use bounds::{
     OutOfBounds, RATE_MAX_DEG_PER_H, SAMPLE_RATE_HZ, STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C,
@@ -33,3 +34,4 @@ pub use log::{
 pub use text::{Delimiter, Line, Lines, TextError};
 pub use timing::{TimeUnit, Timing, UnknownTimeUnit};
 pub use unit::{RateUnit, UnknownRateUnit};
+pub use words::read_words;

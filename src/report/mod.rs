@@ -43,8 +43,8 @@ mod text;
 
 pub use artefacts::{
     Artefact, Contents, INDEX, JUNIT, METRICS, OutputFile, PAGE, Place, SUITE_SUMMARY, artefacts,
-    budget_files, calibration_files, log_files, plots, run_file_names, run_files, run_pages,
-    run_pictures, suite_files,
+    budget_files, calibration_files, input_digest_toml, log_files, plots, run_file_names,
+    run_files, run_pages, run_pictures, suite_files,
 };
 pub use baseline::json::comparison_with_baseline_json;
 pub use baseline::markdown::comparison_with_baseline_markdown;

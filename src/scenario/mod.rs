@@ -23,7 +23,8 @@ pub use crate::calibration::{CalibrationConfig, CompensationConfig, Compensation
 pub use crate::filters::{
     ButterworthFilterConfig, ConstrainedRlsFilterConfig, FilterConfig, FilterKind,
     KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, OnePoleFilterConfig,
-    RlsFilterConfig, SavitzkyGolayFilterConfig, SignLmsFilterConfig,
+    ProcessFilterConfig, ReplayFilterConfig, RlsFilterConfig, SavitzkyGolayFilterConfig,
+    SignLmsFilterConfig,
 };
 pub use crate::gyro::{
     AdcConfig, AssemblyConfig, CoilConfig, ConstantPowerConfig, ControllerConfig, DetectorConfig,
@@ -62,6 +63,7 @@ pub use message::excerpt::{bounded, excerpt};
 pub use read::assumed::{AssumedInShort, AssumedValue};
 pub use read::compensation_source::load_calibration;
 pub use read::manifest::manifest_toml;
+pub use read::named_files::NamedFile;
 pub(crate) use read::resolve::UnsoundReading;
 pub use read::resolved::{InputFile, Resolved, SweepPoint};
 pub(crate) use read::suite::{Reading, read_suite};

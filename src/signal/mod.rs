@@ -139,6 +139,39 @@ pub enum WeightRule {
     Fixed(Vec<f64>),
     /// They are the impulse response of a cascade of sections.
     Sections(Vec<Section>),
+    /// They are not shown: the words alone are known.
+    Hidden(HiddenWeights),
+}
+
+/// A filter of which nothing is known but its words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HiddenWeights {
+    /// Why its weights are not known, in words: the reason of every metric that needs them.
+    pub reason: &'static str,
+    /// Samples over which its words are correlated, which stands for its memory.
+    pub memory_samples: usize,
+}
+
+impl FilterShape {
+    /// The outline of a filter whose weights are hidden.
+    #[must_use]
+    pub fn hidden(weights: HiddenWeights, register_samples: usize) -> Self {
+        Self {
+            taps: None,
+            newest_age_samples: register_samples,
+            register_samples,
+            rule: WeightRule::Hidden(weights),
+        }
+    }
+
+    /// Why nothing is known of the weights, if they are hidden.
+    #[must_use]
+    pub fn hidden_reason(&self) -> Option<&'static str> {
+        match &self.rule {
+            WeightRule::Hidden(hidden) => Some(hidden.reason),
+            _ => None,
+        }
+    }
 }
 
 /// One second-order section of a recursive filter:
@@ -297,6 +330,9 @@ pub struct RunSignals<'a> {
     pub truth_deg_per_h: &'a [f64],
     /// Angle that the table's encoder shows at each stamp, rad; none if the table has none.
     pub encoder_rad: Option<&'a [f64]>,
+    /// Digest of the words that the filters are given, warm-up included; none where no samples are written
+    /// or several gyros give them.
+    pub input_digest: Option<String>,
     /// Channels in order, raw first: name and rate words, deg/h.
     pub channels: Vec<(&'a str, &'a [f64])>,
     /// Temperatures over the measured part; `None` where they never change.

@@ -10,7 +10,7 @@ use super::error::{Foreign, Spared};
 use super::journal::Item;
 use super::legacy;
 use super::record::{MANIFEST_FILE, RECORD_FILE, Record, Sealed, digest_of};
-use super::{WORKSHOP, lock};
+use super::{WORKSHOP, lock, program_log};
 
 /// Whose a folder is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -109,7 +109,8 @@ fn refuse_foreign_workshop(folder: &Path) -> Result<(), Finding> {
     for inner in entries(&workshop)? {
         let name = inner.file_name();
         let name = name.to_string_lossy();
-        if name != lock::FILE && Item::of(&name) == Item::Foreign {
+        let is_ours = name == lock::FILE || name == program_log::FILE;
+        if !is_ours && Item::of(&name) == Item::Foreign {
             return Err(Finding::Theirs(inner.path(), Foreign::Unknown));
         }
     }

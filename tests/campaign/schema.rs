@@ -140,7 +140,8 @@ fn child(schema: &Value, complete: &Value) -> Child {
             Child::Table(table(schema, complete))
         }
         Some("array") if schema["items"]["type"] == "object" => {
-            Child::Tables(table(&schema["items"], &Value::Null))
+            let complete = &schema["items"]["allOf"][0];
+            Child::Tables(table(&schema["items"], complete))
         }
         _ => Child::Leaf(leaf(schema)),
     }

@@ -136,7 +136,7 @@ pub(super) fn measure(draws: &mut Draws, log: Log, folder: &Path) -> Outcome {
     let settings = settings(draws, &log);
     let filters = draws.chance(0.12).then(filters);
     let is_written = draws.chance(0.002);
-    match try_log(log, filters, &settings) {
+    match try_log(log, filters, &settings, &()) {
         Ok(trial) => {
             assert_document(&trial.with_report(log_json));
             let text = trial.with_report(|report| log_text(report, 100, false));

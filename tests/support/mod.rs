@@ -5,6 +5,9 @@ pub(crate) mod records;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use fogbench::declare::{Content, Presence};
+use fogbench::filters::FilterKind;
+
 pub(crate) mod generated;
 pub(crate) mod gyro_cases;
 pub(crate) mod junit;
@@ -32,6 +35,22 @@ pub(crate) fn assert_close(got: f64, want: f64, rtol: f64, atol: f64) {
 /// A path inside the repository.
 pub(crate) fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// Kinds of filters that the bench makes by itself: those from outside need keys that have no default.
+pub(crate) fn kinds_of_the_bench() -> Vec<&'static str> {
+    let rows = FilterKind::TABLE.rows.iter();
+    let own = rows.filter(|row| match row.content {
+        Content::Table(table) => {
+            let mut keys = table.rows.iter();
+            keys.all(|key| {
+                let is_value = matches!(key.content, Content::Value(_));
+                !is_value || key.presence != Presence::Required
+            })
+        }
+        _ => false,
+    });
+    own.map(|row| row.name).collect()
 }
 
 /// Runs the program with `arguments` in `folder`, output captured and colours off.

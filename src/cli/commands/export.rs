@@ -9,15 +9,19 @@ use crate::cli::terminal::complaint;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::cli::terminal::place::Place;
-use crate::experiment::{plan_suite, scenario_stimulus};
+use crate::experiment::{input_digest, plan_suite, scenario_stimulus};
 use crate::filters::FilterConfig;
 use crate::filters::hardware::{
     PipelineSettings, Stimulus, export_pipeline, has_hardware, kind_names,
 };
 use crate::fpga::FpgaError;
 use crate::recording::read_stimulus;
+use crate::report::input_digest_toml;
 use crate::vocabulary::ExportForm;
 use crate::wording::{counted, is_misspelling};
+
+/// Name of the file that says which samples the words of an export are of.
+const INPUT_DIGEST: &str = "input_digest.toml";
 
 /// Writes the folder and says what stands in it.
 pub(in crate::cli) fn export(options: &ExportOptions) -> io::Result<Exit> {
@@ -37,17 +41,20 @@ pub(in crate::cli) fn export(options: &ExportOptions) -> io::Result<Exit> {
         _ => stimulus.words.len(),
     };
     let mut exported = Ok(Vec::new());
+    let digest = input_digest_toml(&input_digest(&stimulus.words));
     let filled = place.fill(|folder| {
         let staged = folder.stage()?;
         exported = export_pipeline(staged.path(), form, &settings, stimulus, trace_samples);
         let Ok(files) = &mut exported else {
             return Ok(());
         };
-        for file in files {
+        for file in files.iter_mut() {
             if let Ok(name) = file.strip_prefix(staged.path()) {
                 *file = options.folder.join(name);
             }
         }
+        staged.write(INPUT_DIGEST, digest.as_bytes())?;
+        files.push(options.folder.join(INPUT_DIGEST));
         staged.seal_plainly()?;
         staged.put_files_in_place()
     });

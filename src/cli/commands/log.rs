@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::cli::commands::consent::consent;
 use crate::cli::options::format::Format;
 use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions, LogOptions};
 use crate::cli::terminal::complaint::{self, Complaint};
@@ -10,13 +11,15 @@ use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::cli::terminal::place::{self, Place};
 use crate::experiment::{
-    LogFilters, LogInput, LogSettings, LogTrial, compensate_log, load_log_compensation,
+    LogFilters, LogInput, LogSettings, LogTrial, Progress, compensate_log, load_log_compensation,
     load_log_filters, try_log,
 };
+use crate::program::Programs;
 use crate::recording::{AssemblyColumns, LogError, LogFormat, read_assembly_log, read_log};
 use crate::report::{is_kalman_json, log_json, log_text};
 use crate::scenario::AllanConfig;
 use crate::store::SingleFile;
+use crate::wording::printable;
 
 /// Measures a log, and writes its noise as a linear system.
 pub(in crate::cli) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
@@ -77,7 +80,12 @@ pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
         Ok(filters) => filters,
         Err(errors) => return Ok(refused(&errors)),
     };
-    conclude(input, Some(&filters), &options.log, options.csv).map(|(exit, _)| exit)
+    let programs = match consent(filters.programs(), options.allow_programs) {
+        Ok(programs) => programs,
+        Err(exit) => return Ok(exit),
+    };
+    let filters = Some((&filters, programs));
+    conclude(input, filters, &options.log, options.csv).map(|(exit, _)| exit)
 }
 
 /// Where the results go.
@@ -137,6 +145,19 @@ fn format(options: &LogOptions) -> LogFormat {
     }
 }
 
+/// Where filters of a log may be programs: whether they are started, and what they say.
+struct Starting(Option<Programs>);
+
+impl Progress for Starting {
+    fn programs(&self) -> Option<&Programs> {
+        self.0.as_ref()
+    }
+
+    fn program_said(&self, _run: &str, channel: &str, line: &str) {
+        output::talk(&format!("{channel}: {}", printable(line)));
+    }
+}
+
 /// Says why a file was not read.
 pub(in crate::cli) fn unreadable(error: &LogError) -> Exit {
     output::talk(&format!("error: {error}"));
@@ -153,7 +174,7 @@ fn refused<C: Complaint>(errors: &[C]) -> Exit {
 
 fn conclude(
     input: LogInput,
-    filters: Option<&LogFilters>,
+    filters: Option<(&LogFilters, Option<Programs>)>,
     options: &LogOptions,
     as_csv: bool,
 ) -> io::Result<(Exit, Option<LogTrial>)> {
@@ -167,7 +188,9 @@ fn conclude(
             averaging_times: options.averaging_times,
         },
     };
-    let trial = match try_log(input, filters, &settings) {
+    let (filters, programs) = filters.unzip();
+    let programs = Starting(programs.flatten());
+    let trial = match try_log(input, filters, &settings, &programs) {
         Ok(trial) => trial,
         Err(error) => {
             output::talk(&format!("error: {error}"));

@@ -7,6 +7,7 @@ pub(in crate::cli) mod check;
 pub(in crate::cli) mod claim;
 pub(in crate::cli) mod compare;
 pub(in crate::cli) mod completions;
+mod consent;
 pub(in crate::cli) mod expand;
 pub(in crate::cli) mod export;
 pub(in crate::cli) mod init;

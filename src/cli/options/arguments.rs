@@ -190,6 +190,9 @@ pub(in crate::cli) struct RunOptions {
     #[arg(long, value_name = "BUILD", num_args = 0..=1, require_equals = true,
           default_missing_value = "same-build")]
     pub(in crate::cli) resume: Option<ResumeFrom>,
+    /// Start the programs that filters of the kind `process` name; without it nothing is started
+    #[arg(long)]
+    pub(in crate::cli) allow_programs: bool,
     /// Start no further run once one has failed, be it by a gate
     #[arg(long)]
     pub(in crate::cli) fail_fast: bool,

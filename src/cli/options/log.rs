@@ -135,6 +135,9 @@ pub(in crate::cli) struct FilterLogOptions {
     /// Override a key of that file; `filter.<name>.<key>` reaches into a filter
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(in crate::cli) set: Vec<String>,
+    /// Start the programs that filters of the kind `process` name; without it nothing is started
+    #[arg(long)]
+    pub(in crate::cli) allow_programs: bool,
     /// Write the filtered samples as CSV as well
     #[arg(long, requires = "output")]
     pub(in crate::cli) csv: bool,

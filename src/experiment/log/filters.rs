@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::experiment::outside::{ProgramFiles, program_files};
 use crate::filters::{ExpectedWords, FilterConfig};
 use crate::scenario::{Resolved, ScenarioError, load_base_or_scenario};
 
@@ -64,6 +65,17 @@ impl LogFilters {
     /// The filters in the order of the file.
     pub(crate) fn configs(&self) -> &[FilterConfig] {
         &self.resolved.scenario.filters
+    }
+
+    /// The programs that they would start.
+    #[must_use]
+    pub fn programs(&self) -> Vec<ProgramFiles> {
+        program_files(&self.resolved)
+    }
+
+    /// The scenario they are from.
+    pub(crate) fn resolved(&self) -> &Resolved {
+        &self.resolved
     }
 
     /// Name and digest of the scenario they are from.

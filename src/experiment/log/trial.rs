@@ -9,8 +9,9 @@ use super::filters::LogFilters;
 use crate::experiment::build::VERSION;
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
 use crate::experiment::output_file::write_file;
+use crate::experiment::outside::{self, Input, Outside, OutsideFilter};
 use crate::experiment::pipeline_metrics;
-use crate::experiment::run::{Cut, GyroRecord, RecordLength, allan_options};
+use crate::experiment::run::{Cut, GyroRecord, Progress, RecordLength, Unfinished, allan_options};
 use crate::metrics::{
     ChannelMetrics, Motion, Settings, Unavailable, examine_log, is_sample_or_longer,
     noise_state_space, record_fit_tau_min_s,
@@ -18,6 +19,7 @@ use crate::metrics::{
 use crate::recording::Log;
 use crate::report::{KalmanReport, LogReport, kalman_json, log_files};
 use crate::scenario::{AllanConfig, MotionConfig, SwingConfig};
+use crate::seal::digest_of_words;
 use crate::signal::RunSignals;
 use crate::store::{OutputFolder, StoreError};
 use crate::turntable::first_measured_index;
@@ -135,11 +137,12 @@ pub struct LogTrial {
 /// # Errors
 /// A warm-up that leaves no sample; an averaging time shorter than one; a swing too fast for the sample
 /// rate; a filter that has the name
-/// of the compensated channel.
+/// of the compensated channel; a listener that stops it.
 pub fn try_log(
     input: impl Into<LogInput>,
     filters: Option<&LogFilters>,
     settings: &LogSettings,
+    progress: &dyn Progress,
 ) -> Result<LogTrial, LogTrialError> {
     let (mut log, compensated, mut notes) = match input.into() {
         LogInput::Plain(log) => (log, None, Vec::new()),
@@ -161,9 +164,20 @@ pub fn try_log(
         });
     }
     let words = record.filter_input_deg_per_h();
-    let finished = filters.map_or_else(Vec::new, |filters| {
-        run(filters, length, sample_period_s, words)
+    let finished = filters.map(|filters| {
+        let input = Input {
+            words_deg_per_h: words,
+            channel: if is_compensated { COMPENSATED } else { RAW },
+            length,
+            sample_period_s,
+        };
+        run(filters, &input, progress)
     });
+    let finished = finished.transpose().map_err(|unfinished| LogTrialError {
+        file: log.file.clone(),
+        message: unfinished.to_string(),
+    })?;
+    let finished = finished.unwrap_or_default();
     let measured = &record.raw_deg_per_h[length.warm_up..];
     let metric_settings = metric_settings(settings, measured, sample_period_s);
     let cut = Cut {
@@ -190,8 +204,10 @@ pub fn try_log(
     notes.splice(0..0, log.notes());
     if let Some(filters) = filters {
         notes.extend(filters.warnings(&record.raw_deg_per_h));
-        let of_pipelines = finished.iter();
-        notes.extend(of_pipelines.flat_map(|it| pipeline_metrics::notes(it, sample_period_s)));
+        for filter in &finished {
+            notes.extend(pipeline_metrics::notes(filter, sample_period_s));
+            notes.extend(outside::note(filter));
+        }
     }
     let compensated = is_compensated.then(|| {
         let measured = cut.measure_compensated();
@@ -258,17 +274,20 @@ fn examined(
 /// Every filter over the whole log.
 fn run(
     filters: &LogFilters,
-    length: RecordLength,
-    sample_period_s: f64,
-    words: &[f64],
-) -> Vec<FinishedFilter> {
-    let configs = filters.configs().par_iter();
+    input: &Input,
+    progress: &dyn Progress,
+) -> Result<Vec<FinishedFilter>, Unfinished> {
+    let configs = filters.configs().par_iter().enumerate();
     configs
-        .map(|config| {
-            let name = config.name.clone();
-            let mut filter = ChannelFilter::new(name, &config.kind, length, sample_period_s, false);
-            filter.process(words);
-            filter.finish()
+        .map(|(index, config)| {
+            if let Some(outside) = Outside::of(&config.kind) {
+                let filter = OutsideFilter::of_log(filters.resolved(), index);
+                return filter.run(outside, input, progress);
+            }
+            let (name, period_s) = (config.name.clone(), input.sample_period_s);
+            let mut filter = ChannelFilter::new(name, &config.kind, input.length, period_s, false);
+            filter.process(input.words_deg_per_h);
+            Ok(filter.finish())
         })
         .collect()
 }
@@ -418,6 +437,8 @@ impl LogTrial {
             prefix: "",
             truth_deg_per_h: &[],
             encoder_rad: None,
+            input_digest: (!self.filters.is_empty())
+                .then(|| digest_of_words(self.record.filter_input_deg_per_h())),
             channels: std::iter::once(raw)
                 .chain(self.compensated_words())
                 .chain(self.filter_words())

@@ -3,10 +3,11 @@
 use std::f64::consts::TAU;
 
 use super::checker::Checker;
-use crate::experiment::run::rate_deg_per_h_max;
-use crate::filters::{ExpectedRun, ExpectedWords};
+use crate::experiment::outside::{Outside, read_replay};
+use crate::experiment::run::{RecordLength, rate_deg_per_h_max};
+use crate::filters::{ExpectedRun, ExpectedWords, FilterConfig};
 use crate::gyro;
-use crate::scenario::MotionClass;
+use crate::scenario::{FilterState, MotionClass};
 use crate::signal::GyroFacts;
 
 /// Peak of the noise of a word that filters are to reckon with, standard deviations.
@@ -18,6 +19,7 @@ impl Checker<'_> {
         let words = self.expected_words(facts);
         let filters = &self.resolved.scenario.filters;
         for (index, filter) in filters.iter().enumerate() {
+            self.from_outside(index, filter);
             let complaints = filter.check_on(index, &words);
             if complaints.is_empty() {
                 // No place: warnings stand in the results, which name no folder.
@@ -26,6 +28,45 @@ impl Checker<'_> {
             for complaint in complaints {
                 self.complain(&complaint.key, complaint.message);
             }
+        }
+    }
+
+    /// Refuses words from outside that are not those of this record, or that no one record has.
+    fn from_outside(&mut self, index: usize, filter: &FilterConfig) {
+        let Some(Outside::Replay(config)) = Outside::of(&filter.kind) else {
+            return;
+        };
+        let scenario = &self.resolved.scenario;
+        let table = format!("filter[{index}].replay");
+        let one_record = [
+            (
+                scenario.gyro.assembly.is_some(),
+                "gyro.assembly has three gyros",
+            ),
+            (
+                scenario.repeats > 1,
+                "repeats above 1 gives several records",
+            ),
+            (
+                scenario.trial.filter_state == FilterState::Reset,
+                "trial.filter_state = \"reset\" starts filters afresh",
+            ),
+        ];
+        let several = one_record.iter().filter(|(is_so, _)| *is_so);
+        let mut complaints: Vec<(String, String)> = several
+            .map(|(_, what)| {
+                let message = format!("{table}: the words are those of one record: {what}");
+                (table.clone(), message)
+            })
+            .collect();
+        let key = format!("{table}.samples");
+        let samples = RecordLength::new(scenario, gyro::sample_period_s(&scenario.gyro)).total();
+        let file = self.resolved.named_file(&key);
+        let read = file.map(|file| read_replay(&file.path, &config.samples, samples));
+        let lack = read.and_then(Result::err);
+        complaints.extend(lack.map(|lack| (key.clone(), format!("{key} = {lack}"))));
+        for (key, message) in complaints {
+            self.complain(&key, message);
         }
     }
 

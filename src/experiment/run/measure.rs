@@ -13,9 +13,9 @@ use super::simulate::{GyroRecord, Simulation};
 use super::two_runs::two_runs;
 use crate::experiment::campaign;
 use crate::experiment::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
+use crate::experiment::outside;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::plan::Plan;
-use crate::filters::Divergence;
 use crate::gyro::{self, slow_drift};
 use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Learning, Motion, Record, Settings,
@@ -109,12 +109,14 @@ impl Cut<'_> {
 
     fn measure_unfiltered(&self, words: &[f64]) -> ChannelMetrics {
         match words.iter().position(|word| !word.is_finite()) {
-            Some(sample) => failed(
-                "not finite",
-                sample as u64,
-                format!("the word of the gyro is {}", words[sample]),
-                self.sample_period_s,
-            ),
+            Some(sample) => {
+                let failure = ChannelFailure {
+                    kind: "not finite".to_owned(),
+                    sample: sample as u64,
+                    message: format!("the word of the gyro is {}", words[sample]),
+                };
+                failed(failure, self.sample_period_s)
+            }
             None => self.measure(words, words, None),
         }
     }
@@ -228,7 +230,7 @@ impl Cut<'_> {
                 };
                 self.measure(&words.output_deg_per_h, input, Some(&facts))
             }
-            Err(divergence) => diverged(divergence, self.sample_period_s),
+            Err(failure) => failed(failure.clone(), self.sample_period_s),
         };
         if let Some(pipeline) = &filter.pipeline {
             pipeline_metrics::enter(pipeline, self.sample_period_s, &mut metrics);
@@ -255,20 +257,14 @@ fn filter_facts(filter: &FinishedFilter, words: &FilterWords) -> FilterFacts {
     }
 }
 
-/// A channel that failed has no numbers of its record but the instant of its failure.
-fn diverged(divergence: &Divergence, sample_period_s: f64) -> ChannelMetrics {
-    let (sample, message) = (divergence.sample, divergence.to_string());
-    failed("diverged", sample, message, sample_period_s)
-}
-
-fn failed(kind: &str, sample: u64, message: String, sample_period_s: f64) -> ChannelMetrics {
+/// A channel that failed has no numbers of its record but the instant of its failure, if the words
+/// brought it about.
+fn failed(failure: ChannelFailure, sample_period_s: f64) -> ChannelMetrics {
     let mut channel = ChannelMetrics::default();
-    let at_s = stamp_s(sample, sample_period_s);
-    channel.put(&DIVERGED_AT, Estimate::exact(at_s));
-    channel.error = Some(ChannelFailure {
-        kind: kind.to_owned(),
-        sample,
-        message,
-    });
+    if !outside::is_from_outside(&failure) {
+        let at_s = stamp_s(failure.sample, sample_period_s);
+        channel.put(&DIVERGED_AT, Estimate::exact(at_s));
+    }
+    channel.error = Some(failure);
     channel
 }

@@ -40,6 +40,7 @@ pub(super) fn runs_that_differ(
     length: RecordLength,
     sample_period_s: f64,
 ) -> Option<Vec<Vec<f64>>> {
+    let kind = filter.kind.as_ref()?;
     let blocks = &filter.words.as_ref().ok()?.block_weights;
     let part = RecordLength {
         measured: length.measured / PARTS,
@@ -60,7 +61,7 @@ pub(super) fn runs_that_differ(
         };
         let input: Vec<f64> = (0..part.total()).map(|at| motion[at] + noise(at)).collect();
         let name = filter.name.clone();
-        let mut again = ChannelFilter::new(name, &filter.kind, part, sample_period_s, false);
+        let mut again = ChannelFilter::new(name, kind, part, sample_period_s, false);
         again.process(&input);
         again.finish().words.ok()?.mean_weights
     });

@@ -1,6 +1,7 @@
 //! Watching a run, and stopping it before its end.
 
 use crate::gyro::GyroError;
+use crate::program::Programs;
 
 /// What the caller hears of a run while it is computed; called from many threads.
 pub trait Progress: Sync {
@@ -15,6 +16,12 @@ pub trait Progress: Sync {
     fn may_start(&self) -> bool {
         true
     }
+    /// The right to start programs of the user's; none: filters that are programs fail.
+    fn programs(&self) -> Option<&Programs> {
+        None
+    }
+    /// A program has written a line on its stderr.
+    fn program_said(&self, _run: &str, _channel: &str, _line: &str) {}
 }
 
 /// Nobody listens, nobody stops.

@@ -3,13 +3,15 @@
 //! A filter that learns from its input may pass a fast rate and attenuate a slow one. Every twin
 //! runs on the words of the filter plus a constant rate, present from the first sample on.
 
-use super::records::RecordLength;
+use std::ops::Range;
+
+use super::records::{RecordLength, count};
 use crate::experiment::channel_filter::Arithmetic;
 use crate::metrics::RateGain;
 use crate::units::deg_per_s_to_deg_per_h;
 
 /// The added rates, deg/s.
-const RATES_DEG_PER_S: [f64; 11] = [
+pub(crate) const RATES_DEG_PER_S: [f64; 11] = [
     0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0,
 ];
 
@@ -98,5 +100,38 @@ impl RateTwins {
             }
         });
         twins.collect()
+    }
+}
+
+/// What a twin made of a constant rate that was added to the record, block by block.
+///
+/// * `input`, `output`, `twin`: measured words, deg/h, of the filter's input, its own and the twin's.
+pub(crate) fn rate_gain(
+    rate_deg_per_s: f64,
+    input: &[f64],
+    output: &[f64],
+    twin: &[f64],
+) -> RateGain {
+    let rate_deg_per_h = deg_per_s_to_deg_per_h(rate_deg_per_s);
+    let border = |block: usize| (input.len() * block).div_ceil(BLOCKS);
+    let blocks = (0..BLOCKS).map(|block| border(block)..border(block + 1));
+    let blocks: Vec<_> = blocks.filter(|block| !block.is_empty()).collect();
+    let sum = |words: &[f64]| words.iter().sum::<f64>();
+    let added = |samples: usize| count(samples) * rate_deg_per_h;
+    let difference = |block: &Range<usize>| -> f64 {
+        let pairs = twin[block.clone()].iter().zip(&output[block.clone()]);
+        pairs.map(|(twin, own)| twin - own).sum()
+    };
+    let gains = blocks
+        .iter()
+        .map(|block| difference(block) / added(block.len()));
+    let ratios = blocks.iter().map(|block| {
+        (sum(&output[block.clone()]) + difference(block))
+            / (sum(&input[block.clone()]) + added(block.len()))
+    });
+    RateGain {
+        rate_deg_per_s,
+        block_gains: gains.collect(),
+        block_mean_ratios: ratios.collect(),
     }
 }

@@ -9,6 +9,7 @@ use super::simulate::{Faults, Simulation, simulate};
 use super::theory::theory;
 use crate::experiment::campaign;
 use crate::experiment::campaign::Parameters;
+use crate::experiment::outside;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::plan::Plan;
 use crate::gate::{Verdict, judge};
@@ -54,10 +55,13 @@ pub(crate) fn run_plan(plan: &Plan, progress: &dyn Progress) -> Result<Results, 
         .collect();
     let sample_period_s = plan.sample_period_s();
     let filters = simulation.filters.iter();
-    let pipelines: Vec<String> = filters
-        .flat_map(|(_, filter)| pipeline_metrics::notes(filter, sample_period_s))
+    let of_filters: Vec<String> = filters
+        .flat_map(|(_, filter)| {
+            let pipeline = pipeline_metrics::notes(filter, sample_period_s);
+            pipeline.into_iter().chain(outside::note(filter))
+        })
         .collect();
-    let notes = [plan.warnings().to_vec(), faults.notes(), pipelines].concat();
+    let notes = [plan.warnings().to_vec(), faults.notes(), of_filters].concat();
     let compensation = parameters.map(|known| known.sheet(mean_true_rates(plan, &simulation)));
     Ok(Results {
         simulation,
@@ -136,7 +140,8 @@ fn run_repeat(
 ) -> Result<(Simulation, Channels, Option<CalibrationSheet>), Unfinished> {
     let scenario = &plan.resolved().scenario;
     let length = RecordLength::new(scenario, plan.sample_period_s());
-    let simulation = simulate(scenario, length, repeat, parameters, progress)?;
+    let mut simulation = simulate(scenario, length, repeat, parameters, progress)?;
+    outside::complete(&mut simulation, plan.resolved(), length, progress)?;
     let mut channels = measure_repeat(plan, &simulation, length, progress)?;
     let sheet = campaign::calibrate_simulation(scenario, &simulation)
         .map_err(|error| Unfinished::Failed(format!("calibration: {error}")))?

@@ -7,6 +7,7 @@ use super::progress::{Progress, Unfinished, unless_stopped};
 use super::records::{RecordLength, count};
 use crate::experiment::campaign::{Compensator, Parameters};
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter, Restarts};
+use crate::experiment::outside::Outside;
 use crate::filters::FilterKind;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
@@ -24,7 +25,8 @@ const BLOCK_SAMPLES: usize = 1 << 14;
 pub(crate) struct Simulation {
     /// One gyro, or those of the case axes x, y, z.
     pub(crate) gyros: Vec<GyroRecord>,
-    /// The filters in the order of the file, each on every gyro in turn, with the index of the gyro.
+    /// The filters in the order of the file, each on every gyro in turn, with the index of the gyro; until
+    /// [`outside::complete`](crate::experiment::outside::complete) those of the bench alone.
     pub(in crate::experiment) filters: Vec<(usize, FinishedFilter)>,
     /// What the table's encoder shows at each stamp, rad; none if the table has none.
     pub(crate) encoder_rad: Option<Vec<f64>>,
@@ -188,7 +190,10 @@ fn channel_filters(
     sample_period_s: f64,
 ) -> Vec<(usize, ChannelFilter)> {
     let prefixes = scenario.axis_prefixes();
-    let filters = scenario.filters.iter().flat_map(|config| {
+    // Words from outside are put in place when the record stands.
+    let inside = scenario.filters.iter();
+    let inside = inside.filter(|config| Outside::of(&config.kind).is_none());
+    let filters = inside.flat_map(|config| {
         let gyros = prefixes.iter().enumerate();
         gyros.map(move |(gyro, prefix)| {
             let name = format!("{prefix}{}", config.name);

@@ -59,12 +59,13 @@ pub(super) fn two_runs(
     length: RecordLength,
     sample_period_s: f64,
 ) -> Option<TwoRuns> {
+    let kind = filter.kind.as_ref()?;
     let taps = filter.shape.taps.filter(|_| !filter.restarts)?;
     let lag = filter.shape.newest_age_samples - filter.shape.register_samples;
     let noise = |at: usize| words[at] - motion[at];
     let other = |at: usize| noise((at + words.len() / 2) % words.len());
     let run = || Run {
-        filter: Arithmetic::new(&filter.kind, length, sample_period_s),
+        filter: Arithmetic::new(kind, length, sample_period_s),
         noise: VecDeque::from(vec![0.0; taps]),
     };
     let (mut own, mut second) = (run(), run());

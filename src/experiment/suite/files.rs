@@ -7,6 +7,8 @@ use crate::experiment::plan::Plan;
 use crate::experiment::run::{RecordLength, Simulation};
 use crate::gyro::temperature_record;
 use crate::report::{self, Pictures, PointOfSweep, RunOutcome, RunReport};
+use crate::scenario::SamplesFormat;
+use crate::seal::digest_of_words;
 use crate::signal::RunSignals;
 use crate::store::{Staged, StoreError};
 
@@ -90,6 +92,8 @@ pub(super) fn signals<'a>(
     let sample_period_s = plan.sample_period_s();
     let first_measured = RecordLength::new(scenario, sample_period_s).warm_up;
     let end_s = scenario.warm_up_s + scenario.duration_s;
+    let is_written = scenario.output.samples == SamplesFormat::Npy;
+    let has_digest = is_written && simulation.gyros.len() == 1;
     let gyros = simulation.gyros.iter().enumerate();
     let named = gyros.zip(scenario.axis_prefixes().iter().zip(&names.raw));
     let signals = named.map(|((gyro, record), (prefix, raw_name))| {
@@ -107,6 +111,7 @@ pub(super) fn signals<'a>(
             prefix,
             truth_deg_per_h: &record.truth_deg_per_h,
             encoder_rad: simulation.encoder_rad.as_deref(),
+            input_digest: has_digest.then(|| digest_of_words(record.filter_input_deg_per_h())),
             channels: std::iter::once(raw)
                 .chain(compensated)
                 .chain(filters)

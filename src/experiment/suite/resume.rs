@@ -10,6 +10,7 @@ use super::outcome::Observer;
 use super::output::{SUMMARY, SuiteOutput};
 use crate::comparison::Layout;
 use crate::experiment::build::{BUILD, VERSION, names_one_program};
+use crate::experiment::outside::is_of_the_moment;
 use crate::experiment::plan::Plan;
 use crate::gate::judge;
 use crate::report::{self, RestoredRun, RunOutcome, RunReport, run_summary_json};
@@ -36,6 +37,13 @@ pub(crate) fn take_over(
     }
     let summary = fs::read_to_string(path.join(SUMMARY)).ok()?;
     let restored = RestoredRun::of_summary(&summary)?;
+    let mut failures = restored
+        .channels
+        .iter()
+        .filter_map(|(_, metrics)| metrics.error.as_ref());
+    if failures.any(is_of_the_moment) {
+        return None;
+    }
     let gates = resolved.scenario.gates.iter().enumerate();
     let verdicts: Vec<_> = gates
         .map(|(index, gate)| judge(gate, &restored.channels, Some(resolved.gate_place(index))))

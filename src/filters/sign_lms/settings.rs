@@ -135,8 +135,8 @@ impl FilterSettings for SignLmsFilterConfig {
         notes::notes(self, words)
     }
 
-    fn build(&self, _sample_period_s: f64) -> Box<dyn Filter> {
-        Box::new(SignLms::new(&self.on_words()))
+    fn build(&self, _sample_period_s: f64) -> Option<Box<dyn Filter>> {
+        Some(Box::new(SignLms::new(&self.on_words())))
     }
 
     fn hardware(&self) -> Option<PipelineSettings> {

@@ -25,7 +25,7 @@ use crate::metrics::sine::correlation::correlation_delay_s;
 use crate::metrics::sine::fit::{SwingClock, SwingFit, fit_swing};
 use crate::metrics::theory::bound::{LeastNoise, filter_bound_at, noise_power_gain};
 use crate::metrics::theory::learning::{Learning, NOT_FROM_ONE_RECORD};
-use crate::metrics::theory::prediction::{lags_needed, predict};
+use crate::metrics::theory::prediction::{lags_needed, predict, prediction_lack};
 use crate::metrics::trial::noise_delay::{
     put_bound, put_bound_curve, put_over_bound, widen_over_bound,
 };
@@ -410,8 +410,8 @@ fn measure_predictions(
         Some((units::s_to_ms(delay_s), prediction.dc_gain(), amplitude))
     };
     let Some((delay_ms, dc_gain, amplitude)) = under(&raw.autocovariance()) else {
-        metrics.miss(&DELAY_PREDICTED, "the raw channel has no power");
-        metrics.miss(&DC_GAIN_PREDICTED, "the raw channel has no power");
+        metrics.miss(&DELAY_PREDICTED, prediction_lack(&facts.shape));
+        metrics.miss(&DC_GAIN_PREDICTED, prediction_lack(&facts.shape));
         return;
     };
     let parts: Vec<_> = (0..raw.blocks())

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::linear_algebra::singular_value_decomposition;
 use crate::metrics::estimate::interval;
 use crate::metrics::record::{FilterFacts, Record};
-use crate::metrics::theory::memory::cascade;
+use crate::metrics::theory::memory::{cascade, memory_samples};
 use crate::signal::WeightRule;
 
 /// Shifted copies of a series that the regression weighs, at most.
@@ -39,7 +39,8 @@ pub(crate) struct Shown {
 ///
 /// * Where the answer of the gyro to the motion is known, raw shows that, and a filter of given weights
 ///   what it makes of it. The copies next to it take up what a linear model of the gyro leaves out.
-/// * Weights that adapt show the answer of the gyro at the ages that they weigh, by their mean.
+/// * Weights that adapt, or are hidden, show the answer of the gyro at the ages that they weigh, by
+///   their mean.
 /// * Else the truth itself is taken, at lags that span any smooth response.
 pub(crate) fn shown(record: &Record, filter: Option<&FilterFacts>) -> Option<Shown> {
     let of_gyro = record.response_deg_per_h;
@@ -62,8 +63,8 @@ pub(crate) fn shown(record: &Record, filter: Option<&FilterFacts>) -> Option<Sho
     };
     let newest = facts.shape.newest_age_samples;
     Some(match &facts.shape.rule {
-        WeightRule::Adaptive { .. } => {
-            let taps = facts.shape.taps.unwrap_or(1).min(LAGS_MAX);
+        WeightRule::Adaptive { .. } | WeightRule::Hidden(_) => {
+            let taps = memory_samples(&facts.shape).clamp(1, LAGS_MAX);
             let stride = (taps + 2).div_ceil(COLUMNS).max(1);
             let first = isize::try_from(newest).unwrap_or(0) - 1;
             Shown {

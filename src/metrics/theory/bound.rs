@@ -236,6 +236,9 @@ pub(crate) fn filter_bound(
     shape: &FilterShape,
     autocovariance: &[f64],
 ) -> Result<NoiseDelayBound, Unavailable> {
+    if let Some(reason) = shape.hidden_reason() {
+        return Err(reason.into());
+    }
     let taps = bound_taps(shape);
     if taps > BOUND_TAPS_MAX {
         return Err(format!("{taps} taps: it is computed for up to {BOUND_TAPS_MAX}").into());

@@ -13,7 +13,7 @@ const DIED_OUT: f64 = 1e-4;
 
 /// Samples a filter remembers: beyond them lies at most a hundredth of `sum k |h(k)|`.
 ///
-/// h is the impulse response; an adaptive filter remembers as many samples as it has taps. A moving
+/// h is the impulse response; of hidden weights the correlation of the words stands for it. An adaptive filter remembers as many samples as it has taps. A moving
 /// average of p samples remembers p, a one-pole filter with a time constant of t samples 6.6 t.
 #[must_use]
 pub fn memory_samples(shape: &FilterShape) -> usize {
@@ -21,6 +21,7 @@ pub fn memory_samples(shape: &FilterShape) -> usize {
         WeightRule::Adaptive { .. } => shape.taps.unwrap_or(0),
         WeightRule::Fixed(weights) => memory_of(weights),
         WeightRule::Sections(sections) => memory_of(&impulse_response(sections)),
+        WeightRule::Hidden(hidden) => hidden.memory_samples,
     }
 }
 

@@ -38,7 +38,7 @@ pub fn lags_needed(shape: &FilterShape) -> usize {
         WeightRule::Adaptive {
             desired_weights, ..
         } => desired_weights.len(),
-        WeightRule::Fixed(_) | WeightRule::Sections(_) => 0,
+        WeightRule::Fixed(_) | WeightRule::Sections(_) | WeightRule::Hidden(_) => 0,
     };
     shape.newest_age_samples + taps + desired + shape.register_samples + 1
 }
@@ -49,7 +49,8 @@ pub fn lags_needed(shape: &FilterShape) -> usize {
 /// * `second_moment`: `E[x(k) x(k-lag)]` by lag, mean included (not centred): an adaptive filter
 ///   sees the mean as signal; at least [`lags_needed`] values.
 ///
-/// `None` if the record has no power and the weights would adapt to it.
+/// `None` if the record has no power and the weights would adapt to it, or if they are hidden:
+/// [`prediction_lack`] says which.
 #[must_use]
 pub fn predict(shape: &FilterShape, second_moment: &[f64]) -> Option<Prediction> {
     let response = match &shape.rule {
@@ -63,11 +64,18 @@ pub fn predict(shape: &FilterShape, second_moment: &[f64]) -> Option<Prediction>
         }
         WeightRule::Fixed(weights) => ImpulseResponse::Finite(weights.clone()),
         WeightRule::Sections(sections) => ImpulseResponse::Infinite(sections.clone()),
+        WeightRule::Hidden(_) => return None,
     };
     Some(Prediction {
         response,
         newest_age_samples: shape.newest_age_samples,
     })
+}
+
+/// Why [`predict`] predicts nothing of a filter.
+pub(crate) fn prediction_lack(shape: &FilterShape) -> &'static str {
+    let hidden = shape.hidden_reason();
+    hidden.unwrap_or("the raw channel has no power")
 }
 
 /// Optimal weights `R^-1 p` of an adaptive filter, newest sample first.

@@ -8,7 +8,6 @@ use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Applies, Headline, MetricKey, Needs, Table};
 use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
-use crate::signal::WeightRule;
 
 /// DC gain.
 pub static DC_GAIN: MetricKey = MetricKey::of_filters(
@@ -74,7 +73,7 @@ pub static BIAS_STABILITY_OVER_DC_GAIN: MetricKey = MetricKey::of_filters(
 pub(crate) fn put_dc_gains(record: &Record, facts: &FilterFacts, metrics: &mut ChannelMetrics) {
     let scatter = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
     let estimate = |gain: f64, blocks: &[f64], learned: Option<Learned>| {
-        if !matches!(facts.shape.rule, WeightRule::Adaptive { .. }) || facts.dc_gain_is_held() {
+        if facts.given().is_some() || facts.dc_gain_is_held() {
             return Estimate::exact(gain);
         }
         let of_blocks = interval::from_parts(gain, blocks);
@@ -114,7 +113,13 @@ pub(crate) fn put_dc_gains(record: &Record, facts: &FilterFacts, metrics: &mut C
                     .fields
                     .insert("added_rate_deg_per_h", facts.added_rate_deg_per_h);
             }
-            None => metrics.miss(key, "it was not determined for this filter"),
+            None => {
+                let hidden = facts.shape.hidden_reason();
+                metrics.miss(
+                    key,
+                    hidden.unwrap_or("it was not determined for this filter"),
+                );
+            }
         }
     }
 }

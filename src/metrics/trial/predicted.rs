@@ -12,7 +12,7 @@ use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::theory::bound::{NO_DELAY_AT_DC, filter_bound_at, noise_power_gain};
-use crate::metrics::theory::prediction::{Prediction, predict};
+use crate::metrics::theory::prediction::{Prediction, predict, prediction_lack};
 
 /// DC gain predicted.
 pub static DC_GAIN_PREDICTED: MetricKey = MetricKey::of_filters(
@@ -64,13 +64,13 @@ pub(crate) fn measure_predictions(
         .filter_map(|(block, mean)| at(&raw.autocovariance_without(block), mean))
         .collect();
     let Some((dc_gain, delay_samples, bound)) = at(&raw.autocovariance(), mean) else {
-        metrics.miss(&DC_GAIN_PREDICTED, "the raw channel has no power");
+        metrics.miss(&DC_GAIN_PREDICTED, prediction_lack(&facts.shape));
         for name in [
             &NOISE_DELAY_BOUND_NOISE_GAIN,
             &NOISE_GAIN_OVER_BOUND,
             &DELAY_AT_DC,
         ] {
-            metrics.miss(name, "the raw channel has no power");
+            metrics.miss(name, prediction_lack(&facts.shape));
         }
         return;
     };

@@ -16,7 +16,7 @@ use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::sine::fit::{SwingClock, fit_sine};
 use crate::metrics::steps::settling::tail_start;
 use crate::metrics::theory::memory::memory_samples;
-use crate::metrics::theory::prediction::{lags_needed, predict};
+use crate::metrics::theory::prediction::{lags_needed, predict, prediction_lack};
 use crate::signal::{FilterShape, WeightRule};
 use crate::wording::decimals;
 
@@ -269,7 +269,7 @@ pub(crate) fn measure_after_step(
     }
     let second_moment: Vec<f64> = noise.iter().map(|value| value + mean * mean).collect();
     let Some(prediction) = predict(&facts.shape, &second_moment) else {
-        return metrics.miss(&READAPTATION_TIME, "the raw channel has no power");
+        return metrics.miss(&READAPTATION_TIME, prediction_lack(&facts.shape));
     };
     let units = GainUnits::of_step(
         &record.channel_deg_per_h[start..],

@@ -20,6 +20,7 @@ use crate::report::record::run::{RunOutcome, RunReport};
 use crate::scenario::{AssumedValue, SamplesFormat};
 use crate::signal::{BudgetSheet, CalibrationSheet, RunSignals};
 
+pub use samples::input_digest_toml;
 pub use table::{INDEX, JUNIT, METRICS, PAGE, SUITE_SUMMARY};
 
 use samples::Samples;

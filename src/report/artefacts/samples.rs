@@ -27,6 +27,9 @@ impl<'a, 's> Samples<'a, 's> {
 /// Name of the file of a channel.
 pub(super) const CHANNEL: &str = "samples/<channel>.npy";
 
+/// Name of the file of the digest of the samples that filters are given.
+pub(super) const INPUT_DIGEST: &str = "samples/input_digest.toml";
+
 fn npy<'a>(name: String, values: impl Into<Cow<'a, [f64]>>) -> OutputFile<'a> {
     OutputFile {
         name,
@@ -99,6 +102,24 @@ pub(super) fn encoder<'a>(row: &Artefact, samples: &Samples<'a, '_>) -> Vec<Outp
         .map(|angles_arcsec| npy(row.name.to_owned(), angles_arcsec))
         .into_iter()
         .collect()
+}
+
+/// Digest of the words that the filters are given, of a single gyro.
+pub(super) fn input_digest<'a>(row: &Artefact, samples: &Samples<'a, '_>) -> Vec<OutputFile<'a>> {
+    let digests = samples.npy().iter();
+    let digests = digests.filter_map(|gyro| gyro.input_digest.as_deref());
+    digests
+        .map(|digest| OutputFile::text(row.name, input_digest_toml(digest)))
+        .collect()
+}
+
+/// The line that says to a filter of the kind `replay` which samples its words are of.
+#[must_use]
+pub fn input_digest_toml(digest: &str) -> String {
+    format!(
+        "# BLAKE3 of the samples that the filters are given, as little-endian binary64: for \
+         [filter.replay].\ninput_digest = \"{digest}\"\n"
+    )
 }
 
 /// Stamps, the same for every gyro.

@@ -301,6 +301,20 @@ pub(super) const TABLE: &[Artefact] = &[
         made: Made::Samples(samples::encoder),
     },
     Artefact {
+        name: samples::INPUT_DIGEST,
+        holds: "digest of the samples that the filters are given, for words computed elsewhere",
+        when: "output.samples = \"npy\" and there is one gyro",
+        places: RUN,
+        made: Made::Samples(samples::input_digest),
+    },
+    Artefact {
+        name: samples::INPUT_DIGEST,
+        holds: "digest of the samples that the filters are given, for words computed elsewhere",
+        when: "there are filters",
+        places: &[Place::Log],
+        made: Made::Samples(samples::input_digest),
+    },
+    Artefact {
         name: "samples/time_s.npy",
         holds: "stamps, s",
         when: NPY,

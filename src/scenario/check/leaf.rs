@@ -1,7 +1,8 @@
 //! Checks of single values: type and range.
 
+use crate::declare::DIGEST_DIGITS;
 use crate::scenario::document::source::Mark;
-use crate::scenario::document::tree::{Node, Value};
+use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::keys::schema::{self, Key, Kind, join};
 use crate::scenario::message::excerpt::excerpt;
 use crate::wording::is_misspelling;
@@ -48,7 +49,7 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
             check_elements(key, shown, range, values)?;
             true
         }
-        (Kind::Texts, Value::Array(values)) => {
+        (Kind::Texts | Kind::Files | Kind::Command, Value::Array(values)) => {
             let is_text = |node: &Node| node.as_text().is_some_and(|text| !text.trim().is_empty());
             if values.is_empty() || !values.iter().all(is_text) {
                 let value = node.value.to_toml();
@@ -71,6 +72,7 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
             true
         }
         (Kind::Name, Value::Text(name)) => is_name(name),
+        (Kind::Digest, Value::Text(digest)) => is_digest(digest),
         (Kind::Choice(words), Value::Text(word)) => words.contains(&word.as_str()),
         (Kind::EmptyTable, Value::Table(table)) => {
             if let Some(name) = table.keys().next() {
@@ -82,7 +84,11 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
             }
             true
         }
-        (Kind::Text, Value::Text(text)) => !text.trim().is_empty(),
+        (Kind::Parameters, Value::Table(table)) => {
+            check_parameters(key, shown, table)?;
+            true
+        }
+        (Kind::Text | Kind::File, Value::Text(text)) => !text.trim().is_empty(),
         (Kind::FreeText, Value::Text(_)) | (Kind::Boolean, Value::Boolean(_)) => true,
         (_, value) => return Err(wrong_type(key, shown, value).into()),
     };
@@ -90,6 +96,39 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
         Ok(())
     } else {
         Err(out_of_range(key, shown, &node.value).into())
+    }
+}
+
+/// Checks settings that are passed on: names that need no quotes, and values that JSON can say.
+fn check_parameters(key: &Key, shown: &str, table: &Table) -> Result<(), Fault> {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    for (name, node) in table {
+        let shown = join(shown, name);
+        let shown = excerpt(&shown);
+        let mark = node.mark;
+        if name.is_empty() || !name.chars().all(is_bare) {
+            let message = format!("{shown} is not a valid name: allowed A-Z, a-z, 0-9, _ and -");
+            return Err(Fault { mark, message });
+        }
+        if !is_parameter(&node.value) {
+            let message = format!(
+                "{shown} has the wrong type: expected one of {}, got {}",
+                key.allowed(),
+                node.value.type_name()
+            );
+            return Err(Fault { mark, message });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a value can be passed on.
+fn is_parameter(value: &Value) -> bool {
+    match value {
+        Value::Text(_) | Value::Integer(_) | Value::Boolean(_) => true,
+        Value::Float(number) => number.is_finite(),
+        Value::Array(values) => values.iter().all(|node| is_parameter(&node.value)),
+        Value::Beyond(..) | Value::Date(_) | Value::Table(_) => false,
     }
 }
 
@@ -217,6 +256,12 @@ pub(crate) fn is_name(name: &str) -> bool {
     }
 }
 
+/// Whether a text is a digest as it is spelt here.
+fn is_digest(text: &str) -> bool {
+    let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+    text.len() == DIGEST_DIGITS && text.bytes().all(is_digit)
+}
+
 /// The complaint about a value outside the allowed ones.
 fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
     let text = value.to_toml();
@@ -229,6 +274,7 @@ fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
                 hint(words, word)
             )
         }
+        (Kind::Digest, _) => format!("{shown} = {text} is no digest: expected {}", key.expected()),
         (Kind::Name, _) => format!(
             "{shown} = {text} is not a valid name: allowed {}",
             key.allowed()

@@ -3,6 +3,7 @@
 //! What is found with them counts only if it is found with every variant: a complaint that follows
 //! from one made-up value does not follow from another.
 
+use crate::declare::DIGEST_DIGITS;
 use crate::scenario::check::faults::Taken;
 use crate::scenario::document::address::{Step, get, get_mut, parse};
 use crate::scenario::document::tree::{Node, Table, Value};
@@ -148,10 +149,13 @@ fn made_up(key: &Key, variant: Variant) -> Value {
         Kind::Boolean => Value::Boolean(variant == Variant::Large),
         Kind::Choice(words) => Value::Text(words[variant.index() % words.len()].to_owned()),
         Kind::Choices(words) => texts(vec![words[variant.index() % words.len()].to_owned(); count]),
-        Kind::Texts => texts(vec!["raw.mean_deg_per_h".to_owned(); count]),
+        Kind::Texts | Kind::Files | Kind::Command => {
+            texts(vec!["raw.mean_deg_per_h".to_owned(); count])
+        }
         Kind::Name => Value::Text(format!("stand-in-{count}")),
-        Kind::Text | Kind::FreeText => Value::Text(format!("stand-in {count}")),
-        Kind::EmptyTable | Kind::Matrix => Table::new().into(),
+        Kind::Text | Kind::FreeText | Kind::File => Value::Text(format!("stand-in {count}")),
+        Kind::Digest => Value::Text("0".repeat(DIGEST_DIGITS)),
+        Kind::EmptyTable | Kind::Matrix | Kind::Parameters => Table::new().into(),
     }
 }
 

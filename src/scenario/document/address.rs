@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::scenario::document::source::Mark;
 use crate::scenario::document::tree::{Node, Table, Value, merge_node};
-use crate::scenario::keys::schema::{self, Child, Key, join};
+use crate::scenario::keys::schema::{self, Child, Key, Kind, join};
 use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::message::suggest::{self, unknown_key};
 
@@ -155,13 +155,22 @@ pub(crate) fn resolve(
     let mut rest = steps.into_iter().peekable();
     let mut path: Vec<Step> = Vec::new();
     let mut schema_path = String::new();
-    let mut key = None;
+    let mut key: Option<&'static Key> = None;
     while let Some(step) = rest.next() {
         let Step::Key(name) = step else {
             return Err(AddressError::NotAnArray(display(&path)));
         };
-        if key.is_some() {
-            return Err(AddressError::NotATable(display(&path)));
+        match key {
+            // Their names are the user's.
+            Some(Key {
+                kind: Kind::Parameters,
+                ..
+            }) if rest.peek().is_none() => {
+                path.push(Step::Key(name));
+                continue;
+            }
+            Some(_) => return Err(AddressError::NotATable(display(&path))),
+            None => {}
         }
         match schema::child(&schema_path, &name) {
             None => {

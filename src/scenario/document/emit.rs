@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::scenario::document::tree::{Node, Table};
-use crate::scenario::keys::schema::{self, Child, Entry, join};
+use crate::scenario::keys::schema::{self, Child, Entry, Key, Kind, join};
 
 /// The tree as TOML; `prefix` is the table it stands in, empty at the root.
 pub(crate) fn to_toml(root: &Table, prefix: &str) -> String {
@@ -43,8 +43,8 @@ impl Emitter<'_> {
     fn table(&mut self, schema_path: &str, written_path: &str, values: &Table) {
         let entries = schema::entries(schema_path);
         for Entry { name, child, .. } in entries {
-            if let (Child::Leaf(_), Some(node)) = (child, values.get(*name))
-                && node.as_table().is_none()
+            if let (Child::Leaf(key), Some(node)) = (child, values.get(*name))
+                && (node.as_table().is_none() || is_inline(key))
             {
                 self.value(name, node);
             }
@@ -62,6 +62,7 @@ impl Emitter<'_> {
                         self.table(path, &written, inner);
                     }
                 }
+                Child::Leaf(key) if is_inline(key) => {}
                 Child::Leaf(_) | Child::Table => {
                     if let Some(inner) = node.as_table() {
                         let written = join(written_path, name);
@@ -90,4 +91,9 @@ impl Emitter<'_> {
         self.places.extend(asked.map(|index| (index, place)));
         self.text.push('\n');
     }
+}
+
+/// Whether the table of a key stands on its line: its names are no keys of the bench.
+fn is_inline(key: &Key) -> bool {
+    matches!(key.kind, Kind::Parameters)
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::declare::Content;
+use crate::declare::{Content, DIGEST_DIGITS};
 use crate::scenario::check::cross::RESERVED;
 use crate::scenario::config::RangeConfig;
 use crate::scenario::document::tree;
@@ -68,9 +68,12 @@ fn element(schema_path: &str) -> Value {
         schema.remove("not");
     }
     for (keyword, rule) in complete(schema_path) {
-        if keyword != "properties" {
-            schema.insert(keyword, rule);
-        }
+        // The tables inside have their own properties already: what they need stands beside them.
+        let (keyword, rule) = match keyword.as_str() {
+            "properties" => ("allOf".to_owned(), json!([{"properties": rule}])),
+            _ => (keyword, rule),
+        };
+        schema.insert(keyword, rule);
     }
     if schema_path == "gate[]" {
         let limits = json!([{"required": ["min"]}, {"required": ["max"]}]);
@@ -131,7 +134,7 @@ fn leaf(key: &Key) -> Value {
         Kind::Floats(range) => {
             json!({"type": "array", "minItems": 1, "items": number(range)})
         }
-        Kind::Texts => {
+        Kind::Texts | Kind::Files | Kind::Command => {
             json!({"type": "array", "minItems": 1, "items": {"type": "string", "minLength": 1}})
         }
         Kind::Triple(range) => {
@@ -145,7 +148,10 @@ fn leaf(key: &Key) -> Value {
             schema
         }
         Kind::Boolean => json!({"type": "boolean"}),
-        Kind::Text => json!({"type": "string", "minLength": 1}),
+        Kind::Text | Kind::File => json!({"type": "string", "minLength": 1}),
+        Kind::Digest => {
+            json!({"type": "string", "pattern": format!("^[0-9a-f]{{{DIGEST_DIGITS}}}$")})
+        }
         Kind::FreeText => json!({"type": "string"}),
         Kind::Name => json!({
             "type": "string",
@@ -159,6 +165,10 @@ fn leaf(key: &Key) -> Value {
         Kind::EmptyTable => {
             json!({"type": "object", "additionalProperties": false, "properties": {}})
         }
+        Kind::Parameters => json!({
+            "type": "object",
+            "additionalProperties": {"type": ["string", "number", "boolean", "array"]},
+        }),
         Kind::Matrix => matrix(),
     };
     schema["description"] = json!(format!("{} {}", key.sentence(), key.line()));

@@ -249,7 +249,7 @@ impl Print {
     /// Writes a key in its table.
     fn documented(&mut self, mark: &str, key: &Key) {
         self.meaning(mark, key);
-        self.line(&format!("{mark}{} = {}", key.path, key.literal));
+        self.line(&format!("{mark}{} = {}", key.path, literal_of(key)));
     }
 
     /// Writes a table that does not stand by default, once for each of its alternatives; further
@@ -326,7 +326,7 @@ impl Print {
             let literal = match (key.kind, chosen) {
                 // A filter is best named after its kind.
                 (Kind::Name, Some((row, _))) => format!("\"{}\"", row.name.replace('_', "-")),
-                _ => key.literal.to_owned(),
+                _ => literal_of(&key),
             };
             self.line(&format!("{ALTERNATIVE}{} = {literal}", key.path));
         }
@@ -357,6 +357,14 @@ fn alternatives_of(table: &'static Table) -> (Option<Group>, &'static Table) {
     match (table.group, flat) {
         (None, Some(inner)) => (inner.group, inner),
         (group, _) => (group, table),
+    }
+}
+
+/// The value of a key as it is written in its table.
+fn literal_of(key: &Key) -> String {
+    match key.kind {
+        Kind::Parameters => toml_text(key.literal),
+        _ => key.literal.to_owned(),
     }
 }
 

@@ -183,6 +183,7 @@ impl Chain {
             sources: Arc::new(self.sources),
             file: label.text(),
             inputs: self.inputs,
+            named_files: Vec::new(),
             recorded: None,
             warnings: Vec::new(),
             remarks: Vec::new(),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::Table;
+use crate::scenario::read::named_files::NamedFile;
 use crate::scenario::read::resolved::{InputFile, SweepPoint, broken};
 
 /// What a scenario is resolved from.
@@ -19,6 +20,8 @@ pub(crate) struct Draft {
     pub(crate) file: String,
     /// Files it was read from.
     pub(crate) inputs: Vec<InputFile>,
+    /// Files that keys name and that are read when it runs.
+    pub(crate) named_files: Vec<NamedFile>,
     /// What a manifest says about the origin of its scenario.
     pub(crate) recorded: Option<Recorded>,
     /// What is worth saying about how it was read.

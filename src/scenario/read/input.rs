@@ -85,17 +85,18 @@ pub(crate) fn digest(path: &Path) -> Result<String, InputError> {
     Ok(blake3::hash(&read_bytes(path)?).to_hex().to_string())
 }
 
+/// BLAKE3 of a regular file of any size, hexadecimal; it is not held in memory.
+pub(crate) fn digest_of_any(path: &Path) -> Result<String, InputError> {
+    let file = open_regular(path, None)?;
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(file).map_err(InputError::System)?;
+    Ok(hasher.finalize().to_hex().to_string())
+}
+
 /// The bytes of a regular file.
 fn read_bytes(path: &Path) -> Result<Vec<u8>, InputError> {
-    // Asked before it is opened, which alone would wait for a writer at the other end of a pipe.
-    let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => InputError::Missing,
-        _ => InputError::System(error),
-    })?;
-    check(&metadata)?;
-    let file = open(path).map_err(InputError::System)?;
+    let file = open_regular(path, Some(BYTES_MAX))?;
     let metadata = file.metadata().map_err(InputError::System)?;
-    check(&metadata)?;
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
     // The size that the system tells need not be true: what is read decides.
     file.take(BYTES_MAX + 1)
@@ -110,6 +111,20 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, InputError> {
         return Err(too_long(format!("more than {BYTES_MAX}")));
     }
     Ok(bytes)
+}
+
+/// Opens a regular file of up to so many bytes.
+fn open_regular(path: &Path, bytes_max: Option<u64>) -> Result<File, InputError> {
+    // Asked before it is opened, which alone would wait for a writer at the other end of a pipe.
+    let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => InputError::Missing,
+        _ => InputError::System(error),
+    })?;
+    check(&metadata, bytes_max)?;
+    let file = open(path).map_err(InputError::System)?;
+    let metadata = file.metadata().map_err(InputError::System)?;
+    check(&metadata, bytes_max)?;
+    Ok(file)
 }
 
 /// Opens a file so that reading never waits. What the system shows as a regular file may yet be a
@@ -133,7 +148,7 @@ fn too_long(found: String) -> InputError {
 }
 
 /// Refuses what is no regular file within the bound.
-fn check(metadata: &Metadata) -> Result<(), InputError> {
+fn check(metadata: &Metadata, bytes_max: Option<u64>) -> Result<(), InputError> {
     if metadata.is_dir() {
         return Err(InputError::Folder);
     }
@@ -141,7 +156,7 @@ fn check(metadata: &Metadata) -> Result<(), InputError> {
         let kind = special_kind(metadata);
         return Err(InputError::Special { kind });
     }
-    if metadata.len() > BYTES_MAX {
+    if bytes_max.is_some_and(|most| metadata.len() > most) {
         return Err(too_long(metadata.len().to_string()));
     }
     Ok(())

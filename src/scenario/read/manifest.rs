@@ -130,6 +130,7 @@ pub(crate) fn read(
         sources: Arc::new(sources),
         file,
         inputs,
+        named_files: Vec::new(),
         recorded: Some(recorded),
         warnings,
         remarks: Vec::new(),

@@ -10,6 +10,7 @@ pub(in crate::scenario) mod draft;
 pub(in crate::scenario) mod input;
 pub(in crate::scenario) mod manifest;
 pub(in crate::scenario) mod matrix;
+pub(in crate::scenario) mod named_files;
 pub(in crate::scenario) mod range;
 pub(in crate::scenario) mod resolve;
 pub(in crate::scenario) mod resolved;

@@ -14,6 +14,7 @@ use crate::scenario::keys::renamed;
 use crate::scenario::message::error::{ScenarioError, in_both};
 use crate::scenario::read::compensation_source;
 use crate::scenario::read::draft::{Draft, Recorded};
+use crate::scenario::read::named_files;
 use crate::scenario::read::resolved::{Resolved, broken, configuration, digest};
 use crate::scenario::read::script;
 
@@ -53,6 +54,12 @@ impl Draft {
     pub(crate) fn resolve(mut self) -> Result<Resolved, Unsound> {
         let mut errors = Vec::new();
         let campaign = self.read_named_files(&mut errors);
+        let sources = &self.sources;
+        let named = (&mut self.root, &mut self.inputs);
+        match named_files::read_all(named.0, sources, named.1, self.recorded.as_ref()) {
+            Ok(found) => self.named_files = found,
+            Err(more) => errors.extend(more),
+        }
         let faults = check_values(&mut self.root, self.root_mark, &self.sources);
         errors.extend(faults.errors);
         if faults.is_other_version || self.is_partial {
@@ -163,6 +170,7 @@ impl Draft {
             file: origin.file,
             digest: origin.digest,
             inputs: origin.inputs,
+            named_files: self.named_files,
             sweep: origin.sweep,
             warnings: [self.warnings, renamed::warnings(&self.root)].concat(),
             remarks: self.remarks,

@@ -10,6 +10,7 @@ use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::keys::defaults::default_of;
 use crate::scenario::message::error::{Location, ScenarioError};
+use crate::scenario::read::named_files::NamedFile;
 
 /// A file that a scenario was read from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,8 +48,11 @@ pub struct Resolved {
     pub file: String,
     /// BLAKE3 of [`Resolved::to_toml`], hexadecimal.
     pub digest: String,
-    /// Every file it was read from, the innermost base first and the table of a script last.
+    /// Every file it was read from, the innermost base first, then the table of a script and those that
+    /// its filters name.
     pub inputs: Vec<InputFile>,
+    /// Files that its filters name, which are read when it runs.
+    pub named_files: Vec<NamedFile>,
     /// Which point of a sweep it is; `None` without a matrix.
     pub sweep: Option<SweepPoint>,
     /// What is allowed but worth saying about how it was read.
@@ -124,6 +128,11 @@ impl Resolved {
     #[must_use]
     pub fn to_toml(&self) -> String {
         to_toml(&self.tree, "")
+    }
+
+    /// The file that a key names, as in `filter[0].replay.samples`; none where the key names none.
+    pub(crate) fn named_file(&self, key: &str) -> Option<&NamedFile> {
+        self.named_files.iter().find(|file| file.key == key)
     }
 
     /// Where a key was written, e.g. `gate[2].metric` or `filter[0].lms.step_size`.

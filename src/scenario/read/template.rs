@@ -13,11 +13,12 @@ use crate::scenario::document::address::{self, Step};
 use crate::scenario::document::emit::to_toml_around;
 use crate::scenario::document::tree::{Node, Table};
 use crate::scenario::keys::renamed;
-use crate::scenario::keys::schema::Key;
+use crate::scenario::keys::schema::{Key, Kind};
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::read::resolved::{Resolved, configuration, digest};
 
-/// First names of keys that stand for files, which each point reads for itself.
+/// First names of keys that stand for files which are read with the scenario: each point reads them for
+/// itself, as it finds those that others name.
 const FILES: [&str; 2] = ["compensation", "turntable.script"];
 
 /// A resolved point and the places of its swept values.
@@ -48,8 +49,13 @@ impl Template {
                 key,
             })
             .collect();
-        let is_file = |slot: &Slot| FILES.iter().any(|name| slot.key.path.starts_with(name));
-        if slots.iter().any(is_file) {
+        let is_own = |slot: &Slot| {
+            let kind = slot.key.kind;
+            kind.names_files()
+                || matches!(kind, Kind::Parameters)
+                || FILES.iter().any(|name| slot.key.path.starts_with(name))
+        };
+        if slots.iter().any(is_own) {
             return None;
         }
         let nodes = slots
@@ -127,6 +133,7 @@ fn with_tree(run: &Resolved, tree: Table, text: &str) -> Result<Resolved, Vec<Sc
         tree,
         file: run.file.clone(),
         inputs: run.inputs.clone(),
+        named_files: run.named_files.clone(),
         sweep: None,
         warnings,
         remarks: run.remarks.clone(),

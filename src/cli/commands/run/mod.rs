@@ -8,12 +8,13 @@ mod server_files;
 
 use std::io;
 
+use crate::cli::commands::consent::consent;
 use crate::cli::commands::select;
 use crate::cli::options::arguments::{ResumeFrom, RunOptions};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::cli::terminal::signals::Interrupt;
-use crate::experiment::{Resume, SuiteOptions, run_suite};
+use crate::experiment::{Resume, SuiteOptions, program_files, run_suite};
 use crate::scenario::bounded;
 use progress::Progress;
 use server_files::ServerFiles;
@@ -32,6 +33,11 @@ pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Re
         output::talk("error: --require-gates: no selected scenario has a gate; nothing was run");
         return Ok(Exit::GateFailed);
     }
+    let programs = plans.iter().flat_map(|plan| program_files(plan.resolved()));
+    let programs = match consent(programs, options.allow_programs) {
+        Ok(programs) => programs,
+        Err(exit) => return Ok(exit),
+    };
     let beside = against::earlier(options)
         .and_then(|earlier| Ok((earlier, ServerFiles::check(options, &plans)?)));
     let (earlier, server) = match beside {
@@ -45,7 +51,7 @@ pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Re
         resume: resume(options.resume),
         ..SuiteOptions::new(options.output.clone())
     };
-    let progress = Progress::new(&plans, options, server, interrupt);
+    let progress = Progress::new(&plans, options, server, interrupt).starting(programs);
     if let Some(text) = senseless_threads(options) {
         output::talk(&format!(
             "warning: RAYON_NUM_THREADS = `{}` is no number of threads: one per core",

@@ -18,8 +18,10 @@ use crate::cli::terminal::output;
 use crate::cli::terminal::place;
 use crate::cli::terminal::signals::Interrupt;
 use crate::experiment::{self, Observer, Plan, SuiteError, SuiteOutcome, thread_count};
+use crate::program::Programs;
 use crate::report::{RunOutcome, RunReport, RunStatus};
-use crate::wording::counted;
+use crate::store::ProgramLog;
+use crate::wording::{counted, printable};
 
 /// Progress on stderr, results on stdout in the order of the plan.
 pub(super) struct Progress<'a> {
@@ -31,6 +33,10 @@ pub(super) struct Progress<'a> {
     pending: Mutex<Pending>,
     /// Whether a run has failed.
     has_failed: AtomicBool,
+    /// The right to start programs, if the user gave it.
+    programs: Option<Programs>,
+    /// What they say.
+    program_log: ProgramLog,
 }
 
 /// Texts that wait for their turn.
@@ -69,7 +75,14 @@ impl<'a> Progress<'a> {
             interrupt,
             pending: Mutex::new(pending),
             has_failed: AtomicBool::new(false),
+            programs: None,
+            program_log: ProgramLog::of(&options.output),
         }
+    }
+
+    /// With the right to start programs, where there is one.
+    pub(super) fn starting(self, programs: Option<Programs>) -> Self {
+        Self { programs, ..self }
     }
 
     /// Says how the suite ended and gives its exit code.
@@ -218,6 +231,17 @@ impl experiment::Progress for Progress<'_> {
 
     fn may_start(&self) -> bool {
         !self.is_cut_short()
+    }
+
+    fn programs(&self) -> Option<&Programs> {
+        self.programs.as_ref()
+    }
+
+    fn program_said(&self, run: &str, channel: &str, line: &str) {
+        let line = format!("{run} {channel}: {}", printable(line));
+        // The terminal has the line all the same.
+        drop(self.program_log.note(&line));
+        self.talk(&line);
     }
 }
 

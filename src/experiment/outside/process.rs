@@ -1,0 +1,256 @@
+//! A program of the user's in the place of a filter: its words, and what they and a few more runs of it
+//! tell of its weights.
+
+use rayon::prelude::*;
+
+use super::failure::FailureKind;
+use super::probe::{self, Weights};
+use super::replay::registered;
+use super::{Input, OutsideFilter};
+use crate::experiment::channel_filter::{
+    ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter, WEIGHT_BLOCKS, given_gain,
+};
+use crate::experiment::run::{Progress, RATES_DEG_PER_S, Unfinished, rate_gain};
+use crate::filters::{ProcessFilterConfig, ProcessMode};
+use crate::metrics::{ChannelFailure, RateGain, correlation_length_samples};
+use crate::program::{Greeting, Interrupted, Launch, Listener, Programs, Session};
+use crate::signal::{FilterShape, HiddenWeights, WeightRule};
+use crate::units::deg_per_s_to_deg_per_h;
+
+/// Why metrics are missing that need the weights.
+const NO_WEIGHTS: &str =
+    "a program does not show its weights, and its answer to an impulse does not explain its words";
+
+/// A program and what it is given, ready to be run again and again.
+struct Program<'a> {
+    programs: &'a Programs,
+    launch: Launch,
+    config: &'a ProcessFilterConfig,
+    input: &'a Input<'a>,
+    /// Folder of the run and name of the channel.
+    name: (String, &'a str),
+    progress: &'a dyn Progress,
+}
+
+/// Why a program gave no words.
+enum Halt {
+    Stopped,
+    Failed(ChannelFailure),
+}
+
+impl Halt {
+    /// What a session said of the block that begins with a sample.
+    fn of(interrupted: Interrupted, start: usize) -> Self {
+        match interrupted {
+            Interrupted::Stopped => Self::Stopped,
+            Interrupted::Failed(error) => {
+                let sample = (start + error.word()) as u64;
+                let message = format!("the program failed at sample {sample}: {error}");
+                Self::Failed(FailureKind::from(error.kind()).failure(sample, message))
+            }
+        }
+    }
+}
+
+/// Passes on what the program says, where somebody is to hear it.
+struct Ear<'a> {
+    program: &'a Program<'a>,
+    is_heard: bool,
+}
+
+impl Listener for Ear<'_> {
+    fn said(&self, line: &str) {
+        if self.is_heard {
+            let (run, channel) = &self.program.name;
+            self.program.progress.program_said(run, channel, line);
+        }
+    }
+
+    fn should_stop(&self) -> bool {
+        self.program.progress.should_stop()
+    }
+}
+
+impl Program<'_> {
+    /// What a fresh run of the program makes of some words.
+    fn over(&self, words: &[f64], is_heard: bool) -> Result<Vec<f64>, Halt> {
+        let ear = Ear {
+            program: self,
+            is_heard,
+        };
+        let config = self.config;
+        let block = match config.mode {
+            ProcessMode::Stream => config.block_samples,
+            ProcessMode::Record => u32::try_from(words.len()).unwrap_or(u32::MAX),
+        };
+        let greeting = Greeting::new(
+            1.0 / self.input.sample_period_s,
+            self.input.channel.to_owned(),
+            block,
+            config.parameters.clone().unwrap_or_default(),
+        );
+        let session = Session::start(self.programs, &self.launch, &greeting, &ear);
+        let mut session = session.map_err(|error| Halt::of(error, 0))?;
+        let mut answers = Vec::with_capacity(words.len());
+        for block in words.chunks(block as usize) {
+            let start = answers.len();
+            let answer = session.exchange(block);
+            answers.extend(answer.map_err(|error| Halt::of(error, start))?);
+        }
+        let end = words.len();
+        session.finish().map_err(|error| Halt::of(error, end))?;
+        Ok(registered(answers, config.output_register))
+    }
+
+    /// The same of words beside the record, of which nobody hears; none where the program fails on them.
+    fn beside(&self, words: &[f64]) -> Result<Option<Vec<f64>>, Unfinished> {
+        match self.over(words, false) {
+            Ok(answers) => Ok(Some(answers)),
+            Err(Halt::Failed(_)) => Ok(None),
+            Err(Halt::Stopped) => Err(Unfinished::Stopped),
+        }
+    }
+
+    /// The same of the record with a constant rate, deg/h, added from its first word on.
+    fn with_rate(&self, rate_deg_per_h: f64) -> Result<Option<Vec<f64>>, Unfinished> {
+        let words = self.input.words_deg_per_h.iter();
+        let words: Vec<f64> = words.map(|word| word + rate_deg_per_h).collect();
+        self.beside(&words)
+    }
+
+    /// Weights that explain every word of the record, if there are such.
+    fn weights(&self, output_deg_per_h: &[f64]) -> Result<Option<Weights>, Unfinished> {
+        let input = self.input.words_deg_per_h;
+        let answer = self.beside(&probe::impulse(input.len()))?;
+        let register = self.config.output_register.samples();
+        let weights = answer.and_then(|answer| Weights::of(&answer, register));
+        Ok(weights.filter(|weights| weights.explain(input, output_deg_per_h)))
+    }
+
+    /// Gains for constant rates of every size.
+    fn rate_gains(&self, output_deg_per_h: &[f64]) -> Result<Vec<RateGain>, Unfinished> {
+        let warm_up = self.input.length.warm_up;
+        let (input, output) = (
+            &self.input.words_deg_per_h[warm_up..],
+            &output_deg_per_h[warm_up..],
+        );
+        let gains: Vec<Option<RateGain>> = RATES_DEG_PER_S
+            .par_iter()
+            .map(|&rate_deg_per_s| {
+                let twin = self.with_rate(deg_per_s_to_deg_per_h(rate_deg_per_s))?;
+                let gain =
+                    |twin: Vec<f64>| rate_gain(rate_deg_per_s, input, output, &twin[warm_up..]);
+                Ok(twin.map(gain))
+            })
+            .collect::<Result<_, Unfinished>>()?;
+        Ok(gains.into_iter().flatten().collect())
+    }
+}
+
+impl OutsideFilter<'_> {
+    /// The channel of a program.
+    pub(super) fn process(
+        &self,
+        config: &ProcessFilterConfig,
+        input: &Input,
+        progress: &dyn Progress,
+    ) -> Result<FinishedFilter, Unfinished> {
+        let Some(programs) = progress.programs() else {
+            let message = "programs are started by the command line with --allow-programs alone";
+            let failure = FailureKind::NotAllowed.failure(0, message.to_owned());
+            return Ok(self.failed(config, failure));
+        };
+        let program = Program {
+            programs,
+            launch: self.launch(config),
+            config,
+            input,
+            name: (self.resolved.folder(), &self.name),
+            progress,
+        };
+        let output = match program.over(input.words_deg_per_h, true) {
+            Ok(output) => output,
+            Err(Halt::Stopped) => return Err(Unfinished::Stopped),
+            Err(Halt::Failed(failure)) => return Ok(self.failed(config, failure)),
+        };
+        let rate_gains = if self.resolved.scenario.trial.rate_gain {
+            program.rate_gains(&output)?
+        } else {
+            Vec::new()
+        };
+        let (shape, words) = match program.weights(&output)? {
+            Some(weights) => {
+                let shape = weights.shape(config.output_register.samples());
+                let gain = given_gain(&shape.rule);
+                let mean_weights = match &shape.rule {
+                    WeightRule::Fixed(weights) => Some(weights.clone()),
+                    _ => None,
+                };
+                let words = FilterWords {
+                    dc_gain: gain,
+                    dc_gain_adapted: gain,
+                    mean_weights,
+                    ..FilterWords::alone(output)
+                };
+                (shape, words)
+            }
+            None => (
+                hidden(config, &output[input.length.warm_up..]),
+                adapted(&program, output)?,
+            ),
+        };
+        Ok(FinishedFilter {
+            name: self.name.clone(),
+            kind: None,
+            shape,
+            restarts: false,
+            words: Ok(FilterWords {
+                rate_gains,
+                ..words
+            }),
+            pipeline: None,
+        })
+    }
+
+    fn failed(&self, config: &ProcessFilterConfig, failure: ChannelFailure) -> FinishedFilter {
+        FinishedFilter {
+            name: self.name.clone(),
+            kind: None,
+            shape: hidden(config, &[]),
+            restarts: false,
+            words: Err(failure),
+            pipeline: None,
+        }
+    }
+}
+
+/// The outline of a program of which the measured words alone are known.
+fn hidden(config: &ProcessFilterConfig, measured_deg_per_h: &[f64]) -> FilterShape {
+    let hidden = HiddenWeights {
+        reason: NO_WEIGHTS,
+        memory_samples: correlation_length_samples(measured_deg_per_h).unwrap_or(1),
+    };
+    FilterShape::hidden(hidden, config.output_register.samples())
+}
+
+/// The words with the gain for a small rate that a twin has learned from the first word on.
+fn adapted(program: &Program, output_deg_per_h: Vec<f64>) -> Result<FilterWords, Unfinished> {
+    let warm_up = program.input.length.warm_up;
+    let twin = program.with_rate(ADDED_RATE_DEG_PER_H)?;
+    let Some(twin) = twin else {
+        return Ok(FilterWords::alone(output_deg_per_h));
+    };
+    let pairs = twin[warm_up..].iter().zip(&output_deg_per_h[warm_up..]);
+    let gains: Vec<f64> = pairs
+        .map(|(twin, own)| (twin - own) / ADDED_RATE_DEG_PER_H)
+        .collect();
+    let mean = |gains: &[f64]| gains.iter().sum::<f64>() / gains.len() as f64;
+    let border = |block: usize| (gains.len() * block).div_ceil(WEIGHT_BLOCKS);
+    let blocks = (0..WEIGHT_BLOCKS).map(|block| &gains[border(block)..border(block + 1)]);
+    let blocks = blocks.filter(|gains| !gains.is_empty()).map(mean).collect();
+    Ok(FilterWords {
+        dc_gain_adapted: (!gains.is_empty()).then(|| mean(&gains)),
+        block_dc_gains_adapted: blocks,
+        ..FilterWords::alone(output_deg_per_h)
+    })
+}
