@@ -12,7 +12,7 @@ use std::path::Path;
 
 use fogbench::metrics::{AllanPoint, FitRange, NoiseFit, fit_noise, overlapping_allan};
 use fogbench::random::Streams;
-use fogbench::recording::{LogFormat, RateUnit, TimeUnit, csv_text, read_log};
+use fogbench::recording::{LogFormat, RateUnit, csv_text, read_log};
 
 const SAMPLE_RATE_HZ: f64 = 100.0;
 const SAMPLES: usize = 60_000;
@@ -55,14 +55,9 @@ fn analyze(
     let log = read_log(
         file,
         &LogFormat {
-            sample_rate_hz,
-            unit: RateUnit::DegPerH,
-            scale: 1.0,
-            column: sample_rate_hz
-                .is_none()
-                .then(|| "rate_deg_per_h".to_owned()),
-            time_column: sample_rate_hz.is_none().then(|| "time_s".to_owned()),
-            time_unit: TimeUnit::Seconds,
+            rate_hz: sample_rate_hz,
+            unit: Some(RateUnit::DEG_PER_H.into()),
+            ..LogFormat::default()
         },
     )?;
     let points = overlapping_allan(&log.rate_deg_per_h, log.sample_period_s());

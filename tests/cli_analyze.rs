@@ -337,9 +337,12 @@ fn bad_logs_and_usage_exit_2_and_unreadable_files_74() {
         assert_eq!(code, 2, "{more}: {text}");
         transcript.case(format!("{command} log.csv --rate-hz {more}"), text);
     }
-    let output = fogbench(folder.path(), &["analyze", "log.csv", "--unit", "deg/h"]);
+    let clockless = [
+        "analyze", "log.csv", "--unit", "deg/h", "--column", "rate", "--time", "none",
+    ];
+    let output = fogbench(folder.path(), &clockless);
     assert_eq!(code(&output), 2);
-    transcript.case("analyze log.csv --unit deg/h", stderr(&output));
+    transcript.case(clockless.join(" "), stderr(&output));
     let missing = ["analyze", "none.csv", "--unit", "deg/h", "--rate-hz", "1"];
     let output = fogbench(folder.path(), &missing);
     assert_eq!(code(&output), 74, "{}", stderr(&output));

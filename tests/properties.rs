@@ -2,7 +2,7 @@
 
 use fogbench::calibration::{Compensation, ErrorParameters, Misalignment};
 use fogbench::metrics::{ChannelMetrics, aggregate};
-use fogbench::recording::{LogFormat, RATE_MAX_DEG_PER_H, RateUnit, TimeUnit, csv_text, read_log};
+use fogbench::recording::{LogFormat, RATE_MAX_DEG_PER_H, RateUnit, csv_text, read_log};
 use fogbench::store::write_npy;
 use fogbench::vocabulary::CompensationForm;
 use proptest::prelude::*;
@@ -97,12 +97,9 @@ proptest! {
     fn what_is_written_as_csv_and_npy_is_read_back_to_the_bit(rates in rates()) {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let format = LogFormat {
-            sample_rate_hz: Some(400.0),
-            unit: RateUnit::DegPerH,
-            scale: 1.0,
-            column: None,
-            time_column: None,
-            time_unit: TimeUnit::Seconds,
+            rate_hz: Some(400.0),
+            unit: Some(RateUnit::DEG_PER_H.into()),
+            ..LogFormat::default()
         };
         let path = folder.path().join("log.npy");
         write_npy(&path, &rates).expect("a writable folder");
@@ -111,7 +108,7 @@ proptest! {
         prop_assert_eq!(bits(&log.rate_deg_per_h), bits(&rates));
 
         let path = write(folder.path(), "log.csv", &csv_text(&rates, 1.0 / 400.0));
-        let second = LogFormat { column: Some("2".to_owned()), ..format };
+        let second = LogFormat { column: Some(vec!["2".to_owned()]), ..format };
         let log = read_log(&path, &second).expect("own CSV");
         prop_assert_eq!(bits(&log.rate_deg_per_h), bits(&rates));
     }

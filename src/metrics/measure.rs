@@ -123,10 +123,13 @@ pub fn measure(
     metrics
 }
 
-/// As [`measure`] for raw words of which some are missing (NaN): what a log measures without its outliers.
+/// As [`measure`] for raw words of which some are missing (NaN): a log with gaps, or without its outliers.
 pub(crate) fn measure_present(record: &Record, settings: &Settings) -> ChannelMetrics {
     let mut metrics = ChannelMetrics::default();
-    if let Err(reason) = measure_words(record, settings, None, &mut metrics) {
+    let words = record.channel_deg_per_h.iter();
+    let measured = enough_samples(words.filter(|word| !word.is_nan()).count())
+        .and_then(|()| measure_words(record, settings, None, &mut metrics));
+    if let Err(reason) = measured {
         refuse_rest(&reason, &mut metrics);
     }
     metrics.keep_finite();
@@ -141,17 +144,23 @@ fn measure_motion(
     metrics: &mut ChannelMetrics,
 ) -> Result<(), Unavailable> {
     let values = record.channel_deg_per_h;
-    if values.len() < SAMPLES_MIN {
-        return Err(format!(
-            "the record holds {}; metrics need {SAMPLES_MIN}",
-            counted(values.len(), "sample")
-        )
-        .into());
-    }
+    enough_samples(values.len())?;
     if let Some(index) = values.iter().position(|value| !value.is_finite()) {
         return Err(format!("sample {index} of the record is not finite").into());
     }
     measure_words(record, settings, filter, metrics)
+}
+
+/// Refuses a record of too few samples.
+fn enough_samples(samples: usize) -> Result<(), Unavailable> {
+    if samples >= SAMPLES_MIN {
+        return Ok(());
+    }
+    Err(format!(
+        "the record holds {}; metrics need {SAMPLES_MIN}",
+        counted(samples, "sample")
+    )
+    .into())
 }
 
 fn measure_words(

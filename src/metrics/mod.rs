@@ -82,6 +82,7 @@ pub use key::curve::{Column, Curve, CurveKey};
 pub(crate) use key::metric::{Against, Headline, Table};
 pub use key::metric::{Applies, Better, MetricKey, OfBlocks};
 pub use measure::measure;
+pub(crate) use measure::measure_present;
 pub use noise::autocovariance::autocovariance;
 pub use noise::bias_stability::{
     effective_degrees_of_freedom, expected_bias_stability, paired_ratio,

@@ -4,13 +4,17 @@ use std::io;
 
 use super::error::Place;
 use super::input::push;
+use super::time_column::TimeColumn;
+use super::unit_text::Spelled;
 
 /// Numbers with the name of their column.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Column {
     /// Name in the heading, or what it was asked for by.
     pub(crate) name: Option<String>,
-    /// Values, finite.
+    /// What the heading, or a row of units, says of the numbers.
+    pub(super) unit: Option<Spelled>,
+    /// Values, finite; NaN where a number is missing and that is a gap.
     pub(crate) values: Vec<f64>,
 }
 
@@ -19,8 +23,10 @@ pub(crate) struct Column {
 pub(crate) struct Columns {
     /// Rates, angles and what else was asked for, in that order; all of one length.
     pub(crate) data: Vec<Column>,
-    /// The time, where it was asked for.
-    pub(crate) time: Option<Column>,
+    /// The time, where it was asked for or found.
+    pub(super) time: Option<TimeColumn>,
+    /// What the file was taken for, in a line.
+    pub(crate) layout: Option<String>,
     /// Empty lines between the rows.
     pub(crate) empty_lines: EmptyLines,
     /// Where each row stands; rows of an array stand at their index.

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::bounds::{STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C};
-use super::csv::fault;
 use super::error::{LogError, Place};
 use super::groups_heading::{Heading, Quantity};
 use super::input::read_whole;
+use super::table::fault;
 use super::text::{Lines, NumberError, finite, shown};
 use super::unit::RateUnit;
 use crate::units::deg_per_h_to_deg_per_s;
@@ -179,7 +179,7 @@ pub fn read_groups(path: &Path) -> Result<RecordedGroups, LogError> {
     if let Some((number, error)) = wrong_standard_error(&groups) {
         return Err(complain(number, error));
     }
-    let unit = |quantity| heading.unit(quantity).unwrap_or(RateUnit::DegPerH);
+    let unit = |quantity| heading.unit(quantity).unwrap_or(RateUnit::DEG_PER_H);
     Ok(RecordedGroups {
         file: path
             .file_name()

@@ -72,6 +72,11 @@ impl Input {
         self.length
     }
 
+    /// The first bytes, eight at most.
+    pub(super) fn first(&self) -> &[u8] {
+        &self.first
+    }
+
     /// Whether the file begins with these bytes, at most eight.
     pub(super) fn starts_with(&self, bytes: &[u8]) -> bool {
         self.first.starts_with(bytes)

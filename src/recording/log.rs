@@ -1,34 +1,29 @@
 //! From a file to rate words at equal spacing.
 
+use std::ops::Range;
 use std::path::Path;
 
 use super::bounds::{check_rate, check_sample_rate, check_temperature};
-use super::column::{Columns, EmptyLines};
-use super::csv::{self, Wanted};
+use super::column::{Column, Columns, EmptyLines};
+use super::convert::Conversion;
 use super::error::LogError;
+use super::format::LogFormat;
 use super::input::Input;
-use super::timing::{TimeUnit, Timing, timing};
-use super::unit::RateUnit;
+use super::layout::columns::Selection;
+use super::stretches::parts;
+use super::table::{self, Wanted};
+use super::timing::{Spacing, Timing, timing};
 use super::{npy, npy_heading};
-use crate::units::s_to_us;
-use crate::wording::counted;
+use crate::wording::{counted, plain};
 
-/// What the user says of a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LogFormat {
-    /// Samples per second, Hz; none where a time column tells.
-    pub sample_rate_hz: Option<f64>,
-    /// Unit of the numbers.
-    pub unit: RateUnit,
-    /// Factor on the numbers before the unit: the units that one count stands for.
-    pub scale: f64,
-    /// Column of the numbers, by its name or its number from 1; none where there is only one.
-    pub column: Option<String>,
-    /// Column of the time, likewise.
-    pub time_column: Option<String>,
-    /// Its unit.
-    pub time_unit: TimeUnit,
-}
+/// Lag-one correlation of words from which on they may be a running angle.
+const ANGLE_CORRELATION: f64 = 0.999;
+/// Largest lag-one correlation of the steps of an angle whose rate is noise.
+const STEP_CORRELATION: f64 = 0.5;
+/// Fewest words of which that is asked.
+const CORRELATED_MIN: usize = 100;
+/// Most stretches whose means are named.
+const NAMED_STRETCHES: usize = 6;
 
 /// A recorded log.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,8 +34,8 @@ pub struct Log {
     /// Column of the numbers where the file has several or names its only one.
     pub column: Option<String>,
     /// Unit it was recorded in.
-    pub unit: RateUnit,
-    /// Rate words, deg/h; finite.
+    pub unit: String,
+    /// Rate words, deg/h: finite, or NaN where samples are missing.
     pub rate_deg_per_h: Vec<f64>,
     /// Samples per second, Hz.
     pub sample_rate_hz: f64,
@@ -48,6 +43,21 @@ pub struct Log {
     pub timing: Option<Timing>,
     /// Empty lines between the samples.
     pub empty_lines: EmptyLines,
+    /// Stretches of words between which samples are missing.
+    pub stretches: Vec<Stretch>,
+    /// What the file was taken for, in a line; none of an array.
+    pub layout: Option<String>,
+    /// What else is worth saying of how it was read.
+    remarks: Vec<String>,
+}
+
+/// Words at equal spacing without a gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// The words in the log.
+    pub words: Range<usize>,
+    /// Their mean, deg/h.
+    pub mean_deg_per_h: f64,
 }
 
 impl Log {
@@ -57,23 +67,85 @@ impl Log {
         1.0 / self.sample_rate_hz
     }
 
+    /// Whether samples are missing between the words.
+    #[must_use]
+    pub fn has_gaps(&self) -> bool {
+        self.stretches.len() > 1 || self.rate_deg_per_h.iter().any(|word| word.is_nan())
+    }
+
+    /// Moves every stretch to the mean of all words, so that noise is measured about each one's own.
+    pub fn take_about_common_mean(&mut self) {
+        if self.stretches.len() < 2 {
+            return;
+        }
+        let present = self.rate_deg_per_h.iter().filter(|word| !word.is_nan());
+        let (sum, count) = present.fold((0.0, 0.0), |(sum, count), word| (sum + word, count + 1.0));
+        for stretch in &self.stretches {
+            let step = sum / count - stretch.mean_deg_per_h;
+            for word in &mut self.rate_deg_per_h[stretch.words.clone()] {
+                *word += step;
+            }
+        }
+    }
+
     /// What is worth saying about how it was read.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let EmptyLines { count, first } = self.empty_lines;
+        let mut notes = Vec::new();
         match self.timing {
-            Some(timing) => vec![format!(
-                "time column: {:.6} Hz, no gap, stamps within {:.3} us of equal spacing",
-                timing.sample_rate_hz,
-                s_to_us(timing.jitter_max_s)
-            )],
-            None if count > 0 => vec![format!(
+            Some(timing) => notes.push(timing.note(self.stretches.len())),
+            None if count > 0 => notes.push(format!(
                 "{} between the samples, from line {first} on, passed over: the samples are taken to be \
                  equally spaced all the same",
                 counted(count, "empty line")
-            )],
-            None => Vec::new(),
+            )),
+            None => {}
         }
+        notes.extend(self.remarks.iter().cloned());
+        notes.extend(self.stretches_note());
+        notes
+    }
+
+    /// What is said of several stretches: how long they are, their means and the largest step between two.
+    fn stretches_note(&self) -> Option<String> {
+        if self.stretches.len() < 2 {
+            let missing = self
+                .rate_deg_per_h
+                .iter()
+                .filter(|word| word.is_nan())
+                .count();
+            return (missing > 0).then(|| {
+                format!(
+                    "{} missing: nothing is put in their place, and no sum spans one",
+                    counted(missing, "sample")
+                )
+            });
+        }
+        let named = self.stretches.iter().take(NAMED_STRETCHES).map(|stretch| {
+            format!(
+                "{:.4} ({})",
+                stretch.mean_deg_per_h,
+                counted(stretch.words.len(), "sample")
+            )
+        });
+        let more = self.stretches.len().saturating_sub(NAMED_STRETCHES);
+        let more = match more {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let steps = self.stretches.windows(2);
+        let steps = steps.map(|two| two[1].mean_deg_per_h - two[0].mean_deg_per_h);
+        let largest = steps.fold(
+            0.0_f64,
+            |most, step| if step.abs() > most.abs() { step } else { most },
+        );
+        Some(format!(
+            "{} with gaps between them are pooled: no sum spans a gap, and each is taken about its own mean. \
+             Means {}{more} deg/h; the largest step from one to the next is {largest:.4} deg/h",
+            counted(self.stretches.len(), "part"),
+            named.collect::<Vec<_>>().join(", ")
+        ))
     }
 }
 
@@ -96,37 +168,78 @@ pub struct AssemblyLog {
     pub temperature_c: Option<Vec<f64>>,
 }
 
-/// Reads a log, NPY by its first bytes and text otherwise.
+/// Reads the log of one column, NPY by its first bytes and text otherwise.
 ///
 /// # Errors
-/// [`LogError`]: whatever the file system says; a file that does not hold what `format` says of it.
+/// [`LogError`]: whatever the file system says; a file that does not hold what `format` says of it;
+/// several columns.
 pub fn read_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
-    let columns = vec![format.column.as_deref()];
-    let columns = read_columns(path, columns, format.time_column.as_deref(), usize::MAX)?;
-    let (timing, sample_rate_hz) = spacing(path, &columns, format)?;
-    log(path, &columns, 0, format, (timing, sample_rate_hz))
+    let mut logs = read_logs(path, format)?;
+    match (logs.pop(), logs.len()) {
+        (Some(log), 0) => Ok(log),
+        (_, others) => {
+            let count = others + 1;
+            let message = format!("{count} columns are named with --column: expected one here");
+            Err(LogError::of_file(path, message))
+        }
+    }
+}
+
+/// Reads the logs of the columns that a format names, in one pass.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_logs(path: &Path, format: &LogFormat) -> Result<Vec<Log>, LogError> {
+    let selection = Selection::Named(format.column.as_deref().unwrap_or_default());
+    let mut columns = read_columns(path, selection, format)?;
+    let data = std::mem::take(&mut columns.data);
+    let spacing = spacing(path, &columns, &data, format)?;
+    let logs = data.into_iter();
+    logs.map(|column| log(path, &columns, column, format, &spacing))
+        .collect()
 }
 
 /// Reads the logs of three gyros from one text, in one pass; `format.column` is not used.
 ///
 /// # Errors
-/// As [`read_log`]; two quantities in one column, a temperature that no assembly has.
+/// As [`read_log`]; two quantities in one column, a temperature that no assembly has, missing samples.
 pub fn read_assembly_log(
     path: &Path,
     format: &LogFormat,
     columns: &AssemblyColumns<'_>,
 ) -> Result<AssemblyLog, LogError> {
-    let gyros = columns.gyros.map(Some);
-    let wanted = gyros.into_iter().chain(columns.temperature.map(Some));
-    let time = format.time_column.as_deref();
-    let columns = read_columns(path, wanted.collect(), time, usize::MAX)?;
-    let spacing = spacing(path, &columns, format)?;
-    let gyro = |index: usize| log(path, &columns, index, format, spacing);
-    let gyros = [gyro(0)?, gyro(1)?, gyro(2)?];
-    let temperature_c = columns.data.get(3).map(|column| column.values.clone());
-    for (row, &warmth) in temperature_c.iter().flatten().enumerate() {
-        check_temperature(warmth).map_err(|error| LogError::at(path, columns.place(row), error))?;
+    let wanted = columns.gyros.into_iter().chain(columns.temperature);
+    let selection = Selection::Each(wanted.collect());
+    let mut columns = read_columns(path, selection, format)?;
+    let mut data = std::mem::take(&mut columns.data);
+    let spacing = spacing(path, &columns, &data, format)?;
+    let temperature = (data.len() > 3).then(|| data.remove(3));
+    let logs = data
+        .into_iter()
+        .map(|column| log(path, &columns, column, format, &spacing));
+    let logs = logs.collect::<Result<Vec<Log>, LogError>>()?;
+    if let Some(gappy) = logs.iter().find(|log| log.has_gaps()) {
+        let message = format!(
+            "column {}: samples are missing, which an assembly is not compensated over: --rows or --to-s \
+             takes a part without",
+            gappy.column.as_deref().unwrap_or_default()
+        );
+        return Err(LogError::of_file(path, message));
     }
+    let gyros = logs
+        .try_into()
+        .map_err(|_| LogError::of_file(path, "expected three gyros"))?;
+    let temperature_c = match temperature {
+        Some(column) => {
+            for (row, &warmth) in column.values.iter().enumerate() {
+                check_temperature(warmth)
+                    .map_err(|error| LogError::at(path, columns.place(row), error))?;
+            }
+            let rows = spacing.stretches[0].clone();
+            Some(column.values[rows].to_vec())
+        }
+        None => None,
+    };
     Ok(AssemblyLog {
         gyros,
         temperature_c,
@@ -144,100 +257,267 @@ pub fn read_stimulus(
     column: Option<&str>,
     samples_max: usize,
 ) -> Result<Vec<f64>, LogError> {
-    let columns = read_columns(path, vec![column], None, samples_max)?;
+    let column: Vec<String> = column.map(str::to_owned).into_iter().collect();
+    let format = LogFormat::default();
+    let wanted = Wanted {
+        columns: Selection::Named(&column),
+        needs_time: false,
+        format: &format,
+        samples_max,
+    };
+    let columns = read_wanted(path, &wanted)?;
     let column = columns.data.into_iter().next();
     Ok(column.map(|column| column.values).unwrap_or_default())
 }
 
-/// Reads columns of a text, or the array of an NPY file; there is a sample.
+/// Reads columns of a log, all of its samples.
 fn read_columns(
     path: &Path,
-    columns: Vec<Option<&str>>,
-    time: Option<&str>,
-    samples_max: usize,
+    columns: Selection<'_>,
+    format: &LogFormat,
 ) -> Result<Columns, LogError> {
+    let wanted = Wanted {
+        columns,
+        needs_time: true,
+        format,
+        samples_max: usize::MAX,
+    };
+    read_wanted(path, &wanted)
+}
+
+/// Reads columns of a text or an array; there is a sample.
+fn read_wanted(path: &Path, wanted: &Wanted<'_>) -> Result<Columns, LogError> {
     let input = Input::open(path)?;
     let columns = if input.starts_with(npy_heading::MAGIC) {
-        let named = columns.iter().flatten().next().copied().or(time);
-        if let Some(name) = named {
-            let message = format!("an NPY file has no columns: leave `{name}` out");
-            return Err(LogError::of_file(path, message));
-        }
-        npy::read(path, input, samples_max)?
+        let length = input.length();
+        npy::read(path, input, length, wanted)?
     } else {
-        let wanted = Wanted {
-            columns,
-            time,
-            samples_max,
-        };
-        csv::read(path, input, &wanted)?
+        table::read(path, input, wanted)?
     };
-    if columns.rows() == 0 {
+    if columns
+        .data
+        .first()
+        .is_none_or(|column| column.values.is_empty())
+    {
         return Err(LogError::of_file(path, "holds no sample"));
     }
     Ok(columns)
 }
 
-/// What the time column says, and the sample rate, Hz.
+/// What the time column says, the sample rate, and the stretches of rows that are taken.
 fn spacing(
     path: &Path,
     columns: &Columns,
+    data: &[Column],
     format: &LogFormat,
-) -> Result<(Option<Timing>, f64), LogError> {
-    let given = format.sample_rate_hz;
-    let timing = match &columns.time {
-        Some(time) => Some(timing(path, columns, time, format.time_unit, given)?),
-        None => None,
+) -> Result<Spacing, LogError> {
+    let rows = data.first().map_or(0, |column| column.values.len());
+    let stretches = parts(path, columns, rows, format)?;
+    let spacing = match &columns.time {
+        Some(time) => timing(path, columns, time, format, &stretches),
+        None => by_rate(path, format, stretches),
     };
-    let from_column = timing.map(|timing| timing.sample_rate_hz);
-    let Some(sample_rate_hz) = given.or(from_column) else {
+    let spacing = spacing.map_err(|error| with_units(path, data, format, error))?;
+    check_sample_rate(spacing.sample_rate_hz).map_err(|error| LogError::of_file(path, error))?;
+    Ok(spacing)
+}
+
+fn by_rate(
+    path: &Path,
+    format: &LogFormat,
+    stretches: Vec<Range<usize>>,
+) -> Result<Spacing, LogError> {
+    let Some(sample_rate_hz) = format.rate_hz else {
         let message = "the sample rate is not known: give --rate-hz, or a time column with --time";
         return Err(LogError::of_file(path, message));
     };
-    check_sample_rate(sample_rate_hz).map_err(|error| LogError::of_file(path, error))?;
-    Ok((timing, sample_rate_hz))
+    Ok(Spacing {
+        timing: None,
+        sample_rate_hz,
+        stretches,
+        notes: Vec::new(),
+    })
+}
+
+/// A complaint about the time, with that about the unit of the numbers if there is one as well.
+fn with_units(path: &Path, data: &[Column], format: &LogFormat, error: LogError) -> LogError {
+    let unit = data
+        .iter()
+        .find_map(|column| Conversion::of(format, column).err());
+    match (error, unit) {
+        (LogError::Content { place, message }, Some(unit)) => LogError::Content {
+            place,
+            message: format!("{message}; {unit}"),
+        },
+        (LogError::Read { .. }, Some(unit)) => LogError::of_file(path, unit),
+        (error, None) => error,
+    }
 }
 
 /// One of the columns as a log.
 fn log(
     path: &Path,
     columns: &Columns,
-    index: usize,
+    column: Column,
     format: &LogFormat,
-    (timing, sample_rate_hz): (Option<Timing>, f64),
+    spacing: &Spacing,
 ) -> Result<Log, LogError> {
+    let conversion = Conversion::of(format, &column).map_err(|error| {
+        let doubts = spacing.notes.iter().map(|note| format!("; {note}"));
+        let message = format!("{error}{}", doubts.collect::<String>());
+        LogError::of_file(path, message)
+    })?;
+    let mut remarks = spacing.notes.clone();
+    remarks.extend(angle_remark(&column.values, &conversion));
     let name = path.file_name().unwrap_or(path.as_os_str());
+    let words = Words {
+        path,
+        columns,
+        conversion,
+        spacing,
+    };
+    let column_name = column.name.clone();
+    let (rate_deg_per_h, stretches) = words.of(column.values)?;
+    if rate_deg_per_h.is_empty() {
+        return Err(LogError::of_file(path, "holds no sample"));
+    }
     Ok(Log {
         file: name.to_string_lossy().into_owned(),
-        column: columns.data[index].name.clone(),
-        unit: format.unit,
-        rate_deg_per_h: rates(path, columns, index, format, sample_rate_hz)?,
-        sample_rate_hz,
-        timing,
+        column: column_name,
+        unit: conversion.shown(),
+        rate_deg_per_h,
+        sample_rate_hz: spacing.sample_rate_hz,
+        timing: spacing.timing,
         empty_lines: columns.empty_lines,
+        stretches,
+        layout: columns.layout.clone(),
+        remarks,
     })
 }
 
-/// The numbers in deg/h.
-fn rates(
-    path: &Path,
-    columns: &Columns,
-    index: usize,
-    format: &LogFormat,
-    sample_rate_hz: f64,
-) -> Result<Vec<f64>, LogError> {
-    let values = columns.data[index].values.iter().enumerate();
-    let rates = values.map(|(row, &value)| {
-        let rate = format
-            .unit
-            .to_deg_per_h(value * format.scale, sample_rate_hz);
-        let unit = format.unit;
+/// Numbers of a column on their way to words.
+struct Words<'a> {
+    path: &'a Path,
+    columns: &'a Columns,
+    conversion: Conversion,
+    spacing: &'a Spacing,
+}
+
+impl Words<'_> {
+    /// The words of every stretch, a missing one between two, and where they stand.
+    fn of(&self, mut values: Vec<f64>) -> Result<(Vec<f64>, Vec<Stretch>), LogError> {
+        let rows = &self.spacing.stretches;
+        if matches!(&rows[..], [all] if *all == (0..values.len()))
+            && self.conversion.running.is_none()
+        {
+            for (row, value) in values.iter_mut().enumerate() {
+                *value = self.rate(*value, row)?;
+            }
+            let stretches = vec![Stretch::of(&values, 0..values.len())];
+            return Ok((values, stretches));
+        }
+        let (mut words, mut stretches) = (Vec::new(), Vec::new());
+        for rows in rows {
+            let first = words.len() + usize::from(!words.is_empty());
+            let taken = self.taken(&values, rows)?;
+            if taken.is_empty() {
+                continue;
+            }
+            if first > words.len() {
+                words.push(f64::NAN);
+            }
+            words.extend(taken);
+            stretches.push(Stretch::of(&words, first..words.len()));
+        }
+        Ok((words, stretches))
+    }
+
+    /// The words of some rows: one less of a running angle.
+    fn taken(&self, values: &[f64], rows: &Range<usize>) -> Result<Vec<f64>, LogError> {
+        let numbers = &values[rows.clone()];
+        let Some(angle) = self.conversion.running else {
+            let words = numbers.iter().zip(rows.clone());
+            return words.map(|(number, row)| self.rate(*number, row)).collect();
+        };
+        let turn = angle.turn() / self.conversion.scale.abs();
+        let turns_over = is_within_turn(values, turn);
+        let steps = numbers.windows(2).zip(rows.clone().skip(1));
+        let words = steps.map(|(pair, row)| {
+            let step = pair[1] - pair[0];
+            let step = match turns_over && step.abs() > 0.5 * turn {
+                true => step - turn * step.signum(),
+                false => step,
+            };
+            self.rate(step, row)
+        });
+        words.collect()
+    }
+
+    /// The rate of a number, deg/h.
+    fn rate(&self, number: f64, row: usize) -> Result<f64, LogError> {
+        if number.is_nan() {
+            return Ok(number);
+        }
+        let rate = self
+            .conversion
+            .rate_deg_per_h(number, self.spacing.sample_rate_hz);
+        let unit = self.conversion.unit;
         let message = match check_rate(rate) {
             Ok(()) => return Ok(rate),
-            Err(error) if rate.is_finite() => format!("{value:?} {unit}: {error}"),
-            Err(_) => format!("{value:?} {unit} is not a finite rate in deg/h"),
+            Err(error) if rate.is_finite() => format!("{number:?} {unit}: {error}"),
+            Err(_) => format!("{number:?} {unit} is not a finite rate in deg/h"),
         };
-        Err(LogError::at(path, columns.place(row), message))
-    });
-    rates.collect()
+        Err(LogError::at(self.path, self.columns.place(row), message))
+    }
+}
+
+impl Stretch {
+    fn of(words: &[f64], range: Range<usize>) -> Self {
+        let present = words[range.clone()].iter().filter(|word| !word.is_nan());
+        let (sum, count) = present.fold((0.0, 0.0), |(sum, count), word| (sum + word, count + 1.0));
+        Self {
+            words: range,
+            mean_deg_per_h: sum / count,
+        }
+    }
+}
+
+/// Whether all angles lie within one turn, as those of an encoder do.
+fn is_within_turn(angles: &[f64], turn: f64) -> bool {
+    let present = angles.iter().filter(|angle| !angle.is_nan());
+    let (least, most) = present.fold(
+        (f64::INFINITY, f64::NEG_INFINITY),
+        |(least, most), angle| (least.min(*angle), most.max(*angle)),
+    );
+    most - least <= turn
+}
+
+/// What is said of numbers that were called rates and look like an angle that runs on.
+fn angle_remark(values: &[f64], conversion: &Conversion) -> Option<String> {
+    if conversion.running.is_some() || values.len() < CORRELATED_MIN {
+        return None;
+    }
+    let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let (words, steps) = (lag_one(values)?, lag_one(&steps)?);
+    (words > ANGLE_CORRELATION && steps.abs() < STEP_CORRELATION).then(|| {
+        format!(
+            "each number follows the one before it (correlation {}) and the steps do not: this may be a \
+             running angle rather than a rate; --kind angle with a unit of angle takes it for one",
+            plain((words * 1e6).round() / 1e6)
+        )
+    })
+}
+
+/// Correlation of neighbours about the mean; nothing of numbers that do not vary.
+fn lag_one(values: &[f64]) -> Option<f64> {
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "sample counts are far below 2^53"
+    )]
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let products = values
+        .windows(2)
+        .map(|pair| (pair[0] - mean) * (pair[1] - mean));
+    (square > 0.0).then(|| products.sum::<f64>() / square)
 }

@@ -7,17 +7,27 @@
 
 mod bounds;
 mod column;
+mod convert;
 mod csv;
 mod error;
+mod format;
 mod groups;
 mod groups_heading;
 mod input;
+mod layout;
 mod log;
 mod npy;
 mod npy_heading;
+mod stamp;
+mod stretches;
+mod table;
 mod text;
+mod time_column;
+mod time_unit;
 mod timing;
+mod transcode;
 mod unit;
+mod unit_text;
 mod words;
 
 pub use bounds::{
@@ -27,11 +37,15 @@ pub use bounds::{
 pub use column::EmptyLines;
 pub use csv::csv_text;
 pub use error::LogError;
+pub use format::LogFormat;
 pub use groups::{GROUPS_MAX, Mounting, RecordedGroup, RecordedGroups, read_groups};
+pub use layout::words::{DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind};
 pub use log::{
-    AssemblyColumns, AssemblyLog, Log, LogFormat, read_assembly_log, read_log, read_stimulus,
+    AssemblyColumns, AssemblyLog, Log, Stretch, read_assembly_log, read_log, read_logs,
+    read_stimulus,
 };
 pub use text::{Delimiter, Line, Lines, TextError};
-pub use timing::{TimeUnit, Timing, UnknownTimeUnit};
-pub use unit::{RateUnit, UnknownRateUnit};
+pub use time_unit::TimeUnit;
+pub use timing::Timing;
+pub use unit::{AngleBase, AngleUnit, LogUnit, Per, Prefix, RateUnit, UnknownRateUnit};
 pub use words::read_words;

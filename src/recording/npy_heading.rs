@@ -5,16 +5,20 @@
 //! # Source
 //! NumPy Enhancement Proposal 1 and `numpy.lib.format`.
 
+use std::fmt;
 use std::io::{self, Read};
 
 /// First bytes of every NPY file.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 /// Longest heading, bytes; that of a plain array has 118.
 const HEADING_BYTES_MAX: u32 = 1 << 16;
+/// Most quantities of an array that has a sample in each column.
+const COLUMNS_OF_TURNED_MAX: u64 = 64;
 
 /// Kind and size of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Word {
+    F2,
     F4,
     F8,
     I1,
@@ -28,7 +32,8 @@ pub(super) enum Word {
 }
 
 /// Words by the letters that name them.
-const WORDS: [(&str, Word, usize); 10] = [
+const WORDS: [(&str, Word, usize); 11] = [
+    ("f2", Word::F2, 2),
     ("f4", Word::F4, 4),
     ("f8", Word::F8, 8),
     ("i1", Word::I1, 1),
@@ -48,7 +53,12 @@ pub(super) struct NpyHeading {
     /// Bytes of a number.
     pub(super) word_bytes: usize,
     pub(super) is_big_endian: bool,
-    pub(super) count: u64,
+    /// Samples.
+    pub(super) rows: u64,
+    /// Numbers of a sample.
+    pub(super) columns: u64,
+    /// Whether all numbers of a column stand together.
+    pub(super) is_by_column: bool,
     /// Bytes of the file before the first number.
     pub(super) bytes: u64,
 }
@@ -72,11 +82,11 @@ pub(super) enum HeadingError {
     )]
     NotADictionary,
     #[error(
-        "holds numbers of type '{0}': expected binary64 (f8), binary32 (f4), or integers i1 to i8 or \
-         u1 to u8, little- or big-endian"
+        "holds numbers of type '{0}': expected binary64 (f8), binary32 (f4), binary16 (f2), or integers i1 \
+         to i8 or u1 to u8, little- or big-endian"
     )]
     Word(String),
-    #[error("holds an array of shape {0}: expected one dimension, one number a sample")]
+    #[error("holds an array of shape {0}: expected one dimension, or two of samples and columns")]
     Shape(String),
 }
 
@@ -89,7 +99,27 @@ impl From<io::Error> for HeadingError {
     }
 }
 
-/// Reads the heading of an array of one dimension.
+impl NpyHeading {
+    /// Numbers of the array; of one that no machine holds, the largest count there is.
+    pub(super) fn count(&self) -> u64 {
+        self.rows.saturating_mul(self.columns)
+    }
+}
+
+impl fmt::Display for NpyHeading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let order = if self.is_by_column {
+            "column by column"
+        } else {
+            "row by row"
+        };
+        write!(f, "an array of {} columns, {order}", self.columns)
+    }
+}
+
+/// Reads the heading of an array of one dimension, or of two.
+///
+/// An array of fewer rows than columns has a sample in each column: there are more samples than quantities.
 ///
 /// # Errors
 /// A file cut short, another version, a heading too long or of another form, another shape or type.
@@ -117,14 +147,22 @@ pub(super) fn read(reader: &mut impl Read) -> Result<NpyHeading, HeadingError> {
     let text = std::str::from_utf8(&text).map_err(|_| HeadingError::NotText)?;
     let found = Dictionary::of(text).ok_or(HeadingError::NotADictionary)?;
     let (word, word_bytes, is_big_endian) = word_of(&found.descr)?;
-    let [count] = found.shape[..] else {
-        return Err(HeadingError::Shape(shape_text(&found.shape)));
+    let (rows, columns, is_turned) = match found.shape[..] {
+        [count] => (count, 1, false),
+        [rows, columns] if columns > 0 && rows >= columns => (rows, columns, false),
+        [columns, rows] if columns > 0 && columns <= COLUMNS_OF_TURNED_MAX => (rows, columns, true),
+        _ => return Err(HeadingError::Shape(shape_text(&found.shape))),
     };
+    if columns > 1 && rows.checked_mul(columns).is_none() {
+        return Err(HeadingError::Shape(shape_text(&found.shape)));
+    }
     Ok(NpyHeading {
         word,
         word_bytes,
         is_big_endian,
-        count,
+        rows,
+        columns,
+        is_by_column: columns > 1 && found.is_fortran != is_turned,
         bytes: before + u64::from(length),
     })
 }
@@ -156,6 +194,7 @@ fn shape_text(shape: &[u64]) -> String {
 struct Dictionary {
     descr: String,
     shape: Vec<u64>,
+    is_fortran: bool,
 }
 
 impl Dictionary {
@@ -180,10 +219,10 @@ impl Dictionary {
                 break;
             }
         }
-        order?;
         reader.is_at_end().then_some(Self {
             descr: descr?,
             shape: shape?,
+            is_fortran: order?,
         })
     }
 }

@@ -99,6 +99,17 @@ impl<R: BufRead> Lines<R> {
     /// # Errors
     /// [`TextError`]: bytes that are no UTF-8, NUL, a line beyond 1 MiB.
     pub fn next_line(&mut self) -> Result<Option<Line<'_>>, TextError> {
+        self.next_unless(|text| is_comment(text, &["#"]))
+    }
+
+    /// The next line that is neither empty nor passed over; none at the end.
+    ///
+    /// # Errors
+    /// As [`Self::next_line`].
+    pub(super) fn next_unless(
+        &mut self,
+        is_passed: impl Fn(&str) -> bool,
+    ) -> Result<Option<Line<'_>>, TextError> {
         let mut empty_before = None;
         loop {
             if !self.advance()? {
@@ -107,7 +118,7 @@ impl<R: BufRead> Lines<R> {
             let text = self.line.trim();
             if text.is_empty() {
                 empty_before.get_or_insert(self.number);
-            } else if !is_comment(text) {
+            } else if !is_passed(text) {
                 break;
             }
         }
@@ -192,12 +203,20 @@ impl<R: BufRead> Lines<R> {
     }
 }
 
-/// Whether a line is a comment; what a spreadsheet writes for a missing number is none.
-fn is_comment(text: &str) -> bool {
-    let is_missing = SPREADSHEET_ERRORS
-        .iter()
-        .any(|error| text.starts_with(error));
-    text.starts_with('#') && !is_missing
+/// Whether a line begins with one of these marks; what a spreadsheet writes for a missing number does not.
+pub(super) fn is_comment(text: &str, marks: &[&str]) -> bool {
+    let is_missing = |text: &str| SPREADSHEET_ERRORS.iter().any(|it| text.starts_with(it));
+    marks.iter().any(|mark| text.starts_with(mark)) && !is_missing(text)
+}
+
+/// Whether a cell is a word for a missing number, or empty.
+pub(super) fn is_missing(cell: &str) -> bool {
+    cell.is_empty()
+        || SPREADSHEET_ERRORS.contains(&cell)
+        || MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word))
+        || cell
+            .trim_start_matches(['+', '-'])
+            .eq_ignore_ascii_case("nan")
 }
 
 /// What stands between the cells of a line.
@@ -337,7 +356,7 @@ pub(super) fn is_heading(cells: &[&str]) -> Result<bool, FirstLineError> {
 }
 
 /// Whether a digit comes before any letter.
-fn begins_like_number(cell: &str) -> bool {
+pub(super) fn begins_like_number(cell: &str) -> bool {
     let first = cell.chars().find(|c| c.is_alphanumeric() || *c == '_');
     first.is_some_and(char::is_numeric)
 }
@@ -386,7 +405,7 @@ pub(super) enum NumberError {
     TooLarge(String),
     #[error("{0} is not a finite number")]
     NotFinite(f64),
-    #[error("`{0}` is not a number: expected a decimal point")]
+    #[error("`{0}` is not a number: expected a decimal point, or --decimal comma")]
     DecimalComma(String),
     #[error("`{0}` is not a number")]
     Word(String),

@@ -1,177 +1,447 @@
 //! Time columns: the sample period they imply, and what speaks against equal spacing.
 
+use std::ops::Range;
 use std::path::Path;
-use std::str::FromStr;
 
-use super::column::{Column, Columns};
+use super::column::Columns;
 use super::error::LogError;
-use crate::units::{NANO, ms_to_s, us_to_s};
+use super::format::LogFormat;
+use super::text::shown;
+use super::time_column::TimeColumn;
+use super::time_unit::TimeUnit;
+use crate::units::s_to_us;
+use crate::wording::{counted, plain};
 
 /// A step is a gap when it exceeds the sample period by this part of it.
 const STEP_TOLERANCE: f64 = 0.5;
 /// A rate that was given may differ from that of the time column by this part.
 const RATE_TOLERANCE: f64 = 1e-3;
-
-/// Unit of a time column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TimeUnit {
-    /// s.
-    Seconds,
-    /// ms.
-    Milliseconds,
-    /// us.
-    Microseconds,
-    /// ns.
-    Nanoseconds,
-}
-
-impl TimeUnit {
-    /// A time in s.
-    #[must_use]
-    pub fn to_s(self, time: f64) -> f64 {
-        match self {
-            Self::Seconds => time,
-            Self::Milliseconds => ms_to_s(time),
-            Self::Microseconds => us_to_s(time),
-            Self::Nanoseconds => time * NANO,
-        }
-    }
-}
-
-/// A unit of times that nobody knows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected one of s, ms, us, ns")]
-pub struct UnknownTimeUnit;
-
-impl FromStr for TimeUnit {
-    type Err = UnknownTimeUnit;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match text {
-            "s" => Ok(Self::Seconds),
-            "ms" => Ok(Self::Milliseconds),
-            "us" => Ok(Self::Microseconds),
-            "ns" => Ok(Self::Nanoseconds),
-            _ => Err(UnknownTimeUnit),
-        }
-    }
-}
+/// Logarithm of the ratio beyond which a given rate is another one, whatever the gaps.
+const RATE_CLEARLY_OTHER: f64 = 0.25;
+/// Steps less than this part of the unit of the column ask whether that is the unit.
+const ODD_STEP: f64 = 0.05;
+/// Most steps whose median is the period.
+const MEDIAN_STEPS: usize = 1 << 16;
+/// Fewest steps of either half of a record whose periods are compared.
+const DRIFT_STEPS_MIN: usize = 50;
 
 /// What a time column says about the spacing of the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Timing {
-    /// Sample rate over the whole record, Hz: one less than the stamps over the time between the
-    /// first and the last.
+    /// Sample rate over the whole record, Hz: the steps between stamps over the time they take.
     pub sample_rate_hz: f64,
     /// Largest distance of a stamp from equal spacing, s.
     pub jitter_max_s: f64,
+    /// One in the last digit of a stamp, s: what they resolve.
+    pub resolution_s: f64,
+    /// Period of the second half of the record over that of the first, less one; none where the stamps do
+    /// not tell it from 0.
+    pub drift: Option<f64>,
 }
 
-/// Checks the stamps of a log.
-///
-/// * `given_rate_hz`: the rate the user named, if any; a gap is then one against it.
+/// Rows that are samples at equal spacing, and their rate.
+#[derive(Clone, Debug)]
+pub(super) struct Spacing {
+    pub(super) timing: Option<Timing>,
+    pub(super) sample_rate_hz: f64,
+    /// Stretches of rows between which samples are missing.
+    pub(super) stretches: Vec<Range<usize>>,
+    /// What is worth saying.
+    pub(super) notes: Vec<String>,
+}
+
+/// How stamps are looked at.
+struct Clock<'a> {
+    path: &'a Path,
+    columns: &'a Columns,
+    time: &'a TimeColumn,
+    format: &'a LogFormat,
+    /// The period that the stamps tell.
+    found: f64,
+    /// That which was given, if one was.
+    period: f64,
+    /// What the last digit of a stamp resolves, where that is not far below the period; else 0.
+    coarseness: f64,
+    /// Whether stamps that are alike are two samples in the time that the last digit resolves.
+    may_repeat: bool,
+}
+
+/// Checks the stamps of some stretches of rows.
 ///
 /// # Errors
-/// Stamps that do not ascend, a gap with place and size, two samples in the time of one, a given
-/// rate that the column contradicts.
+/// Stamps that do not ascend, a gap with place and size where the log is not to be cut there, two samples in
+/// the time of one, a given rate that the column contradicts, steps that doubt the unit.
 pub(super) fn timing(
     path: &Path,
     columns: &Columns,
-    time: &Column,
-    unit: TimeUnit,
-    given_rate_hz: Option<f64>,
-) -> Result<Timing, LogError> {
-    let first = time.values.first().copied().unwrap_or_default();
-    // From the first stamp on, so that stamps of an absolute clock keep their digits.
-    let stamps_s: Vec<f64> = time
-        .values
-        .iter()
-        .map(|stamp| unit.to_s(stamp - first))
-        .collect();
-    let (Some(&last_s), true) = (stamps_s.last(), stamps_s.len() >= 2) else {
+    time: &TimeColumn,
+    format: &LogFormat,
+    stretches: &[Range<usize>],
+) -> Result<Spacing, LogError> {
+    let steps = stretches.iter().map(|rows| rows.len().saturating_sub(1));
+    let steps: usize = steps.sum();
+    if let (0, Some(sample_rate_hz), true) = (steps, format.rate_hz, time.is_found) {
+        return Ok(Spacing {
+            timing: None,
+            sample_rate_hz,
+            stretches: stretches.to_vec(),
+            notes: Vec::new(),
+        });
+    }
+    if steps == 0 {
         let message = "the time column holds fewer than two stamps: give --rate-hz";
         return Err(LogError::of_file(path, message));
-    };
-    let period_s = given_rate_hz.map_or_else(|| median_step(&stamps_s), |rate| 1.0 / rate);
-    for (row, pair) in stamps_s.windows(2).enumerate() {
-        let step_s = pair[1] - pair[0];
-        check_step(step_s, period_s).map_err(|complaint| {
-            let message = format!("column {}: {complaint}", shown(time));
-            LogError::at(path, columns.place(row + 1), message)
-        })?;
     }
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "sample counts are far below 2^53"
-    )]
-    let steps = (stamps_s.len() - 1) as f64;
-    let mean_s = last_s / steps;
-    if let Some(rate) = given_rate_hz
-        && (mean_s * rate - 1.0).abs() > RATE_TOLERANCE
+    let clock = Clock::of(path, columns, time, format, stretches);
+    // Stamps of another clock altogether have no gaps.
+    if (clock.period / clock.found).ln().abs() > RATE_CLEARLY_OTHER {
+        return Err(clock.contradiction(1.0 / clock.found));
+    }
+    let mut cut = Vec::new();
+    for rows in stretches {
+        clock.cut(rows, &mut cut)?;
+    }
+    let mut notes: Vec<String> = time.note.iter().cloned().collect();
+    if let Some((count, after_s)) = time.roll_overs {
+        notes.push(format!(
+            "column {} begins again {}, each after {}: taken to go on",
+            shown(&time.name),
+            counted(count, "time"),
+            clock.span(after_s)
+        ));
+    }
+    if time.is_counter() {
+        return clock.counted(cut, notes);
+    }
+    let spacing = clock.measured(&cut);
+    if let Some(rate) = format.rate_hz
+        && (rate / spacing.sample_rate_hz - 1.0).abs() > RATE_TOLERANCE
     {
-        let message = format!(
-            "--rate-hz {rate} contradicts the time column {}, whose mean rate is {:.6} Hz: leave \
-             one of them out",
-            shown(time),
-            1.0 / mean_s
-        );
-        return Err(LogError::of_file(path, message));
+        return Err(clock.contradiction(spacing.sample_rate_hz));
     }
-    let mut ordinal = 0.0;
-    let mut jitter_max_s = 0.0_f64;
-    for stamp_s in &stamps_s {
-        jitter_max_s = jitter_max_s.max((stamp_s - ordinal * mean_s).abs());
-        ordinal += 1.0;
+    if let Some(odd) = clock.odd(spacing.sample_rate_hz) {
+        if format.time_unit.is_none() && format.rate_hz.is_none() {
+            return Err(LogError::of_file(path, odd));
+        }
+        notes.push(odd);
     }
-    Ok(Timing {
-        sample_rate_hz: 1.0 / mean_s,
-        jitter_max_s,
+    Ok(Spacing {
+        sample_rate_hz: format.rate_hz.unwrap_or(spacing.sample_rate_hz),
+        timing: Some(spacing),
+        stretches: cut,
+        notes,
     })
 }
 
-fn shown(time: &Column) -> &str {
-    time.name.as_deref().unwrap_or("time")
+impl<'a> Clock<'a> {
+    fn of(
+        path: &'a Path,
+        columns: &'a Columns,
+        time: &'a TimeColumn,
+        format: &'a LogFormat,
+        stretches: &[Range<usize>],
+    ) -> Self {
+        let median = median_step(&time.stamps, stretches);
+        let last_digit = time.last_digit();
+        // The median of a few multiples of the last digit is one of them.
+        let mean = mean_of_steps_up_to(1.5 * median + last_digit, &time.stamps, stretches);
+        let found = if 2.0 * last_digit >= mean {
+            mean
+        } else {
+            median
+        };
+        let given = format.rate_hz.filter(|_| !time.is_counter());
+        let period = given.map_or(found, |rate| 1.0 / rate);
+        let is_coarse = 2.0 * last_digit >= period && !time.is_counter();
+        Self {
+            path,
+            columns,
+            time,
+            format,
+            found,
+            period,
+            coarseness: if is_coarse { last_digit } else { 0.0 },
+            may_repeat: is_coarse && repeats_by_rounding(&time.stamps, median, last_digit),
+        }
+    }
+
+    /// Cuts a stretch where samples are missing.
+    fn cut(&self, rows: &Range<usize>, found: &mut Vec<Range<usize>>) -> Result<(), LogError> {
+        let mut first = rows.start;
+        let stamps = &self.time.stamps[rows.clone()];
+        for (offset, pair) in stamps.windows(2).enumerate() {
+            let step = pair[1] - pair[0];
+            let Err(complaint) = self.check_step(step) else {
+                continue;
+            };
+            let row = rows.start + offset + 1;
+            if self.format.split_gaps == Some(true) && matches!(complaint, StepError::Gap { .. }) {
+                found.push(first..row);
+                first = row;
+                continue;
+            }
+            let message = format!("column {}: {complaint}", shown(&self.time.name));
+            return Err(LogError::at(self.path, self.columns.place(row), message));
+        }
+        found.push(first..rows.end);
+        Ok(())
+    }
+
+    fn check_step(&self, step: f64) -> Result<(), StepError> {
+        let Self { period, .. } = *self;
+        let unit = if self.time.is_counter() { "" } else { " s" };
+        if let Some(most_s) = self.format.max_gap_s {
+            if step < 0.0 {
+                return Err(StepError::Descent { step, unit });
+            }
+            return match step > most_s {
+                true => Err(StepError::Gap { step, period, unit }),
+                false => Ok(()),
+            };
+        }
+        if step < 0.0 || (step <= 0.0 && !self.may_repeat) {
+            return Err(StepError::Descent { step, unit });
+        }
+        // Stamps that are rounded down stand up to a last digit from where they belong, either way.
+        let rounded = self.coarseness * if self.may_repeat { 1.01 } else { 0.99 };
+        let open = rounded.max(STEP_TOLERANCE * period);
+        if step > period + open {
+            return Err(StepError::Gap { step, period, unit });
+        }
+        if step < period - open {
+            return Err(StepError::Crowd { step, period, unit });
+        }
+        Ok(())
+    }
+
+    /// The rate that was given against that of the stamps.
+    fn contradiction(&self, found_hz: f64) -> LogError {
+        let way_out = if self.time.is_found {
+            "--time none takes it to be none, --time-unit says what its stamps are"
+        } else {
+            "leave one of them out"
+        };
+        let message = format!(
+            "--rate-hz {} contradicts the time column {}, whose mean rate is {found_hz:.6} Hz: {way_out}",
+            self.format.rate_hz.unwrap_or_default(),
+            shown(&self.time.name),
+        );
+        LogError::of_file(self.path, message)
+    }
+
+    /// A counter of samples: the rate is the one that was given.
+    fn counted(
+        &self,
+        stretches: Vec<Range<usize>>,
+        notes: Vec<String>,
+    ) -> Result<Spacing, LogError> {
+        let Some(sample_rate_hz) = self.format.rate_hz else {
+            let message = format!(
+                "column {} counts samples and tells no time: give --rate-hz",
+                shown(&self.time.name)
+            );
+            return Err(LogError::of_file(self.path, message));
+        };
+        Ok(Spacing {
+            timing: None,
+            sample_rate_hz,
+            stretches,
+            notes,
+        })
+    }
+
+    /// What the stamps say of the spacing.
+    fn measured(&self, stretches: &[Range<usize>]) -> Timing {
+        let stamps = &self.time.stamps;
+        let mean = mean_step(stamps, stretches);
+        let mut jitter_max_s = 0.0_f64;
+        for rows in stretches {
+            let mut ordinal = 0.0;
+            for stamp in &stamps[rows.clone()] {
+                let from_first = stamp - stamps[rows.start];
+                jitter_max_s = jitter_max_s.max((from_first - ordinal * mean).abs());
+                ordinal += 1.0;
+            }
+        }
+        let resolution_s = self.time.last_digit();
+        Timing {
+            sample_rate_hz: 1.0 / mean,
+            jitter_max_s,
+            resolution_s,
+            drift: drift(stamps, stretches, resolution_s),
+        }
+    }
+
+    /// What doubts the unit of the column: steps that are hardly any part of it.
+    fn odd(&self, rate_hz: f64) -> Option<String> {
+        let [unit] = self.time.units[..] else {
+            return None;
+        };
+        let unit_s = unit.seconds()?;
+        let is_fine = matches!(
+            unit,
+            TimeUnit::Milliseconds | TimeUnit::Microseconds | TimeUnit::Nanoseconds
+        );
+        (is_fine && self.period < ODD_STEP * unit_s).then(|| {
+            format!(
+                "column {}: steps of {} {unit} would be samples at {} Hz: --time-unit says what its stamps \
+                 are, in seconds it were {} Hz",
+                shown(&self.time.name),
+                plain(self.period / unit_s),
+                plain(rate_hz),
+                plain(rate_hz * unit_s)
+            )
+        })
+    }
+
+    fn span(&self, span: f64) -> String {
+        match self.time.is_counter() {
+            true => format!("{} counts", plain(span)),
+            false => format!("{} s", plain(span)),
+        }
+    }
 }
 
-/// Median of the steps: what gaps do not move.
-fn median_step(stamps_s: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = stamps_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+impl Timing {
+    /// What is said of a time column without a gap, or cut at its gaps.
+    pub(super) fn note(&self, stretches: usize) -> String {
+        let gaps = match stretches {
+            1 => "no gap".to_owned(),
+            _ => counted(stretches - 1, "gap"),
+        };
+        let is_rounding =
+            (0.1 * self.resolution_s..=self.resolution_s).contains(&self.jitter_max_s);
+        let resolved = match is_rounding {
+            true => format!(
+                ", no more than the {:.3} us that they resolve",
+                s_to_us(self.resolution_s)
+            ),
+            false => String::new(),
+        };
+        let jitter = format!(
+            "stamps within {:.3} us of equal spacing{resolved}",
+            s_to_us(self.jitter_max_s)
+        );
+        let drift = self.drift.map_or_else(String::new, |drift| {
+            format!(
+                ", the second half {} ppm slower than the first",
+                plain((drift * 1e7).round() / 10.0)
+            )
+        });
+        format!(
+            "time column: {:.6} Hz, {gaps}, {jitter}{drift}",
+            self.sample_rate_hz
+        )
+    }
+}
+
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "sample counts are far below 2^53"
+)]
+fn mean_step(stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
+    let (mut time, mut steps) = (0.0, 0.0);
+    for rows in stretches.iter().filter(|rows| rows.len() > 1) {
+        time += stamps[rows.end - 1] - stamps[rows.start];
+        steps += (rows.len() - 1) as f64;
+    }
+    time / steps
+}
+
+/// Mean of the steps that are no gaps.
+fn mean_of_steps_up_to(most: f64, stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
+    let all = stretches
+        .iter()
+        .flat_map(|rows| stamps[rows.clone()].windows(2));
+    let steps = all
+        .map(|pair| pair[1] - pair[0])
+        .filter(|step| *step <= most);
+    let (sum, count) = steps.fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
+    sum / count
+}
+
+/// Whether stamps repeat because their last digit is coarse: many to the digit, or as often as others leave
+/// one out.
+fn repeats_by_rounding(stamps: &[f64], median: f64, last_digit: f64) -> bool {
+    let steps = || stamps.windows(2).map(|pair| pair[1] - pair[0]);
+    let repeats = steps().filter(|step| *step <= 0.0).count();
+    let doubles = steps().filter(|step| *step > 1.5 * last_digit).count();
+    median <= 0.0 || repeats <= 2 * doubles
+}
+
+/// Median of the steps, of a long record of some of them: what gaps do not move.
+fn median_step(stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
+    let count: usize = stretches
+        .iter()
+        .map(|rows| rows.len().saturating_sub(1))
+        .sum();
+    let every = count.div_ceil(MEDIAN_STEPS).max(1);
+    let all = stretches
+        .iter()
+        .flat_map(|rows| stamps[rows.clone()].windows(2));
+    let mut steps: Vec<f64> = all.step_by(every).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
     let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
     *median
+}
+
+/// How much longer the periods of the second half are than those of the first, as a part, if that is more
+/// than the ends of the halves leave open: their resolution, and the scatter of stamps.
+fn drift(stamps: &[f64], stretches: &[Range<usize>], resolution_s: f64) -> Option<f64> {
+    let [rows] = stretches else { return None };
+    let stamps = &stamps[rows.clone()];
+    if stamps.len() <= 2 * DRIFT_STEPS_MIN {
+        return None;
+    }
+    let half = (stamps.len() - 1) / 2;
+    let mean_of = |rows: Range<usize>| mean_step(stamps, std::slice::from_ref(&rows));
+    let first = mean_of(0..half + 1);
+    let second = mean_of(half..2 * half + 1);
+    let mean = mean_of(0..2 * half + 1);
+    // Scatter of steps about their neighbours: what a stamp alone is off by.
+    let scatter = stamps
+        .windows(3)
+        .map(|three| three[2] - 2.0 * three[1] + three[0]);
+    let scatter = scatter.fold(0.0_f64, |most, it| most.max(it.abs()));
+    let open = (resolution_s.min(mean) + scatter) * 2.0 / (as_float(half) * mean);
+    let drift = second / first - 1.0;
+    (drift.abs() > 2.0 * open && drift.abs() > 1e-7).then_some(drift)
+}
+
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "sample counts are far below 2^53"
+)]
+fn as_float(count: usize) -> f64 {
+    count as f64
 }
 
 /// What speaks against equal spacing between two stamps.
 #[derive(Debug, thiserror::Error)]
 enum StepError {
     #[error(
-        "the time goes from one stamp to the next by {step_s:.9} s: stamps must ascend; if they are \
-         rounded too coarsely, leave the time column out and give --rate-hz"
+        "the time goes from one stamp to the next by {step:.9}{unit}: stamps must ascend; if they are \
+         rounded too coarsely, say --time none and give --rate-hz"
     )]
-    Descent { step_s: f64 },
+    Descent { step: f64, unit: &'static str },
     #[error(
-        "gap of {step_s:.9} s where samples are {period_s:.9} s apart ({:.0} missing): gaps are not \
-         filled, cut the log there",
-        (step_s / period_s - 1.0).max(1.0)
+        "gap of {step:.9}{unit} where samples are {period:.9}{unit} apart ({:.0} missing): \
+         --split-gaps cuts the log there and pools what lies between, --rows or --to-s takes a part of it",
+        (step / period - 1.0).max(1.0)
     )]
-    Gap { step_s: f64, period_s: f64 },
+    Gap {
+        step: f64,
+        period: f64,
+        unit: &'static str,
+    },
     #[error(
-        "the stamp is {step_s:.9} s after the one before where samples are {period_s:.9} s apart: \
-         spacing must be equal within half of that"
+        "the stamp is {step:.9}{unit} after the one before where samples are {period:.9}{unit} apart: \
+         spacing must be equal within half of that; --max-gap-s takes all steps up to one for jitter"
     )]
-    Crowd { step_s: f64, period_s: f64 },
-}
-
-fn check_step(step_s: f64, period_s: f64) -> Result<(), StepError> {
-    if step_s <= 0.0 {
-        return Err(StepError::Descent { step_s });
-    }
-    if step_s > (1.0 + STEP_TOLERANCE) * period_s {
-        return Err(StepError::Gap { step_s, period_s });
-    }
-    if step_s < (1.0 - STEP_TOLERANCE) * period_s {
-        return Err(StepError::Crowd { step_s, period_s });
-    }
-    Ok(())
+    Crowd {
+        step: f64,
+        period: f64,
+        unit: &'static str,
+    },
 }

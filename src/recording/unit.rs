@@ -3,63 +3,155 @@
 use std::fmt;
 use std::str::FromStr;
 
+use super::unit_text::{Spelled, spelled};
+use crate::declare::{Content, FromLiteral, Kind, Setting, Shape};
 use crate::units::{
-    MICRO, arcsec_per_s_to_deg_per_h, arcsec_to_rad, deg_per_s_to_deg_per_h, deg_to_rad,
-    mdeg_per_s_to_deg_per_h, rad_per_h_to_deg_per_h, rad_per_s_to_deg_per_h,
+    MICRO, MILLI, NANO, SECONDS_PER_HOUR, arcsec_to_rad, deg_to_rad, rad_per_s_to_deg_per_h,
+    rad_to_deg,
 };
+
+/// Angle that a unit counts in, with the fraction of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AngleUnit {
+    /// The angle.
+    pub base: AngleBase,
+    /// The fraction of it.
+    pub prefix: Prefix,
+}
+
+/// Angles that units are fractions of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AngleBase {
+    /// Degree.
+    Degree,
+    /// Arcminute.
+    Arcmin,
+    /// Arcsecond.
+    Arcsec,
+    /// Radian.
+    Radian,
+    /// Whole turn.
+    Turn,
+}
+
+/// Fractions of a unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Prefix {
+    /// All of it.
+    One,
+    /// 1e-3.
+    Milli,
+    /// 1e-6.
+    Micro,
+    /// 1e-9.
+    Nano,
+}
+
+/// Time in which the angle of a unit is turned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Per {
+    /// A second.
+    Second,
+    /// A minute.
+    Minute,
+    /// An hour.
+    Hour,
+    /// A sample period: words are increments of the angle.
+    Sample,
+}
 
 /// Unit of the numbers of a log: a rate, or the angle turned in one sample period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RateUnit {
-    /// deg/h.
-    DegPerH,
-    /// deg/s.
-    DegPerS,
-    /// mdeg/s, as data sheets of small gyros have it.
-    MilliDegPerS,
-    /// arcsec/s.
-    ArcsecPerS,
-    /// rad/s.
-    RadPerS,
-    /// rad/h.
-    RadPerH,
-    /// deg turned in a sample.
-    DegPerSample,
-    /// arcsec turned in a sample.
-    ArcsecPerSample,
-    /// rad turned in a sample.
-    RadPerSample,
-    /// urad turned in a sample.
-    MicroRadPerSample,
+pub struct RateUnit {
+    /// What is turned.
+    pub angle: AngleUnit,
+    /// In which time.
+    pub per: Per,
 }
 
-/// Names in the order they are listed.
-const NAMES: [(&str, RateUnit); 11] = [
-    ("deg/h", RateUnit::DegPerH),
-    ("deg/s", RateUnit::DegPerS),
-    ("mdeg/s", RateUnit::MilliDegPerS),
-    ("mdps", RateUnit::MilliDegPerS),
-    ("arcsec/s", RateUnit::ArcsecPerS),
-    ("rad/s", RateUnit::RadPerS),
-    ("rad/h", RateUnit::RadPerH),
-    ("deg/sample", RateUnit::DegPerSample),
-    ("arcsec/sample", RateUnit::ArcsecPerSample),
-    ("rad/sample", RateUnit::RadPerSample),
-    ("urad/sample", RateUnit::MicroRadPerSample),
+/// Unit as an option or a file names it: of a rate, or of an angle whose time another key tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LogUnit {
+    /// A rate or an increment a sample.
+    Rate(RateUnit),
+    /// An angle.
+    Angle(AngleUnit),
+}
+
+/// Units of rates as the ends of column names of groups.
+pub(crate) const SUFFIXES: [(&str, RateUnit); 6] = [
+    ("deg_per_h", RateUnit::DEG_PER_H),
+    ("deg_per_s", RateUnit::DEG_PER_S),
+    ("mdeg_per_s", RateUnit::MDEG_PER_S),
+    ("arcsec_per_s", RateUnit::ARCSEC_PER_S),
+    ("rad_per_s", RateUnit::RAD_PER_S),
+    ("rad_per_h", RateUnit::RAD_PER_H),
 ];
 
-/// Units of rates as the ends of column names.
-pub(crate) const SUFFIXES: [(&str, RateUnit); 6] = [
-    ("deg_per_h", RateUnit::DegPerH),
-    ("deg_per_s", RateUnit::DegPerS),
-    ("mdeg_per_s", RateUnit::MilliDegPerS),
-    ("arcsec_per_s", RateUnit::ArcsecPerS),
-    ("rad_per_s", RateUnit::RadPerS),
-    ("rad_per_h", RateUnit::RadPerH),
-];
+impl Prefix {
+    fn factor(self) -> f64 {
+        match self {
+            Self::One => 1.0,
+            Self::Milli => MILLI,
+            Self::Micro => MICRO,
+            Self::Nano => NANO,
+        }
+    }
+}
+
+impl AngleUnit {
+    /// The whole of an angle.
+    pub(crate) const fn whole(base: AngleBase) -> Self {
+        let prefix = Prefix::One;
+        Self { base, prefix }
+    }
+
+    /// This angle turned in a time.
+    #[must_use]
+    pub const fn per(self, per: Per) -> RateUnit {
+        RateUnit { angle: self, per }
+    }
+
+    /// An angle in rad.
+    fn to_rad(self, angle: f64) -> f64 {
+        let angle = angle * self.prefix.factor();
+        match self.base {
+            AngleBase::Degree => deg_to_rad(angle),
+            AngleBase::Arcmin => arcsec_to_rad(angle * 60.0),
+            AngleBase::Arcsec => arcsec_to_rad(angle),
+            AngleBase::Radian => angle,
+            AngleBase::Turn => deg_to_rad(angle * 360.0),
+        }
+    }
+
+    /// Angles of a whole turn.
+    #[must_use]
+    pub fn turn(self) -> f64 {
+        std::f64::consts::TAU / self.to_rad(1.0)
+    }
+}
 
 impl RateUnit {
-    /// The units that are rates, without those of angles per sample.
+    /// deg/h.
+    pub const DEG_PER_H: Self = AngleUnit::whole(AngleBase::Degree).per(Per::Hour);
+    /// deg/s.
+    pub const DEG_PER_S: Self = AngleUnit::whole(AngleBase::Degree).per(Per::Second);
+    /// mdeg/s, as data sheets of small gyros have it.
+    pub const MDEG_PER_S: Self = Self {
+        angle: AngleUnit {
+            base: AngleBase::Degree,
+            prefix: Prefix::Milli,
+        },
+        per: Per::Second,
+    };
+    /// arcsec/s.
+    pub const ARCSEC_PER_S: Self = AngleUnit::whole(AngleBase::Arcsec).per(Per::Second);
+    /// rad/s.
+    pub const RAD_PER_S: Self = AngleUnit::whole(AngleBase::Radian).per(Per::Second);
+    /// rad/h.
+    pub const RAD_PER_H: Self = AngleUnit::whole(AngleBase::Radian).per(Per::Hour);
+
+    /// The units of rates that columns of groups have.
     pub fn rates() -> impl Iterator<Item = Self> {
         SUFFIXES.iter().map(|(_, unit)| *unit)
     }
@@ -69,40 +161,126 @@ impl RateUnit {
     /// An angle per sample is the mean rate over that sample: the angle times `sample_rate_hz`.
     #[must_use]
     pub fn to_deg_per_h(self, value: f64, sample_rate_hz: f64) -> f64 {
-        let turned = |angle_rad: f64| rad_per_s_to_deg_per_h(angle_rad * sample_rate_hz);
+        let times_an_hour = match self.per {
+            Per::Second => SECONDS_PER_HOUR,
+            Per::Minute => SECONDS_PER_HOUR / 60.0,
+            Per::Hour => 1.0,
+            Per::Sample => {
+                return rad_per_s_to_deg_per_h(self.angle.to_rad(value) * sample_rate_hz);
+            }
+        };
+        let angle = value * self.angle.prefix.factor();
+        match self.angle.base {
+            AngleBase::Degree => angle * times_an_hour,
+            AngleBase::Arcmin => angle * (times_an_hour / 60.0),
+            // Of arcseconds a second and degrees an hour the numbers are the same.
+            AngleBase::Arcsec => angle * (times_an_hour / SECONDS_PER_HOUR),
+            AngleBase::Radian => rad_to_deg(angle) * times_an_hour,
+            AngleBase::Turn => angle * 360.0 * times_an_hour,
+        }
+    }
+}
+
+impl fmt::Display for AngleUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let prefix = match self.prefix {
+            Prefix::One => "",
+            Prefix::Milli => "m",
+            Prefix::Micro => "u",
+            Prefix::Nano => "n",
+        };
+        let base = match self.base {
+            AngleBase::Degree => "deg",
+            AngleBase::Arcmin => "arcmin",
+            AngleBase::Arcsec => "arcsec",
+            AngleBase::Radian => "rad",
+            AngleBase::Turn => "turn",
+        };
+        write!(f, "{prefix}{base}")
+    }
+}
+
+impl fmt::Display for RateUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let per = match self.per {
+            Per::Second => "s",
+            Per::Minute => "min",
+            Per::Hour => "h",
+            Per::Sample => "sample",
+        };
+        write!(f, "{}/{per}", self.angle)
+    }
+}
+
+impl fmt::Display for LogUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::DegPerH => value,
-            Self::DegPerS => deg_per_s_to_deg_per_h(value),
-            Self::MilliDegPerS => mdeg_per_s_to_deg_per_h(value),
-            Self::ArcsecPerS => arcsec_per_s_to_deg_per_h(value),
-            Self::RadPerS => rad_per_s_to_deg_per_h(value),
-            Self::RadPerH => rad_per_h_to_deg_per_h(value),
-            Self::DegPerSample => turned(deg_to_rad(value)),
-            Self::ArcsecPerSample => turned(arcsec_to_rad(value)),
-            Self::RadPerSample => turned(value),
-            Self::MicroRadPerSample => turned(value * MICRO),
+            Self::Rate(unit) => unit.fmt(f),
+            Self::Angle(unit) => unit.fmt(f),
         }
     }
 }
 
 /// A unit of rates that nobody knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected one of {}", NAMES.map(|(name, _)| name).join(", "))]
+#[error(
+    "expected a rate such as deg/h, deg/s or dps, mdeg/s, arcsec/s, rad/s, nrad/s, rpm; an angle turned \
+     in a sample such as deg/sample, arcsec/sample, urad/sample; or an angle such as deg, rad"
+)]
 pub struct UnknownRateUnit;
+
+impl FromStr for LogUnit {
+    type Err = UnknownRateUnit;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match spelled(text) {
+            Some(Spelled::Rate(unit)) => Ok(Self::Rate(unit)),
+            Some(Spelled::Angle(unit)) => Ok(Self::Angle(unit)),
+            _ => Err(UnknownRateUnit),
+        }
+    }
+}
 
 impl FromStr for RateUnit {
     type Err = UnknownRateUnit;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let known = NAMES.iter().find(|(name, _)| *name == text);
-        known.map(|(_, unit)| *unit).ok_or(UnknownRateUnit)
+        match text.parse()? {
+            LogUnit::Rate(unit) => Ok(unit),
+            LogUnit::Angle(_) => Err(UnknownRateUnit),
+        }
     }
 }
 
-impl fmt::Display for RateUnit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = NAMES.iter().find(|(_, unit)| unit == self);
-        f.write_str(name.map_or("", |(name, _)| name))
+impl From<RateUnit> for LogUnit {
+    fn from(unit: RateUnit) -> Self {
+        Self::Rate(unit)
+    }
+}
+
+impl TryFrom<String> for LogUnit {
+    type Error = UnknownRateUnit;
+
+    fn try_from(text: String) -> Result<Self, Self::Error> {
+        text.parse()
+    }
+}
+
+impl<'de> serde::Deserialize<'de> for LogUnit {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        text.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+impl Setting for LogUnit {
+    const SHAPE: Shape = Shape::Plain(Content::Value(Kind::Text));
+    const LIST: Shape = Shape::Impossible;
+}
+
+impl FromLiteral<&str> for LogUnit {
+    fn from_literal(literal: &str) -> Self {
+        literal.parse().expect("an example is a unit")
     }
 }
 
@@ -117,12 +295,17 @@ mod tests {
         let rad_per_s = 15.041_067_f64.to_radians() / 3600.0;
         for (name, value) in [
             ("deg/h", 15.041_067),
+            ("mdeg/h", 15_041.067),
             ("deg/s", 15.041_067 / 3600.0),
+            ("deg/min", 15.041_067 / 60.0),
             ("mdeg/s", 15.041_067 / 3.6),
             ("mdps", 15.041_067 / 3.6),
             ("arcsec/s", 15.041_067),
+            ("arcmin/s", 15.041_067 / 60.0),
             ("rad/s", rad_per_s),
+            ("nrad/s", rad_per_s * 1e9),
             ("rad/h", rad_per_s * 3600.0),
+            ("rpm", 15.041_067 / 360.0 / 60.0),
             ("deg/sample", 15.041_067 / 3600.0 / rate_hz),
             ("arcsec/sample", 15.041_067 / rate_hz),
             ("rad/sample", rad_per_s / rate_hz),
@@ -135,12 +318,23 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_unit_is_answered_with_the_known_ones() {
-        let answer = "dps".parse::<RateUnit>().unwrap_err();
-        assert_eq!(
-            answer.to_string(),
-            "expected one of deg/h, deg/s, mdeg/s, mdps, arcsec/s, rad/s, rad/h, deg/sample, \
-             arcsec/sample, rad/sample, urad/sample"
-        );
+    fn a_turn_is_a_turn_in_every_angle() {
+        for (name, turn) in [
+            ("deg", 360.0),
+            ("mrad", 6_283.185_307),
+            ("arcsec", 1_296_000.0),
+        ] {
+            let LogUnit::Angle(unit) = name.parse().unwrap() else {
+                panic!("{name}")
+            };
+            assert!((unit.turn() / turn - 1.0).abs() < 1e-9, "{name}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_unit_is_answered_with_known_ones() {
+        let answer = "furlong/s".parse::<RateUnit>().unwrap_err();
+        assert!(answer.to_string().contains("deg/h, deg/s or dps"));
+        assert!("deg".parse::<RateUnit>().is_err());
     }
 }

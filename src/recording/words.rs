@@ -4,8 +4,9 @@ use std::path::Path;
 
 use super::error::{LogError, Place};
 use super::input::{Input, failure, push};
+use super::log::read_stimulus;
+use super::npy_heading;
 use super::text::{Lines, TextError, shown};
-use super::{npy, npy_heading};
 
 /// End of the name of a file of hexadecimal words, as `$writememh` makes it.
 const HEX: &str = "hex";
@@ -21,19 +22,19 @@ pub fn read_words(path: &Path) -> Result<Vec<f64>, LogError> {
         .extension()
         .is_some_and(|end| end.eq_ignore_ascii_case(HEX));
     let words = if input.starts_with(npy_heading::MAGIC) {
-        let columns = npy::read(path, input, usize::MAX)?;
-        columns.data.into_iter().next().map(|column| column.values)
+        drop(input);
+        read_stimulus(path, None, usize::MAX)?
     } else if is_hex {
-        Some(read_hex(path, input)?)
+        read_hex(path, input)?
     } else {
         let message = "neither an NPY array nor a .hex file of a testbench: write the words as NPY, \
                        as numpy.save does";
         return Err(LogError::of_file(path, message));
     };
-    match words {
-        Some(words) if !words.is_empty() => Ok(words),
-        _ => Err(LogError::of_file(path, "holds no word")),
+    if words.is_empty() {
+        return Err(LogError::of_file(path, "holds no word"));
     }
+    Ok(words)
 }
 
 fn read_hex(path: &Path, input: Input) -> Result<Vec<f64>, LogError> {

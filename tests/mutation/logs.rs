@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 
 use fogbench::experiment::{LogFilters, LogMotion, LogSettings, load_log_filters, try_log};
 use fogbench::recording::{
-    AssemblyColumns, Log, LogFormat, RateUnit, TimeUnit, read_assembly_log, read_log, read_stimulus,
+    AssemblyColumns, Log, LogFormat, LogUnit, RateUnit, TimeUnit, read_assembly_log, read_log,
+    read_stimulus,
 };
 use fogbench::report::{log_json, log_text};
 use fogbench::scenario::{AllanConfig, AllanEstimatorConfig};
@@ -63,24 +64,19 @@ pub(super) fn format(draws: &mut Draws) -> LogFormat {
         *draws.pick(&units)
     };
     LogFormat {
-        sample_rate_hz: Some(if draws.chance(0.5) {
+        rate_hz: Some(if draws.chance(0.5) {
             100.0
         } else {
             draws.log_uniform(1e-2, 1e6)
         }),
-        unit: unit.parse::<RateUnit>().expect("a unit"),
-        scale: if draws.chance(0.8) {
-            1.0
-        } else {
-            draws.log_uniform(1e-6, 1e6) - 2e-6
-        },
-        column: None,
-        time_column: None,
-        time_unit: *draws.pick(&[
+        unit: Some(unit.parse::<LogUnit>().expect("a unit")),
+        scale: (!draws.chance(0.8)).then(|| draws.log_uniform(1e-6, 1e6) - 2e-6),
+        time_unit: Some(vec![*draws.pick(&[
             TimeUnit::Seconds,
             TimeUnit::Milliseconds,
             TimeUnit::Microseconds,
-        ]),
+        ])]),
+        ..LogFormat::default()
     }
 }
 
@@ -215,14 +211,16 @@ fn case(draws: &mut Draws, folder: &Path) -> Outcome {
     let mut format = format(draws);
     let has_time = width > 1 && draws.chance(0.5);
     if has_time {
-        format.time_column = Some("1".to_owned());
-        format.sample_rate_hz = format.sample_rate_hz.filter(|_| draws.chance(0.1));
+        format.time = Some(vec!["1".to_owned()]);
+        format.rate_hz = format.rate_hz.filter(|_| draws.chance(0.1));
     }
     if width > 2 || (width > 1 && !has_time) {
-        format.column = Some(width.to_string());
+        format.column = Some(vec![width.to_string()]);
     }
     if draws.chance(0.03) {
-        format.column = Some((*draws.pick(&["gx", "9", "0", "", "t", "-1"])).to_owned());
+        format.column = Some(vec![
+            (*draws.pick(&["gx", "9", "0", "", "t", "-1"])).to_owned(),
+        ]);
     }
     if width >= 4 && draws.chance(0.5) {
         let temperature = (width >= 5).then_some("5");
@@ -244,10 +242,14 @@ fn case(draws: &mut Draws, folder: &Path) -> Outcome {
     }
     match read_log(&path, &format) {
         Ok(log) => {
-            let words = read_stimulus(&path, format.column.as_deref(), usize::MAX);
+            let words = read_stimulus(
+                &path,
+                format.column.as_deref().map(|names| names[0].as_str()),
+                usize::MAX,
+            );
             if !has_time
-                && format.unit == RateUnit::DegPerH
-                && format.scale.to_bits() == 1_f64.to_bits()
+                && format.unit == Some(RateUnit::DEG_PER_H.into())
+                && format.scale.is_none()
             {
                 assert_eq!(words.expect("a log is a stimulus"), log.rate_deg_per_h);
             }

@@ -15,9 +15,9 @@ use crate::experiment::{
     load_log_filters, try_log,
 };
 use crate::program::Programs;
-use crate::recording::{AssemblyColumns, LogError, LogFormat, read_assembly_log, read_log};
+use crate::recording::{AssemblyColumns, Log, LogError, LogFormat, read_assembly_log, read_log};
 use crate::report::{is_kalman_json, log_json, log_text};
-use crate::scenario::AllanConfig;
+use crate::scenario::{AllanConfig, load_log_format};
 use crate::store::SingleFile;
 use crate::wording::printable;
 
@@ -105,7 +105,8 @@ fn inputs(options: &LogOptions) -> Vec<&Path> {
 /// The words to measure and their rate, Hz: of one column, or of three and a calibration.
 fn read(options: &LogOptions) -> Result<(LogInput, f64), Exit> {
     let (Some(calibration), Some(axis)) = (&options.calibration, options.axis) else {
-        let log = read_log(&options.file, &format(options)).map_err(|error| unreadable(&error))?;
+        let log = read_log(&options.file, &format(options)?).map_err(|error| unreadable(&error))?;
+        tell_layout(&log);
         let sample_rate_hz = log.sample_rate_hz;
         return Ok((log.into(), sample_rate_hz));
     };
@@ -127,21 +128,18 @@ fn read(options: &LogOptions) -> Result<(LogInput, f64), Exit> {
         gyros: [x, y, z],
         temperature: options.temperature_column.as_deref(),
     };
-    let found = read_assembly_log(&options.file, &format(options), &columns);
+    let found = read_assembly_log(&options.file, &format(options)?, &columns);
     let logs = found.map_err(|error| unreadable(&error))?;
+    tell_layout(&logs.gyros[axis]);
     let sample_rate_hz = logs.gyros[axis].sample_rate_hz;
     let compensated = compensate_log(logs, &compensation, axis);
     Ok((LogInput::Compensated(compensated), sample_rate_hz))
 }
 
-fn format(options: &LogOptions) -> LogFormat {
-    LogFormat {
-        sample_rate_hz: options.rate_hz,
-        unit: options.unit,
-        scale: options.scale,
-        column: options.column.clone(),
-        time_column: options.time.clone(),
-        time_unit: options.time_unit,
+/// Says what the file was taken for.
+fn tell_layout(log: &Log) {
+    if let Some(layout) = &log.layout {
+        output::talk(&format!("{}: {layout}", log.file));
     }
 }
 
@@ -156,6 +154,18 @@ impl Progress for Starting {
     fn program_said(&self, _run: &str, channel: &str, line: &str) {
         output::talk(&format!("{channel}: {}", printable(line)));
     }
+}
+
+/// What the layout and the options say of the log.
+fn format(options: &LogOptions) -> Result<LogFormat, Exit> {
+    let layout = options.layout.as_deref();
+    load_log_format(layout, &options.keys.given).map_err(|errors| {
+        let exit = refused(&errors);
+        match layout {
+            Some(layout) if !layout.is_file() => Exit::Io,
+            _ => exit,
+        }
+    })
 }
 
 /// Says why a file was not read.

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 
 use crate::cli::options::format::Format;
+use crate::cli::options::layout::LayoutOptions;
 use crate::cli::options::numbers::{OptionError, within};
 use crate::experiment::LogMotion;
-use crate::recording::{RateUnit, SAMPLE_RATE_HZ, TimeUnit};
 use crate::scenario::AllanEstimatorConfig;
 use crate::vocabulary::{AveragingTimes, CompensationForm};
 
@@ -15,31 +15,21 @@ use crate::vocabulary::{AveragingTimes, CompensationForm};
 const TIME_MIN_S: f64 = 1e-9;
 /// Longest such time, s: 115 days.
 const TIME_MAX_S: f64 = 1e7;
-/// Sizes of the units that one count stands for.
-const FACTOR: (f64, f64) = (1e-30, 1e30);
 
 /// A log and how to measure it.
 #[derive(Args, Debug)]
 #[command(group(ArgGroup::new("written").multiple(true)))]
 pub(in crate::cli) struct LogOptions {
-    /// Recorded log: NPY with one dimension, or text with columns between `,`, `;`, tabs or blanks
+    /// Recorded log: NPY, or text with columns between `,`, `;`, tabs or blanks
     pub(in crate::cli) file: PathBuf,
-    /// Samples per second [default: what the time column says]
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true,
-          value_parser = within(SAMPLE_RATE_HZ.0, SAMPLE_RATE_HZ.1, "Hz"),
-          required_unless_present = "time")]
-    pub(in crate::cli) rate_hz: Option<f64>,
-    /// Unit of the numbers: deg/h, deg/s, mdeg/s or mdps, arcsec/s, rad/s, rad/h; as angles turned
-    /// in a sample deg/sample, arcsec/sample, rad/sample, urad/sample
-    #[arg(long, value_name = "UNIT")]
-    pub(in crate::cli) unit: RateUnit,
-    /// Units that one count of the log stands for
-    #[arg(long, value_name = "UNITS", default_value_t = 1.0, value_parser = factor,
-          allow_negative_numbers = true)]
-    pub(in crate::cli) scale: f64,
-    /// Column of a text by its heading or number from 1 [default: the only one beside the time]
-    #[arg(long, value_name = "COLUMN")]
-    pub(in crate::cli) column: Option<String>,
+    /// File with a table [log] that says how the log is read; options stand above it
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) layout: Option<PathBuf>,
+    /// Print how the log is read, as a table [log] for --layout, and nothing else
+    #[arg(long)]
+    pub(in crate::cli) explain: bool,
+    #[command(flatten)]
+    pub(in crate::cli) keys: LayoutOptions,
     /// Columns of the gyros x, y, z of an assembly, to be compensated
     #[arg(
         long,
@@ -73,12 +63,6 @@ pub(in crate::cli) struct LogOptions {
         requires = "calibration"
     )]
     pub(in crate::cli) compensation_form: CompensationForm,
-    /// Column of the time; its stamps must be equally spaced
-    #[arg(long, value_name = "COLUMN")]
-    pub(in crate::cli) time: Option<String>,
-    /// Unit of the time column: s, ms, us, ns
-    #[arg(long, value_name = "UNIT", default_value = "s", requires = "time")]
-    pub(in crate::cli) time_unit: TimeUnit,
     /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz
     #[arg(long, value_name = "MOTION", default_value = "static")]
     pub(in crate::cli) motion: LogMotion,
@@ -146,12 +130,4 @@ pub(in crate::cli) struct FilterLogOptions {
 fn axis(text: &str) -> Result<usize, OptionError> {
     let found = ["x", "y", "z"].iter().position(|axis| *axis == text);
     found.ok_or(OptionError::Axis)
-}
-
-/// A negative one turns the sense of the axis.
-fn factor(text: &str) -> Result<f64, OptionError> {
-    let (least, most) = FACTOR;
-    let number = text.parse::<f64>().ok();
-    let number = number.filter(|number| (least..=most).contains(&number.abs()));
-    number.ok_or(OptionError::Factor { least, most })
 }

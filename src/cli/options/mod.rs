@@ -10,6 +10,7 @@ pub(in crate::cli) mod format;
 pub(in crate::cli) mod hardware;
 pub(in crate::cli) mod idle;
 pub(in crate::cli) mod init;
+pub(in crate::cli) mod layout;
 pub(in crate::cli) mod log;
 pub(in crate::cli) mod numbers;
 pub(in crate::cli) mod words;

@@ -26,14 +26,6 @@ pub(in crate::cli) enum OptionError {
         /// Greatest value.
         most: usize,
     },
-    /// No factor that keeps its digits.
-    #[error("expected a number from {least:e} to {most:e}, or the negative of such a number")]
-    Factor {
-        /// Least magnitude.
-        least: f64,
-        /// Greatest magnitude.
-        most: f64,
-    },
     /// No latitude.
     #[error("expected a latitude from -90 to 90 deg")]
     Latitude,

@@ -14,7 +14,7 @@ use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, Progress, RecordLength, Unfinished, allan_options};
 use crate::metrics::{
     ChannelMetrics, Motion, Settings, Unavailable, examine_log, is_sample_or_longer,
-    noise_state_space, record_fit_tau_min_s,
+    measure_present, noise_state_space, record_fit_tau_min_s,
 };
 use crate::recording::Log;
 use crate::report::{KalmanReport, LogReport, kalman_json, log_files};
@@ -150,19 +150,22 @@ pub fn try_log(
     };
     let sample_period_s = log.sample_period_s();
     let length = record_length(&log, settings)?;
+    let is_compensated = compensated.is_some();
+    let clash = filters.and_then(|filters| clash(filters, is_compensated));
+    if let Some(message) = clash.or_else(|| refusal_of_gaps(&log, filters, settings)) {
+        return Err(LogTrialError {
+            file: log.file,
+            message,
+        });
+    }
+    notes.splice(0..0, log.notes());
+    log.take_about_common_mean();
     let record = GyroRecord {
         truth_deg_per_h: Vec::new(),
         response_deg_per_h: None,
         raw_deg_per_h: std::mem::take(&mut log.rate_deg_per_h),
         compensated_deg_per_h: compensated,
     };
-    let is_compensated = record.compensated_deg_per_h.is_some();
-    if let Some(message) = filters.and_then(|filters| clash(filters, is_compensated)) {
-        return Err(LogTrialError {
-            file: log.file,
-            message,
-        });
-    }
     let words = record.filter_input_deg_per_h();
     let finished = filters.map(|filters| {
         let input = Input {
@@ -188,20 +191,7 @@ pub fn try_log(
         settings: &metric_settings,
         drift: None,
     };
-    let is_tau_given = settings.fit_tau_min_s.is_some();
-    let (raw, others): (_, Vec<_>) = rayon::join(
-        || {
-            let words = &record.raw_deg_per_h;
-            examined(RAW, cut.measure_raw(), words, &cut, is_tau_given)
-        },
-        || {
-            let filters = finished.par_iter();
-            filters
-                .map(|filter| (filter.name.clone(), cut.measure_filter(filter)))
-                .collect()
-        },
-    );
-    notes.splice(0..0, log.notes());
+    let channels = measured_channels(&cut, &finished, settings.fit_tau_min_s.is_some());
     if let Some(filters) = filters {
         notes.extend(filters.warnings(&record.raw_deg_per_h));
         for filter in &finished {
@@ -209,12 +199,6 @@ pub fn try_log(
             notes.extend(outside::note(filter));
         }
     }
-    let compensated = is_compensated.then(|| {
-        let measured = cut.measure_compensated();
-        examined(COMPENSATED, measured, words, &cut, is_tau_given)
-    });
-    let own = raw.into_iter().chain(compensated.into_iter().flatten());
-    let channels: Vec<_> = own.chain(others).collect();
     Ok(LogTrial {
         channels,
         motion: report_motion(settings.motion),
@@ -224,6 +208,55 @@ pub fn try_log(
         record,
         length,
         notes,
+    })
+}
+
+/// The channels of a log: its words, those without the errors of its assembly, those of the filters.
+fn measured_channels(
+    cut: &Cut,
+    filters: &[FinishedFilter],
+    is_tau_given: bool,
+) -> Vec<(String, ChannelMetrics)> {
+    let raw = &cut.record.raw_deg_per_h;
+    let (raw, others): (_, Vec<_>) = rayon::join(
+        || {
+            let measured = match raw.iter().any(|word| word.is_nan()) {
+                true => measure_present(&cut.of(raw, raw), cut.settings),
+                false => cut.measure_raw(),
+            };
+            examined(RAW, measured, raw, cut, is_tau_given)
+        },
+        || {
+            let filters = filters.par_iter();
+            filters
+                .map(|filter| (filter.name.clone(), cut.measure_filter(filter)))
+                .collect()
+        },
+    );
+    let compensated = cut.record.compensated_deg_per_h.as_deref().map(|words| {
+        let measured = cut.measure_compensated();
+        examined(COMPENSATED, measured, words, cut, is_tau_given)
+    });
+    let own = raw.into_iter().chain(compensated.into_iter().flatten());
+    own.chain(others).collect()
+}
+
+/// Why a log with gaps is not measured as it is asked for; nothing of one without.
+fn refusal_of_gaps(
+    log: &Log,
+    filters: Option<&LogFilters>,
+    settings: &LogSettings,
+) -> Option<String> {
+    let needs = match (filters, settings.motion) {
+        (Some(_), _) => "a filter needs every word",
+        (None, LogMotion::Swing { .. }) => "the phase of a swing needs every word",
+        (None, LogMotion::Static) => return None,
+    };
+    log.has_gaps().then(|| {
+        format!(
+            "samples are missing ({}), and {needs}: --rows, or --from-s and --to-s, takes a part without gaps",
+            counted(log.stretches.len(), "part")
+        )
     })
 }
 
@@ -376,13 +409,19 @@ impl LogTrial {
             column: self.log.column.as_deref(),
             unit: &unit,
             sample_rate_hz: self.log.sample_rate_hz,
-            samples: self.length.measured,
+            samples: self.present(),
             warm_up_samples: self.length.warm_up,
             filters: filters.map(|(file, digest)| (file.as_str(), digest.as_str())),
             motion: &self.motion,
             channels: &self.channels,
             notes: &self.notes,
         })
+    }
+
+    /// Words that were measured, missing ones not counted.
+    fn present(&self) -> usize {
+        let measured = &self.record.raw_deg_per_h[self.length.warm_up..];
+        measured.iter().filter(|word| !word.is_nan()).count()
     }
 
     /// The noise of the words as a linear system, JSON; that without outliers where there are any.

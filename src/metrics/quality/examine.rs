@@ -3,6 +3,7 @@
 use super::outliers::{OUTLIERS, Outliers, find_outliers};
 use super::smoothing::{SMOOTHING_TIME, find_smoothing};
 use crate::metrics::estimate::outlier_sheet::OutlierEntry;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::measure::measure_present;
@@ -34,7 +35,7 @@ pub fn examine_log(
     }
     let residuals = about_motion(record, &settings.motion);
     let mut still = residuals.unwrap_or_else(|| words.to_vec());
-    let found = find_outliers(&still);
+    let found = find_present(&still);
     if let Ok(outliers) = &found {
         outliers.leave_out(&mut still);
     }
@@ -68,6 +69,16 @@ pub fn examine_log(
         ..*record
     };
     Some(measure_present(&rest_record, &settings))
+}
+
+/// The outliers of a record of which words may be missing: those on either side of a gap are neighbours.
+fn find_present(words: &[f64]) -> Result<Outliers, Unavailable> {
+    if words.iter().all(|word| !word.is_nan()) {
+        return find_outliers(words);
+    }
+    let present = words.iter().enumerate().filter(|(_, word)| !word.is_nan());
+    let (places, present): (Vec<usize>, Vec<f64>) = present.unzip();
+    find_outliers(&present).map(|found| found.moved_to(&places))
 }
 
 /// The words about a motion that is known; nothing where they stand for themselves.

@@ -88,10 +88,21 @@ impl Outliers {
         self.events.iter().map(|event| event.words).sum()
     }
 
+    /// The outliers of words that were taken out of a record, at their places in it.
+    ///
+    /// * `places`: index in the record of each word.
+    pub(crate) fn moved_to(mut self, places: &[usize]) -> Self {
+        for event in &mut self.events {
+            event.first = places[event.first];
+        }
+        self
+    }
+
     /// Makes the outliers of a record missing (NaN).
     pub(crate) fn leave_out(&self, words: &mut [f64]) {
         for event in &self.events {
-            words[event.first..event.first + event.words].fill(f64::NAN);
+            let end = (event.first + event.words).min(words.len());
+            words[event.first..end].fill(f64::NAN);
         }
     }
 }

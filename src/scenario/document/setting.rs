@@ -17,6 +17,11 @@ use crate::scenario::document::tree::{Node, Value};
 pub struct Setting(Value);
 
 impl Setting {
+    /// The value of a document.
+    pub(crate) fn into_value(self) -> Value {
+        self.0
+    }
+
     /// The value as a scenario file spells it.
     #[must_use]
     pub fn as_toml(&self) -> String {

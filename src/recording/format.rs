@@ -1,0 +1,75 @@
+//! What may be said of a log: one declaration for files (`[log]`), options and their documents.
+
+use super::layout::words::{
+    DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind,
+};
+use super::time_unit::TimeUnit;
+use super::unit::LogUnit;
+use crate::declare::table;
+
+table! {
+    /// How a log is read. What is not given is found from the first lines of the file.
+    #[derive(Default)]
+    pub struct LogFormat {
+        /// Samples per second [default: what the column of the time says].
+        rate_hz: Option<f64>, example 100.0, in 1e-6..=1e9, "Hz";
+        /// Unit of the numbers: deg/h, deg/s or dps, mdeg/s, arcsec/s, rad/s, nrad/s, rpm and the like; as
+        /// angles turned in a sample deg/sample, urad/sample; as an angle deg, rad [default: that of the
+        /// heading].
+        unit: Option<LogUnit>, example "deg/s";
+        /// What a number is: `rate`, `increment` (the angle turned in a sample), `angle` (a running one)
+        /// [default: what the unit says].
+        kind: Option<WordKind>, example "rate";
+        /// Units that one count of the log stands for; a negative one turns the sense of the axis
+        /// [default: 1].
+        scale: Option<f64>, example 0.0076, in -1e30..=1e30;
+        /// Added to the numbers behind the scale, in their unit [default: 0].
+        offset: Option<f64>, example 0.5, in -1e30..=1e30;
+        /// Column by its heading, a part of it, its number from 1, or with `*` for any letters; several one
+        /// after another [default: the only one beside the time].
+        column: Option<Vec<String>>, example ["gyro_z"];
+        /// Column of the time; of two, such as week and seconds, the sum; `none` if the file has none
+        /// [default: the one whose heading says so].
+        time: Option<Vec<String>>, example ["time_s"];
+        /// Unit of each column of the time: s, ms, us, ns, min, h, day, week, iso (dates), sample (a
+        /// counter) [default: that of the heading, else s].
+        time_unit: Option<Vec<TimeUnit>>, example ["s"];
+        /// Number of steps, in the unit of the time, after which a counter of time begins again at 0
+        /// [default: found where stamps fall back by a power of two, a day or a week].
+        roll_over: Option<f64>, example 65536.0, in 1e-9..=1e20;
+        /// Lines at the start of the file to pass over.
+        skip_lines: Option<u32>, example 4, in 0..=1000000;
+        /// What begins a line that is passed over [default: `#`, `//`, `%`, and `;` where it does not
+        /// separate].
+        comment: Option<String>, example "//";
+        /// Line of the heading, from 1; 0 if there is none.
+        heading_line: Option<u32>, example 5, in 0..=1000000;
+        /// Line of the units, from 1; 0 if there is none.
+        units_line: Option<u32>, example 6, in 0..=1000000;
+        /// What stands between cells: `comma`, `semicolon`, `tab`, `blanks`.
+        separator: Option<Separator>, example "semicolon";
+        /// Decimal sign: `point` or `comma`.
+        decimal: Option<DecimalSign>, example "comma";
+        /// Encoding of the text: `utf-8`, `utf-16-le`, `utf-16-be`, `latin-1`.
+        encoding: Option<Encoding>, example "utf-8";
+        /// Columns of a record whose values are read row by row, however many stand in a line: 1 where the
+        /// lines hold one quantity, as many as there are quantities where a record is spread over lines.
+        wrapped_columns: Option<u32>, example 1, in 1..=4096;
+        /// What units in headings are worth: `read`, or `ignore` where the options are right.
+        heading_units: Option<HeadingUnits>, example "read";
+        /// What a word for a missing number is: `refuse`, or `gap`.
+        missing: Option<MissingWords>, example "gap";
+        /// First row that is taken, from 1, and the last: `1001:5000`; either may be left out.
+        rows: Option<String>, example "1001:5000";
+        /// Time from the first stamp on at which the part that is taken begins.
+        from_s: Option<f64>, example 10.0, in 0.0..=1e12, "s";
+        /// Time at which it ends.
+        to_s: Option<f64>, example 3600.0, in 0.0..=1e12, "s";
+        /// Stretches to take: a table with the columns from_s and to_s; metrics pool them.
+        segments: Option<String>, example "segments.csv";
+        /// Cut the log where samples are missing, and pool the stretches between: no difference spans a gap.
+        split_gaps: Option<bool>, example true;
+        /// Longest step between stamps that is jitter and no gap [default: one and a half sample periods].
+        max_gap_s: Option<f64>, example 0.02, in 1e-9..=1e9, "s";
+    }
+}

@@ -1,0 +1,248 @@
+//! Finding the layout of a table: separator, decimal sign, width, the columns of numbers, the first row.
+
+use super::cells::{DecimalFound, decimal_of, is_value, separator_of};
+use super::heading::{Above, HeadLine, above_rows};
+use super::words::{DecimalSign, Separator};
+use super::{Fault, Layout, LayoutError};
+use crate::recording::format::LogFormat;
+use crate::recording::text::{Delimiter, is_comment, is_heading, is_missing};
+
+/// Lines at the end of the first ones that tell how rows look.
+const TAIL: usize = 40;
+/// Marks of comments, but for that which may separate.
+const MARKS: [&str; 3] = ["#", "//", "%"];
+
+/// How rows look.
+pub(super) struct Rows {
+    pub(super) separator: Separator,
+    pub(super) decimal: DecimalSign,
+    /// Cells of a row.
+    pub(super) cells: usize,
+    /// Columns that hold numbers or dates in most rows.
+    numeric: Vec<usize>,
+}
+
+/// Finds the layout of a text from its first lines; nothing if they hold no row.
+///
+/// # Errors
+/// A line above the rows that is neither comment, heading, units nor free text; what may be two things.
+pub(in crate::recording) fn find(
+    head: &[HeadLine],
+    format: &LogFormat,
+) -> Result<Option<Layout>, Fault> {
+    let skip_lines = format.skip_lines.unwrap_or(0) as usize;
+    let head: Vec<&HeadLine> = head.iter().filter(|it| it.number > skip_lines).collect();
+    let (rows, marks) = match rows(&head, format)? {
+        Some(found) => found,
+        None => return Ok(None),
+    };
+    let last_above = last_line_above(format);
+    let is_passed = |line: &HeadLine| is_comment(line.text.trim(), &as_strs(&marks));
+    let below = |line: &&&HeadLine| line.number > last_above && !is_passed(line);
+    let first = head
+        .iter()
+        .filter(below)
+        .find(|line| rows.fits(&line.text))
+        .copied();
+    let first = match first {
+        Some(first) => first,
+        // Nothing looks like a row: what follows a heading is said to be none.
+        None => match first_without_fit(&head, &marks, &rows, last_above)? {
+            Some(first) => first,
+            None => return Ok(None),
+        },
+    };
+    let before: Vec<&HeadLine> = head
+        .iter()
+        .copied()
+        .take_while(|line| line.number < first.number)
+        .collect();
+    let above = above_rows(&before, &marks, &rows, format)?;
+    let is_named = |line: &HeadLine| {
+        let mut named = [&above.heading, &above.units].into_iter().flatten();
+        named.any(|(number, _)| *number == line.number)
+    };
+    let comments = before
+        .iter()
+        .filter(|line| is_passed(line) && !is_named(line))
+        .count();
+    Ok(Some(layout(above, first, rows, marks, comments, format)))
+}
+
+fn layout(
+    above: Above,
+    first: &HeadLine,
+    rows: Rows,
+    marks: Vec<String>,
+    comments: usize,
+    format: &LogFormat,
+) -> Layout {
+    let (heading_line, names) = above.heading.unzip();
+    let (units_line, units) = above.units.unzip();
+    let names = names.unwrap_or_default();
+    Layout {
+        encoding: format.encoding.unwrap_or(super::words::Encoding::Utf8),
+        skip_lines: format.skip_lines.unwrap_or(0) as usize,
+        preamble: above.preamble,
+        marks,
+        comments,
+        decimal_comma: names
+            .is_empty()
+            .then(|| one_with_decimal_comma(&first.text))
+            .flatten(),
+        heading_line,
+        units_line,
+        first_row_line: first.number,
+        separator: rows.separator,
+        decimal: rows.decimal,
+        cells: rows.cells.max(names.len()),
+        names,
+        units: units.unwrap_or_default(),
+        wrapped: format.wrapped_columns.map(|columns| columns as usize),
+    }
+}
+
+/// A row that may be one number with a decimal comma.
+fn one_with_decimal_comma(row: &str) -> Option<String> {
+    let is_number = |cell: &str| cell.parse::<i64>().is_ok();
+    let is_fraction = |cell: &str| !cell.is_empty() && cell.bytes().all(|it| it.is_ascii_digit());
+    let is_one = matches!(row.split(',').collect::<Vec<_>>()[..], [whole, fraction]
+        if is_number(whole.trim_start()) && is_fraction(fraction.trim_end()));
+    is_one.then(|| row.trim().to_owned())
+}
+
+fn as_strs(marks: &[String]) -> Vec<&str> {
+    marks.iter().map(String::as_str).collect()
+}
+
+/// The last line that is said to stand above the rows.
+fn last_line_above(format: &LogFormat) -> usize {
+    let given = [format.heading_line, format.units_line];
+    given.into_iter().flatten().max().unwrap_or(0) as usize
+}
+
+/// How the rows of the first lines look, and the marks of comments between them; nothing without a line
+/// that says something.
+fn rows(head: &[&HeadLine], format: &LogFormat) -> Result<Option<(Rows, Vec<String>)>, Fault> {
+    let mut marks: Vec<String> = MARKS.map(str::to_owned).into();
+    marks.extend(format.comment.clone());
+    let last_above = last_line_above(format);
+    let said = |marks: &[String]| -> Vec<&str> {
+        let marks = as_strs(marks);
+        let lines = head
+            .iter()
+            .filter(|line| line.number > last_above && !is_comment(line.text.trim(), &marks));
+        lines.map(|line| line.text.as_str()).collect()
+    };
+    let lines = said(&marks);
+    // A line that begins with a semicolon says nothing of what separates.
+    let plain: Vec<&str> = lines
+        .iter()
+        .copied()
+        .filter(|it| !it.trim().starts_with(';'))
+        .collect();
+    let Some(sample) = tail(&plain) else {
+        return Ok(None);
+    };
+    let separator = format
+        .separator
+        .unwrap_or_else(|| separator_of(sample, format.decimal));
+    if separator != Separator::Semicolon {
+        marks.push(";".to_owned());
+    }
+    let lines = said(&marks);
+    let Some(sample) = tail(&lines) else {
+        return Ok(None);
+    };
+    let decimal = match format.decimal {
+        Some(given) => given,
+        None => match decimal_of(sample, separator) {
+            DecimalFound::Sure(sign) => sign,
+            DecimalFound::Doubt(cell) => {
+                let line = head.iter().find(|line| line.text.contains(&cell));
+                return Err(Fault {
+                    line: line.map(|line| line.number),
+                    error: LayoutError::Thousands(cell),
+                });
+            }
+        },
+    };
+    Ok(Some((Rows::of(sample, separator, decimal), marks)))
+}
+
+/// The last of some lines; nothing of none.
+fn tail<'a, 'b>(lines: &'b [&'a str]) -> Option<&'b [&'a str]> {
+    (!lines.is_empty()).then(|| &lines[lines.len().saturating_sub(TAIL)..])
+}
+
+impl Rows {
+    fn of(sample: &[&str], separator: Separator, decimal: DecimalSign) -> Self {
+        let delimiter = Delimiter::from(separator);
+        let cut: Vec<Vec<&str>> = sample
+            .iter()
+            .map(|line| delimiter.first_cells(line))
+            .collect();
+        let cells = most_frequent(cut.iter().map(Vec::len));
+        let whole: Vec<&Vec<&str>> = cut.iter().filter(|row| row.len() == cells).collect();
+        let is_numeric = |column: &usize| {
+            let values = whole.iter().filter(|row| is_value(row[*column], decimal));
+            2 * values.count() >= whole.len()
+        };
+        Self {
+            separator,
+            decimal,
+            cells,
+            numeric: (0..cells).filter(is_numeric).collect(),
+        }
+    }
+
+    /// Whether a line looks as most rows do.
+    fn fits(&self, line: &str) -> bool {
+        let cells = Delimiter::from(self.separator).cells_up_to(line, self.cells);
+        let is_in_place =
+            |column: &usize| is_value(cells[*column], self.decimal) || is_missing(cells[*column]);
+        cells.len() == self.cells
+            && !self.numeric.is_empty()
+            && self.numeric.iter().all(is_in_place)
+    }
+}
+
+/// The most frequent of some counts; of several the largest.
+fn most_frequent(counts: impl Iterator<Item = usize>) -> usize {
+    let mut found = std::collections::BTreeMap::new();
+    for count in counts {
+        *found.entry(count).or_insert(0) += 1;
+    }
+    let most = found
+        .into_iter()
+        .max_by_key(|(count, times)| (*times, *count));
+    most.map_or(0, |(count, _)| count)
+}
+
+/// The line that stands for the first row where none looks like one: that below a heading.
+fn first_without_fit<'a>(
+    head: &[&'a HeadLine],
+    marks: &[String],
+    rows: &Rows,
+    last_above: usize,
+) -> Result<Option<&'a HeadLine>, Fault> {
+    let marks = as_strs(marks);
+    let mut lines = head
+        .iter()
+        .filter(|line| line.number > last_above && !is_comment(line.text.trim(), &marks));
+    let Some(first) = lines.next() else {
+        return Ok(None);
+    };
+    if last_above > 0 {
+        return Ok(Some(first));
+    }
+    let cells = Delimiter::from(rows.separator).first_cells(&first.text);
+    match is_heading(&cells) {
+        Ok(true) => Ok(lines.next().copied()),
+        Ok(false) => Ok(Some(first)),
+        Err(error) => Err(Fault {
+            line: Some(first.number),
+            error: error.into(),
+        }),
+    }
+}

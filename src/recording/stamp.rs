@@ -1,0 +1,358 @@
+//! Stamps of a column of time, without loss: numbers of any length, dates, times of day.
+//!
+//! A stamp is held as a whole number of [`TICKS`] to the second (or to the sample, of a counter), so that
+//! 19 digits of nanoseconds and twelve decimals of a second are kept alike. Libraries of dates end at
+//! nanoseconds and know no decimals of a count, which is why dates are read here as well.
+
+use super::layout::{is_number, plain_spelling, words::DecimalSign};
+use super::text::{finite, shown};
+use super::time_unit::TimeUnit;
+
+/// Ticks of a second, or of a sample.
+pub(super) const TICKS: i128 = 1_000_000_000_000;
+/// Ticks of a nanosecond.
+const TICKS_PER_NS: i128 = 1_000;
+/// Digits of [`TICKS`] behind the one.
+const DECIMALS: usize = 12;
+/// Ticks in a day.
+const DAY: i128 = 86_400 * TICKS;
+
+/// A stamp, and what its spelling resolves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Stamp {
+    pub(super) ticks: i128,
+    /// One in its last digit, ticks.
+    pub(super) resolution: i128,
+}
+
+/// Why a cell is no stamp.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum StampError {
+    #[error("{0}")]
+    Number(#[from] super::text::NumberError),
+    #[error("`{0}` is no date or time of day: expected one as 2024-03-01T12:00:00.005Z")]
+    Date(String),
+    #[error("{0} is beyond the times that a clock shows")]
+    Beyond(String),
+}
+
+impl Stamp {
+    /// The stamp that a cell is.
+    ///
+    /// # Errors
+    /// No number, or no date where dates are expected.
+    pub(super) fn read(
+        cell: &str,
+        unit: TimeUnit,
+        decimal: DecimalSign,
+    ) -> Result<Self, StampError> {
+        if unit == TimeUnit::Iso {
+            return date(cell).ok_or_else(|| StampError::Date(shown(cell)));
+        }
+        let unit_ticks = ticks_of(unit);
+        let spelled = plain_spelling(cell, decimal);
+        if let Some(stamp) = decimal_number(&spelled, unit_ticks) {
+            return Ok(stamp);
+        }
+        if is_date(cell) && !is_number(cell, decimal) {
+            return Err(StampError::Date(format!(
+                "{}` is a date, not a number of {unit}; `--time-unit iso",
+                shown(cell)
+            )));
+        }
+        let number = finite(&spelled)?;
+        Self::of_number(number, unit).ok_or_else(|| StampError::Beyond(shown(cell)))
+    }
+
+    /// The stamp that a number is; nothing beyond the times that a clock shows.
+    pub(super) fn of_number(number: f64, unit: TimeUnit) -> Option<Self> {
+        let ticks = number * as_float(ticks_of(unit));
+        if ticks.is_nan() || ticks.abs() > 1e36 {
+            return None;
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "bounded just above")]
+        let ticks = ticks.round() as i128;
+        Some(Self {
+            ticks,
+            resolution: 1,
+        })
+    }
+
+    /// The stamp that a whole number is.
+    pub(super) fn of_whole(number: i128, unit: TimeUnit) -> Option<Self> {
+        let resolution = ticks_of(unit);
+        let ticks = number.checked_mul(resolution)?;
+        Some(Self { ticks, resolution })
+    }
+
+    /// The sum of two parts of a stamp.
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            ticks: self.ticks.saturating_add(other.ticks),
+            resolution: self.resolution.min(other.resolution),
+        }
+    }
+}
+
+/// Ticks of a unit.
+pub(super) fn ticks_of(unit: TimeUnit) -> i128 {
+    unit.nanoseconds().map_or(TICKS, |ns| ns * TICKS_PER_NS)
+}
+
+/// A count of ticks as binary64.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "differences of stamps are small, and rounded once here"
+)]
+pub(super) fn as_float(ticks: i128) -> f64 {
+    ticks as f64
+}
+
+/// A number of digits with a decimal point or none.
+fn decimal_number(cell: &str, unit_ticks: i128) -> Option<Stamp> {
+    let (is_negative, digits) = match cell.as_bytes() {
+        [b'-', digits @ ..] => (true, digits),
+        [b'+', digits @ ..] => (false, digits),
+        digits => (false, digits),
+    };
+    let (mut number, mut decimals, mut is_behind, mut count) = (0_i128, 0_usize, false, 0_usize);
+    for byte in digits {
+        match byte {
+            b'0'..=b'9' => {
+                number = number * 10 + i128::from(byte - b'0');
+                count += 1;
+                decimals += usize::from(is_behind);
+            }
+            b'.' if !is_behind => is_behind = true,
+            _ => return None,
+        }
+        if count > 24 {
+            return None;
+        }
+    }
+    if count == 0 {
+        return None;
+    }
+    let number = if is_negative { -number } else { number };
+    let power = 10_i128.checked_pow(u32::try_from(decimals).ok()?)?;
+    let scaled = number.checked_mul(unit_ticks)?;
+    Some(Stamp {
+        ticks: rounded(scaled, power),
+        resolution: (unit_ticks / power).max(1),
+    })
+}
+
+/// A quotient, rounded to the nearest.
+fn rounded(number: i128, over: i128) -> i128 {
+    let (whole, rest) = (number.div_euclid(over), number.rem_euclid(over));
+    whole + i128::from(rest >= over - rest && rest > 0)
+}
+
+/// Whether a cell is a date, a time of day or both.
+pub(super) fn is_date(cell: &str) -> bool {
+    date(cell).is_some()
+}
+
+/// A date, a time of day, or a date and the time behind `T` or a blank, with its zone or without.
+fn date(cell: &str) -> Option<Stamp> {
+    let bytes = cell.as_bytes();
+    if !bytes.first()?.is_ascii_digit() {
+        return None;
+    }
+    if bytes.get(2) == Some(&b':') {
+        return time_of_day(bytes);
+    }
+    let (days, behind) = day(bytes)?;
+    let midnight = i128::from(days) * DAY;
+    match behind {
+        [] => Some(Stamp {
+            ticks: midnight,
+            resolution: DAY,
+        }),
+        [b'T' | b't' | b' ' | b'_', time @ ..] => {
+            let time = time_of_day(time)?;
+            Some(Stamp {
+                ticks: midnight + time.ticks,
+                ..time
+            })
+        }
+        _ => None,
+    }
+}
+
+/// Days since 1970 of a year, month and day of digits, and what stands behind.
+fn day(bytes: &[u8]) -> Option<(i64, &[u8])> {
+    let [
+        y0,
+        y1,
+        y2,
+        y3,
+        cut @ (b'-' | b'/'),
+        m0,
+        m1,
+        same,
+        d0,
+        d1,
+        behind @ ..,
+    ] = bytes
+    else {
+        return None;
+    };
+    if cut != same {
+        return None;
+    }
+    let year = number(&[*y0, *y1, *y2, *y3])?;
+    let (month, day) = (number(&[*m0, *m1])?, number(&[*d0, *d1])?);
+    if !(1..=12).contains(&month) || !(1..=days_of_month(year, month)).contains(&day) {
+        return None;
+    }
+    // Years begin in March, so that the day that leaps is the last.
+    let (year, month) = if month > 2 {
+        (year, month - 3)
+    } else {
+        (year - 1, month + 9)
+    };
+    let of_year = (153 * month + 2) / 5 + day - 1;
+    let leaps = year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400);
+    Some((365 * year + leaps + of_year - 719_468, behind))
+}
+
+fn days_of_month(year: i64, month: i64) -> i64 {
+    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    match month {
+        2 => 28 + i64::from(is_leap),
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    }
+}
+
+fn number(digits: &[u8]) -> Option<i64> {
+    digits.iter().try_fold(0, |number, digit| {
+        let digit = digit.is_ascii_digit().then(|| i64::from(digit - b'0'))?;
+        Some(number * 10 + digit)
+    })
+}
+
+/// Hours, minutes, seconds with decimals, and the zone.
+fn time_of_day(bytes: &[u8]) -> Option<Stamp> {
+    let [h0, h1, b':', m0, m1, behind @ ..] = bytes else {
+        return None;
+    };
+    let (hours, minutes) = (number(&[*h0, *h1])?, number(&[*m0, *m1])?);
+    if hours > 24 || minutes > 59 {
+        return None;
+    }
+    let whole = i128::from(hours * 3600 + minutes * 60) * TICKS;
+    let (seconds, resolution, behind) = match behind {
+        [b':', s0, s1, behind @ ..] => {
+            // 60 is the second that is put in.
+            let seconds = number(&[*s0, *s1]).filter(|seconds| *seconds <= 60)?;
+            let (decimals, count, behind) = match behind {
+                [b'.' | b',', digits @ ..] => decimals(digits)?,
+                behind => (0, 0, behind),
+            };
+            let seconds = i128::from(seconds) * TICKS + decimals;
+            let resolution = TICKS / 10_i128.pow(count);
+            (seconds, resolution, behind)
+        }
+        behind => (0, 60 * TICKS, behind),
+    };
+    Some(Stamp {
+        ticks: whole + seconds - zone(behind)?,
+        resolution,
+    })
+}
+
+/// Decimals of a second in ticks, how many, and what stands behind; those beyond a tick are dropped.
+fn decimals(bytes: &[u8]) -> Option<(i128, u32, &[u8])> {
+    let count = bytes
+        .iter()
+        .take_while(|byte| byte.is_ascii_digit())
+        .count();
+    let (digits, behind) = bytes.split_at(count);
+    let mut ticks = 0;
+    for place in 0..DECIMALS {
+        ticks = ticks * 10
+            + digits
+                .get(place)
+                .map_or(0, |digit| i128::from(digit - b'0'));
+    }
+    let count = u32::try_from(count.min(DECIMALS)).ok()?;
+    (count > 0).then_some((ticks, count, behind))
+}
+
+/// Ticks by which a zone is ahead.
+fn zone(bytes: &[u8]) -> Option<i128> {
+    let (sign, digits) = match bytes {
+        [] | [b'Z' | b'z'] | [b' ', b'U', b'T', b'C'] => return Some(0),
+        [b'+', digits @ ..] => (1, digits),
+        [b'-', digits @ ..] => (-1, digits),
+        _ => return None,
+    };
+    let (hours, minutes) = match digits {
+        [h0, h1] => (number(&[*h0, *h1])?, 0),
+        [h0, h1, b':', m0, m1] | [h0, h1, m0, m1] => (number(&[*h0, *h1])?, number(&[*m0, *m1])?),
+        _ => return None,
+    };
+    Some(sign * i128::from(hours * 3600 + minutes * 60) * TICKS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ticks(cell: &str, unit: TimeUnit) -> i128 {
+        Stamp::read(cell, unit, DecimalSign::Point).unwrap().ticks
+    }
+
+    #[test]
+    fn nineteen_digits_of_nanoseconds_are_kept() {
+        let [a, b] = ["1403636579758555392", "1403636579763555393"]
+            .map(|cell| ticks(cell, TimeUnit::Nanoseconds));
+        assert_eq!(b - a, 5_000_001 * TICKS_PER_NS);
+        assert_eq!(ticks("-0.005", TimeUnit::Seconds), -TICKS / 200);
+        assert_eq!(ticks("1.5", TimeUnit::Milliseconds), TICKS / 1000 * 3 / 2);
+        assert_eq!(ticks("5e-3", TimeUnit::Seconds), TICKS / 200);
+        assert_eq!(ticks("7", TimeUnit::Samples), 7 * TICKS);
+        assert_eq!(ticks("2304", TimeUnit::Weeks), 2304 * 7 * DAY);
+        let coarse = Stamp::read("0.5", TimeUnit::Seconds, DecimalSign::Point).unwrap();
+        assert_eq!(coarse.resolution, TICKS / 10);
+        let comma = Stamp::read("0,25", TimeUnit::Seconds, DecimalSign::Comma).unwrap();
+        assert_eq!(comma.ticks, TICKS / 4);
+    }
+
+    #[test]
+    fn dates_count_from_1970_whatever_their_zone() {
+        let at = |cell| ticks(cell, TimeUnit::Iso);
+        assert_eq!(at("1970-01-01T00:00:00Z"), 0);
+        // By date(1): 1709294400 s.
+        assert_eq!(at("2024-03-01T12:00:00Z"), 1_709_294_400 * TICKS);
+        assert_eq!(
+            at("2024-03-01 14:30:00.005+02:30"),
+            at("2024-03-01T12:00:00.005Z")
+        );
+        assert_eq!(at("2024/03/01 12:00:00,005"), at("2024-03-01T12:00:00.005"));
+        assert_eq!(at("2024-02-29"), at("2024-03-01") - DAY);
+        assert_eq!(
+            at("2024-03-01") + at("12:00:00.25"),
+            at("2024-03-01T12:00:00.25")
+        );
+        assert_eq!(at("1900-03-01") - at("1900-02-28"), DAY);
+        assert_eq!(at("2016-12-31T23:59:60Z"), at("2017-01-01T00:00:00Z"));
+        for cell in [
+            "2024-13-01",
+            "2024-02-30",
+            "2024-03-01T",
+            "2024-03-01Tx",
+            "12",
+            "12:00:00.",
+            "1.5",
+            "2024-03/01",
+            "2024-03-01T25:00",
+            "",
+            "nan",
+        ] {
+            assert!(!is_date(cell), "{cell}");
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Parts of a log: rows, times, a table of stretches.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::column::Columns;
+use super::error::LogError;
+use super::format::LogFormat;
+use super::input::Input;
+use super::layout::columns::Selection;
+use super::table::{self, Wanted};
+
+/// Columns of a table of stretches.
+const BOUNDS: [&str; 2] = ["from_s", "to_s"];
+
+/// Why no part is taken.
+#[derive(Debug, thiserror::Error)]
+enum PartError {
+    #[error("--rows {0}: expected two rows from 1 on with a colon between them, as 1001:5000")]
+    Rows(String),
+    #[error("--rows {rows} leaves no row: the log has {count}")]
+    NoRow { rows: String, count: usize },
+    #[error("no sample lies from {from_s} s to {to_s} s: the log ends at {end_s} s")]
+    NoTime { from_s: f64, to_s: f64, end_s: f64 },
+    #[error("it says from {from_s} s to {to_s} s: expected stretches that end behind their start")]
+    Backwards { from_s: f64, to_s: f64 },
+    #[error("its stretches from {0} s on and from {1} s on overlap or are not in order")]
+    Overlap(f64, f64),
+    #[error("a part by its time needs a column of the time, or --rate-hz")]
+    NoClock,
+}
+
+/// The rows of the parts that are asked for, in order; all of them where none is.
+///
+/// * `count`: rows of the log.
+///
+/// # Errors
+/// Parts that hold no row, a table of stretches that overlap.
+pub(super) fn parts(
+    path: &Path,
+    columns: &Columns,
+    count: usize,
+    format: &LogFormat,
+) -> Result<Vec<Range<usize>>, LogError> {
+    let refuse = |error: PartError| LogError::of_file(path, error);
+    let rows = match &format.rows {
+        Some(rows) => rows_of(rows, count).map_err(refuse)?,
+        None => 0..count,
+    };
+    let bounds = match &format.segments {
+        Some(file) => table_of(&path.parent().unwrap_or(Path::new("")).join(file), file)?,
+        None if format.from_s.is_some() || format.to_s.is_some() => {
+            let to_s = format.to_s.unwrap_or(f64::INFINITY);
+            vec![(format.from_s.unwrap_or(0.0), to_s)]
+        }
+        None => return Ok(vec![rows]),
+    };
+    let stamp = clock(columns, format).ok_or_else(|| refuse(PartError::NoClock))?;
+    let mut parts = Vec::new();
+    for (from_s, to_s) in bounds {
+        // Stamps rise, so that the rows of a stretch follow one another.
+        let mut inside = rows
+            .clone()
+            .filter(|row| (from_s..=to_s).contains(&stamp(*row)));
+        let first = inside.next();
+        let last = inside.next_back().or(first);
+        let (Some(first), Some(last)) = (first, last) else {
+            let end_s = stamp(count - 1);
+            return Err(refuse(PartError::NoTime {
+                from_s,
+                to_s,
+                end_s,
+            }));
+        };
+        parts.push(first..last + 1);
+    }
+    Ok(parts)
+}
+
+/// Time of a row from the first one on, s.
+fn clock<'a>(columns: &'a Columns, format: &LogFormat) -> Option<Box<dyn Fn(usize) -> f64 + 'a>> {
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "sample counts are far below 2^53"
+    )]
+    let by_rate = |rate: f64| move |row: usize| row as f64 / rate;
+    match (&columns.time, format.rate_hz) {
+        (Some(time), None) if time.is_counter() => None,
+        (Some(time), Some(rate)) if time.is_counter() => {
+            Some(Box::new(move |row| time.stamps[row] / rate))
+        }
+        (Some(time), _) => Some(Box::new(|row| time.stamps[row])),
+        (None, Some(rate)) => Some(Box::new(by_rate(rate))),
+        (None, None) => None,
+    }
+}
+
+/// Rows `first:last` from 1, either of which may be left out.
+fn rows_of(text: &str, count: usize) -> Result<Range<usize>, PartError> {
+    let malformed = || PartError::Rows(text.to_owned());
+    let (first, last) = text.split_once(':').ok_or_else(malformed)?;
+    let number = |text: &str, default: usize| match text.trim() {
+        "" => Ok(default),
+        text => text
+            .parse::<usize>()
+            .ok()
+            .filter(|it| *it > 0)
+            .ok_or_else(malformed),
+    };
+    let (first, last) = (number(first, 1)?, number(last, count)?);
+    if first > last || first > count {
+        return Err(PartError::NoRow {
+            rows: text.to_owned(),
+            count,
+        });
+    }
+    Ok(first - 1..last.min(count))
+}
+
+/// Stretches of a table.
+fn table_of(path: &Path, shown: &str) -> Result<Vec<(f64, f64)>, LogError> {
+    let refuse = |error: PartError| LogError::of_file(Path::new(shown), error);
+    let format = LogFormat::default();
+    let columns = table::read(
+        path,
+        Input::open(path)?,
+        &Wanted {
+            columns: Selection::Each(BOUNDS.into()),
+            needs_time: false,
+            format: &format,
+            samples_max: usize::MAX,
+        },
+    )?;
+    let [from, to] = &columns.data[..] else {
+        return Err(LogError::of_file(path, "holds no stretch"));
+    };
+    let bounds: Vec<(f64, f64)> = from
+        .values
+        .iter()
+        .copied()
+        .zip(to.values.iter().copied())
+        .collect();
+    for &(from_s, to_s) in &bounds {
+        if from_s >= to_s {
+            return Err(refuse(PartError::Backwards { from_s, to_s }));
+        }
+    }
+    if let Some(two) = bounds.windows(2).find(|two| two[1].0 < two[0].1) {
+        return Err(refuse(PartError::Overlap(two[0].0, two[1].0)));
+    }
+    Ok(bounds)
+}

@@ -1,0 +1,408 @@
+//! Columns of numbers in text.
+
+use std::io::BufRead;
+use std::path::Path;
+
+use super::column::{Column, Columns, EmptyLines, RowLines};
+use super::error::{LogError, Place};
+use super::format::LogFormat;
+use super::input::{Input, failure, push};
+use super::layout::columns::{Chosen, Selection, choose};
+use super::layout::words::MissingWords;
+use super::layout::{Fault, HeadLine, Layout, LayoutError, find, finite_in, is_number};
+use super::stamp::Stamp;
+use super::text::{Delimiter, Lines, TextError, is_missing, shown};
+use super::time_column::TimeColumn;
+use super::transcode::{as_utf8, encoding_of};
+
+/// Lines from which the layout is found.
+const HEAD_LINES: usize = 1000;
+/// Most bytes of them.
+const HEAD_BYTES: usize = 1 << 20;
+/// Rows by which columns are told apart.
+const SAMPLE_ROWS: usize = 50;
+
+/// What is read from a file.
+#[derive(Clone, Debug)]
+pub(super) struct Wanted<'a> {
+    pub(super) columns: Selection<'a>,
+    /// Whether the time is looked for.
+    pub(super) needs_time: bool,
+    pub(super) format: &'a LogFormat,
+    /// Samples after which reading ends.
+    pub(super) samples_max: usize,
+}
+
+/// Reads columns, and that of the time where it is asked for or found.
+///
+/// # Errors
+/// Bytes that are no text, a layout in doubt, unknown columns and one asked for twice, lines of another
+/// width, cells that are no finite number.
+pub(super) fn read(path: &Path, input: Input, wanted: &Wanted<'_>) -> Result<Columns, LogError> {
+    let given = wanted.format.encoding;
+    let encoding = given.unwrap_or_else(|| encoding_of(input.first()));
+    let expected = match wanted.needs_time {
+        true => "neither NPY nor text in UTF-8: --encoding names another",
+        false => "neither NPY nor text in UTF-8",
+    };
+    let mut lines = Lines::new(as_utf8(input, encoding), expected);
+    let head = head(path, &mut lines)?;
+    let at = |fault: Fault| match fault.line {
+        Some(line) => LogError::at(path, Place::Line(line), fault.error),
+        None => LogError::of_file(path, fault.error),
+    };
+    let Some(mut layout) = find(&head, wanted.format).map_err(at)? else {
+        return Ok(Columns::default());
+    };
+    layout.encoding = encoding;
+    let said = layout.heading_line.unwrap_or(layout.first_row_line);
+    let chosen = chosen(&layout, &head, wanted)
+        .map_err(|error| LogError::at(path, Place::Line(said), error))?;
+    let mut table = Table::new(layout, chosen, wanted);
+    let mut empty = None;
+    for line in &head {
+        empty = empty.or(line.empty_before);
+        if line.number < table.layout.first_row_line || table.layout.is_comment(line.text.trim()) {
+            continue;
+        }
+        table.line(path, &line.text, line.number, empty.take())?;
+        if table.columns.rows() >= wanted.samples_max {
+            return Ok(table.columns);
+        }
+    }
+    drop(head);
+    while table.columns.rows() < wanted.samples_max {
+        let layout = &table.layout;
+        let line = lines.next_unless(|text| layout.is_comment(text));
+        let Some(line) = line.map_err(|error| fault(path, error))? else {
+            break;
+        };
+        table.line(path, line.text, line.number, line.empty_before)?;
+    }
+    table.end(path)
+}
+
+/// The first lines, comments among them.
+fn head(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Vec<HeadLine>, LogError> {
+    let (mut head, mut bytes) = (Vec::new(), 0);
+    while head.len() < HEAD_LINES && bytes < HEAD_BYTES {
+        let line = lines.next_unless(|_| false);
+        let Some(line) = line.map_err(|error| fault(path, error))? else {
+            break;
+        };
+        bytes += line.text.len();
+        head.push(HeadLine {
+            number: line.number,
+            text: line.text.to_owned(),
+            empty_before: line.empty_before,
+        });
+    }
+    Ok(head)
+}
+
+/// An error of a text at its line.
+pub(super) fn fault(path: &Path, error: TextError) -> LogError {
+    match error {
+        TextError::Io(error) => failure(path, error),
+        TextError::Content { line, message, .. } => LogError::at(path, Place::Line(line), message),
+    }
+}
+
+/// The columns to read, by the names of the layout and its first rows.
+fn chosen(layout: &Layout, head: &[HeadLine], wanted: &Wanted<'_>) -> Result<Chosen, LayoutError> {
+    let rows = head.iter().filter(|line| {
+        line.number >= layout.first_row_line && !layout.is_comment(line.text.trim())
+    });
+    let cells = rows.take(SAMPLE_ROWS).flat_map(|line| {
+        let cells = layout.delimiter().cells_up_to(&line.text, layout.cells);
+        cells.into_iter().map(str::to_owned).collect::<Vec<_>>()
+    });
+    let cells: Vec<String> = cells.collect();
+    let records: Vec<Vec<String>> = match layout.wrapped {
+        Some(columns) => cells
+            .chunks_exact(columns)
+            .map(<[String]>::to_vec)
+            .collect(),
+        None => cells
+            .chunks_exact(layout.cells.max(1))
+            .map(<[String]>::to_vec)
+            .collect(),
+    };
+    choose(
+        layout,
+        wanted.format,
+        &records,
+        &wanted.columns,
+        wanted.needs_time,
+    )
+}
+
+/// What a cell of a row is for.
+#[derive(Clone, Copy)]
+enum Role {
+    Nothing,
+    /// A number of this column of the data.
+    Data(usize),
+    /// A part of the time.
+    Time(usize),
+}
+
+/// A file while it is read.
+struct Table {
+    layout: Layout,
+    roles: Vec<Role>,
+    columns: Columns,
+    is_gap: bool,
+    /// Cells of a first row that are no numbers; none once the second row was held against it.
+    words: Vec<(usize, String)>,
+    /// Values of a record that is spread over lines.
+    record: Vec<String>,
+}
+
+/// What is wrong with a row.
+enum RowError {
+    Layout(LayoutError),
+    /// A cell of a column.
+    Cell(usize, String),
+    Memory(std::io::Error),
+}
+
+impl Table {
+    fn new(layout: Layout, chosen: Chosen, wanted: &Wanted<'_>) -> Self {
+        let mut roles = vec![Role::Nothing; layout.width()];
+        for (position, index) in chosen.data.iter().enumerate() {
+            roles[*index] = Role::Data(position);
+        }
+        for (position, (index, _)) in chosen.time.iter().enumerate() {
+            roles[*index] = Role::Time(position);
+        }
+        let line = layout.line(&chosen);
+        let data = chosen.data.iter().map(|index| Column {
+            name: layout.name(*index),
+            unit: layout.unit(*index),
+            values: Vec::new(),
+        });
+        let names = chosen.time.iter().map(|(index, _)| layout.name(*index));
+        let names: Vec<String> = names.map(Option::unwrap_or_default).collect();
+        let units: Vec<_> = chosen.time.iter().map(|(_, unit)| *unit).collect();
+        let time = (!units.is_empty()).then(|| {
+            let mut time = TimeColumn::new(names.join(" + "), units, chosen.is_time_found);
+            time.rolls_over_after(wanted.format.roll_over);
+            time.note.clone_from(&chosen.time_note);
+            time
+        });
+        let missing = wanted.format.missing;
+        Self {
+            columns: Columns {
+                data: data.collect(),
+                time,
+                layout: Some(line),
+                lines: Some(RowLines::default()),
+                empty_lines: EmptyLines::default(),
+            },
+            layout,
+            roles,
+            is_gap: missing == Some(MissingWords::Gap),
+            words: Vec::new(),
+            record: Vec::new(),
+        }
+    }
+
+    /// Takes a line.
+    fn line(
+        &mut self,
+        path: &Path,
+        text: &str,
+        number: usize,
+        empty_before: Option<usize>,
+    ) -> Result<(), LogError> {
+        if self.columns.rows() > 0 {
+            self.columns.empty_lines.extend(empty_before);
+        }
+        let taken = match self.layout.wrapped {
+            Some(columns) => self.wrapped(text, columns),
+            None => self.row(text),
+        };
+        taken.map_err(|error| self.complaint(path, number, error))?;
+        let row = self.columns.rows().saturating_sub(1);
+        match &mut self.columns.lines {
+            Some(lines) if self.columns.data[0].values.len() > row => lines
+                .take(row, number)
+                .map_err(|error| failure(path, error)),
+            _ => Ok(()),
+        }
+    }
+
+    fn complaint(&self, path: &Path, line: usize, error: RowError) -> LogError {
+        let at = |message: String| LogError::at(path, Place::Line(line), message);
+        match error {
+            RowError::Memory(error) => failure(path, error),
+            RowError::Layout(error) => at(error.to_string()),
+            RowError::Cell(index, message) => {
+                let name = self.layout.name(index);
+                let column = name.map(|name| format!("column {}: ", shown(&name)));
+                at(column.unwrap_or_default() + &message)
+            }
+        }
+    }
+
+    /// Takes a line that is a row.
+    fn row(&mut self, text: &str) -> Result<(), RowError> {
+        if self.columns.rows() < 2 && self.layout.names.is_empty() {
+            let cells = self.layout.delimiter().cells_up_to(text, self.layout.cells);
+            self.hold_against_first(&cells).map_err(RowError::Layout)?;
+        }
+        let is_quoted = text.contains('"');
+        match self.layout.delimiter() {
+            Delimiter::Character(separator) if !is_quoted => {
+                self.take(text.split(separator).map(str::trim))
+            }
+            Delimiter::Blanks if !is_quoted => self.take(text.split_whitespace()),
+            delimiter => self.take(delimiter.cells(text).into_iter()),
+        }
+    }
+
+    /// Takes the cells of a row in one pass: as many as the first row has, and empty ones behind.
+    fn take<'a>(&mut self, cells: impl Iterator<Item = &'a str>) -> Result<(), RowError> {
+        let (mut count, mut beyond) = (0, 0);
+        let mut fault = None;
+        let mut stamp = Stamp {
+            ticks: 0,
+            resolution: i128::MAX,
+        };
+        for (index, cell) in cells.enumerate() {
+            match self.roles.get(index) {
+                Some(role) if fault.is_none() => {
+                    fault = self
+                        .cell(*role, cell, &mut stamp)
+                        .err()
+                        .map(|it| (index, it));
+                }
+                Some(_) => {}
+                None if cell.is_empty() => {
+                    beyond += 1;
+                    continue;
+                }
+                None => {
+                    count += beyond;
+                    beyond = 0;
+                }
+            }
+            count += 1;
+        }
+        let expected = self.layout.width();
+        if count != expected {
+            return Err(RowError::Layout(LayoutError::Width {
+                got: count,
+                reference: if self.layout.names.is_empty() {
+                    "first row"
+                } else {
+                    "first line"
+                },
+                expected,
+                way_out: "",
+            }));
+        }
+        match fault {
+            None => {}
+            Some((_, CellFault::Memory(error))) => return Err(RowError::Memory(error)),
+            Some((index, CellFault::Content(message))) => {
+                return Err(RowError::Cell(index, message));
+            }
+        }
+        match &mut self.columns.time {
+            Some(time) => time.take(stamp).map_err(RowError::Memory),
+            None => Ok(()),
+        }
+    }
+
+    fn cell(&mut self, role: Role, cell: &str, stamp: &mut Stamp) -> Result<(), CellFault> {
+        let decimal = self.layout.decimal;
+        match role {
+            Role::Nothing => Ok(()),
+            Role::Data(position) => {
+                let value = match finite_in(cell, decimal) {
+                    Ok(value) => value,
+                    Err(_) if self.is_gap && is_missing(cell) => f64::NAN,
+                    Err(error) => {
+                        let way_out = if is_missing(cell) {
+                            "; --missing gap takes the sample to be missing"
+                        } else {
+                            ""
+                        };
+                        return Err(CellFault::Content(format!("{error}{way_out}")));
+                    }
+                };
+                let values = &mut self.columns.data[position].values;
+                push(values, value).map_err(CellFault::Memory)
+            }
+            Role::Time(position) => {
+                let Some(time) = &self.columns.time else {
+                    return Ok(());
+                };
+                let part = time.part(position, cell, decimal);
+                let part = part.map_err(|error| CellFault::Content(error.to_string()))?;
+                *stamp = stamp.plus(part);
+                Ok(())
+            }
+        }
+    }
+
+    /// Takes the values of a line as parts of records of so many.
+    fn wrapped(&mut self, text: &str, columns: usize) -> Result<(), RowError> {
+        let cells = self.layout.delimiter().first_cells(text);
+        let cells: Vec<String> = cells.into_iter().map(str::to_owned).collect();
+        for cell in cells {
+            self.record.push(cell);
+            if self.record.len() == columns {
+                let record = std::mem::take(&mut self.record);
+                self.take(record.iter().map(String::as_str))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What was read, once the file has ended.
+    fn end(self, path: &Path) -> Result<Columns, LogError> {
+        if self.record.is_empty() {
+            return Ok(self.columns);
+        }
+        let error = LayoutError::WrappedEnd {
+            got: self.record.len(),
+            expected: self.layout.width(),
+        };
+        Err(LogError::of_file(path, error))
+    }
+
+    /// Refuses a first row that may be a heading some of whose names are numbers: one that has words
+    /// where the second has numbers. It would be taken for a sample.
+    fn hold_against_first(&mut self, cells: &[&str]) -> Result<(), LayoutError> {
+        let decimal = self.layout.decimal;
+        if self.columns.rows() == 0 {
+            let words = cells.iter().enumerate();
+            let words = words.filter(|(_, cell)| !is_number(cell, decimal));
+            self.words = words.map(|(index, cell)| (index, shown(cell))).collect();
+            return Ok(());
+        }
+        let mut words = std::mem::take(&mut self.words).into_iter();
+        let became_number = |(index, _): &(usize, String)| {
+            cells
+                .get(*index)
+                .is_some_and(|cell| is_number(cell, decimal))
+        };
+        match words.find(became_number) {
+            Some((index, word)) => Err(LayoutError::WordInFirstRow {
+                column: index + 1,
+                word,
+                line: self.layout.first_row_line,
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// What is wrong with a cell.
+enum CellFault {
+    Content(String),
+    Memory(std::io::Error),
+}

@@ -1,0 +1,184 @@
+//! A column of time while it is read: stamps from the first one on, counters that begin again put
+//! straight.
+
+use std::io;
+
+use super::input::push;
+use super::layout::words::DecimalSign;
+use super::stamp::{Stamp, StampError, TICKS, as_float, ticks_of};
+use super::time_unit::TimeUnit;
+
+/// Fewest and most bits of a counter that is taken to begin again at 0.
+const COUNTER_BITS: std::ops::RangeInclusive<u32> = 8..=64;
+/// Seconds after which clocks begin again: a day, a week.
+const CLOCKS_S: [i128; 2] = [86_400, 604_800];
+
+/// The stamps of a record.
+#[derive(Clone, Debug)]
+pub(super) struct TimeColumn {
+    /// Its name, of several columns with a plus between them.
+    pub(super) name: String,
+    /// Units of the columns.
+    pub(super) units: Vec<TimeUnit>,
+    /// Whether it was found rather than named.
+    pub(super) is_found: bool,
+    /// What is worth saying of its unit.
+    pub(super) note: Option<String>,
+    /// Stamps from the first one on, s; of a counter samples.
+    pub(super) stamps: Vec<f64>,
+    /// How often the counter began again, and after which span, s.
+    pub(super) roll_overs: Option<(usize, f64)>,
+    clock: Clock,
+}
+
+/// What puts stamps straight.
+#[derive(Clone, Copy, Debug, Default)]
+struct Clock {
+    /// Span after which it begins again, ticks, if it is known.
+    width: Option<i128>,
+    /// First stamp, ticks.
+    first: i128,
+    /// The last one, with what has begun again before it.
+    last: i128,
+    /// Step before the last one.
+    step: i128,
+    begun_again: i128,
+    resolution: i128,
+}
+
+impl TimeColumn {
+    pub(super) fn new(name: String, units: Vec<TimeUnit>, is_found: bool) -> Self {
+        Self {
+            name,
+            units,
+            is_found,
+            note: None,
+            stamps: Vec::new(),
+            roll_overs: None,
+            clock: Clock::default(),
+        }
+    }
+
+    /// Lets the clock begin again after a span, in the unit of the last column.
+    pub(super) fn rolls_over_after(&mut self, span: Option<f64>) {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "the declaration of the key bounds it"
+        )]
+        let ticks = |span: f64| (span * as_float(self.unit_ticks())).round() as i128;
+        self.clock.width = span.map(ticks);
+    }
+
+    /// Ticks of one in the last column.
+    fn unit_ticks(&self) -> i128 {
+        self.units.last().map_or(TICKS, |unit| ticks_of(*unit))
+    }
+
+    /// One in the last digit of a stamp, s; of a counter samples.
+    pub(super) fn last_digit(&self) -> f64 {
+        as_float(self.clock.resolution) / as_float(TICKS)
+    }
+
+    /// Whether it counts samples.
+    pub(super) fn is_counter(&self) -> bool {
+        self.units == [TimeUnit::Samples]
+    }
+
+    /// The part of a stamp that a cell of one of the columns is.
+    pub(super) fn part(
+        &self,
+        column: usize,
+        cell: &str,
+        decimal: DecimalSign,
+    ) -> Result<Stamp, StampError> {
+        Stamp::read(cell, self.units[column], decimal)
+    }
+
+    /// Takes the stamp of the next row; an error says that memory is used up.
+    pub(super) fn take(&mut self, stamp: Stamp) -> io::Result<()> {
+        let unit_ticks = self.unit_ticks();
+        let clock = &mut self.clock;
+        if self.stamps.is_empty() {
+            clock.first = stamp.ticks;
+            clock.last = stamp.ticks;
+            clock.resolution = stamp.resolution;
+            return push(&mut self.stamps, 0.0);
+        }
+        clock.resolution = clock.resolution.min(stamp.resolution);
+        let mut ticks = stamp.ticks.saturating_add(clock.begun_again);
+        if ticks < clock.last
+            && let Some(width) = clock.begins_again(ticks, unit_ticks)
+        {
+            clock.begun_again += width;
+            ticks += width;
+            let (count, _) = self.roll_overs.unwrap_or_default();
+            self.roll_overs = Some((count + 1, as_float(width) / as_float(TICKS)));
+        }
+        clock.step = ticks.saturating_sub(clock.last);
+        clock.last = ticks;
+        let from_first = ticks.saturating_sub(clock.first);
+        push(&mut self.stamps, as_float(from_first) / as_float(TICKS))
+    }
+}
+
+impl Clock {
+    /// The span after which a clock that falls back begins again: that which was given, else a power of two
+    /// of its unit, a day or a week, with which the step is about that before.
+    fn begins_again(&self, ticks: i128, unit_ticks: i128) -> Option<i128> {
+        let of_counters = COUNTER_BITS.map(|bits| unit_ticks.checked_mul(1 << bits));
+        let of_clocks = CLOCKS_S.iter().map(|seconds| Some(seconds * TICKS));
+        let known = self.width.map(Some).into_iter();
+        let found = of_counters
+            .chain(of_clocks)
+            .filter(|_| self.width.is_none());
+        let mut spans = known.chain(found).flatten();
+        spans.find(|span| {
+            let step = ticks + span - self.last;
+            step > 0
+                && (self.width.is_some() || (2 * step <= 3 * self.step && 2 * step >= self.step))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(cells: &[&str], unit: TimeUnit, width: Option<f64>) -> TimeColumn {
+        let mut time = TimeColumn::new("t".to_owned(), vec![unit], false);
+        time.rolls_over_after(width);
+        for cell in cells {
+            let stamp = time.part(0, cell, DecimalSign::Point).unwrap();
+            time.take(stamp).unwrap();
+        }
+        time
+    }
+
+    #[test]
+    fn a_counter_that_begins_again_goes_on() {
+        let time = read(&["65534", "65535", "0", "1"], TimeUnit::Samples, None);
+        assert_eq!(time.stamps, [0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(time.roll_overs, Some((1, 65536.0)));
+        let time = read(
+            &["4294967290", "4294967295", "4"],
+            TimeUnit::Milliseconds,
+            None,
+        );
+        assert_eq!(time.stamps, [0.0, 0.005, 0.010]);
+        let time = read(&["86399.99", "86400.00", "0.01"], TimeUnit::Seconds, None);
+        assert_eq!(time.roll_overs, Some((1, 86_400.0)));
+        let time = read(&["997", "999", "1"], TimeUnit::Milliseconds, Some(1000.0));
+        assert_eq!(time.stamps, [0.0, 0.002, 0.004]);
+        // A stamp that goes back stays one.
+        let time = read(&["0", "1", "0.5"], TimeUnit::Seconds, None);
+        assert_eq!(time.stamps, [0.0, 1.0, 0.5]);
+    }
+
+    #[test]
+    fn the_resolution_is_the_last_digit() {
+        let time = read(&["0.000", "0.002", "0.005"], TimeUnit::Seconds, None);
+        assert!((time.last_digit() / 1e-3 - 1.0).abs() < 1e-12);
+        let time = read(&["0", "4000", "8000"], TimeUnit::Microseconds, None);
+        assert!((time.last_digit() / 1e-6 - 1.0).abs() < 1e-12);
+    }
+}
