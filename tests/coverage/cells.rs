@@ -87,18 +87,10 @@ const fn not_judged(
     }
 }
 
-const NOT_JUDGED: [NotJudged; 13] = [
+const NOT_JUDGED: [NotJudged; 11] = [
     not_judged(
         ["", "mean", "noise_gain_over_bound"],
         "a mean stands at its bound, where the ratio moves to second order alone: stated is 4.5 times true",
-    ),
-    not_judged(
-        ["swing", "lms", "dc_gain"],
-        "its sum of weights is 1 to a billionth; blocks show a fiftieth of what is left",
-    ),
-    not_judged(
-        ["swing", "lms", "noise_gain"],
-        "weights that a swing's power normalises remember their noise for longer than a block: 0.66",
     ),
     not_judged(["steps", "rls", "mean_deg"], WITHIN_A_STRETCH),
     not_judged(["steps", "rls", "mean_error"], WITHIN_A_STRETCH),
