@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::kind::{Content, DIGEST_DIGITS, Kind};
-use super::row::{Group, Presence, Row, Successor, Table};
+use super::row::{Group, Presence, Row, Successor, Table, Told};
 
 /// One key of a file.
 ///
@@ -22,6 +22,8 @@ pub struct Key {
     pub literal: &'static str,
     /// What it means and where its default comes from, line by line.
     pub doc: &'static [&'static str],
+    /// What names it where nobody sets it.
+    pub told: &'static [Told],
     /// The key that has taken its place, if its name is a former one.
     pub successor: Option<Successor>,
 }
@@ -44,28 +46,29 @@ impl Keys {
     #[must_use]
     pub fn of(file: &'static Table) -> Self {
         let mut found = Self::default();
-        found.gather("", file);
+        found.gather("", file, &[]);
         found
     }
 
-    fn gather(&mut self, at: &'static str, table: &'static Table) {
+    fn gather(&mut self, at: &'static str, table: &'static Table, told: &'static [Told]) {
         let group = table.group;
         self.groups
             .extend(group.map(|group| Group { table: at, ..group }));
         for row in table.rows {
+            let told = if row.told.is_empty() { told } else { row.told };
             let path = || -> &'static str { join(at, row.name).leak() };
             match row.content {
-                Content::Table(inner) if row.name.is_empty() => self.gather(at, inner),
+                Content::Table(inner) if row.name.is_empty() => self.gather(at, inner, told),
                 Content::Table(inner) if !inner.rows.is_empty() => {
                     let path = path();
                     if row.presence == Presence::Optional {
                         self.optional_tables.push(path);
                     }
-                    self.gather(path, inner);
+                    self.gather(path, inner, told);
                 }
-                Content::Table(_) => self.keys.push(Key::of_empty_table(row, path())),
-                Content::Tables(inner) => self.gather(format!("{}[]", path()).leak(), inner),
-                Content::Value(kind) => self.keys.push(Key::of(row, path(), kind)),
+                Content::Table(_) => self.keys.push(Key::of_empty_table(row, path()).told(told)),
+                Content::Tables(inner) => self.gather(format!("{}[]", path()).leak(), inner, told),
+                Content::Value(kind) => self.keys.push(Key::of(row, path(), kind).told(told)),
             }
         }
     }
@@ -90,8 +93,13 @@ impl Key {
             presence: row.presence,
             literal: row.literal,
             doc: row.about(),
+            told: row.told,
             successor: row.successor,
         }
+    }
+
+    fn told(self, told: &'static [Told]) -> Self {
+        Self { told, ..self }
     }
 
     /// The key of a table that holds none: to give it is to choose it.

@@ -30,8 +30,19 @@ pub struct Row {
     pub literal: &'static str,
     /// What it means and where its default comes from, line by line.
     pub doc: &'static [&'static str],
+    /// Where it is named if nobody sets it, or each of its rows that says nothing of its own.
+    pub told: &'static [Told],
     /// The key that has taken its place, if its name is a former one.
     pub successor: Option<Successor>,
+}
+
+/// What names a value that nobody set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Told {
+    /// The account of every run, whose figures it shapes.
+    Account,
+    /// The noise budget, which rests on it.
+    Budget,
 }
 
 /// The key that has taken the place of one with a former name and unit.

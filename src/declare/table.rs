@@ -14,7 +14,8 @@
 ///
 /// A row is `name: type = default`, or without default `name: type, example value`, then where they
 /// apply the range `in low..=high` (`even in` for even numbers), another `kind` than that of the type,
-/// and the unit. A type `Option` may be absent, any other without default is required; tables inside
+/// and the unit. What is `told in` an account or a budget is named there where nobody sets it; a table tells it of
+/// its rows. A type `Option` may be absent, any other without default is required; tables inside
 /// stand by their type. A row that is `apart` is read before the struct is made and not part of it.
 macro_rules! table {
     (
@@ -34,6 +35,7 @@ macro_rules! table {
                     $(, even in $even_low:literal..=$even_high:literal)?
                     $(, kind $kind:ident)?
                     $(, $unit:literal)?
+                    $(, told in $($told:ident)+)?
                     $(, apart $why:literal)?;
             )*
         }
@@ -64,6 +66,7 @@ macro_rules! table {
                     presence: $crate::declare::table!(@presence $type $(, $default)?),
                     literal: concat!($(stringify!($default))? $(stringify!($example))?),
                     doc: &[$($doc),*],
+                    told: &[$($($crate::declare::Told::$told),+)?],
                     successor: None,
                 }),*],
                 group: $crate::declare::table!(@group $($noun $($alternative)+)?),
@@ -177,6 +180,7 @@ macro_rules! alternatives {
                     presence: $crate::declare::Presence::Defaulted,
                     literal: "",
                     doc: &[$($doc),*],
+                    told: &[],
                     successor: None,
                 }),+],
                 group: Some($crate::declare::Group {
@@ -258,6 +262,7 @@ macro_rules! renamed {
                         presence: $crate::declare::Presence::Defaulted,
                         literal: stringify!($default),
                         doc: &[$($doc),+],
+                        told: &[],
                         successor: None,
                     },
                     $crate::declare::Row {
@@ -267,6 +272,7 @@ macro_rules! renamed {
                         presence: $crate::declare::Presence::Optional,
                         literal: stringify!($example),
                         doc: &[concat!(" Former name of ", $key, ", in another unit.")],
+                        told: &[],
                         successor: Some($crate::declare::Successor {
                             name: $key,
                             unit: $unit,

@@ -22,10 +22,10 @@ table! {
     /// walk of 0.0060 deg/sqrt(h).
     pub struct GyroConfig {
         coil: CoilConfig;
-        source: SourceConfig;
+        source: SourceConfig, told in Budget;
         modulator: ModulatorConfig;
-        detector: DetectorConfig;
-        adc: AdcConfig;
+        detector: DetectorConfig, told in Budget;
+        adc: AdcConfig, told in Budget;
         controller: ControllerConfig;
         noise: NoiseConfig;
         slow_noise: SlowNoiseConfig;

@@ -10,7 +10,7 @@ table! {
     pub struct ControllerConfig {
         /// Closed-loop -3 dB bandwidth; sets the integrator gain. Source of the default: assumed, half of the
         /// output rate.
-        loop_bandwidth_hz: f64 = 2000.0, in 1e-3..=100000.0, "Hz";
+        loop_bandwidth_hz: f64 = 2000.0, in 1e-3..=100000.0, "Hz", told in Account;
         /// Pipeline latency in modulation periods. Source of the default: assumed, one period to compute.
         loop_latency_periods: u32 = 1, in 0..=3;
         /// Whether the loop gain is held against changes of the detected power; if not, bandwidth and delay

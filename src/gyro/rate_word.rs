@@ -13,7 +13,7 @@ table! {
     pub struct RateOutputConfig {
         /// Half modulation periods averaged into one rate word. Source of the default: 3989.45 Hz, as the
         /// paper equates 1 sample with 0.25 ms.
-        half_periods_per_sample: u32 = 64, even in 2..=1_048_576;
+        half_periods_per_sample: u32 = 64, even in 2..=1_048_576, told in Account;
         /// Rate words averaged into one sample of the output, which filters and metrics see: the output rate is
         /// that of the words over this. Words are rounded before they are averaged. Source of the default: none.
         average_samples: u32 = 1, in 1..=1_048_576;

@@ -8,7 +8,7 @@ table! {
     pub struct SiteConfig {
         /// Geodetic latitude, north positive. Source of the default: Xi'an, the city of the paper's second
         /// affiliation; the first's is Guiyang, 26.65.
-        latitude_deg: f64 = 34.27, in -90.0..=90.0, "deg";
+        latitude_deg: f64 = 34.27, in -90.0..=90.0, "deg", told in Account;
         /// Elevation of the table axis above the horizon. Source of the default: an upright table axis.
         axis_elevation_deg: f64 = 90.0, in -90.0..=90.0, "deg";
         /// Azimuth of the table axis from north towards east. While the axis is upright it only turns the

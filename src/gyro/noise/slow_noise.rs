@@ -21,14 +21,14 @@ table! {
         turn_on_bias_deg_per_h: f64 = 0.0, in 0.0..=1e6, "deg/h";
         /// Flicker coefficient B (bias instability). Source of the default: derived: with K and 0.0060 deg/sqrt(h),
         /// 100 s means scatter by 0.0606 deg/h, against 0.0603 deg/h in the paper (25 C, after LMS).
-        bias_instability_deg_per_h: f64 = 0.045, in 0.0..=1e6, "deg/h";
+        bias_instability_deg_per_h: f64 = 0.045, in 0.0..=1e6, "deg/h", told in Account;
         /// Exponentially correlated (Gauss-Markov) rate, 1 sigma; 0 is none. Source of the default: none.
         gauss_markov_deg_per_h: f64 = 0.0, in 0.0..=1e6, "deg/h";
         /// Correlation time Tc of the Gauss-Markov rate; its Allan deviation is greatest at 1.89 Tc. Of no
         /// effect while the rate above is 0. Source of the default: assumed.
         gauss_markov_correlation_time_s: f64 = 100.0, in 1e-6..=1e7, "s";
         /// Rate random walk coefficient K. Source of the default: assumed.
-        rate_random_walk_deg_per_h_per_sqrt_h: f64 = 0.005, in 0.0..=1e6, "deg/h/sqrt(h)";
+        rate_random_walk_deg_per_h_per_sqrt_h: f64 = 0.005, in 0.0..=1e6, "deg/h/sqrt(h)", told in Account;
         /// Rate ramp R. Source of the default: none.
         rate_ramp_deg_per_h_per_h: f64 = 0.0, in -1e6..=1e6, "deg/h/h";
     }

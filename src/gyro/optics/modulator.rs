@@ -9,7 +9,7 @@ table! {
     pub struct ModulatorConfig {
         /// Bias modulation depth; four-state schemes stand at 180 deg plus and minus its complement. Source of
         /// the default: assumed, 2 pi / 3 overmodulation.
-        depth_deg: f64 = 120.0, in 1.0..=179.0, "deg";
+        depth_deg: f64 = 120.0, in 1.0..=179.0, "deg", told in Budget;
         /// Bits of the ramp converter over 2 pi; 0 is ideal. Source of the default: assumed.
         dac_bits: u32 = 16, in 0..=32;
         /// Bias wave: two or four states of the transit time, or four of half of it. Source of the default:

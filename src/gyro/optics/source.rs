@@ -13,7 +13,7 @@ table! {
         /// Mean detected power over a fringe, half of the fringe maximum. Source of the default: assumed;
         /// low, so that the total reaches 0.0060 deg/sqrt(h). The other reading of that total is a healthy
         /// power beside gyro.noise.technical_phase_urad_per_sqrt_hz: scenarios/base/fog70-technical.toml.
-        power_uw: f64 = 0.87, in 1e-3..=100000.0, "uW";
+        power_uw: f64 = 0.87, in 1e-3..=100000.0, "uW", told in Account Budget;
         /// Full width at half maximum of the Gaussian spectrum. Source of the default: assumed,
         /// superluminescent diode.
         linewidth_nm: f64 = 35.0, in 1e-6..=500.0, "nm";

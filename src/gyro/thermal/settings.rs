@@ -28,10 +28,10 @@ table! {
         /// with a diffusivity of 1e-7 m^2/s has 44 s heated from both sides and 176 s from one.
         inner_time_constant_s: f64 = 100.0, in 10.0..=1e6, "s";
         /// Order of the coil's layers. Source of the default: the practice for gyros of this class.
-        winding: Winding = "quadrupole";
+        winding: Winding = "quadrupole", told in Account;
         /// Number of layers; even for a dipole, a multiple of 4 for a quadrupole. Source of the default:
         /// derived, 3638 turns as 40 layers of 91.
-        layers: u32 = 40, in 2..=1024;
+        layers: u32 = 40, in 2..=1024, told in Account;
         /// Distance of the middle of the fibre from the middle of the winding; the leads have the temperature
         /// of the case. Source of the default: none, perfectly trimmed.
         midpoint_offset_m: f64 = 0.0, in -1000.0..=1000.0, "m";

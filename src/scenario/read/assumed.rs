@@ -1,9 +1,10 @@
 //! Values that nobody wrote: what a scenario left to the defaults, however far down.
 
+use crate::declare::{Key, Told};
 use crate::scenario::check::inert::is_idle;
 use crate::scenario::document::emit::to_toml_around;
 use crate::scenario::document::tree::{Node, Table, Value};
-use crate::scenario::keys::schema::keys;
+use crate::scenario::keys::schema::declared_key;
 use crate::scenario::read::resolved::Resolved;
 
 /// A value that a scenario left to its default.
@@ -18,18 +19,6 @@ pub struct AssumedValue {
     /// What the key means and where its default comes from.
     pub meaning: String,
 }
-
-/// The keys that shape what every account says of a gyro: named there where nobody set them.
-const NAMED: [&str; 8] = [
-    "gyro.source.power_uw",
-    "gyro.controller.loop_bandwidth_hz",
-    "gyro.output.half_periods_per_sample",
-    "gyro.slow_noise.bias_instability_deg_per_h",
-    "gyro.slow_noise.rate_random_walk_deg_per_h_per_sqrt_h",
-    "gyro.thermal.winding",
-    "gyro.thermal.layers",
-    "turntable.site.latitude_deg",
-];
 
 /// What an account says of the values that nobody set.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -63,28 +52,26 @@ impl Resolved {
     /// The values that nobody set, those that act and shape every account by name.
     #[must_use]
     pub fn assumed_in_short(&self) -> AssumedInShort {
-        let mut assumed = self.assumed();
-        let count = assumed.len();
-        assumed.retain(|value| NAMED.contains(&value.key.as_str()) && !is_idle(self, &value.key));
         AssumedInShort {
-            named: assumed,
-            count,
+            named: self.assumed_and_told(Told::Account),
+            count: self.assumed().len(),
         }
     }
 
     /// The values that nobody set and on which the noise budget of the gyro rests.
     #[must_use]
     pub fn assumed_of_budget(&self) -> Vec<AssumedValue> {
-        const TABLES: [&str; 4] = [
-            "gyro.source.",
-            "gyro.detector.",
-            "gyro.adc.",
-            "gyro.modulator.depth_deg",
-        ];
+        self.assumed_and_told(Told::Budget)
+    }
+
+    /// The values that nobody set, that act, and that are told there.
+    fn assumed_and_told(&self, place: Told) -> Vec<AssumedValue> {
+        let is_told = |value: &AssumedValue| {
+            let key = declared(&value.key);
+            key.is_some_and(|key| key.told.contains(&place)) && !is_idle(self, &value.key)
+        };
         let mut assumed = self.assumed();
-        assumed.retain(|value| {
-            TABLES.iter().any(|table| value.key.starts_with(table)) && !is_idle(self, &value.key)
-        });
+        assumed.retain(is_told);
         assumed
     }
 
@@ -166,8 +153,8 @@ fn enter<'a>(table: &'a Table, prefix: &str, visit: &mut dyn FnMut(&str, &'a Nod
     }
 }
 
-fn assumed(key: &str, node: &Node) -> AssumedValue {
-    // The declarations know an element of an array without its index.
+/// The declaration of a value; one of an element of an array is known without its index.
+fn declared(key: &str) -> Option<&'static Key> {
     let mut path = String::new();
     let mut is_index = false;
     for letter in key.chars() {
@@ -177,7 +164,11 @@ fn assumed(key: &str, node: &Node) -> AssumedValue {
         }
         is_index |= letter == '[';
     }
-    let declared = keys().find(|declared| declared.path == path);
+    declared_key(&path)
+}
+
+fn assumed(key: &str, node: &Node) -> AssumedValue {
+    let declared = declared(key);
     let lines = declared.map_or(&[][..], |declared| declared.doc).iter();
     let lines: Vec<&str> = lines.map(|line| line.trim()).collect();
     AssumedValue {
@@ -185,17 +176,5 @@ fn assumed(key: &str, node: &Node) -> AssumedValue {
         value: node.value.to_toml(),
         unit: declared.map_or("", |declared| declared.unit),
         meaning: lines.join(" "),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_named_is_a_key() {
-        for named in NAMED {
-            assert!(keys().any(|key| key.path == named), "{named}");
-        }
     }
 }
