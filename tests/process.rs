@@ -214,97 +214,99 @@ fn nothing_is_started_without_consent_on_the_command_line() {
     );
 }
 
+/// What a program does, the kind of failure that it is, and what is said of it.
+const MISBEHAVIOUR: [(&str, &str, &str); 16] = [
+    (
+        "sys.exit(3)",
+        "program",
+        "ended with exit code 3 before answer to the greeting",
+    ),
+    (
+        "hello(); block(); os.kill(os.getpid(), 11)",
+        "program",
+        "ended by signal 11",
+    ),
+    (
+        "hello(); block(); time.sleep(600)",
+        "time-out",
+        "no answer to a block within 0.5 s",
+    ),
+    (
+        "time.sleep(600)",
+        "time-out",
+        "no answer to the greeting within 0.5 s",
+    ),
+    (
+        "while True: say(b'x' * 65536)",
+        "program",
+        "it has no end within 65536 bytes",
+    ),
+    (
+        "hello()\nwhile True: say(b'x' * 65536)",
+        "program",
+        "print to stderr",
+    ),
+    ("say(b'hello\\n')", "program", "it began with `hello`"),
+    (
+        "hello(); n, b = block(); say(struct.pack('<I', n + 1) + b)",
+        "program",
+        "words to",
+    ),
+    (
+        "hello(); n, b = block(); say(struct.pack('<I', 2**32 - 1))",
+        "program",
+        "words to",
+    ),
+    (
+        "hello(); print('tick', flush=True); rest()",
+        "program",
+        "print to stderr",
+    ),
+    (
+        "hello(); n, b = block(); say(struct.pack('<I', n) + b[:80] + struct.pack('<d', float('nan')) + b[88:])",
+        "program",
+        "failed at sample 10: its word is NaN",
+    ),
+    (
+        "hello(); n, b = block(); say(struct.pack('<I', n) + b[:-8]); sys.exit(0)",
+        "program",
+        "ended without an error before",
+    ),
+    // More bytes behind the last word, and an end that does not come.
+    (
+        "hello()\nwhile True:\n    n, b = block()\n    if n == 0: say(b'xy'); break\n    say(struct.pack('<I', n) + b)",
+        "program",
+        "2 more bytes came behind the last word",
+    ),
+    (
+        "hello()\nwhile True:\n    n, b = block()\n    if n == 0: time.sleep(600)\n    say(struct.pack('<I', n) + b)",
+        "time-out",
+        "no end behind the last word",
+    ),
+    (
+        "hello()\nwhile True:\n    n, b = block()\n    if n == 0: sys.exit(9)\n    say(struct.pack('<I', n) + b)",
+        "program",
+        "answered every word and then ended with exit code 9",
+    ),
+    // It asks for the next block before it answers this one.
+    (
+        "hello(); block(); block()",
+        "time-out",
+        "no answer to a block",
+    ),
+];
+
 #[test]
 fn a_program_that_misbehaves_fails_its_channel_and_no_other() {
     if !has("python3") {
         return;
     }
-    let cases = [
-        (
-            "sys.exit(3)",
-            "program",
-            "ended with exit code 3 before answer to the greeting",
-        ),
-        (
-            "hello(); block(); os.kill(os.getpid(), 11)",
-            "program",
-            "ended by signal 11",
-        ),
-        (
-            "hello(); block(); time.sleep(600)",
-            "time-out",
-            "no answer to a block within 0.5 s",
-        ),
-        (
-            "time.sleep(600)",
-            "time-out",
-            "no answer to the greeting within 0.5 s",
-        ),
-        (
-            "while True: say(b'x' * 65536)",
-            "program",
-            "it has no end within 65536 bytes",
-        ),
-        (
-            "hello()\nwhile True: say(b'x' * 65536)",
-            "program",
-            "print to stderr",
-        ),
-        ("say(b'hello\\n')", "program", "it began with `hello`"),
-        (
-            "hello(); n, b = block(); say(struct.pack('<I', n + 1) + b)",
-            "program",
-            "words to",
-        ),
-        (
-            "hello(); n, b = block(); say(struct.pack('<I', 2**32 - 1))",
-            "program",
-            "words to",
-        ),
-        (
-            "hello(); print('tick', flush=True); rest()",
-            "program",
-            "print to stderr",
-        ),
-        (
-            "hello(); n, b = block(); say(struct.pack('<I', n) + b[:80] + struct.pack('<d', float('nan')) + b[88:])",
-            "program",
-            "failed at sample 10: its word is NaN",
-        ),
-        (
-            "hello(); n, b = block(); say(struct.pack('<I', n) + b[:-8]); sys.exit(0)",
-            "program",
-            "ended without an error before",
-        ),
-        // More bytes behind the last word, and an end that does not come.
-        (
-            "hello()\nwhile True:\n    n, b = block()\n    if n == 0: say(b'xy'); break\n    say(struct.pack('<I', n) + b)",
-            "program",
-            "2 more bytes came behind the last word",
-        ),
-        (
-            "hello()\nwhile True:\n    n, b = block()\n    if n == 0: time.sleep(600)\n    say(struct.pack('<I', n) + b)",
-            "time-out",
-            "no end behind the last word",
-        ),
-        (
-            "hello()\nwhile True:\n    n, b = block()\n    if n == 0: sys.exit(9)\n    say(struct.pack('<I', n) + b)",
-            "program",
-            "answered every word and then ended with exit code 9",
-        ),
-        // It asks for the next block before it answers this one.
-        (
-            "hello(); block(); block()",
-            "time-out",
-            "no answer to a block",
-        ),
-    ];
     let folder = tempfile::tempdir().expect("a scratch folder");
     let head = HEAD
         .replace("2.5", "0.3")
         .replace("warm_up_s = 0.5", "warm_up_s = 0.1");
     let beside = "[[filter]]\nname = \"own\"\n[filter.moving_average]\n";
-    for (then, kind, said) in cases {
+    for (then, kind, said) in MISBEHAVIOUR {
         misbehaving(folder.path(), then);
         let start_s = if then.starts_with("time.sleep") {
             0.5

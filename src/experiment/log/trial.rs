@@ -163,21 +163,11 @@ pub fn try_log(
             message,
         });
     }
-    let words = record.filter_input_deg_per_h();
-    let finished = filters.map(|filters| {
-        let input = Input {
-            words_deg_per_h: words,
-            channel: if is_compensated { COMPENSATED } else { RAW },
-            length,
-            sample_period_s,
-        };
-        run(filters, &input, progress)
-    });
-    let finished = finished.transpose().map_err(|unfinished| LogTrialError {
+    let input = input_of(&record, length, sample_period_s);
+    let finished = run(filters, &input, progress).map_err(|unfinished| LogTrialError {
         file: log.file.clone(),
         message: unfinished.to_string(),
     })?;
-    let finished = finished.unwrap_or_default();
     let measured = &record.raw_deg_per_h[length.warm_up..];
     let metric_settings = metric_settings(settings, measured, sample_period_s);
     let cut = Cut {
@@ -195,22 +185,20 @@ pub fn try_log(
             examined(RAW, cut.measure_raw(), words, &cut, is_tau_given)
         },
         || {
-            let filters = finished.par_iter();
-            filters
-                .map(|filter| (filter.name.clone(), cut.measure_filter(filter)))
-                .collect()
+            let measured =
+                |filter: &FinishedFilter| (filter.name.clone(), cut.measure_filter(filter));
+            finished.par_iter().map(measured).collect()
         },
     );
     notes.splice(0..0, log.notes());
-    if let Some(filters) = filters {
-        notes.extend(filters.warnings(&record.raw_deg_per_h));
-        for filter in &finished {
-            notes.extend(pipeline_metrics::notes(filter, sample_period_s));
-            notes.extend(outside::note(filter));
-        }
-    }
+    notes.extend(notes_on(
+        filters,
+        &finished,
+        &record.raw_deg_per_h,
+        sample_period_s,
+    ));
     let compensated = is_compensated.then(|| {
-        let measured = cut.measure_compensated();
+        let (measured, words) = (cut.measure_compensated(), input.words_deg_per_h);
         examined(COMPENSATED, measured, words, &cut, is_tau_given)
     });
     let own = raw.into_iter().chain(compensated.into_iter().flatten());
@@ -271,12 +259,41 @@ fn examined(
         .collect()
 }
 
+/// What the filters are given of a log.
+fn input_of(record: &GyroRecord, length: RecordLength, sample_period_s: f64) -> Input<'_> {
+    let is_compensated = record.compensated_deg_per_h.is_some();
+    Input {
+        words_deg_per_h: record.filter_input_deg_per_h(),
+        channel: if is_compensated { COMPENSATED } else { RAW },
+        length,
+        sample_period_s,
+    }
+}
+
+/// What the reader must know of the filters.
+fn notes_on(
+    filters: Option<&LogFilters>,
+    finished: &[FinishedFilter],
+    raw_deg_per_h: &[f64],
+    sample_period_s: f64,
+) -> Vec<String> {
+    let mut notes = filters.map_or_else(Vec::new, |filters| filters.warnings(raw_deg_per_h));
+    for filter in finished {
+        notes.extend(pipeline_metrics::notes(filter, sample_period_s));
+        notes.extend(outside::note(filter));
+    }
+    notes
+}
+
 /// Every filter over the whole log.
 fn run(
-    filters: &LogFilters,
+    filters: Option<&LogFilters>,
     input: &Input,
     progress: &dyn Progress,
 ) -> Result<Vec<FinishedFilter>, Unfinished> {
+    let Some(filters) = filters else {
+        return Ok(Vec::new());
+    };
     let configs = filters.configs().par_iter().enumerate();
     configs
         .map(|(index, config)| {

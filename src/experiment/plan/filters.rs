@@ -19,7 +19,7 @@ impl Checker<'_> {
         let words = self.expected_words(facts);
         let filters = &self.resolved.scenario.filters;
         for (index, filter) in filters.iter().enumerate() {
-            self.from_outside(index, filter);
+            self.words_from_outside(index, filter);
             let complaints = filter.check_on(index, &words);
             if complaints.is_empty() {
                 // No place: warnings stand in the results, which name no folder.
@@ -32,7 +32,7 @@ impl Checker<'_> {
     }
 
     /// Refuses words from outside that are not those of this record, or that no one record has.
-    fn from_outside(&mut self, index: usize, filter: &FilterConfig) {
+    fn words_from_outside(&mut self, index: usize, filter: &FilterConfig) {
         let Some(Outside::Replay(config)) = Outside::of(&filter.kind) else {
             return;
         };
