@@ -98,7 +98,7 @@ fn processes(mark: &str) -> Vec<String> {
 fn nothing_is_left(mark: &str) {
     let began = Instant::now();
     while !processes(mark).is_empty() {
-        assert!(began.elapsed() < Duration::from_secs(10), "{mark} lives on");
+        assert!(began.elapsed() < Duration::from_secs(8), "{mark} lives on");
         std::thread::sleep(Duration::from_millis(20));
     }
 }
