@@ -144,6 +144,31 @@ fn a_mean_in_python_and_in_c_is_that_of_the_bench_to_the_bit_and_in_every_figure
 }
 
 #[test]
+fn a_mean_in_octave_is_that_of_the_bench_but_for_the_order_of_its_sums() {
+    if Command::new("octave-cli")
+        .arg("--version")
+        .output()
+        .is_err()
+    {
+        eprintln!("skipped: there is no octave-cli");
+        return;
+    }
+    let folder = scratch();
+    let own = "[[filter]]\nname = \"own\"\n[filter.moving_average]\ntaps = 8\n";
+    let command = "[\"octave-cli\", \"--quiet\", \"--no-init-file\", \"./mean.m\"]";
+    let octave = program("octave", command, "parameters = { taps = 8 }");
+    let samples = "[output]\nsamples = \"npy\"\n";
+    allowed(folder.path(), &format!("{HEAD}{own}{octave}{samples}"), 0);
+    let words = |name: &str| npy(&folder.path().join(format!("out/s/samples/{name}.npy")));
+    for (octave, own) in words("octave").into_iter().zip(words("own")) {
+        assert!(
+            (octave - own).abs() <= 1e-12 * own.abs().max(1.0),
+            "{octave} {own}"
+        );
+    }
+}
+
+#[test]
 fn recursive_least_squares_in_python_have_the_words_and_the_gain_of_the_bench() {
     if !has("python3") {
         return;
@@ -288,7 +313,7 @@ const MISBEHAVIOUR: [(&str, &str, &str); 16] = [
         "program",
         "answered every word and then ended with exit code 9",
     ),
-    // It asks for the next block before it answers this one.
+    // It reads ahead.
     (
         "hello(); block(); block()",
         "time-out",
@@ -585,4 +610,17 @@ fn nothing_lives_on_when_fogbench_is_interrupted_or_killed() {
             "{signal}"
         );
     }
+}
+
+#[test]
+fn a_program_does_not_start_afresh_within_a_record() {
+    let folder = scratch();
+    let mean = program("p", "[\"python3\", \"./mean.py\"]", "");
+    write(folder.path(), "s.toml", &format!("{HEAD}{mean}"));
+    let output = fogbench(
+        folder.path(),
+        &["check", "s.toml", "--set", "trial.filter_state=reset"],
+    );
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("filter[0].process: trial.filter_state"));
 }

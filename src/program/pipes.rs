@@ -50,8 +50,8 @@ pub(super) enum Broken {
 
 /// Both ends of the threads.
 pub(super) struct Pipes {
-    /// What is to be written.
-    pub(super) write: Sender<Vec<u8>>,
+    /// What is to be written; none behind the last word, which closes the pipe.
+    pub(super) write: Option<Sender<Vec<u8>>>,
     /// What is expected.
     pub(super) expect: Sender<Expected>,
     /// What has come of it.
@@ -89,7 +89,7 @@ impl Pipes {
         )?;
         start("stderr", Box::new(move || listen(stderr, &say)))?;
         Ok(Self {
-            write,
+            write: Some(write),
             expect,
             answers,
             said,
