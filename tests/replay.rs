@@ -176,6 +176,7 @@ fn what_no_words_can_be_read_from_is_refused_before_the_run() {
         (words, "beef", "immediate", ""),
         (words, &digest, "later", ""),
         (words, &digest, "immediate", "repeats=2"),
+        (words, &digest, "immediate", "trial.filter_state=reset"),
     ] {
         let filter = format!(
             "samples = \"{samples}\"\ninput_digest = \"{digest}\"\noutput_register = \"{register}\"\n"

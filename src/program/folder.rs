@@ -73,7 +73,8 @@ impl Drop for Folder {
 
 /// Whether the supervisor of a folder is asked to end everything.
 pub(super) fn is_to_stop(folder: &Path) -> bool {
-    folder.join(STOP).exists()
+    // One that is gone was given up by fogbench.
+    folder.join(STOP).exists() || !folder.exists()
 }
 
 /// Says how the program of a folder ended, in one step.

@@ -82,3 +82,18 @@ impl Programs {
 
 /// First argument of the program where it is to be a supervisor.
 pub(crate) const SUPERVISE: &str = "supervise-program";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_names_what_a_program_is_given_of_the_environment() {
+        let page = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/own-filter.md");
+        let page = std::fs::read_to_string(page).expect("the page is readable");
+        let given = GIVEN_ENVIRONMENT.iter().map(|(name, _)| name);
+        for name in ENVIRONMENT.iter().chain(given) {
+            assert!(page.contains(&format!("`{name}`")), "{name} is not named");
+        }
+    }
+}

@@ -2,7 +2,7 @@
 //!
 //! The threads end with their pipes, which the end of the program closes; nobody waits for them.
 
-use std::io::{self, BufRead as _, BufReader, Read, Write};
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::process::{ChildStderr, ChildStdin, ChildStdout};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
@@ -50,8 +50,8 @@ pub(super) enum Broken {
 
 /// Both ends of the threads.
 pub(super) struct Pipes {
-    /// What is to be written.
-    pub(super) write: Sender<Vec<u8>>,
+    /// What is to be written; none behind the last word, which closes the pipe.
+    pub(super) write: Option<Sender<Vec<u8>>>,
     /// What is expected.
     pub(super) expect: Sender<Expected>,
     /// What has come of it.
@@ -89,7 +89,7 @@ impl Pipes {
         )?;
         start("stderr", Box::new(move || listen(stderr, &say)))?;
         Ok(Self {
-            write,
+            write: Some(write),
             expect,
             answers,
             said,
@@ -136,7 +136,7 @@ fn listen(stderr: ChildStderr, say: &Sender<String>) {
 }
 
 /// Reads what is expected.
-fn answer(stdout: &mut impl Read, expected: Expected) -> Result<Answer, Broken> {
+fn answer(stdout: &mut impl BufRead, expected: Expected) -> Result<Answer, Broken> {
     match expected {
         Expected::Line => line(stdout).map(Answer::Line),
         Expected::Words(count) => words(stdout, count).map(Answer::Words),
@@ -144,15 +144,13 @@ fn answer(stdout: &mut impl Read, expected: Expected) -> Result<Answer, Broken> 
     }
 }
 
-/// Reads a line byte by byte: behind it begin the words.
-fn line(stdout: &mut impl Read) -> Result<String, Broken> {
+/// Reads a line; behind it begin the words.
+fn line(stdout: &mut impl BufRead) -> Result<String, Broken> {
     let mut line = Vec::new();
-    for byte in stdout.take(LINE_BYTES_MAX).bytes() {
-        match byte {
-            Ok(b'\n') => return Ok(String::from_utf8_lossy(&line).into_owned()),
-            Ok(byte) => line.push(byte),
-            Err(_) => return Err(Broken::Closed),
-        }
+    let read = stdout.take(LINE_BYTES_MAX).read_until(b'\n', &mut line);
+    read.map_err(|_| Broken::Closed)?;
+    if line.pop_if(|last| *last == b'\n').is_some() {
+        return Ok(String::from_utf8_lossy(&line).into_owned());
     }
     if line.len() as u64 == LINE_BYTES_MAX {
         return Err(Broken::Wrong(ProgramError::Greeting {

@@ -268,7 +268,11 @@ impl<'a> Session<'a> {
         wait: Wait,
     ) -> Result<Answer, Interrupted> {
         // A thread that is gone has met the end of its pipe, which the answer tells.
-        let _ = self.pipes.write.send(bytes);
+        let is_last = matches!(expected, Expected::End);
+        let _ = self.pipes.write.as_ref().map(|write| write.send(bytes));
+        if is_last {
+            self.pipes.write = None;
+        }
         let _ = self.pipes.expect.send(expected);
         let deadline = Instant::now() + Duration::from_secs_f64(wait.timeout_s);
         loop {

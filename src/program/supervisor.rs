@@ -150,7 +150,7 @@ fn sweep(program: Pid) {
     for _ in 0..SWEEPS_MAX {
         kill_all(program);
         // What has ended is taken note of, or it would be found again.
-        while let Ok(Some(_)) = waitpid(None, WaitOptions::NOHANG) {}
+        while let Ok(Some(_)) = rustix::process::wait(WaitOptions::NOHANG) {}
         if descendants().is_empty() {
             return;
         }

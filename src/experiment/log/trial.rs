@@ -166,21 +166,11 @@ pub fn try_log(
         raw_deg_per_h: std::mem::take(&mut log.rate_deg_per_h),
         compensated_deg_per_h: compensated,
     };
-    let words = record.filter_input_deg_per_h();
-    let finished = filters.map(|filters| {
-        let input = Input {
-            words_deg_per_h: words,
-            channel: if is_compensated { COMPENSATED } else { RAW },
-            length,
-            sample_period_s,
-        };
-        run(filters, &input, progress)
-    });
-    let finished = finished.transpose().map_err(|unfinished| LogTrialError {
+    let input = input_of(&record, length, sample_period_s);
+    let finished = run(filters, &input, progress).map_err(|unfinished| LogTrialError {
         file: log.file.clone(),
         message: unfinished.to_string(),
     })?;
-    let finished = finished.unwrap_or_default();
     let measured = &record.raw_deg_per_h[length.warm_up..];
     let metric_settings = metric_settings(settings, measured, sample_period_s);
     let cut = Cut {
@@ -192,13 +182,12 @@ pub fn try_log(
         drift: None,
     };
     let channels = measured_channels(&cut, &finished, settings.fit_tau_min_s.is_some());
-    if let Some(filters) = filters {
-        notes.extend(filters.warnings(&record.raw_deg_per_h));
-        for filter in &finished {
-            notes.extend(pipeline_metrics::notes(filter, sample_period_s));
-            notes.extend(outside::note(filter));
-        }
-    }
+    notes.extend(notes_on(
+        filters,
+        &finished,
+        &record.raw_deg_per_h,
+        sample_period_s,
+    ));
     Ok(LogTrial {
         channels,
         motion: report_motion(settings.motion),
@@ -304,12 +293,41 @@ fn examined(
         .collect()
 }
 
+/// What the filters are given of a log.
+fn input_of(record: &GyroRecord, length: RecordLength, sample_period_s: f64) -> Input<'_> {
+    let is_compensated = record.compensated_deg_per_h.is_some();
+    Input {
+        words_deg_per_h: record.filter_input_deg_per_h(),
+        channel: if is_compensated { COMPENSATED } else { RAW },
+        length,
+        sample_period_s,
+    }
+}
+
+/// What the reader must know of the filters.
+fn notes_on(
+    filters: Option<&LogFilters>,
+    finished: &[FinishedFilter],
+    raw_deg_per_h: &[f64],
+    sample_period_s: f64,
+) -> Vec<String> {
+    let mut notes = filters.map_or_else(Vec::new, |filters| filters.warnings(raw_deg_per_h));
+    for filter in finished {
+        notes.extend(pipeline_metrics::notes(filter, sample_period_s));
+        notes.extend(outside::note(filter));
+    }
+    notes
+}
+
 /// Every filter over the whole log.
 fn run(
-    filters: &LogFilters,
+    filters: Option<&LogFilters>,
     input: &Input,
     progress: &dyn Progress,
 ) -> Result<Vec<FinishedFilter>, Unfinished> {
+    let Some(filters) = filters else {
+        return Ok(Vec::new());
+    };
     let configs = filters.configs().par_iter().enumerate();
     configs
         .map(|(index, config)| {

@@ -19,7 +19,7 @@ impl Checker<'_> {
         let words = self.expected_words(facts);
         let filters = &self.resolved.scenario.filters;
         for (index, filter) in filters.iter().enumerate() {
-            self.from_outside(index, filter);
+            self.words_from_outside(index, filter);
             let complaints = filter.check_on(index, &words);
             if complaints.is_empty() {
                 // No place: warnings stand in the results, which name no folder.
@@ -31,40 +31,43 @@ impl Checker<'_> {
         }
     }
 
-    /// Refuses words from outside that are not those of this record, or that no one record has.
-    fn from_outside(&mut self, index: usize, filter: &FilterConfig) {
-        let Some(Outside::Replay(config)) = Outside::of(&filter.kind) else {
+    /// Refuses words from outside that are not those of this record, or that no one record has, and
+    /// programs that are to start afresh within theirs.
+    fn words_from_outside(&mut self, index: usize, filter: &FilterConfig) {
+        let Some(outside) = Outside::of(&filter.kind) else {
             return;
         };
         let scenario = &self.resolved.scenario;
-        let table = format!("filter[{index}].replay");
-        let one_record = [
-            (
-                scenario.gyro.assembly.is_some(),
-                "gyro.assembly has three gyros",
-            ),
-            (
-                scenario.repeats > 1,
-                "repeats above 1 gives several records",
-            ),
-            (
-                scenario.trial.filter_state == FilterState::Reset,
-                "trial.filter_state = \"reset\" starts filters afresh",
-            ),
-        ];
-        let several = one_record.iter().filter(|(is_so, _)| *is_so);
-        let mut complaints: Vec<(String, String)> = several
-            .map(|(_, what)| {
-                let message = format!("{table}: the words are those of one record: {what}");
-                (table.clone(), message)
-            })
+        let table = format!("filter[{index}].{}", filter.kind.name());
+        let is_reset = scenario.trial.filter_state == FilterState::Reset;
+        let reset = is_reset.then_some(
+            "trial.filter_state = \"reset\" starts filters afresh within the record: leave it out",
+        );
+        let several = match outside {
+            Outside::Replay(_) => [
+                scenario
+                    .gyro
+                    .assembly
+                    .is_some()
+                    .then_some("its words are those of one record, gyro.assembly has three"),
+                (scenario.repeats > 1)
+                    .then_some("its words are those of one record, repeats above 1 gives several"),
+            ],
+            Outside::Process(_) => [None, None],
+        };
+        let reasons = several.into_iter().chain([reset]).flatten();
+        let mut complaints: Vec<(String, String)> = reasons
+            .map(|reason| (table.clone(), format!("{table}: {reason}")))
             .collect();
-        let key = format!("{table}.samples");
-        let samples = RecordLength::new(scenario, gyro::sample_period_s(&scenario.gyro)).total();
-        let file = self.resolved.named_file(&key);
-        let read = file.map(|file| read_replay(&file.path, &config.samples, samples));
-        let lack = read.and_then(Result::err);
-        complaints.extend(lack.map(|lack| (key.clone(), format!("{key} = {lack}"))));
+        if let Outside::Replay(config) = outside {
+            let key = format!("{table}.samples");
+            let samples =
+                RecordLength::new(scenario, gyro::sample_period_s(&scenario.gyro)).total();
+            let file = self.resolved.named_file(&key);
+            let read = file.map(|file| read_replay(&file.path, &config.samples, samples));
+            let lack = read.and_then(Result::err);
+            complaints.extend(lack.map(|lack| (key.clone(), format!("{key} = {lack}"))));
+        }
         for (key, message) in complaints {
             self.complain(&key, message);
         }
