@@ -69,6 +69,7 @@ mod known_answers_thermal;
 mod known_answers_turntable;
 mod least_noise;
 mod library;
+mod log_layouts;
 mod metrics_file;
 mod metrics_intervals;
 mod metrics_records;

@@ -3,6 +3,7 @@
 use std::io;
 
 use super::error::Place;
+use super::format::LogFormat;
 use super::input::push;
 use super::time_column::TimeColumn;
 use super::unit_text::Spelled;
@@ -27,6 +28,8 @@ pub(crate) struct Columns {
     pub(super) time: Option<TimeColumn>,
     /// What the file was taken for, in a line.
     pub(crate) layout: Option<String>,
+    /// The same as it could have been given; none of an array.
+    pub(super) found: Option<LogFormat>,
     /// Empty lines between the rows.
     pub(crate) empty_lines: EmptyLines,
     /// Where each row stands; rows of an array stand at their index.

@@ -94,6 +94,23 @@ impl Conversion {
         })
     }
 
+    /// The unit as it is given.
+    pub(super) fn given(&self) -> LogUnit {
+        match self.running {
+            Some(angle) => LogUnit::Angle(angle),
+            None => LogUnit::Rate(self.unit),
+        }
+    }
+
+    /// What a number is.
+    pub(super) fn kind(&self) -> WordKind {
+        match (self.running, self.unit.per) {
+            (Some(_), _) => WordKind::Angle,
+            (None, Per::Sample) => WordKind::Increment,
+            (None, _) => WordKind::Rate,
+        }
+    }
+
     /// The unit as it is shown.
     pub(super) fn shown(&self) -> String {
         match self.running {

@@ -6,10 +6,11 @@ use super::layout::words::{
 use super::time_unit::TimeUnit;
 use super::unit::LogUnit;
 use crate::declare::table;
+use serde::Serialize;
 
 table! {
     /// How a log is read. What is not given is found from the first lines of the file.
-    #[derive(Default)]
+    #[derive(Default, Serialize)]
     pub struct LogFormat {
         /// Samples per second [default: what the column of the time says].
         rate_hz: Option<f64>, example 100.0, in 1e-6..=1e9, "Hz";

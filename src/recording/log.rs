@@ -47,6 +47,8 @@ pub struct Log {
     pub stretches: Vec<Stretch>,
     /// What the file was taken for, in a line; none of an array.
     pub layout: Option<String>,
+    /// The same as a format: what was given, and what was found.
+    pub format: LogFormat,
     /// What else is worth saying of how it was read.
     remarks: Vec<String>,
 }
@@ -391,6 +393,11 @@ fn log(
         empty_lines: columns.empty_lines,
         stretches,
         layout: columns.layout.clone(),
+        format: LogFormat {
+            unit: Some(conversion.given()),
+            kind: Some(conversion.kind()),
+            ..columns.found.as_ref().unwrap_or(format).clone()
+        },
         remarks,
     })
 }
@@ -516,8 +523,7 @@ fn lag_one(values: &[f64]) -> Option<f64> {
     )]
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    let products = values
-        .windows(2)
-        .map(|pair| (pair[0] - mean) * (pair[1] - mean));
-    (square > 0.0).then(|| products.sum::<f64>() / square)
+    // By the steps, as the ends of an angle that runs on are far from its mean.
+    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
+    (square > 0.0).then(|| 1.0 - 0.5 * steps.sum::<f64>() / square)
 }

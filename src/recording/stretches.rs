@@ -20,7 +20,7 @@ enum PartError {
     Rows(String),
     #[error("--rows {rows} leaves no row: the log has {count}")]
     NoRow { rows: String, count: usize },
-    #[error("no sample lies from {from_s} s to {to_s} s: the log ends at {end_s} s")]
+    #[error("no sample lies from {from_s} s on{}: the log ends at {end_s} s", until(*.to_s))]
     NoTime { from_s: f64, to_s: f64, end_s: f64 },
     #[error("it says from {from_s} s to {to_s} s: expected stretches that end behind their start")]
     Backwards { from_s: f64, to_s: f64 },
@@ -28,6 +28,14 @@ enum PartError {
     Overlap(f64, f64),
     #[error("a part by its time needs a column of the time, or --rate-hz")]
     NoClock,
+}
+
+/// The end of a part, if it has one.
+fn until(to_s: f64) -> String {
+    match to_s.is_finite() {
+        true => format!(" to {to_s} s"),
+        false => String::new(),
+    }
 }
 
 /// The rows of the parts that are asked for, in order; all of them where none is.

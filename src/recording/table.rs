@@ -177,6 +177,7 @@ impl Table {
             roles[*index] = Role::Time(position);
         }
         let line = layout.line(&chosen);
+        let found = layout.format(&chosen, wanted.format);
         let data = chosen.data.iter().map(|index| Column {
             name: layout.name(*index),
             unit: layout.unit(*index),
@@ -197,6 +198,7 @@ impl Table {
                 data: data.collect(),
                 time,
                 layout: Some(line),
+                found: Some(found),
                 lines: Some(RowLines::default()),
                 empty_lines: EmptyLines::default(),
             },

@@ -273,6 +273,12 @@ impl<'de> serde::Deserialize<'de> for LogUnit {
     }
 }
 
+impl serde::Serialize for LogUnit {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
 impl Setting for LogUnit {
     const SHAPE: Shape = Shape::Plain(Content::Value(Kind::Text));
     const LIST: Shape = Shape::Impossible;

@@ -30,7 +30,7 @@ macro_rules! words {
         }
     )+) => {$(
         $(#[$attribute])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
         pub enum $name {
             $(
                 #[doc = $about]

@@ -15,9 +15,9 @@ use crate::experiment::{
     load_log_filters, try_log,
 };
 use crate::program::Programs;
-use crate::recording::{AssemblyColumns, Log, LogError, LogFormat, read_assembly_log, read_log};
+use crate::recording::{AssemblyColumns, Log, LogError, LogFormat, read_assembly_log, read_logs};
 use crate::report::{is_kalman_json, log_json, log_text};
-use crate::scenario::{AllanConfig, load_log_format};
+use crate::scenario::{AllanConfig, load_log_format, log_format_toml, slug};
 use crate::store::SingleFile;
 use crate::wording::printable;
 
@@ -37,15 +37,30 @@ pub(in crate::cli) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
     {
         return Ok(exit);
     }
-    let input = match read(&options.log) {
-        Ok((input, _)) => input,
+    let logs = match read(&options.log) {
+        Ok(logs) => logs,
         Err(exit) => return Ok(exit),
     };
-    let (exit, trial) = conclude(input, None, &options.log, false)?;
-    match (kalman, trial) {
-        (Some(file), Some(trial)) => Ok(write_kalman(&trial, file).err().unwrap_or(exit)),
+    if options.log.explain {
+        return explain(&logs);
+    }
+    if kalman.is_some() && logs.len() > 1 {
+        let message = format!("--kalman writes one log: --column names {}", logs.len());
+        return Ok(refused(&[message]));
+    }
+    let (exit, trials) = conclude(logs, None, &options.log, false)?;
+    match (kalman, &trials[..]) {
+        (Some(file), [trial]) => Ok(write_kalman(trial, file).err().unwrap_or(exit)),
         _ => Ok(exit),
     }
+}
+
+/// Prints how a log was read, as a file that has it read so again.
+fn explain(logs: &[ReadLog]) -> io::Result<Exit> {
+    if let Some(log) = logs.first() {
+        output::data(&log_format_toml(&log.format))?;
+    }
+    Ok(Exit::Success)
 }
 
 /// Writes the noise of a log as a linear system.
@@ -72,10 +87,15 @@ pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
     if let Err(exit) = place(&options.log).check(&inputs) {
         return Ok(exit);
     }
-    let (input, sample_rate_hz) = match read(&options.log) {
-        Ok(read) => read,
+    let logs = match read(&options.log) {
+        Ok(logs) => logs,
         Err(exit) => return Ok(exit),
     };
+    if options.log.explain {
+        return explain(&logs);
+    }
+    // All columns of a file have one rate.
+    let sample_rate_hz = logs.first().map_or(1.0, |log| log.sample_rate_hz);
     let filters = match load_log_filters(&options.filters, &options.set, sample_rate_hz) {
         Ok(filters) => filters,
         Err(errors) => return Ok(refused(&errors)),
@@ -85,7 +105,27 @@ pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
         Err(exit) => return Ok(exit),
     };
     let filters = Some((&filters, programs));
-    conclude(input, filters, &options.log, options.csv).map(|(exit, _)| exit)
+    conclude(logs, filters, &options.log, options.csv).map(|(exit, _)| exit)
+}
+
+/// A log that was read.
+struct ReadLog {
+    input: LogInput,
+    sample_rate_hz: f64,
+    /// Name of the column, where the file has several.
+    column: Option<String>,
+    format: LogFormat,
+}
+
+impl From<Log> for ReadLog {
+    fn from(log: Log) -> Self {
+        Self {
+            sample_rate_hz: log.sample_rate_hz,
+            column: log.column.clone(),
+            format: log.format.clone(),
+            input: log.into(),
+        }
+    }
 }
 
 /// Where the results go.
@@ -102,13 +142,15 @@ fn inputs(options: &LogOptions) -> Vec<&Path> {
         .collect()
 }
 
-/// The words to measure and their rate, Hz: of one column, or of three and a calibration.
-fn read(options: &LogOptions) -> Result<(LogInput, f64), Exit> {
+/// The words to measure: of each column that is named, or of three and a calibration.
+fn read(options: &LogOptions) -> Result<Vec<ReadLog>, Exit> {
     let (Some(calibration), Some(axis)) = (&options.calibration, options.axis) else {
-        let log = read_log(&options.file, &format(options)?).map_err(|error| unreadable(&error))?;
-        tell_layout(&log);
-        let sample_rate_hz = log.sample_rate_hz;
-        return Ok((log.into(), sample_rate_hz));
+        let logs =
+            read_logs(&options.file, &format(options)?).map_err(|error| unreadable(&error))?;
+        if let Some(log) = logs.first() {
+            tell_layout(log);
+        }
+        return Ok(logs.into_iter().map(ReadLog::from).collect());
     };
     let [x, y, z] = &options.columns[..] else {
         let count = options.columns.len();
@@ -131,9 +173,17 @@ fn read(options: &LogOptions) -> Result<(LogInput, f64), Exit> {
     let found = read_assembly_log(&options.file, &format(options)?, &columns);
     let logs = found.map_err(|error| unreadable(&error))?;
     tell_layout(&logs.gyros[axis]);
-    let sample_rate_hz = logs.gyros[axis].sample_rate_hz;
-    let compensated = compensate_log(logs, &compensation, axis);
-    Ok((LogInput::Compensated(compensated), sample_rate_hz))
+    let Log {
+        sample_rate_hz,
+        ref format,
+        ..
+    } = logs.gyros[axis];
+    Ok(vec![ReadLog {
+        sample_rate_hz,
+        column: None,
+        format: format.clone(),
+        input: LogInput::Compensated(compensate_log(logs, &compensation, axis)),
+    }])
 }
 
 /// Says what the file was taken for.
@@ -182,13 +232,71 @@ fn refused<C: Complaint>(errors: &[C]) -> Exit {
     Exit::Usage
 }
 
+/// Measures every log, writes and prints the results.
 fn conclude(
-    input: LogInput,
+    logs: Vec<ReadLog>,
     filters: Option<(&LogFilters, Option<Programs>)>,
     options: &LogOptions,
     as_csv: bool,
-) -> io::Result<(Exit, Option<LogTrial>)> {
-    let settings = LogSettings {
+) -> io::Result<(Exit, Vec<LogTrial>)> {
+    let settings = settings(options);
+    let (filters, programs) = filters.unzip();
+    let programs = Starting(programs.flatten());
+    let is_one = logs.len() == 1;
+    let (mut trials, mut taken) = (Vec::new(), Vec::new());
+    for log in logs {
+        let trial = match try_log(log.input, filters, &settings, &programs) {
+            Ok(trial) => trial,
+            Err(error) => {
+                output::talk(&format!("error: {error}"));
+                return Ok((Exit::Usage, trials));
+            }
+        };
+        let folder = options.output.as_ref().map(|folder| match &log.column {
+            Some(column) if !is_one => folder.join(own_name(column, &mut taken)),
+            _ => folder.clone(),
+        });
+        let place = Place::new(folder.as_deref(), "log", options.force);
+        if let Err(exit) = place.fill(|folder| trial.write(folder, as_csv)) {
+            return Ok((exit, trials));
+        }
+        if is_one || options.format != Format::Json {
+            output::data(&text(&trial, options.format))?;
+        }
+        if let Some(folder) = folder {
+            output::talk(&format!("results in {}", folder.display()));
+        }
+        trials.push(trial);
+    }
+    if !is_one && options.format == Format::Json {
+        let documents: Vec<String> = trials.iter().map(|it| text(it, options.format)).collect();
+        let documents = documents.iter().map(|document| document.trim_end());
+        output::data(&format!(
+            "[{}]\n",
+            documents.collect::<Vec<_>>().join(",\n")
+        ))?;
+    }
+    let exit = match trials.iter().any(LogTrial::has_failed) {
+        true => Exit::RunFailed,
+        false => Exit::Success,
+    };
+    Ok((exit, trials))
+}
+
+/// Name of the folder of a column, that of no other one.
+fn own_name(column: &str, taken: &mut Vec<String>) -> String {
+    let name = slug(column);
+    let is_own = !name.is_empty() && !taken.contains(&name);
+    let name = match is_own {
+        true => name,
+        false => format!("{name}-{}", taken.len() + 1),
+    };
+    taken.push(name.clone());
+    name
+}
+
+fn settings(options: &LogOptions) -> LogSettings {
+    LogSettings {
         motion: options.motion,
         warm_up_s: options.warm_up_s,
         bias_averaging_time_s: options.bias_averaging_time_s,
@@ -197,30 +305,7 @@ fn conclude(
             estimator: options.allan_estimator,
             averaging_times: options.averaging_times,
         },
-    };
-    let (filters, programs) = filters.unzip();
-    let programs = Starting(programs.flatten());
-    let trial = match try_log(input, filters, &settings, &programs) {
-        Ok(trial) => trial,
-        Err(error) => {
-            output::talk(&format!("error: {error}"));
-            return Ok((Exit::Usage, None));
-        }
-    };
-    let folder = options.output.as_deref();
-    if let Err(exit) = place(options).fill(|folder| trial.write(folder, as_csv)) {
-        return Ok((exit, None));
     }
-    output::data(&text(&trial, options.format))?;
-    if let Some(folder) = folder {
-        output::talk(&format!("results in {}", folder.display()));
-    }
-    let exit = if trial.has_failed() {
-        Exit::RunFailed
-    } else {
-        Exit::Success
-    };
-    Ok((exit, Some(trial)))
 }
 
 fn text(trial: &LogTrial, format: Format) -> String {

@@ -26,7 +26,7 @@ pub(in crate::cli) struct LogOptions {
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) layout: Option<PathBuf>,
     /// Print how the log is read, as a table [log] for --layout, and nothing else
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["written", "calibration", "columns"])]
     pub(in crate::cli) explain: bool,
     #[command(flatten)]
     pub(in crate::cli) keys: LayoutOptions,

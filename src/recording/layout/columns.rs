@@ -9,7 +9,7 @@ use crate::recording::time_unit::TimeUnit;
 use crate::recording::unit_text::{Spelled, name_of_heading};
 
 /// Word that says that a file has no column of the time.
-const NO_TIME: &str = "none";
+pub(super) const NO_TIME: &str = "none";
 
 /// Words in the heading of a column of time.
 const TIMES: [&str; 16] = [

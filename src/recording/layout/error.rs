@@ -69,14 +69,14 @@ pub(in crate::recording) enum LayoutError {
     Thousands(String),
     #[error("the file ends before line {line}, which {option} names")]
     NoLine { line: usize, option: &'static str },
-    #[error(
-        "{got} names in line {line}, which --heading-line names, where the rows have {expected} cells"
-    )]
+    #[error("{got} in line {line}, which an option names, where the rows have {expected} cells")]
     Heading {
         line: usize,
-        got: usize,
+        got: String,
         expected: usize,
     },
+    #[error("no row stands below line {0}, which --heading-line or --units-line names")]
+    NoRowBelow(usize),
     #[error(
         "the file ends within a record: {got} of {expected} values, which --wrapped-columns names"
     )]

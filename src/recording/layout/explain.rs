@@ -1,12 +1,52 @@
 //! What was found of a layout, in one line for people.
 
 use super::Layout;
-use super::columns::Chosen;
+use super::columns::{Chosen, NO_TIME};
 use super::words::{DecimalSign, Encoding, Separator};
+use crate::recording::format::LogFormat;
 use crate::recording::text::shown;
 use crate::wording::counted;
 
 impl Layout {
+    /// What was found, as it could have been given; the rest stays as it was given.
+    pub(in crate::recording) fn format(&self, chosen: &Chosen, given: &LogFormat) -> LogFormat {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "lines of the first ones, columns of a line"
+        )]
+        let whole = |count: usize| Some(count as u32);
+        // A name of which there are two, or that is a number, would mean another column.
+        let name = |index: usize| {
+            let name = self.name(index).unwrap_or_default();
+            let same = self.names.iter().filter(|other| **other == name).count();
+            if same == 1 {
+                name
+            } else {
+                (index + 1).to_string()
+            }
+        };
+        let names = |indices: &mut dyn Iterator<Item = usize>| Some(indices.map(name).collect());
+        let (time, time_unit) = match chosen.time[..] {
+            [] => (Some(vec![NO_TIME.to_owned()]), None),
+            _ => (
+                names(&mut chosen.time.iter().map(|(index, _)| *index)),
+                Some(chosen.time.iter().map(|(_, unit)| *unit).collect()),
+            ),
+        };
+        LogFormat {
+            column: names(&mut chosen.data.iter().copied()),
+            time,
+            time_unit,
+            skip_lines: whole(self.skip_lines),
+            heading_line: whole(self.heading_line.unwrap_or(0)),
+            units_line: whole(self.units_line.unwrap_or(0)),
+            separator: Some(self.separator),
+            decimal: Some(self.decimal),
+            encoding: Some(self.encoding),
+            ..given.clone()
+        }
+    }
+
     /// What the file was taken for: `3 columns between commas, heading in line 1, ...`.
     pub(in crate::recording) fn line(&self, chosen: &Chosen) -> String {
         let mut parts = Vec::new();

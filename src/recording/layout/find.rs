@@ -32,11 +32,17 @@ pub(in crate::recording) fn find(
 ) -> Result<Option<Layout>, Fault> {
     let skip_lines = format.skip_lines.unwrap_or(0) as usize;
     let head: Vec<&HeadLine> = head.iter().filter(|it| it.number > skip_lines).collect();
+    let last_above = last_line_above(format);
+    if head.last().is_some_and(|last| last.number <= last_above) {
+        return Err(Fault {
+            line: None,
+            error: LayoutError::NoRowBelow(last_above),
+        });
+    }
     let (rows, marks) = match rows(&head, format)? {
         Some(found) => found,
         None => return Ok(None),
     };
-    let last_above = last_line_above(format);
     let is_passed = |line: &HeadLine| is_comment(line.text.trim(), &as_strs(&marks));
     let below = |line: &&&HeadLine| line.number > last_above && !is_passed(line);
     let first = head

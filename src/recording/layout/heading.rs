@@ -7,6 +7,7 @@ use super::{Fault, LayoutError};
 use crate::recording::format::LogFormat;
 use crate::recording::text::{Delimiter, is_comment, is_heading, shown};
 use crate::recording::unit_text::{Spelled, spelled};
+use crate::wording::counted;
 
 /// Most comments above the rows that are looked at for a heading.
 const COMMENTS_MAX: usize = 3;
@@ -34,6 +35,18 @@ impl Marks<'_> {
         let mut marks = self.0.iter().map(String::as_str);
         marks.find(|mark| is_comment(text, &[mark]))
     }
+
+    /// A line without the mark that it begins with.
+    fn without<'a>(&self, line: &'a HeadLine) -> &'a str {
+        match self.of(line) {
+            // A tab behind it is an empty cell.
+            Some(mark) => {
+                let text = line.text.trim_start().trim_start_matches(mark);
+                text.trim_matches(' ')
+            }
+            None => &line.text,
+        }
+    }
 }
 
 /// What the lines above the rows were taken for.
@@ -57,7 +70,7 @@ pub(super) fn above_rows(
 ) -> Result<Above, Fault> {
     let marks = Marks(marks);
     if format.heading_line.is_some() || format.units_line.is_some() {
-        return given(before, rows, format);
+        return given(before, &marks, rows, format);
     }
     let (comments, texts): (Vec<&HeadLine>, Vec<&HeadLine>) =
         before.iter().partition(|line| marks.of(line).is_some());
@@ -104,7 +117,12 @@ pub(super) fn above_rows(
 }
 
 /// Takes the lines that options name.
-fn given(before: &[&HeadLine], rows: &Rows, format: &LogFormat) -> Result<Above, Fault> {
+fn given(
+    before: &[&HeadLine],
+    marks: &Marks<'_>,
+    rows: &Rows,
+    format: &LogFormat,
+) -> Result<Above, Fault> {
     let line = |number: Option<u32>, option: &'static str| -> Result<Option<Named>, Fault> {
         let Some(number) = number.filter(|number| *number > 0) else {
             return Ok(None);
@@ -113,9 +131,12 @@ fn given(before: &[&HeadLine], rows: &Rows, format: &LogFormat) -> Result<Above,
         let fault = |error| Fault { line: None, error };
         let found = before.iter().find(|it| it.number == line);
         let found = found.ok_or_else(|| fault(LayoutError::NoLine { line, option }))?;
-        let text = found.text.trim().trim_start_matches(['#', '%', ';', '/']);
+        let text = marks.without(found);
         let cells = names_in(text, rows).ok_or_else(|| {
-            let got = Delimiter::from(rows.separator).first_cells(text).len();
+            let got = counted(
+                Delimiter::from(rows.separator).first_cells(text).len(),
+                "name",
+            );
             fault(LayoutError::Heading {
                 line,
                 got,
@@ -138,8 +159,7 @@ fn given(before: &[&HeadLine], rows: &Rows, format: &LogFormat) -> Result<Above,
 fn commented(comments: &[&HeadLine], marks: &Marks<'_>, rows: &Rows) -> Above {
     let mut above = Above::default();
     for line in comments.iter().rev().take(COMMENTS_MAX) {
-        let Some(mark) = marks.of(line) else { continue };
-        let text = line.text.trim().trim_start_matches(mark).trim();
+        let text = marks.without(line);
         let Some(cells) = names_in(text, rows) else {
             continue;
         };
@@ -200,7 +220,8 @@ fn without_heading(
 /// kept together.
 fn names_in(line: &str, rows: &Rows) -> Option<Vec<String>> {
     let own = Delimiter::from(rows.separator);
-    let cells = own.first_cells(line);
+    // Behind the last name cells may be empty, as of a column without a unit.
+    let cells = own.cells_up_to(line, rows.cells);
     let owned = |cells: Vec<&str>| Some(cells.into_iter().map(str::to_owned).collect());
     if cells.len() == rows.cells {
         return owned(cells);

@@ -1,5 +1,6 @@
 //! What is said of a log: the table `[log]` of a file, and what options add to it.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -61,6 +62,13 @@ pub fn load_log_format(
         let location = Location::of_file(file.map_or_else(|| TABLE.to_owned(), shown_path));
         vec![ScenarioError::at(location, error.to_string())]
     })
+}
+
+/// A table `[log]` as a file holds it.
+#[must_use]
+pub fn log_format_toml(format: &LogFormat) -> String {
+    let table = BTreeMap::from([(TABLE, format)]);
+    toml::to_string(&table).expect("a flat table of words and numbers is TOML")
 }
 
 /// The checked table of a file.
