@@ -17,7 +17,7 @@ const SHORT: &str = "schema = 1\nduration_s = 0.1\nwarm_up_s = 0.1\nfidelity = \
                      bias_averaging_time_s = 0.01\n";
 
 /// What stands beside the key under test, by the beginning of its path: longest first.
-const BESIDE: [(&str, &str); 28] = [
+const BESIDE: [(&str, &str); 29] = [
     (
         "turntable.swing",
         "rate_amplitude_deg_per_s = 1.0\nfrequency_hz = 50.0\nsoft_start_s = 0.05",
@@ -99,6 +99,7 @@ const BESIDE: [(&str, &str); 28] = [
     ("filter[].sign_lms", "pipeline = \"fpga\"\nunit = \"rad/s\""),
     ("filter[].lms", "pipeline = \"fpga\""),
     ("filter[].rls", "pipeline = \"fpga\""),
+    ("filter[].process", "command = [\"cat\"]"),
     ("filter[]", ""),
 ];
 

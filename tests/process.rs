@@ -624,3 +624,27 @@ fn a_program_does_not_start_afresh_within_a_record() {
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("filter[0].process: trial.filter_state"));
 }
+
+#[test]
+fn a_program_that_answers_otherwise_each_time_is_told() {
+    if !has("python3") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    misbehaving(
+        folder.path(),
+        "import random\nhello()\nwhile True:\n    n, b = block()\n    if n == 0: break\n\
+         \x20   w = struct.unpack('<%dd' % n, b)\n\
+         \x20   say(struct.pack('<I%dd' % n, n, *[x + random.random() for x in w]))",
+    );
+    let random = program("p", "[\"python3\", \"./bad.py\"]", "");
+    let run = allowed(folder.path(), &format!("{HEAD}{random}"), 0);
+    let notes = run["notes"].to_string();
+    assert!(notes.contains("do not repeat to the byte"), "{notes}");
+    let lack = &run["channels"]["p"]["unavailable"]["dc_gain_adapted"];
+    assert!(
+        lack.as_str().expect("a reason").contains("run again"),
+        "{lack}"
+    );
+    assert!(run["channels"]["p"]["noise_gain"]["value"].is_number());
+}

@@ -161,6 +161,9 @@ fn each_alternative_of_the_reference_validates_when_enabled() {
         let calibration = "schema = 1\n[compensation]\ntheta_xy_arcsec = 1.0\n";
         std::fs::write(folder.path().join("calibration.toml"), calibration).unwrap();
         std::fs::write(folder.path().join("campaign.toml"), LEAST).unwrap();
+        for named in ["y.npy", "f.py", "weights.csv"] {
+            std::fs::write(folder.path().join(named), "").unwrap();
+        }
         let file = folder.path().join("x.toml");
         let extends = if base.starts_with("extends") {
             ""

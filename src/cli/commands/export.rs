@@ -53,8 +53,11 @@ pub(in crate::cli) fn export(options: &ExportOptions) -> io::Result<Exit> {
                 *file = options.folder.join(name);
             }
         }
-        staged.write(INPUT_DIGEST, digest.as_bytes())?;
-        files.push(options.folder.join(INPUT_DIGEST));
+        // A waveform holds no words to replay.
+        if form != ExportForm::Waveform {
+            staged.write(INPUT_DIGEST, digest.as_bytes())?;
+            files.push(options.folder.join(INPUT_DIGEST));
+        }
         staged.seal_plainly()?;
         staged.put_files_in_place()
     });

@@ -120,12 +120,16 @@ pub(super) fn complete(
 /// What the reader of a report must know of a filter whose weights are not known.
 pub(super) fn note(filter: &FinishedFilter) -> Option<String> {
     filter.words.as_ref().ok()?;
-    filter.shape.hidden_reason()?;
-    Some(format!(
-        "filter `{}`: its weights are not known: its intervals are those of a filter that forgets \
-         within a tenth of the record, and too narrow for one that remembers more",
-        filter.name
-    ))
+    let name = &filter.name;
+    Some(match filter.shape.hidden_reason()? {
+        reason @ process::NOT_REPEATED => {
+            format!("filter `{name}`: {reason}: its results do not repeat to the byte")
+        }
+        _ => format!(
+            "filter `{name}`: its weights are not known: its intervals are those of a filter that \
+             forgets within a tenth of the record, and too narrow for one that remembers more"
+        ),
+    })
 }
 
 impl<'a> OutsideFilter<'a> {

@@ -21,6 +21,10 @@ use crate::units::deg_per_s_to_deg_per_h;
 const NO_WEIGHTS: &str =
     "a program does not show its weights, and its answer to an impulse does not explain its words";
 
+/// Why nothing is measured by twins of a program that answers otherwise each time.
+pub(super) const NOT_REPEATED: &str =
+    "the program answered the same words otherwise when it was run again";
+
 /// A program and what it is given, ready to be run again and again.
 struct Program<'a> {
     programs: &'a Programs,
@@ -118,6 +122,16 @@ impl Program<'_> {
         self.beside(&words)
     }
 
+    /// Whether another run of the program gives the same words, to the bit.
+    fn repeats(&self, output_deg_per_h: &[f64]) -> Result<bool, Unfinished> {
+        let again = self.beside(self.input.words_deg_per_h)?;
+        let is_same = |again: &[f64]| {
+            let mut pairs = again.iter().zip(output_deg_per_h);
+            pairs.all(|(again, own)| again.to_bits() == own.to_bits())
+        };
+        Ok(again.is_some_and(|again| is_same(&again)))
+    }
+
     /// Weights that explain every word of the record, if there are such.
     fn weights(&self, output_deg_per_h: &[f64]) -> Result<Option<Weights>, Unfinished> {
         let input = self.input.words_deg_per_h;
@@ -194,9 +208,13 @@ impl OutsideFilter<'_> {
                 };
                 (shape, words)
             }
-            None => (
-                hidden(config, &output[input.length.warm_up..]),
+            None if program.repeats(&output)? => (
+                hidden(config, NO_WEIGHTS, &output[input.length.warm_up..]),
                 adapted(&program, output)?,
+            ),
+            None => (
+                hidden(config, NOT_REPEATED, &output[input.length.warm_up..]),
+                FilterWords::alone(output),
             ),
         };
         Ok(FinishedFilter {
@@ -216,7 +234,7 @@ impl OutsideFilter<'_> {
         FinishedFilter {
             name: self.name.clone(),
             kind: None,
-            shape: hidden(config, &[]),
+            shape: hidden(config, NO_WEIGHTS, &[]),
             restarts: false,
             words: Err(failure),
             pipeline: None,
@@ -224,10 +242,14 @@ impl OutsideFilter<'_> {
     }
 }
 
-/// The outline of a program of which the measured words alone are known.
-fn hidden(config: &ProcessFilterConfig, measured_deg_per_h: &[f64]) -> FilterShape {
+/// The outline of a program of which the measured words alone are known, for a reason.
+fn hidden(
+    config: &ProcessFilterConfig,
+    reason: &'static str,
+    measured_deg_per_h: &[f64],
+) -> FilterShape {
     let hidden = HiddenWeights {
-        reason: NO_WEIGHTS,
+        reason,
         memory_samples: correlation_length_samples(measured_deg_per_h).unwrap_or(1),
     };
     FilterShape::hidden(hidden, config.output_register.samples())

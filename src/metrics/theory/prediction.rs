@@ -49,8 +49,7 @@ pub fn lags_needed(shape: &FilterShape) -> usize {
 /// * `second_moment`: `E[x(k) x(k-lag)]` by lag, mean included (not centred): an adaptive filter
 ///   sees the mean as signal; at least [`lags_needed`] values.
 ///
-/// `None` if the record has no power and the weights would adapt to it, or if they are hidden:
-/// [`prediction_lack`] says which.
+/// `None` if the record has no power and the weights would adapt to it, or if they are hidden.
 #[must_use]
 pub fn predict(shape: &FilterShape, second_moment: &[f64]) -> Option<Prediction> {
     let response = match &shape.rule {
