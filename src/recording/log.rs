@@ -12,6 +12,7 @@ use super::input::Input;
 use super::layout::columns::Selection;
 use super::stretches::parts;
 use super::table::{self, Wanted};
+use super::text::shown;
 use super::timing::{Spacing, Timing, timing};
 use super::{npy, npy_heading};
 use crate::wording::{counted, plain};
@@ -37,6 +38,8 @@ pub struct Log {
     pub unit: String,
     /// Rate words, deg/h: finite, or NaN where samples are missing.
     pub rate_deg_per_h: Vec<f64>,
+    /// What the column of the reference shows at the words, deg/h; empty without one.
+    pub reference_deg_per_h: Vec<f64>,
     /// Samples per second, Hz.
     pub sample_rate_hz: f64,
     /// What the time column says; none without one.
@@ -67,6 +70,25 @@ impl Log {
     #[must_use]
     pub fn sample_period_s(&self) -> f64 {
         1.0 / self.sample_rate_hz
+    }
+
+    /// Holds a reference against the words: of an angle, or beside one, the first word has no partner.
+    fn take_reference(&mut self, reference: &Self) -> Result<(), ReferenceError> {
+        if self.has_gaps() || reference.has_gaps() {
+            return Err(ReferenceError::Gaps);
+        }
+        let (words, rates) = (&mut self.rate_deg_per_h, &reference.rate_deg_per_h);
+        let count = words.len().min(rates.len());
+        words.drain(..words.len() - count);
+        self.reference_deg_per_h = rates[rates.len() - count..].to_vec();
+        self.stretches = vec![Stretch::of(words, 0..count)];
+        let name = reference.column.as_deref().unwrap_or_default();
+        self.remarks.push(format!(
+            "the true rate is what column {} shows, in {}",
+            shown(name),
+            reference.unit
+        ));
+        Ok(())
     }
 
     /// Whether samples are missing between the words.
@@ -194,11 +216,35 @@ pub fn read_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
 pub fn read_logs(path: &Path, format: &LogFormat) -> Result<Vec<Log>, LogError> {
     let selection = Selection::Named(format.column.as_deref().unwrap_or_default());
     let mut columns = read_columns(path, selection, format)?;
-    let data = std::mem::take(&mut columns.data);
+    let mut data = std::mem::take(&mut columns.data);
+    let reference = match format.reference_column {
+        Some(_) => data.pop(),
+        None => None,
+    };
     let spacing = spacing(path, &columns, &data, format)?;
     let logs = data.into_iter();
-    logs.map(|column| log(path, &columns, column, format, &spacing))
-        .collect()
+    let mut logs = logs
+        .map(|column| log(path, &columns, column, format, &spacing))
+        .collect::<Result<Vec<Log>, LogError>>()?;
+    if let Some(column) = reference {
+        let format = format.of_reference(column.unit);
+        let reference = log(path, &columns, column, &format, &spacing)?;
+        for log in &mut logs {
+            log.take_reference(&reference)
+                .map_err(|error| LogError::of_file(path, error))?;
+        }
+    }
+    Ok(logs)
+}
+
+/// Why a reference is not held against the words.
+#[derive(Debug, thiserror::Error)]
+enum ReferenceError {
+    #[error(
+        "samples are missing, and a reference is compared word by word: --rows, or --from-s and --to-s, takes \
+         a part without gaps"
+    )]
+    Gaps,
 }
 
 /// Reads the logs of three gyros from one text, in one pass; `format.column` is not used.
@@ -388,6 +434,7 @@ fn log(
         column: column_name,
         unit: conversion.shown(),
         rate_deg_per_h,
+        reference_deg_per_h: Vec::new(),
         sample_rate_hz: spacing.sample_rate_hz,
         timing: spacing.timing,
         empty_lines: columns.empty_lines,

@@ -63,6 +63,10 @@ pub(in crate::cli) struct LogOptions {
         requires = "calibration"
     )]
     pub(in crate::cli) compensation_form: CompensationForm,
+    /// File whose [[gate]] tables are held against what is measured: a scenario, a base or gates alone; exit
+    /// code 1 if one fails
+    #[arg(long, value_name = "FILE", conflicts_with = "explain")]
+    pub(in crate::cli) gates: Option<PathBuf>,
     /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz
     #[arg(long, value_name = "MOTION", default_value = "static")]
     pub(in crate::cli) motion: LogMotion,

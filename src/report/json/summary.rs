@@ -123,7 +123,8 @@ fn published(figure: &PublishedConfig) -> Value {
     record.into()
 }
 
-fn gate(verdict: &Verdict) -> Value {
+/// A gate with its verdict.
+pub(in crate::report) fn gate(verdict: &Verdict) -> Value {
     let mut record = object([
         ("metric", verdict.metric.as_str().into()),
         ("verdict", verdict.kind.as_str().into()),

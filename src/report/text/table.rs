@@ -60,7 +60,7 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
         text.push_str(&calibration_text(sheet, width, colour));
     }
     text.push_str(&published(report, colour));
-    text.push_str(&gates(report.verdicts, width, colour));
+    text.push_str(&gates_text(report.verdicts, width, colour));
     for note in report.notes {
         let note = format!("{} {note}", toned("note:", Tone::Doubt, colour));
         text.push_str(&wrapped(&note, INDENT, width));
@@ -453,7 +453,7 @@ fn simulated<'a>(
 }
 
 /// One line per gate: `PASS  rls.delay_vs_raw_ms: 0.340 ms ... lies inside [0.33, 0.35] ms`.
-fn gates(verdicts: &[Verdict], width: usize, colour: bool) -> String {
+pub(crate) fn gates_text(verdicts: &[Verdict], width: usize, colour: bool) -> String {
     if verdicts.is_empty() {
         return String::new();
     }
