@@ -356,7 +356,8 @@ fn integers_and_tables_of_arrays_are_read_by_number() {
     assert_close(walk(&json), 1.2, 0.15, 0.0);
 
     // Nanoseconds beside two gyros, row by row, column by column and turned.
-    let stamp = |k: usize| 1_403_636_579_758_555_392_i64 + 10_000_000 * k as i64;
+    let stamp =
+        |k: usize| 1_403_636_579_758_555_392_i64 + 10_000_000 * i64::try_from(k).expect("few");
     let row = |k: usize| [stamp(k), i64::from(counts[k]), -2 * i64::from(counts[k])];
     let by_row: Vec<u8> = (0..4000).flat_map(row).flat_map(i64::to_be_bytes).collect();
     let by_column: Vec<u8> = (0..3)

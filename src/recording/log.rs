@@ -551,8 +551,8 @@ fn angle_remark(values: &[f64], conversion: &Conversion) -> Option<String> {
     if conversion.running.is_some() || values.len() < CORRELATED_MIN {
         return None;
     }
-    let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let (words, steps) = (lag_one(values)?, lag_one(&steps)?);
+    let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
+    let (words, steps) = (lag_one(values.iter().copied())?, lag_one(steps)?);
     (words > ANGLE_CORRELATION && steps.abs() < STEP_CORRELATION).then(|| {
         format!(
             "each number follows the one before it (correlation {}) and the steps do not: this may be a \
@@ -563,14 +563,14 @@ fn angle_remark(values: &[f64], conversion: &Conversion) -> Option<String> {
 }
 
 /// Correlation of neighbours about the mean; nothing of numbers that do not vary.
-fn lag_one(values: &[f64]) -> Option<f64> {
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "sample counts are far below 2^53"
-    )]
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+fn lag_one(values: impl Iterator<Item = f64> + Clone) -> Option<f64> {
+    let (sum, count) = values
+        .clone()
+        .fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    let mean = sum / count;
+    let square: f64 = values.clone().map(|value| (value - mean).powi(2)).sum();
     // By the steps, as the ends of an angle that runs on are far from its mean.
-    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
-    (square > 0.0).then(|| 1.0 - 0.5 * steps.sum::<f64>() / square)
+    let pairs = values.clone().zip(values.skip(1));
+    let steps: f64 = pairs.map(|(one, next)| (next - one).powi(2)).sum();
+    (square > 0.0).then(|| 1.0 - 0.5 * steps / square)
 }
