@@ -251,8 +251,12 @@ impl Chooser<'_> {
             .decimal_comma
             .as_deref()
             .map(|row| format!("; if `{}` is one number, say --decimal comma", shown(row)));
+        let wrapped = match self.layout.names.is_empty() {
+            true => "; if all of them are one quantity, --wrapped-columns 1 reads it row by row",
+            false => "",
+        };
         Err(LayoutError::SeveralColumns(
-            self.listed() + &comma.unwrap_or_default(),
+            self.listed() + &comma.unwrap_or_default() + wrapped,
         ))
     }
 
