@@ -540,6 +540,7 @@ fn what_is_in_doubt_is_an_error_that_names_the_option() {
                 ..at(1.0, "deg/h")
             },
         ),
+        ("1 2 3 4\n5 6 7 8\n", at(1.0, "deg/h")),
         (
             "1 2 3\n4 5\n",
             LogFormat {
