@@ -356,7 +356,8 @@ fn integers_and_tables_of_arrays_are_read_by_number() {
     assert_close(walk(&json), 1.2, 0.15, 0.0);
 
     // Nanoseconds beside two gyros, row by row, column by column and turned.
-    let stamp = |k: usize| 1_403_636_579_758_555_392_i64 + 10_000_000 * k as i64;
+    let stamp =
+        |k: usize| 1_403_636_579_758_555_392_i64 + 10_000_000 * i64::try_from(k).expect("few");
     let row = |k: usize| [stamp(k), i64::from(counts[k]), -2 * i64::from(counts[k])];
     let by_row: Vec<u8> = (0..4000).flat_map(row).flat_map(i64::to_be_bytes).collect();
     let by_column: Vec<u8> = (0..3)
@@ -539,6 +540,7 @@ fn what_is_in_doubt_is_an_error_that_names_the_option() {
                 ..at(1.0, "deg/h")
             },
         ),
+        ("1 2 3 4\n5 6 7 8\n", at(1.0, "deg/h")),
         (
             "1 2 3\n4 5\n",
             LogFormat {
@@ -845,4 +847,95 @@ fn stretches_of_a_table_are_pooled() {
     assert!(message.contains("overlap or are not in order"), "{message}");
     let named = read_log(&folder.path().join("log.csv"), &named("g_dps")).expect("a log");
     assert_eq!(named.stretches.len(), 1);
+}
+
+#[test]
+fn a_reference_in_the_log_gives_delay_and_scale_of_a_swing() {
+    let folder = scratch();
+    let mut text = "time_s,table_deg_per_s,encoder_deg,gyro_deg_per_s\n".to_owned();
+    let turn = std::f64::consts::TAU * 2.0;
+    for (k, noise) in white(6, 3000, 0.01).iter().enumerate() {
+        let t = k as f64 / 100.0;
+        // The mean rate over the word that ends at t, as the difference of the encoder's angle is.
+        let angle = |t: f64| -10.0 / turn * (turn * t).cos();
+        let mean = |t: f64| (angle(t) - angle(t - 0.01)) * 100.0;
+        let gyro = 0.9993 * mean(t - 0.004) - 0.5 + noise;
+        writeln!(text, "{t:.2},{:.7},{:.9},{gyro:.7}", mean(t), angle(t)).expect("a string");
+    }
+    write(folder.path(), "log.csv", &text);
+    let arguments = [
+        "log.csv",
+        "--column",
+        "gyro_deg_per_s",
+        "--motion",
+        "swing:2",
+    ];
+    let message = refused(
+        folder.path(),
+        &[&arguments[..], &["--reference-column", "gyro_deg_per_s"]].concat(),
+    );
+    assert!(message.contains("named for two quantities"), "{message}");
+    for reference in ["table", "encoder_deg"] {
+        let more = ["--reference-column", reference];
+        let (json, _) = analysed(folder.path(), &[&arguments[..], &more].concat());
+        let metric = |name: &str| json["channels"]["raw"][name]["value"].as_f64().expect(name);
+        assert_close(metric("amplitude_ratio"), 0.9993, 3e-4, 0.0);
+        assert_close(metric("delay_vs_truth_ms"), 4.0, 0.0, 0.05);
+    }
+}
+
+#[test]
+fn gates_are_held_against_a_log() {
+    let folder = scratch();
+    let seconds = |k: usize| format!("{:.2}", k as f64 / 100.0);
+    write(
+        folder.path(),
+        "log.csv",
+        &table("time_s,g_dps\n", ",", 4000, seconds),
+    );
+    let gate = |metric: &str, limit: &str| {
+        format!("schema = 1\n[[gate]]\nmetric = \"{metric}\"\n{limit}\n")
+    };
+    let walk = "raw.angle_random_walk_deg_per_sqrt_h";
+    let mut transcript = Transcript::of(LAYOUTS, "Gates on a log");
+    for (text, want) in [
+        (gate(walk, "max = 2.0"), 0),
+        (gate(walk, "max = 1.0"), 1),
+        (gate("raw.bias_instability_deg_per_h", "max = 1e9"), 1),
+        (gate("raw.angle_random_wlak_deg_per_sqrt_h", "max = 2.0"), 2),
+        ("schema = 1\n".to_owned(), 2),
+    ] {
+        write(folder.path(), "gates.toml", &text);
+        let output = fogbench(
+            folder.path(),
+            &["analyze", "log.csv", "--gates", "gates.toml", "-o", "out"],
+        );
+        assert_eq!(
+            code(&output),
+            want,
+            "{text}{}{}",
+            stdout(&output),
+            stderr(&output)
+        );
+        let json =
+            std::fs::read_to_string(folder.path().join("out/summary.json")).unwrap_or_default();
+        let said = stdout(&output);
+        let said = said.lines().skip_while(|line| {
+            !["  PASS", "  FAIL"]
+                .iter()
+                .any(|word| line.starts_with(word))
+        });
+        let said: Vec<&str> = said.take(2).collect();
+        let errors: Vec<String> = stderr(&output)
+            .lines()
+            .filter(|line| line.starts_with("error"))
+            .map(str::to_owned)
+            .collect();
+        transcript.case(
+            &text,
+            format!("exit code {want}\n{}{}", said.join("\n"), errors.join("\n")),
+        );
+        assert!(want == 2 || json.contains("\"gates\""), "{json}");
+    }
+    transcript.check();
 }

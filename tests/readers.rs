@@ -656,6 +656,12 @@ fn pipes_are_read_and_endless_devices_are_refused() {
     let output = piped(numbers().as_bytes(), &log);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(stdout(&output).contains("300 samples"));
+    let output = piped(
+        numbers().as_bytes(),
+        &["analyze", "-", "--unit", "deg/h", "--rate-hz", "100"],
+    );
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(stdout(&output).contains("300 samples"));
     let data: Vec<u8> = (0..300)
         .flat_map(|k| f64::from(k % 5).to_le_bytes())
         .collect();

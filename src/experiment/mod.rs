@@ -35,8 +35,9 @@ pub use campaign::{
 };
 #[cfg(feature = "report")]
 pub use log::{
-    CompensatedLog, LogCompensation, LogFilters, LogInput, LogMotion, LogSettings, LogTrial,
-    LogTrialError, compensate_log, load_log_compensation, load_log_filters, try_log,
+    CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogMotion, LogSettings,
+    LogTrial, LogTrialError, compensate_log, load_log_compensation, load_log_filters,
+    load_log_gates, try_log,
 };
 pub use outside::{ProgramFiles, program_files};
 pub use plan::{Plan, Sound, check_suite, plan_suite};

@@ -5,6 +5,7 @@ use super::layout::words::{
 };
 use super::time_unit::TimeUnit;
 use super::unit::LogUnit;
+use super::unit_text::Spelled;
 use crate::declare::table;
 use serde::Serialize;
 
@@ -29,6 +30,11 @@ table! {
         /// Column by its heading, a part of it, its number from 1, or with `*` for any letters; several one
         /// after another [default: the only one beside the time].
         column: Option<Vec<String>>, example ["gyro_z"];
+        /// Column of what the gyro should show, such as the rate or the encoder's angle of the table, or
+        /// another gyro: it takes the place of the true rate.
+        reference_column: Option<String>, example "table_deg_per_s";
+        /// Unit of the reference, an angle for an encoder [default: that of its heading].
+        reference_unit: Option<LogUnit>, example "deg/s";
         /// Column of the time; of two, such as week and seconds, the sum; `none` if the file has none
         /// [default: the one whose heading says so].
         time: Option<Vec<String>>, example ["time_s"];
@@ -72,5 +78,24 @@ table! {
         split_gaps: Option<bool>, example true;
         /// Longest step between stamps that is jitter and no gap [default: one and a half sample periods].
         max_gap_s: Option<f64>, example 0.02, in 1e-9..=1e9, "s";
+    }
+}
+
+impl LogFormat {
+    /// What is said of the reference: its unit alone, of which an angle runs on.
+    ///
+    /// * `in_heading`: what the heading of its column says.
+    pub(super) fn of_reference(&self, in_heading: Option<Spelled>) -> Self {
+        let is_angle = match self.reference_unit {
+            Some(given) => matches!(given, LogUnit::Angle(_)),
+            None => matches!(in_heading, Some(Spelled::Angle(_))),
+        };
+        Self {
+            unit: self.reference_unit,
+            kind: is_angle.then_some(WordKind::Angle),
+            scale: None,
+            offset: None,
+            ..self.clone()
+        }
     }
 }

@@ -8,6 +8,8 @@ use super::error::LogError;
 
 /// Most bytes that are taken from a pipe or a device, which need not end.
 const STREAM_BYTES_MAX: u64 = 1 << 28;
+/// Name of what comes on standard input.
+const STANDARD_INPUT: &str = "-";
 /// Most bytes of a text that is read as a whole.
 const TEXT_BYTES_MAX: u64 = 16_000_000;
 
@@ -51,7 +53,11 @@ impl Input {
     pub(super) fn open(path: &Path) -> Result<Self, LogError> {
         const FIRST: u64 = 8;
         let failed = |error| LogError::read(path, error);
-        let file = File::open(path).map_err(failed)?;
+        let file = match path == Path::new(STANDARD_INPUT) {
+            true => File::open("/dev/stdin"),
+            false => File::open(path),
+        };
+        let file = file.map_err(failed)?;
         let metadata = file.metadata().map_err(failed)?;
         // Files that the system makes up while they are read have no length.
         let length = (metadata.is_file() && metadata.len() > 0).then_some(metadata.len());

@@ -12,6 +12,7 @@ use super::input::Input;
 use super::layout::columns::Selection;
 use super::stretches::parts;
 use super::table::{self, Wanted};
+use super::text::shown;
 use super::timing::{Spacing, Timing, timing};
 use super::{npy, npy_heading};
 use crate::wording::{counted, plain};
@@ -37,6 +38,8 @@ pub struct Log {
     pub unit: String,
     /// Rate words, deg/h: finite, or NaN where samples are missing.
     pub rate_deg_per_h: Vec<f64>,
+    /// What the column of the reference shows at the words, deg/h; empty without one.
+    pub reference_deg_per_h: Vec<f64>,
     /// Samples per second, Hz.
     pub sample_rate_hz: f64,
     /// What the time column says; none without one.
@@ -67,6 +70,25 @@ impl Log {
     #[must_use]
     pub fn sample_period_s(&self) -> f64 {
         1.0 / self.sample_rate_hz
+    }
+
+    /// Holds a reference against the words: of an angle, or beside one, the first word has no partner.
+    fn take_reference(&mut self, reference: &Self) -> Result<(), ReferenceError> {
+        if self.has_gaps() || reference.has_gaps() {
+            return Err(ReferenceError::Gaps);
+        }
+        let (words, rates) = (&mut self.rate_deg_per_h, &reference.rate_deg_per_h);
+        let count = words.len().min(rates.len());
+        words.drain(..words.len() - count);
+        self.reference_deg_per_h = rates[rates.len() - count..].to_vec();
+        self.stretches = vec![Stretch::of(words, 0..count)];
+        let name = reference.column.as_deref().unwrap_or_default();
+        self.remarks.push(format!(
+            "the true rate is what column {} shows, in {}",
+            shown(name),
+            reference.unit
+        ));
+        Ok(())
     }
 
     /// Whether samples are missing between the words.
@@ -194,11 +216,35 @@ pub fn read_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
 pub fn read_logs(path: &Path, format: &LogFormat) -> Result<Vec<Log>, LogError> {
     let selection = Selection::Named(format.column.as_deref().unwrap_or_default());
     let mut columns = read_columns(path, selection, format)?;
-    let data = std::mem::take(&mut columns.data);
+    let mut data = std::mem::take(&mut columns.data);
+    let reference = match format.reference_column {
+        Some(_) => data.pop(),
+        None => None,
+    };
     let spacing = spacing(path, &columns, &data, format)?;
     let logs = data.into_iter();
-    logs.map(|column| log(path, &columns, column, format, &spacing))
-        .collect()
+    let mut logs = logs
+        .map(|column| log(path, &columns, column, format, &spacing))
+        .collect::<Result<Vec<Log>, LogError>>()?;
+    if let Some(column) = reference {
+        let format = format.of_reference(column.unit);
+        let reference = log(path, &columns, column, &format, &spacing)?;
+        for log in &mut logs {
+            log.take_reference(&reference)
+                .map_err(|error| LogError::of_file(path, error))?;
+        }
+    }
+    Ok(logs)
+}
+
+/// Why a reference is not held against the words.
+#[derive(Debug, thiserror::Error)]
+enum ReferenceError {
+    #[error(
+        "samples are missing, and a reference is compared word by word: --rows, or --from-s and --to-s, takes \
+         a part without gaps"
+    )]
+    Gaps,
 }
 
 /// Reads the logs of three gyros from one text, in one pass; `format.column` is not used.
@@ -388,6 +434,7 @@ fn log(
         column: column_name,
         unit: conversion.shown(),
         rate_deg_per_h,
+        reference_deg_per_h: Vec::new(),
         sample_rate_hz: spacing.sample_rate_hz,
         timing: spacing.timing,
         empty_lines: columns.empty_lines,
@@ -504,8 +551,8 @@ fn angle_remark(values: &[f64], conversion: &Conversion) -> Option<String> {
     if conversion.running.is_some() || values.len() < CORRELATED_MIN {
         return None;
     }
-    let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let (words, steps) = (lag_one(values)?, lag_one(&steps)?);
+    let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
+    let (words, steps) = (lag_one(values.iter().copied())?, lag_one(steps)?);
     (words > ANGLE_CORRELATION && steps.abs() < STEP_CORRELATION).then(|| {
         format!(
             "each number follows the one before it (correlation {}) and the steps do not: this may be a \
@@ -516,14 +563,14 @@ fn angle_remark(values: &[f64], conversion: &Conversion) -> Option<String> {
 }
 
 /// Correlation of neighbours about the mean; nothing of numbers that do not vary.
-fn lag_one(values: &[f64]) -> Option<f64> {
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "sample counts are far below 2^53"
-    )]
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+fn lag_one(values: impl Iterator<Item = f64> + Clone) -> Option<f64> {
+    let (sum, count) = values
+        .clone()
+        .fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    let mean = sum / count;
+    let square: f64 = values.clone().map(|value| (value - mean).powi(2)).sum();
     // By the steps, as the ends of an angle that runs on are far from its mean.
-    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
-    (square > 0.0).then(|| 1.0 - 0.5 * steps.sum::<f64>() / square)
+    let pairs = values.clone().zip(values.skip(1));
+    let steps: f64 = pairs.map(|(one, next)| (next - one).powi(2)).sum();
+    (square > 0.0).then(|| 1.0 - 0.5 * steps / square)
 }

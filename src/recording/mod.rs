@@ -1,9 +1,15 @@
 //! Reads recorded logs (NPY, CSV) into rate words and group means of a calibration (CSV), and writes
 //! words as CSV.
 //!
-//! Invariant: a log comes out of here whole, finite, equally spaced and in deg/h, or not at all;
-//! every complaint names the file and the place in it. Every command that takes numbers from a file
-//! takes them through this module, and what it says of text and NPY holds for all of them.
+//! ```text
+//!  input ──> transcode ──> layout ──> table ──> columns ──> stretches, timing ──> convert ──> log
+//!                  npy ──────────────────────────┘
+//! ```
+//!
+//! Invariant: a log comes out of here whole, in deg/h and equally spaced, or not at all; samples are
+//! missing (NaN) only where gaps were asked for. Every complaint names the file and the place in it, and
+//! what is in doubt the option by which it is said. Every command that takes numbers from a file takes
+//! them through this module.
 
 mod bounds;
 mod column;

@@ -172,9 +172,7 @@ impl<R: BufRead> Lines<R> {
                 self.end += 1;
                 continue;
             }
-            let found = available
-                .iter()
-                .position(|byte| matches!(byte, b'\n' | b'\r'));
+            let found = memchr::memchr2(b'\n', b'\r', available);
             let count = found.unwrap_or(available.len());
             if bytes.len() + count > LINE_BYTES_MAX {
                 return Err(self.complaint(format!(

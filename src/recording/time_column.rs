@@ -96,7 +96,7 @@ impl TimeColumn {
 
     /// Takes the stamp of the next row; an error says that memory is used up.
     pub(super) fn take(&mut self, stamp: Stamp) -> io::Result<()> {
-        let unit_ticks = self.unit_ticks();
+        let unit_ticks = || self.units.last().map_or(TICKS, |unit| ticks_of(*unit));
         let clock = &mut self.clock;
         if self.stamps.is_empty() {
             clock.first = stamp.ticks;
@@ -107,7 +107,7 @@ impl TimeColumn {
         clock.resolution = clock.resolution.min(stamp.resolution);
         let mut ticks = stamp.ticks.saturating_add(clock.begun_again);
         if ticks < clock.last
-            && let Some(width) = clock.begins_again(ticks, unit_ticks)
+            && let Some(width) = clock.begins_again(ticks, unit_ticks())
         {
             clock.begun_again += width;
             ticks += width;

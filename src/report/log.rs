@@ -4,15 +4,16 @@ use std::borrow::Cow;
 
 use serde_json::{Map, Value};
 
-use crate::gate::plain;
+use crate::gate::{Verdict, plain};
 use crate::metrics::ChannelMetrics;
 use crate::report::json::channel::channel;
+use crate::report::json::summary::gate;
 use crate::report::layout::json::{SCHEMA, tool};
 use crate::report::layout::json::{object, pretty, put};
 use crate::report::layout::text::{Tone, toned, wrapped};
 use crate::report::record::measured::Measured;
 use crate::report::text::quality::quality_text;
-use crate::report::text::table::{channels_text, failures_text, filter_verdicts};
+use crate::report::text::table::{channels_text, failures_text, filter_verdicts, gates_text};
 use crate::scenario::{MotionClass, MotionConfig};
 use crate::wording::counted;
 
@@ -39,6 +40,8 @@ pub struct LogReport<'a> {
     pub motion: &'a MotionConfig,
     /// Channels, raw first.
     pub channels: &'a [(String, ChannelMetrics)],
+    /// Gates, judged.
+    pub verdicts: &'a [Verdict],
     /// What else is worth saying.
     pub notes: &'a [String],
 }
@@ -84,6 +87,7 @@ pub fn log_text(report: &LogReport, width: usize, colour: bool) -> String {
     text.push_str(&failures_text(&measured, &[], width, colour));
     text.push_str(&quality_text(report.channels, width));
     text.push_str(&filter_verdicts(&measured, width, colour));
+    text.push_str(&gates_text(report.verdicts, width, colour, |_| None));
     for note in report.notes {
         let note = format!("{} {note}", toned("note:", Tone::Doubt, colour));
         text.push_str(&wrapped(&note, "  ", width));
@@ -105,6 +109,11 @@ pub fn log_json(report: &LogReport) -> String {
         ("log", log(report)),
         ("channels", channels.into()),
     ]);
+    if !report.verdicts.is_empty() {
+        let gates = report.verdicts.iter();
+        let gates = gates.map(|verdict| gate(verdict).into()).collect();
+        root.insert("gates".to_owned(), Value::Array(gates));
+    }
     if !report.notes.is_empty() {
         root.insert("notes".to_owned(), report.notes.to_vec().into());
     }

@@ -12,7 +12,7 @@ use crate::cli::terminal::output;
 use crate::cli::terminal::place::{self, Place};
 use crate::experiment::{
     LogFilters, LogInput, LogSettings, LogTrial, Progress, compensate_log, load_log_compensation,
-    load_log_filters, try_log,
+    load_log_filters, load_log_gates, try_log,
 };
 use crate::program::Programs;
 use crate::recording::{AssemblyColumns, Log, LogError, LogFormat, read_assembly_log, read_logs};
@@ -135,9 +135,9 @@ fn place(options: &LogOptions) -> Place<'_> {
 
 /// Files that are read.
 fn inputs(options: &LogOptions) -> Vec<&Path> {
-    let calibration = options.calibration.iter();
+    let others = [&options.calibration, &options.gates, &options.layout];
     std::iter::once(&options.file)
-        .chain(calibration)
+        .chain(others.into_iter().flatten())
         .map(PathBuf::as_path)
         .collect()
 }
@@ -242,16 +242,23 @@ fn conclude(
     let settings = settings(options);
     let (filters, programs) = filters.unzip();
     let programs = Starting(programs.flatten());
+    let gates = match options.gates.as_deref().map(load_log_gates).transpose() {
+        Ok(gates) => gates,
+        Err(errors) => return Ok((refused(&errors), Vec::new())),
+    };
     let is_one = logs.len() == 1;
     let (mut trials, mut taken) = (Vec::new(), Vec::new());
     for log in logs {
-        let trial = match try_log(log.input, filters, &settings, &programs) {
+        let mut trial = match try_log(log.input, filters, &settings, &programs) {
             Ok(trial) => trial,
             Err(error) => {
                 output::talk(&format!("error: {error}"));
                 return Ok((Exit::Usage, trials));
             }
         };
+        if let Some(gates) = &gates {
+            trial.judge(gates);
+        }
         let folder = options.output.as_ref().map(|folder| match &log.column {
             Some(column) if !is_one => folder.join(own_name(column, &mut taken)),
             _ => folder.clone(),
@@ -276,10 +283,14 @@ fn conclude(
             documents.collect::<Vec<_>>().join(",\n")
         ))?;
     }
-    let exit = match trials.iter().any(LogTrial::has_failed) {
-        true => Exit::RunFailed,
-        false => Exit::Success,
-    };
+    let exits = trials
+        .iter()
+        .map(|trial| match (trial.has_failed(), trial.is_refused()) {
+            (true, _) => Exit::RunFailed,
+            (false, true) => Exit::GateFailed,
+            (false, false) => Exit::Success,
+        });
+    let exit = exits.fold(Exit::Success, Exit::worst);
     Ok((exit, trials))
 }
 

@@ -76,8 +76,19 @@ fn typed<'a>(given: &ArgMatches, ids: &[&'a str]) -> Vec<String> {
         .collect()
 }
 
-/// A swing has no Allan curve, no noise fit and no means at rest.
+/// An assembly has no reference; a swing no Allan curve, no noise fit and no means at rest.
 fn of_log(options: &LogOptions, given: &ArgMatches) -> Vec<String> {
+    if options.calibration.is_some() {
+        let idle = typed(given, &["reference_column", "reference_unit"]).into_iter();
+        let idle: Vec<String> = idle
+            .map(|option| {
+                format!("{option} has no effect beside --calibration: leave one of them out")
+            })
+            .collect();
+        if !idle.is_empty() {
+            return idle;
+        }
+    }
     const AT_REST: [&str; 4] = [
         "bias_averaging_time_s",
         "fit_tau_min_s",

@@ -20,7 +20,7 @@ const TIME_MAX_S: f64 = 1e7;
 #[derive(Args, Debug)]
 #[command(group(ArgGroup::new("written").multiple(true)))]
 pub(in crate::cli) struct LogOptions {
-    /// Recorded log: NPY, or text with columns between `,`, `;`, tabs or blanks
+    /// Recorded log: NPY, or text with columns between `,`, `;`, tabs or blanks; `-` is standard input
     pub(in crate::cli) file: PathBuf,
     /// File with a table [log] that says how the log is read; options stand above it
     #[arg(long, value_name = "FILE")]
@@ -63,6 +63,10 @@ pub(in crate::cli) struct LogOptions {
         requires = "calibration"
     )]
     pub(in crate::cli) compensation_form: CompensationForm,
+    /// File whose [[gate]] tables are held against what is measured: a scenario, a base or gates alone; exit
+    /// code 1 if one fails
+    #[arg(long, value_name = "FILE", conflicts_with = "explain")]
+    pub(in crate::cli) gates: Option<PathBuf>,
     /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz
     #[arg(long, value_name = "MOTION", default_value = "static")]
     pub(in crate::cli) motion: LogMotion,

@@ -2,8 +2,10 @@
 
 mod compensation;
 mod filters;
+mod gates;
 mod trial;
 
 pub use compensation::{CompensatedLog, LogCompensation, compensate_log, load_log_compensation};
 pub use filters::{LogFilters, load_log_filters};
+pub use gates::{LogGates, load_log_gates};
 pub use trial::{LogInput, LogMotion, LogSettings, LogTrial, LogTrialError, try_log};

@@ -6,12 +6,14 @@ use rayon::prelude::*;
 
 use super::compensation::CompensatedLog;
 use super::filters::LogFilters;
+use super::gates::LogGates;
 use crate::experiment::build::VERSION;
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
 use crate::experiment::output_file::write_file;
 use crate::experiment::outside::{self, Input, Outside, OutsideFilter};
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, Progress, RecordLength, Unfinished, allan_options};
+use crate::gate::Verdict;
 use crate::metrics::{
     ChannelMetrics, Motion, Settings, Unavailable, examine_log, is_sample_or_longer,
     measure_present, noise_state_space, record_fit_tau_min_s,
@@ -125,6 +127,7 @@ pub struct LogTrial {
     source: Option<(String, String)>,
     filters: Vec<FinishedFilter>,
     channels: Vec<(String, ChannelMetrics)>,
+    verdicts: Vec<Verdict>,
     notes: Vec<String>,
 }
 
@@ -161,7 +164,7 @@ pub fn try_log(
     notes.splice(0..0, log.notes());
     log.take_about_common_mean();
     let record = GyroRecord {
-        truth_deg_per_h: Vec::new(),
+        truth_deg_per_h: std::mem::take(&mut log.reference_deg_per_h),
         response_deg_per_h: None,
         raw_deg_per_h: std::mem::take(&mut log.rate_deg_per_h),
         compensated_deg_per_h: compensated,
@@ -190,6 +193,7 @@ pub fn try_log(
     ));
     Ok(LogTrial {
         channels,
+        verdicts: Vec::new(),
         motion: report_motion(settings.motion),
         source: filters.map(LogFilters::source),
         filters: finished,
@@ -410,6 +414,17 @@ impl LogTrial {
         &self.channels
     }
 
+    /// Holds gates against what was measured.
+    pub fn judge(&mut self, gates: &LogGates) {
+        self.verdicts = gates.judge(&self.channels);
+    }
+
+    /// Whether a gate was not accepted.
+    #[must_use]
+    pub fn is_refused(&self) -> bool {
+        self.verdicts.iter().any(|verdict| !verdict.accepted)
+    }
+
     /// Whether a filter failed.
     #[must_use]
     pub fn has_failed(&self) -> bool {
@@ -432,6 +447,7 @@ impl LogTrial {
             filters: filters.map(|(file, digest)| (file.as_str(), digest.as_str())),
             motion: &self.motion,
             channels: &self.channels,
+            verdicts: &self.verdicts,
             notes: &self.notes,
         })
     }

@@ -65,7 +65,7 @@ pub(in crate::recording) enum Selection<'a> {
 /// The columns that are read.
 #[derive(Clone, Debug, Default)]
 pub(in crate::recording) struct Chosen {
-    /// Those of the data, in the order in which they were asked for.
+    /// Those of the data, in the order in which they were asked for; that of the reference behind them.
     pub(in crate::recording) data: Vec<usize>,
     /// Those whose sum is the time.
     pub(in crate::recording) time: Vec<(usize, TimeUnit)>,
@@ -116,10 +116,15 @@ pub(in crate::recording) fn choose(
     if needs_time {
         chooser.put_time(&named, &mut chosen)?;
     }
+    let reference = match (selection, &format.reference_column) {
+        (Selection::Named(_), Some(name)) if needs_time => Some(chooser.one(name)?),
+        _ => None,
+    };
     chosen.data = match named[..] {
-        [] => vec![chooser.only(&chosen)?],
+        [] => vec![chooser.only(&chosen, reference)?],
         _ => named,
     };
+    chosen.data.extend(reference);
     for (position, index) in chosen.data.iter().enumerate() {
         if chosen.time.iter().any(|(time, _)| time == index) {
             return Err(LayoutError::DataIsTime);
@@ -223,8 +228,10 @@ impl Chooser<'_> {
 
     /// The column of the data where none was named: the only one beside the time, or the only one of these
     /// whose heading names a unit of a gyro.
-    fn only(&self, chosen: &Chosen) -> Result<usize, LayoutError> {
-        let is_time = |index: &usize| chosen.time.iter().any(|(time, _)| time == index);
+    fn only(&self, chosen: &Chosen, reference: Option<usize>) -> Result<usize, LayoutError> {
+        let is_time = |index: &usize| {
+            chosen.time.iter().any(|(time, _)| time == index) || reference == Some(*index)
+        };
         let others: Vec<usize> = (0..self.layout.width()).filter(|it| !is_time(it)).collect();
         if let [index] = others[..] {
             return Ok(index);
@@ -244,8 +251,12 @@ impl Chooser<'_> {
             .decimal_comma
             .as_deref()
             .map(|row| format!("; if `{}` is one number, say --decimal comma", shown(row)));
+        let wrapped = match self.layout.names.is_empty() {
+            true => "; if all of them are one quantity, --wrapped-columns 1 reads it row by row",
+            false => "",
+        };
         Err(LayoutError::SeveralColumns(
-            self.listed() + &comma.unwrap_or_default(),
+            self.listed() + &comma.unwrap_or_default() + wrapped,
         ))
     }
 

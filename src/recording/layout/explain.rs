@@ -33,8 +33,10 @@ impl Layout {
                 Some(chosen.time.iter().map(|(_, unit)| *unit).collect()),
             ),
         };
+        let references = usize::from(given.reference_column.is_some());
+        let data = &chosen.data[..chosen.data.len().saturating_sub(references)];
         LogFormat {
-            column: names(&mut chosen.data.iter().copied()),
+            column: names(&mut data.iter().copied()),
             time,
             time_unit,
             skip_lines: whole(self.skip_lines),

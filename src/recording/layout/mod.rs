@@ -102,6 +102,10 @@ impl Layout {
 
     /// Whether a line, without blanks around it, is a comment.
     pub(super) fn is_comment(&self, text: &str) -> bool {
+        // Most lines are rows, and begin as numbers do.
+        if text.starts_with(|first: char| matches!(first, '0'..='9' | '-' | '+' | '.')) {
+            return false;
+        }
         let mut marks = self.marks.iter();
         marks.any(|mark| super::text::is_comment(text, &[mark]))
     }

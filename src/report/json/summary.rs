@@ -26,7 +26,7 @@ pub fn run_summary_json(report: &RunReport) -> String {
         .collect();
     let published = report.scenario.published.iter().map(published).collect();
     let gates = report.verdicts.iter();
-    let gates = gates.map(|verdict| gate(report, verdict)).collect();
+    let gates = gates.map(|verdict| gate_of_run(report, verdict)).collect();
     let mut root = object([
         ("schema", SCHEMA.into()),
         ("tool", tool(report.tool_version)),
@@ -144,7 +144,17 @@ fn published(figure: &PublishedConfig) -> Value {
     record.into()
 }
 
-fn gate(report: &RunReport, verdict: &Verdict) -> Value {
+/// A gate with its verdict, and the key that nobody set and that its metric says again.
+fn gate_of_run(report: &RunReport, verdict: &Verdict) -> Value {
+    let mut record = gate(verdict);
+    if let Some(key) = report.assumption_behind(verdict.metric_name()) {
+        record.insert("says_again".to_owned(), key.into());
+    }
+    record.into()
+}
+
+/// A gate with its verdict.
+pub(in crate::report) fn gate(verdict: &Verdict) -> Map<String, Value> {
     let mut record = object([
         ("metric", verdict.metric.as_str().into()),
         ("verdict", verdict.kind.as_str().into()),
@@ -171,8 +181,5 @@ fn gate(report: &RunReport, verdict: &Verdict) -> Value {
             record.insert(key.to_owned(), value.into());
         }
     }
-    if let Some(key) = report.assumption_behind(verdict.metric_name()) {
-        record.insert("says_again".to_owned(), key.into());
-    }
-    record.into()
+    record
 }

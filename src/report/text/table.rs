@@ -47,7 +47,9 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
         text.push_str(&calibration_text(sheet, width, colour));
     }
     text.push_str(&published(report, colour));
-    text.push_str(&gates(report, width, colour));
+    text.push_str(&gates_text(report.verdicts, width, colour, |verdict| {
+        report.assumption_behind(verdict.metric_name())
+    }));
     for note in report.notes {
         let note = format!("{} {note}", toned("note:", Tone::Doubt, colour));
         text.push_str(&wrapped(&note, INDENT, width));
@@ -444,14 +446,21 @@ fn simulated<'a>(
 }
 
 /// One line per gate: `PASS  rls.delay_vs_raw_ms: 0.340 ms ... lies inside [0.33, 0.35] ms`.
-fn gates(report: &RunReport, width: usize, colour: bool) -> String {
-    if report.verdicts.is_empty() {
+///
+/// * `assumption_behind`: the key that nobody set and that the metric of a gate says again.
+pub(crate) fn gates_text(
+    verdicts: &[Verdict],
+    width: usize,
+    colour: bool,
+    assumption_behind: impl Fn(&Verdict) -> Option<&'static str>,
+) -> String {
+    if verdicts.is_empty() {
         return String::new();
     }
     let mut text = String::from("\n");
-    for verdict in report.verdicts {
+    for verdict in verdicts {
         let mut line = gate_line(verdict, colour);
-        if let Some(key) = report.assumption_behind(verdict.metric_name()) {
+        if let Some(key) = assumption_behind(verdict) {
             line.push_str(&format!(
                 "; this says an assumption again: nobody set {key}"
             ));

@@ -65,6 +65,9 @@ pub fn load_log_format(
 }
 
 /// A table `[log]` as a file holds it.
+///
+/// # Panics
+/// Never: a flat table of words and numbers is TOML.
 #[must_use]
 pub fn log_format_toml(format: &LogFormat) -> String {
     let table = BTreeMap::from([(TABLE, format)]);
