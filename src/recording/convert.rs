@@ -50,7 +50,7 @@ pub(super) enum UnitError {
     #[error("--kind rate needs a unit of rate such as deg/s: {0} is none")]
     AngleAsRate(LogUnit),
     #[error(
-        "--scale {0} is out of range: expected a number from {least:e} to {most:e}, or the negative of such a \
+        "--scale {0:?} is out of range: expected a number from {least:e} to {most:e}, or the negative of such a \
          number",
         least = SCALE.0,
         most = SCALE.1
