@@ -7,6 +7,9 @@ use super::text::shown;
 use super::unit::{AngleUnit, LogUnit, Per, RateUnit};
 use super::unit_text::Spelled;
 
+/// Sizes of the units that one count stands for.
+const SCALE: (f64, f64) = (1e-30, 1e30);
+
 /// How numbers become rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Conversion {
@@ -46,8 +49,13 @@ pub(super) enum UnitError {
     RateAsAngle { kind: WordKind, unit: RateUnit },
     #[error("--kind rate needs a unit of rate such as deg/s: {0} is none")]
     AngleAsRate(LogUnit),
-    #[error("--scale 0 makes every number the same: expected another factor")]
-    ScaleOfNothing,
+    #[error(
+        "--scale {0:?} is out of range: expected a number from {least:e} to {most:e}, or the negative of such a \
+         number",
+        least = SCALE.0,
+        most = SCALE.1
+    )]
+    Scale(f64),
 }
 
 impl Conversion {
@@ -57,8 +65,8 @@ impl Conversion {
     /// No unit, or two that contradict each other; a kind of number that the unit is not of.
     pub(super) fn of(format: &LogFormat, column: &Column) -> Result<Self, UnitError> {
         let scale = format.scale.unwrap_or(1.0);
-        if scale.abs() <= 0.0 {
-            return Err(UnitError::ScaleOfNothing);
+        if !(SCALE.0..=SCALE.1).contains(&scale.abs()) {
+            return Err(UnitError::Scale(scale));
         }
         let heading = match format.heading_units {
             Some(HeadingUnits::Ignore) => None,
