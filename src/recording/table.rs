@@ -153,6 +153,8 @@ struct Table {
     roles: Vec<Role>,
     columns: Columns,
     is_gap: bool,
+    /// Whether it is a log, of which the options can say that samples are missing.
+    is_log: bool,
     /// Cells of a first row that are no numbers; none once the second row was held against it.
     words: Vec<(usize, String)>,
     /// Values of a record that is spread over lines.
@@ -205,6 +207,7 @@ impl Table {
             layout,
             roles,
             is_gap: missing == Some(MissingWords::Gap),
+            is_log: wanted.needs_time,
             words: Vec::new(),
             record: Vec::new(),
         }
@@ -327,7 +330,7 @@ impl Table {
                     Ok(value) => value,
                     Err(_) if self.is_gap && is_missing(cell) => f64::NAN,
                     Err(error) => {
-                        let way_out = if is_missing(cell) {
+                        let way_out = if self.is_log && is_missing(cell) {
                             "; --missing gap takes the sample to be missing"
                         } else {
                             ""

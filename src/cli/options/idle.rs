@@ -332,7 +332,6 @@ mod tests {
             (format!("{log} --columns a,b,c"), "--calibration"),
             (format!("{log} --temperature-column t"), "--calibration"),
             (format!("{log} --compensation-form exact"), "--calibration"),
-            (format!("{log} --time-unit ms"), "--time"),
             (
                 "fogbench filter a.csv --unit deg/h --rate-hz 1 --filters a.toml --csv".to_owned(),
                 "--output",

@@ -4,7 +4,7 @@ use crate::metrics::estimate::influence::resampled;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::two_runs::DifferenceSums;
 use crate::metrics::estimate::value::Estimate;
-use crate::metrics::key::metric::{Applies, MetricKey};
+use crate::metrics::key::metric::{Against, Applies, MetricKey};
 use crate::metrics::record::{FilterFacts, WeightScatter};
 use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
 
@@ -17,6 +17,7 @@ pub static TWO_RUN_NOISE_STD: MetricKey = MetricKey::of_filters(
 )
 .lower_is_better()
 .heading("noise of two runs")
+.against(Against::Truth)
 .by_choice();
 
 /// Its part through the weights.
@@ -28,6 +29,7 @@ pub static NOISE_THROUGH_WEIGHTS: MetricKey = MetricKey::of_filters(
 )
 .lower_is_better()
 .heading("noise through weights")
+.against(Against::Truth)
 .by_choice();
 
 /// Its part of the weights.
@@ -39,6 +41,7 @@ pub static WEIGHT_NOISE_TIMES_MOTION: MetricKey = MetricKey::of_filters(
 )
 .lower_is_better()
 .heading("weight noise times motion")
+.against(Against::Truth)
 .by_choice();
 
 /// Enters what two runs show of the noise of a filter.
