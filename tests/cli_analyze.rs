@@ -196,8 +196,6 @@ fn a_swing_is_measured_as_far_as_it_needs_no_truth() {
         "delay_by_correlation_ms",
         "tracking_error_rms_deg_per_h",
         "two_run_noise_std_deg_per_h",
-        "noise_through_weights_deg_per_h",
-        "weight_noise_times_motion_deg_per_h",
     ];
     let of_raw = [&of_truth[..], &["amplitude_ratio"]].concat();
     assert!(assert_same_channel(&log, &run, "raw", &of_raw) >= 4);

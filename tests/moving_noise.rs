@@ -140,7 +140,7 @@ fn two_runs_of_an_adaptive_filter_differ_as_two_seeds_do_and_the_parts_are_told_
     for (channel, printed, wanted) in found {
         println!("{channel} {printed} {wanted}");
         assert_close(printed, wanted, 0.1, 0.0);
-        let part = |name: &str| field(&result, &format!("{channel}.{name}"), "value");
+        let part = |name: &str| field(&result, &format!("{channel}.{metric}"), name);
         let through = part("noise_through_weights_deg_per_h");
         let of_weights = part("weight_noise_times_motion_deg_per_h");
         println!("{channel} {through} {of_weights}");

@@ -87,10 +87,18 @@ const fn not_judged(
     }
 }
 
-const NOT_JUDGED: [NotJudged; 11] = [
+const NOT_JUDGED: [NotJudged; 13] = [
     not_judged(
         ["", "mean", "noise_gain_over_bound"],
         "a mean stands at its bound, where the ratio moves to second order alone: stated is 4.5 times true",
+    ),
+    not_judged(
+        ["swing", "lms", "dc_gain_adapted"],
+        "its sum of weights is 1 to a billionth; its twin has no runs on other noise: 0.61",
+    ),
+    not_judged(
+        ["swing", "lms", "noise_gain"],
+        "runs on other noise, wherever they are told from the blocks, err on the wide side: 1.5",
     ),
     not_judged(["steps", "rls", "mean_deg"], WITHIN_A_STRETCH),
     not_judged(["steps", "rls", "mean_error"], WITHIN_A_STRETCH),

@@ -59,8 +59,6 @@ rows! {
     motion::tracking::TRACKING_ERROR_RMS,
     noise::level::NOISE_STD,
     noise::two_runs::TWO_RUN_NOISE_STD,
-    noise::two_runs::NOISE_THROUGH_WEIGHTS,
-    noise::two_runs::WEIGHT_NOISE_TIMES_MOTION,
     noise::autocovariance::LAG1_CORRELATION,
     noise::level::NOISE_GAIN,
     trial::noise_delay::NOISE_DELAY_BOUND_NOISE_GAIN,

@@ -8,39 +8,19 @@ use crate::metrics::key::metric::{Against, Applies, MetricKey};
 use crate::metrics::record::{FilterFacts, WeightScatter};
 use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
 
+/// Fields of the metric: its parts, in the same unit.
+const THROUGH_WEIGHTS: &str = "noise_through_weights_deg_per_h";
+const WEIGHTS_TIMES_MOTION: &str = "weight_noise_times_motion_deg_per_h";
+
 /// Noise of two runs.
 pub static TWO_RUN_NOISE_STD: MetricKey = MetricKey::of_filters(
     "two_run_noise_std_deg_per_h",
     "deg/h",
     Applies::Moving,
-    "standard deviation of the difference of two runs of an adaptive filter, same motion, other noise, over sqrt(2)",
+    "standard deviation of the difference of two runs of an adaptive filter, same motion, other noise, over sqrt(2); beside it that of its parts: noise through the weights, and weights times motion",
 )
 .lower_is_better()
 .heading("noise of two runs")
-.against(Against::Truth)
-.by_choice();
-
-/// Its part through the weights.
-pub static NOISE_THROUGH_WEIGHTS: MetricKey = MetricKey::of_filters(
-    "noise_through_weights_deg_per_h",
-    "deg/h",
-    Applies::Moving,
-    "part of the noise of two runs: the noise of the words through the weights of each run",
-)
-.lower_is_better()
-.heading("noise through weights")
-.against(Against::Truth)
-.by_choice();
-
-/// Its part of the weights.
-pub static WEIGHT_NOISE_TIMES_MOTION: MetricKey = MetricKey::of_filters(
-    "weight_noise_times_motion_deg_per_h",
-    "deg/h",
-    Applies::Moving,
-    "part of the noise of two runs: the difference of their weights times the motion",
-)
-.lower_is_better()
-.heading("weight noise times motion")
 .against(Against::Truth)
 .by_choice();
 
@@ -52,32 +32,38 @@ pub(crate) fn put_two_runs(facts: &FilterFacts, samples: usize, metrics: &mut Ch
     let Some(runs) = &facts.two_runs else {
         return;
     };
-    let is_in_blocks = matches!(facts.weight_scatter(samples, 0.0), WeightScatter::Blocks);
-    for (key, sums) in [
-        (&TWO_RUN_NOISE_STD, &runs.whole),
-        (&NOISE_THROUGH_WEIGHTS, &runs.through_weights),
-        (&WEIGHT_NOISE_TIMES_MOTION, &runs.of_weights),
-    ] {
-        let estimate = deviation_of(sums);
-        let estimate = match is_in_blocks {
-            true => estimate,
-            false => Estimate::without_interval(estimate.value, NOT_FROM_ONE_RECORD),
-        };
-        metrics.put(key, estimate);
+    let estimate = match facts.weight_scatter(samples, 0.0) {
+        WeightScatter::Blocks => deviation_of(&runs.whole),
+        _ => Estimate::without_interval(deviation(&runs.whole), NOT_FROM_ONE_RECORD),
+    };
+    let metric = metrics.put(&TWO_RUN_NOISE_STD, estimate);
+    let parts = [
+        (THROUGH_WEIGHTS, &runs.through_weights),
+        (WEIGHTS_TIMES_MOTION, &runs.of_weights),
+    ];
+    for (name, sums) in parts {
+        metric.fields.insert(name, deviation(sums));
     }
 }
 
+fn deviation(blocks: &[DifferenceSums]) -> f64 {
+    let whole = blocks.iter();
+    let whole = whole.fold(DifferenceSums::default(), |total, own| total.plus(*own));
+    whole.deviation()
+}
+
 /// Standard deviation with the interval that blocks of time show.
+///
+/// The second run has the noise of half a record later: a block and that half a record behind it show the
+/// same noise, and leave together.
 fn deviation_of(blocks: &[DifferenceSums]) -> Estimate {
-    let sum_without = |left_out: Option<usize>| {
+    let half = blocks.len() / 2;
+    let without = |left_out: usize| {
         let kept = blocks.iter().enumerate();
-        let kept = kept.filter(|(block, _)| Some(*block) != left_out);
-        kept.fold(DifferenceSums::default(), |total, (_, own)| {
-            total.plus(*own)
-        })
+        let kept = kept.filter(|(block, _)| block % half != left_out);
+        let kept: Vec<DifferenceSums> = kept.map(|(_, own)| *own).collect();
+        deviation(&kept)
     };
-    let left_out: Vec<f64> = (0..blocks.len())
-        .map(|block| sum_without(Some(block)).deviation())
-        .collect();
-    resampled(sum_without(None).deviation(), &left_out, None).clamped(0.0, f64::INFINITY)
+    let left_out: Vec<f64> = (0..half).map(without).collect();
+    resampled(deviation(blocks), &left_out, None).clamped(0.0, f64::INFINITY)
 }

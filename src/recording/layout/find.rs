@@ -176,9 +176,10 @@ fn rows(head: &[&HeadLine], format: &LogFormat) -> Result<Option<(Rows, Vec<Stri
     Ok(Some((Rows::of(sample, separator, decimal), marks)))
 }
 
-/// The last of some lines; nothing of none.
+/// The last of some lines, half of them at most: what stands above few rows is none; nothing of none.
 fn tail<'a, 'b>(lines: &'b [&'a str]) -> Option<&'b [&'a str]> {
-    (!lines.is_empty()).then(|| &lines[lines.len().saturating_sub(TAIL)..])
+    let most = TAIL.min(lines.len().div_ceil(2));
+    (!lines.is_empty()).then(|| &lines[lines.len() - most..])
 }
 
 impl Rows {
