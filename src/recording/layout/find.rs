@@ -9,6 +9,8 @@ use crate::recording::text::{Delimiter, is_comment, is_heading, is_missing};
 
 /// Lines at the end of the first ones that tell how rows look.
 const TAIL: usize = 40;
+/// Lines of which all are looked at.
+const FEW: usize = 6;
 /// Marks of comments, but for that which may separate.
 const MARKS: [&str; 3] = ["#", "//", "%"];
 
@@ -176,9 +178,13 @@ fn rows(head: &[&HeadLine], format: &LogFormat) -> Result<Option<(Rows, Vec<Stri
     Ok(Some((Rows::of(sample, separator, decimal), marks)))
 }
 
-/// The last of some lines, half of them at most: what stands above few rows is none; nothing of none.
+/// The last of some lines, half of them at most unless they are few: what stands above the rows is none;
+/// nothing of none.
 fn tail<'a, 'b>(lines: &'b [&'a str]) -> Option<&'b [&'a str]> {
-    let most = TAIL.min(lines.len().div_ceil(2));
+    let most = match lines.len() {
+        few @ ..FEW => few,
+        many => TAIL.min(many.div_ceil(2)),
+    };
     (!lines.is_empty()).then(|| &lines[lines.len() - most..])
 }
 
