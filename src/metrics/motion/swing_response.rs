@@ -134,6 +134,8 @@ impl Response {
         filter: Option<&FilterFacts>,
     ) -> Option<Learned> {
         let (facts, truth) = (filter?, fits.truth.as_ref()?);
+        // As for the response itself: what a gradient sees it learns within a block.
+        self.learned.as_ref()?;
         let clock = self.clock;
         let newest = facts.shape.newest_age_samples;
         let raw = &fits.raw.whole;
