@@ -46,8 +46,8 @@ table! {
         roll_over: Option<f64>, example 65536.0, in 1e-9..=1e20;
         /// Lines at the start of the file to pass over.
         skip_lines: Option<u32>, example 4, in 0..=1000000;
-        /// What begins a line that is passed over [default: `#`, `//`, `%`, and `;` where it does not
-        /// separate].
+        /// What begins a line that is passed over; without it `#`, `//`, `%`, and `;` where it does
+        /// not separate.
         comment: Option<String>, example "//";
         /// Line of the heading, from 1; 0 if there is none.
         heading_line: Option<u32>, example 5, in 0..=1000000;
