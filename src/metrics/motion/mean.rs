@@ -230,14 +230,14 @@ pub(crate) fn paired_ratio(
     let gain = interval::mean(own) / interval::mean(raw);
     let scatter = paired_scatter((own, raw), gain, facts, None);
     let over_level = 1.0 / of.raw_deg_per_h;
-    match (
-        facts.weight_scatter(record.raw_deg_per_h.len(), 0.0),
-        learned,
-    ) {
-        (WeightScatter::Blocks, _) => scatter.over(of.samples).scaled(over_level).about(of.ratio),
-        (WeightScatter::Runs { .. }, Some(learned)) => {
-            let blocks = scatter.over(of.samples).scaled(over_level);
-            learned.spread().plus(blocks).about(of.ratio)
+    let blocks = scatter.over(of.samples).scaled(over_level);
+    let weights = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
+    let by_runs = weights.of(None, |weights| weights.iter().sum());
+    match (weights, learned) {
+        (WeightScatter::Blocks, _) => blocks.about(of.ratio),
+        (WeightScatter::Runs { .. }, _) => {
+            let by_runs = by_runs.map_or(Spread::known(0.0), |runs| runs.spread());
+            by_runs.plus(blocks).about(of.ratio)
         }
         (WeightScatter::Learned(_), Some(learned)) => {
             let ends = scatter.ends_over(of.samples).scaled(over_level);
