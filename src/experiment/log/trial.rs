@@ -1,6 +1,7 @@
 //! A recorded log in place of table and gyro: measured as it is, or through filters.
 
 use std::str::FromStr;
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
@@ -183,6 +184,7 @@ pub fn try_log(
         sample_period_s,
         settings: &metric_settings,
         drift: None,
+        motion: OnceLock::new(),
     };
     let channels = measured_channels(&cut, &finished, settings.fit_tau_min_s.is_some());
     notes.extend(notes_on(

@@ -1,6 +1,7 @@
 //! Measuring the records of one repeat: which words are compared with which.
 
-use crate::metrics::catalogue::DIVERGED_AT;
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 
 use super::allan_settings::allan_options;
@@ -17,6 +18,7 @@ use crate::experiment::outside;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::plan::Plan;
 use crate::gyro::{self, slow_drift};
+use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{
     ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Learning, Motion, Record, Settings,
     known_motion, measure,
@@ -57,6 +59,7 @@ pub(crate) fn measure_repeat(
             sample_period_s,
             settings,
             drift: Some(drift.clone()),
+            motion: OnceLock::new(),
         })
         .collect();
     let measured = |name: String, measure: &dyn Fn() -> ChannelMetrics| {
@@ -96,6 +99,9 @@ pub(crate) struct Cut<'a> {
     pub(crate) settings: &'a Settings,
     /// How the slow noise of the gyro scatters over seeds, where that is known.
     pub(crate) drift: Option<SlowDrift>,
+    /// What of the filters' input is no noise, worked out once for all that adapt; none at a rate that
+    /// never changes.
+    pub(crate) motion: OnceLock<Option<Vec<f64>>>,
 }
 
 impl Cut<'_> {
@@ -169,14 +175,18 @@ impl Cut<'_> {
         Learning::of(&filter.shape, input, motion, first)
     }
 
-    /// What of the words is no noise; none at a rate that never changes.
-    fn motion_in(&self, words: &[f64]) -> Option<Vec<f64>> {
-        let truth = &self.record.truth_deg_per_h;
-        let moves = truth
-            .windows(2)
-            .any(|two| two[0] < two[1] || two[1] < two[0]);
-        let response = self.record.response_deg_per_h.as_deref();
-        moves.then(|| known_motion(words, response, truth))
+    /// What of the filters' input is no noise; none at a rate that never changes.
+    fn motion(&self) -> Option<&[f64]> {
+        let of_record = || {
+            let record = self.record;
+            let truth = &record.truth_deg_per_h;
+            let moves = truth
+                .windows(2)
+                .any(|two| two[0] < two[1] || two[1] < two[0]);
+            let response = record.response_deg_per_h.as_deref();
+            moves.then(|| known_motion(record.filter_input_deg_per_h(), response, truth))
+        };
+        self.motion.get_or_init(of_record).as_deref()
     }
 
     /// Mean weights of runs of a filter on other noise, if the blocks of its record do not show how they
@@ -212,12 +222,12 @@ impl Cut<'_> {
             Ok(words) => {
                 let input = self.record.filter_input_deg_per_h();
                 let adapts = matches!(filter.shape.rule, WeightRule::Adaptive { .. });
-                let motion = adapts.then(|| self.motion_in(input)).flatten();
-                let on_motion = motion.as_deref().map(|motion| (input, motion));
+                let motion = adapts.then(|| self.motion()).flatten();
+                let on_motion = motion.map(|motion| (input, motion));
                 let facts = FilterFacts {
                     // What a filter learned before it started afresh is gone.
                     learning: (!filter.restarts)
-                        .then(|| self.learning(filter, input, motion.as_deref()))
+                        .then(|| self.learning(filter, input, motion))
                         .flatten()
                         .map(|learning| learning.with_drift(self.drift_variance())),
                     weights_of_other_runs: on_motion
