@@ -62,6 +62,21 @@ impl Outcome {
         }
     }
 
+    /// The sentence of the command line.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Same => "Nothing that speaks for a difference",
+            Self::Better => "A change for the better",
+            Self::New => "A figure that was not there before",
+            Self::ChangedScenario => "A scenario that differs",
+            Self::Unsure => "What does not decide",
+            Self::Changed => "A change where neither direction is better",
+            Self::Removed => "A figure that is gone",
+            Self::Worse => "A change for the worse",
+        }
+    }
+
     /// What a real difference is.
     fn of_difference(difference: f64, better: Better) -> Self {
         match (better, difference > 0.0) {

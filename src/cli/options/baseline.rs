@@ -2,48 +2,56 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValue;
 use clap::{Args, Subcommand, ValueEnum};
 
 use crate::baseline::Outcome;
 
 /// What may be among the outcomes that fail.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::cli) enum FailOn {
-    /// A change for the worse
-    Worse,
-    /// A figure that is gone
-    Removed,
-    /// A change where neither direction is better
-    Changed,
-    /// What does not decide
-    Unsure,
-    /// A scenario that differs
-    ChangedScenario,
-    /// A figure that was not there before
-    New,
-    /// A change for the better
-    Better,
-    /// Nothing
+    /// An outcome other than the same.
+    Outcome(Outcome),
+    /// None of them.
     Never,
 }
 
 impl FailOn {
+    /// Every outcome but the last, which is the same, then none.
+    const ALL: [Self; Outcome::ALL.len()] = {
+        let mut all = [Self::Never; Outcome::ALL.len()];
+        let mut index = 0;
+        while index + 1 < all.len() {
+            all[index] = Self::Outcome(Outcome::ALL[index]);
+            index += 1;
+        }
+        all
+    };
+
     /// The outcomes of a list; none where it says that something fails and that nothing does.
     pub(in crate::cli) fn outcomes(list: &[Self]) -> Option<Vec<Outcome>> {
-        if list.contains(&Self::Never) && list.iter().any(|fail_on| *fail_on != Self::Never) {
-            return None;
-        }
-        let outcomes = list.iter().filter_map(|fail_on| match fail_on {
-            Self::Worse => Some(Outcome::Worse),
-            Self::Removed => Some(Outcome::Removed),
-            Self::Changed => Some(Outcome::Changed),
-            Self::Unsure => Some(Outcome::Unsure),
-            Self::ChangedScenario => Some(Outcome::ChangedScenario),
-            Self::New => Some(Outcome::New),
-            Self::Better => Some(Outcome::Better),
-            Self::Never => None,
-        });
-        Some(outcomes.collect())
+        let outcomes: Vec<Outcome> = list
+            .iter()
+            .filter_map(|fail_on| match fail_on {
+                Self::Outcome(outcome) => Some(*outcome),
+                Self::Never => None,
+            })
+            .collect();
+        (outcomes.is_empty() || outcomes.len() == list.len()).then_some(outcomes)
+    }
+}
+
+impl ValueEnum for FailOn {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, meaning) = match self {
+            Self::Outcome(outcome) => (outcome.as_str(), outcome.meaning()),
+            Self::Never => ("never", "Nothing"),
+        };
+        Some(PossibleValue::new(name).help(meaning))
     }
 }
 
