@@ -324,8 +324,8 @@ fn every_metric_is_yielded_pooled_headed_and_documented() {
         );
         let is_of_repeats = [&BIAS_REPEATABILITY, &SCALE_FACTOR_REPEATABILITY].contains(key);
         let is_yielded = match key.applies {
-            // The tests of campaigns, of failures and of logs have those.
-            Applies::Calibration | Applies::Log => true,
+            // The tests of campaigns, of failures, of logs and of black boxes have those.
+            Applies::Calibration | Applies::Log | Applies::Twins => true,
             Applies::Pipeline => pipelines.contains(name),
             _ if name == "diverged_at_s" => true,
             _ if is_of_repeats => pooled.metrics.contains(name),

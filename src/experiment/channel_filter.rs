@@ -8,7 +8,7 @@
 use crate::experiment::run::{RateTwins, RecordLength};
 use crate::filters::hardware::{HardwareFilter, HealthSummary, PipelineSettings, PipelineTiming};
 use crate::filters::{Divergence, Filter, FilterKind, Output};
-use crate::metrics::{ChannelFailure, RateGain};
+use crate::metrics::{BlackBox, ChannelFailure, RateGain};
 use crate::signal::{FilterShape, Section, WeightRule};
 
 /// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
@@ -120,6 +120,8 @@ pub(super) struct FilterWords {
     pub(super) mean_weights: Option<Vec<f64>>,
     /// The same over consecutive blocks of the record; empty where the weights are given.
     pub(super) block_weights: Vec<Vec<f64>>,
+    /// What twins tell of words that only their maker can make again; none of a filter of the bench.
+    pub(super) black_box: Option<BlackBox>,
 }
 
 impl FilterWords {
@@ -133,6 +135,7 @@ impl FilterWords {
             rate_gains: Vec::new(),
             mean_weights: None,
             block_weights: Vec::new(),
+            black_box: None,
         }
     }
 }
@@ -353,6 +356,7 @@ impl ChannelFilter {
                 }),
                 block_dc_gains_adapted: self.block_dc_gains_adapted(),
                 output_deg_per_h: self.output_deg_per_h,
+                black_box: None,
             }),
         };
         FinishedFilter {

@@ -5,6 +5,7 @@
 
 #[cfg(feature = "report")]
 mod baseline;
+mod black_box;
 mod budget;
 mod build;
 mod campaign;

@@ -225,8 +225,11 @@ fn measure_words(
 /// Gives one reason to everything that is still missing.
 fn refuse_rest(reason: &Unavailable, metrics: &mut ChannelMetrics) {
     for known in known_metrics() {
-        let is_own =
-            **known == DIVERGED_AT || matches!(known.applies, Applies::Pipeline | Applies::Log);
+        let is_own = **known == DIVERGED_AT
+            || matches!(
+                known.applies,
+                Applies::Pipeline | Applies::Log | Applies::Twins
+            );
         if !is_own && metrics.get(known).is_none() {
             metrics.miss(known, reason.clone());
         }
@@ -245,7 +248,10 @@ fn explain_missing(
     let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
     for known in known_metrics() {
         if **known == DIVERGED_AT
-            || matches!(known.applies, Applies::Calibration | Applies::Log)
+            || matches!(
+                known.applies,
+                Applies::Calibration | Applies::Log | Applies::Twins
+            )
             || metrics.get(known).is_some()
             || metrics.why_unavailable(known).is_some()
         {

@@ -119,5 +119,7 @@ pub use theory::claim::{Claim, ClaimedFigure, Lookalikes};
 pub use theory::learning::Learning;
 pub use theory::memory::memory_samples;
 pub use theory::prediction::{Prediction, lags_needed, predict};
+pub use trial::black_box::{BlackBox, TwinFigure};
+pub(crate) use trial::black_box::{REACHES_START, SINE_FREQUENCY, STEP_GAINS, put_black_box};
 pub use trial::readaptation::{GainUnits, Readaptation};
 pub use verdict::{AgainstOne, Deed, FilterVerdict, Finding, filter_verdict};

@@ -1,12 +1,15 @@
 //! The verdict on a filter: what the intervals of its metrics say it does to signal and noise.
 
+use super::estimate::interval::NORMAL_QUANTILE;
 use super::estimate::table::ChannelMetrics;
 use super::estimate::value::Estimate;
 use super::key::metric::MetricKey;
+use super::motion::mean::{MEAN, MEAN_RATIO};
 use super::motion::steps::SETTLED_GAIN;
 use super::motion::swing::{AMPLITUDE_RATIO, DELAY_VS_RAW};
 use super::noise::level::NOISE_GAIN;
 use super::steps::staircase::SCALE_FACTOR_ERROR;
+use super::trial::black_box::{MEMORY_1_PERCENT, SINE_FREQUENCY, SINE_GAIN, STEP_GAINS};
 use super::trial::dc_gain::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, DC_GAIN};
 use super::trial::noise_delay::NOISE_GAIN_OVER_BOUND;
 use super::trial::predicted::DELAY_AT_DC;
@@ -136,8 +139,10 @@ pub fn filter_verdict(channel: &ChannelMetrics) -> Option<FilterVerdict> {
     let estimate = |key: &MetricKey| metric(key).map(|metric| metric.estimate);
     let gain = |key: &MetricKey| estimate(key).map(|gain| Finding::new(gain, GAIN_TOLERANCE));
     let noise = |ratio: Estimate| Finding::new(ratio, NOISE_TOLERANCE);
+    // A gain that twins found least is no better for what the filter learns of a lasting rate.
     // Of raw the amplitude ratio is that to the truth; only filters have a gain at DC.
     let dc_gain = gain(&DC_GAIN);
+    let dc_gain = least_gain(channel).map_or(dc_gain, Some);
     let noise_gain = estimate(&NOISE_GAIN);
     if channel.error.is_some() || (dc_gain.is_none() && noise_gain.is_none()) {
         return None;
@@ -168,6 +173,40 @@ pub fn filter_verdict(channel: &ChannelMetrics) -> Option<FilterVerdict> {
         over_bound: estimate(&NOISE_GAIN_OVER_BOUND).map(noise),
         readaptation_s: estimate(&READAPTATION_TIME),
     })
+}
+
+/// Least standard errors of a mean of which a ratio is told.
+const MEAN_PER_ERROR_MIN: f64 = 10.0;
+
+/// Times the memory that a period must hold for the gain of a sine to be one at DC.
+const PERIOD_PER_MEMORY_MIN: f64 = 30.0;
+
+/// The least of the gains that tell of DC, where twins have run: mean over mean where the mean is sure, a
+/// small step, a slow sine.
+fn least_gain(channel: &ChannelMetrics) -> Option<Finding> {
+    let known = |key: &MetricKey| channel.get(key).map(|metric| metric.estimate);
+    let memory_s = known(&MEMORY_1_PERCENT).map(|memory| memory.value);
+    let sine = channel.get(&SINE_GAIN).filter(|sine| {
+        let frequency_hz = sine.fields.get(SINE_FREQUENCY);
+        let period_s = frequency_hz.map(|frequency_hz| 1.0 / frequency_hz);
+        let least_s = memory_s.map(|memory_s| PERIOD_PER_MEMORY_MIN * memory_s);
+        period_s >= least_s && least_s.is_some()
+    });
+    let steps = STEP_GAINS.iter().filter_map(|(key, _)| known(key));
+    let twins: Vec<Estimate> = steps.chain(sine.map(|sine| sine.estimate)).collect();
+    if twins.is_empty() {
+        return None;
+    }
+    let is_sure = |mean: &Estimate| {
+        let error = (mean.high - mean.low) / (2.0 * NORMAL_QUANTILE);
+        mean.value.abs() >= MEAN_PER_ERROR_MIN * error
+    };
+    let mean_ratio = known(&MEAN)
+        .filter(is_sure)
+        .and_then(|_| known(&MEAN_RATIO));
+    let all = twins.into_iter().chain(mean_ratio).chain(known(&DC_GAIN));
+    let least = all.min_by(|one, other| one.high.total_cmp(&other.high));
+    least.map(|least| Finding::new(least, GAIN_TOLERANCE))
 }
 
 /// What the gain and the two noise ratios mean together.
@@ -297,6 +336,34 @@ mod tests {
         let restored = verdict.fast_noise_restored.unwrap().estimate;
         let width = (0.05_f64 / 0.55).hypot(2e-4);
         assert!((restored.high / restored.value - 1.0 - width).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_least_gain_of_twins_counts_at_dc() {
+        let entries = [
+            ("dc_gain", 1.0, 1.0),
+            ("noise_gain", 0.23, 0.25),
+            ("step_gain_1s", 0.5, 0.5),
+            ("step_gain_10s", 0.7, 0.7),
+            ("mean_ratio", 0.9, 0.9),
+        ];
+        let verdict = filter_verdict(&channel(&entries)).unwrap();
+        let gain = verdict.dc_gain.unwrap();
+        assert!((gain.estimate.value - 0.5).abs() < 1e-12);
+        assert_eq!(verdict.deed, Deed::Attenuates);
+        // A sine within thirty memories says nothing of DC, and neither does a mean in doubt.
+        let mut entries = channel(&[
+            ("dc_gain", 1.0, 1.0),
+            ("step_gain_1s", 1.0, 1.0),
+            ("sine_gain", 0.3, 0.3),
+            ("memory_1_percent_s", 0.1, 0.1),
+            ("mean_deg_per_h", -1.0, 3.0),
+            ("mean_ratio", 0.2, 0.3),
+        ]);
+        let sine = entries.metrics.get_mut("sine_gain").unwrap();
+        sine.fields.insert(SINE_FREQUENCY, 1.0);
+        let verdict = filter_verdict(&entries).unwrap();
+        assert_eq!(verdict.dc_gain.unwrap().against_one, AgainstOne::Equal);
     }
 
     #[test]

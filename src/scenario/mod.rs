@@ -46,10 +46,10 @@ pub(crate) use check::cross::comparison::slug;
 pub(crate) use check::cross::{RESERVED, reserved};
 pub(crate) use check::leaf::is_name;
 pub use config::{
-    AllanConfig, AllanEstimatorConfig, AssumptionConfig, ComparisonColumn, ComparisonConfig,
-    ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig, GateDecision,
-    InconclusivePolicy, OutputConfig, PublishedConfig, RangeConfig, ReportedRuns, SamplesFormat,
-    Scenario, Spacing, TrialConfig,
+    AllanConfig, AllanEstimatorConfig, AssumptionConfig, BlackBoxTrial, ComparisonColumn,
+    ComparisonConfig, ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig,
+    GateDecision, InconclusivePolicy, OutputConfig, PublishedConfig, RangeConfig, ReportedRuns,
+    SamplesFormat, Scenario, Spacing, TrialConfig,
 };
 pub use document::setting::Setting;
 pub use generate::json_schema::json_schema;

@@ -101,8 +101,13 @@ pub(crate) fn value(metrics: &ChannelMetrics, name: &str) -> f64 {
 
 pub(crate) fn every_metric_is_answered(metrics: &ChannelMetrics) {
     let known = fogbench::metrics::known_metrics().iter();
-    // Those of estimates are no metrics of a record, and logs are examined beside it.
-    let of_record = |applies| !matches!(applies, Applies::Calibration | Applies::Log);
+    // Those of estimates are no metrics of a record, and logs are examined beside it, and twins run where a scenario asks for it.
+    let of_record = |applies| {
+        !matches!(
+            applies,
+            Applies::Calibration | Applies::Log | Applies::Twins
+        )
+    };
     for known in known.filter(|known| of_record(known.applies)) {
         let answered = metrics.metrics.contains_key(known.name)
             != metrics.unavailable.contains_key(known.name);

@@ -185,6 +185,7 @@ pub fn try_log(
         settings: &metric_settings,
         drift: None,
         motion: OnceLock::new(),
+        black_box: filters.and_then(|filters| filters.resolved().scenario.trial.black_box),
     };
     let channels = measured_channels(&cut, &finished, settings.fit_tau_min_s.is_some());
     notes.extend(notes_on(

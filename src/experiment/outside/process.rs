@@ -7,6 +7,7 @@ use super::failure::FailureKind;
 use super::probe::{self, Weights};
 use super::replay::registered;
 use super::{Input, OutsideFilter};
+use crate::experiment::black_box::{self, Handing, Subject, TwinInput};
 use crate::experiment::channel_filter::{
     ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter, WEIGHT_BLOCKS, given_gain,
 };
@@ -78,15 +79,20 @@ impl Listener for Ear<'_> {
 impl Program<'_> {
     /// What a fresh run of the program makes of some words.
     fn over(&self, words: &[f64], is_heard: bool) -> Result<Vec<f64>, Halt> {
+        let block = match self.config.mode {
+            ProcessMode::Stream => self.config.block_samples,
+            ProcessMode::Record => u32::try_from(words.len()).unwrap_or(u32::MAX),
+        };
+        self.in_blocks(words, block, is_heard)
+    }
+
+    /// The same in blocks of so many words.
+    fn in_blocks(&self, words: &[f64], block: u32, is_heard: bool) -> Result<Vec<f64>, Halt> {
         let ear = Ear {
             program: self,
             is_heard,
         };
         let config = self.config;
-        let block = match config.mode {
-            ProcessMode::Stream => config.block_samples,
-            ProcessMode::Record => u32::try_from(words.len()).unwrap_or(u32::MAX),
-        };
         let greeting = Greeting::new(
             1.0 / self.input.sample_period_s,
             self.input.channel.to_owned(),
@@ -108,7 +114,12 @@ impl Program<'_> {
 
     /// The same of words beside the record, of which nobody hears; none where the program fails on them.
     fn beside(&self, words: &[f64]) -> Result<Option<Vec<f64>>, Unfinished> {
-        match self.over(words, false) {
+        Self::unless_failed(self.over(words, false))
+    }
+
+    /// None where the program failed.
+    fn unless_failed(answers: Result<Vec<f64>, Halt>) -> Result<Option<Vec<f64>>, Unfinished> {
+        match answers {
             Ok(answers) => Ok(Some(answers)),
             Err(Halt::Failed(_)) => Ok(None),
             Err(Halt::Stopped) => Err(Unfinished::Stopped),
@@ -161,6 +172,27 @@ impl Program<'_> {
     }
 }
 
+impl Subject for Program<'_> {
+    fn answer(&self, words_deg_per_h: &[f64]) -> Result<Option<Vec<f64>>, Unfinished> {
+        self.beside(words_deg_per_h)
+    }
+
+    fn answer_word_by_word(&self, words_deg_per_h: &[f64]) -> Result<Option<Vec<f64>>, Unfinished> {
+        Self::unless_failed(self.in_blocks(words_deg_per_h, 1, false))
+    }
+
+    fn handing(&self) -> Handing {
+        match self.config.mode {
+            ProcessMode::Stream => Handing::Blocks(self.config.block_samples as usize),
+            ProcessMode::Record => Handing::Record,
+        }
+    }
+
+    fn register_samples(&self) -> usize {
+        self.config.output_register.samples()
+    }
+}
+
 impl OutsideFilter<'_> {
     /// The channel of a program.
     pub(super) fn process(
@@ -192,6 +224,12 @@ impl OutsideFilter<'_> {
         } else {
             Vec::new()
         };
+        let twins = TwinInput {
+            words_deg_per_h: input.words_deg_per_h,
+            sample_period_s: input.sample_period_s,
+        };
+        let trial = self.resolved.scenario.trial.black_box;
+        let black_box = black_box::examine(&program, &twins, trial)?;
         let (shape, words) = match program.weights(&output)? {
             Some(weights) => {
                 let shape = weights.shape(config.output_register.samples());
@@ -224,6 +262,7 @@ impl OutsideFilter<'_> {
             restarts: false,
             words: Ok(FilterWords {
                 rate_gains,
+                black_box,
                 ..words
             }),
             pipeline: None,

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::failure::FailureKind;
 use super::{Input, OutsideFilter};
+use crate::experiment::black_box;
 use crate::experiment::channel_filter::{FilterWords, FinishedFilter};
 use crate::filters::ReplayFilterConfig;
 use crate::metrics::{ChannelFailure, correlation_length_samples};
@@ -34,7 +35,10 @@ impl OutsideFilter<'_> {
             kind: None,
             shape: FilterShape::hidden(hidden, register_samples),
             restarts: false,
-            words: words.map(FilterWords::alone),
+            words: words.map(|words| FilterWords {
+                black_box: black_box::hidden(self.resolved.scenario.trial.black_box, NOT_RUN),
+                ..FilterWords::alone(words)
+            }),
             pipeline: None,
         }
     }

@@ -3,6 +3,7 @@
 
 use super::checker::Checker;
 use super::published::wrong_unit;
+use crate::experiment::black_box;
 use crate::experiment::campaign;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{assembly_motion, motion};
@@ -192,6 +193,7 @@ fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<Unavaila
     let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
     let repeats = usize::try_from(scenario.repeats).unwrap_or(usize::MAX);
     pipeline_metrics::lacks(scenario, channel, key)
+        .or_else(|| black_box::lacks(scenario, key))
         .or_else(|| assembly_motion::lacks(scenario, channel, key))
         .or_else(|| campaign::lacks(scenario, key))
         .or_else(|| metrics::encoder_lack(key, has_encoder))

@@ -12,6 +12,7 @@ use super::progress::{Progress, Unfinished, unless_stopped};
 use super::records::{RecordLength, stamp_s};
 use super::simulate::{GyroRecord, Simulation};
 use super::two_runs::two_runs;
+use crate::experiment::black_box::{self, BuiltIn, TwinInput};
 use crate::experiment::campaign;
 use crate::experiment::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
 use crate::experiment::outside;
@@ -20,9 +21,10 @@ use crate::experiment::plan::Plan;
 use crate::gyro::{self, slow_drift};
 use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{
-    ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Learning, Motion, Record, Settings,
-    known_motion, measure,
+    BlackBox, ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Learning, Motion, Record,
+    Settings, known_motion, measure, put_black_box,
 };
+use crate::scenario::BlackBoxTrial;
 use crate::signal::{SlowDrift, WeightRule};
 
 /// Channels of one repeat with their metrics.
@@ -60,6 +62,7 @@ pub(crate) fn measure_repeat(
             settings,
             drift: Some(drift.clone()),
             motion: OnceLock::new(),
+            black_box: scenario.trial.black_box,
         })
         .collect();
     let measured = |name: String, measure: &dyn Fn() -> ChannelMetrics| {
@@ -102,6 +105,8 @@ pub(crate) struct Cut<'a> {
     /// What of the filters' input is no noise, worked out once for all that adapt; none at a rate that
     /// never changes.
     pub(crate) motion: OnceLock<Option<Vec<f64>>>,
+    /// What twins are to show of every filter.
+    pub(crate) black_box: Option<BlackBoxTrial>,
 }
 
 impl Cut<'_> {
@@ -217,6 +222,29 @@ impl Cut<'_> {
         drift.map_or(0.0, |drift| drift.mean_variance([start_s, end_s]))
     }
 
+    /// What twins tell of a filter, where that is asked for.
+    fn black_box(
+        &self,
+        filter: &FinishedFilter,
+        words: &FilterWords,
+        input: &[f64],
+    ) -> Option<BlackBox> {
+        let Some(kind) = &filter.kind else {
+            return words.black_box.clone();
+        };
+        let subject = BuiltIn {
+            kind,
+            register_samples: filter.shape.register_samples,
+            sample_period_s: self.sample_period_s,
+        };
+        let input = TwinInput {
+            words_deg_per_h: input,
+            sample_period_s: self.sample_period_s,
+        };
+        // Nothing stops a filter of the bench.
+        black_box::examine(&subject, &input, self.black_box).ok()?
+    }
+
     pub(crate) fn measure_filter(&self, filter: &FinishedFilter) -> ChannelMetrics {
         let mut metrics = match &filter.words {
             Ok(words) => {
@@ -238,7 +266,12 @@ impl Cut<'_> {
                     }),
                     ..filter_facts(filter, words)
                 };
-                self.measure(&words.output_deg_per_h, input, Some(&facts))
+                let mut metrics = self.measure(&words.output_deg_per_h, input, Some(&facts));
+                if let Some(found) = self.black_box(filter, words, input) {
+                    let is_fixed = !adapts && filter.shape.hidden_reason().is_none();
+                    put_black_box(&found, is_fixed, &mut metrics);
+                }
+                metrics
             }
             Err(failure) => failed(failure.clone(), self.sample_period_s),
         };

@@ -183,7 +183,7 @@ fn check_tail(key: &MetricKey, samples: usize, last_step_index: usize) -> Result
 pub(crate) fn check_motion(known: &MetricKey, motion: &Motion) -> Result<(), Unavailable> {
     let fits = matches!(
         (known.applies, motion),
-        (Applies::Always | Applies::Pipeline, _)
+        (Applies::Always | Applies::Pipeline | Applies::Twins, _)
             | (
                 Applies::Steady | Applies::SteadyOrSwing | Applies::Separable,
                 Motion::Steady

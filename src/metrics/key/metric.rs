@@ -34,6 +34,8 @@ pub enum Applies {
     Calibration,
     /// The words of a recorded log.
     Log,
+    /// A filter that runs again on twins of its record.
+    Twins,
 }
 
 impl Applies {
@@ -64,6 +66,7 @@ impl Applies {
             Self::Moving => "a moving table",
             Self::Calibration => "the estimates of a calibration campaign",
             Self::Log => "a recorded log",
+            Self::Twins => "a filter whose scenario asks for it by trial.black_box",
             Self::Separable => {
                 "rest, constant rate, sines or steps, where noise can be told from motion,"
             }
@@ -359,6 +362,17 @@ impl MetricKey {
         definition: &'static str,
     ) -> Self {
         Self::of_filters(name, unit, Applies::Pipeline, definition).needs(Needs::Nothing)
+    }
+
+    /// A figure that twins of its record give of a filter.
+    pub(crate) const fn of_twins(
+        name: &'static str,
+        unit: &'static str,
+        definition: &'static str,
+    ) -> Self {
+        Self::of_filters(name, unit, Applies::Twins, definition)
+            .needs(Needs::Nothing)
+            .by_choice()
     }
 
     /// A figure of an estimate of a calibration campaign.

@@ -1,5 +1,6 @@
 //! The trial of a denoiser: gain, delay, noise-delay bound, readaptation, weight noise.
 
+pub(super) mod black_box;
 pub(super) mod dc_gain;
 pub(super) mod frozen_response;
 pub(super) mod noise_delay;

@@ -1,9 +1,14 @@
 //! The verdict on a filter in words.
 
 use crate::gate::{estimate_text, plain};
-use crate::metrics::catalogue::{NOISE_DELAY_BOUND_NOISE_GAIN, READAPTATION_TIME};
+use crate::metrics::catalogue::{
+    ADAPTATION_MEMORY, GLITCH_RESPONSE, LINEARITY_ERROR, LOOK_AHEAD, MEMORY_0P1_PERCENT,
+    MEMORY_1_PERCENT, NOISE_DELAY_BOUND_NOISE_GAIN, READAPTATION_TIME, SINE_GAIN, STEP_GAIN_1S,
+    STEP_GAIN_10S, STEP_GAIN_100S, TIME_INVARIANCE_ERROR,
+};
 use crate::metrics::{
-    AgainstOne, ChannelMetrics, Deed, Estimate, FilterVerdict, Finding, filter_verdict,
+    AgainstOne, ChannelMetrics, Deed, Estimate, FilterVerdict, Finding, Metric, MetricKey,
+    REACHES_START, filter_verdict,
 };
 
 /// Digits of an interval's half width.
@@ -28,7 +33,8 @@ pub(crate) fn verdict_text(channel: &ChannelMetrics) -> Option<String> {
         bound(channel, &verdict),
         readaptation(channel, &verdict),
     ];
-    let clauses: Vec<String> = clauses.into_iter().flatten().collect();
+    let clauses = clauses.into_iter().flatten();
+    let clauses: Vec<String> = clauses.chain(black_box(channel)).collect();
     Some(clauses.join("; "))
 }
 
@@ -182,6 +188,64 @@ fn readaptation(channel: &ChannelMetrics, verdict: &FilterVerdict) -> Option<Str
     bound.then(|| format!("does not learn the new motion: {reason}"))
 }
 
+/// What twins of the record show, one clause for each; nothing where none ran.
+fn black_box(channel: &ChannelMetrics) -> Vec<String> {
+    let known = |key: &MetricKey, say: &dyn Fn(String) -> String| {
+        let said = channel.get(key).map(|metric| say(text(&metric.estimate)));
+        said.or_else(|| {
+            let reason = channel.why_unavailable(key)?;
+            Some(format!("{}: {reason}", key.title()))
+        })
+    };
+    let ahead = channel.get(&LOOK_AHEAD);
+    let is_causal = ahead.is_some_and(|ahead| ahead.estimate.value <= 0.0);
+    let reaches = |ahead: &Metric| {
+        ahead
+            .fields
+            .get(REACHES_START)
+            .is_some_and(|all| *all > 0.0)
+    };
+    let at_least = if ahead.is_some_and(reaches) {
+        "at least "
+    } else {
+        ""
+    };
+    let ahead = known(&LOOK_AHEAD, &|samples| {
+        if is_causal {
+            "looks at no word ahead".to_owned()
+        } else {
+            format!("looks {at_least}{samples} samples ahead")
+        }
+    });
+    let gain = |of: &'static str| move |gain: String| format!("gain {of} {gain}");
+    let clauses = [
+        ahead,
+        known(&MEMORY_1_PERCENT, &|time_s| {
+            format!("remembers a word for {time_s} s to 1 %")
+        }),
+        known(&MEMORY_0P1_PERCENT, &|time_s| {
+            format!("{time_s} s to 0.1 %")
+        }),
+        known(&ADAPTATION_MEMORY, &|time_s| {
+            format!("has learned a small step after {time_s} s")
+        }),
+        known(&STEP_GAIN_1S, &gain("for a small step over 1 s")),
+        known(&STEP_GAIN_10S, &gain("over 10 s")),
+        known(&STEP_GAIN_100S, &gain("over 100 s")),
+        known(&SINE_GAIN, &gain("for a small slow sine")),
+        known(&LINEARITY_ERROR, &|error| {
+            format!("departs from a linear filter by {error}")
+        }),
+        known(&TIME_INVARIANCE_ERROR, &|error| {
+            format!("from one that does not change by {error}")
+        }),
+        known(&GLITCH_RESPONSE, &|part| {
+            format!("passes {part} of a single word far outside")
+        }),
+    ];
+    clauses.into_iter().flatten().collect()
+}
+
 /// Noise against the least that unit DC gain allows.
 fn bound(channel: &ChannelMetrics, verdict: &FilterVerdict) -> Option<String> {
     let over = verdict.over_bound?;
@@ -280,6 +344,25 @@ mod tests {
             ("allan_ratio_inside_memory", 0.9, 1.1),
         ]);
         assert!(!open.contains("inside its memory"), "{open}");
+    }
+
+    #[test]
+    fn what_twins_show_has_a_clause_each() {
+        let said = words(&[
+            ("dc_gain", 1.0, 1.0),
+            ("look_ahead_samples", 3.0, 3.0),
+            ("memory_1_percent_s", 0.25, 0.25),
+            ("step_gain_1s", 0.5, 0.5),
+            ("linearity_error", 0.2, 0.2),
+        ]);
+        assert!(
+            said.ends_with(
+                "; looks 3 samples ahead; remembers a word for 0.25 s to 1 %; gain for a small \
+                 step over 1 s 0.5; departs from a linear filter by 0.2"
+            ),
+            "{said}"
+        );
+        assert!(said.contains("DC gain 0.5"), "{said}");
     }
 
     #[test]

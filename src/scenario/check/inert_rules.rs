@@ -256,6 +256,7 @@ const RULES: &[Rule] = &[
     run("allan.estimator", STEADY, is_steady),
     run("allan.averaging_times", STEADY, is_steady),
     run("trial.rate_gain", "a [[filter]]", |s| !s.filters.is_empty()),
+    run("trial.black_box", "a [[filter]]", |s| !s.filters.is_empty()),
     run("trial.filter_state",
         "it needs dwells to begin afresh at, and filters; [turntable.steps] or \
          [turntable.scale_factor_test] and a [[filter]]",

@@ -230,6 +230,7 @@ const CASES: &[Case] = &[
     case("allan.estimator", "\"hadamard\"", SWING, STATIC),
     case("allan.averaging_times", "\"decade\"", SWING, STATIC),
     case("trial.rate_gain", "true", "", FILTER),
+    case("trial.black_box", "\"brief\"", "", FILTER),
     case("trial.filter_state", "\"reset\"", FILTER,
         "turntable.steps.rates_deg_per_s = [0.0, 1.0]\nturntable.steps.dwell_s = 5.0\n\
          filter = [{ name = \"f\", rls = {} }]\n"),

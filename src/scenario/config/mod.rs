@@ -20,4 +20,4 @@ pub use judging::{GateConfig, GateDecision, InconclusivePolicy, PublishedConfig}
 pub use output::{OutputConfig, ReportedRuns, SamplesFormat};
 pub use range::{RangeConfig, Spacing};
 pub use run::Scenario;
-pub use trial::{FilterState, TrialConfig};
+pub use trial::{BlackBoxTrial, FilterState, TrialConfig};

@@ -10,6 +10,10 @@ table! {
         /// the filter runs on the same words plus one rate and is free to adapt. Source of the default: it
         /// takes twelve times the time of the filter.
         rate_gain: bool = false;
+        /// Measure look-ahead, memory, gains, linearity and time invariance of every filter by twins of its own
+        /// record, from its first word on, 2^20 words at most. Without it nothing is: in full it takes some sixty times the time of
+        /// the filter.
+        black_box: Option<BlackBoxTrial>, example "whole";
         /// Whether filters go on from one rate of a staircase or scale factor test to the next, or start
         /// afresh at each, half-way through settle_s. Source of the default: a filter in service is not reset when the rate changes.
         filter_state: FilterState = "carried";
@@ -17,6 +21,14 @@ table! {
 }
 
 words! {
+    /// What twins of the record are to show of a filter.
+    pub enum BlackBoxTrial {
+        /// Look-ahead, memory and gains, for a change of one size and sign.
+        Brief = "brief",
+        /// Everything, for changes of three sizes and both signs.
+        Whole = "whole",
+    }
+
     /// What becomes of the filters between the rates of a staircase or a scale factor test.
     pub enum FilterState {
         /// They go on with what they have learnt.

@@ -146,6 +146,14 @@ impl Checks<'_> {
             );
             self.complain(key, message);
         }
+        if let Some(trial) = scenario.trial.black_box {
+            let message = format!(
+                "{key} = \"reset\" contradicts trial.black_box = \"{}\", which measures filters \
+                 that go on through the record",
+                trial.word()
+            );
+            self.complain(key, message);
+        }
     }
 
     /// Period of the output samples, s, but for errors that the gyro's own check finds.
