@@ -41,6 +41,8 @@ pub use log::{
     load_log_gates, try_log,
 };
 pub use outside::{ProgramFiles, program_files};
+#[cfg(feature = "cli")]
+pub use outside::{SUPERVISE, exchange_times};
 pub use plan::{Plan, Sound, check_suite, plan_suite};
 pub use run::{Progress, Run, RunError, Samples, UnknownName};
 pub use scenario::Scenario;

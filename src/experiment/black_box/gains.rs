@@ -8,6 +8,7 @@ use super::Figure;
 use super::subject::{Lack, Twins};
 use crate::metrics::catalogue::{ADAPTATION_MEMORY, SINE_GAIN};
 use crate::metrics::{GainUnits, MetricKey, SINE_FREQUENCY, STEP_GAINS, TwinFigure};
+use crate::turntable::first_measured_index;
 
 /// Sizes of a change in standard deviations of a word's noise; the figure is that of the first.
 const SIZES: [(f64, &str); 3] = [
@@ -127,9 +128,12 @@ fn pooled(answers: &[Answer], of: impl Fn(&Answer) -> f64) -> TwinFigure {
 
 /// Mean gain over a time behind the step.
 fn step_gain(twins: &Twins, steps: &[Answer], time_s: f64, memory_s: f64) -> Figure {
-    let samples = |time_s: f64| (time_s / twins.sample_period_s).round() as usize;
+    let samples = |time_s: f64| {
+        let samples = first_measured_index(time_s, twins.sample_period_s);
+        usize::try_from(samples).unwrap_or(usize::MAX)
+    };
     let start = twins.middle() + twins.register_samples() + samples(memory_s);
-    let end = start + samples(time_s).max(1);
+    let end = start.saturating_add(samples(time_s).max(1));
     if end > twins.words.len() {
         let left_s = (twins.words.len() - twins.middle()) as f64 * twins.sample_period_s;
         return Err(

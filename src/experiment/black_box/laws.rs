@@ -6,8 +6,11 @@ use crate::metrics::catalogue::{GLITCH_RESPONSE, LINEARITY_ERROR, TIME_INVARIANC
 use crate::metrics::{MetricKey, TwinFigure};
 use crate::random::Streams;
 
+/// A figure of a law, by twins.
+type Law = fn(&Twins) -> Figure;
+
 /// What is told here, with its key.
-pub(super) const LAWS: [(&MetricKey, fn(&Twins) -> Figure); 3] = [
+pub(super) const LAWS: [(&MetricKey, Law); 3] = [
     (&LINEARITY_ERROR, linearity),
     (&TIME_INVARIANCE_ERROR, time_invariance),
     (&GLITCH_RESPONSE, glitch),

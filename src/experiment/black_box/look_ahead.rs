@@ -20,8 +20,11 @@ const PLACES: usize = 10;
 /// Most words that are handed over one by one.
 const SINGLE_WORDS: usize = 1 << 13;
 
+/// What a word of the future becomes, of itself and the standard deviation of its noise.
+type Future = fn(f64, f64) -> f64;
+
 /// What the future becomes, each made of a word and the standard deviation of its noise.
-const FUTURES: [fn(f64, f64) -> f64; 3] = [
+const FUTURES: [Future; 3] = [
     |word, sigma| word + 100.0 * sigma,
     |word, sigma| word + sigma,
     |_, _| 0.0,
@@ -71,7 +74,7 @@ pub(super) fn look_ahead(twins: &Twins) -> Figure {
         _ if words.len() < (BLOCKS + 1) * block => in_record(words.len()),
         _ => in_blocks(block),
     };
-    let cases: Vec<(usize, &fn(f64, f64) -> f64)> = places
+    let cases: Vec<(usize, &Future)> = places
         .iter()
         .flat_map(|place| futures.iter().map(|future| (*place, future)))
         .collect();
@@ -121,7 +124,7 @@ fn seen_of(
     words: &[f64],
     own: &[f64],
     place: usize,
-    future: &fn(f64, f64) -> f64,
+    future: &Future,
 ) -> Result<Seen, Lack> {
     let mut changed = words.to_vec();
     for word in &mut changed[place..] {

@@ -1,6 +1,8 @@
 //! Channels whose words no filter of the bench makes: they are put beside the others once the record
 //! that they are made from stands.
 
+#[cfg(feature = "cli")]
+mod cost;
 mod failure;
 mod probe;
 mod process;
@@ -15,6 +17,8 @@ use crate::filters::{FilterKind, ProcessFilterConfig, ReplayFilterConfig};
 use crate::gyro;
 use crate::scenario::{NamedFile, Resolved};
 
+#[cfg(feature = "cli")]
+pub use cost::{SUPERVISE, exchange_times};
 pub(super) use failure::{is_from_outside, is_of_the_moment};
 pub use programs::{ProgramFiles, program_files};
 pub(super) use replay::read as read_replay;
