@@ -70,6 +70,7 @@ mod known_answers_turntable;
 mod least_noise;
 mod library;
 mod log_layouts;
+mod log_scenarios;
 mod metrics_file;
 mod metrics_intervals;
 mod metrics_records;

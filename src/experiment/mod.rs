@@ -10,7 +10,6 @@ mod budget;
 mod build;
 mod campaign;
 mod channel_filter;
-#[cfg(feature = "report")]
 mod log;
 #[cfg(feature = "report")]
 mod output_file;
@@ -34,11 +33,10 @@ pub use build::BUILD;
 pub use campaign::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
 };
-#[cfg(feature = "report")]
 pub use log::{
-    CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogMotion, LogSettings,
-    LogTrial, LogTrialError, compensate_log, load_log_compensation, load_log_filters,
-    load_log_gates, try_log,
+    CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogSettings, LogTrial,
+    LogTrialError, compensate_log, load_log_compensation, load_log_filters, load_log_gates,
+    try_log,
 };
 pub use outside::{ProgramFiles, program_files};
 #[cfg(feature = "cli")]

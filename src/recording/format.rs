@@ -3,6 +3,7 @@
 use super::layout::words::{
     DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind,
 };
+use super::motion::LogMotion;
 use super::time_unit::TimeUnit;
 use super::unit::LogUnit;
 use super::unit_text::Spelled;
@@ -13,6 +14,8 @@ table! {
     /// How a log is read. What is not given is found from the first lines of the file.
     #[derive(Default, Serialize)]
     pub struct LogFormat {
+        /// The log that a scenario measures, in place of table and gyro: NPY, or text with columns.
+        file: Option<String>, example "log.csv", kind File;
         /// Samples per second [default: what the column of the time says].
         rate_hz: Option<f64>, example 100.0, in 1e-6..=1e9, "Hz";
         /// Unit of the numbers: deg/h, deg/s or dps, mdeg/s, arcsec/s, rad/s, nrad/s, rpm and the like; as
@@ -73,11 +76,17 @@ table! {
         /// Time at which it ends.
         to_s: Option<f64>, example 3600.0, in 0.0..=1e12, "s";
         /// Stretches to take: a table with the columns from_s and to_s; metrics pool them.
-        segments: Option<String>, example "segments.csv";
+        segments: Option<String>, example "segments.csv", kind File;
         /// Cut the log where samples are missing, and pool the stretches between: no difference spans a gap.
         split_gaps: Option<bool>, example true;
         /// Longest step between stamps that is jitter and no gap [default: one and a half sample periods].
         max_gap_s: Option<f64>, example 0.02, in 1e-9..=1e9, "s";
+        /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz [default: static].
+        motion: Option<LogMotion>, example "static";
+        /// Shortest averaging time of the noise fit: longer than the noise is correlated
+        /// [default: what the correlation of the log asks for, and ten samples at least unless the words are
+        /// white].
+        fit_tau_min_s: Option<f64>, example 0.1, in 1e-9..=1e7, "s";
     }
 }
 

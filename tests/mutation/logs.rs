@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use fogbench::experiment::{LogFilters, LogMotion, LogSettings, load_log_filters, try_log};
+use fogbench::experiment::{LogFilters, LogSettings, load_log_filters, try_log};
 use fogbench::recording::{
-    AssemblyColumns, Log, LogFormat, LogUnit, RateUnit, TimeUnit, read_assembly_log, read_log,
-    read_stimulus,
+    AssemblyColumns, Log, LogFormat, LogMotion, LogUnit, RateUnit, TimeUnit, read_assembly_log,
+    read_log, read_stimulus,
 };
 use fogbench::report::{log_json, log_text};
 use fogbench::scenario::{AllanConfig, AllanEstimatorConfig};

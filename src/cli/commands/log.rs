@@ -239,7 +239,6 @@ fn conclude(
     options: &LogOptions,
     as_csv: bool,
 ) -> io::Result<(Exit, Vec<LogTrial>)> {
-    let settings = settings(options);
     let (filters, programs) = filters.unzip();
     let programs = Starting(programs.flatten());
     let gates = match options.gates.as_deref().map(load_log_gates).transpose() {
@@ -249,6 +248,7 @@ fn conclude(
     let is_one = logs.len() == 1;
     let (mut trials, mut taken) = (Vec::new(), Vec::new());
     for log in logs {
+        let settings = settings(options, &log.format);
         let mut trial = match try_log(log.input, filters, &settings, &programs) {
             Ok(trial) => trial,
             Err(error) => {
@@ -306,12 +306,12 @@ fn own_name(column: &str, taken: &mut Vec<String>) -> String {
     name
 }
 
-fn settings(options: &LogOptions) -> LogSettings {
+fn settings(options: &LogOptions, format: &LogFormat) -> LogSettings {
     LogSettings {
-        motion: options.motion,
+        motion: format.motion.unwrap_or_default(),
         warm_up_s: options.warm_up_s,
         bias_averaging_time_s: options.bias_averaging_time_s,
-        fit_tau_min_s: options.fit_tau_min_s,
+        fit_tau_min_s: format.fit_tau_min_s,
         allan: AllanConfig {
             estimator: options.allan_estimator,
             averaging_times: options.averaging_times,

@@ -13,7 +13,7 @@ use crate::cli::options::arguments::{Arguments, Command};
 use crate::cli::options::calibrate::CalibrateOptions;
 use crate::cli::options::hardware::{ExportOptions, FilterOptions, Kind, TimingOptions};
 use crate::cli::options::log::LogOptions;
-use crate::experiment::LogMotion;
+use crate::recording::LogMotion;
 use crate::vocabulary::ExportForm;
 
 /// Reads the command line.
@@ -95,7 +95,9 @@ fn of_log(options: &LogOptions, given: &ArgMatches) -> Vec<String> {
         "allan_estimator",
         "averaging_times",
     ];
-    if options.motion == LogMotion::Static {
+    let motion = given.try_get_one::<String>("motion").ok().flatten();
+    let motion = motion.and_then(|motion| motion.parse().ok());
+    if !matches!(motion, Some(LogMotion::Swing { .. })) {
         return Vec::new();
     }
     let idle = typed(given, &AT_REST).into_iter();

@@ -15,9 +15,13 @@ pub(in crate::cli) struct LayoutOptions {
     pub(in crate::cli) given: Vec<(&'static str, Setting)>,
 }
 
-/// The rows that are values, with their kinds.
+/// The key of the file that is read: an argument of every command.
+const FILE: &str = "file";
+
+/// The rows that are options, with their kinds.
 fn rows() -> impl Iterator<Item = (&'static Row, Kind)> {
     let rows = LogFormat::TABLE.rows.iter();
+    let rows = rows.filter(|row| row.name != FILE);
     rows.filter_map(|row| match row.content {
         Content::Value(kind) => Some((row, kind)),
         Content::Table(_) | Content::Tables(_) => None,

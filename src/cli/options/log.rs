@@ -7,7 +7,6 @@ use clap::{ArgGroup, Args};
 use crate::cli::options::format::Format;
 use crate::cli::options::layout::LayoutOptions;
 use crate::cli::options::numbers::{OptionError, within};
-use crate::experiment::LogMotion;
 use crate::scenario::AllanEstimatorConfig;
 use crate::vocabulary::{AveragingTimes, CompensationForm};
 
@@ -67,9 +66,6 @@ pub(in crate::cli) struct LogOptions {
     /// code 1 if one fails
     #[arg(long, value_name = "FILE", conflicts_with = "explain")]
     pub(in crate::cli) gates: Option<PathBuf>,
-    /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz
-    #[arg(long, value_name = "MOTION", default_value = "static")]
-    pub(in crate::cli) motion: LogMotion,
     /// Time at the start that metrics leave out, s
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
           value_parser = within(0.0, TIME_MAX_S, "s"))]
@@ -78,11 +74,6 @@ pub(in crate::cli) struct LogOptions {
     #[arg(long, value_name = "S", default_value_t = 100.0, allow_negative_numbers = true,
           value_parser = within(TIME_MIN_S, TIME_MAX_S, "s"))]
     pub(in crate::cli) bias_averaging_time_s: f64,
-    /// Shortest averaging time of the noise fit, s: longer than the noise is correlated
-    /// [default: what the correlation of the log asks for, and ten samples at least unless the words are white]
-    #[arg(long, value_name = "S", allow_negative_numbers = true,
-          value_parser = within(TIME_MIN_S, TIME_MAX_S, "s"))]
-    pub(in crate::cli) fit_tau_min_s: Option<f64>,
     /// Deviation of the Allan curve: `overlapping`, `plain`, `modified`, `hadamard`; the noise terms are
     /// fitted to the overlapping one
     #[arg(long, value_name = "ESTIMATOR", default_value = "overlapping")]

@@ -62,6 +62,15 @@ pub fn load_log_filters(
 }
 
 impl LogFilters {
+    /// Those of a scenario that measures a log and has passed every check; none where it has no filter.
+    pub(super) fn of(resolved: &Resolved, sample_rate_hz: f64) -> Option<Self> {
+        let has_filters = !resolved.scenario.filters.is_empty();
+        has_filters.then(|| Self {
+            resolved: resolved.clone(),
+            sample_rate_hz,
+        })
+    }
+
     /// The filters in the order of the file.
     pub(crate) fn configs(&self) -> &[FilterConfig] {
         &self.resolved.scenario.filters

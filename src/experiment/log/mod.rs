@@ -3,9 +3,13 @@
 mod compensation;
 mod filters;
 mod gates;
+mod run;
 mod trial;
+#[cfg(feature = "report")]
+mod written;
 
 pub use compensation::{CompensatedLog, LogCompensation, compensate_log, load_log_compensation};
 pub use filters::{LogFilters, load_log_filters};
 pub use gates::{LogGates, load_log_gates};
-pub use trial::{LogInput, LogMotion, LogSettings, LogTrial, LogTrialError, try_log};
+pub(crate) use run::run_log;
+pub use trial::{LogInput, LogSettings, LogTrial, LogTrialError, try_log};

@@ -1,6 +1,5 @@
 //! A recorded log in place of table and gyro: measured as it is, or through filters.
 
-use std::str::FromStr;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
@@ -8,32 +7,24 @@ use rayon::prelude::*;
 use super::compensation::CompensatedLog;
 use super::filters::LogFilters;
 use super::gates::LogGates;
-use crate::experiment::build::VERSION;
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
-use crate::experiment::output_file::write_file;
 use crate::experiment::outside::{self, Input, Outside, OutsideFilter};
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, Progress, RecordLength, Unfinished, allan_options};
 use crate::gate::Verdict;
 use crate::metrics::{
-    ChannelMetrics, Motion, Settings, Unavailable, examine_log, is_sample_or_longer,
-    measure_present, noise_state_space, record_fit_tau_min_s,
+    ChannelMetrics, Motion, Settings, examine_log, is_sample_or_longer, measure_present,
+    record_fit_tau_min_s,
 };
-use crate::recording::Log;
-use crate::report::{KalmanReport, LogReport, kalman_json, log_files};
-use crate::scenario::{AllanConfig, MotionConfig, SwingConfig};
-use crate::seal::digest_of_words;
-use crate::signal::RunSignals;
-use crate::store::{OutputFolder, StoreError};
+use crate::recording::{Log, LogMotion};
+use crate::scenario::{AllanConfig, MotionConfig, WITHOUT_OUTLIERS, motion_of_log};
 use crate::turntable::first_measured_index;
 use crate::wording::{counted, plain};
 
 /// Name of the log's own channel.
-const RAW: &str = "raw";
-/// What stands behind the name of a channel whose outliers are left out.
-const WITHOUT_OUTLIERS: &str = "_without_outliers";
+pub(super) const RAW: &str = "raw";
 /// Name of the channel without the constant errors of its assembly.
-const COMPENSATED: &str = "compensated";
+pub(super) const COMPENSATED: &str = "compensated";
 
 /// What is measured and filtered.
 #[derive(Clone, Debug)]
@@ -47,48 +38,6 @@ pub enum LogInput {
 impl From<Log> for LogInput {
     fn from(log: Log) -> Self {
         Self::Plain(log)
-    }
-}
-
-/// Swing frequencies that a log can hold, Hz: one cycle in eleven days to a quarter of the fastest rate.
-const SWING_HZ: (f64, f64) = (1e-6, 2.5e8);
-
-/// What the gyro did while the log was taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LogMotion {
-    /// It rested, or turned at a constant rate.
-    Static,
-    /// It swung.
-    Swing {
-        /// Swing frequency, Hz.
-        frequency_hz: f64,
-    },
-}
-
-/// A motion of a log that nobody knows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "expected `static`, or `swing:F` with a frequency F from {:e} to {:e} Hz",
-    SWING_HZ.0,
-    SWING_HZ.1
-)]
-pub struct UnknownLogMotion;
-
-impl FromStr for LogMotion {
-    type Err = UnknownLogMotion;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let (least, most) = SWING_HZ;
-        if text == "static" {
-            return Ok(Self::Static);
-        }
-        let frequency = text.strip_prefix("swing:").map(str::parse::<f64>);
-        match frequency {
-            Some(Ok(frequency_hz)) if (least..=most).contains(&frequency_hz) => {
-                Ok(Self::Swing { frequency_hz })
-            }
-            _ => Err(UnknownLogMotion),
-        }
     }
 }
 
@@ -121,15 +70,15 @@ pub struct LogTrialError {
 
 /// A log with everything measured on it.
 pub struct LogTrial {
-    log: Log,
-    record: GyroRecord,
-    length: RecordLength,
-    motion: MotionConfig,
-    source: Option<(String, String)>,
-    filters: Vec<FinishedFilter>,
-    channels: Vec<(String, ChannelMetrics)>,
-    verdicts: Vec<Verdict>,
-    notes: Vec<String>,
+    pub(super) log: Log,
+    pub(super) record: GyroRecord,
+    pub(super) length: RecordLength,
+    pub(super) motion: MotionConfig,
+    pub(super) source: Option<(String, String)>,
+    pub(super) filters: Vec<FinishedFilter>,
+    pub(super) channels: Vec<(String, ChannelMetrics)>,
+    pub(super) verdicts: Vec<Verdict>,
+    pub(super) notes: Vec<String>,
 }
 
 /// Measures a log, and what filters make of its words.
@@ -197,7 +146,7 @@ pub fn try_log(
     Ok(LogTrial {
         channels,
         verdicts: Vec::new(),
-        motion: report_motion(settings.motion),
+        motion: motion_of_log(settings.motion),
         source: filters.map(LogFilters::source),
         filters: finished,
         log,
@@ -396,20 +345,6 @@ fn metric_motion(motion: LogMotion) -> Motion {
     }
 }
 
-/// The motion as reports head their columns by it; a log does not tell a swing's amplitude.
-fn report_motion(motion: LogMotion) -> MotionConfig {
-    match motion {
-        LogMotion::Static => MotionConfig::rest(),
-        LogMotion::Swing { frequency_hz } => MotionConfig::Swing(SwingConfig {
-            rate_amplitude_deg_per_s: None,
-            angle_amplitude_deg: None,
-            frequency_hz,
-            soft_start_s: 0.0,
-            from_rest: false,
-        }),
-    }
-}
-
 impl LogTrial {
     /// Channels, `raw` first.
     #[must_use]
@@ -433,93 +368,5 @@ impl LogTrial {
     pub fn has_failed(&self) -> bool {
         let mut channels = self.channels.iter();
         channels.any(|(_, metrics)| metrics.error.is_some())
-    }
-
-    /// Gives the report of the trial, printed or written, to `then`.
-    pub fn with_report<T>(&self, then: impl FnOnce(&LogReport) -> T) -> T {
-        let unit = self.log.unit.to_string();
-        let filters = self.source.as_ref();
-        then(&LogReport {
-            tool_version: VERSION,
-            file: &self.log.file,
-            column: self.log.column.as_deref(),
-            unit: &unit,
-            sample_rate_hz: self.log.sample_rate_hz,
-            samples: self.present(),
-            warm_up_samples: self.length.warm_up,
-            filters: filters.map(|(file, digest)| (file.as_str(), digest.as_str())),
-            motion: &self.motion,
-            channels: &self.channels,
-            verdicts: &self.verdicts,
-            notes: &self.notes,
-        })
-    }
-
-    /// Words that were measured, missing ones not counted.
-    fn present(&self) -> usize {
-        let measured = &self.record.raw_deg_per_h[self.length.warm_up..];
-        measured.iter().filter(|word| !word.is_nan()).count()
-    }
-
-    /// The noise of the words as a linear system, JSON; that without outliers where there are any.
-    ///
-    /// # Errors
-    /// Why the words have no fit of noise terms.
-    pub fn kalman(&self) -> Result<String, Unavailable> {
-        let clean = format!("{RAW}{WITHOUT_OUTLIERS}");
-        let mut channels = self.channels.iter();
-        let clean = channels.find(|(name, _)| *name == clean);
-        let (_, raw) = clean.unwrap_or(&self.channels[0]);
-        let system = noise_state_space(raw)?;
-        Ok(kalman_json(&KalmanReport {
-            tool_version: VERSION,
-            file: &self.log.file,
-            system: &system,
-        }))
-    }
-
-    /// Writes `summary.json`, curves and pictures into `folder`, and the words of every filter
-    /// below `samples/` as NPY, with `as_csv` as CSV as well; in place of what stood there, as one.
-    ///
-    /// # Errors
-    /// Whatever the file system says, with the path.
-    pub fn write(&self, folder: &OutputFolder, as_csv: bool) -> Result<(), StoreError> {
-        let staged = folder.stage()?;
-        for file in self.with_report(|report| log_files(report, &self.signals(), as_csv)) {
-            write_file(&staged, &file)?;
-        }
-        staged.seal_plainly()?;
-        staged.put_files_in_place()
-    }
-
-    /// The words of the filters that did not fail.
-    fn filter_words(&self) -> impl Iterator<Item = (&str, &[f64])> {
-        self.filters.iter().filter_map(|filter| {
-            let words = filter.words.as_ref().ok()?;
-            Some((filter.name.as_str(), words.output_deg_per_h.as_slice()))
-        })
-    }
-
-    fn compensated_words(&self) -> Option<(&str, &[f64])> {
-        let words = self.record.compensated_deg_per_h.as_deref();
-        words.map(|words| (COMPENSATED, words))
-    }
-
-    fn signals(&self) -> RunSignals<'_> {
-        let raw = (RAW, self.record.raw_deg_per_h.as_slice());
-        RunSignals {
-            sample_period_s: self.log.sample_period_s(),
-            first_measured: self.length.warm_up,
-            prefix: "",
-            truth_deg_per_h: &[],
-            encoder_rad: None,
-            input_digest: (!self.filters.is_empty())
-                .then(|| digest_of_words(self.record.filter_input_deg_per_h())),
-            channels: std::iter::once(raw)
-                .chain(self.compensated_words())
-                .chain(self.filter_words())
-                .collect(),
-            temperature: None,
-        }
     }
 }

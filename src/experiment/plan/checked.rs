@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use crate::experiment::campaign::CompensationPlan;
-use crate::experiment::run::count;
+use crate::experiment::run::{RecordLength, count, sample_period_s};
 use crate::gyro;
+use crate::scenario::LogFacts;
 use crate::scenario::{Fidelity, Resolved};
 use crate::signal::GyroFacts;
 
@@ -12,7 +13,8 @@ use crate::signal::GyroFacts;
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub(crate) resolved: Resolved,
-    pub(crate) facts: GyroFacts,
+    /// None of a log.
+    pub(crate) facts: Option<GyroFacts>,
     pub(crate) warnings: Vec<String>,
     pub(crate) compensation: Option<CompensationPlan>,
     pub(crate) calibration: Option<String>,
@@ -25,10 +27,16 @@ impl Plan {
         &self.resolved
     }
 
-    /// The gyro in closed form.
+    /// The gyro in closed form; none of a log.
     #[must_use]
-    pub fn facts(&self) -> &GyroFacts {
-        &self.facts
+    pub fn facts(&self) -> Option<&GyroFacts> {
+        self.facts.as_ref()
+    }
+
+    /// The log that takes the place of table and gyro; none of a simulation.
+    #[must_use]
+    pub fn log(&self) -> Option<&LogFacts> {
+        self.resolved.log.as_ref()
     }
 
     /// What is allowed but worth saying.
@@ -56,7 +64,12 @@ impl Plan {
 
     /// Period of the output samples, s.
     pub(crate) fn sample_period_s(&self) -> f64 {
-        gyro::sample_period_s(&self.resolved.scenario.gyro)
+        sample_period_s(&self.resolved)
+    }
+
+    /// Samples of warm-up and record.
+    pub(crate) fn record_length(&self) -> RecordLength {
+        RecordLength::of(&self.resolved)
     }
 
     /// Shortest averaging time that sees the white noise of the gyro and not the low pass of loop
@@ -64,7 +77,8 @@ impl Plan {
     pub(crate) fn fit_tau_min_s(&self) -> f64 {
         const SAMPLES: f64 = 10.0;
         const TIME_CONSTANTS: f64 = 20.0;
-        let time_constant_s = 1.0 / (TAU * self.facts.loop_bandwidth_hz);
+        let bandwidth_hz = self.facts.as_ref().map(|facts| facts.loop_bandwidth_hz);
+        let time_constant_s = bandwidth_hz.map_or(0.0, |bandwidth_hz| 1.0 / (TAU * bandwidth_hz));
         (SAMPLES * self.sample_period_s()).max(TIME_CONSTANTS * time_constant_s)
     }
 
@@ -78,6 +92,9 @@ impl Plan {
     /// Relative cost of the run, for the order of work only.
     pub(crate) fn cost(&self) -> f64 {
         const LOOP_COST: f64 = 10.0;
+        if let Some(log) = self.log() {
+            return count(log.samples);
+        }
         let gyros = count(self.resolved.scenario.axis_prefixes().len());
         let words = gyros * self.simulated_s() / gyro::word_period_s(&self.resolved.scenario.gyro);
         match self.resolved.scenario.fidelity {

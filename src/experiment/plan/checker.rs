@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::checked::Plan;
 use crate::experiment::campaign::{self, CompensationPlan};
 use crate::experiment::run::motion_extremes;
+use crate::filters::ExpectedWords;
 use crate::gyro;
 use crate::scenario::{Resolved, ScenarioError};
 use crate::signal::GyroFacts;
@@ -31,14 +32,25 @@ pub(crate) fn plan(
 ) -> Result<Plan, Vec<ScenarioError>> {
     let mut checker = Checker::new(&resolved);
     checker.names();
-    let facts = checker.gyro();
+    let is_log = checker.resolved.log.is_some();
+    let facts = if is_log { None } else { checker.gyro() };
     let compensation = checker.compensation(campaigns);
     if let Some(facts) = &facts {
         checker.gyro_limits();
         checker.record_length(facts);
         checker.campaign();
-        checker.filters(facts);
-        checker.metrics(facts);
+        let words = checker.expected_words(facts);
+        checker.filters(&words);
+        checker.metrics();
+    }
+    if let Some(log) = &resolved.log {
+        checker.log_length(log);
+        checker.filters(&ExpectedWords {
+            sample_rate_hz: log.sample_rate_hz,
+            peak_deg_per_h: 0.0,
+            run: None,
+        });
+        checker.metrics();
     }
     let Checker {
         errors,
@@ -46,15 +58,16 @@ pub(crate) fn plan(
         calibration,
         ..
     } = checker;
-    match facts {
-        Some(facts) if errors.is_empty() => Ok(Plan {
+    // A gyro that is none has said why.
+    match errors.is_empty() && (is_log || facts.is_some()) {
+        true => Ok(Plan {
             resolved,
             facts,
             warnings,
             compensation,
             calibration,
         }),
-        _ => Err(errors),
+        false => Err(errors),
     }
 }
 

@@ -15,15 +15,14 @@ const PEAK_SIGMAS: f64 = 4.0;
 
 impl Checker<'_> {
     /// Refuses filters that cannot be or cannot keep up, and warns of those that will not do well.
-    pub(crate) fn filters(&mut self, facts: &GyroFacts) {
-        let words = self.expected_words(facts);
+    pub(crate) fn filters(&mut self, words: &ExpectedWords) {
         let filters = &self.resolved.scenario.filters;
         for (index, filter) in filters.iter().enumerate() {
             self.words_from_outside(index, filter);
-            let complaints = filter.check_on(index, &words);
+            let complaints = filter.check_on(index, words);
             if complaints.is_empty() {
                 // No place: warnings stand in the results, which name no folder.
-                self.warnings.extend(filter.notes(&words));
+                self.warnings.extend(filter.notes(words));
             }
             for complaint in complaints {
                 self.complain(&complaint.key, complaint.message);
@@ -61,8 +60,7 @@ impl Checker<'_> {
             .collect();
         if let Outside::Replay(config) = outside {
             let key = format!("{table}.samples");
-            let samples =
-                RecordLength::new(scenario, gyro::sample_period_s(&scenario.gyro)).total();
+            let samples = RecordLength::of(self.resolved).total();
             let file = self.resolved.named_file(&key);
             let read = file.map(|file| read_replay(&file.path, &config.samples, samples));
             let lack = read.and_then(Result::err);
@@ -74,7 +72,7 @@ impl Checker<'_> {
     }
 
     /// The words of the gyro, as far as they are known before it runs.
-    fn expected_words(&self, facts: &GyroFacts) -> ExpectedWords {
+    pub(crate) fn expected_words(&self, facts: &GyroFacts) -> ExpectedWords {
         let scenario = &self.resolved.scenario;
         let rate_max_deg_per_h = rate_deg_per_h_max(scenario);
         let noise_std_deg_per_h = noise_std_deg_per_h(facts);

@@ -6,11 +6,10 @@ use super::published::wrong_unit;
 use crate::experiment::black_box;
 use crate::experiment::campaign;
 use crate::experiment::pipeline_metrics;
-use crate::experiment::run::{assembly_motion, motion};
+use crate::experiment::run::{assembly_motion, motion, sample_period_s};
 use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{self, MetricKey, Unavailable};
 use crate::scenario::{ComparisonColumn, Scenario};
-use crate::signal::GyroFacts;
 
 /// A metric that a scenario asks for.
 struct Requested<'a> {
@@ -100,9 +99,12 @@ impl Checker<'_> {
     }
 
     /// Refuses gates that this record can never support, and says so of published figures.
-    pub(crate) fn metrics(&mut self, facts: &GyroFacts) {
+    pub(crate) fn metrics(&mut self) {
         let scenario = &self.resolved.scenario;
-        let motion = motion(scenario, 1.0 / facts.output_rate_hz);
+        let sample_period_s = sample_period_s(self.resolved);
+        let log = self.resolved.log.as_ref();
+        let has_truth = log.is_none_or(|log| log.has_truth);
+        let motion = motion(scenario, sample_period_s);
         for (index, figure) in scenario.published.iter().enumerate() {
             if let Some((_, metric)) = figure.metric.rsplit_once('.')
                 && let Some((key, message)) = wrong_unit(index, metric, &figure.unit)
@@ -134,12 +136,18 @@ impl Checker<'_> {
             let supported = metrics::support(
                 name,
                 scenario.duration_s,
-                1.0 / facts.output_rate_hz,
+                sample_period_s,
                 &motion,
                 !scenario.is_unfiltered(channel),
                 scenario.bias_averaging_time_s,
             );
-            let lack = || lacks(scenario, channel, known);
+            let lack = || {
+                lacks(scenario, channel, known).or_else(|| {
+                    let is_filter = !scenario.is_unfiltered(channel);
+                    let lack = metrics::truth_lack(known, has_truth, is_filter);
+                    lack.map(Unavailable::from)
+                })
+            };
             match supported.err().or_else(lack) {
                 Some(reason) if is_shown_only => {
                     let warning =

@@ -2,9 +2,10 @@
 
 use super::checker::Checker;
 use crate::experiment::run::count;
-use crate::scenario::SamplesFormat;
+use crate::scenario::LogFacts;
+use crate::scenario::{MotionClass, SamplesFormat};
 use crate::signal::GyroFacts;
-use crate::wording::plain;
+use crate::wording::{counted, plain};
 
 /// Longest record held in memory, samples (two hours at 4 kHz).
 const SAMPLES_MAX: f64 = 3.0e7;
@@ -13,6 +14,45 @@ const SAMPLES_MAX: f64 = 3.0e7;
 const WORDS_MAX: f64 = 1.8e8;
 
 impl Checker<'_> {
+    /// Refuses logs that are too long to hold with what their filters make of them, and settings that want
+    /// several records.
+    pub(crate) fn log_length(&mut self, log: &LogFacts) {
+        let records = self.resolved.scenario.channel_names().len();
+        let words = count(log.samples) * count(records);
+        let scenario = &self.resolved.scenario;
+        let needs = match scenario.measured_motion().class() {
+            _ if !scenario.filters.is_empty() => Some("a filter needs every word"),
+            MotionClass::Swing { .. } => Some("the phase of a swing needs every word"),
+            _ => None,
+        };
+        if let Some(needs) = needs.filter(|_| log.has_gaps) {
+            let message = format!(
+                "log.file: samples are missing ({}), and {needs}: log.rows, or log.from_s and log.to_s, takes a \
+                 part without gaps",
+                counted(log.parts, "part")
+            );
+            self.complain("log.file", message);
+        }
+        if let MotionClass::Swing { frequency_hz, .. } = scenario.measured_motion().class()
+            && frequency_hz > 0.25 * log.sample_rate_hz
+        {
+            let message = format!(
+                "log.motion: a swing of {frequency_hz} Hz needs four samples a cycle: the log has {} Hz",
+                plain(log.sample_rate_hz)
+            );
+            self.complain("log.motion", message);
+        }
+        if words > WORDS_MAX {
+            self.complain(
+                "log.file",
+                format!(
+                    "log.file holds {} samples, {words:.3e} words with what its filters make of them: at most                      {WORDS_MAX:e} are held in memory; use log.rows or fewer filters",
+                    log.samples
+                ),
+            );
+        }
+    }
+
     /// Refuses records of no sample and those too long to hold.
     pub(crate) fn record_length(&mut self, facts: &GyroFacts) {
         let scenario = &self.resolved.scenario;

@@ -3,7 +3,7 @@
 use std::ops::Index;
 
 use super::progress::{Progress, Unfinished};
-use super::records::{RecordLength, stamp_s};
+use super::records::stamp_s;
 use super::results::{Results, run_plan};
 use super::simulate::GyroRecord;
 use crate::experiment::plan::Plan;
@@ -191,7 +191,7 @@ impl Run {
             values,
             unit,
             period_s,
-            warm_up: RecordLength::new(&self.plan.resolved().scenario, period_s).warm_up,
+            warm_up: self.plan.record_length().warm_up,
         }
     }
 }

@@ -23,6 +23,6 @@ pub(crate) use motion::{motion, motion_extremes, rate_deg_per_h_max};
 pub use progress::Progress;
 pub(crate) use progress::{Unfinished, unless_stopped};
 pub(crate) use rate_twins::{RATES_DEG_PER_S, RateTwins, rate_gain};
-pub(crate) use records::{RecordLength, count};
+pub(crate) use records::{RecordLength, count, sample_period_s};
 pub(crate) use results::{Results, run_plan};
-pub(crate) use simulate::{GyroRecord, Simulation, first_words, simulate};
+pub(crate) use simulate::{Faults, GyroRecord, Simulation, first_words, simulate};

@@ -1,6 +1,7 @@
 //! Lengths of records, stamps of samples.
 
-use crate::scenario::Scenario;
+use crate::gyro;
+use crate::scenario::{Resolved, Scenario};
 use crate::turntable::first_measured_index;
 
 /// How many samples the warm-up and the measured record hold.
@@ -27,6 +28,27 @@ impl RecordLength {
         }
     }
 
+    /// Those of a run, simulated or recorded: a log may end in the middle of a sample period.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a whole number of samples of a log, which is read; the cast saturates"
+    )]
+    pub(crate) fn of(resolved: &Resolved) -> Self {
+        const SLACK: f64 = 1e-9;
+        let period_s = sample_period_s(resolved);
+        let length = Self::new(&resolved.scenario, period_s);
+        let Some(log) = &resolved.log else {
+            return length;
+        };
+        let asked = resolved.scenario.duration_s / period_s * (1.0 + SLACK);
+        let left = log.samples.saturating_sub(length.warm_up);
+        Self {
+            warm_up: length.warm_up,
+            measured: left.min(asked.floor() as usize),
+        }
+    }
+
     /// All samples.
     pub(crate) fn total(self) -> usize {
         self.warm_up + self.measured
@@ -50,4 +72,12 @@ pub(crate) fn stamp_s(index: u64, sample_period_s: f64) -> f64 {
 )]
 pub(crate) fn count(samples: usize) -> f64 {
     samples as f64
+}
+
+/// Period of the samples of a run, simulated or recorded, s.
+pub(crate) fn sample_period_s(resolved: &Resolved) -> f64 {
+    match &resolved.log {
+        Some(log) => 1.0 / log.sample_rate_hz,
+        None => gyro::sample_period_s(&resolved.scenario.gyro),
+    }
 }

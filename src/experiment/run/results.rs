@@ -9,6 +9,7 @@ use super::simulate::{Faults, Simulation, simulate};
 use super::theory::theory;
 use crate::experiment::campaign;
 use crate::experiment::campaign::Parameters;
+use crate::experiment::log::run_log;
 use crate::experiment::outside;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::plan::Plan;
@@ -40,6 +41,12 @@ pub(crate) struct Results {
 /// Why it cannot be run to its end, or that the listener has stopped it.
 pub(crate) fn run_plan(plan: &Plan, progress: &dyn Progress) -> Result<Results, Unfinished> {
     let resolved = plan.resolved();
+    if let Some((file, format)) = resolved.log_source() {
+        let mut results = run_log(plan, (file, &format), progress)?;
+        keep_finite(&mut results.channels);
+        results.verdicts = verdicts(plan, &results.channels);
+        return Ok(results);
+    }
     let scenario = &resolved.scenario;
     let theory = theory(scenario)?;
     let Repeats {
@@ -49,10 +56,7 @@ pub(crate) fn run_plan(plan: &Plan, progress: &dyn Progress) -> Result<Results, 
         calibration,
         parameters,
     } = run_repeats(plan, progress)?;
-    let gates = scenario.gates.iter().enumerate();
-    let verdicts = gates
-        .map(|(index, gate)| judge(gate, &channels, Some(resolved.gate_place(index))))
-        .collect();
+    let verdicts = verdicts(plan, &channels);
     let sample_period_s = plan.sample_period_s();
     let filters = simulation.filters.iter();
     let of_filters: Vec<String> = filters
@@ -72,6 +76,15 @@ pub(crate) fn run_plan(plan: &Plan, progress: &dyn Progress) -> Result<Results, 
         compensation,
         theory,
     })
+}
+
+/// The gates of a plan, judged in the order of the file.
+fn verdicts(plan: &Plan, channels: &Channels) -> Vec<Verdict> {
+    let resolved = plan.resolved();
+    let gates = resolved.scenario.gates.iter().enumerate();
+    gates
+        .map(|(index, gate)| judge(gate, channels, Some(resolved.gate_place(index))))
+        .collect()
 }
 
 /// Means of the true rates about the case axes over the first record, deg/h.

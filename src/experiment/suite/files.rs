@@ -4,7 +4,7 @@ use super::output::SuiteOutput;
 use crate::experiment::build::VERSION;
 use crate::experiment::output_file::write_file;
 use crate::experiment::plan::Plan;
-use crate::experiment::run::{RecordLength, Simulation};
+use crate::experiment::run::Simulation;
 use crate::gyro::temperature_record;
 use crate::report::{self, Pictures, PointOfSweep, RunOutcome, RunReport};
 use crate::scenario::SamplesFormat;
@@ -23,6 +23,7 @@ pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
         sweep: point_of(plan),
         points: resolved.sweep.as_ref().map_or(0, |point| point.count),
         gyro: plan.facts(),
+        log: plan.log(),
         compensation: None,
         theory: &[],
         channels: &[],
@@ -90,7 +91,7 @@ pub(super) fn signals<'a>(
 ) -> Vec<RunSignals<'a>> {
     let scenario = &plan.resolved().scenario;
     let sample_period_s = plan.sample_period_s();
-    let first_measured = RecordLength::new(scenario, sample_period_s).warm_up;
+    let first_measured = plan.record_length().warm_up;
     let end_s = scenario.warm_up_s + scenario.duration_s;
     let is_written = scenario.output.samples == SamplesFormat::Npy;
     let has_digest = is_written && simulation.gyros.len() == 1;
@@ -116,7 +117,10 @@ pub(super) fn signals<'a>(
                 .chain(compensated)
                 .chain(filters)
                 .collect(),
-            temperature: temperature_record(&scenario.gyro, scenario.warm_up_s, end_s),
+            temperature: match plan.log() {
+                Some(_) => None,
+                None => temperature_record(&scenario.gyro, scenario.warm_up_s, end_s),
+            },
         }
     });
     signals.collect()

@@ -179,11 +179,13 @@ pub(super) const TABLE: &[Artefact] = &[
     drawn(
         "swing.svg",
         "mean cycle of a swing and the delay of every channel",
-        "swing",
-        RUN,
-        |scene| match scene.run?.scenario.turntable.motion.class() {
-            MotionClass::Swing { frequency_hz, .. } => {
-                plot::swing::picture(scene.run?, scene.signals, frequency_hz)
+        "swing, with the true rate",
+        RUN_AND_LOG,
+        |scene| match scene.measured.motion.class() {
+            MotionClass::Swing { frequency_hz, .. }
+                if !scene.signals.truth_deg_per_h.is_empty() =>
+            {
+                plot::swing::picture(&scene.measured, scene.signals, frequency_hz)
             }
             _ => None,
         },
@@ -227,8 +229,8 @@ pub(super) const TABLE: &[Artefact] = &[
         "noise-delay.svg",
         "noise gain over delay of every filter with its bound",
         "a filter's noise was measured at rest or in a swing",
-        RUN,
-        |scene| plot::noise_delay::picture(scene.run?),
+        RUN_AND_LOG,
+        |scene| plot::noise_delay::picture(&scene.measured),
     ),
     drawn(
         "rate-gain.svg",
@@ -241,8 +243,8 @@ pub(super) const TABLE: &[Artefact] = &[
         "filter-response.svg",
         "gain and phase delay of every filter over the frequency",
         "there are filters",
-        RUN,
-        |scene| plot::filter_response::picture(scene.run?),
+        RUN_AND_LOG,
+        |scene| plot::filter_response::picture(&scene.measured),
     ),
     Artefact {
         name: "calibration.svg",

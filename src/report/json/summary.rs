@@ -9,6 +9,7 @@ use crate::report::layout::json::{INTERVALS, SCHEMA, tool};
 use crate::report::layout::json::{numbers, object, pretty, put};
 use crate::report::record::sweep::{PointOfSweep, swept_value};
 use crate::report::text::scale_factor::filter_state_word;
+use crate::scenario::LogFacts;
 use crate::scenario::{Fidelity, PublishedConfig, portable_place};
 use crate::signal::GyroFacts;
 use serde_json::{Map, Value};
@@ -31,7 +32,7 @@ pub fn run_summary_json(report: &RunReport) -> String {
         ("schema", SCHEMA.into()),
         ("tool", tool(report.tool_version)),
         ("scenario", scenario(report)),
-        ("gyro", gyro(report.gyro)),
+        source(report),
         ("intervals", INTERVALS.into()),
         ("channels", channels.into()),
         ("published", Value::Array(published)),
@@ -52,6 +53,29 @@ pub fn run_summary_json(report: &RunReport) -> String {
     pretty(&root.into())
 }
 
+/// Where the words come from.
+fn source(report: &RunReport) -> (&'static str, Value) {
+    match (report.gyro, report.log) {
+        (Some(facts), _) => ("gyro", gyro(facts)),
+        (None, Some(facts)) => ("log", log(facts)),
+        (None, None) => ("gyro", Value::Null),
+    }
+}
+
+/// A recorded log.
+fn log(facts: &LogFacts) -> Value {
+    let mut record = object([
+        ("file", facts.file.as_str().into()),
+        ("unit", facts.unit.as_str().into()),
+    ]);
+    if let Some(column) = &facts.column {
+        record.insert("column".to_owned(), column.as_str().into());
+    }
+    put(&mut record, "rate_hz", facts.sample_rate_hz);
+    record.insert("samples".to_owned(), facts.samples.into());
+    record.into()
+}
+
 fn scenario(report: &RunReport) -> Value {
     let scenario = report.scenario;
     let fidelity = match scenario.fidelity {
@@ -64,8 +88,10 @@ fn scenario(report: &RunReport) -> Value {
         ("digest", report.digest.into()),
         ("seed", scenario.seed.into()),
         ("repeats", scenario.repeats.into()),
-        ("fidelity", fidelity.into()),
     ]);
+    if report.log.is_none() {
+        record.insert("fidelity".to_owned(), fidelity.into());
+    }
     put(&mut record, "duration_s", scenario.duration_s);
     put(&mut record, "warm_up_s", scenario.warm_up_s);
     if let Some(stairs) = scenario.turntable.motion.stairs() {

@@ -15,6 +15,7 @@ use crate::report::record::columns::{heading_of, value_text};
 use crate::report::text::verdict::verdict_text;
 use crate::report::{RunReport, RunStatus};
 use crate::scenario::{AssumedValue, Fidelity, PublishedConfig};
+use crate::signal::GyroFacts;
 
 /// Largest size of a page, bytes.
 pub(in crate::report) const PAGE_BYTES_MAX: usize = 2_000_000;
@@ -36,7 +37,7 @@ pub(in crate::report) struct Beside<'a> {
 pub(in crate::report) fn run_page(report: &RunReport, shown: &[Shown], beside: &Beside) -> String {
     let before = html! { (maybe(failures(report))) (gates(report)) (channels(report)) };
     let behind = html! {
-        (more_metrics(report)) (budget(report)) (maybe(published(report))) (maybe(over_repeats(report)))
+        (more_metrics(report)) (maybe(report.gyro.map(|gyro| budget(report, gyro)))) (maybe(published(report))) (maybe(over_repeats(report)))
         (assumed(beside.assumed)) (units()) (origin(report, beside.files))
     };
     let head = head(report);
@@ -83,23 +84,34 @@ fn head(report: &RunReport) -> Markup {
         plain(scenario.duration_s),
         plain(scenario.warm_up_s)
     );
-    let gyro = report.gyro;
-    let pairs = [
-        ("record", record),
-        ("model", model.to_owned()),
-        ("repeats", scenario.repeats.to_string()),
-        ("seed", scenario.seed.to_string()),
-        ("output rate", format!("{} Hz", plain(gyro.output_rate_hz))),
-        (
-            "proper frequency",
-            format!("{} kHz", plain(gyro.proper_frequency_khz)),
-        ),
-        (
-            "loop bandwidth",
-            format!("{} Hz", plain(gyro.loop_bandwidth_hz)),
-        ),
-        ("loop gain", plain(gyro.loop_gain)),
-    ];
+    let mut pairs = vec![("record", record)];
+    pairs.extend(report.gyro.into_iter().flat_map(|gyro| {
+        [
+            ("model", model.to_owned()),
+            ("repeats", scenario.repeats.to_string()),
+            ("seed", scenario.seed.to_string()),
+            ("output rate", format!("{} Hz", plain(gyro.output_rate_hz))),
+            (
+                "proper frequency",
+                format!("{} kHz", plain(gyro.proper_frequency_khz)),
+            ),
+            (
+                "loop bandwidth",
+                format!("{} Hz", plain(gyro.loop_bandwidth_hz)),
+            ),
+            ("loop gain", plain(gyro.loop_gain)),
+        ]
+    }));
+    pairs.extend(report.log.into_iter().flat_map(|log| {
+        [
+            ("log", log.file.clone()),
+            ("column", log.column.clone().unwrap_or_default()),
+            ("unit", log.unit.clone()),
+            ("samples", log.samples.to_string()),
+            ("sample rate", format!("{} Hz", plain(log.sample_rate_hz))),
+        ]
+    }));
+    pairs.retain(|(_, value)| !value.is_empty());
     html! {
         h1 { (name(report)) }
         @if let Some(description) = &scenario.description { p { (capital(description)) } }
@@ -110,7 +122,9 @@ fn head(report: &RunReport) -> Markup {
         }
         nav aria-label="sections" {
             a href="#gates" { "Gates" } a href="#channels" { "Channels" } a href="#pictures" { "Pictures" }
-            a href="#metrics" { "All metrics" } a href="#budget" { "Noise budget" } a href="#origin" { "Files and origin" }
+            a href="#metrics" { "All metrics" }
+            @if report.gyro.is_some() { a href="#budget" { "Noise budget" } }
+            a href="#origin" { "Files and origin" }
         }
     }
 }
@@ -198,8 +212,8 @@ fn more_metrics(report: &RunReport) -> Markup {
 }
 
 /// The closed form by source, and what the record says.
-fn budget(report: &RunReport) -> Markup {
-    let terms = &report.gyro.angle_random_walk_budget_deg_per_sqrt_h;
+fn budget(report: &RunReport, gyro: &GyroFacts) -> Markup {
+    let terms = &gyro.angle_random_walk_budget_deg_per_sqrt_h;
     let total = terms
         .iter()
         .find(|(source, _)| *source == TOTAL)
@@ -244,7 +258,7 @@ fn budget(report: &RunReport) -> Markup {
                 }
                 "." }
             (wide("noise budget", &table))
-            @if let Some(said) = replacement(&report.gyro.replaced_noise_sources) { p { (said) "." } }
+            @if let Some(said) = replacement(&gyro.replaced_noise_sources) { p { (said) "." } }
         },
     )
 }

@@ -12,7 +12,7 @@ use crate::metrics::columns::tones::{
     DELAY, DELAY_HIGH, DELAY_LOW, FREQUENCY, GAIN, GAIN_HIGH, GAIN_LOW,
 };
 use crate::metrics::{ChannelMetrics, Column, Curve, Estimate};
-use crate::report::RunReport;
+use crate::report::record::measured::Measured;
 use crate::units::gain_to_db;
 
 /// Gain down to which the response is shown, dB.
@@ -65,8 +65,8 @@ fn decibel(gain: f64) -> f64 {
 }
 
 /// Both panels; `None` where no filter has a response.
-pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
-    let channels = report.channels.iter().enumerate();
+pub(in crate::report) fn picture(measured: &Measured) -> Option<Picture> {
+    let channels = measured.channels.iter().enumerate();
     let filters: Vec<Filter> = channels
         .filter_map(|(index, (name, metrics))| {
             Some(Filter {
@@ -83,7 +83,7 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
         .filter_map(|filter| FREQUENCY.get(filter.frozen));
     let x = extent(frequencies.flatten().copied())?;
     let mut picture = Picture::new(WIDTH, 870.0);
-    let title = format!("{}: response of the filters", report.scenario.name);
+    let title = format!("{}: response of the filters", measured.name);
     picture.heading((90.0, 28.0), &title, 18.0);
     for quantity in &QUANTITIES {
         draw(&mut picture, quantity, &filters, x)?;

@@ -10,7 +10,7 @@ use crate::gate::estimate_text;
 use crate::metrics::catalogue::NOISE_DELAY_BOUND;
 use crate::metrics::columns::noise_delay::{DELAY, LEAST_NOISE_GAIN, LEAST_WHITE_NOISE_GAIN};
 use crate::metrics::{AgainstOne, Column, Estimate, FilterVerdict, filter_verdict};
-use crate::report::RunReport;
+use crate::report::record::measured::Measured;
 
 /// How far above the highest point the bounds are shown: they rise without end on both sides.
 const ROOM_ABOVE: f64 = 3.0;
@@ -29,8 +29,8 @@ struct Point<'a> {
 }
 
 /// Noise power gain over delay; `None` where no filter has both.
-pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
-    let points = points(report);
+pub(in crate::report) fn picture(measured: &Measured) -> Option<Picture> {
+    let points = points(measured);
     let ends = |pick: fn(&Point) -> Estimate| {
         let each = points.iter().map(pick);
         extent(each.flat_map(|estimate| [estimate.low, estimate.high]))
@@ -44,7 +44,7 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
     let rows = points.len().max(4);
     let height = 200.0 + 72.0 * real(rows);
     let mut picture = Picture::new(WIDTH, height);
-    let title = format!("{}: noise against delay", report.scenario.name);
+    let title = format!("{}: noise against delay", measured.name);
     picture.heading((90.0, 28.0), &title, 18.0);
     let x = Axis::linear((delays.0.min(0.0), delays.1), 0.15, "delay behind raw [ms]");
     let y = (lowest.max(low / 10.0) / 1.3, high * ROOM_ABOVE);
@@ -97,8 +97,8 @@ fn explain(picture: &mut Picture, legend: &mut Legend, points: &[Point]) {
 }
 
 /// The filters that have a place on a logarithmic plane.
-fn points<'a>(report: &RunReport<'a>) -> Vec<Point<'a>> {
-    let channels = report.channels.iter().enumerate();
+fn points<'a>(measured: &Measured<'a>) -> Vec<Point<'a>> {
+    let channels = measured.channels.iter().enumerate();
     let points = channels.filter_map(|(index, (name, metrics))| {
         let verdict = filter_verdict(metrics)?;
         let curve = metrics.curve(&NOISE_DELAY_BOUND);

@@ -8,7 +8,7 @@ use crate::gate::estimate_text;
 use crate::metrics::Estimate;
 use crate::metrics::MetricKey;
 use crate::metrics::catalogue::{DELAY_VS_RAW, DELAY_VS_TRUTH};
-use crate::report::RunReport;
+use crate::report::record::measured::Measured;
 use crate::signal::RunSignals;
 use crate::units::s_to_ms;
 
@@ -24,17 +24,17 @@ const HALF_WIDTH_MS: f64 = 0.8;
 /// Two cycles as sampled; below them the mean of all cycles around the rising zero crossing of the
 /// true rate, with the measured delays marked.
 pub(in crate::report) fn picture(
-    report: &RunReport,
+    measured: &Measured,
     signals: &RunSignals,
     frequency_hz: f64,
 ) -> Option<Picture> {
     let truth = signals.truth_deg_per_h.get(signals.first_measured..)?;
-    let channels = series(&report.measured(), signals);
+    let channels = series(measured, signals);
     let fold = Fold::new(truth, signals.sample_period_s, frequency_hz)?;
     let mut picture = Picture::new(WIDTH, 900.0);
     let title = format!(
         "{}: swing at {} Hz",
-        report.scenario.name,
+        measured.name,
         crate::gate::plain(frequency_hz)
     );
     picture.heading((90.0, 28.0), &title, 18.0);

@@ -6,6 +6,7 @@ use crate::gate::{Verdict, VerdictKind, count_accepted, estimate_text, expects_f
 use crate::metrics::{ChannelFailure, ChannelMetrics, Estimate, Metric, find};
 use crate::report::record::columns::{DIGITS, heading_of, headline, unit_text, value_text};
 use crate::report::record::sweep::{PointFigure, PointOfSweep, point_figures};
+use crate::scenario::LogFacts;
 use crate::scenario::{AssumedInShort, ReportedRuns, Scenario};
 use crate::signal::{CalibrationSheet, CompensationSheet, GyroFacts, TheoryCurve};
 
@@ -24,8 +25,10 @@ pub struct RunReport<'a> {
     pub sweep: Option<PointOfSweep>,
     /// Points of the sweep; none without one.
     pub points: usize,
-    /// The gyro in closed form.
-    pub gyro: &'a GyroFacts,
+    /// The gyro in closed form; none of a log.
+    pub gyro: Option<&'a GyroFacts>,
+    /// The log that takes the place of table and gyro.
+    pub log: Option<&'a LogFacts>,
     /// What was taken out of the outputs, if anything was.
     pub compensation: Option<&'a CompensationSheet>,
     /// Lines of theory for the pictures.

@@ -13,9 +13,11 @@ use crate::report::record::columns::{Column, DIGITS, columns, matters, unit_text
 use crate::report::record::measured::Measured;
 use crate::report::record::sweep::assignments_text;
 use crate::report::text::compensation::compensation_text;
+use crate::report::text::quality::quality_text;
 use crate::report::text::repeats::repeats_text;
 use crate::report::text::scale_factor::scale_factor_text;
 use crate::report::text::verdict::verdict_text;
+use crate::scenario::LogFacts;
 use crate::scenario::{AssumedValue, Fidelity, PublishedConfig};
 use crate::wording::{counted, printable};
 
@@ -41,6 +43,9 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     text.push_str(&repeats_text(report, width, colour));
     let verdicts = report.verdicts;
     text.push_str(&failures_text(&report.measured(), verdicts, width, colour));
+    if report.log.is_some() {
+        text.push_str(&quality_text(report.channels, width));
+    }
     text.push_str(&filter_verdicts(&report.measured(), width, colour));
     text.push_str(&sine_fits(report.channels, width));
     if let Some(sheet) = report.calibration {
@@ -63,12 +68,17 @@ fn heading(report: &RunReport, width: usize, colour: bool) -> String {
         Fidelity::Loop => "loop model",
         Fidelity::Rate => "rate model",
     };
+    let origin = match report.log {
+        Some(log) => (format!("log {}", log.file), String::new()),
+        None => (model.to_owned(), format!(", seed {}", scenario.seed)),
+    };
     let mut text = format!(
-        "{}  {model}, {} s after {} s of warm-up, seed {}, {}\n",
+        "{}  {}, {} s after {} s of warm-up{}, {}\n",
         toned(&scenario.name, Tone::Heading, colour),
+        origin.0,
         plain(scenario.duration_s),
         plain(scenario.warm_up_s),
-        scenario.seed,
+        origin.1,
         report.file,
     );
     if let Some(description) = &scenario.description {
@@ -83,7 +93,10 @@ fn heading(report: &RunReport, width: usize, colour: bool) -> String {
 
 /// The gyro in closed form: rates, loop, range and the budget of its angle random walk.
 fn gyro_text(report: &RunReport, width: usize) -> String {
-    let gyro = report.gyro;
+    let Some(gyro) = report.gyro else {
+        let of_log = report.log.map(|log| wrapped(&log_line(log), INDENT, width));
+        return of_log.unwrap_or_default() + &wrapped(&assumed_text(report), INDENT, width);
+    };
     let mark = |key: &str| {
         if report.assumed.names(key) {
             " (assumed)"
@@ -129,6 +142,21 @@ fn gyro_text(report: &RunReport, width: usize) -> String {
         text.push_str(&wrapped(&said, INDENT, width));
     }
     text + &wrapped(&assumed_text(report), INDENT, width)
+}
+
+/// What a recorded log is.
+fn log_line(log: &LogFacts) -> String {
+    let column = log.column.as_ref();
+    let column = column.map_or_else(String::new, |column| {
+        format!(", column {}", printable(column))
+    });
+    format!(
+        "log: {}{column}, {}, {} at {} Hz",
+        printable(&log.file),
+        log.unit,
+        counted(log.samples, "sample"),
+        plain(log.sample_rate_hz),
+    )
 }
 
 /// What nobody set: the figures above and below rest on it, and some only say it again.

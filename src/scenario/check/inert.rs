@@ -5,7 +5,7 @@
 //! prints it. A key of the scenario's own file that says what the default says asks for nothing. A
 //! wish that acts in no point of a sweep is refused; one by `--set` if it acts in no run of the suite.
 
-use crate::scenario::check::inert_rules::{Acts, Rule, rules};
+use crate::scenario::check::inert_rules::{Acts, Rule, bench_rules, is_of_bench, rules};
 use crate::scenario::document::address::{Step, display};
 use crate::scenario::document::source::Mark;
 use crate::scenario::document::tree::{Node, Table};
@@ -39,7 +39,8 @@ impl Idle {
     pub(crate) fn of(first: &Resolved, swept: &[(Vec<Step>, Mark)]) -> Self {
         let mut wishes = Vec::new();
         let mut is_written_out = None;
-        for rule in rules() {
+        let of_bench = first.scenario.log.as_ref().map(|_| bench_rules());
+        for rule in rules().iter().chain(of_bench.into_iter().flatten()) {
             for Written { path, node, mark } in places(first, rule) {
                 let axis = swept.iter().find(|(swept, _)| *swept == path);
                 let mark = axis.map_or(mark, |(_, mark)| *mark);
@@ -116,6 +117,9 @@ impl IdleSets {
 
 /// Whether a key acts on nothing in a run.
 pub(crate) fn is_idle(run: &Resolved, schema_path: &str) -> bool {
+    if run.scenario.log.is_some() && is_of_bench(schema_path) {
+        return true;
+    }
     let mut own = rules().iter().filter(|rule| rule.path == schema_path);
     own.any(|rule| matches!(rule.acts, Acts::Run(acts) if !acts(&run.scenario)))
 }

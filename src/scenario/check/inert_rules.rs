@@ -11,6 +11,7 @@ use crate::gyro::VibrationMotion;
 use crate::gyro::{NoiseDraw, OutputQuantisation};
 use crate::gyro::{PowerConfig, TemperatureConfig, ThermalWarmUp};
 use crate::scenario::config::{GateConfig, GateDecision, Scenario};
+use crate::scenario::keys::schema::keys;
 use crate::turntable::{MotionClass, ServoConfig};
 use crate::vocabulary::EstimatorKind;
 
@@ -353,6 +354,34 @@ fn follows_temperature(scenario: &Scenario) -> bool {
 fn runs_any(scenario: &Scenario, kinds: &[EstimatorKind]) -> bool {
     let runs = scenario.calibration.kinds();
     is_campaign(scenario) && kinds.iter().any(|kind| runs.contains(kind))
+}
+
+/// Tables of what a log takes the place of.
+const OF_BENCH: [&str; 4] = ["gyro", "turntable", "calibration", "trial"];
+/// Keys without a table that only a simulation works by.
+const OF_SIMULATION: [&str; 3] = ["seed", "repeats", "fidelity"];
+
+/// Whether only a simulation works by a key, at its schema path.
+pub(in crate::scenario) fn is_of_bench(path: &str) -> bool {
+    let first = path.split(['.', '[']).next().unwrap_or_default();
+    OF_BENCH.contains(&first) || OF_SIMULATION.contains(&path)
+}
+
+/// Every key that acts in no run of a log.
+pub(in crate::scenario) fn bench_rules() -> &'static [Rule] {
+    static ALL: OnceLock<Vec<Rule>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        let of_bench = keys().filter(|key| is_of_bench(key.path));
+        of_bench
+            .map(|key| {
+                run(
+                    key.path,
+                    "a gyro that is simulated, in whose place [log] stands",
+                    |s| s.log.is_none(),
+                )
+            })
+            .collect()
+    })
 }
 
 /// Every key that does not always act, those that the kinds of filters declare among them.

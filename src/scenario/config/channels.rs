@@ -4,8 +4,9 @@
 use std::borrow::Cow;
 
 use crate::filters::FilterConfig;
+use crate::recording::LogMotion;
 use crate::scenario::config::Scenario;
-use crate::turntable::{MotionConfig, MultiSineConfig};
+use crate::turntable::{MotionConfig, MultiSineConfig, SwingConfig};
 
 /// Prefixes of the channels of an assembly, in the order of its case axes.
 const ASSEMBLY: &[&str] = &["x_", "y_", "z_"];
@@ -16,14 +17,35 @@ const SINGLE: &[&str] = &[""];
 const RAW: &str = "raw";
 /// Name of that output with its constant errors taken out, which is what filters are given.
 pub(in crate::scenario) const COMPENSATED: &str = "compensated";
+/// What stands behind the name of the channel of a log whose outliers are left out.
+pub(crate) const WITHOUT_OUTLIERS: &str = "_without_outliers";
 
 /// Prefix of the names of estimates.
 const CALIBRATION: &str = "calibration_";
 
+/// The motion of a log as reports head their columns by it; a log does not tell a swing's amplitude.
+#[must_use]
+pub(crate) fn motion_of_log(motion: LogMotion) -> MotionConfig {
+    match motion {
+        LogMotion::Static => MotionConfig::rest(),
+        LogMotion::Swing { frequency_hz } => MotionConfig::Swing(SwingConfig {
+            rate_amplitude_deg_per_s: None,
+            angle_amplitude_deg: None,
+            frequency_hz,
+            soft_start_s: 0.0,
+            from_rest: false,
+        }),
+    }
+}
+
 impl Scenario {
-    /// The motion that a record is measured against: the table's, or what an injected signal equals.
+    /// The motion that a record is measured against: the table's, what an injected signal equals, or what
+    /// is said of a log.
     #[must_use]
     pub fn measured_motion(&self) -> Cow<'_, MotionConfig> {
+        if let Some(log) = &self.log {
+            return Cow::Owned(motion_of_log(log.motion.unwrap_or_default()));
+        }
         match self.injected_sines() {
             None => Cow::Borrowed(&self.turntable.motion),
             Some(sines) => Cow::Owned(MotionConfig::MultiSine(sines)),

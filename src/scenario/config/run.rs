@@ -9,6 +9,7 @@ use crate::calibration::{CalibrationConfig, CompensationConfig};
 use crate::declare::table;
 use crate::filters::FilterConfig;
 use crate::gyro::{Fidelity, GyroConfig};
+use crate::recording::LogFormat;
 use crate::turntable::TurntableConfig;
 
 table! {
@@ -28,16 +29,17 @@ table! {
         seed: u64 = 1, in 0..=9_223_372_036_854_775_807;
         /// Number of independent noise records, all else equal.
         repeats: u32 = 1, in 1..=100_000;
-        /// Time measured.
+        /// Time measured; of a log what it holds, unless less is asked for.
         duration_s: f64, example 20.0, in 1e-6..=1e7, "s";
         /// Time simulated and filtered before it, left out of every metric. Source of the default: assumed;
-        /// adaptive filters have settled long before.
+        /// adaptive filters have settled long before. Of a log 0.
         warm_up_s: f64 = 60.0, in 0.0..=1e6, "s";
         /// Gyro model: every half modulation period ("loop"), or its equivalent at the output rate ("rate").
         fidelity: Fidelity = "loop";
         /// Averaging time of the plain bias stability. Source of the default: customary in
         /// Chinese practice (GJB 2426A); the paper does not state its own.
         bias_averaging_time_s: f64 = 100.0, in 1e-6..=1e6, "s";
+        log: Option<LogFormat>;
         turntable: TurntableConfig;
         gyro: GyroConfig;
         compensation: Option<CompensationConfig>;

@@ -226,7 +226,10 @@ fn path_is_open(schema_path: &str, path: &str) -> bool {
         (Some(_), None) => false,
         (None, _) => false,
     };
-    !is_taken && !is_in_another_array
+    // A log stands in the place of table and gyro.
+    let is_of_log = |path: &str| path.split('.').next() == Some("log");
+    let is_of_other_source = !schema_path.is_empty() && is_of_log(schema_path) != is_of_log(path);
+    !is_taken && !is_in_another_array && !is_of_other_source
 }
 
 /// A suggested key in the form in which it is accepted where the unknown one stands.
@@ -401,7 +404,7 @@ mod tests {
         assert_eq!(
             unknown("", "", "taps_"),
             "unknown key taps_: a scenario knows schema, name, description, extends, seed, repeats, \
-             duration_s, warm_up_s, fidelity, bias_averaging_time_s, turntable, gyro and 13 more, \
+             duration_s, warm_up_s, fidelity, bias_averaging_time_s, log, turntable and 14 more, \
              as `fogbench schema` lists them"
         );
         assert_eq!(

@@ -2,6 +2,7 @@
 
 use crate::declare::{Key, Told};
 use crate::scenario::check::inert::is_idle;
+use crate::scenario::check::inert_rules::is_of_bench;
 use crate::scenario::document::emit::to_toml_around;
 use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::keys::schema::declared_key;
@@ -123,7 +124,7 @@ impl Resolved {
     pub fn assumed(&self) -> Vec<AssumedValue> {
         let mut found = Vec::new();
         enter(&self.tree, "", &mut |key, node| {
-            if self.is_assumed(key, node) {
+            if self.is_assumed(key, node) && !(self.log.is_some() && is_of_bench(key)) {
                 found.push(assumed(key, node));
             }
         });

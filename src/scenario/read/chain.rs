@@ -184,6 +184,7 @@ impl Chain {
             file: label.text(),
             inputs: self.inputs,
             named_files: Vec::new(),
+            log: None,
             recorded: None,
             warnings: Vec::new(),
             remarks: Vec::new(),

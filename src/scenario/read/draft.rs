@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::recording::LogFacts;
 use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::Table;
 use crate::scenario::read::named_files::NamedFile;
@@ -22,6 +23,8 @@ pub(crate) struct Draft {
     pub(crate) inputs: Vec<InputFile>,
     /// Files that keys name and that are read when it runs.
     pub(crate) named_files: Vec<NamedFile>,
+    /// The log that takes the place of table and gyro, once it has been read.
+    pub(crate) log: Option<LogFacts>,
     /// What a manifest says about the origin of its scenario.
     pub(crate) recorded: Option<Recorded>,
     /// What is worth saying about how it was read.

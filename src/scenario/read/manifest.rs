@@ -131,6 +131,7 @@ pub(crate) fn read(
         file,
         inputs,
         named_files: Vec::new(),
+        log: None,
         recorded: Some(recorded),
         warnings,
         remarks: Vec::new(),

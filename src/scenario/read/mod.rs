@@ -9,6 +9,7 @@ pub(in crate::scenario) mod discover;
 pub(in crate::scenario) mod draft;
 pub(in crate::scenario) mod input;
 pub(in crate::scenario) mod log_format;
+pub(in crate::scenario) mod log_source;
 pub(in crate::scenario) mod manifest;
 pub(in crate::scenario) mod matrix;
 pub(in crate::scenario) mod named_files;

@@ -16,6 +16,9 @@ use crate::scenario::read::draft::Recorded;
 use crate::scenario::read::input;
 use crate::scenario::read::resolved::InputFile;
 
+/// The table of a log.
+pub(crate) const LOG: &str = "log";
+
 /// A file that a key names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedFile {
@@ -46,7 +49,10 @@ pub(crate) fn read_all(
         found: Vec::new(),
         errors: Vec::new(),
     };
-    // Only filters name such files: the rest of the tree stays shared.
+    // Only filters and logs name such files: the rest of the tree stays shared.
+    if let Some(log) = root.get_mut(LOG).and_then(Node::as_table_mut) {
+        search.table(LOG, LOG, log);
+    }
     if let Some(filters) = root.get_mut("filter").filter(|node| names_files(node)) {
         search.elements("filter", filters);
     }

@@ -14,6 +14,7 @@ use crate::scenario::keys::renamed;
 use crate::scenario::message::error::{ScenarioError, in_both};
 use crate::scenario::read::compensation_source;
 use crate::scenario::read::draft::{Draft, Recorded};
+use crate::scenario::read::log_source;
 use crate::scenario::read::named_files;
 use crate::scenario::read::resolved::{Resolved, broken, configuration, digest};
 use crate::scenario::read::script;
@@ -66,6 +67,15 @@ impl Draft {
             return Err(errors.into());
         }
         numbers::settle(&mut self.root);
+        if errors.is_empty() {
+            match log_source::read_into(&mut self.root, &self.sources, &self.named_files) {
+                Ok(log) => self.log = log,
+                Err(error) => return Err([errors, vec![error]].concat().into()),
+            }
+        }
+        if !errors.is_empty() {
+            log_source::make_up_length(&mut self.root);
+        }
         let mut whole = self.root.clone();
         fill(&mut whole);
         let missing = check_presence(&whole, self.root_mark, &self.sources, &faults.taken);
@@ -171,6 +181,7 @@ impl Draft {
             digest: origin.digest,
             inputs: origin.inputs,
             named_files: self.named_files,
+            log: self.log,
             sweep: origin.sweep,
             warnings: [self.warnings, renamed::warnings(&self.root)].concat(),
             remarks: self.remarks,

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::recording::LogFacts;
 use crate::scenario::config::Scenario;
 use crate::scenario::document::address::{self, nearest_mark};
 use crate::scenario::document::deserialize::from_table;
@@ -53,6 +54,8 @@ pub struct Resolved {
     pub inputs: Vec<InputFile>,
     /// Files that its filters name, which are read when it runs.
     pub named_files: Vec<NamedFile>,
+    /// The log that takes the place of table and gyro; none of a simulation.
+    pub log: Option<LogFacts>,
     /// Which point of a sweep it is; `None` without a matrix.
     pub sweep: Option<SweepPoint>,
     /// What is allowed but worth saying about how it was read.

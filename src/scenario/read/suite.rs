@@ -15,6 +15,7 @@ use crate::scenario::read::clashes::Names;
 use crate::scenario::read::discover::discover;
 use crate::scenario::read::draft::Draft;
 use crate::scenario::read::matrix::{self, Swept};
+use crate::scenario::read::named_files::LOG;
 use crate::scenario::read::resolve::{Unsound, UnsoundReading};
 use crate::scenario::read::resolved::Resolved;
 
@@ -145,6 +146,8 @@ fn completed((mut draft, errors): (Draft, Vec<ScenarioError>)) -> (Draft, Vec<Sc
         ("name", Value::Text("base".to_owned())),
         ("duration_s", Value::Float(1.0)),
     ];
+    // Of a scenario that measures a log of its own only gates and filters are asked for.
+    draft.root.remove(LOG);
     draft.is_record |= !draft.root.contains_key("name");
     for (key, value) in made_up {
         let node = Node { value, mark: None };

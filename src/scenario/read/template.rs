@@ -55,7 +55,8 @@ impl Template {
                 || matches!(kind, Kind::Parameters)
                 || FILES.iter().any(|name| slot.key.path.starts_with(name))
         };
-        if slots.iter().any(is_own) {
+        // What is left of a log depends on the values of each point.
+        if run.log.is_some() || slots.iter().any(is_own) {
             return None;
         }
         let nodes = slots
@@ -134,6 +135,7 @@ fn with_tree(run: &Resolved, tree: Table, text: &str) -> Result<Resolved, Vec<Sc
         file: run.file.clone(),
         inputs: run.inputs.clone(),
         named_files: run.named_files.clone(),
+        log: run.log.clone(),
         sweep: None,
         warnings,
         remarks: run.remarks.clone(),

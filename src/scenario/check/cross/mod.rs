@@ -11,6 +11,7 @@ use crate::turntable::MotionChecks;
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 use crate::wording::is_misspelling;
 
+use crate::scenario::config::channels::WITHOUT_OUTLIERS;
 use crate::scenario::config::{FilterState, Scenario};
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::read::resolved::Resolved;
@@ -158,6 +159,9 @@ impl Checks<'_> {
 
     /// Period of the output samples, s, but for errors that the gyro's own check finds.
     fn sample_period_s(&self) -> f64 {
+        if let Some(log) = &self.resolved.log {
+            return 1.0 / log.sample_rate_hz;
+        }
         let gyro = &self.resolved.scenario.gyro;
         // A half modulation period is the transit time n L / c of the coil, but for a mismatch.
         let transit_time_s = gyro.coil.group_index * gyro.coil.length_m / SPEED_OF_LIGHT_M_PER_S;
@@ -235,7 +239,16 @@ impl Checks<'_> {
 
     fn channel(&mut self, path: &str, written: &str, channel: &str) {
         let scenario = &self.resolved.scenario;
-        let known = [scenario.channel_names(), scenario.calibration_channels()].concat();
+        let without_outliers = scenario.log.as_ref().map(|_| {
+            let raw = scenario.raw_channels().into_iter();
+            raw.map(|raw| format!("{raw}{WITHOUT_OUTLIERS}")).collect()
+        });
+        let known = [
+            scenario.channel_names(),
+            without_outliers.unwrap_or_default(),
+            scenario.calibration_channels(),
+        ]
+        .concat();
         if known.iter().any(|name| name == channel) {
             return;
         }

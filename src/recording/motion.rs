@@ -1,0 +1,82 @@
+//! What the gyro did while a log was taken, in a word.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::declare::{Content, FromLiteral, Kind, Setting, Shape};
+
+/// Swing frequencies that a log can hold, Hz: one cycle in eleven days to a quarter of the fastest rate.
+const SWING_HZ: (f64, f64) = (1e-6, 2.5e8);
+
+/// What the gyro did while the log was taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum LogMotion {
+    /// It rested, or turned at a constant rate.
+    #[default]
+    Static,
+    /// It swung.
+    Swing {
+        /// Swing frequency, Hz.
+        frequency_hz: f64,
+    },
+}
+
+/// A motion of a log that nobody knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "expected `static`, or `swing:F` with a frequency F from {:e} to {:e} Hz",
+    SWING_HZ.0,
+    SWING_HZ.1
+)]
+pub struct UnknownLogMotion;
+
+impl FromStr for LogMotion {
+    type Err = UnknownLogMotion;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (least, most) = SWING_HZ;
+        if text == "static" {
+            return Ok(Self::Static);
+        }
+        let frequency = text.strip_prefix("swing:").map(str::parse::<f64>);
+        match frequency {
+            Some(Ok(frequency_hz)) if (least..=most).contains(&frequency_hz) => {
+                Ok(Self::Swing { frequency_hz })
+            }
+            _ => Err(UnknownLogMotion),
+        }
+    }
+}
+
+impl fmt::Display for LogMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Static => f.write_str("static"),
+            Self::Swing { frequency_hz } => write!(f, "swing:{frequency_hz}"),
+        }
+    }
+}
+
+impl<'de> serde::Deserialize<'de> for LogMotion {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        text.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+impl serde::Serialize for LogMotion {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl Setting for LogMotion {
+    const SHAPE: Shape = Shape::Plain(Content::Value(Kind::Text));
+    const LIST: Shape = Shape::Impossible;
+}
+
+impl FromLiteral<&str> for LogMotion {
+    fn from_literal(literal: &str) -> Self {
+        literal.parse().expect("an example is a motion")
+    }
+}

@@ -1,0 +1,144 @@
+//! The log that a scenario measures in place of table and gyro: how long it is and how it is stamped.
+//!
+//! It is read whole when the scenario is, so that what is wrong with it is said before the first run,
+//! and again when it runs: nothing of it is kept in between.
+
+use crate::recording::{LogFacts, LogFormat, read_log};
+use crate::scenario::document::deserialize::from_table;
+use crate::scenario::document::source::{Mark, Sources};
+use crate::scenario::document::tree::{Node, Table, Value};
+use crate::scenario::message::error::ScenarioError;
+use crate::scenario::message::excerpt::bounded;
+use crate::scenario::read::named_files::{LOG as TABLE, NamedFile};
+use crate::scenario::read::resolved::Resolved;
+
+const FILE_KEY: &str = "log.file";
+const SEGMENTS_KEY: &str = "log.segments";
+const DURATION: &str = "duration_s";
+const WARM_UP: &str = "warm_up_s";
+/// Relative slack of a duration that is a whole number of samples.
+const SLACK: f64 = 1e-9;
+
+/// Reads the log of a scenario, if it has one, and enters how long it is unless less is asked for.
+///
+/// # Errors
+/// A log that cannot be read or is not what is said of it, or is shorter than is asked for.
+pub(crate) fn read_into(
+    root: &mut Table,
+    sources: &Sources,
+    named: &[NamedFile],
+) -> Result<Option<LogFacts>, ScenarioError> {
+    let Some(node) = root.get(TABLE) else {
+        return Ok(None);
+    };
+    // What was read from an array of tables or was written nowhere has no place.
+    let mark = node.mark.unwrap_or(Mark {
+        source: 0,
+        start: 0,
+    });
+    let complain = |mark: Mark, message: String| sources.error(mark, message);
+    let table = node.as_table().cloned().unwrap_or_default();
+    let format: LogFormat =
+        from_table(&table).map_err(|error| complain(mark, format!("{TABLE}: {error}")))?;
+    let Some(file) = named.iter().find(|file| file.key == FILE_KEY) else {
+        let message = format!("{FILE_KEY} is required: expected the log that is measured");
+        return Err(complain(mark, message));
+    };
+    let place = table.get("file").and_then(|node| node.mark);
+    let place = place.unwrap_or(mark);
+    let format = found(format, named);
+    let log = read_log(&file.path, &format).map_err(|error| {
+        complain(
+            place,
+            format!("{FILE_KEY}: {}", in_keys(&error.to_string())),
+        )
+    })?;
+    let facts = log.facts();
+    enter_length(root, &facts)
+        .map_err(|(mark, error)| complain(mark.unwrap_or(place), error.to_string()))?;
+    Ok(Some(facts))
+}
+
+/// Gives the scenario of a log a duration where the log was not read, as something else is wrong.
+pub(crate) fn make_up_length(root: &mut Table) {
+    if root.contains_key(TABLE) {
+        let (value, mark) = (Value::Float(1.0), None);
+        root.entry(DURATION.to_owned())
+            .or_insert(Node { value, mark });
+    }
+}
+
+/// The format with the paths by which its files are found.
+fn found(format: LogFormat, named: &[NamedFile]) -> LogFormat {
+    let segments = named.iter().find(|file| file.key == SEGMENTS_KEY);
+    LogFormat {
+        segments: segments.map(|file| file.path.to_string_lossy().into_owned()),
+        ..format
+    }
+}
+
+/// Why a log is too short.
+#[derive(Debug, thiserror::Error)]
+enum LengthError {
+    #[error("{WARM_UP} = {warm_up_s:?} s leaves no sample of {FILE_KEY}, which holds {log_s} s")]
+    NothingLeft { warm_up_s: f64, log_s: f64 },
+    #[error(
+        "{DURATION} = {duration_s:?} s is more than {FILE_KEY} holds behind {WARM_UP}, {left_s} s: leave it \
+         out to measure all of it"
+    )]
+    TooShort { duration_s: f64, left_s: f64 },
+}
+
+/// Enters warm-up and duration where nobody wrote them.
+fn enter_length(root: &mut Table, facts: &LogFacts) -> Result<(), (Option<Mark>, LengthError)> {
+    let mut number = |key: &str, default: f64| {
+        let node = root.entry(key.to_owned()).or_insert(Node {
+            value: Value::Float(default),
+            mark: None,
+        });
+        let value = match node.value {
+            Value::Integer(whole) => whole.to_string().parse().unwrap_or(default),
+            Value::Float(value) => value,
+            _ => default,
+        };
+        (value, node.mark)
+    };
+    let (warm_up_s, warm_up_mark) = number(WARM_UP, 0.0);
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "sample counts are far below 2^53"
+    )]
+    let log_s = facts.samples as f64 / facts.sample_rate_hz;
+    let left_s = log_s - warm_up_s;
+    if left_s * facts.sample_rate_hz < 1.0 - SLACK {
+        return Err((warm_up_mark, LengthError::NothingLeft { warm_up_s, log_s }));
+    }
+    let (duration_s, duration_mark) = number(DURATION, left_s);
+    if duration_s > left_s * (1.0 + SLACK) {
+        return Err((duration_mark, LengthError::TooShort { duration_s, left_s }));
+    }
+    Ok(())
+}
+
+/// What is said of options, of keys: `--time-unit` is `log.time_unit` here.
+fn in_keys(message: &str) -> String {
+    let mut names: Vec<&str> = LogFormat::TABLE.rows.iter().map(|row| row.name).collect();
+    // The longest first, as some begin others.
+    names.sort_by_key(|name| std::cmp::Reverse(name.len()));
+    let said = names.into_iter().fold(message.to_owned(), |said, name| {
+        said.replace(
+            &format!("--{}", name.replace('_', "-")),
+            &format!("{TABLE}.{name}"),
+        )
+    });
+    bounded(&said).into_owned()
+}
+
+impl Resolved {
+    /// The log that takes the place of table and gyro: where it is found, and how it is read.
+    #[must_use]
+    pub(crate) fn log_source(&self) -> Option<(&NamedFile, LogFormat)> {
+        let format = self.scenario.log.clone()?;
+        Some((self.named_file(FILE_KEY)?, found(format, &self.named_files)))
+    }
+}
