@@ -102,6 +102,7 @@ mod rtl;
 mod scale_factor_test;
 mod scenario_errors;
 mod selection;
+mod shards;
 mod sign_lms_hardware;
 mod small_inputs_and_steps;
 mod suite;

@@ -14,7 +14,7 @@ use crate::experiment::start_threads;
 use crate::program::supervise;
 use commands::{
     baseline, budget, calibrate, check, claim, compare, completions, expand, export, init, list,
-    log, man, reference, run, schema, timing,
+    log, man, merge, plan, reference, run, schema, status, timing,
 };
 use options::arguments::{Arguments, Command};
 use options::idle;
@@ -48,12 +48,15 @@ pub fn main() -> ExitCode {
 
 fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
     // A suite has threads of its own.
-    if !matches!(arguments.command, Command::Run(_)) {
+    if !matches!(arguments.command, Command::Run(_) | Command::Merge(_)) {
         start_threads();
     }
     let result = match &arguments.command {
         Command::Init(options) => init::init(options),
         Command::Run(options) => run::run(options, interrupt),
+        Command::Plan(options) => plan::plan(options),
+        Command::Merge(options) => merge::merge(options, interrupt),
+        Command::Status(options) => status::status(options),
         Command::Check(options) => check::check(options),
         Command::Expand(options) => expand::expand(options),
         Command::List(options) => list::list(options),

@@ -19,6 +19,8 @@ mod plan;
 mod run;
 mod scenario;
 #[cfg(feature = "report")]
+mod shard;
+#[cfg(feature = "report")]
 mod starter;
 #[cfg(feature = "hdl")]
 mod stimulus;
@@ -44,6 +46,12 @@ pub use outside::{SUPERVISE, exchange_times};
 pub use plan::{Plan, Sound, check_suite, plan_suite};
 pub use run::{Progress, Run, RunError, Samples, UnknownName};
 pub use scenario::Scenario;
+#[cfg(feature = "report")]
+pub use shard::{
+    Damaged, GatherError, Gathered, PlanFile, PlanFileError, RunList, Selected, ShardError,
+    ShardHead, ShardObserver, ShardOptions, ShardOutcome, ShardStatus, estimated_s, merge_shards,
+    ranges_text, run_shard, shard_status,
+};
 #[cfg(feature = "report")]
 pub use starter::{StarterGyro, starter_scenario};
 #[cfg(feature = "hdl")]

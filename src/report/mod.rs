@@ -74,6 +74,7 @@ pub use plot::{Pictures, SVG_BYTES_MAX, SweepPictures, sweep_pictures};
 pub use record::run::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
 pub use record::sweep::{PointFigure, PointOfSweep, assignments_text, swept_value};
 pub use restore::run::RestoredRun;
+pub(crate) use restore::values::interned;
 pub use starter::{Starter, starter_toml};
 pub use text::suite::{SuiteStyle, closing_text, scenario_text, suite_text, sweep_text};
 pub use text::table::table_text;

@@ -119,6 +119,14 @@ pub enum StoreError {
         /// Who holds its lock, in words.
         holder: String,
     },
+    /// The file system refused to read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
     /// The file system refused.
     #[error("cannot write {}: {source}", path.display())]
     Write {

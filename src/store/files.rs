@@ -17,19 +17,30 @@ const TEXT_BYTES_MAX: u64 = 64_000_000;
 /// # Panics
 /// Never: the name of the number format is a constant.
 pub fn write_npy(path: &Path, values: &[f64]) -> io::Result<()> {
+    let mut file = BufWriter::new(File::create(path)?);
+    put_npy(&mut file, values)?;
+    file.into_inner().map_err(io::IntoInnerError::into_error)?;
+    Ok(())
+}
+
+/// Writes what [`write_npy`] writes anywhere else.
+///
+/// # Errors
+/// What `out` says.
+///
+/// # Panics
+/// Never: the name of the number format is a constant.
+pub fn put_npy(out: &mut impl io::Write, values: &[f64]) -> io::Result<()> {
     let word = "<f8"
         .parse()
         .expect("`<f8` is NumPy's name of little-endian binary64");
-    let mut file = BufWriter::new(File::create(path)?);
     let mut writer = npyz::WriteOptions::new()
         .dtype(npyz::DType::Plain(word))
         .shape(&[values.len() as u64])
-        .writer(&mut file)
+        .writer(out)
         .begin_nd()?;
     writer.extend(values.iter().copied())?;
-    writer.finish()?;
-    file.into_inner().map_err(io::IntoInnerError::into_error)?;
-    Ok(())
+    writer.finish()
 }
 
 /// Options that open what is no link and no pipe, and wait for nothing.

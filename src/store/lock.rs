@@ -2,7 +2,7 @@
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Read as _, Seek as _, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::error::{Foreign, StoreError};
@@ -17,7 +17,9 @@ const PROCESS: &str = "process ";
 /// The right to write into an output folder, until dropped.
 #[derive(Debug)]
 pub(super) struct Lock {
+    path: PathBuf,
     file: File,
+    is_shared: bool,
     /// What to say where the file system cannot lock.
     pub(super) caution: Option<String>,
 }
@@ -29,14 +31,34 @@ impl Lock {
     /// nothing less. The system releases the lock of a process that is killed. What is no lock of the
     /// tool's, such as a link or a file with other words in it, stays as it is.
     pub(super) fn take(output: &Path, workshop: &Path) -> Result<Self, StoreError> {
-        let path = workshop.join(FILE);
-        let at = StoreError::at(&path);
+        Self::of_file(output, &workshop.join(FILE), File::try_lock)?.signed()
+    }
+
+    /// Takes a lock of the workshop of `output` that is the own one of a part of its results.
+    pub(super) fn take_own(place: &Path, path: &Path) -> Result<Self, StoreError> {
+        Self::of_file(place, path, File::try_lock)?.signed()
+    }
+
+    /// Takes a share in the lock of the workshop of `output`: others may share it, and nobody has it alone
+    /// meanwhile. It names nobody, since one name would overwrite another.
+    pub(super) fn share(output: &Path, workshop: &Path) -> Result<Self, StoreError> {
+        let mut lock = Self::of_file(output, &workshop.join(FILE), File::try_lock_shared)?;
+        lock.is_shared = true;
+        Ok(lock)
+    }
+
+    fn of_file(
+        output: &Path,
+        path: &Path,
+        try_lock: fn(&File) -> Result<(), TryLockError>,
+    ) -> Result<Self, StoreError> {
+        let at = StoreError::at(path);
         let foreign = |reason| StoreError::Obstacle {
             folder: output.to_owned(),
-            path: path.clone(),
+            path: path.to_owned(),
             reason,
         };
-        if let Some(reason) = foreign_file(&path).map_err(&at)? {
+        if let Some(reason) = foreign_file(path).map_err(&at)? {
             return Err(foreign(reason));
         }
         let opened = plain_file()
@@ -44,13 +66,13 @@ impl Lock {
             .write(true)
             .create(true)
             .truncate(false)
-            .open(&path);
+            .open(path);
         let mut file = opened.map_err(&at)?;
         // Once more: the name may have come to mean something else.
-        if let Some(reason) = foreign_file(&path).map_err(&at)? {
+        if let Some(reason) = foreign_file(path).map_err(&at)? {
             return Err(foreign(reason));
         }
-        let caution = match try_for_a_moment(&mut file) {
+        let caution = match try_for_a_moment(&mut file, try_lock) {
             Ok(()) => None,
             Err(Refusal::Held { holder }) => {
                 return Err(StoreError::InUse {
@@ -67,13 +89,24 @@ impl Lock {
         if !holds_own_words(&mut file).map_err(&at)? {
             return Err(foreign(Foreign::Unknown));
         }
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            caution,
+            is_shared: false,
+        })
+    }
+
+    /// The lock with the name of this process in its file.
+    fn signed(mut self) -> Result<Self, StoreError> {
         let words = format!("{PROCESS}{} on {}\n", std::process::id(), host_name());
+        let file = &mut self.file;
         let written = file
             .set_len(0)
             .and_then(|()| file.rewind())
             .and_then(|()| file.write_all(words.as_bytes()));
-        written.map_err(at)?;
-        Ok(Self { file, caution })
+        written.map_err(StoreError::at(&self.path))?;
+        Ok(self)
     }
 }
 
@@ -134,14 +167,7 @@ pub(super) fn refuse_inside_held(output: &Path) -> Result<(), StoreError> {
     let is_itself = existing == Some(absolute.as_path());
     for folder in found.ancestors().skip(usize::from(is_itself)) {
         let path = folder.join(super::WORKSHOP).join(FILE);
-        if !matches!(foreign_file(&path), Ok(None)) {
-            continue;
-        }
-        let Ok(mut file) = plain_file().read(true).open(&path) else {
-            continue;
-        };
-        if matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)) {
-            let holder = holder(&mut file).unwrap_or_else(|| "another process".to_owned());
+        if let Some(holder) = holder_of(&path) {
             return Err(StoreError::InUse {
                 folder: folder.to_owned(),
                 holder,
@@ -161,7 +187,9 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        self.sign_off();
+        if !self.is_shared {
+            self.sign_off();
+        }
         let _ = self.file.unlock();
     }
 }
@@ -176,11 +204,14 @@ enum Refusal {
 
 /// Takes the lock of a file. A holder that has not written its name yet is given a moment to do so, or
 /// to end.
-fn try_for_a_moment(file: &mut File) -> Result<(), Refusal> {
+fn try_for_a_moment(
+    file: &mut File,
+    try_lock: fn(&File) -> Result<(), TryLockError>,
+) -> Result<(), Refusal> {
     const TRIES: u32 = 20;
     const PAUSE: Duration = Duration::from_millis(10);
     for _ in 0..TRIES {
-        match file.try_lock() {
+        match try_lock(file) {
             Ok(()) => return Ok(()),
             Err(TryLockError::Error(error)) => return Err(Refusal::Unsupported(error)),
             Err(TryLockError::WouldBlock) => {
@@ -194,6 +225,16 @@ fn try_for_a_moment(file: &mut File) -> Result<(), Refusal> {
     // The system does not let the name be read.
     let holder = "another process".to_owned();
     Err(Refusal::Held { holder })
+}
+
+/// Who holds the lock of a file, in words; none if nobody does, or there is no such lock.
+pub(super) fn holder_of(path: &Path) -> Option<String> {
+    if !matches!(foreign_file(path), Ok(None)) {
+        return None;
+    }
+    let mut file = plain_file().read(true).open(path).ok()?;
+    let is_held = matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock));
+    is_held.then(|| holder(&mut file).unwrap_or_else(|| "another process".to_owned()))
 }
 
 /// Who holds a lock, as its file says; none if it does not say so.

@@ -17,6 +17,7 @@ mod output_folder;
 mod ownership;
 mod program_log;
 mod record;
+mod shard_slot;
 mod single_file;
 mod staged;
 mod suite_files;
@@ -25,11 +26,15 @@ mod sweep_files;
 mod update;
 
 pub use error::{Foreign, Spared, StoreError};
-pub use files::write_npy;
+pub use files::{put_npy, write_npy};
 pub use output_folder::{OutputFolder, StoreOptions, refuse_theirs};
 pub use ownership::{Ownership, holds_result, inspect};
 pub use program_log::ProgramLog;
-pub use record::{Head, MANIFEST_FILE, RECORD_FILE, Record};
+pub use record::{Head, MANIFEST_FILE, RECORD_FILE, Record, digest_of};
+pub use shard_slot::{
+    HeldFolder, ShardSlot, ShardWork, TakeRecord, WORK_SUFFIX, holder_of_place, open_place,
+    read_records, record_path,
+};
 pub use single_file::SingleFile;
 pub use staged::Staged;
 pub use suite_files::SuiteFileNames;

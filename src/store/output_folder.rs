@@ -16,7 +16,7 @@ use super::staged::Staged;
 use super::suite_files::{self, SuiteFileNames};
 use super::swap::Displaced;
 use super::update::Left;
-use super::{Swap, WORKSHOP, swap, update};
+use super::{Swap, WORKSHOP, shard_slot, swap, update};
 
 /// How results are put in place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -128,7 +128,8 @@ impl OutputFolder {
             return Err(refusal);
         }
         fs::create_dir_all(&workshop).map_err(StoreError::at(&workshop))?;
-        let lock = Lock::take(path, &workshop)?;
+        let lock = Lock::take(path, &workshop);
+        let lock = lock.map_err(|error| shard_slot::named(error, &workshop))?;
         let mut cautions: Vec<String> = lock.caution.iter().cloned().collect();
         cautions.extend(mend(path)?);
         checked()?;
@@ -331,7 +332,7 @@ fn become_theirs(refusal: StoreError) -> StoreError {
 }
 
 /// Refuses a path that can be no folder of results.
-fn refuse_unusable(path: &Path) -> Result<(), StoreError> {
+pub(super) fn refuse_unusable(path: &Path) -> Result<(), StoreError> {
     let refused = |found: &Path, reason| {
         Err(StoreError::Obstacle {
             folder: path.to_owned(),

@@ -161,7 +161,7 @@ pub(super) fn head_of(text: &str) -> &str {
 }
 
 /// BLAKE3 of a file, hexadecimal.
-pub(super) fn digest_of(path: &Path) -> io::Result<String> {
+pub fn digest_of(path: &Path) -> io::Result<String> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(File::open(path)?)?;
     Ok(hasher.finalize().to_hex().to_string())

@@ -13,6 +13,7 @@ use crate::cli::options::format::Format;
 use crate::cli::options::hardware::{ExportOptions, TimingOptions};
 use crate::cli::options::init::InitOptions;
 use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
+use crate::cli::options::shard::{MergeOptions, PlanOptions, ShardOptions, StatusOptions};
 use crate::cli::terminal::output::Colour;
 
 /// Version and build of the program.
@@ -27,8 +28,8 @@ const VERSION: &str = concat!(
 ///
 /// Runs TOML scenarios through turntable, gyro, denoising filters and metrics, and judges them.
 /// Exit codes: 0 all well, 1 a gate failed, 2 usage or scenario error, 3 a channel failed,
-/// 4 nothing selected, 70 internal error, 74 input/output error, 129, 130 and 143 ended by SIGHUP,
-/// SIGINT and SIGTERM.
+/// 4 nothing selected, 70 internal error, 74 input/output error, 75 a shard that SIGTERM stopped and that
+/// goes on when it is started again, 129, 130 and 143 ended by SIGHUP, SIGINT and SIGTERM.
 #[derive(Debug, Parser)]
 #[command(
     name = "fogbench",
@@ -52,6 +53,12 @@ pub(in crate::cli) enum Command {
     Init(InitOptions),
     /// Run scenarios in parallel, write results and evaluate gates
     Run(RunOptions),
+    /// List what there is to run in parts on many machines, and write the plan of it
+    Plan(PlanOptions),
+    /// Make one output folder of the parts that `run --shard` ran, judged as `run` judges
+    Merge(MergeOptions),
+    /// Say which parts of a plan are done, failed or missing
+    Status(StatusOptions),
     /// Check scenario files without running them
     Check(SelectOptions),
     /// Print every resolved run of scenario files, defaults and sweeps included
@@ -212,6 +219,8 @@ pub(in crate::cli) struct RunOptions {
     /// Form of the results on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(in crate::cli) format: Format,
+    #[command(flatten)]
+    pub(in crate::cli) shard: ShardOptions,
     #[command(flatten)]
     pub(in crate::cli) against: AgainstOptions,
     #[command(flatten)]

@@ -54,6 +54,9 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
         Command::Calibrate(options) => of_calibrate(options),
         Command::Init(_)
         | Command::Run(_)
+        | Command::Plan(_)
+        | Command::Merge(_)
+        | Command::Status(_)
         | Command::Check(_)
         | Command::Expand(_)
         | Command::List(_)

@@ -13,4 +13,5 @@ pub(in crate::cli) mod init;
 pub(in crate::cli) mod layout;
 pub(in crate::cli) mod log;
 pub(in crate::cli) mod numbers;
+pub(in crate::cli) mod shard;
 pub(in crate::cli) mod words;

@@ -27,6 +27,8 @@ pub(in crate::cli) enum Exit {
     Internal,
     /// A file could not be read or written.
     Io,
+    /// A shard was ended by SIGTERM and goes on where it left off when it is started again.
+    Continues,
     /// A signal has ended it; with the code that shells give it.
     Interrupted(u8),
 }
@@ -47,6 +49,7 @@ impl Exit {
             Self::NothingSelected => 4,
             Self::Internal => 70,
             Self::Io => 74,
+            Self::Continues => 75,
             Self::Interrupted(code) => code,
         }
     }
@@ -71,7 +74,7 @@ impl Exit {
             Self::Usage => 4,
             Self::Io => 5,
             Self::Internal => 6,
-            Self::Interrupted(_) => 7,
+            Self::Continues | Self::Interrupted(_) => 7,
         }
     }
 }

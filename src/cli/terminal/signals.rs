@@ -37,6 +37,8 @@ pub(in crate::cli) struct Interrupt {
     ends_at_once: Arc<AtomicBool>,
     /// The signal that asked the suite to stop; 0 = none.
     received: Arc<AtomicUsize>,
+    /// Whether it is a shard that is asked, which goes on when it is started again.
+    is_shard: Arc<AtomicBool>,
 }
 
 impl Interrupt {
@@ -48,6 +50,7 @@ impl Interrupt {
         let interrupt = Self {
             ends_at_once: Arc::new(AtomicBool::new(true)),
             received: Arc::new(AtomicUsize::new(0)),
+            is_shard: Arc::new(AtomicBool::new(false)),
         };
         let ignored = ignored_signals();
         for signal in ENDING.into_iter().filter(|signal| !ignored.holds(*signal)) {
@@ -73,11 +76,23 @@ impl Interrupt {
         let _ = thread::Builder::new().spawn(move || watched.end_in_time());
     }
 
+    /// The same for a shard: what ends it for want of time or room (SIGTERM) leaves something to go on with.
+    pub(in crate::cli) fn defer_shard(&self) {
+        self.is_shard.store(true, Ordering::SeqCst);
+        self.defer();
+    }
+
     /// How a program that has been asked to stop ends; none if it has not.
     pub(in crate::cli) fn exit(&self) -> Option<Exit> {
         let received = self.received.load(Ordering::SeqCst);
         let signal = i32::try_from(received).ok().filter(|signal| *signal > 0);
-        signal.map(exit)
+        signal.map(|signal| {
+            if signal == SIGTERM && self.is_shard.load(Ordering::SeqCst) {
+                Exit::Continues
+            } else {
+                exit(signal)
+            }
+        })
     }
 
     fn end_in_time(&self) {

@@ -8,6 +8,8 @@ mod motion;
 mod other_runs;
 mod output_average;
 mod progress;
+#[cfg(feature = "report")]
+mod ranges;
 mod rate_twins;
 mod records;
 mod results;
@@ -22,7 +24,13 @@ pub(crate) use measure::Cut;
 pub(crate) use motion::{motion, motion_extremes, rate_deg_per_h_max};
 pub use progress::Progress;
 pub(crate) use progress::{Unfinished, unless_stopped};
+#[cfg(feature = "report")]
+pub(crate) use ranges::{Repeat, pool, run_range};
 pub(crate) use rate_twins::{RATES_DEG_PER_S, RateTwins, rate_gain};
 pub(crate) use records::{RecordLength, count, sample_period_s};
 pub(crate) use results::{Results, run_plan};
+#[cfg(feature = "report")]
+pub(crate) use results::{notes, verdicts};
 pub(crate) use simulate::{Faults, GyroRecord, Simulation, first_words, simulate};
+#[cfg(feature = "report")]
+pub(crate) use theory::theory;

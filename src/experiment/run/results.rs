@@ -47,8 +47,7 @@ pub(crate) fn run_plan(plan: &Plan, progress: &dyn Progress) -> Result<Results, 
         results.verdicts = verdicts(plan, &results.channels);
         return Ok(results);
     }
-    let scenario = &resolved.scenario;
-    let theory = theory(scenario)?;
+    let theory = theory(&resolved.scenario)?;
     let Repeats {
         simulation,
         channels,
@@ -57,15 +56,7 @@ pub(crate) fn run_plan(plan: &Plan, progress: &dyn Progress) -> Result<Results, 
         parameters,
     } = run_repeats(plan, progress)?;
     let verdicts = verdicts(plan, &channels);
-    let sample_period_s = plan.sample_period_s();
-    let filters = simulation.filters.iter();
-    let of_filters: Vec<String> = filters
-        .flat_map(|(_, filter)| {
-            let pipeline = pipeline_metrics::notes(filter, sample_period_s);
-            pipeline.into_iter().chain(outside::note(filter))
-        })
-        .collect();
-    let notes = [plan.warnings().to_vec(), faults.notes(), of_filters].concat();
+    let notes = notes(plan, faults, &filter_notes(plan, &simulation));
     let compensation = parameters.map(|known| known.sheet(mean_true_rates(plan, &simulation)));
     Ok(Results {
         simulation,
@@ -79,12 +70,30 @@ pub(crate) fn run_plan(plan: &Plan, progress: &dyn Progress) -> Result<Results, 
 }
 
 /// The gates of a plan, judged in the order of the file.
-fn verdicts(plan: &Plan, channels: &Channels) -> Vec<Verdict> {
+pub(crate) fn verdicts(plan: &Plan, channels: &Channels) -> Vec<Verdict> {
     let resolved = plan.resolved();
     let gates = resolved.scenario.gates.iter().enumerate();
     gates
         .map(|(index, gate)| judge(gate, channels, Some(resolved.gate_place(index))))
         .collect()
+}
+
+/// What the reader of the results must know.
+///
+/// * `of_filters`: what the filters of the first repeat have to say.
+pub(crate) fn notes(plan: &Plan, faults: Faults, of_filters: &[String]) -> Vec<String> {
+    [plan.warnings(), &faults.notes(), of_filters].concat()
+}
+
+/// What the filters of a repeat have to say.
+pub(super) fn filter_notes(plan: &Plan, simulation: &Simulation) -> Vec<String> {
+    let sample_period_s = plan.sample_period_s();
+    let filters = simulation.filters.iter();
+    let notes = filters.flat_map(|(_, filter)| {
+        let pipeline = pipeline_metrics::notes(filter, sample_period_s);
+        pipeline.into_iter().chain(outside::note(filter))
+    });
+    notes.collect()
 }
 
 /// Means of the true rates about the case axes over the first record, deg/h.
@@ -145,7 +154,7 @@ fn run_repeats(plan: &Plan, progress: &dyn Progress) -> Result<Repeats, Unfinish
     })
 }
 
-fn run_repeat(
+pub(super) fn run_repeat(
     plan: &Plan,
     repeat: u32,
     parameters: Option<&Parameters>,
@@ -165,7 +174,7 @@ fn run_repeat(
 }
 
 /// One table from the tables of all repeats; a channel that failed once has failed.
-fn combine(first: Channels, others: Vec<Channels>) -> Channels {
+pub(super) fn combine(first: Channels, others: Vec<Channels>) -> Channels {
     if others.is_empty() {
         return first;
     }

@@ -6,14 +6,14 @@ use crate::experiment::output_file::write_file;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::Simulation;
 use crate::gyro::temperature_record;
-use crate::report::{self, Pictures, PointOfSweep, RunOutcome, RunReport};
+use crate::report::{self, Contents, OutputFile, Pictures, PointOfSweep, RunOutcome, RunReport};
 use crate::scenario::SamplesFormat;
 use crate::seal::digest_of_words;
 use crate::signal::RunSignals;
 use crate::store::{Staged, StoreError};
 
 /// What the report of a run shows of its plan, before anything is measured.
-pub(super) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
+pub(crate) fn report_of_plan(plan: &Plan) -> RunReport<'_> {
     let resolved = plan.resolved();
     RunReport {
         tool_version: VERSION,
@@ -41,7 +41,7 @@ pub(super) fn point_of(plan: &Plan) -> Option<PointOfSweep> {
 }
 
 /// The outcome of a plan that gave no result.
-pub(super) fn failed(plan: &Plan, reason: String) -> RunOutcome {
+pub(crate) fn failed(plan: &Plan, reason: String) -> RunOutcome {
     let resolved = plan.resolved();
     let (name, file) = (&resolved.scenario.name, &resolved.file);
     RunOutcome::failed(name, &resolved.folder(), file, reason).at(point_of(plan))
@@ -55,27 +55,39 @@ pub(crate) fn write_folder<'a>(
     output: &'a SuiteOutput,
 ) -> Result<Staged<'a>, StoreError> {
     let folder = output.stage()?;
-    for file in report::run_files(report, signals) {
+    for file in run_folder((plan, report), signals, pictures) {
         write_file(&folder, &file)?;
-    }
-    for (name, svg) in &pictures.drawn {
-        folder.write(name, svg.as_bytes())?;
-    }
-    let assumed = plan.resolved().assumed();
-    for (name, page) in report::run_pages(report, pictures, &assumed) {
-        folder.write(name, page.as_bytes())?;
     }
     Ok(folder)
 }
 
+/// Everything of one run but its manifest.
+pub(super) fn run_folder<'a>(
+    (plan, report): (&Plan, &RunReport),
+    signals: &[RunSignals<'a>],
+    pictures: &Pictures,
+) -> Vec<OutputFile<'a>> {
+    let text = |name: &str, text: String| OutputFile {
+        name: name.to_owned(),
+        contents: Contents::Text(text),
+    };
+    let drawn = pictures.drawn.iter();
+    let drawn = drawn.map(|(name, svg)| text(name, svg.clone()));
+    let assumed = plan.resolved().assumed();
+    let pages = report::run_pages(report, pictures, &assumed).into_iter();
+    let pages = pages.map(|(name, page)| text(name, page));
+    let files = report::run_files(report, signals).into_iter();
+    files.chain(drawn).chain(pages).collect()
+}
+
 /// Names of the channels of the gyros.
-pub(super) struct Names {
+pub(crate) struct Names {
     raw: Vec<String>,
     compensated: Vec<String>,
 }
 
 impl Names {
-    pub(super) fn of(report: &RunReport) -> Self {
+    pub(crate) fn of(report: &RunReport) -> Self {
         Self {
             raw: report.scenario.raw_channels(),
             compensated: report.scenario.compensated_channels(),
@@ -84,7 +96,7 @@ impl Names {
 }
 
 /// The samples of each gyro.
-pub(super) fn signals<'a>(
+pub(crate) fn signals<'a>(
     plan: &Plan,
     simulation: &'a Simulation,
     names: &'a Names,

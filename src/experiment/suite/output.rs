@@ -170,7 +170,7 @@ impl SuiteOutput {
 
     /// Removes what earlier scenarios of these names left behind, each in one step, where every run of
     /// the scenario stands in its place.
-    pub(crate) fn settle(&self) -> Settled {
+    pub(super) fn settle(&self) -> Settled {
         let placed = self.placed.lock().unwrap_or_else(PoisonError::into_inner);
         let mut settled = Settled::default();
         for scenario in &self.scenarios {

@@ -12,7 +12,7 @@ use crate::comparison::Layout;
 use crate::experiment::build::{BUILD, VERSION, names_one_program};
 use crate::experiment::outside::is_of_the_moment;
 use crate::experiment::plan::Plan;
-use crate::gate::judge;
+use crate::experiment::run::verdicts;
 use crate::report::{self, RestoredRun, RunOutcome, RunReport, run_summary_json};
 use crate::scenario::manifest_toml;
 use crate::store::{Head, MANIFEST_FILE, Ownership, Record, inspect};
@@ -44,10 +44,30 @@ pub(crate) fn take_over(
     if failures.any(is_of_the_moment) {
         return None;
     }
-    let gates = resolved.scenario.gates.iter().enumerate();
-    let verdicts: Vec<_> = gates
-        .map(|(index, gate)| judge(gate, &restored.channels, Some(resolved.gate_place(index))))
-        .collect();
+    with_restored(plan, (&summary, &restored), |report| {
+        if !has_files(&path, report) {
+            return None;
+        }
+        output.note_placed(folder.clone());
+        observer.advanced(plan.simulated_s());
+        observer.taken_over(index, report);
+        let outcome = RunOutcome::from_report(report, &folder);
+        let outcome = outcome.keeping(report, layout.metrics_of(&resolved.scenario.name));
+        Some(RunOutcome {
+            pictures: pictures(&path),
+            ..outcome
+        })
+    })?
+}
+
+/// Hands over the report of a run out of its `summary.json`, the text and what was read of it; none if the
+/// report does not give this text again, so that something of it was lost.
+pub(super) fn with_restored<T>(
+    plan: &Plan,
+    (summary, restored): (&str, &RestoredRun),
+    take: impl FnOnce(&RunReport) -> T,
+) -> Option<T> {
+    let verdicts = verdicts(plan, &restored.channels);
     let report = RunReport {
         compensation: restored.compensation.as_ref(),
         channels: &restored.channels,
@@ -56,18 +76,7 @@ pub(crate) fn take_over(
         notes: &restored.notes,
         ..report_of_plan(plan)
     };
-    if run_summary_json(&report) != summary || !has_files(&path, &report) {
-        return None;
-    }
-    output.note_placed(folder.clone());
-    observer.advanced(plan.simulated_s());
-    observer.taken_over(index, &report);
-    let outcome = RunOutcome::from_report(&report, &folder);
-    let outcome = outcome.keeping(&report, layout.metrics_of(&resolved.scenario.name));
-    Some(RunOutcome {
-        pictures: pictures(&path),
-        ..outcome
-    })
+    (run_summary_json(&report) == summary).then(|| take(&report))
 }
 
 /// Whether a folder holds every file of one result as it was written.

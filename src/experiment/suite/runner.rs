@@ -105,7 +105,7 @@ fn run_all(plans: &[Plan], layout: &Layout, suite: &Suite, observer: &dyn Observ
 
 /// Puts a folder that says so in the place of a run that could not finish, enters the run and tells
 /// the observer.
-fn enter_failure(
+pub(crate) fn enter_failure(
     (plan, index): (&Plan, usize),
     outcome: &RunOutcome,
     reason: &str,
@@ -122,7 +122,7 @@ fn enter_failure(
 
 /// Enters a run whose folder could not be written, which leaves what stood in its place, and tells the
 /// observer.
-pub(super) fn enter_unwritten(
+pub(crate) fn enter_unwritten(
     (plan, index): (&Plan, usize),
     error: &StoreError,
     suite: &Suite,
@@ -144,10 +144,15 @@ fn tell_failed(index: usize, outcome: &RunOutcome, suite: &Suite, observer: &dyn
 
 /// The outcome of a run that broke an invariant, with what the panic said.
 fn broken_run(plan: &Plan, panic: &(dyn Any + Send)) -> RunOutcome {
+    failed(plan, panic_text(panic))
+}
+
+/// A broken invariant, as users are told of it.
+pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> String {
     let message = panic
         .downcast_ref::<String>()
         .map(String::as_str)
         .or_else(|| panic.downcast_ref::<&str>().copied())
         .unwrap_or("no message");
-    failed(plan, format!("internal error, please report it: {message}"))
+    format!("internal error, please report it: {message}")
 }

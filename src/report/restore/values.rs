@@ -7,7 +7,7 @@ use serde_json::Value;
 
 /// A word as the constants of the program spell theirs: units, fields and labels, a few dozen in all,
 /// each kept once for as long as the program runs.
-pub(in crate::report) fn interned(word: &str) -> &'static str {
+pub(crate) fn interned(word: &str) -> &'static str {
     static WORDS: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut words = WORDS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = words.get(word) {

@@ -5,6 +5,7 @@ mod against;
 mod clock;
 mod progress;
 mod server_files;
+mod shard;
 
 use std::io;
 
@@ -14,32 +15,61 @@ use crate::cli::options::arguments::{ResumeFrom, RunOptions};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::cli::terminal::signals::Interrupt;
-use crate::experiment::{Resume, SuiteOptions, program_files, run_suite};
+use crate::experiment::{
+    Observer, Plan, Resume, SuiteError, SuiteOptions, SuiteOutcome, program_files, run_suite,
+};
+use crate::program::Programs;
 use crate::scenario::bounded;
 use progress::Progress;
 use server_files::ServerFiles;
 
-/// Plans, runs, prints and judges.
+/// Plans, runs, prints and judges; a part of a suite is run alone.
 pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exit> {
+    if options.shard.is_asked() {
+        return shard::run(options, interrupt);
+    }
     let plans = match select::plans(&options.select) {
         Ok(plans) => plans,
         Err(exit) => return Ok(exit),
     };
-    if options.require_gates
-        && plans
-            .iter()
-            .all(|plan| plan.resolved().scenario.gates.is_empty())
-    {
-        output::talk("error: --require-gates: no selected scenario has a gate; nothing was run");
+    if options.require_gates && without_gates(&plans) {
         return Ok(Exit::GateFailed);
     }
-    let programs = plans.iter().flat_map(|plan| program_files(plan.resolved()));
-    let programs = match consent(programs, options.allow_programs) {
+    let programs = match programs(&plans, options) {
         Ok(programs) => programs,
         Err(exit) => return Ok(exit),
     };
+    conclude_by(&plans, options, interrupt, programs, |suite, observer| {
+        run_suite(&plans, suite, observer)
+    })
+}
+
+/// Says so where no scenario has a gate.
+pub(super) fn without_gates(plans: &[Plan]) -> bool {
+    let mut plans = plans.iter();
+    let is_lacking = plans.all(|plan| plan.resolved().scenario.gates.is_empty());
+    if is_lacking {
+        output::talk("error: --require-gates: no selected scenario has a gate; nothing was run");
+    }
+    is_lacking
+}
+
+/// The right to start the programs that some plans name, where there are any.
+fn programs(plans: &[Plan], options: &RunOptions) -> Result<Option<Programs>, Exit> {
+    let programs = plans.iter().flat_map(|plan| program_files(plan.resolved()));
+    consent(programs, options.allow_programs)
+}
+
+/// Makes the output folder of a suite by `make`, prints and judges.
+pub(super) fn conclude_by(
+    plans: &[Plan],
+    options: &RunOptions,
+    interrupt: &Interrupt,
+    programs: Option<Programs>,
+    make: impl FnOnce(&SuiteOptions, &dyn Observer) -> Result<SuiteOutcome, SuiteError>,
+) -> io::Result<Exit> {
     let beside = against::earlier(options)
-        .and_then(|earlier| Ok((earlier, ServerFiles::check(options, &plans)?)));
+        .and_then(|earlier| Ok((earlier, ServerFiles::check(options, plans)?)));
     let (earlier, server) = match beside {
         Ok(beside) => beside,
         Err(exit) => return Ok(exit),
@@ -51,16 +81,21 @@ pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Re
         resume: resume(options.resume),
         ..SuiteOptions::new(options.output.clone())
     };
-    let progress = Progress::new(&plans, options, server, interrupt).starting(programs);
+    let progress = Progress::new(plans, options, server, interrupt).starting(programs);
+    warn_of_threads(options);
+    interrupt.defer();
+    let result = make(&suite, &progress);
+    Ok(progress.conclude(&result))
+}
+
+/// Says so where the variable for the number of threads holds none.
+fn warn_of_threads(options: &RunOptions) {
     if let Some(text) = senseless_threads(options) {
         output::talk(&format!(
             "warning: RAYON_NUM_THREADS = `{}` is no number of threads: one per core",
             bounded(&text)
         ));
     }
-    interrupt.defer();
-    let result = run_suite(&plans, &suite, &progress);
-    Ok(progress.conclude(&result))
 }
 
 /// What the variable for the number of threads says in vain; none if it is not asked, or a number.
