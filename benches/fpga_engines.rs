@@ -287,6 +287,7 @@ fn against_rtl(_: &mut Criterion) {
         front_end: "one-step predictor".to_string(),
         trace_samples: 0,
         codes: None,
+        top: None,
     };
     write_rtl(dir.path(), &settings, &pairs[..2000]).expect("the folder is writable");
     let clocks = (1 + 2000 * rls_clocks_per_sample(4)) as f64;

@@ -7,9 +7,10 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use fogbench::fpga::board::{CodeScale, Surroundings};
 use fogbench::fpga::engine::Engine as _;
 use fogbench::fpga::export::{
-    ExportSettings, IntegerCodes, PipelineConfig, stimulus_pairs, write_rtl,
+    ExportSettings, IntegerCodes, PipelineConfig, TopLevel, stimulus_pairs, write_rtl,
 };
 use fogbench::fpga::float_unit::{FlushToZero, Fp};
 use fogbench::fpga::front_end::{FrontEnd, Pair};
@@ -20,7 +21,7 @@ use fogbench::fpga::sign_lms::{
 };
 use fogbench::fpga::timing::{UnitTiming, Units};
 use fogbench::fpga::trace::hex;
-use fogbench::vocabulary::{Division, UpdateSign};
+use fogbench::vocabulary::{DesiredSignal, Division, OutputRegister, UpdateSign};
 
 use crate::support::stimulus::{SETUPS, Setup, predictor_pairs, samples};
 
@@ -91,6 +92,17 @@ fn settings<F: Fp>(pipeline: PipelineConfig<F>, trace_samples: usize) -> ExportS
         front_end: "one-step predictor: x = previous sample, d = sample".to_string(),
         trace_samples,
         codes: None,
+        top: None,
+    }
+}
+
+/// Codes of 1e-4 deg/s for words in deg/h.
+fn code_scale() -> CodeScale {
+    CodeScale {
+        lsb: 1e-4,
+        unit: "deg/s".to_string(),
+        factor: 3600.0,
+        word_unit: "deg/h".to_string(),
     }
 }
 
@@ -143,6 +155,7 @@ fn export_and_run<F: Fp>(pipeline: PipelineConfig<F>, pairs: &[Pair<F>], trace_s
     let by_clock = fs::read_to_string(dir.path().join("y.hex")).expect("the words are written");
     assert!(by_clock == words_at_once(pipeline, pairs), "{pipeline:?}");
     let report = assert_passes(dir.path());
+    assert!(!report.contains(" 0 resets;"), "no reset in {report}");
     let rows = trace_samples.min(pairs.len()) * pipeline.as_pipeline().clocks_per_sample();
     let samples = pairs.len();
     for part in [
@@ -390,8 +403,7 @@ fn hexadecimal_files_are_complete_and_parameters_name_every_choice() {
     let mut settings = settings(rls(4, 0.99, Division::Reciprocal), 2);
     settings.codes = Some(IntegerCodes {
         codes,
-        lsb: 1e-4,
-        unit: "deg/s".to_string(),
+        scale: code_scale(),
     });
     write_rtl(dir.path(), &settings, &pairs).unwrap();
     let read = |name: &str| fs::read_to_string(dir.path().join(name)).unwrap();
@@ -453,7 +465,7 @@ const LINE_ENHANCER: SignLmsSettings = SignLmsSettings {
 
 /// Pairs of the samples behind the delay, with a step of rate in the middle.
 fn delayed_pairs<F: Fp>(count: usize, delay: usize, step: f64) -> Vec<Pair<F>> {
-    let mut front_end = FrontEnd::new(fogbench::vocabulary::DesiredSignal::Current, delay);
+    let mut front_end = FrontEnd::new(DesiredSignal::Current, delay);
     samples("white", count)
         .iter()
         .enumerate()
@@ -532,6 +544,64 @@ fn the_line_enhancer_waits_for_a_slow_divider_and_takes_a_nan_as_the_model_does(
     }
 }
 
+/// The top level around a pipeline.
+fn top<F: Fp>(
+    desired: DesiredSignal,
+    output_register: OutputRegister,
+    scale: Option<CodeScale>,
+    samples: &[f64],
+) -> TopLevel<F> {
+    TopLevel {
+        surroundings: Surroundings {
+            desired,
+            input_lag_samples: 2,
+            output_register,
+            scale,
+        },
+        samples: samples.iter().copied().map(F::from_f64).collect(),
+    }
+}
+
+#[test]
+fn the_top_level_has_the_exported_constants_and_the_words_of_the_model() {
+    fn check<F: Fp>(desired: DesiredSignal, register: OutputRegister, coded: bool) {
+        let codes: Vec<i32> = (0..30_i32).map(|k| (k * k * 37) % 2001 - 1000).collect();
+        let codes = IntegerCodes {
+            codes: [&codes[..], &[0, i32::MAX, i32::MIN]].concat(),
+            scale: code_scale(),
+        };
+        let words: Vec<f64> = codes.codes.iter().map(|k| codes.scale.word(*k)).collect();
+        assert!(codes.give(&words));
+        let pairs = stimulus_pairs(&words, &mut FrontEnd::<F>::new(desired, 2)).unwrap();
+        let mut settings = settings(rls(3, 0.97, Division::Elementwise), 0);
+        let scale = coded.then(code_scale);
+        settings.top = Some(top(desired, register, scale, &words));
+        settings.codes = Some(codes);
+        let dir = tempfile::tempdir().unwrap();
+        write_rtl(dir.path(), &settings, &pairs).unwrap();
+        let report = assert_passes_with(dir.path(), &[("BENCH", "top")], &[]);
+        assert!(report.contains("PASS top level: 33 results"), "{report}");
+        let text = fs::read_to_string(dir.path().join("rls_top.v")).unwrap();
+        let alpha = format!("{}'h{}", F::WIDTH, hex(F::from_f64(0.97)));
+        for part in [".P(3)", ".DIV_ELEM(1)", &format!(".ALPHA({alpha})")] {
+            assert!(text.contains(part), "no {part} in {text}");
+        }
+        // A wrong factor, as one who takes the words for deg/s would put in, is noticed.
+        let wrong = text.replace("64'h40ac200000000000", "64'h3ff0000000000000");
+        fs::write(dir.path().join("rls_top.v"), &wrong).unwrap();
+        let output = run_with(dir.path(), &[("BENCH", "top")], &[]);
+        assert_eq!(output.status.success(), !coded, "{}", text_of(&output));
+    }
+    if !available(&["iverilog", "vvp"]) {
+        return;
+    }
+    let (current, mean) = (DesiredSignal::Current, DesiredSignal::TwoSampleMean);
+    check::<f64>(current, OutputRegister::NextSample, true);
+    check::<f32>(mean, OutputRegister::Immediate, true);
+    check::<FlushToZero<f64>>(mean, OutputRegister::NextSample, false);
+    check::<FlushToZero<f32>>(current, OutputRegister::Immediate, false);
+}
+
 /// Number of cells of the statistics whose type starts with `kind`.
 fn cells(statistics: &str, kind: &str) -> usize {
     let lines = statistics.lines().map(str::split_whitespace);
@@ -595,9 +665,12 @@ fn yosys_maps_the_datapaths_onto_distributed_memory() {
     fs::write(&boxes, BLACK_BOXES).unwrap();
     for name in ["rls", "lms", "sign_lms"] {
         let file = |suffix: &str| root.join(suffix).display().to_string();
+        // Plain LMS never divides.
+        let dividers = u8::from(name != "lms");
         let script = format!(
             "read_verilog {} {} {} {}; synth_xilinx -flatten -top {name}_core; \
-             select -assert-count 1 t:fp_add; select -assert-count 1 t:fp_mul; stat",
+             select -assert-count 1 t:fp_add; select -assert-count 1 t:fp_mul; \
+             select -assert-count {dividers} t:fp_div; stat",
             boxes.display(),
             file(&format!("{name}_core.v")),
             file(&format!("{name}_ctrl.v")),

@@ -26,11 +26,11 @@ fn units(name: &str) -> Units {
         .units
 }
 
-fn usage(tap_count: usize, division: Division) -> Usage {
+fn usage(tap_count: usize, division: Division, forgetting_factor: f64) -> Usage {
     measure(RlsPipeline::new(
         RlsConfig::<f64>::new(RlsSettings {
             tap_count,
-            forgetting_factor: 0.99,
+            forgetting_factor,
             initial_inverse_correlation: 1e4,
             division,
             update_sign: UpdateSign::Corrected,
@@ -85,23 +85,32 @@ fn published_table_1_is_reproduced_at_four_taps_and_forty_megahertz() {
 fn counted_operations_are_those_the_model_performs() {
     for p in [1, 2, 4, 7] {
         for division in [Division::Reciprocal, Division::Elementwise] {
-            let counted = table(p, division, true, 40.0).unwrap()[3];
-            let used = usage(p, division);
-            assert_eq!(used.multiplies, counted.multipliers);
-            // The model's accumulators start at a constant, so a dot product of p products takes
-            // p additions; the parallel form needs p - 1, except for the denominator. There are
-            // 2p + 1 such products.
-            assert_eq!(used.additions, counted.adders + 2 * p as u64 + 1);
-            assert_eq!(used.divisions, counted.dividers);
+            for (forgets, alpha) in [(false, 1.0), (true, 0.99)] {
+                let counted = table(p, division, forgets, 40.0).unwrap();
+                let used = usage(p, division, alpha);
+                assert_eq!(counted[5].clocks, used.clocks_per_sample);
+                let counted = counted[3];
+                // At alpha = 1 the model by-passes p^2 products, as the RTL does.
+                assert_eq!(used.multiplies, counted.multipliers);
+                // The model's accumulators start at a constant, so a dot product of p products takes
+                // p additions; the parallel form needs p - 1, except for the denominator. There are
+                // 2p + 1 such products.
+                assert_eq!(used.additions, counted.adders + 2 * p as u64 + 1);
+                assert_eq!(used.divisions, counted.dividers);
+            }
         }
     }
 }
 
 #[test]
 fn golden_clocks_per_state_and_port_use_at_four_taps() {
-    let used = usage(4, Division::Reciprocal);
+    let used = usage(4, Division::Reciprocal, 1.0);
+    assert_eq!(
+        (used.multiplies, used.additions, used.divisions),
+        (76, 61, 1)
+    );
     let clocks: Vec<u64> = used.states.iter().map(|state| state.clocks).collect();
-    assert_eq!(clocks, [0, 1, 16, 4, 4, 1, 32, 16, 16, 4, 4, 1, 5, 4]);
+    assert_eq!(clocks, [0, 1, 16, 4, 4, 1, 32, 16, 16, 4, 4, 1, 5, 4, 0]);
     assert_eq!(clocks.iter().sum::<u64>(), used.clocks_per_sample);
     assert_eq!(
         (
@@ -180,7 +189,7 @@ fn one_clock_units_stall_nobody() {
         );
         assert_eq!(
             clocks.unwrap(),
-            usage(tap_count, Division::Reciprocal).clocks_per_sample
+            usage(tap_count, Division::Reciprocal, 0.99).clocks_per_sample
         );
     }
     assert_eq!(lms_stalled_clocks(10, false, Units::ONE_CLOCK).unwrap(), 34);

@@ -29,6 +29,7 @@ fn settings(pipeline: PipelineConfig<f64>) -> ExportSettings<f64> {
         front_end: "one-step predictor".to_string(),
         trace_samples: 0,
         codes: None,
+        top: None,
     }
 }
 

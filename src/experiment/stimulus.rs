@@ -3,11 +3,12 @@
 use super::plan::Plan;
 use super::run::first_words;
 use crate::filters::hardware::Stimulus;
+use crate::fpga::board::CodeScale;
 use crate::fpga::export::IntegerCodes;
 use crate::gyro::{self, GyroError};
 use crate::scenario::OutputQuantisation;
 use crate::seal::digest_of_words;
-use crate::units::{arcsec_per_s_to_deg_per_h, deg_per_h_to_deg_per_s};
+use crate::units::{arcsec_per_s_to_deg_per_h, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h};
 
 /// Digest of samples, as a filter whose words were computed elsewhere states it.
 #[must_use]
@@ -34,8 +35,12 @@ pub fn scenario_stimulus(plan: &Plan, samples: usize) -> Result<Stimulus, GyroEr
     let lsb = lsb / f64::from(output.average_samples);
     let codes = (lsb > 0.0).then(|| IntegerCodes {
         codes: words.iter().map(|word| code(*word, lsb)).collect(),
-        lsb,
-        unit: "deg/s".to_owned(),
+        scale: CodeScale {
+            lsb,
+            unit: "deg/s".to_owned(),
+            factor: deg_per_s_to_deg_per_h(1.0),
+            word_unit: "deg/h".to_owned(),
+        },
     });
     Ok(Stimulus { words, codes })
 }

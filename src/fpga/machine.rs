@@ -16,6 +16,10 @@
 //!
 //! A strobe wakes an idle machine into its loading state. A strobe withdrawn before that state puts
 //! it back to idle. The last clock of a sample goes straight to loading if the next strobe is up.
+//!
+//! A reset, in any clock, sets all registers and begins to clear: [`Machine::CLEARING`] writes every
+//! word of both memories anew, one of each a clock, and takes no sample meanwhile. Clocks are
+//! counted from where that ends.
 
 use super::datapath::Datapath;
 use super::float_unit::Fp;
@@ -39,10 +43,13 @@ pub trait Machine {
     /// State in which the offered pair is taken.
     const LOADING: Self::State;
 
-    /// Registers just out of reset.
+    /// State in which the memories are written anew after a reset.
+    const CLEARING: Self::State;
+
+    /// Registers just out of reset, the memories cleared.
     fn new(config: Self::Config) -> Self;
 
-    /// RAMA and RAMB just out of reset.
+    /// RAMA and RAMB just out of reset, cleared.
     fn memories(config: &Self::Config) -> [SinglePortRam<Self::Word>; 2];
 
     /// Synthesis-time constants.
@@ -64,7 +71,7 @@ pub trait Machine {
         datapath: &mut Datapath<'_, Self::Word, Q>,
     );
 
-    /// Clock of any state but idle and loading.
+    /// Clock of any state but idle and loading; clearing is one.
     ///
     /// * `next_waits`: whether the input strobe is up.
     fn step<Q: Probe<Self::Word>>(
@@ -116,7 +123,7 @@ pub struct Sequencer<M: Machine> {
 }
 
 impl<M: Machine> Sequencer<M> {
-    /// A pipeline just out of reset.
+    /// A pipeline just out of reset, its memories cleared.
     #[must_use]
     pub fn new(config: M::Config) -> Self {
         Self {
@@ -125,9 +132,11 @@ impl<M: Machine> Sequencer<M> {
         }
     }
 
-    /// Back to the state after reset.
+    /// A clock edge with the reset up: registers as after reset, memories still as they were. The
+    /// clocks that follow clear them.
     pub fn reset(&mut self) {
-        *self = Self::new(*self.machine.config());
+        self.machine = M::new(*self.machine.config());
+        self.machine.registers_mut().state = M::CLEARING;
     }
 
     /// The constants.

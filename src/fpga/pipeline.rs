@@ -3,6 +3,7 @@
 //! A pipeline is a folder. Its `declaration` implements [`Core`] for the settings and [`Pipeline`]
 //! for the constants they are rounded to; one line in [`crate::fpga::kinds`] enters it.
 
+use super::board::{Board, BoardUsage, Surroundings};
 use super::engine::Engine;
 use super::error::FpgaError;
 use super::float_unit::Fp;
@@ -19,6 +20,8 @@ pub struct Kind {
     /// Name in scenarios, parameter files and waveforms. In capitals, `VEC_` before it, the macro
     /// by which the testbench tells kinds apart; `tb_`, `_core` and `_ctrl` make its Verilog files.
     pub name: &'static str,
+    /// Parameter of its Verilog core that is the tap count, the first of the core's.
+    pub tap_parameter: &'static str,
     /// Names of the control states, in the order of their codes.
     pub states: &'static [&'static str],
     /// Verilog files and their text: control, core, testbench.
@@ -100,6 +103,11 @@ pub trait Pipeline<F: Fp> {
         UpdateSign::Corrected
     }
 
+    /// Whether the core forms the desired word itself and does not use that of the pair.
+    fn forms_desired(&self) -> bool {
+        false
+    }
+
     /// Constants and choices for the parameter files.
     fn parameters(&self) -> Parameters<F>;
 
@@ -145,6 +153,9 @@ pub trait Clocked<F: Fp> {
 
     /// Counts one back-to-back sample.
     fn usage(self: Box<Self>) -> Usage;
+
+    /// Counts the clocks of a board around the pipeline.
+    fn board_usage(self: Box<Self>, surroundings: Surroundings) -> BoardUsage;
 }
 
 impl<M: Machine> Clocked<M::Word> for Sequencer<M> {
@@ -167,5 +178,9 @@ impl<M: Machine> Clocked<M::Word> for Sequencer<M> {
 
     fn usage(self: Box<Self>) -> Usage {
         measure(*self)
+    }
+
+    fn board_usage(self: Box<Self>, surroundings: Surroundings) -> BoardUsage {
+        Board::new(*self, surroundings).usage()
     }
 }

@@ -123,7 +123,7 @@ fn from_scenario(
     path: &Path,
     options: &ExportOptions,
 ) -> Result<(Option<PipelineSettings>, Stimulus), Exit> {
-    let plans = plan_suite(&[path.to_path_buf()], &[]).map_err(|errors| {
+    let plans = plan_suite(&[path.to_path_buf()], &options.set).map_err(|errors| {
         complaint::print(&errors);
         Exit::Usage
     })?;

@@ -76,7 +76,7 @@ impl<'a> Report<'a> {
     }
 
     fn json(&self) -> Value {
-        let usage = &self.measured.usage;
+        let (usage, board) = (&self.measured.usage, &self.measured.board);
         let clock_mhz = self.filter.clock_mhz;
         let rows: Vec<Value> = self
             .table
@@ -110,6 +110,14 @@ impl<'a> Report<'a> {
             "latency_us": self.measured.latency_us,
             "sample_rate_max_khz": self.measured.sample_rate_max_khz,
             "wake_up_clocks": usage.wake_up_clocks,
+            "board": {
+                "front_end_clocks": board.front_end_clocks,
+                "front_end_us": sample_period_us(board.front_end_clocks, clock_mhz),
+                "clocks_per_sample": board.clocks_per_sample,
+                "sample_period_us": sample_period_us(board.clocks_per_sample, clock_mhz),
+                "latency_clocks": board.latency_clocks,
+                "latency_us": sample_period_us(board.latency_clocks, clock_mhz),
+            },
             "clocks_per_state": states,
             "rama_accesses": usage.rama_accesses, "ramb_accesses": usage.ramb_accesses,
             "multiplies": usage.multiplies, "additions": usage.additions,
@@ -142,6 +150,20 @@ impl<'a> Report<'a> {
             usage.latency_clocks,
             self.measured.latency_us,
             usage.wake_up_clocks,
+        );
+        let board = &self.measured.board;
+        let _ = writeln!(
+            text,
+            "  on a board: core {} clocks a sample; front end {} clocks from an integer code to its pair, \
+             {:.3} us;\n  system {} clocks a sample, {:.2} us; result {} clocks after the code, {:.3} us, \
+             from idle",
+            usage.clocks_per_sample,
+            board.front_end_clocks,
+            sample_period_us(board.front_end_clocks, clock_mhz),
+            board.clocks_per_sample,
+            sample_period_us(board.clocks_per_sample, clock_mhz),
+            board.latency_clocks,
+            sample_period_us(board.latency_clocks, clock_mhz),
         );
         self.write_usage(&mut text);
         if !self.table.is_empty() {

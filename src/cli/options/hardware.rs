@@ -232,6 +232,9 @@ pub(in crate::cli) struct ExportOptions {
     /// Scenario whose gyro gives the stimulus
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) scenario: Option<PathBuf>,
+    /// Override a key of the scenario; `filter.<name>.<key>` reaches into a filter
+    #[arg(long = "set", value_name = "KEY=VALUE", requires = "scenario")]
+    pub(in crate::cli) set: Vec<String>,
     /// Filter of the scenario to export; without it the options below describe one
     #[arg(
         long = "filter",

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use super::settings::{PipelineSettings, with_word};
 use crate::fpga::FpgaError;
 use crate::fpga::export::{
-    ExportSettings, IntegerCodes, stimulus_pairs, write_rtl, write_vectors, write_waveform,
+    ExportSettings, IntegerCodes, TopLevel, stimulus_pairs, write_rtl, write_vectors,
+    write_waveform,
 };
 use crate::fpga::float_unit::Fp;
 use crate::fpga::trace::Window;
@@ -44,8 +45,18 @@ fn export<F: Fp>(
     trace_samples: usize,
 ) -> Result<Vec<PathBuf>, FpgaError> {
     let pairs = stimulus_pairs(&stimulus.words, &mut settings.front_end::<F>())?;
+    let pipeline = settings.constants::<F>()?;
+    // Codes whose words are not theirs bit for bit, as those of means: the board takes words.
+    let codes = stimulus.codes.as_ref();
+    let codes = codes.filter(|codes| codes.give(&stimulus.words));
+    let scale = codes.map(|codes| codes.scale.clone());
+    let top = TopLevel {
+        surroundings: settings.surroundings(&pipeline, scale),
+        samples: stimulus.words.iter().copied().map(F::from_f64).collect(),
+    };
     let export = ExportSettings {
-        pipeline: settings.constants::<F>()?,
+        pipeline,
+        top: Some(top),
         clock_mhz: settings.clock_mhz,
         front_end: front_end_words(settings),
         trace_samples: trace_samples.min(pairs.len()),

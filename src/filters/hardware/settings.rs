@@ -3,6 +3,7 @@
 use super::filter::{HardwareFilter, PipelineFilter};
 use crate::filters::common::{Complaints, FrontEndConfig, adaptive_rule, least_squares_rule};
 use crate::fpga::FpgaError;
+use crate::fpga::board::{BoardUsage, CodeScale, Surroundings};
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::FrontEnd;
 use crate::fpga::health::Warning;
@@ -36,6 +37,8 @@ pub struct PipelineSettings {
 pub struct PipelineTiming {
     /// Clocks, states, ports and units of one back-to-back sample.
     pub usage: Usage,
+    /// Clocks of the same behind a front end that takes integer codes.
+    pub board: BoardUsage,
     /// Time of all clocks of a sample, us.
     pub sample_period_us: f64,
     /// From the accepting clock to the result, us.
@@ -93,8 +96,11 @@ impl PipelineSettings {
     /// What the pipeline refuses: tap count, forgetting factor, initial inverse correlation, step
     /// or regularisation out of range in the word format.
     pub fn timing(&self) -> Result<PipelineTiming, FpgaError> {
-        let usage = with_word!(self.format, F => {
-            self.constants::<F>()?.as_pipeline().clocked().usage()
+        let (usage, board) = with_word!(self.format, F => {
+            let constants = self.constants::<F>()?;
+            let around = self.surroundings(&constants, Some(CodeScale::unity()));
+            let pipeline = constants.as_pipeline();
+            (pipeline.clocked().usage(), pipeline.clocked().board_usage(around))
         });
         let clock_mhz = self.clock_mhz;
         Ok(PipelineTiming {
@@ -102,6 +108,7 @@ impl PipelineSettings {
             latency_us: sample_period_us(usage.latency_clocks, clock_mhz),
             sample_rate_max_khz: sample_rate_max_khz(usage.clocks_per_sample, clock_mhz),
             usage,
+            board,
         })
     }
 
@@ -158,6 +165,27 @@ impl PipelineSettings {
     /// The hold registers in front of the core.
     pub(super) fn front_end<F: Fp>(&self) -> FrontEnd<F> {
         FrontEnd::new(self.desired, self.input_lag_samples)
+    }
+
+    /// What stands around the core on a board.
+    ///
+    /// * `scale`: how samples come as integer codes; none: they come as words.
+    pub(super) fn surroundings<F: Fp>(
+        &self,
+        pipeline: &PipelineConfig<F>,
+        scale: Option<CodeScale>,
+    ) -> Surroundings {
+        let desired = if pipeline.as_pipeline().forms_desired() {
+            DesiredSignal::Current
+        } else {
+            self.desired
+        };
+        Surroundings {
+            desired,
+            input_lag_samples: self.input_lag_samples,
+            output_register: self.output_register,
+            scale,
+        }
     }
 
     /// Regressors, desired signal and register in the terms of the bench.

@@ -12,6 +12,7 @@
 //! | `trace.csv` | per clock: state, memory ports, registers ([`crate::fpga::trace`]) |
 //! | `wave.vcd`, `wave.fst`, `states.gtkwfilter` | a window of clocks with readable states |
 //! | `params.vh` | the same for the testbench, as Verilog macros |
+//! | `*_top.v`, `samples.hex` | the filter with its constants and its front end; its samples if not codes |
 //! | `*.v`, `*.vh`, `run.sh`, `test_cocotb.py` | RTL, testbench, script, cocotb test |
 //! | `README.txt` | how to run it, every format, how to put in units or a core of one's own |
 //!
@@ -22,10 +23,11 @@
 mod params;
 mod rtl;
 mod signals;
+mod top;
 mod vectors;
 mod waveform;
 
 pub use super::kinds::PipelineConfig;
 pub use rtl::write_rtl;
-pub use vectors::{ExportSettings, IntegerCodes, stimulus_pairs, write_vectors};
+pub use vectors::{ExportSettings, IntegerCodes, TopLevel, stimulus_pairs, write_vectors};
 pub use waveform::write_waveform;

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use super::vectors::ExportSettings;
+use super::vectors::{ExportSettings, TopLevel};
 use crate::fpga::float_unit::Fp;
 use crate::fpga::pipeline::Macro;
 use crate::fpga::trace::hex;
-use crate::vocabulary::UpdateSign;
+use crate::vocabulary::{OutputRegister, UpdateSign};
 
 /// Half a clock period in whole picoseconds, at least one.
 #[expect(
@@ -18,6 +18,15 @@ pub(super) fn half_period_ps(clock_mhz: f64) -> u64 {
     ((5e5 / clock_mhz).round() as u64).max(1)
 }
 
+/// Verilog text of a constant.
+pub(super) fn macro_value<F: Fp>(value: Macro<F>) -> String {
+    match value {
+        Macro::Word(word) => format!("{}'h{}", F::WIDTH, hex(word)),
+        Macro::Flag(is_set) => u8::from(is_set).to_string(),
+        Macro::Count(count) => count.to_string(),
+    }
+}
+
 /// Verilog macros for the testbench; `README.txt` beside it states their meaning.
 pub(super) fn params_vh<F: Fp>(
     settings: &ExportSettings<F>,
@@ -26,11 +35,6 @@ pub(super) fn params_vh<F: Fp>(
 ) -> String {
     let pipeline = settings.pipeline.as_pipeline();
     let flag = |is_set: bool| u8::from(is_set).to_string();
-    let value = |value: Macro<F>| match value {
-        Macro::Word(word) => format!("{}'h{}", F::WIDTH, hex(word)),
-        Macro::Flag(is_set) => flag(is_set),
-        Macro::Count(count) => count.to_string(),
-    };
     let filter = pipeline.kind().name.to_uppercase();
     let mut text = format!("// Parameters of this export.\n`define VEC_{filter}\n");
     let mut define = |name: &str, value: String| {
@@ -38,7 +42,7 @@ pub(super) fn params_vh<F: Fp>(
     };
     define("TAPS", pipeline.tap_count().to_string());
     for (name, own) in pipeline.parameters().macros {
-        define(name, value(own));
+        define(name, macro_value(own));
     }
     let subtracts = pipeline.update_sign() == UpdateSign::AsPrinted;
     define("UPDATE_SUB", flag(subtracts));
@@ -51,6 +55,20 @@ pub(super) fn params_vh<F: Fp>(
     // A Verilog number without a width has 32 bits.
     let period_ps = (2 * half_period_ps(settings.clock_mhz)).min(2_000_000_000);
     define("CLOCK_PS", period_ps.to_string());
+    if let Some(TopLevel {
+        surroundings: around,
+        ..
+    }) = &settings.top
+    {
+        let clocks = pipeline.clocked().board_usage(around.clone());
+        let kind = pipeline.kind().name;
+        let is_late = around.output_register == OutputRegister::NextSample;
+        define("TOP", format!("{kind}_top"));
+        define("TOP_CODE", flag(around.scale.is_some()));
+        define("TOP_NEXT", flag(is_late));
+        define("TOP_FRONT", clocks.front_end_clocks.to_string());
+        define("TOP_PERIOD", clocks.clocks_per_sample.to_string());
+    }
     text
 }
 
@@ -104,8 +122,31 @@ pub(super) fn params_json<F: Fp>(
     add("samples", samples.to_string());
     add("trace_clocks", trace_rows.to_string());
     if let Some(codes) = &settings.codes {
-        add("code_lsb", format!("{:e}", codes.lsb));
-        add("code_unit", quote(&codes.unit));
+        let scale = &codes.scale;
+        add("code_lsb", format!("{:e}", scale.lsb));
+        add("code_unit", quote(&scale.unit));
+        add("word_factor", format!("{:e}", scale.factor));
+        add("word_unit", quote(&scale.word_unit));
+    }
+    if let Some(TopLevel {
+        surroundings: around,
+        ..
+    }) = &settings.top
+    {
+        let order = match around.scale {
+            Some(_) => "(code * code_lsb) * word_factor, each product rounded in binary64",
+            None => "the sample is the word",
+        };
+        add("top_sample", quote(order));
+        add("input_lag_samples", around.input_lag_samples.to_string());
+        add("desired", quote(around.desired.word()));
+        add("output_register", quote(around.output_register.word()));
+        let clocks = pipeline.clocked().board_usage(around.clone());
+        add("front_end_clocks", clocks.front_end_clocks.to_string());
+        add(
+            "system_clocks_per_sample",
+            clocks.clocks_per_sample.to_string(),
+        );
     }
     let lines: Vec<String> = fields
         .iter()

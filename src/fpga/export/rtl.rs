@@ -2,23 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
+use super::top::{TOP_SAMPLES, top_samples, top_verilog};
 use super::vectors::{ExportSettings, write_text, write_vectors};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
 
 /// Files of every pipeline.
-const SHARED: [(&str, &str); 7] = [
+const SHARED: [(&str, &str); 9] = [
     ("README.txt", include_str!("rtl/README.txt")),
     ("fp_sim.v", include_str!("rtl/fp_sim.v")),
     ("sp_ram.v", include_str!("rtl/sp_ram.v")),
+    ("front_end.v", include_str!("rtl/front_end.v")),
+    ("top_bench.v", include_str!("rtl/top_bench.v")),
     ("tb_common.vh", include_str!("rtl/tb_common.vh")),
     ("tb_defaults.vh", include_str!("rtl/tb_defaults.vh")),
     ("run.sh", include_str!("rtl/run.sh")),
     ("test_cocotb.py", include_str!("rtl/test_cocotb.py")),
 ];
 
-/// Writes vectors, RTL, testbench, run script and cocotb test; returns the files.
+/// Writes vectors, RTL, testbench, run script and cocotb test, and with the surroundings of the core
+/// the top level for a board; returns the files.
 ///
 /// `sh DIR/run.sh` runs the testbench under Icarus Verilog, with `SIM=verilator` under Verilator;
 /// both end non-zero at the first difference. `README.txt` in the folder states the rest.
@@ -34,6 +38,15 @@ pub fn write_rtl<F: Fp>(
     let own = settings.pipeline.as_pipeline().kind().sources;
     for (name, text) in SHARED.into_iter().chain(own) {
         files.push(write_text(dir, name, text)?);
+    }
+    if let Some(top) = &settings.top {
+        let kind = settings.pipeline.as_pipeline().kind();
+        let name = format!("{}_top.v", kind.name);
+        let text = top_verilog(settings, &top.surroundings);
+        files.push(write_text(dir, &name, &text)?);
+        if let Some(text) = top_samples(top) {
+            files.push(write_text(dir, TOP_SAMPLES, &text)?);
+        }
     }
     Ok(files)
 }
@@ -77,6 +90,10 @@ mod tests {
             let (_, core) = kind.sources[1];
             let first = core.find("parameter").expect("parameters");
             let line = core[first..].lines().next().expect("a line");
+            assert!(
+                line.contains(&format!(" {} ", kind.tap_parameter)),
+                "{name}: {line}"
+            );
             assert!(line.contains("// taps"), "{name}: {line}");
         }
     }

@@ -6,6 +6,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::params::{params_json, params_vh};
+use crate::fpga::board::{CodeScale, Surroundings};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::{FrontEnd, Pair};
@@ -17,10 +18,20 @@ use crate::fpga::trace::{CSV_HEADER, ClockRecord, Window, hex, write_csv_line};
 pub struct IntegerCodes {
     /// One code per sample.
     pub codes: Vec<i32>,
-    /// Value of one code step, in `unit`.
-    pub lsb: f64,
-    /// Unit of the LSB, such as `deg/s`.
-    pub unit: String,
+    /// How a code becomes a word.
+    pub scale: CodeScale,
+}
+
+impl IntegerCodes {
+    /// Whether the words are those of the codes, bit for bit.
+    #[must_use]
+    pub fn give(&self, words: &[f64]) -> bool {
+        let of_codes = self.codes.iter().map(|code| self.scale.word(*code));
+        self.codes.len() == words.len()
+            && of_codes
+                .zip(words)
+                .all(|(mine, word)| mine.to_bits() == word.to_bits())
+    }
 }
 
 /// What to export and how to describe it.
@@ -36,6 +47,17 @@ pub struct ExportSettings<F> {
     pub trace_samples: usize,
     /// The gyro's integer codes, one per pair.
     pub codes: Option<IntegerCodes>,
+    /// The top level for a board; none: the core alone is exported.
+    pub top: Option<TopLevel<F>>,
+}
+
+/// The top level of an export.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TopLevel<F> {
+    /// What stands around the core.
+    pub surroundings: Surroundings,
+    /// The samples behind the pairs, as words.
+    pub samples: Vec<F>,
 }
 
 impl<F: Fp> ExportSettings<F> {

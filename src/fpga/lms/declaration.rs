@@ -14,6 +14,7 @@ use crate::vocabulary::UpdateSign;
 
 const LMS: Kind = Kind {
     name: "lms",
+    tap_parameter: "N",
     states: LmsState::NAMES,
     sources: [
         ("lms_ctrl.v", include_str!("../export/rtl/lms_ctrl.v")),
@@ -66,6 +67,10 @@ impl<F: Fp> Pipeline<F> for LmsConfig<F> {
 
     fn update_sign(&self) -> UpdateSign {
         self.update_sign
+    }
+
+    fn forms_desired(&self) -> bool {
+        self.desired == DesiredSource::MeanOfTwoNewest
     }
 
     fn parameters(&self) -> Parameters<F> {

@@ -29,6 +29,7 @@ impl<F: Fp> Machine for LmsMachine<F> {
     type State = LmsState;
 
     const LOADING: LmsState = LmsState::LLoading;
+    const CLEARING: LmsState = LmsState::Clearing;
 
     fn new(config: LmsConfig<F>) -> Self {
         Self {
@@ -97,11 +98,22 @@ impl<F: Fp> Machine for LmsMachine<F> {
             LmsState::Gain => self.scale_error(datapath),
             LmsState::LmwReading => self.weight_read(datapath),
             LmsState::LmwWriting => self.weight_write(next_waits, datapath),
+            LmsState::Clearing => self.clear(datapath),
         }
     }
 }
 
 impl<F: Fp> LmsMachine<F> {
+    /// Clearing: a word of each memory.
+    #[inline]
+    fn clear(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
+        let (taps, weight) = (self.config.tap_count, F::ZERO);
+        datapath.write_a(self.registers.j, F::ZERO);
+        if self.registers.write_weight(weight, taps, datapath) {
+            self.registers.state = LmsState::Idle;
+        }
+    }
+
     /// LL_reading: `L'L`, both factors from one read of RAMA, started at the regularisation.
     #[inline]
     fn accumulate_energy(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {

@@ -15,6 +15,7 @@ use crate::vocabulary::{Division, UpdateOrder, UpdateSign};
 
 const RLS: Kind = Kind {
     name: "rls",
+    tap_parameter: "P",
     states: RlsState::NAMES,
     sources: [
         ("rls_ctrl.v", include_str!("../export/rtl/rls_ctrl.v")),

@@ -20,6 +20,8 @@ pub type RlsPipeline<F> = Sequencer<RlsMachine<F>>;
 pub struct RlsMachine<F> {
     config: RlsConfig<F>,
     registers: Registers<RlsState, F>,
+    /// Words before R that are cleared.
+    cleared: usize,
 }
 
 impl<F: Fp> Machine for RlsMachine<F> {
@@ -28,11 +30,13 @@ impl<F: Fp> Machine for RlsMachine<F> {
     type State = RlsState;
 
     const LOADING: RlsState = RlsState::RiLLoading;
+    const CLEARING: RlsState = RlsState::Clearing;
 
     fn new(config: RlsConfig<F>) -> Self {
         Self {
             config,
             registers: Registers::reset(config.tap_count),
+            cleared: 0,
         }
     }
 
@@ -94,6 +98,7 @@ impl<F: Fp> Machine for RlsMachine<F> {
             RlsState::OutWriting => self.write_output(datapath),
             RlsState::RfwReading => self.weight_read(datapath),
             RlsState::RfwWriting => self.weight_write(next_waits, datapath),
+            RlsState::Clearing => self.clear(datapath),
         }
     }
 }
@@ -104,6 +109,37 @@ impl<F: Fp> RlsMachine<F> {
     fn element(&self) -> usize {
         let p = self.config.tap_count;
         2 * p + self.registers.i * p + self.registers.j
+    }
+
+    /// Clearing: R row by row, with the counters of its correction; then what stands before it in
+    /// RAMB, and with it all of RAMA.
+    #[inline]
+    fn clear(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
+        let p = self.config.tap_count;
+        if self.registers.phase == 0 {
+            let is_diagonal = self.registers.i == self.registers.j;
+            let word = if is_diagonal {
+                self.config.delta
+            } else {
+                F::ZERO
+            };
+            datapath.write_b(self.element(), word);
+            self.registers.j += 1;
+            if self.registers.j == p {
+                self.registers.j = 0;
+                self.registers.phase = u8::from(self.row_done());
+            }
+            return;
+        }
+        let address = self.cleared;
+        datapath.write_a(address, F::ZERO);
+        datapath.write_b(address, F::ZERO);
+        self.cleared += 1;
+        if self.cleared == 2 * p {
+            self.cleared = 0;
+            self.registers.phase = 0;
+            self.registers.state = RlsState::Idle;
+        }
     }
 
     /// One clock of a dot product of L with the words of RAMB, that of tap j at address `b`.
@@ -207,11 +243,16 @@ impl<F: Fp> RlsMachine<F> {
         }
     }
 
-    /// RFR_writing: `(R - correction) * ialpha`, the only clock that chains two operations.
+    /// RFR_writing: `(R - correction) * ialpha`, the only clock that chains two operations. At
+    /// alpha = 1 the multiplier is by-passed: `x * 1 = x` for every word that leaves a unit.
     #[inline]
     fn correct_write(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
         let difference = datapath.subtract(self.registers.read_latch, self.registers.product);
-        let corrected = datapath.multiply(difference, self.config.inverse_alpha);
+        let corrected = if self.config.inverse_alpha == F::ONE {
+            difference
+        } else {
+            datapath.multiply(difference, self.config.inverse_alpha)
+        };
         datapath.write_b(self.element(), corrected);
         self.registers.phase = 0;
         self.registers.state = RlsState::RfrReading;

@@ -101,6 +101,36 @@ pub fn schedule_clocks(
     Ok(graph.report(clocks, units, settings.ram_ports))
 }
 
+/// Operations of one sample, each on its own: what a design needs that has no accumulator to start
+/// at zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Operations {
+    pub(super) multiplies: u64,
+    pub(super) additions: u64,
+    pub(super) divisions: u64,
+    /// Clocks of all of them one after the other, each read, operated and written.
+    pub(super) serial_clocks: u64,
+}
+
+/// Counts the operations of the schedule one by one.
+pub(super) fn count_operations(load: RlsLoad) -> Operations {
+    const READ_OPERATE_WRITE: u64 = 3;
+    let mut counted = Operations::default();
+    for operation in &Graph::of(load, false, false).operations {
+        if operation.adds_to_zero || operation.unit == Unit::Move {
+            continue;
+        }
+        match operation.unit {
+            Unit::Adder => counted.additions += 1,
+            Unit::Multiplier => counted.multiplies += 1,
+            Unit::Divider => counted.divisions += 1,
+            Unit::AdderAndMultiplier | Unit::Move => unreachable!("nothing is chained here"),
+        }
+        counted.serial_clocks += READ_OPERATE_WRITE;
+    }
+    counted
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Unit {
     Adder,
@@ -143,6 +173,8 @@ struct Operation {
     unit: Unit,
     operands: [Option<usize>; 2],
     ports: Ports,
+    /// Whether this is the `+0 +` with which an accumulator begins.
+    adds_to_zero: bool,
 }
 
 struct Graph {
@@ -155,12 +187,22 @@ impl Graph {
             unit,
             operands,
             ports,
+            adds_to_zero: false,
         });
         self.operations.len() - 1
     }
 
-    /// Products of L with a row of RAMB, summed in order; `operands[j]` must precede product j.
+    /// Products of L with a row of RAMB, summed in order from `+0`; `operands[j]` must precede
+    /// product j.
     fn dot(&mut self, operands: &[usize], last: Ports) -> usize {
+        let first = self.operations.len() + operands.len();
+        let sum = self.dot_from_word(operands, last);
+        self.operations[first].adds_to_zero = true;
+        sum
+    }
+
+    /// The same from a word that is not zero.
+    fn dot_from_word(&mut self, operands: &[usize], last: Ports) -> usize {
         let products: Vec<usize> = operands
             .iter()
             .map(|operand| self.push(Unit::Multiplier, [Some(*operand), None], READ_BOTH))
@@ -186,7 +228,7 @@ impl Graph {
         let loaded = graph.push(Unit::Move, [None, None], WRITE_A);
         let after_load = vec![loaded; p];
         let t: Vec<usize> = (0..p).map(|_| graph.dot(&after_load, WRITE_BOTH)).collect();
-        let denominator = graph.dot(&t, REGISTER);
+        let denominator = graph.dot_from_word(&t, REGISTER);
         let reciprocal = match load.division {
             Division::Reciprocal => {
                 Some(graph.push(Unit::Divider, [Some(denominator), None], REGISTER))

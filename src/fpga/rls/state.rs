@@ -33,5 +33,7 @@ control_states! {
         RfwReading = "RFW_reading",
         /// The new weight is written back.
         RfwWriting = "RFW_writing",
+        /// After a reset: the words of both memories are written anew.
+        Clearing = "Clearing",
     }
 }

@@ -1,9 +1,13 @@
 //! Table 1 of the paper: three ways to build the filter.
 
+use super::clocks::RlsLoad;
+use super::config::{RlsConfig, RlsSettings};
+use super::machine::RlsPipeline;
+use super::schedule::count_operations;
 use crate::fpga::check::{check_clock, check_tap_count};
 use crate::fpga::error::FpgaError;
-use crate::fpga::timing::{sample_period_us, sample_rate_max_khz};
-use crate::vocabulary::Division;
+use crate::fpga::timing::{measure, sample_period_us, sample_rate_max_khz};
+use crate::vocabulary::{Division, UpdateSign};
 
 /// Way of building the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +37,7 @@ impl Design {
 pub enum Basis {
     /// The paper's formulas.
     Paper,
-    /// Operations counted from the equations as they must be computed.
+    /// Operations counted on the schedule one by one, clocks on the running model.
     Counted,
 }
 
@@ -77,9 +81,10 @@ pub struct TimingRow {
 /// `9+3p+15p^2` clocks; pipeline `4+6p+5p^2` clocks; one unit of each kind in the last two. Its
 /// serial count is three clocks per multiply or add of its parallel count, without the division.
 ///
-/// Counted, reciprocal division: `4p^2+3p` multiplications (`p^2` more when forgetting),
-/// `3p^2+p` additions, 1 division. Element division: `p^2` divisions instead of `p^2` of the
-/// multiplications. Serial: three clocks for each of them, the division included.
+/// Counted: the operations of the pipeline's schedule one by one, without the `+0 +` at which an
+/// accumulator begins and without the product with `1/alpha` at alpha = 1; a unit for each in the
+/// parallel design, three clocks for each, the division included, in the serial one. The pipeline's
+/// clocks are those of the running model.
 ///
 /// * `forgets`: whether alpha differs from 1; `clock_mhz`: 0.001 to 10000.
 ///
@@ -95,14 +100,12 @@ pub fn table(
     check_clock(clock_mhz)?;
     let p = tap_count as u64;
     let squared = p * p;
-    let (mut multiplies, divides) = match division {
-        Division::Reciprocal => (4 * squared + 3 * p, 1),
-        Division::Elementwise => (3 * squared + 3 * p, squared),
+    let load = RlsLoad {
+        tap_count,
+        division,
+        forgets,
     };
-    if forgets {
-        multiplies += squared;
-    }
-    let additions = 3 * squared + p;
+    let counted = count_operations(load);
     let paper_multiplies = 1 + 2 * p + 3 * squared;
     let paper_additions = 2 + 2 * squared - p;
     let pipeline = 4 + 6 * p + 5 * squared;
@@ -117,7 +120,6 @@ pub fn table(
         sample_rate_max_khz: sample_rate_max_khz(clocks, clock_mhz),
     };
     let paper_serial = 3 * (paper_multiplies + paper_additions);
-    let counted_serial = 3 * (multiplies + additions + divides);
     let one_each = [1, 1, 1];
     Ok([
         row(
@@ -132,9 +134,31 @@ pub fn table(
             Design::Parallel,
             Basis::Counted,
             1,
-            [multiplies, divides, additions],
+            [counted.multiplies, counted.divisions, counted.additions],
         ),
-        row(Design::Serial, Basis::Counted, counted_serial, one_each),
-        row(Design::Pipeline, Basis::Counted, pipeline, one_each),
+        row(
+            Design::Serial,
+            Basis::Counted,
+            counted.serial_clocks,
+            one_each,
+        ),
+        row(
+            Design::Pipeline,
+            Basis::Counted,
+            counted_clocks(load)?,
+            one_each,
+        ),
     ])
+}
+
+/// Clocks per sample of the running model.
+fn counted_clocks(load: RlsLoad) -> Result<u64, FpgaError> {
+    let config = RlsConfig::<f64>::new(RlsSettings {
+        tap_count: load.tap_count,
+        forgetting_factor: if load.forgets { 0.5 } else { 1.0 },
+        initial_inverse_correlation: 1.0,
+        division: load.division,
+        update_sign: UpdateSign::Corrected,
+    })?;
+    Ok(measure(RlsPipeline::new(config)).clocks_per_sample)
 }

@@ -13,6 +13,7 @@ use crate::fpga::timing::Units;
 
 const SIGN_LMS: Kind = Kind {
     name: "sign_lms",
+    tap_parameter: "M",
     states: SignLmsState::NAMES,
     sources: [
         (

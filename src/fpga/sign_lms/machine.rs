@@ -36,6 +36,7 @@ impl<F: Fp> Machine for SignLmsMachine<F> {
     type State = SignLmsState;
 
     const LOADING: SignLmsState = SignLmsState::LReading;
+    const CLEARING: SignLmsState = SignLmsState::Clearing;
 
     fn new(config: SignLmsConfig<F>) -> Self {
         Self {
@@ -102,11 +103,22 @@ impl<F: Fp> Machine for SignLmsMachine<F> {
             SignLmsState::Gain => self.scale_error(datapath),
             SignLmsState::LmwReading => self.weight_read(datapath),
             SignLmsState::LmwWriting => self.weight_write(next_waits, datapath),
+            SignLmsState::Clearing => self.clear(datapath),
         }
     }
 }
 
 impl<F: Fp> SignLmsMachine<F> {
+    /// Clearing: a word of each memory.
+    #[inline]
+    fn clear(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
+        let (taps, weight) = (self.config.tap_count, self.config.initial_weight);
+        datapath.write_a(self.registers.j, F::ZERO);
+        if self.registers.write_weight(weight, taps, datapath) {
+            self.registers.state = SignLmsState::Idle;
+        }
+    }
+
     /// The recursive norm S.
     #[must_use]
     pub fn norm(&self) -> F {

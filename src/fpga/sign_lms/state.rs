@@ -27,5 +27,7 @@ control_states! {
         LmwReading = "LMW_reading",
         /// The new weight is written back.
         LmwWriting = "LMW_writing",
+        /// After a reset: the words of both memories are written anew.
+        Clearing = "Clearing",
     }
 }

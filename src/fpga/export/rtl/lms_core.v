@@ -14,8 +14,8 @@
 //   g    = (d - y) * MU                             NLMS: (d - y) * (MU/den)
 //   W_j  = W_j + L_j*g                              UPDATE_SUB: the sign the paper prints
 //
-// Reset: registers +0, DEN 1. The memories keep their contents under rst; they start at +0. y is
-// right from the clock with out_valid until the next one.
+// Reset, in any clock: registers +0, DEN 1; then N clocks write +0 into the memories, and in_ready
+// stays low. y is right from the clock with out_valid until the next one.
 `default_nettype none
 
 module lms_core #(
@@ -48,7 +48,7 @@ module lms_core #(
     /* verilator lint_on WIDTH */
 
     wire          ra_we, rb_we, p_en, acc_en, acc_first, acc_eps, rr_en, den_en, rcp_en;
-    wire          d_en, d_half, e_en, e_gain, y_en, div_req, div_done;
+    wire          d_en, d_half, e_en, e_gain, y_en, div_req, div_done, clear;
     wire [AB-1:0] ra_addr, rb_addr;
     wire [2:0]    mul_sel;
     wire [1:0]    add_sel;
@@ -56,7 +56,10 @@ module lms_core #(
     wire [3:0]    state;      // for the eye and the testbench
     /* verilator lint_on UNUSED */
     wire [W-1:0]  ra_rdata, rb_rdata, mul_q, add_q, div_q;
-    reg  [W-1:0]  p, acc, rr, den, rcp, dd, ee, yy, xp;
+    reg  [W-1:0]  p, acc, rr, rcp, dd, ee, yy, xp;
+    /* verilator lint_off UNUSED */
+    reg  [W-1:0]  den;        // NLMS only
+    /* verilator lint_on UNUSED */
 
     lms_ctrl #(.N(N), .NLMS(NLMS)) ctrl (
         .clk(clk), .rst(rst), .in_valid(in_valid), .in_ready(in_ready), .out_valid(out_valid),
@@ -64,13 +67,16 @@ module lms_core #(
         .ra_addr(ra_addr), .ra_we(ra_we), .rb_addr(rb_addr), .rb_we(rb_we),
         .mul_sel(mul_sel), .add_sel(add_sel), .p_en(p_en), .acc_en(acc_en),
         .acc_first(acc_first), .acc_eps(acc_eps), .rr_en(rr_en), .den_en(den_en),
-        .rcp_en(rcp_en), .d_en(d_en), .d_half(d_half), .e_en(e_en), .e_gain(e_gain), .y_en(y_en));
+        .rcp_en(rcp_en), .d_en(d_en), .d_half(d_half), .e_en(e_en), .e_gain(e_gain), .y_en(y_en), .clear(clear));
+
+    wire [W-1:0] ra_wdata = clear ? {W{1'b0}} : x;
+    wire [W-1:0] rb_wdata = clear ? {W{1'b0}} : add_q;
 
     sp_ram #(.W(W), .DEPTH(N), .AW(AB)) rama (
-        .clk(clk), .we(ra_we), .addr(ra_addr), .wdata(x), .rdata(ra_rdata));
+        .clk(clk), .we(ra_we), .addr(ra_addr), .wdata(ra_wdata), .rdata(ra_rdata));
 
     sp_ram #(.W(W), .DEPTH(N), .AW(AB)) ramb (
-        .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(add_q), .rdata(rb_rdata));
+        .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_wdata), .rdata(rb_rdata));
 
     wire [W-1:0] gain = NLMS != 0 ? rcp : MU;
     fp_mul #(.W(W), .FTZ(FTZ)) mul (
@@ -85,8 +91,16 @@ module lms_core #(
         .sub(add_sel == 2'd2 || (add_sel == 2'd1 && UPDATE_SUB != 0)),
         .q(add_q));
 
-    fp_div #(.W(W), .FTZ(FTZ), .LATENCY(DIV_LATENCY)) div (
-        .clk(clk), .rst(rst), .req(div_req), .a(MU), .b(den), .done(div_done), .q(div_q));
+    // Plain LMS never divides.
+    generate
+        if (NLMS != 0) begin : with_divider
+            fp_div #(.W(W), .FTZ(FTZ), .LATENCY(DIV_LATENCY)) div (
+                .clk(clk), .rst(rst), .req(div_req), .a(MU), .b(den), .done(div_done), .q(div_q));
+        end else begin : without_divider
+            assign div_done = div_req;
+            assign div_q    = {W{1'b0}};
+        end
+    endgenerate
 
     always @(posedge clk)
         if (rst) begin

@@ -14,7 +14,10 @@
 //   GAIN         1   e * MU, or e * rcp
 //   LMW_reading  N   L_j * e;                                           LMW_writing N (weight)
 // Interval 3N + 4 clocks (LMS), 4N + 5 (NLMS) back to back, one more after Idle. Latency N + 2
-// and 2N + 3: from L_loading to the clock in which out_valid is up. Reset is synchronous.
+// and 2N + 3: from L_loading to the clock in which out_valid is up.
+//
+// Reset is synchronous and may come in any clock. It begins Clearing, N clocks in which every word
+// of both memories is written.
 //
 // Source: the paper states no schedule for its LMS filter; derived: the same memories, units and
 // read/write rhythm as its RLS pipeline.
@@ -53,10 +56,12 @@ module lms_ctrl #(
     output wire          d_half,      // D   <- product, if D is the mean of two inputs
     output wire          e_en,        // E   <- sum
     output wire          e_gain,      // E   <- product
-    output wire          y_en         // Y   <- sum
+    output wire          y_en,        // Y   <- sum
+    output wire          clear        // both memories <- initial words
 );
     localparam [3:0] IDLE = 4'd0, LOAD  = 4'd1, LL_R = 4'd2, LL_W  = 4'd3, OUT_R = 4'd4,
-                     OUT_W = 4'd5, ERR  = 4'd6, GAIN = 4'd7, LMW_R = 4'd8, LMW_W = 4'd9;
+                     OUT_W = 4'd5, ERR  = 4'd6, GAIN = 4'd7, LMW_R = 4'd8, LMW_W = 4'd9,
+                     CLEAR = 4'd10;
 
     // The width is cut on purpose: the derived address width holds this constant.
     /* verilator lint_off WIDTH */
@@ -81,7 +86,7 @@ module lms_ctrl #(
 
     always @(posedge clk)
         if (rst) begin
-            state <= IDLE;
+            state <= CLEAR;
             j     <= {AB{1'b0}};
             head  <= LAST;            // so that sample 0 goes to slot 0
             slot  <= LAST;
@@ -89,10 +94,9 @@ module lms_ctrl #(
             if (take) begin
                 head <= head_next;
                 slot <= head_next;
-            end else if (dot | (state == LMW_W)) begin
+            end else if (dot | (state == LMW_W))
                 slot <= slot_next;
-                j    <= last ? {AB{1'b0}} : j + 1'b1;
-            end
+            if (dot | (state == LMW_W) | (state == CLEAR)) j <= last ? {AB{1'b0}} : j + 1'b1;
             case (state)
                 IDLE:    state <= in_valid ? LOAD : IDLE;
                 LOAD:    state <= !in_valid ? IDLE : NLMS != 0 ? LL_R : OUT_R;
@@ -105,6 +109,7 @@ module lms_ctrl #(
                 LMW_R:   state <= LMW_W;
                 // Passing through Idle would cost a clock of the sample period.
                 LMW_W:   state <= !last ? LMW_R : in_valid ? LOAD : IDLE;
+                CLEAR:   state <= last ? IDLE : CLEAR;
                 default: state <= IDLE;
             endcase
         end
@@ -113,6 +118,7 @@ module lms_ctrl #(
         case (state)
             LOAD:               ra_addr = in_valid ? head_next : {AB{1'b0}};
             LL_R, OUT_R, LMW_R: ra_addr = slot;
+            CLEAR:              ra_addr = j;
             default:            ra_addr = {AB{1'b0}};
         endcase
         case (state)
@@ -130,11 +136,12 @@ module lms_ctrl #(
         endcase
     end
 
-    assign rb_addr   = (state == OUT_R) | (state == LMW_R) | (state == LMW_W) ? j : {AB{1'b0}};
+    assign rb_addr   = (state == OUT_R) | (state == LMW_R) | (state == LMW_W) | (state == CLEAR)
+                     ? j : {AB{1'b0}};
     assign in_ready  = state == LOAD;
     assign out_valid = (state == ERR) & ~stall;
-    assign ra_we     = take;
-    assign rb_we     = state == LMW_W;
+    assign ra_we     = take | (state == CLEAR);
+    assign rb_we     = (state == LMW_W) | (state == CLEAR);
     assign div_req   = (NLMS != 0) & (state == ERR);
     assign p_en      = dot | (state == LMW_R);
     assign acc_en    = dot;
@@ -148,6 +155,7 @@ module lms_ctrl #(
     assign e_en      = (state == ERR) & ~stall;
     assign e_gain    = state == GAIN;
     assign y_en      = state == OUT_W;
+    assign clear     = state == CLEAR;
 
 `ifndef SYNTHESIS
     // For waveforms only: the state in letters.
@@ -166,6 +174,7 @@ module lms_ctrl #(
             GAIN:    state_name = "GAIN";
             LMW_R:   state_name = "LMW_reading";
             LMW_W:   state_name = "LMW_writing";
+            CLEAR:   state_name = "Clearing";
             default: state_name = "illegal";
         endcase
 `endif

@@ -16,8 +16,8 @@
 //   W_i  = W_i + M_i*(d - y)                        UPDATE_SUB: the sign the paper prints
 // (t_i*t_j) first keeps R exactly symmetric; (t_i*rcp)*t_j diverges for ALPHA < 1.
 //
-// Reset: registers +0, DEN 1. The memories keep their contents under rst; their initial contents
-// are +0 and R = DELTA * I. y is right from the clock with out_valid until the next one.
+// Reset, in any clock: registers +0, DEN 1; then P*P + 2P clocks write the memories, +0 and
+// R = DELTA * I, and in_ready stays low. y is right from the clock with out_valid until the next one.
 `default_nettype none
 
 module rls_core #(
@@ -50,7 +50,7 @@ module rls_core #(
     /* verilator lint_on WIDTH */
 
     wire          ra_we, ra_sel, rb_we, rb_sel, p_en, p_div, acc_en, acc_first, acc_alpha;
-    wire          rr_en, den_en, rcp_en, d_en, e_en, y_en, div_req, div_done;
+    wire          rr_en, den_en, rcp_en, d_en, e_en, y_en, div_req, div_done, clear, clear_diag;
     wire [RA-1:0] ra_addr;
     wire [RB-1:0] rb_addr;
     wire [1:0]    mul_sel, add_sel;
@@ -67,14 +67,19 @@ module rls_core #(
         .rb_addr(rb_addr), .rb_we(rb_we), .rb_sel(rb_sel),
         .mul_sel(mul_sel), .add_sel(add_sel), .p_en(p_en), .p_div(p_div),
         .acc_en(acc_en), .acc_first(acc_first), .acc_alpha(acc_alpha), .rr_en(rr_en),
-        .den_en(den_en), .rcp_en(rcp_en), .d_en(d_en), .e_en(e_en), .y_en(y_en));
+        .den_en(den_en), .rcp_en(rcp_en), .d_en(d_en), .e_en(e_en), .y_en(y_en),
+        .clear(clear), .clear_diag(clear_diag));
+
+    wire [W-1:0] zero  = {W{1'b0}};
+    wire [W-1:0] ra_wdata = clear ? zero : ra_sel ? x : add_q;
+    wire [W-1:0] rb_wdata = clear_diag ? DELTA : clear ? zero : rb_sel ? mul_q : add_q;
 
     sp_ram #(.W(W), .DEPTH(2 * P)) rama (
-        .clk(clk), .we(ra_we), .addr(ra_addr), .wdata(ra_sel ? x : add_q), .rdata(ra_rdata));
+        .clk(clk), .we(ra_we), .addr(ra_addr), .wdata(ra_wdata), .rdata(ra_rdata));
 
     sp_ram #(.W(W), .DEPTH(2 * P + P * P), .DIAG_FIRST(2 * P), .DIAG_STRIDE(P + 1),
              .DIAG_COUNT(P), .DIAG_WORD(DELTA)) ramb (
-        .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_sel ? mul_q : add_q), .rdata(rb_rdata));
+        .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_wdata), .rdata(rb_rdata));
 
     // x * 1.0 = x for every word that leaves a unit: with ALPHA = 1 the multiplier is by-passed,
     // so that subtract and multiply do not share a clock.

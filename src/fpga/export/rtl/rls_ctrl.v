@@ -1,4 +1,4 @@
-// Control of the RLS pipeline: 14 states, ring-buffer head, counters, memory addresses, selects.
+// Control of the RLS pipeline: 15 states, ring-buffer head, counters, memory addresses, selects.
 //
 //   in_valid --->|           |---> in_ready, out_valid
 //   div_done --->| rls_ctrl  |---> ra_addr, ra_we, rb_addr, rb_we      to the two memories
@@ -16,7 +16,10 @@
 //   Out_reading  P          y = W'L;                        Out_writing 1
 //   RFW_reading  1+P        e = d - y, then M_i*e;          RFW_writing P (weight)
 // Interval 5P^2 + 6P + 4 clocks back to back, one more after Idle. Latency 5P^2 + 4P + 3: from
-// RiL_loading to the clock in which out_valid is up. Reset is synchronous.
+// RiL_loading to the clock in which out_valid is up.
+//
+// Reset is synchronous and may come in any clock. It begins Clearing, P*P + 2P clocks in which every
+// word of both memories is written: R, then what stands before it in RAMB and with it RAMA.
 //
 // Source: Ma et al., Chinese J. Lasers 49(21) 2106004 (2022), section 3: memory depths, unit
 // counts and clocks per state; the place of each operation within a state is derived from them.
@@ -57,14 +60,17 @@ module rls_ctrl #(
     output wire          rcp_en,      // RCP <- quotient
     output wire          d_en,        // D   <- input d
     output wire          e_en,        // E   <- sum
-    output wire          y_en         // Y   <- sum
+    output wire          y_en,        // Y   <- sum
+    output wire          clear,       // both memories <- initial words: +0 ...
+    output wire          clear_diag   // ... but RAMB the diagonal of R
 );
     localparam IB = P > 1 ? $clog2(P) : 1;   // bits of a tap index
 
     localparam [3:0] IDLE  = 4'd0,  LOAD  = 4'd1,
                      RIL_R = 4'd2,  RIL_W = 4'd3,  LRL_R = 4'd4,  LRL_W = 4'd5,
                      RFR_R = 4'd6,  RFR_W = 4'd7,  RFM_R = 4'd8,  RFM_W = 4'd9,
-                     OUT_R = 4'd10, OUT_W = 4'd11, RFW_R = 4'd12, RFW_W = 4'd13;
+                     OUT_R = 4'd10, OUT_W = 4'd11, RFW_R = 4'd12, RFW_W = 4'd13,
+                     CLEAR = 4'd14;
 
     // Widths are cut on purpose: the derived address widths hold these constants.
     /* verilator lint_off WIDTH */
@@ -72,9 +78,11 @@ module rls_ctrl #(
     localparam [RA-1:0] A_SECOND = P;          // RAMA: second half, t then M
     localparam [RB-1:0] B_T      = P;          // RAMB: t
     localparam [RB-1:0] B_R      = 2 * P;      // RAMB: R, row by row
+    localparam [RB-1:0] B_LAST   = 2 * P - 1;  // RAMB: last word before R
     /* verilator lint_on WIDTH */
 
-    reg           second;   // RFR: second reading clock; RFW: the error is done
+    // RFR: second reading clock; RFW: the error is done; Clearing: R is done.
+    reg           second;
     reg  [IB-1:0] i;        // row; tap in RFW
     reg  [IB-1:0] j;        // column, tap of a dot product
     reg  [IB-1:0] slot;     // ring slot of L_j, going down
@@ -99,14 +107,19 @@ module rls_ctrl #(
     wire [IB-1:0] i_next    = last_i ? {IB{1'b0}} : i + 1'b1;
     wire [IB-1:0] j_next    = last_j ? {IB{1'b0}} : j + 1'b1;
 
-    // The element counter runs through R once in each of RiL, RFR and RFM.
-    wire element_step = (state == RIL_R) | (state == RFR_W) | (state == RFM_R);
+    // Clearing has written all of R but its last word, or more.
+    wire clear_matrix = (state == CLEAR) & ~second;
+    wire clear_rest   = (state == CLEAR) & second;
+
+    // The element counter runs through R once in each of RiL, RFR and RFM; in Clearing it goes on
+    // through the words before R, and so ends where it began.
+    wire element_step = (state == RIL_R) | (state == RFR_W) | (state == RFM_R) | (state == CLEAR);
     wire i_step = (state == RIL_W) | (state == RFM_W) | (state == RFW_W)
-                | ((state == RFR_W) & last_j);
+                | (((state == RFR_W) | clear_matrix) & last_j);
 
     always @(posedge clk)
         if (rst) begin
-            state   <= IDLE;
+            state   <= CLEAR;
             second  <= 1'b0;
             i       <= {IB{1'b0}};
             j       <= {IB{1'b0}};
@@ -119,11 +132,14 @@ module rls_ctrl #(
                 slot <= head_next;
             end else if (dot)
                 slot <= slot_next;
-            if (dot | (state == RFR_W)) j <= j_next;
-            if (i_step)                 i <= i_next;
-            if (element_step)           element <= last ? B_R : element + 1'b1;
+            if (dot | (state == RFR_W) | clear_matrix) j <= j_next;
+            if (i_step)                                i <= i_next;
+            if (element_step)
+                element <= !last | clear_rest ? element + 1'b1
+                         : state == CLEAR ? {RB{1'b0}} : B_R;
             second <= ((state == RFR_R) & ~second) | (state == RFW_R)
-                    | ((state == RFW_W) & ~last_i);
+                    | ((state == RFW_W) & ~last_i)
+                    | (clear_matrix & last) | (clear_rest & (element != B_LAST));
             case (state)
                 IDLE:    state <= in_valid ? LOAD : IDLE;
                 LOAD:    state <= in_valid ? RIL_R : IDLE;
@@ -140,6 +156,7 @@ module rls_ctrl #(
                 RFW_R:   state <= second ? RFW_W : RFW_R;
                 // Passing through Idle would cost a clock of the sample period.
                 RFW_W:   state <= !last_i ? RFW_R : in_valid ? LOAD : IDLE;
+                CLEAR:   state <= second & (element == B_LAST) ? IDLE : CLEAR;
                 default: state <= IDLE;
             endcase
         end
@@ -154,11 +171,13 @@ module rls_ctrl #(
             RIL_W, RFM_W:               ra_addr = A_SECOND + i;
             RFR_R:                      if (!second) ra_addr = A_SECOND + i;
             RFW_R:                      if (second) ra_addr = A_SECOND + i;
+            CLEAR:                      if (second) ra_addr = element[RA-1:0];
             default:                    ;
         endcase
         rb_addr = {RB{1'b0}};
         case (state)
             RIL_R, RFM_R, RFR_W: rb_addr = element;
+            CLEAR:               rb_addr = element;
             RIL_W:               rb_addr = B_T + i;
             LRL_R:               rb_addr = B_T + j;
             RFR_R:               rb_addr = second ? element : B_T + j;
@@ -184,9 +203,9 @@ module rls_ctrl #(
 
     assign in_ready  = state == LOAD;
     assign out_valid = (state == RFW_R) & ~second;
-    assign ra_we     = take | (state == RIL_W) | (state == RFM_W);
+    assign ra_we     = take | (state == RIL_W) | (state == RFM_W) | clear_rest;
     assign ra_sel    = state == LOAD;
-    assign rb_we     = (state == RIL_W) | (state == RFR_W) | (state == RFW_W);
+    assign rb_we     = (state == RIL_W) | (state == RFR_W) | (state == RFW_W) | clear;
     assign rb_sel    = state == RFR_W;
     assign div_req   = (state == RFR_R)
                      & (DIV_ELEM != 0 ? second : ~second & (i == {IB{1'b0}}) & (j == {IB{1'b0}}));
@@ -201,6 +220,8 @@ module rls_ctrl #(
     assign d_en      = take;
     assign e_en      = out_valid;
     assign y_en      = state == OUT_W;
+    assign clear      = state == CLEAR;
+    assign clear_diag = clear_matrix & (i == j);
 
 `ifndef SYNTHESIS
     // For waveforms only: the phase within an element or a tap, and the state in letters.
@@ -224,6 +245,7 @@ module rls_ctrl #(
             OUT_W:   state_name = "Out_writing";
             RFW_R:   state_name = "RFW_reading";
             RFW_W:   state_name = "RFW_writing";
+            CLEAR:   state_name = "Clearing";
             default: state_name = "illegal";
         endcase
 `endif

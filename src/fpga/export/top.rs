@@ -1,0 +1,123 @@
+//! The top level of an export: the filter with the exported constants and its front end.
+
+use std::fmt::Write as _;
+
+use super::params::macro_value;
+use super::vectors::{ExportSettings, TopLevel};
+use crate::fpga::board::Surroundings;
+use crate::fpga::float_unit::Fp;
+use crate::fpga::trace::hex;
+use crate::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
+
+/// File of the samples that a top level takes as words.
+pub(super) const TOP_SAMPLES: &str = "samples.hex";
+
+/// Samples of a top level that takes words; none if it takes codes, which have a file already.
+pub(super) fn top_samples<F: Fp>(top: &TopLevel<F>) -> Option<String> {
+    if top.surroundings.scale.is_some() {
+        return None;
+    }
+    let lines = top.samples.iter().map(|word| hex(*word) + "\n");
+    Some(lines.collect())
+}
+
+/// Verilog of the top level.
+pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surroundings) -> String {
+    let pipeline = settings.pipeline.as_pipeline();
+    let kind = pipeline.kind();
+    let name = kind.name;
+    let width = F::WIDTH;
+    let forms_mean = around.desired == DesiredSignal::TwoSampleMean;
+    let is_late = around.output_register == OutputRegister::NextSample;
+    let (bits, sample, unit) = match &around.scale {
+        Some(scale) => (
+            32,
+            format!("two's complement, {:e} {} each", scale.lsb, scale.unit),
+            scale.word_unit.as_str(),
+        ),
+        None => (width, "word".to_owned(), "the unit of the samples"),
+    };
+    let scale = around.scale.as_ref();
+    let constant = |value: Option<f64>| {
+        let bits = value.unwrap_or(1.0).to_bits();
+        format!("64'h{bits:016x}")
+    };
+    let mut core = format!(
+        ".{}({}), .W({width})",
+        kind.tap_parameter,
+        pipeline.tap_count()
+    );
+    let subtracts = pipeline.update_sign() == UpdateSign::AsPrinted;
+    for (own, value) in pipeline.parameters().macros {
+        let _ = write!(core, ",\n        .{own}({})", macro_value(value));
+    }
+    // The line enhancer has one sign only.
+    if kind.sources[1].1.contains(" UPDATE_SUB ") {
+        let _ = write!(core, ",\n        .UPDATE_SUB({})", u8::from(subtracts));
+    }
+    let flushes = u8::from(F::FLUSHES_SUBNORMALS);
+    let register = if is_late {
+        RESULT_AT_NEXT
+            .replace("WIDTH-1", &(width - 1).to_string())
+            .replace("WIDTH", &width.to_string())
+    } else {
+        RESULT_AT_ONCE.to_owned()
+    };
+    format!(
+        "// The exported filter with its front end: every constant is that of params.json.\n\
+         //\n\
+         // A sample is taken in a clock in which sample_valid and sample_ready are both up; hold both\n\
+         // sample and sample_valid until then. result is right from the clock with result_valid on.\n\
+         // Reset is synchronous and may come in any clock; sample_ready may be up while the core still\n\
+         // clears its memories, and the sample waits. Samples that come while sample_ready is low are\n\
+         // lost unless they are held.\n\
+         `default_nettype none\n\n\
+         module {name}_top #(\n    parameter DIV_LATENCY = 1       // clocks of the divider\n) (\n    \
+         input  wire        clk,\n    input  wire        rst,\n    \
+         input  wire        sample_valid,\n    output wire        sample_ready,\n    \
+         input  wire [{}:0] sample,         // {sample}\n    \
+         output wire        result_valid,   // one clock\n    \
+         output wire [{}:0] result          // {}, {unit}\n);\n    \
+         wire        pair_valid, pair_ready, core_valid;\n    \
+         wire [{}:0] x, d, y;\n\n    \
+         front_end #(\n        .W({width}), .CODE({}), .LSB({}), .FACTOR({}),\n        \
+         .LAG({}), .MEAN({}), .FTZ({flushes})\n    ) front (\n        \
+         .clk(clk), .rst(rst), .valid(sample_valid), .ready(sample_ready), .sample(sample),\n        \
+         .pair_valid(pair_valid), .pair_ready(pair_ready), .x(x), .d(d));\n\n    \
+         {name}_core #(\n        {core},\n        .FTZ({flushes}), .DIV_LATENCY(DIV_LATENCY)\n    ) core (\n        \
+         .clk(clk), .rst(rst), .in_valid(pair_valid), .in_ready(pair_ready), .x(x), .d(d),\n        \
+         .out_valid(core_valid), .y(y));\n\n{register}endmodule\n\n`default_nettype wire\n",
+        bits - 1,
+        width - 1,
+        F::NAME,
+        width - 1,
+        u8::from(scale.is_some()),
+        constant(scale.map(|scale| scale.lsb)),
+        constant(scale.map(|scale| scale.factor)),
+        around.input_lag_samples,
+        u8::from(forms_mean),
+    )
+}
+
+/// Output register of [`OutputRegister::Immediate`]: the core's own.
+const RESULT_AT_ONCE: &str = "    assign result_valid = core_valid;\n    assign result = y;\n";
+
+/// Output register of [`OutputRegister::NextSample`].
+const RESULT_AT_NEXT: &str =
+    "    // The result of a sample appears when the core takes the next one: y is right by then.
+    reg             late_valid;
+    reg [WIDTH-1:0] late;
+    always @(posedge clk)
+        if (rst) begin
+            late_valid <= 1'b0;
+            late       <= {WIDTH{1'b0}};
+        end else begin
+            late_valid <= pair_valid & pair_ready;
+            if (pair_valid & pair_ready) late <= y;
+        end
+    assign result_valid = late_valid;
+    assign result       = late;
+    /* verilator lint_off UNUSED */
+    wire unused = core_valid;
+    /* verilator lint_on UNUSED */
+";
