@@ -9,6 +9,7 @@ mod budget;
 mod build;
 mod campaign;
 mod channel_filter;
+mod infer;
 #[cfg(feature = "report")]
 mod log;
 #[cfg(feature = "report")]
@@ -33,6 +34,7 @@ pub use build::BUILD;
 pub use campaign::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
 };
+pub use infer::{Inference, check_problem, infer};
 #[cfg(feature = "report")]
 pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogMotion, LogSettings,
