@@ -103,6 +103,10 @@ pub mod calibration;
 pub mod recording;
 
 #[cfg(feature = "scenario")]
+#[doc(hidden)]
+pub mod inference;
+
+#[cfg(feature = "scenario")]
 pub mod gate;
 
 #[cfg(feature = "scenario")]

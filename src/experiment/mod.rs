@@ -10,6 +10,7 @@ mod budget;
 mod build;
 mod campaign;
 mod channel_filter;
+mod infer;
 mod log;
 #[cfg(feature = "report")]
 mod output_file;
@@ -35,6 +36,7 @@ pub use build::BUILD;
 pub use campaign::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
 };
+pub use infer::{Inference, check_problem, infer};
 pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogSettings, LogTrial,
     LogTrialError, compensate_log, load_log_compensation, load_log_filters, load_log_gates,

@@ -10,12 +10,14 @@ use crate::gyro::noise::budget::NoiseBudget;
 use crate::gyro::noise::budget_sheet::with_rate_word;
 use crate::gyro::noise::slow_noise::SlowNoiseConfig;
 use crate::gyro::parts::{Parts, half_period_s};
-use crate::gyro::rate_model::RateModel;
+use crate::gyro::rate_model::{RateModel, word_autocovariance};
 use crate::gyro::rate_word::OutputQuantisation;
 use crate::gyro::{Fidelity, GyroConfig};
 use crate::random::Streams;
 use crate::signal::{GyroFacts, MotionSegment};
-use crate::units::{hz_to_khz, rad_per_s_to_deg_per_s, s_to_ms, s_to_us};
+use crate::units::{
+    deg_per_sqrt_h_to_deg_per_h_sqrt_s, hz_to_khz, rad_per_s_to_deg_per_s, s_to_ms, s_to_us,
+};
 
 /// A gyro: motion segments in, rate words out.
 ///
@@ -205,6 +207,50 @@ pub fn word_response(
         (gain, phase)
     });
     Ok(response.collect())
+}
+
+/// Noise of the output samples in closed form: what a second-order theory of filters needs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WordNoise {
+    /// Autocovariance of the fast noise by lag in output samples, (deg/h)^2.
+    pub autocovariance_deg2_per_h2: Vec<f64>,
+    /// Angle random walk with the rounding of the words, deg/sqrt(h).
+    pub angle_random_walk_deg_per_sqrt_h: f64,
+    /// Time between output samples, s.
+    pub sample_period_s: f64,
+}
+
+/// The noise of the output samples of a configuration at the start, `lags` lags of it.
+///
+/// It is that of [`RateModel`]. Fast noise alone: flicker and random walk of the rate are of no power
+/// beside it.
+///
+/// # Errors
+/// Any [`GyroError`], as [`Gyro::new`].
+pub fn word_noise(config: &GyroConfig, lags: usize) -> Result<WordNoise, GyroError> {
+    let parts = Parts::new(config)?;
+    let averaged = config.output.average_samples as usize;
+    let budget = with_rate_word(NoiseBudget::new(&parts.detector, &parts.coil), config);
+    let total = budget.total_deg_per_sqrt_h();
+    let detection = budget.detection_deg_per_sqrt_h();
+    let rounding = (total * total - detection * detection).max(0.0).sqrt();
+    let mut words = word_autocovariance(&parts, (lags + 1) * averaged);
+    if let Some(variance) = words.first_mut() {
+        *variance += deg_per_sqrt_h_to_deg_per_h_sqrt_s(rounding).powi(2) / word_period_s(config);
+    }
+    // Of means over `a` words: those of pairs `l a + i - j` apart.
+    let of_means = |lag: usize| {
+        let pairs = (0..averaged).flat_map(|i| (0..averaged).map(move |j| (i, j)));
+        let sum: f64 = pairs
+            .map(|(i, j)| words[(lag * averaged + i).abs_diff(j)])
+            .sum();
+        sum / (averaged * averaged) as f64
+    };
+    Ok(WordNoise {
+        autocovariance_deg2_per_h2: (0..lags).map(of_means).collect(),
+        angle_random_walk_deg_per_sqrt_h: total,
+        sample_period_s: sample_period_s(config),
+    })
 }
 
 /// What the gyro of a configuration is, in closed form, at the start of the simulation.

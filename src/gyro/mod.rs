@@ -50,7 +50,9 @@ pub use controller::{Controller, ControllerConfig, gain_limit};
 pub use error::GyroError;
 pub use injection::InjectionConfig;
 pub use input_axis::{AssemblyConfig, InputAxis};
-pub use instrument::{Gyro, facts, sample_period_s, word_period_s, word_response};
+pub use instrument::{
+    Gyro, WordNoise, facts, sample_period_s, word_noise, word_period_s, word_response,
+};
 pub use limits::{MotionExtremes, cautions};
 pub use loop_model::LoopModel;
 pub use loop_model::faults::LoopFaults;

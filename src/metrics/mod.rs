@@ -116,6 +116,10 @@ pub use theory::bound::{
     noise_power_gain,
 };
 pub use theory::claim::{Claim, ClaimedFigure, Lookalikes};
+pub use theory::figures::{
+    BlockGeometry, ChannelTheory, ExpectedBlocks, ExpectedFigure, KnownSine, Words,
+    largest_of_normals,
+};
 pub use theory::learning::Learning;
 pub use theory::memory::memory_samples;
 pub use theory::prediction::{Prediction, lags_needed, predict};

@@ -7,6 +7,7 @@ mod allan;
 mod calibration;
 mod filter;
 mod hardware;
+mod inference;
 mod motion;
 mod word;
 
@@ -16,6 +17,7 @@ pub use filter::{
     ConstantUnit, DesiredSignal, InitialWeights, OutputRegister, Pipeline, SignLmsForm, UpdateSign,
 };
 pub use hardware::{Division, ExportForm, NumberFormat, UpdateOrder};
+pub use inference::Prior;
 pub use motion::{CaseAxis, PhaseRule};
 pub(crate) use word::words;
 pub use word::{UnknownWord, Word};

@@ -91,6 +91,39 @@ impl RateMatrices {
         Self::new(&self.controller, self.periods, cubics)
     }
 
+    /// Autocovariance of the mean register by lag in output samples, for white noise of unit variance
+    /// per loop period.
+    ///
+    /// With the stationary covariance `P = A P A^T + Q` of the state, `y' = c x + v` and the joint
+    /// covariance `(Q, s, q)` of what a sample adds to state and mean, it is `c P c^T + q` at lag 0 and
+    /// `c A^(l-1) (A P c^T + s)` at lag l.
+    pub(super) fn word_autocovariance(&self, lags: usize) -> Vec<f64> {
+        let added =
+            |row: usize, column: usize| dot(&self.innovation[row], &self.innovation[column]);
+        let mut power: [[f64; STATE]; STATE] = std::array::from_fn(|row| self.transition[row]);
+        let mut covariance: [[f64; STATE]; STATE] =
+            std::array::from_fn(|row| std::array::from_fn(|column| added(row, column)));
+        for _ in 0..DOUBLINGS {
+            let passed = product(&power, &product(&covariance, &transposed(&power)));
+            for (row, more) in covariance.iter_mut().zip(passed) {
+                for (entry, more) in row.iter_mut().zip(more) {
+                    *entry += more;
+                }
+            }
+            power = product(&power, &power);
+        }
+        let read = &self.transition[STATE];
+        let seen: [f64; STATE] = std::array::from_fn(|row| dot(&covariance[row], read));
+        let mut reach: [f64; STATE] =
+            std::array::from_fn(|row| dot(&self.transition[row], &seen) + added(row, STATE));
+        let mut found = vec![dot(read, &seen) + added(STATE, STATE)];
+        for _ in 1..lags {
+            found.push(dot(read, &reach));
+            reach = std::array::from_fn(|row| dot(&self.transition[row], &reach));
+        }
+        found
+    }
+
     /// Advances the state by one output sample and returns the mean register, rad.
     ///
     /// `phases_rad`: coefficients of the Sagnac phase in normalised time, for each cubic; `noise_rad`:
@@ -120,6 +153,18 @@ impl RateMatrices {
         state.copy_from_slice(&joint[..STATE]);
         joint[STATE]
     }
+}
+
+/// Output samples, as a power of two, after which nothing is left of a state.
+const DOUBLINGS: u32 = 24;
+
+fn product(left: &[[f64; STATE]; STATE], right: &[[f64; STATE]; STATE]) -> [[f64; STATE]; STATE] {
+    let columns = transposed(right);
+    std::array::from_fn(|row| std::array::from_fn(|column| dot(&left[row], &columns[column])))
+}
+
+fn transposed(matrix: &[[f64; STATE]; STATE]) -> [[f64; STATE]; STATE] {
+    std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row]))
 }
 
 fn dot<const N: usize>(left: &[f64; N], right: &[f64; N]) -> f64 {

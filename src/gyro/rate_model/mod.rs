@@ -17,7 +17,7 @@ use crate::gyro::thermal::condition::{Condition, Schedule};
 use crate::gyro::vibration::{VibrationResponse, tones};
 use crate::random::{Stream, Streams};
 use crate::signal::MotionSegment;
-use crate::units::deg_per_sqrt_h_to_rad_per_sqrt_s;
+use crate::units::{deg_per_sqrt_h_to_rad_per_sqrt_s, rad_per_s_to_deg_per_h};
 
 /// The linearised loop, one output sample at a time.
 ///
@@ -188,6 +188,16 @@ impl RateModel {
         self.optics.set_drift(condition.modulator_gain_error);
         self.condition = condition;
     }
+}
+
+/// Autocovariance of the rate words by lag in words without the rounding of the words, (deg/h)^2.
+pub(in crate::gyro) fn word_autocovariance(parts: &Parts, lags: usize) -> Vec<f64> {
+    let unit = rad_per_s_to_deg_per_h(noise_rad(parts) / parts.coil.scale_factor_s);
+    let mut found = matrices(parts, 1).word_autocovariance(lags);
+    for value in &mut found {
+        *value *= unit * unit;
+    }
+    found
 }
 
 /// Shares of a loop period's error that are signal, and of the periods that reach the integrator.

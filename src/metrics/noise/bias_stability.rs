@@ -201,7 +201,7 @@ pub fn effective_degrees_of_freedom(
 }
 
 /// Generalised covariance of two block means `distance` blocks apart, (deg/h)^2.
-fn block_covariance(
+pub(crate) fn block_covariance(
     coefficients: &NoiseCoefficients,
     averaging_time_s: f64,
     distance: usize,

@@ -19,7 +19,7 @@ pub(crate) fn default_of(schema_path: &str) -> Option<&'static Value> {
 }
 
 /// The value that the declaration of a key writes.
-fn declared_value(key: &Key) -> Value {
+pub(crate) fn declared_value(key: &Key) -> Value {
     if let Kind::EmptyTable = key.kind {
         return Value::from(Table::new());
     }

@@ -1,0 +1,569 @@
+//! Figures of one record in closed form, again and again with other numbers.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::experiment::infer::forms::Form;
+use crate::filters::FilterConfig;
+use crate::gyro::{self, GyroConfig, WordNoise};
+use crate::inference::Forecast;
+use crate::metrics::{
+    BlockGeometry, ChannelTheory, ExpectedFigure, KnownSine, NoiseCoefficients, Words, lags_needed,
+    largest_of_normals, samples_in,
+};
+use crate::scenario::{MotionClass, MotionConfig, Movable, Resolved, Scenario};
+use crate::signal::FilterShape;
+use crate::turntable::earth_rate_rad_per_s;
+use crate::units::{
+    deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s, deg_per_s_to_rad_per_s,
+    deg_per_sqrt_h_to_deg_per_h_sqrt_s, rad_per_s_to_deg_per_h, ratio_to_ppm, s_to_ms,
+};
+
+/// Fewest lags of the autocovariance: Bartlett's formula reaches as far.
+const LAGS_MIN: usize = 16;
+/// Frequencies at which a bandwidth is looked for, and the range over that of the lowest sine.
+const BANDWIDTH_POINTS: u32 = 96;
+
+/// Most blocks of a bias stability.
+const BLOCKS_MAX: usize = 512;
+
+/// Geometries of blocks, which many readings share.
+#[derive(Debug, Default)]
+pub(crate) struct Geometries(BTreeMap<(u64, usize, u64), Arc<BlockGeometry>>);
+
+impl Geometries {
+    /// That of so many blocks behind a warm-up.
+    fn of(&mut self, time_s: f64, count: usize, warm_up_s: f64) -> Option<Arc<BlockGeometry>> {
+        let key = (time_s.to_bits(), count, warm_up_s.to_bits());
+        if let Some(known) = self.0.get(&key) {
+            return Some(known.clone());
+        }
+        let is_small = count <= BLOCKS_MAX;
+        let geometry = is_small.then(|| BlockGeometry::new(time_s, count, warm_up_s))??;
+        let geometry = Arc::new(geometry);
+        self.0.insert(key, geometry.clone());
+        Some(geometry)
+    }
+}
+
+/// A channel of a record.
+#[derive(Clone, Debug)]
+struct Channel {
+    name: String,
+    /// None of raw.
+    shape: Option<FilterShape>,
+}
+
+/// A figure of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Figure {
+    /// Place among the figures of the problem.
+    pub(crate) index: usize,
+    /// Place among the channels of the record.
+    channel: usize,
+    form: Form,
+}
+
+/// Rates of a staircase and how well each is measured beside a noise of density 1.
+#[derive(Clone, Debug)]
+struct Staircase {
+    /// Rates at which the scale factor is read, rad/s.
+    rates_rad_per_s: Vec<f64>,
+    /// Expected largest and its scatter over the full scale, for a density of 1 (deg/h) sqrt(s).
+    largest: ExpectedFigure,
+    /// Deviation of the slope for a density of 1 (deg/h) sqrt(s).
+    slope_deviation: f64,
+}
+
+/// A record of which figures are forecast.
+#[derive(Clone, Debug)]
+pub(crate) struct RecordTheory {
+    movable: Movable,
+    /// Which parameters move its keys, in the order of these.
+    parameters: Vec<usize>,
+    channels: Vec<Channel>,
+    figures: Vec<Figure>,
+    lags: usize,
+    geometries: Vec<(f64, Arc<BlockGeometry>)>,
+    staircase: Option<Staircase>,
+}
+
+/// What one set of numbers makes of the words.
+struct Moment {
+    words: Words,
+    walk: f64,
+    coefficients: NoiseCoefficients,
+}
+
+impl RecordTheory {
+    /// A record with keys to move.
+    ///
+    /// * `keys`: with the parameter that moves each.
+    ///
+    /// # Errors
+    /// What is wrong with a key, by its place.
+    pub(crate) fn new(
+        resolved: &Resolved,
+        keys: &[(String, usize)],
+    ) -> Result<Self, (usize, String)> {
+        let written: Vec<String> = keys.iter().map(|(key, _)| key.clone()).collect();
+        let movable = resolved.movable(&written)?;
+        let scenario = movable.scenario();
+        let period_s = gyro::sample_period_s(&scenario.gyro);
+        let raw = Channel {
+            name: "raw".to_owned(),
+            shape: None,
+        };
+        let filters = scenario.filters.iter().map(|filter| Channel {
+            name: filter.name.clone(),
+            shape: shape_of(filter, period_s),
+        });
+        let channels: Vec<Channel> = std::iter::once(raw).chain(filters).collect();
+        let shapes = channels.iter().filter_map(|channel| channel.shape.as_ref());
+        let lags = shapes.map(lags_needed).fold(LAGS_MIN, usize::max);
+        let staircase = staircase(scenario);
+        Ok(Self {
+            parameters: keys.iter().map(|(_, parameter)| *parameter).collect(),
+            channels,
+            figures: Vec::new(),
+            lags,
+            geometries: Vec::new(),
+            staircase,
+            movable,
+        })
+    }
+
+    /// Takes a figure in.
+    ///
+    /// * `name`: channel.
+    ///
+    /// # Errors
+    /// Why it has no closed form here.
+    pub(crate) fn add(
+        &mut self,
+        index: usize,
+        (name, form): (&str, Form),
+        known: &mut Geometries,
+    ) -> Result<(), String> {
+        let names = || -> Vec<&str> {
+            self.channels
+                .iter()
+                .map(|channel| channel.name.as_str())
+                .collect()
+        };
+        let Some(channel) = self
+            .channels
+            .iter()
+            .position(|channel| channel.name == name)
+        else {
+            return Err(format!(
+                "no channel `{name}`: expected one of {}",
+                names().join(", ")
+            ));
+        };
+        self.supports(form, channel)?;
+        if let Form::Blocks(time_s) = form {
+            let scenario = self.movable.scenario();
+            let time_s = time_s.unwrap_or(scenario.bias_averaging_time_s);
+            let period_s = gyro::sample_period_s(&scenario.gyro);
+            let count = samples_in(scenario.duration_s, period_s) / samples_in(time_s, period_s);
+            let geometry = known.of(time_s, count, scenario.warm_up_s).ok_or_else(|| {
+                let length = scenario.duration_s;
+                format!("{length} s do not hold from 2 to {BLOCKS_MAX} blocks of {time_s} s")
+            })?;
+            self.geometries.push((time_s, geometry));
+        }
+        self.figures.push(Figure {
+            index,
+            channel,
+            form,
+        });
+        Ok(())
+    }
+
+    /// Whether the record is one of which the form holds.
+    fn supports(&self, form: Form, channel: usize) -> Result<(), String> {
+        let scenario = self.movable.scenario();
+        let no_form = |what: &str| Err(format!("it has no closed form {what}"));
+        if scenario.gyro.assembly.is_some() {
+            return no_form("for three axes");
+        }
+        let motion = scenario.measured_motion();
+        let class = motion.class();
+        let is_swing = matches!(
+            class,
+            MotionClass::Swing {
+                is_from_rest: false,
+                ..
+            }
+        );
+        let is_steps = matches!(class, MotionClass::Steps(_));
+        let wants_swing = matches!(form, Form::DelayVsRaw | Form::DelayVsTruth);
+        let wants_steps = matches!(form, Form::Scale | Form::Nonlinearity);
+        match form {
+            _ if wants_swing && !is_swing => return no_form("without a swing"),
+            _ if wants_steps && self.staircase.is_none() => {
+                return no_form("without steps of the rate");
+            }
+            Form::Bandwidth if !matches!(class, MotionClass::MultiSine { .. }) => {
+                return no_form("without several sines");
+            }
+            _ if !wants_steps && is_steps => return no_form("under steps of the rate"),
+            Form::Bandwidth if channel > 0 => return no_form("of a filter"),
+            _ => {}
+        }
+        let Some(own) = self.channels.get(channel).filter(|_| channel > 0) else {
+            return Ok(());
+        };
+        let Some(shape) = &own.shape else {
+            return no_form("of words from outside");
+        };
+        // Whatever the noise, the same question has the same answer.
+        let probe = Words {
+            autocovariance: (0..self.lags)
+                .map(|lag| if lag == 0 { 1.0 } else { 0.0 })
+                .collect(),
+            mean_deg_per_h: 1.0,
+            sine: None,
+            period_s: 1.0,
+            warm_up_s: 1.0,
+            duration_s: 1.0,
+        };
+        let theory = ChannelTheory::of_filter(shape, &probe)?;
+        if wants_steps && theory.gain_variance_s > 0.0 {
+            return no_form("of weights that learn under steps of the rate");
+        }
+        Ok(())
+    }
+
+    /// Forecasts at values of the parameters; none where no gyro has them.
+    ///
+    /// Known noise of a gyro is taken from `shared`, which records of one gyro fill.
+    pub(crate) fn forecast(
+        &mut self,
+        values: &[f64],
+        shared: &mut Vec<(GyroConfig, WordNoise)>,
+        into: &mut dyn FnMut(usize, Forecast),
+        correlate: &mut dyn FnMut(usize, usize, f64),
+    ) -> Option<()> {
+        let own = self.parameters.iter().map(|parameter| values[*parameter]);
+        self.movable.at(own);
+        let moment = self.moment(shared)?;
+        let theories: Option<Vec<ChannelTheory>> = self
+            .channels
+            .iter()
+            .enumerate()
+            .map(|(index, channel)| {
+                let is_asked = self.figures.iter().any(|figure| figure.channel == index);
+                match &channel.shape {
+                    Some(shape) if is_asked => ChannelTheory::of_filter(shape, &moment.words).ok(),
+                    _ => Some(ChannelTheory::raw()),
+                }
+            })
+            .collect();
+        let theories = theories?;
+        for figure in &self.figures {
+            let forecast = self.figure(figure, &moment, &theories[figure.channel])?;
+            (forecast.value.is_finite() && forecast.deviation.is_finite()).then_some(())?;
+            into(figure.index, forecast);
+        }
+        for (place, one) in self.figures.iter().enumerate() {
+            for other in &self.figures[place + 1..] {
+                let own = (one, &theories[one.channel]);
+                let against = (other, &theories[other.channel]);
+                let correlation = self.correlation(own, against, &moment);
+                if correlation > 1e-3 {
+                    let (first, second) = (one.index.min(other.index), one.index.max(other.index));
+                    correlate(first, second, correlation.min(1.0 - 1e-9));
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// The words that the scenario as it stands makes.
+    fn moment(&self, shared: &mut Vec<(GyroConfig, WordNoise)>) -> Option<Moment> {
+        let scenario = self.movable.scenario();
+        let known = shared.iter().find(|(config, noise)| {
+            noise.autocovariance_deg2_per_h2.len() >= self.lags && *config == scenario.gyro
+        });
+        let noise = match known {
+            Some((_, noise)) => noise.clone(),
+            None => {
+                let noise = gyro::word_noise(&scenario.gyro, self.lags.max(LAGS_MIN)).ok()?;
+                shared.push((scenario.gyro.clone(), noise.clone()));
+                noise
+            }
+        };
+        let slow = &scenario.gyro.slow_noise;
+        let walk = noise.angle_random_walk_deg_per_sqrt_h;
+        let rotation = match &scenario.turntable.motion {
+            MotionConfig::Rotation(rotation) => deg_per_s_to_rad_per_s(rotation.rate_deg_per_s),
+            _ => 0.0,
+        };
+        let rate = earth_rate_rad_per_s(&scenario.turntable.site) + rotation;
+        let mean = gyro::expected_mean_rate_rad_per_s(&scenario.gyro, rate);
+        Some(Moment {
+            words: Words {
+                autocovariance: noise.autocovariance_deg2_per_h2,
+                mean_deg_per_h: rad_per_s_to_deg_per_h(mean),
+                sine: sine(scenario),
+                period_s: noise.sample_period_s,
+                warm_up_s: scenario.warm_up_s,
+                duration_s: scenario.duration_s,
+            },
+            walk,
+            coefficients: NoiseCoefficients {
+                angle_random_walk_deg_per_h_sqrt_s: deg_per_sqrt_h_to_deg_per_h_sqrt_s(walk),
+                bias_instability_deg_per_h: slow.bias_instability_deg_per_h,
+                rate_random_walk_deg_per_h_per_sqrt_s: deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(
+                    slow.rate_random_walk_deg_per_h_per_sqrt_h,
+                ),
+                ..NoiseCoefficients::default()
+            },
+        })
+    }
+
+    /// The forecast of one figure.
+    fn figure(&self, figure: &Figure, moment: &Moment, theory: &ChannelTheory) -> Option<Forecast> {
+        let Moment {
+            words,
+            walk,
+            coefficients,
+        } = moment;
+        let plain = |expected: ExpectedFigure| Forecast::normal(expected.value, expected.deviation);
+        let scaled = |expected: ExpectedFigure, by: f64| {
+            Forecast::normal(expected.value * by, expected.deviation * by.abs())
+        };
+        Some(match figure.form {
+            Form::Walk => plain(theory.angle_random_walk(*walk, words)),
+            Form::WalkOverGain => plain(ChannelTheory::raw().angle_random_walk(*walk, words)),
+            Form::Blocks(_) => {
+                let geometry = self.geometry(figure.form)?;
+                let expected = geometry.expected(theory, coefficients, words.mean_deg_per_h);
+                Forecast::squares(expected.square, expected.freedom)
+            }
+            Form::Gain => plain(theory.gain_over_record(words)),
+            Form::Mean => {
+                let noise =
+                    coefficients.angle_random_walk_deg_per_h_sqrt_s / words.duration_s.sqrt();
+                let slow = coefficients.bias_instability_deg_per_h
+                    + coefficients.rate_random_walk_deg_per_h_per_sqrt_s
+                        * (words.duration_s / 3.0).sqrt();
+                let gain = theory.gain_over_record(words).deviation * words.mean_deg_per_h;
+                let deviation = (theory.dc_gain * noise.hypot(slow)).hypot(gain);
+                Forecast::normal(theory.dc_gain * words.mean_deg_per_h, deviation)
+            }
+            Form::Noise => plain(theory.noise_std(words)),
+            Form::NoiseGain => {
+                let own = theory.noise_std(words);
+                let raw = ChannelTheory::raw().noise_std(words);
+                let ratio = own.value / raw.value;
+                let relative =
+                    (own.deviation / own.value).powi(2) - (raw.deviation / raw.value).powi(2);
+                Forecast::normal(
+                    ratio * ratio,
+                    2.0 * ratio * ratio * relative.max(0.0).sqrt(),
+                )
+            }
+            Form::DelayVsRaw => scaled(theory.delay_s(words)?, s_to_ms(1.0)),
+            Form::DelayVsTruth => {
+                let behind = theory.delay_s(words)?;
+                let sine = words.sine?;
+                let scenario = self.movable.scenario();
+                let response = gyro::word_response(&scenario.gyro, &[sine.frequency_hz]).ok()?;
+                let (_, phase) = *response.first()?;
+                let angular = std::f64::consts::TAU * sine.frequency_hz;
+                // Of a sine of amplitude A in white noise over T: 2 N^2 / (A^2 T), in phase squared.
+                let density = coefficients.angle_random_walk_deg_per_h_sqrt_s;
+                let fitted =
+                    density * (2.0 / words.duration_s).sqrt() / sine.amplitude_deg_per_h / angular;
+                let value = behind.value - phase / angular;
+                Forecast::normal(s_to_ms(value), s_to_ms(fitted.hypot(behind.deviation)))
+            }
+            Form::Scale => {
+                let (error, _) = self.line()?;
+                let density = coefficients.angle_random_walk_deg_per_h_sqrt_s;
+                let deviation = self.staircase.as_ref()?.slope_deviation * density;
+                Forecast::normal(ratio_to_ppm(error), ratio_to_ppm(deviation))
+            }
+            Form::Nonlinearity => {
+                let (_, largest) = self.line()?;
+                let density = coefficients.angle_random_walk_deg_per_h_sqrt_s;
+                let noise = self.staircase.as_ref()?.largest;
+                let value = largest.hypot(noise.value * density);
+                Forecast::normal(ratio_to_ppm(value), ratio_to_ppm(noise.deviation * density))
+            }
+            Form::Bandwidth => Forecast::normal(self.bandwidth_hz()?, 0.0),
+        })
+    }
+
+    /// The geometry of the blocks of a form.
+    fn geometry(&self, form: Form) -> Option<&BlockGeometry> {
+        let Form::Blocks(time_s) = form else {
+            return None;
+        };
+        let time_s = time_s.unwrap_or(self.movable.scenario().bias_averaging_time_s);
+        let found = self.geometries.iter().find(|(own, _)| *own == time_s)?;
+        Some(&found.1)
+    }
+
+    /// Correlation of two figures of the record.
+    fn correlation(
+        &self,
+        (one, own): (&Figure, &ChannelTheory),
+        (two, other): (&Figure, &ChannelTheory),
+        moment: &Moment,
+    ) -> f64 {
+        let words = &moment.words;
+        match (one.form, two.form) {
+            (Form::Blocks(first), Form::Blocks(second)) => {
+                let default_s = self.movable.scenario().bias_averaging_time_s;
+                if first.unwrap_or(default_s) != second.unwrap_or(default_s) {
+                    return 0.0;
+                }
+                let coefficients = &moment.coefficients;
+                self.geometry(one.form).map_or(0.0, |geometry| {
+                    geometry.correlation((own, other), coefficients, words.mean_deg_per_h)
+                })
+            }
+            // What the fit leaves is common, what the gain scatters is not.
+            (Form::Walk, Form::Walk) => {
+                let raw = ChannelTheory::raw().angle_random_walk(moment.walk, words);
+                let common = raw.deviation / raw.value;
+                let part = |theory: &ChannelTheory| {
+                    let walk = theory.angle_random_walk(moment.walk, words);
+                    common / (walk.deviation / walk.value)
+                };
+                part(own) * part(other)
+            }
+            (Form::Nonlinearity, Form::Nonlinearity) | (Form::Scale, Form::Scale) => 1.0,
+            _ => 0.0,
+        }
+    }
+
+    /// Error of the scale factor and largest distance from the line over the full scale, noise left out.
+    fn line(&self) -> Option<(f64, f64)> {
+        let scenario = self.movable.scenario();
+        let staircase = self.staircase.as_ref()?;
+        let earth = earth_rate_rad_per_s(&scenario.turntable.site);
+        let rates = &staircase.rates_rad_per_s;
+        let outputs: Vec<f64> = rates
+            .iter()
+            .map(|rate| gyro::expected_mean_rate_rad_per_s(&scenario.gyro, earth + rate))
+            .collect();
+        let count = rates.len() as f64;
+        let (mean_in, mean_out) = (
+            rates.iter().sum::<f64>() / count,
+            outputs.iter().sum::<f64>() / count,
+        );
+        let (mut square, mut product) = (0.0, 0.0);
+        for (rate, output) in rates.iter().zip(&outputs) {
+            square += (rate - mean_in).powi(2);
+            product += (rate - mean_in) * (output - mean_out);
+        }
+        let slope = product / square;
+        let full = outputs
+            .iter()
+            .fold(0.0_f64, |most, output| most.max(output.abs()));
+        let largest = rates
+            .iter()
+            .zip(&outputs)
+            .map(|(rate, output)| (output - mean_out - slope * (rate - mean_in)).abs())
+            .fold(0.0, f64::max);
+        Some((slope - 1.0, largest / full))
+    }
+
+    /// Where the gain of the words first falls through 1/sqrt(2) of that of the lowest sine.
+    fn bandwidth_hz(&self) -> Option<f64> {
+        let scenario = self.movable.scenario();
+        let motion = scenario.measured_motion();
+        let MotionClass::MultiSine { frequencies_hz } = motion.class() else {
+            return None;
+        };
+        let (low, high) = (*frequencies_hz.first()?, *frequencies_hz.last()?);
+        let ratio = (high / low).ln() / f64::from(BANDWIDTH_POINTS - 1);
+        let grid: Vec<f64> = (0..BANDWIDTH_POINTS)
+            .map(|point| low * (ratio * f64::from(point)).exp())
+            .collect();
+        let response = gyro::word_response(&scenario.gyro, &grid).ok()?;
+        let limit = response.first()?.0 / std::f64::consts::SQRT_2;
+        let beyond = response.iter().position(|(gain, _)| *gain < limit)?.max(1);
+        let [(above, _), (below, _)] = [response[beyond - 1], response[beyond]];
+        let part = (above - limit) / (above - below);
+        Some(grid[beyond - 1] + part * (grid[beyond] - grid[beyond - 1]))
+    }
+}
+
+/// What a filter weighs; none of words from outside.
+fn shape_of(filter: &FilterConfig, period_s: f64) -> Option<FilterShape> {
+    let settings = filter.kind.settings();
+    if let Some(pipeline) = settings.hardware() {
+        return Some(pipeline.filter(0).ok()?.shape());
+    }
+    Some(settings.build(period_s)?.shape())
+}
+
+/// The sine that a swing puts into the words.
+fn sine(scenario: &Scenario) -> Option<KnownSine> {
+    let MotionConfig::Swing(swing) = &scenario.turntable.motion else {
+        return None;
+    };
+    let frequency_hz = swing.frequency_hz;
+    let response = gyro::word_response(&scenario.gyro, &[frequency_hz]).ok()?;
+    Some(KnownSine {
+        amplitude_deg_per_h: rad_per_s_to_deg_per_h(swing.rate_amplitude_rad_per_s())
+            * response.first()?.0,
+        frequency_hz,
+    })
+}
+
+/// The dwells of a scale factor test or of steps.
+fn staircase(scenario: &Scenario) -> Option<Staircase> {
+    let motion = scenario.measured_motion();
+    let MotionClass::Steps(stairs) = motion.class() else {
+        return None;
+    };
+    let mut start_s = 0.0;
+    let mut dwells = Vec::new();
+    for (rate, end_s) in stairs.rates_deg_per_s.iter().zip(&stairs.ends_s) {
+        dwells.push((
+            deg_per_s_to_rad_per_s(*rate),
+            end_s - start_s - stairs.settle_s,
+        ));
+        start_s = *end_s;
+    }
+    let inner = if stairs.has_static_zeros {
+        dwells.get(1..dwells.len() - 1)?
+    } else {
+        &dwells
+    };
+    let rates_rad_per_s: Vec<f64> = inner.iter().map(|dwell| dwell.0).collect();
+    // What the zeros scatter moves all alike, which the line takes up.
+    let deviations: Vec<f64> = inner
+        .iter()
+        .map(|dwell| dwell.1.max(1e-9).sqrt().recip())
+        .collect();
+    let full = rad_per_s_to_deg_per_h(
+        rates_rad_per_s
+            .iter()
+            .fold(0.0_f64, |most, rate| most.max(rate.abs())),
+    );
+    let over_full: Vec<f64> = deviations
+        .iter()
+        .map(|deviation| deviation / full)
+        .collect();
+    let count = rates_rad_per_s.len() as f64;
+    let mean = rates_rad_per_s.iter().sum::<f64>() / count;
+    let (mut square, mut noise) = (0.0, 0.0);
+    for (rate, deviation) in rates_rad_per_s.iter().zip(&deviations) {
+        square += (rate - mean).powi(2);
+        noise += ((rate - mean) * deviation).powi(2);
+    }
+    let slope_deviation = noise.sqrt() / square / rad_per_s_to_deg_per_h(1.0);
+    Some(Staircase {
+        rates_rad_per_s,
+        largest: largest_of_normals(&over_full),
+        slope_deviation,
+    })
+}

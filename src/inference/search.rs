@@ -1,0 +1,328 @@
+//! Points of the space of parameters, spread as the figures make them likely.
+
+use crate::inference::forecast::{Forecasts, Printed, likelihood};
+use crate::random::{Stream, Streams};
+
+/// First points for each that is kept: the prior is looked over more finely than what follows.
+const FIRST_PER_POINT: usize = 4;
+/// Part of the points whose weight may stand for all before the next step of the likelihood.
+const EFFECTIVE_PART: f64 = 0.5;
+/// Moves of every point between two steps.
+const MOVES: usize = 4;
+/// Most steps: far more than any figures need.
+const STEPS_MAX: usize = 400;
+/// Part of the moves that are a tenth as long, and of those that are a hundredth.
+const SHORT_MOVES: [f64; 4] = [1.0, 0.3, 0.1, 1.0];
+
+/// A point of the space of parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Parts of the prior below the value of each parameter.
+    pub parts: Vec<f64>,
+    /// What the figures are expected to be there.
+    pub forecasts: Forecasts,
+    /// Logarithm of the probability of the printed figures.
+    pub log_likelihood: f64,
+}
+
+/// What a search has found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Points, equally likely.
+    pub points: Vec<Point>,
+    /// The most likely point met.
+    pub best: Point,
+    /// Logarithm of the probability of the figures, all parameters weighed by their priors.
+    pub log_evidence: f64,
+    /// Forecasts made.
+    pub forecasts: usize,
+}
+
+/// What is searched.
+pub struct Search<'a> {
+    /// Printed figures.
+    pub printed: &'a [Printed],
+    /// Probability that a figure is not what its name says.
+    pub doubt: f64,
+    /// Number of parameters.
+    pub parameters: usize,
+    /// Points to keep.
+    pub points: usize,
+}
+
+impl Search<'_> {
+    /// Spreads points by sequential Monte Carlo: the likelihood is let in by steps, after each of which
+    /// the points are drawn anew by their weights and moved as Metropolis has it.
+    ///
+    /// * `forecast`: what the figures are expected to be at parts of the priors; none where no instrument
+    ///   has those values.
+    ///
+    /// Nothing is found where no point has a forecast.
+    ///
+    /// # Source
+    /// Del Moral, Doucet and Jasra, J. R. Stat. Soc. B 68 (2006) 411.
+    pub fn run(
+        &self,
+        streams: &Streams,
+        forecast: &mut dyn FnMut(&[f64]) -> Option<Forecasts>,
+    ) -> Option<Found> {
+        let mut made = 0;
+        let mut look = |parts: Vec<f64>| {
+            made += 1;
+            let forecasts = forecast(&parts)?;
+            let log_likelihood = likelihood(self.printed, &forecasts, self.doubt, None).logarithm;
+            Some(Point {
+                parts,
+                forecasts,
+                log_likelihood,
+            })
+        };
+        let first = if self.parameters == 0 {
+            1
+        } else {
+            FIRST_PER_POINT * self.points
+        };
+        let mut points: Vec<Point> = (0..first)
+            .filter_map(|index| look(halton(index, self.parameters)))
+            .collect();
+        let mut log_evidence = (points.len() as f64 / first as f64).ln();
+        let mut best = points.iter().max_by(by_likelihood).cloned()?;
+        let mut stream = streams.stream("search");
+        let mut power = 0.0;
+        for _ in 0..STEPS_MAX {
+            if power >= 1.0 {
+                break;
+            }
+            let step = next_step(&points, 1.0 - power);
+            let weights = weights(&points, step);
+            let most = points
+                .iter()
+                .map(|point| step * point.log_likelihood)
+                .fold(f64::NEG_INFINITY, f64::max);
+            log_evidence += most + (weights.iter().sum::<f64>() / weights.len() as f64).ln();
+            let kept = if self.parameters == 0 { 1 } else { self.points };
+            points = drawn(&points, &weights, kept, uniform(&mut stream));
+            power += step;
+            let moved = self.move_all(&mut points, power, &mut stream, &mut look);
+            best = moved.into_iter().fold(best, |best, point| {
+                if point.log_likelihood > best.log_likelihood {
+                    point
+                } else {
+                    best
+                }
+            });
+        }
+        Some(Found {
+            points,
+            best,
+            log_evidence,
+            forecasts: made,
+        })
+    }
+
+    /// Moves every point a few times; returns the most likely ones met.
+    fn move_all(
+        &self,
+        points: &mut [Point],
+        power: f64,
+        stream: &mut Stream,
+        look: &mut dyn FnMut(Vec<f64>) -> Option<Point>,
+    ) -> Option<Point> {
+        let count = self.parameters;
+        if count == 0 {
+            return None;
+        }
+        let factor = spread_factor(points, count);
+        let mut best: Option<Point> = None;
+        let reach = 2.38 / (count as f64).sqrt();
+        for shrink in (0..MOVES).map(|index| SHORT_MOVES[index % SHORT_MOVES.len()]) {
+            for point in points.iter_mut() {
+                let normals: Vec<f64> = (0..count).map(|_| stream.normal()).collect();
+                let parts = (0..count).map(|row| {
+                    let along: f64 = (0..=row)
+                        .map(|column| factor[row * count + column] * normals[column])
+                        .sum();
+                    reflected(point.parts[row] + shrink * reach * along)
+                });
+                let parts: Vec<f64> = parts.collect();
+                let chance = uniform(stream);
+                let Some(proposed) = look(parts) else {
+                    continue;
+                };
+                let gain = power * (proposed.log_likelihood - point.log_likelihood);
+                if chance.ln() < gain {
+                    if best
+                        .as_ref()
+                        .is_none_or(|best| proposed.log_likelihood > best.log_likelihood)
+                    {
+                        best = Some(proposed.clone());
+                    }
+                    *point = proposed;
+                }
+            }
+        }
+        best
+    }
+}
+
+fn by_likelihood(own: &&Point, other: &&Point) -> std::cmp::Ordering {
+    own.log_likelihood.total_cmp(&other.log_likelihood)
+}
+
+/// A number between 0 and 1.
+fn uniform(stream: &mut Stream) -> f64 {
+    let normal = stream.normal();
+    0.5 * statrs::function::erf::erfc(-normal / std::f64::consts::SQRT_2)
+}
+
+/// Back into the interval from 0 to 1, as a mirror at both ends would.
+fn reflected(part: f64) -> f64 {
+    let turn = part.rem_euclid(2.0);
+    if turn > 1.0 { 2.0 - turn } else { turn }
+}
+
+/// A point of Halton's sequence.
+fn halton(index: usize, count: usize) -> Vec<f64> {
+    const PRIMES: [usize; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
+    let digit = |dimension: usize| {
+        let base = PRIMES[dimension % PRIMES.len()];
+        let mut left = index + 1 + dimension / PRIMES.len() * 7919;
+        let (mut part, mut place) = (0.0, 1.0);
+        while left > 0 {
+            place /= base as f64;
+            part += place * (left % base) as f64;
+            left /= base;
+        }
+        part
+    };
+    (0..count).map(digit).collect()
+}
+
+/// Weights of the points for a step of the likelihood, the largest 1.
+fn weights(points: &[Point], step: f64) -> Vec<f64> {
+    let most = points
+        .iter()
+        .map(|point| point.log_likelihood)
+        .fold(f64::NEG_INFINITY, f64::max);
+    let own = |point: &Point| (step * (point.log_likelihood - most)).exp();
+    points.iter().map(own).collect()
+}
+
+/// The longest step that leaves enough points of weight.
+fn next_step(points: &[Point], most: f64) -> f64 {
+    let is_enough = |step: f64| {
+        let weights = weights(points, step);
+        let sum: f64 = weights.iter().sum();
+        let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
+        sum * sum / squares >= EFFECTIVE_PART * points.len() as f64
+    };
+    if is_enough(most) {
+        return most;
+    }
+    let (mut low, mut high) = (0.0, most);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if is_enough(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low.max(1e-6 * most)
+}
+
+/// Points drawn by their weights, at equal distances.
+fn drawn(points: &[Point], weights: &[f64], count: usize, offset: f64) -> Vec<Point> {
+    let step = weights.iter().sum::<f64>() / count as f64;
+    let mut found = Vec::with_capacity(count);
+    let (mut reached, mut index) = (weights[0], 0);
+    for place in 0..count {
+        let target = (place as f64 + offset) * step;
+        while reached < target && index + 1 < points.len() {
+            index += 1;
+            reached += weights[index];
+        }
+        found.push(points[index].clone());
+    }
+    found
+}
+
+/// Lower factor of the covariance of the points, row by row.
+fn spread_factor(points: &[Point], count: usize) -> Vec<f64> {
+    let number = points.len() as f64;
+    let mean = |row: usize| points.iter().map(|point| point.parts[row]).sum::<f64>() / number;
+    let means: Vec<f64> = (0..count).map(mean).collect();
+    let covariance = |row: usize, column: usize| {
+        let products = points
+            .iter()
+            .map(|point| (point.parts[row] - means[row]) * (point.parts[column] - means[column]));
+        products.sum::<f64>() / number
+    };
+    let mut factor = vec![0.0; count * count];
+    for column in 0..count {
+        let done = |row: usize, factor: &[f64]| {
+            (0..column)
+                .map(|k| factor[row * count + k] * factor[column * count + k])
+                .sum::<f64>()
+        };
+        let own = covariance(column, column);
+        let pivot = (own - done(column, &factor)).max(1e-6 * own + 1e-18);
+        let root = pivot.sqrt();
+        factor[column * count + column] = root;
+        for row in column + 1..count {
+            factor[row * count + column] = (covariance(row, column) - done(row, &factor)) / root;
+        }
+    }
+    factor
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inference::forecast::{Forecast, Print};
+
+    #[test]
+    fn a_search_finds_mean_spread_and_evidence_of_a_normal_posterior() {
+        // One figure, the sum of two parameters, each uniform from 0 to 1.
+        let printed = [Printed {
+            value: 1.0,
+            print: Print::Stated { deviation: 0.02 },
+        }];
+        let search = Search {
+            printed: &printed,
+            doubt: 1e-9,
+            parameters: 2,
+            points: 512,
+        };
+        let mut forecast = |parts: &[f64]| {
+            Some(Forecasts {
+                figures: vec![Some(Forecast::normal(parts[0] + parts[1], 1e-6))],
+                correlations: Vec::new(),
+            })
+        };
+        let found = search
+            .run(&Streams::new(1, 0), &mut forecast)
+            .expect("points");
+        let count = found.points.len() as f64;
+        let sum: f64 = found
+            .points
+            .iter()
+            .map(|point| point.parts.iter().sum::<f64>())
+            .sum();
+        assert!((sum / count - 1.0).abs() < 4e-3, "{}", sum / count);
+        let first = found.points.iter().map(|point| point.parts[0]);
+        let mean = first.clone().sum::<f64>() / count;
+        let spread = (first.map(|part| (part - mean).powi(2)).sum::<f64>() / count).sqrt();
+        // Along the ridge the prior is all there is: a uniform deviate, 1/sqrt(12).
+        assert!((spread - 0.2887).abs() < 0.03, "{spread}");
+        // The density of the sum is 1 there; times the width 0.02 sqrt(2 pi).
+        let expected = (0.02 * std::f64::consts::TAU.sqrt()).ln();
+        assert!(
+            (found.log_evidence - expected).abs() < 0.1,
+            "{} {expected}",
+            found.log_evidence
+        );
+        let again = search.run(&Streams::new(1, 0), &mut forecast);
+        assert_eq!(again, Some(found));
+    }
+}
