@@ -12,10 +12,11 @@ use std::process::ExitCode;
 use crate::experiment::start_threads;
 #[cfg(unix)]
 use crate::program::supervise;
-use commands::{
-    baseline, budget, calibrate, check, claim, compare, completions, expand, export, init, list,
-    log, man, merge, plan, reference, run, schema, status, timing,
-};
+use commands::comparison::{baseline, claim, compare};
+use commands::scenarios::{check, expand, init, list, reference, schema};
+use commands::shards::{merge, plan, status};
+use commands::shell::{completions, man};
+use commands::{budget, calibrate, export, log, run, timing};
 use options::arguments::{Arguments, Command};
 use options::idle;
 use terminal::exit::{self, Exit};

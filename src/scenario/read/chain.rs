@@ -11,8 +11,8 @@ use crate::scenario::message::error::{Location, ScenarioError};
 use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::read::discover::identity;
 use crate::scenario::read::draft::Draft;
+use crate::scenario::read::files::manifest;
 use crate::scenario::read::input::{self, Input, InputError};
-use crate::scenario::read::manifest;
 use crate::scenario::read::resolved::InputFile;
 
 /// Most bases below one another.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::recording::LogFacts;
 use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::Table;
-use crate::scenario::read::named_files::NamedFile;
+use crate::scenario::read::files::named_files::NamedFile;
 use crate::scenario::read::resolved::{InputFile, SweepPoint, broken};
 
 /// What a scenario is resolved from.

@@ -12,12 +12,12 @@ use crate::scenario::document::emit::to_toml;
 use crate::scenario::keys::defaults::fill;
 use crate::scenario::keys::renamed;
 use crate::scenario::message::error::{ScenarioError, in_both};
-use crate::scenario::read::compensation_source;
 use crate::scenario::read::draft::{Draft, Recorded};
-use crate::scenario::read::log_source;
-use crate::scenario::read::named_files;
+use crate::scenario::read::files::compensation_source;
+use crate::scenario::read::files::log_source;
+use crate::scenario::read::files::named_files;
+use crate::scenario::read::files::script;
 use crate::scenario::read::resolved::{Resolved, broken, configuration, digest};
-use crate::scenario::read::script;
 
 /// What is wrong with a scenario, and as what it can be checked further.
 #[derive(Debug, Default)]

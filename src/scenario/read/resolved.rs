@@ -11,7 +11,7 @@ use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::keys::defaults::default_of;
 use crate::scenario::message::error::{Location, ScenarioError};
-use crate::scenario::read::named_files::NamedFile;
+use crate::scenario::read::files::named_files::NamedFile;
 
 /// A file that a scenario was read from.
 #[derive(Clone, Debug, PartialEq, Eq)]

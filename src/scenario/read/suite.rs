@@ -14,10 +14,10 @@ use crate::scenario::read::chain::{load_labelled, read_whole};
 use crate::scenario::read::clashes::Names;
 use crate::scenario::read::discover::discover;
 use crate::scenario::read::draft::Draft;
-use crate::scenario::read::matrix::{self, Swept};
-use crate::scenario::read::named_files::LOG;
+use crate::scenario::read::files::named_files::LOG;
 use crate::scenario::read::resolve::{Unsound, UnsoundReading};
 use crate::scenario::read::resolved::Resolved;
+use crate::scenario::read::sweep::matrix::{self, Swept};
 
 /// What a scenario is read as: a run, or what can be checked further though it is not sound.
 pub(crate) type Reading = Result<Resolved, UnsoundReading>;

@@ -1,7 +1,7 @@
 //! What `run --baseline` prints: how the results of a suite compare with earlier ones.
 
 use crate::baseline::Judged;
-use crate::cli::commands::compare::{exit_of, outcomes, refused, side};
+use crate::cli::commands::comparison::compare::{exit_of, outcomes, refused, side};
 use crate::cli::options::arguments::RunOptions;
 use crate::cli::options::format::Format;
 use crate::cli::terminal::exit::{Exit, io_failure};

@@ -4,8 +4,8 @@ use std::io;
 use std::path::Path;
 
 use super::{programs, warn_of_threads};
-use crate::cli::commands::plan::{select_options, selected};
 use crate::cli::commands::select;
+use crate::cli::commands::shards::plan::{select_options, selected};
 use crate::cli::options::arguments::RunOptions;
 use crate::cli::terminal::exit::{Exit, io_failure};
 use crate::cli::terminal::signals::Interrupt;

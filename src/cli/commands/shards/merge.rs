@@ -2,10 +2,10 @@
 
 use std::io;
 
-use crate::cli::commands::plan::select_options;
 use crate::cli::commands::run::{self, without_gates};
 use crate::cli::commands::select;
-use crate::cli::commands::status::refused;
+use crate::cli::commands::shards::plan::select_options;
+use crate::cli::commands::shards::status::refused;
 use crate::cli::options::arguments::{RunOptions, SelectOptions};
 use crate::cli::options::baseline::AgainstOptions;
 use crate::cli::options::build_server::BuildServerOptions;

@@ -3,7 +3,7 @@
 use std::io;
 
 use crate::baseline::{compare, is_baseline_toml, to_toml, updated};
-use crate::cli::commands::compare::refused;
+use crate::cli::commands::comparison::compare::refused;
 use crate::cli::options::baseline::{BaselineCommand, BaselineOptions, SaveOptions, UpdateOptions};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::{output, place};

@@ -71,7 +71,7 @@ pub(in crate::cli) fn plan(options: &PlanOptions) -> io::Result<Exit> {
 }
 
 /// What is selected, as a file keeps it.
-pub(super) fn selected(options: &SelectOptions) -> Selected {
+pub(in crate::cli) fn selected(options: &SelectOptions) -> Selected {
     let paths = options.paths.iter();
     Selected {
         paths: paths
@@ -83,7 +83,7 @@ pub(super) fn selected(options: &SelectOptions) -> Selected {
 }
 
 /// The options that select what a file keeps.
-pub(super) fn select_options(selected: &Selected) -> SelectOptions {
+pub(in crate::cli) fn select_options(selected: &Selected) -> SelectOptions {
     SelectOptions {
         paths: selected.paths.iter().map(PathBuf::from).collect(),
         set: selected.sets.clone(),

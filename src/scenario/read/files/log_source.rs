@@ -9,7 +9,7 @@ use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::message::excerpt::bounded;
-use crate::scenario::read::named_files::{LOG as TABLE, NamedFile};
+use crate::scenario::read::files::named_files::{LOG as TABLE, NamedFile};
 use crate::scenario::read::resolved::Resolved;
 
 const FILE_KEY: &str = "log.file";

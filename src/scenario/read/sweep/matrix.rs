@@ -11,11 +11,11 @@ use crate::scenario::keys::schema::Key;
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::read::draft::Draft;
-use crate::scenario::read::range::{self, RangeError};
+use crate::scenario::read::files::script;
 use crate::scenario::read::resolve::Unsound;
 use crate::scenario::read::resolved::{Resolved, SweepPoint};
-use crate::scenario::read::script;
-use crate::scenario::read::template::Template;
+use crate::scenario::read::sweep::range::{self, RangeError};
+use crate::scenario::read::sweep::template::Template;
 
 /// Points tried, if none of them is sound: what they share is said by then.
 const TRIALS_MAX: usize = 100;

@@ -62,7 +62,7 @@ pub(in crate::cli) fn status(options: &StatusOptions) -> io::Result<Exit> {
 }
 
 /// Says why shards are not taken, and gives the exit code.
-pub(super) fn refused(error: GatherError) -> Exit {
+pub(in crate::cli) fn refused(error: GatherError) -> Exit {
     output::talk(&format!("error: {error}"));
     match error {
         GatherError::Store(error) => place::exit_of(&error),
