@@ -167,18 +167,36 @@ fn a_plan_says_what_its_shards_run_and_refuses_other_scenarios() {
     refused(&of("2/4", &[]), "the plan has 3");
     refused(&of("2", &["own"]), "cannot be used with");
     refused(&of("2", &["--junit", "j.xml"]), "cannot be used with");
+}
+
+#[test]
+fn a_shard_of_other_scenarios_than_the_planned_ones_is_refused() {
+    let folder = scratch();
+    let at = folder.path();
+    let plan = |more: &[&str]| {
+        let arguments = [&["plan", "own", "-o", "p.plan", "--shards", "3"], more].concat();
+        fogbench(at, &arguments)
+    };
+    assert_eq!(code(&plan(&[])), 0);
+    let first = || {
+        fogbench(
+            at,
+            &["run", "--plan", "p.plan", "--shard", "1", "-o", "out"],
+        )
+    };
     let text = fs::read_to_string(at.join("own/swing.toml")).expect("readable");
     write(at, "own/swing.toml", &text.replace("taps = 4", "taps = 5"));
-    refused(&of("1", &[]), "swing has changed");
+    refused(&first(), "swing has changed");
     write(at, "own/swing.toml", &text);
     write(at, "own/more.toml", &text.replace("\"swing\"", "\"more\""));
-    refused(&of("1", &[]), "more stands where");
+    refused(&first(), "more stands where samples was");
+    fs::remove_file(at.join("own/more.toml")).expect("removable");
+    fs::remove_file(at.join("own/samples.toml")).expect("removable");
+    refused(&first(), "sweep/0000 stands where samples was");
     write(at, "p.plan", "thesis");
-    refused(&of("1", &[]), "no plan");
-    refused(
-        &fogbench(at, &["plan", "own", "-o", "p.plan"]),
-        "was not written by fogbench",
-    );
+    refused(&first(), "no plan");
+    refused(&plan(&[]), "was not written by fogbench");
+    assert_eq!(code(&plan(&["--force"])), 0);
 }
 
 #[test]
@@ -292,11 +310,7 @@ fn a_partial_merge_says_everywhere_that_it_is_one() {
     let merged = fogbench(at, &["merge", "some", "-o", "out", "--partial"]);
     assert_eq!(code(&merged), 3, "{}", stderr(&merged));
     assert!(stderr(&merged).contains("partial: 4 of 7 shards are missing: 4-7"));
-    assert!(
-        stdout(&merged).contains("INCOMPLETE"),
-        "{}",
-        stdout(&merged)
-    );
+    assert!(stdout(&merged).contains("3 not run"), "{}", stdout(&merged));
     let text = |name: &str| fs::read_to_string(at.join("out").join(name)).expect(name);
     for name in ["summary.json", "metrics.csv", "junit.xml"] {
         assert!(text(name).contains("not_run"), "{name}");
