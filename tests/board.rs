@@ -17,7 +17,7 @@ fn config<F: Fp>(tap_count: usize) -> RlsConfig<F> {
         division: Division::Reciprocal,
         update_sign: UpdateSign::Corrected,
     })
-    .unwrap()
+    .expect("settings are in range")
 }
 
 fn scale() -> CodeScale {
@@ -109,10 +109,7 @@ fn board_has_the_words_of_engine_front_end_and_register() {
 
 #[test]
 fn front_end_adds_latency_and_no_clock_to_the_period() {
-    fn check<M: Machine>(core: &Sequencer<M>, period: u64, latency: u64)
-    where
-        M: Clone,
-    {
+    fn check<M: Machine + Clone>(core: &Sequencer<M>, period: u64, latency: u64) {
         for (desired, clocks) in [
             (DesiredSignal::Current, 3),
             (DesiredSignal::TwoSampleMean, 5),
@@ -138,7 +135,7 @@ fn front_end_adds_latency_and_no_clock_to_the_period() {
         desired: DesiredSource::Port,
         update_sign: UpdateSign::Corrected,
     };
-    let core = LmsPipeline::new(LmsConfig::<f64>::new(settings).unwrap());
+    let core = LmsPipeline::new(LmsConfig::<f64>::new(settings).expect("settings are in range"));
     check(&core, 7, 3);
 }
 

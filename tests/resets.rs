@@ -19,7 +19,7 @@ fn rls(tap_count: usize) -> RlsPipeline<f64> {
         division: Division::Reciprocal,
         update_sign: UpdateSign::Corrected,
     };
-    RlsPipeline::new(RlsConfig::new(settings).unwrap())
+    RlsPipeline::new(RlsConfig::new(settings).expect("settings are in range"))
 }
 
 fn lms(tap_count: usize) -> LmsPipeline<f64> {
@@ -30,7 +30,7 @@ fn lms(tap_count: usize) -> LmsPipeline<f64> {
         desired: DesiredSource::MeanOfTwoNewest,
         update_sign: UpdateSign::Corrected,
     };
-    LmsPipeline::new(LmsConfig::new(settings).unwrap())
+    LmsPipeline::new(LmsConfig::new(settings).expect("settings are in range"))
 }
 
 fn sign_lms(tap_count: usize) -> SignLmsPipeline<f64> {
@@ -44,7 +44,7 @@ fn sign_lms(tap_count: usize) -> SignLmsPipeline<f64> {
         guard: Some(6.0),
         norm_recompute_samples: 7,
     };
-    SignLmsPipeline::new(SignLmsConfig::new(settings).unwrap())
+    SignLmsPipeline::new(SignLmsConfig::new(settings).expect("settings are in range"))
 }
 
 fn bits<F: Fp>(words: &[F]) -> Vec<u64> {
@@ -117,5 +117,5 @@ fn a_run_straight_after_a_reset_waits_for_the_clearing() {
     pipeline.reset();
     pipeline.run(&pairs, &mut again);
     assert_eq!(bits(&words), bits(&again));
-    assert!(words.iter().any(|word| *word != words[0]));
+    assert!(bits(&words).iter().any(|word| *word != words[0].to_bits()));
 }

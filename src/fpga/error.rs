@@ -34,6 +34,25 @@ pub enum FpgaError {
         /// Allowed range, in words.
         range: &'static str,
     },
+    /// A constant lies beyond the largest word of its fixed-point format.
+    #[error(
+        "{name} = {} does not fit {signal}: Q{integer_bits}.{fraction_bits} ({} bits) holds less than {}",
+        shown(*value), integer_bits + fraction_bits, shown(*limit)
+    )]
+    DoesNotFit {
+        /// Constant.
+        name: &'static str,
+        /// Refused value.
+        value: f64,
+        /// Signal whose words would hold it.
+        signal: &'static str,
+        /// Integer bits of its format, the sign included.
+        integer_bits: u32,
+        /// Fraction bits of its format.
+        fraction_bits: u32,
+        /// First value beyond the format.
+        limit: f64,
+    },
     /// A stimulus holds a value that is not a finite number in the word format.
     #[error("stimulus sample {index} is {value:e}: expected a number that is finite in {format}")]
     NonFiniteStimulus {

@@ -32,6 +32,18 @@ impl<F: Fp> SinglePortRam<F> {
             accessed: false,
         }
     }
+}
+
+impl<F: Copy> SinglePortRam<F> {
+    /// A memory of `depth` words, all `word`.
+    #[must_use]
+    pub(crate) fn filled(name: &'static str, depth: usize, word: F) -> Self {
+        Self {
+            name,
+            words: vec![word; depth],
+            accessed: false,
+        }
+    }
 
     /// The word at `address`; takes the port for this clock.
     ///

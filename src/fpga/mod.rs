@@ -6,6 +6,7 @@
 //! control nor storage, and the tests hold them together to the last bit.
 //!
 //! * [`float_unit`]: number formats and their rounding; [`memory`]: single-port RAM.
+//! * [`fixed`]: fixed-point words, and recursive least squares on them.
 //! * [`front_end`]: from a sample stream to the pairs a core takes.
 //! * [`board`]: front end, core and output register, clocked together.
 //! * [`machine`]: the sequencer under every pipeline; [`registers`], [`datapath`]: what it clocks.
@@ -21,6 +22,7 @@ pub mod engine;
 pub mod error;
 #[cfg(feature = "hdl")]
 pub mod export;
+pub mod fixed;
 pub mod float_unit;
 pub mod front_end;
 pub mod health;

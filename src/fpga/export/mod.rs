@@ -20,6 +20,7 @@
 //!
 //! Checked by `rtl`, `waveform`.
 
+mod fixed;
 mod params;
 mod rtl;
 mod signals;
@@ -28,6 +29,7 @@ mod vectors;
 mod waveform;
 
 pub use super::kinds::PipelineConfig;
+pub use fixed::write_fixed_rtl;
 pub use rtl::write_rtl;
 pub use vectors::{ExportSettings, IntegerCodes, TopLevel, stimulus_pairs, write_vectors};
 pub use waveform::write_waveform;

@@ -121,12 +121,28 @@ pub(super) fn params_json<F: Fp>(
     add("latency_clocks", pipeline.latency_clocks().to_string());
     add("samples", samples.to_string());
     add("trace_clocks", trace_rows.to_string());
+    for (name, value) in board_fields(settings) {
+        add(name, value);
+    }
+    let lines: Vec<String> = fields
+        .iter()
+        .map(|(name, value)| format!("  \"{name}\": {value}"))
+        .collect();
+    format!("{{\n{}\n}}\n", lines.join(",\n"))
+}
+
+/// What stands between the gyro and the core, and what that costs: names and JSON values.
+fn board_fields<F: Fp>(settings: &ExportSettings<F>) -> Vec<(&'static str, String)> {
+    let quote = |text: &str| format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""));
+    let mut fields = Vec::new();
     if let Some(codes) = &settings.codes {
         let scale = &codes.scale;
-        add("code_lsb", format!("{:e}", scale.lsb));
-        add("code_unit", quote(&scale.unit));
-        add("word_factor", format!("{:e}", scale.factor));
-        add("word_unit", quote(&scale.word_unit));
+        fields.extend([
+            ("code_lsb", format!("{:e}", scale.lsb)),
+            ("code_unit", quote(&scale.unit)),
+            ("word_factor", format!("{:e}", scale.factor)),
+            ("word_unit", quote(&scale.word_unit)),
+        ]);
     }
     if let Some(TopLevel {
         surroundings: around,
@@ -137,20 +153,19 @@ pub(super) fn params_json<F: Fp>(
             Some(_) => "(code * code_lsb) * word_factor, each product rounded in binary64",
             None => "the sample is the word",
         };
-        add("top_sample", quote(order));
-        add("input_lag_samples", around.input_lag_samples.to_string());
-        add("desired", quote(around.desired.word()));
-        add("output_register", quote(around.output_register.word()));
-        let clocks = pipeline.clocked().board_usage(around.clone());
-        add("front_end_clocks", clocks.front_end_clocks.to_string());
-        add(
-            "system_clocks_per_sample",
-            clocks.clocks_per_sample.to_string(),
-        );
+        let clocked = settings.pipeline.as_pipeline().clocked();
+        let clocks = clocked.board_usage(around.clone());
+        fields.extend([
+            ("top_sample", quote(order)),
+            ("input_lag_samples", around.input_lag_samples.to_string()),
+            ("desired", quote(around.desired.word())),
+            ("output_register", quote(around.output_register.word())),
+            ("front_end_clocks", clocks.front_end_clocks.to_string()),
+            (
+                "system_clocks_per_sample",
+                clocks.clocks_per_sample.to_string(),
+            ),
+        ]);
     }
-    let lines: Vec<String> = fields
-        .iter()
-        .map(|(name, value)| format!("  \"{name}\": {value}"))
-        .collect();
-    format!("{{\n{}\n}}\n", lines.join(",\n"))
+    fields
 }

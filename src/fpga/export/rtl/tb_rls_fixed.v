@@ -1,0 +1,165 @@
+// Self-checking testbench of the fixed-point RLS core, with the constants of fixed.vh: resets in
+// every state, every word of y, the clocks of every sample, the memories before and after, and every
+// clock of trace.csv. The first mismatch ends the run non-zero.
+`timescale 1ps/1ps
+`include "fixed.vh"
+
+module tb_rls_fixed;
+    localparam P       = `FIXED_P;
+    localparam SAMPLES = `FIXED_SAMPLES;
+    localparam A_WORDS = 2 * P;
+    localparam WORDS   = 4 * P + P * P;
+    localparam CLEAR_CLOCKS = 2 * P + P * P;
+    localparam [3:0] CLEAR = 4'd14;
+
+    reg [63:0]    in_words [0:2*SAMPLES-1];
+    reg [63:0]    y_words [0:SAMPLES-1];
+    reg [63:0]    init_words [0:WORDS-1];
+    reg [63:0]    final_words [0:WORDS-1];
+    reg           clk, rst, valid, running, failed;
+    wire          in_ready, out_valid;
+    wire [63:0]   x_full = in_words[taken < SAMPLES ? 2 * taken : 0];
+    wire [63:0]   d_full = in_words[taken < SAMPLES ? 2 * taken + 1 : 1];
+    wire [`FIXED_WX-1:0] x = x_full[`FIXED_WX-1:0];
+    wire [`FIXED_WD-1:0] d = d_full[`FIXED_WD-1:0];
+    wire signed [`FIXED_WY-1:0] y;
+    integer       cycle, taken, given, start, rows, k, target, waited, trace_file, scanned;
+
+    rls_fixed_core #(`FIXED_PARAMETERS) rls (
+        .clk(clk), .rst(rst), .in_valid(valid), .in_ready(in_ready), .x(x), .d(d),
+        .out_valid(out_valid), .y(y));
+
+    always #5 clk = ~clk;
+
+    task fail(input [8*16-1:0] what, input [127:0] expected, input [127:0] got);
+        if (!failed) begin
+            failed = 1'b1;
+            $display("MISMATCH %0s: expected %h got %h", what, expected, got);
+            $display("  cycle %0d, sample %0d, state %0d, trace row %0d", cycle, taken, rls.state,
+                     rows);
+            $fatal(1, "first mismatch, stopped");
+        end
+    endtask
+
+    reg signed [63:0] want, have;
+    task check_memories(input last);
+        for (k = 0; k < WORDS; k = k + 1) begin
+            want = last ? final_words[k] : init_words[k];
+            if (k < A_WORDS) have = {{(64-`FIXED_MW){rls.rama.mem[k][`FIXED_MW-1]}}, rls.rama.mem[k]};
+            else have = {{(64-`FIXED_MW){rls.ramb.mem[k-A_WORDS][`FIXED_MW-1]}},
+                         rls.ramb.mem[k-A_WORDS]};
+            if (have !== want) fail(last ? "memory, end" : "memory, reset", want, have);
+        end
+    endtask
+
+    task check_clearing;
+        begin
+            for (waited = 0; waited < CLEAR_CLOCKS; waited = waited + 1) begin
+                if (rls.state != CLEAR || in_ready) fail("clearing", CLEAR, rls.state);
+                @(negedge clk);
+            end
+            if (rls.state != 4'd0) fail("after clearing", 0, rls.state);
+            if (rls.p !== 0 || rls.acc !== 0 || rls.rr !== 0 || rls.den !== 0 || rls.dd !== 0
+                || rls.ee !== 0 || rls.yy !== 0 || rls.head != P - 1)
+                fail("registers", 0, 1);
+            check_memories(1'b0);
+        end
+    endtask
+
+    initial begin
+        clk = 1'b0; rst = 1'b1; valid = 1'b0; running = 1'b0; failed = 1'b0;
+        cycle = 0; taken = 0; given = 0; start = 0; rows = 0;
+        $readmemh("in.hex", in_words);
+        $readmemh("y.hex", y_words);
+        $readmemh("ram_init.hex", init_words);
+        $readmemh("ram_final.hex", final_words);
+        trace_file = $fopen("trace.csv", "r");
+        if (trace_file == 0 || ^y_words[SAMPLES-1] === 1'bx) fail("vectors", 0, 0);
+        repeat (2) @(negedge clk);
+        rst = 1'b0;
+        check_clearing;
+        for (target = 0; target <= CLEAR; target = target + 1) begin
+            // Into the state a second time, so that the memories hold something.
+            valid = target != 0;
+            if (target == CLEAR) begin
+                rst = 1'b1;
+                @(negedge clk);
+                rst = 1'b0;
+            end
+            waited = 0;
+            repeat (2) begin
+                @(negedge clk);
+                while (rls.state != target && waited < 4 * `FIXED_PERIOD) begin
+                    waited = waited + 1;
+                    @(negedge clk);
+                end
+            end
+            rst = 1'b1;
+            @(negedge clk);
+            rst = 1'b0;
+            // The strobe stays up: clearing must not take it.
+            check_clearing;
+            valid = 1'b0;
+            @(negedge clk);
+        end
+        running = 1'b1;
+        valid = 1'b1;
+    end
+
+    // A row of the trace: values visible in a clock before its edge.
+    integer       r_state, r_ra, r_ra_we, r_rb, r_rb_we, r_head;
+    reg [63:0]    r_ra_data, r_rb_data, r_rr, r_den, r_d, r_e, r_y;
+    reg [127:0]   r_p, r_acc;
+    wire signed [63:0] ra_data = rls.ra_wdata, rb_data = rls.rb_wdata, rr = rls.rr, den = rls.den;
+    wire signed [63:0] dd = rls.dd, ee = rls.ee, yy = rls.yy;
+    task check_row;
+        begin
+            scanned = $fscanf(trace_file, "%d,%d,%d,%h,%d,%d,%h,%h,%h,%h,%h,%h,%h,%h,%d", r_state,
+                r_ra, r_ra_we, r_ra_data, r_rb, r_rb_we, r_rb_data, r_p, r_acc, r_rr, r_den, r_d,
+                r_e, r_y, r_head);
+            if (scanned != 15) fail("trace ends", 15, scanned);
+            if (rls.state != r_state) fail("state", r_state, rls.state);
+            if (rls.ra_addr != r_ra) fail("ra_addr", r_ra, rls.ra_addr);
+            if (rls.ra_we != r_ra_we) fail("ra_we", r_ra_we, rls.ra_we);
+            if (rls.ra_we && ra_data !== r_ra_data) fail("ra_wdata", r_ra_data, ra_data);
+            if (rls.rb_addr != r_rb) fail("rb_addr", r_rb, rls.rb_addr);
+            if (rls.rb_we != r_rb_we) fail("rb_we", r_rb_we, rls.rb_we);
+            if (rls.rb_we && rb_data !== r_rb_data) fail("rb_wdata", r_rb_data, rb_data);
+            if (rls.p !== r_p) fail("P", r_p, rls.p);
+            if (rls.acc !== r_acc) fail("ACC", r_acc, rls.acc);
+            if (rr !== r_rr) fail("RR", r_rr, rr);
+            if (den !== r_den) fail("DEN", r_den, den);
+            if (dd !== r_d) fail("D", r_d, dd);
+            if (ee !== r_e) fail("E", r_e, ee);
+            if (yy !== r_y) fail("Y", r_y, yy);
+            if (rls.head != r_head) fail("HEAD", r_head, rls.head);
+            rows = rows + 1;
+        end
+    endtask
+
+    wire signed [63:0] y_full = y;
+    always @(posedge clk) if (running && !failed) begin
+        cycle <= cycle + 1;
+        if (rls.state != 4'd0 && rows < `FIXED_ROWS) check_row;
+        if (valid && in_ready) begin
+            if (taken != 0 && cycle - start != `FIXED_PERIOD)
+                fail("period", `FIXED_PERIOD, cycle - start);
+            start <= cycle;
+            taken <= taken + 1;
+            if (taken == SAMPLES - 1) valid <= 1'b0;
+        end
+        if (out_valid) begin
+            if (y_full !== y_words[given]) fail("y", y_words[given], y_full);
+            if (cycle - start != `FIXED_LATENCY) fail("latency", `FIXED_LATENCY, cycle - start);
+            given <= given + 1;
+        end
+        if (taken == SAMPLES && cycle - start == `FIXED_PERIOD) begin
+            if (given != SAMPLES) fail("results", SAMPLES, given);
+            if (rls.state != 4'd0) fail("state, end", 0, rls.state);
+            check_memories(1'b1);
+            $display("PASS rls_fixed: %0d samples, %0d trace rows", SAMPLES, rows);
+            $finish;
+        end
+        if (cycle > (SAMPLES + 3) * `FIXED_PERIOD) fail("results", SAMPLES, given);
+    end
+endmodule

@@ -1,0 +1,378 @@
+//! Fixed-point RLS: engine, clocked pipeline and RTL hold the same words in every clock.
+
+use std::path::Path;
+use std::process::Command;
+
+use fogbench::fpga::export::write_fixed_rtl;
+use fogbench::fpga::fixed::{
+    CodePair, FixedRlsConfig, FixedRlsEngine, FixedRlsPipeline, FixedRlsSettings, FixedRlsState,
+    Format, Overflow, RlsFormats, Rounding, fixed_rls_clocks_per_sample, fixed_rls_latency_clocks,
+};
+
+use crate::support::stimulus::samples;
+
+const ROUNDINGS: [Rounding; 3] = [Rounding::Truncate, Rounding::HalfUp, Rounding::NearestEven];
+const OVERFLOWS: [Overflow; 2] = [Overflow::Saturate, Overflow::Wrap];
+
+/// A repeatable generator (Knuth's constants): upper bits of a 64-bit LCG.
+struct Draws(u64);
+
+impl Draws {
+    fn below(&mut self, bound: u32) -> u32 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        u32::try_from((self.0 >> 33) % u64::from(bound)).expect("below a 32-bit bound")
+    }
+}
+
+/// Formats with the integer bits of the trial that is known to work, all of one width.
+fn uniform(width: u32, rounding: Rounding, overflow: Overflow) -> RlsFormats {
+    let format = |integer_bits| Format {
+        integer_bits,
+        fraction_bits: width - integer_bits,
+        rounding,
+        overflow,
+    };
+    RlsFormats {
+        input: format(1),
+        desired: format(1),
+        intermediate: format(11),
+        denominator: format(12),
+        gain: format(9),
+        inverse: format(14),
+        weight: format(3),
+        output: format(1),
+    }
+}
+
+/// A mix: every rounding with every overflow in turn, widths and points drawn by the seed.
+fn mix(seed: u32) -> FixedRlsConfig {
+    let mut draws = Draws(u64::from(seed) << 20 | 1);
+    let rounding = ROUNDINGS[seed as usize % 3];
+    let overflow = OVERFLOWS[seed as usize / 3 % 2];
+    let mut formats = uniform(12 + 3, rounding, overflow);
+    for format in [
+        &mut formats.input,
+        &mut formats.desired,
+        &mut formats.intermediate,
+        &mut formats.denominator,
+        &mut formats.gain,
+        &mut formats.inverse,
+        &mut formats.weight,
+        &mut formats.output,
+    ] {
+        let width = 12 + draws.below(37);
+        format.integer_bits = (format.integer_bits + draws.below(3)).min(width - 1);
+        format.fraction_bits = width - format.integer_bits;
+    }
+    let alpha = [1.0, 0.99, 0.9][draws.below(3) as usize];
+    let largest = formats.inverse.value(formats.inverse.code_max());
+    let settings = FixedRlsSettings {
+        tap_count: [1, 4, 8, 2, 3][seed as usize % 5],
+        forgetting_factor: alpha,
+        initial_inverse_correlation: (largest / 8.0).min(1024.0),
+        formats,
+    };
+    // A few of the drawn formats need more exact bits than there are: the next seed then.
+    FixedRlsConfig::new(settings).unwrap_or_else(|_| mix(seed + 1000))
+}
+
+/// Pairs in the words of a mix: a swing, noise, and the ends of the words.
+fn pairs(config: &FixedRlsConfig, count: u32) -> Vec<CodePair> {
+    let mut draws = Draws(7);
+    let code = |format: Format, value: f64| format.of(value).code;
+    let formats = config.formats();
+    let mut samples: Vec<f64> = (0..count)
+        .map(|k| {
+            let noise = f64::from(draws.below(2001)) / 1000.0 - 1.0;
+            0.5 * (0.1 * f64::from(k)).sin() + 0.05 * noise
+        })
+        .collect();
+    // Words of both ends; the wide words of another test are to stay within theirs.
+    if config.formats().input.width() < 48 && samples.len() > 9 {
+        samples[9] = -100.0;
+    }
+    samples
+        .windows(2)
+        .map(|pair| CodePair {
+            input: code(formats.input, pair[0]),
+            desired: code(formats.desired, pair[1]),
+        })
+        .collect()
+}
+
+/// Runs the clocked pipeline; checks period and latency, returns the words.
+fn run(pipeline: &mut FixedRlsPipeline, pairs: &[CodePair], taps: usize) -> Vec<i64> {
+    let (mut next, mut clock, mut start) = (0, 0, None);
+    let mut words = Vec::new();
+    while next < pairs.len() || pipeline.registers().state != FixedRlsState::Idle {
+        let tick = pipeline.tick(pairs.get(next).copied());
+        if tick.accepted {
+            if let Some(start) = start {
+                assert_eq!(clock - start, fixed_rls_clocks_per_sample(taps));
+            }
+            start = Some(clock);
+            next += 1;
+        }
+        if let Some(word) = tick.output {
+            assert_eq!(
+                clock - start.expect("a sample was taken"),
+                fixed_rls_latency_clocks(taps)
+            );
+            words.push(word);
+        }
+        clock += 1;
+    }
+    words
+}
+
+#[test]
+fn fixed_point_engine_and_pipeline_agree_in_forty_mixes() {
+    let mut overflowed = 0;
+    for seed in 0..40 {
+        let config = mix(seed);
+        let pairs = pairs(&config, 150);
+        let mut engine = FixedRlsEngine::new(config);
+        let wanted: Vec<i64> = pairs.iter().map(|pair| engine.process(*pair)).collect();
+        let mut pipeline = FixedRlsPipeline::new(config);
+        assert_eq!(run(&mut pipeline, &pairs, config.tap_count()), wanted);
+        assert_eq!(pipeline.rama(), engine.rama(), "{seed}");
+        assert_eq!(pipeline.ramb(), engine.ramb(), "{seed}");
+        assert!(wanted.iter().any(|word| *word != wanted[0]), "{seed}");
+        let health = engine.health();
+        overflowed += usize::from(health.weight_overflows + health.inverse_overflows > 0);
+    }
+    assert!(overflowed > 5, "the mixes reach the ends of their words");
+}
+
+#[test]
+fn fixed_point_reset_in_any_clock_leaves_nothing_of_the_past() {
+    let config = mix(1);
+    let taps = config.tap_count();
+    let pairs = pairs(&config, 20);
+    let fresh = FixedRlsPipeline::new(config);
+    let wanted = run(&mut fresh.clone(), &pairs, taps);
+    for clock in 0..2 * fixed_rls_clocks_per_sample(taps) + 2 {
+        let mut pipeline = fresh.clone();
+        for _ in 0..clock {
+            pipeline.tick(pairs.last().copied());
+        }
+        pipeline.reset();
+        for _ in 0..clock % 7 {
+            pipeline.tick(None);
+        }
+        pipeline.reset();
+        let mut clears = 0;
+        while pipeline.registers().state != FixedRlsState::Idle {
+            assert!(!pipeline.tick(pairs.first().copied()).accepted);
+            clears += 1;
+        }
+        assert_eq!(clears, taps * taps + 2 * taps);
+        assert_eq!(pipeline.rama(), fresh.rama(), "{clock}");
+        assert_eq!(pipeline.ramb(), fresh.ramb(), "{clock}");
+        assert_eq!(pipeline.registers(), fresh.registers(), "{clock}");
+        if clock % 40 == 3 {
+            assert_eq!(run(&mut pipeline, &pairs, taps), wanted, "{clock}");
+        }
+    }
+}
+
+#[test]
+fn wide_fixed_point_words_follow_the_floating_point_filter() {
+    let formats = uniform(48, Rounding::HalfUp, Overflow::Saturate);
+    let config = FixedRlsConfig::new(FixedRlsSettings {
+        tap_count: 4,
+        forgetting_factor: 0.999,
+        initial_inverse_correlation: 1024.0,
+        formats,
+    })
+    .expect("sound settings, a writable folder, a shell");
+    let mut fixed = FixedRlsEngine::new(config);
+    let mut line = [0.0; 4];
+    let mut weights = [0.0; 4];
+    let mut inverse = [[0.0; 4]; 4];
+    for (i, row) in inverse.iter_mut().enumerate() {
+        row[i] = 1024.0;
+    }
+    let mut worst: f64 = 0.0;
+    for pair in pairs(&config, 2000) {
+        let input = formats.input.value(pair.input);
+        let desired = formats.desired.value(pair.desired);
+        line.rotate_right(1);
+        line[0] = input;
+        let dot = |a: &[f64; 4], b: &[f64; 4]| (0..4).map(|j| a[j] * b[j]).sum::<f64>();
+        let t: Vec<f64> = inverse.iter().map(|row| dot(row, &line)).collect();
+        let denominator = 0.999 + (0..4).map(|j| line[j] * t[j]).sum::<f64>();
+        let output = dot(&line, &weights);
+        for i in 0..4 {
+            weights[i] += t[i] / denominator * (desired - output);
+            for j in 0..4 {
+                inverse[i][j] = (inverse[i][j] - t[i] * t[j] / denominator) / 0.999;
+            }
+        }
+        let word = formats.output.value(fixed.process(pair));
+        worst = worst.max((word - output.clamp(-1.0, 1.0)).abs());
+    }
+    assert!(worst < 1e-6, "{worst:e}");
+    assert_eq!(fixed.health().indefinite_at, None);
+}
+
+#[test]
+fn short_fixed_point_words_die_under_a_swing_and_long_ones_live() {
+    // One deg/s at 10 Hz and noise at 4 kHz, full scale 2 deg/s, alpha 1: R shrinks as 1/k until its
+    // words no longer hold it. In 5 s words of 22 bits get there, and words of 32 bits do not.
+    let swing = samples("rocking", 20_000);
+    let indefinite_at = |width: u32| {
+        let formats = uniform(width, Rounding::HalfUp, Overflow::Saturate);
+        let config = FixedRlsConfig::new(FixedRlsSettings {
+            tap_count: 4,
+            forgetting_factor: 1.0,
+            initial_inverse_correlation: 1024.0,
+            formats,
+        })
+        .expect("sound settings, a writable folder, a shell");
+        let mut engine = FixedRlsEngine::new(config);
+        for pair in swing.windows(2) {
+            engine.process(CodePair {
+                input: formats.input.of(pair[0] / 2.0).code,
+                desired: formats.desired.of(pair[1] / 2.0).code,
+            });
+        }
+        engine.health().indefinite_at
+    };
+    let died = indefinite_at(22).expect("words of 22 bits die");
+    assert!(died > 100, "{died}");
+    assert_eq!(indefinite_at(32), None);
+}
+
+#[test]
+fn constants_that_do_not_fit_name_bits_and_limit() {
+    let settings = |delta, width, alpha| FixedRlsSettings {
+        tap_count: 4,
+        forgetting_factor: alpha,
+        initial_inverse_correlation: delta,
+        formats: uniform(width, Rounding::HalfUp, Overflow::Saturate),
+    };
+    let refused = |settings| FixedRlsConfig::new(settings).unwrap_err().to_string();
+    assert_eq!(
+        refused(settings(20_000.0, 32, 1.0)),
+        "initial inverse correlation = 20000 does not fit R: Q14.18 (32 bits) holds less than 8192"
+    );
+    assert_eq!(
+        refused(settings(1e-9, 32, 1.0)),
+        "initial inverse correlation = 1e-9 is out of range: expected at least one step of R in fixed \
+         point"
+    );
+    assert!(refused(settings(1024.0, 32, 0.0)).contains("forgetting factor"));
+    assert!(refused(settings(1024.0, 49, 1.0)).contains("2 to 48 bits"));
+    let mut wide = settings(1024.0, 48, 1.0);
+    wide.formats.gain.integer_bits = 1;
+    wide.formats.gain.fraction_bits = 47;
+    wide.formats.denominator = wide.formats.gain;
+    wide.formats.intermediate.integer_bits = 48;
+    wide.formats.intermediate.fraction_bits = 0;
+    assert!(refused(wide).contains("at most 126 bits"));
+}
+
+fn is_ci() -> bool {
+    std::env::var("CI").is_ok_and(|value| value == "true")
+}
+
+fn has(program: &str) -> bool {
+    let found = Command::new(program).arg("-V").output().is_ok();
+    assert!(found || !is_ci(), "{program} is needed under CI=true");
+    if !found {
+        eprintln!("skipped: {program} is not installed");
+    }
+    found
+}
+
+/// Compiles and runs the testbench of a folder under Icarus Verilog; returns what it prints.
+fn simulate(dir: &Path) -> (bool, String) {
+    let script = "iverilog -g2012 -Wall -Wno-timescale -s tb_rls_fixed -o tb *.v && vvp -n tb";
+    let output = Command::new("sh")
+        .args(["-c", script])
+        .current_dir(dir)
+        .output()
+        .expect("sound settings, a writable folder, a shell");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let text = text + &String::from_utf8_lossy(&output.stderr);
+    (output.status.success() && text.contains("PASS"), text)
+}
+
+fn check_rtl(config: &FixedRlsConfig, count: u32, traced: usize) {
+    let dir = tempfile::tempdir().expect("sound settings, a writable folder, a shell");
+    let pairs = pairs(config, count);
+    write_fixed_rtl(dir.path(), config, &pairs, traced)
+        .expect("sound settings, a writable folder, a shell");
+    let (passed, text) = simulate(dir.path());
+    assert!(passed, "{config:?}: {text}");
+}
+
+#[test]
+fn fixed_point_rtl_has_the_words_and_every_clock_of_the_model() {
+    if !has("iverilog") {
+        return;
+    }
+    // All mixes with a thousand samples in CI; elsewhere each rounding with each overflow once.
+    let (mixes, count) = if is_ci() { (40, 1001) } else { (6, 21) };
+    for seed in 0..mixes {
+        check_rtl(&mix(seed), count, 10);
+    }
+}
+
+#[test]
+fn fixed_point_rtl_has_a_million_words_of_the_model_under_verilator() {
+    // A minute of C++ compilation each: in CI only.
+    if !is_ci() || !has("verilator") {
+        eprintln!("skipped: runs in CI with verilator only");
+        return;
+    }
+    for seed in 0..8 {
+        let dir = tempfile::tempdir().expect("sound settings, a writable folder, a shell");
+        let config = mix(seed);
+        write_fixed_rtl(dir.path(), &config, &pairs(&config, 125_001), 10)
+            .expect("sound settings, a writable folder, a shell");
+        let script = "verilator --binary --timing -Wno-fatal -Wno-lint -Wno-style --Mdir obj -o tb \
+                      --top-module tb_rls_fixed *.v > log 2>&1 && obj/tb || { cat log; exit 1; }";
+        let output = Command::new("sh")
+            .args(["-c", script])
+            .current_dir(dir.path())
+            .output()
+            .expect("sound settings, a writable folder, a shell");
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(
+            output.status.success() && text.contains("PASS"),
+            "{seed}: {text}"
+        );
+    }
+}
+
+#[test]
+fn a_wrong_fixed_point_constant_is_noticed() {
+    if !has("iverilog") {
+        return;
+    }
+    let config = mix(9);
+    let dir = tempfile::tempdir().expect("sound settings, a writable folder, a shell");
+    write_fixed_rtl(dir.path(), &config, &pairs(&config, 21), 10)
+        .expect("sound settings, a writable folder, a shell");
+    let path = dir.path().join("fixed.vh");
+    let text = std::fs::read_to_string(&path).expect("sound settings, a writable folder, a shell");
+    for (right, wrong) in [
+        (".RY(0)", ".RY(1)"),
+        (".RR(0)", ".RR(1)"),
+        (".RK(0)", ".RK(2)"),
+    ] {
+        assert!(text.contains(right), "{text}");
+        std::fs::write(&path, text.replace(right, wrong))
+            .expect("sound settings, a writable folder, a shell");
+        let (passed, printed) = simulate(dir.path());
+        assert!(
+            !passed && printed.contains("MISMATCH"),
+            "{right}: {printed}"
+        );
+    }
+}
