@@ -13,8 +13,8 @@ use crate::experiment::start_threads;
 #[cfg(unix)]
 use crate::program::supervise;
 use commands::{
-    baseline, budget, calibrate, check, claim, compare, completions, expand, export, init, list,
-    log, man, reference, run, schema, timing,
+    baseline, budget, calibrate, check, claim, compare, completions, expand, export, infer, init,
+    list, log, man, reference, run, schema, timing,
 };
 use options::arguments::{Arguments, Command};
 use options::idle;
@@ -62,6 +62,7 @@ fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
         Command::Compare(options) => compare::compare(options),
         Command::Baseline(options) => baseline::baseline(options),
         Command::Budget(options) => budget::budget(options),
+        Command::Infer(options) => infer::infer(options),
         Command::Analyze(options) => log::analyze(options),
         Command::Filter(options) => log::filter(options),
         Command::Claim(options) => claim::claim(options),

@@ -10,6 +10,7 @@ pub(in crate::cli) mod completions;
 mod consent;
 pub(in crate::cli) mod expand;
 pub(in crate::cli) mod export;
+pub(in crate::cli) mod infer;
 pub(in crate::cli) mod init;
 pub(in crate::cli) mod list;
 pub(in crate::cli) mod log;
