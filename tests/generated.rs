@@ -19,6 +19,35 @@ fn the_generated_reference_is_that_of_the_declared_keys() {
     );
 }
 
+#[test]
+fn the_generated_schema_of_problems_is_that_of_the_declared_tables() {
+    let text = format!("{:#}\n", fogbench::scenario::problem_schema());
+    generated("problems/problem.schema.json", &text);
+}
+
+/// The page of the keys of problems, but for what stands above them.
+fn problem_page() -> String {
+    let mut page = String::from(
+        "# Keys of a problem\n\nGenerated from the declarations: what a file of \
+         [`fogbench infer`](infer.md) may hold. `[]` is an element of an array of tables.\n",
+    );
+    for key in fogbench::scenario::problem_keys() {
+        page.push_str(&format!(
+            "\n- `{} = {}`: {} {}\n",
+            key.path,
+            key.literal,
+            key.sentence(),
+            key.line()
+        ));
+    }
+    page
+}
+
+#[test]
+fn the_generated_page_of_problems_is_that_of_the_declared_tables() {
+    generated("docs/problem.md", &problem_page());
+}
+
 /// The line by which an editor finds the schema of a scenario, as taplo reads it.
 const SCHEMA_LINE: &str = "#:schema ";
 

@@ -25,6 +25,7 @@ mod cli_analyze;
 mod cli_budget;
 mod cli_claim;
 mod cli_fpga;
+mod cli_infer;
 mod cli_init;
 mod cli_log_quality;
 mod cli_manual;

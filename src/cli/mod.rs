@@ -16,7 +16,7 @@ use commands::comparison::{baseline, claim, compare};
 use commands::scenarios::{check, expand, init, list, reference, schema};
 use commands::shards::{merge, plan, status};
 use commands::shell::{completions, man};
-use commands::{budget, calibrate, export, log, run, timing};
+use commands::{budget, calibrate, export, infer, log, run, timing};
 use options::arguments::{Arguments, Command};
 use options::idle;
 use terminal::exit::{self, Exit};
@@ -66,6 +66,7 @@ fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
         Command::Compare(options) => compare::compare(options),
         Command::Baseline(options) => baseline::baseline(options),
         Command::Budget(options) => budget::budget(options),
+        Command::Infer(options) => infer::infer(options),
         Command::Analyze(options) => log::analyze(options),
         Command::Filter(options) => log::filter(options),
         Command::Claim(options) => claim::claim(options),

@@ -51,8 +51,8 @@ pub struct Explained {
     /// What the other figures make it, and the standard deviation of that, print included; none where it
     /// has no closed form.
     pub predicted: Option<(f64, f64)>,
-    /// What the most likely point makes it.
-    pub at_best: Option<f64>,
+    /// What the most likely point makes it, and how far records scatter about that.
+    pub at_best: Option<(f64, f64)>,
     /// Printed less predicted over the deviation.
     pub pull: Option<f64>,
     /// Whether the pull is within what the largest of so many is by chance in 95 %.
@@ -284,7 +284,10 @@ impl Question<'_> {
                 ));
             }
         }
-        let at_best = best.and_then(|point| Some(point.forecasts.figures[figure]?.value));
+        let at_best = best.and_then(|point| {
+            let forecast = point.forecasts.figures[figure]?;
+            Some((forecast.value, forecast.deviation))
+        });
         if rows.is_empty() {
             return Explained {
                 predicted: None,

@@ -55,6 +55,7 @@ pub use config::{
 };
 pub use document::setting::Setting;
 pub use generate::json_schema::json_schema;
+pub use generate::problem_schema::problem_schema;
 pub use generate::reference::reference_toml;
 pub use generate::reference_part::{UnknownKey, reference_part};
 pub(crate) use keys::schema::{declared_key, unit_of_written};

@@ -5,6 +5,7 @@ pub(in crate::cli) mod calibrate;
 pub(in crate::cli) mod comparison;
 mod consent;
 pub(in crate::cli) mod export;
+pub(in crate::cli) mod infer;
 pub(in crate::cli) mod log;
 pub(in crate::cli) mod run;
 pub(in crate::cli) mod scenarios;

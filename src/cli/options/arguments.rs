@@ -11,6 +11,7 @@ use crate::cli::options::calibrate::CalibrateOptions;
 use crate::cli::options::claim::ClaimOptions;
 use crate::cli::options::format::Format;
 use crate::cli::options::hardware::{ExportOptions, TimingOptions};
+use crate::cli::options::infer::InferOptions;
 use crate::cli::options::init::InitOptions;
 use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
 use crate::cli::options::shard::{MergeOptions, PlanOptions, ShardOptions, StatusOptions};
@@ -75,6 +76,8 @@ pub(in crate::cli) enum Command {
     Baseline(BaselineOptions),
     /// Print the noise budget of a gyro in closed form, without a run
     Budget(BudgetOptions),
+    /// Say which settings make all figures of a paper or a data sheet at once
+    Infer(InferOptions),
     /// Measure a recorded log: every metric that needs no true rate
     Analyze(AnalyzeOptions),
     /// Replay a recorded log through the filters of a scenario and measure what they make of it

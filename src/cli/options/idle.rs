@@ -66,6 +66,7 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
         | Command::Baseline(_)
         | Command::Budget(_)
         | Command::Claim(_)
+        | Command::Infer(_)
         | Command::Completions(_)
         | Command::Man(_) => Vec::new(),
     }

@@ -9,6 +9,7 @@ pub(in crate::cli) mod claim;
 pub(in crate::cli) mod format;
 pub(in crate::cli) mod hardware;
 pub(in crate::cli) mod idle;
+pub(in crate::cli) mod infer;
 pub(in crate::cli) mod init;
 pub(in crate::cli) mod layout;
 pub(in crate::cli) mod log;

@@ -128,7 +128,7 @@ fn pairs(group: &Group) -> Vec<Value> {
 }
 
 /// Schema of a key.
-fn leaf(key: &Key) -> Value {
+pub(in crate::scenario::generate) fn leaf(key: &Key) -> Value {
     let mut schema = match key.kind {
         Kind::Float(range) => number(range),
         Kind::Floats(range) => {
