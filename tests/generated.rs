@@ -22,7 +22,7 @@ fn the_generated_reference_is_that_of_the_declared_keys() {
 #[test]
 fn the_generated_schema_of_problems_is_that_of_the_declared_tables() {
     let text = format!("{:#}\n", fogbench::scenario::problem_schema());
-    generated("problems/problem.schema.json", &text);
+    generated("scenarios/infer/problem.schema.json", &text);
 }
 
 /// The page of the keys of problems, but for what stands above them.
