@@ -62,6 +62,7 @@ pub(crate) use message::error::{in_both, in_order, portable_place};
 pub use message::excerpt::{bounded, excerpt};
 pub use read::assumed::{AssumedInShort, AssumedValue};
 pub use read::compensation_source::load_calibration;
+pub use read::discover::left_out;
 pub use read::log_format::{load_log_format, log_format_toml};
 pub use read::manifest::manifest_toml;
 pub use read::named_files::NamedFile;
