@@ -52,7 +52,7 @@ fn measure(folder: &Path) -> Result<String, String> {
     if !built.is_ok_and(|status| status.success()) {
         return Err("cc does not build the program".to_owned());
     }
-    let mut times = exchange_times(&program, BLOCKS, WORDS)?;
+    let mut times = exchange_times(&program, BLOCKS, WORDS).map_err(|error| error.to_string())?;
     times.sort_unstable();
     let us = |index: usize| times[index].as_secs_f64() * 1e6;
     Ok(format!(

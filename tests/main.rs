@@ -40,6 +40,7 @@ mod coverage;
 mod cycle_exact;
 mod data_sheet_noise;
 mod determinism;
+mod docket;
 mod documents;
 mod encoder;
 mod extremes;

@@ -218,7 +218,8 @@ impl ComparedRun<'_> {
     fn published(&self, channel: &str, key: &str) -> Option<(f64, String)> {
         let wanted = format!("{channel}.{key}");
         let mut figures = self.resolved.scenario.published.iter();
-        let figure = figures.find(|figure| figure.metric == wanted)?;
+        let figure =
+            figures.find(|figure| figure.metric == wanted && figure.relative_to.is_none())?;
         Some((figure.value, figure.source.clone()))
     }
 

@@ -64,6 +64,7 @@ pub use message::error::{Location, ScenarioError};
 pub(crate) use message::error::{in_both, in_order, portable_place};
 pub use message::excerpt::{bounded, excerpt};
 pub use read::assumed::{AssumedInShort, AssumedValue};
+pub use read::discover::left_out;
 pub use read::files::compensation_source::load_calibration;
 pub use read::files::log_format::{load_log_format, log_format_toml};
 pub use read::files::manifest::manifest_toml;

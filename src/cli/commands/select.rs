@@ -10,7 +10,7 @@ use crate::cli::terminal::complaint;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::experiment::{Plan, Sound, check_suite, plan_suite};
-use crate::scenario::ScenarioError;
+use crate::scenario::{ScenarioError, left_out};
 
 /// Folder whose sub-folders run when no path is given.
 const DEFAULT_FOLDER: &str = "scenarios";
@@ -53,6 +53,10 @@ fn selected<T>(
             "error: there is no folder `{DEFAULT_FOLDER}` here: name a scenario file or folder"
         ));
         return Err(Exit::NothingSelected);
+    }
+    for folder in left_out(&paths) {
+        let folder = folder.display();
+        output::talk(&format!("note: {folder} is left out: name it to take it"));
     }
     let mut found = read(&paths, &options.set).map_err(|errors| {
         complaint::print(&errors);

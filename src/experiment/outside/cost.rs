@@ -1,5 +1,6 @@
 //! What it costs to hand words to a program and take its answers.
 
+use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -25,12 +26,12 @@ impl Listener for Nobody {
 ///
 /// # Errors
 /// The program cannot be started, or answers otherwise than it should.
-pub fn exchange_times(program: &Path, blocks: usize, words: u32) -> Result<Vec<Duration>, String> {
+pub fn exchange_times(program: &Path, blocks: usize, words: u32) -> io::Result<Vec<Duration>> {
     let said = |interrupted: Interrupted| match interrupted {
-        Interrupted::Stopped => "it was stopped".to_owned(),
-        Interrupted::Failed(error) => error.to_string(),
+        Interrupted::Stopped => io::Error::other("it was stopped"),
+        Interrupted::Failed(error) => io::Error::other(error.to_string()),
     };
-    let programs = Programs::of_this_program().map_err(|error| error.to_string())?;
+    let programs = Programs::of_this_program()?;
     let launch = Launch {
         command: vec![program.into()],
         inputs: Vec::new(),
@@ -49,7 +50,8 @@ pub fn exchange_times(program: &Path, blocks: usize, words: u32) -> Result<Vec<D
             times.push(start.elapsed());
         }
         if answer.len() != block.len() {
-            return Err(format!("{} words came back", answer.len()));
+            let message = format!("{} words came back", answer.len());
+            return Err(io::Error::other(message));
         }
     }
     session.finish().map_err(said)?;

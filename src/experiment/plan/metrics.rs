@@ -107,7 +107,7 @@ impl Checker<'_> {
         let motion = motion(scenario, sample_period_s);
         for (index, figure) in scenario.published.iter().enumerate() {
             if let Some((_, metric)) = figure.metric.rsplit_once('.')
-                && let Some((key, message)) = wrong_unit(index, metric, &figure.unit)
+                && let Some((key, message)) = wrong_unit(index, metric, figure)
             {
                 self.complain(&key, message);
             }
@@ -191,6 +191,14 @@ fn requested(scenario: &Scenario) -> Vec<Requested<'_>> {
                 metric,
                 is_shown_only: true,
             });
+            if let Some(reference) = &figure.relative_to {
+                requested.push(Requested {
+                    key: format!("published[{index}].relative_to"),
+                    channel: reference,
+                    metric,
+                    is_shown_only: true,
+                });
+            }
         }
     }
     requested

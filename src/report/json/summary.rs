@@ -1,6 +1,6 @@
 //! `summary.json` of a run.
 
-use crate::gate::Verdict;
+use crate::gate::{Verdict, judge_claim, simulated};
 use crate::report::RunReport;
 use crate::report::calibration::documents::calibration_json;
 use crate::report::json::channel::channel;
@@ -25,7 +25,10 @@ pub fn run_summary_json(report: &RunReport) -> String {
         .iter()
         .map(|(name, metrics)| (name.clone(), channel(metrics)))
         .collect();
-    let published = report.scenario.published.iter().map(published).collect();
+    let published = report.scenario.published.iter();
+    let published = published
+        .map(|figure| published_figure(report, figure))
+        .collect();
     let gates = report.verdicts.iter();
     let gates = gates.map(|verdict| gate_of_run(report, verdict)).collect();
     let mut root = object([
@@ -160,13 +163,27 @@ fn assumed(report: &RunReport) -> Value {
     .into()
 }
 
-fn published(figure: &PublishedConfig) -> Value {
+fn published_figure(report: &RunReport, figure: &PublishedConfig) -> Value {
     let mut record = object([("metric", figure.metric.as_str().into())]);
     put(&mut record, "value", figure.value);
     record.extend(object([
         ("unit", figure.unit.as_str().into()),
         ("source", figure.source.as_str().into()),
     ]));
+    if let Some(reference) = &figure.relative_to {
+        record.insert("relative_to".to_owned(), reference.as_str().into());
+    }
+    if let Some(verdict) = judge_claim(figure, report.channels) {
+        if let Some(metric) = simulated(figure, report.channels) {
+            put(&mut record, "simulated", metric.estimate.value);
+            put(&mut record, "low", metric.estimate.low);
+            put(&mut record, "high", metric.estimate.high);
+        }
+        record.extend(object([
+            ("verdict", verdict.kind.as_str().into()),
+            ("reason", verdict.reason.as_str().into()),
+        ]));
+    }
     record.into()
 }
 

@@ -8,13 +8,13 @@ use super::gates::{GateRow, gates_table, unit_word};
 use super::pictures::{Shown, capital, pictures};
 use super::repeats::repeats;
 use super::units::units;
-use crate::gate::{Verdict, count_accepted, plain, three_digits};
+use crate::gate::{Verdict, count_accepted, judge_claim, plain, simulated, three_digits};
 use crate::metrics::catalogue::ANGLE_RANDOM_WALK;
 use crate::report::budget::{TOTAL, replacement};
 use crate::report::record::columns::{heading_of, value_text};
 use crate::report::text::verdict::verdict_text;
 use crate::report::{RunReport, RunStatus};
-use crate::scenario::{AssumedValue, Fidelity, PublishedConfig};
+use crate::scenario::{AssumedValue, Fidelity};
 use crate::signal::GyroFacts;
 
 /// Largest size of a page, bytes.
@@ -266,11 +266,6 @@ fn budget(report: &RunReport, gyro: &GyroFacts) -> Markup {
 /// Published figures beside the simulated ones.
 fn published(report: &RunReport) -> Option<Markup> {
     let figures = &report.scenario.published;
-    let simulated = |figure: &PublishedConfig| {
-        let (channel, key) = figure.metric.rsplit_once('.')?;
-        let (_, metrics) = report.channels.iter().find(|(name, _)| name == channel)?;
-        metrics.metrics.get(key)
-    };
     (!figures.is_empty()).then(|| {
         let table = html! {
             table.sortable {
@@ -283,13 +278,13 @@ fn published(report: &RunReport) -> Option<Markup> {
                     th scope="col" { "source" }
                 } }
                 tbody { @for figure in figures { tr {
-                    @let metric = simulated(figure);
+                    @let metric = simulated(figure, report.channels);
                     @let key = figure.metric.rsplit_once('.').map_or("", |(_, key)| key);
-                    th scope="row" { code { (figure.metric) } span.definition { (heading_of(key)) } }
+                    th scope="row" { code { (figure.metric) @if let Some(of) = &figure.relative_to { " / " (of) } } span.definition { (heading_of(key)) } }
                     td.num data-v=(by_value(figure.value)) { (figure.value) }
                     @match metric {
                         Some(metric) => {
-                            td.num data-v=(by_value(metric.estimate.value)) { (value_text(metric)) }
+                            td.num data-v=(by_value(metric.estimate.value)) { (value_text(&metric)) }
                             td.num { @if metric.unit == figure.unit || (metric.unit == "1" && figure.unit.is_empty()) {
                                 (format!("{}{}", if metric.estimate.value < figure.value { "" } else { "+" }, three_digits(metric.estimate.value - figure.value)))
                             } @else { "other unit" } }
@@ -297,7 +292,12 @@ fn published(report: &RunReport) -> Option<Markup> {
                         None => { td.num.soft data-v="" { "not measured" } td {} }
                     }
                     td { (unit_word(&figure.unit)) }
-                    td { (figure.source) }
+                    td {
+                        (figure.source)
+                        @if let Some(verdict) = judge_claim(figure, report.channels) {
+                            span.definition { (verdict.kind.as_str()) ": " (verdict.reason) }
+                        }
+                    }
                 } } }
             }
         };

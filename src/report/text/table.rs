@@ -3,7 +3,9 @@
 use crate::metrics::catalogue::{ANGLE_RANDOM_WALK, DELAY_VS_TRUTH};
 use std::collections::BTreeMap;
 
-use crate::gate::{Verdict, VerdictKind, estimate_text, plain, three_digits};
+use crate::gate::{
+    ClaimKind, Verdict, VerdictKind, estimate_text, judge_claim, plain, simulated, three_digits,
+};
 use crate::metrics::{ChannelMetrics, Metric, MetricKey, find, known_metrics};
 use crate::report::RunReport;
 use crate::report::budget::replacement;
@@ -406,12 +408,40 @@ fn published(report: &RunReport, colour: bool) -> String {
     for figure in &report.scenario.published {
         grid.row(published_row(figure, report.channels));
     }
-    format!("\n{}", grid.lines(INDENT))
+    format!("\n{}{}", grid.lines(INDENT), claims(report, colour))
+}
+
+/// What becomes of the published figures that are claims, a line for each.
+fn claims(report: &RunReport, colour: bool) -> String {
+    let judged = report.scenario.published.iter();
+    let lines = judged.filter_map(|figure| {
+        let verdict = judge_claim(figure, report.channels)?;
+        let tone = match verdict.kind {
+            ClaimKind::Consistent | ClaimKind::Exceeded => Tone::Good,
+            ClaimKind::NotReached => Tone::Bad,
+            ClaimKind::NotTestable => Tone::Doubt,
+        };
+        let word = toned(verdict.kind.as_str(), tone, colour);
+        Some(format!(
+            "{INDENT}{word} {}: {}\n",
+            shown(figure),
+            verdict.reason
+        ))
+    });
+    lines.collect()
+}
+
+/// A figure as it is called: the metric, over that of another channel if it is relative to it.
+fn shown(figure: &PublishedConfig) -> String {
+    match &figure.relative_to {
+        Some(reference) => format!("{} / {reference}", figure.metric),
+        None => figure.metric.clone(),
+    }
 }
 
 fn published_row(figure: &PublishedConfig, channels: &[(String, ChannelMetrics)]) -> [String; 7] {
     let (value, interval, difference) = match simulated(figure, channels) {
-        Some(metric) => beside(figure, metric),
+        Some(metric) => beside(figure, &metric),
         None => (
             "not measured".to_owned(),
             NOTHING.to_owned(),
@@ -419,7 +449,7 @@ fn published_row(figure: &PublishedConfig, channels: &[(String, ChannelMetrics)]
         ),
     };
     [
-        figure.metric.clone(),
+        shown(figure),
         figure.unit.clone(),
         written(figure.value),
         value,
@@ -462,15 +492,6 @@ fn beside(figure: &PublishedConfig, metric: &Metric) -> (String, String, String)
         text.push_str(&format!(" ({percent:+.1} %)"));
     }
     (value, interval, text)
-}
-
-fn simulated<'a>(
-    figure: &PublishedConfig,
-    channels: &'a [(String, ChannelMetrics)],
-) -> Option<&'a Metric> {
-    let (channel, key) = figure.metric.rsplit_once('.')?;
-    let (_, metrics) = channels.iter().find(|(name, _)| name == channel)?;
-    metrics.metrics.get(key)
 }
 
 /// One line per gate: `PASS  rls.delay_vs_raw_ms: 0.340 ms ... lies inside [0.33, 0.35] ms`.
@@ -524,6 +545,8 @@ mod tests {
             value,
             unit: "deg/h".to_owned(),
             source: "a paper".to_owned(),
+            relative_to: None,
+            rounding: None,
         }
     }
 

@@ -50,5 +50,10 @@ table! {
         unit: String, example "deg/h", kind FreeText;
         /// Where it was published.
         source: String, example "the paper, table 2";
+        /// Channel whose same metric divides this one: the figure is a relative change, in "1".
+        relative_to: Option<String>, example "raw";
+        /// Half a unit of the last digit of the figure. With it the figure is a claim: the run says whether it is
+        /// consistent with it, that is whether the simulated interval and the rounding overlap.
+        rounding: Option<f64>, example 5e-5, in 0.0..=1e30;
     }
 }

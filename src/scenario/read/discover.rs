@@ -53,7 +53,27 @@ pub(in crate::scenario) fn discover(
     files
 }
 
-/// Gathers the `*.toml` below a folder; hidden entries and linked folders are passed over.
+/// File by which a folder says that it is only taken where it is named itself.
+const ON_DEMAND: &str = ".on-demand";
+
+fn is_on_demand(folder: &Path) -> bool {
+    folder.join(ON_DEMAND).is_file()
+}
+
+/// Folders directly below those of some paths that are only taken where they are named themselves, and are not.
+#[must_use]
+pub fn left_out(paths: &[PathBuf]) -> Vec<PathBuf> {
+    let entries = paths.iter().filter_map(|path| fs::read_dir(path).ok());
+    let folders = entries.flatten().flatten().map(|entry| entry.path());
+    let named: BTreeSet<PathBuf> = paths.iter().map(|path| identity(path)).collect();
+    let mut left: Vec<PathBuf> = folders
+        .filter(|folder| is_on_demand(folder) && !named.contains(&identity(folder)))
+        .collect();
+    left.sort();
+    left
+}
+
+/// Gathers the `*.toml` below a folder; hidden entries, linked folders and those on demand are passed over.
 fn walk(folder: &Path, found: &mut Vec<PathBuf>, errors: &mut Vec<ScenarioError>) {
     let complain = |error: std::io::Error| {
         ScenarioError::at(
@@ -78,7 +98,9 @@ fn walk(folder: &Path, found: &mut Vec<PathBuf>, errors: &mut Vec<ScenarioError>
         }
         let path = entry.path();
         if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-            walk(&path, found, errors);
+            if !is_on_demand(&path) {
+                walk(&path, found, errors);
+            }
         } else if path
             .extension()
             .is_some_and(|extension| extension == "toml")

@@ -223,6 +223,10 @@ impl Checks<'_> {
     fn published(&mut self) {
         for (index, published) in self.resolved.scenario.published.iter().enumerate() {
             self.metric(&format!("published[{index}].metric"), &published.metric);
+            if let Some(channel) = &published.relative_to {
+                let path = format!("published[{index}].relative_to");
+                self.channel(&path, channel, channel);
+            }
         }
     }
 

@@ -1,0 +1,94 @@
+//! The docket: claims of the literature, each a scenario that is only taken where it is named.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::support::{code, fogbench, repository, stderr, stdout, summary, write};
+
+fn claims() -> Vec<(String, String)> {
+    let entries = fs::read_dir(repository("scenarios/docket")).expect("the docket is there");
+    let texts = entries.flatten().filter_map(|entry| {
+        let name = entry.file_name().into_string().ok()?;
+        let text = fs::read_to_string(entry.path()).ok()?;
+        (name.ends_with(".toml") && name != "base.toml").then_some((name, text))
+    });
+    texts.collect()
+}
+
+#[test]
+fn every_claim_says_its_kind_its_figure_with_rounding_and_what_it_assumes() {
+    let claims = claims();
+    assert!(claims.len() >= 10, "{}", claims.len());
+    for (name, text) in claims {
+        for part in [
+            "description = \"a filter of the kind of: ",
+            "[[published]]",
+            "rounding = ",
+            "[[assumption]]",
+        ] {
+            assert!(text.contains(part), "{name}: {part}");
+        }
+    }
+    let output = fogbench(&repository(""), &["check", "scenarios/docket"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+}
+
+#[test]
+fn a_folder_on_demand_is_left_out_unless_it_is_named() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let scenario = |name: &str| format!("schema = 1\nname = \"{name}\"\nduration_s = 1.0\n");
+    write(folder.path(), "scenarios/a/one.toml", &scenario("one"));
+    write(folder.path(), "scenarios/b/two.toml", &scenario("two"));
+    write(folder.path(), "scenarios/b/.on-demand", "");
+    let listed = |paths: &[&str]| fogbench(folder.path(), &[&["list"], paths].concat());
+    let output = listed(&[]);
+    assert!(!stdout(&output).contains("two"), "{}", stdout(&output));
+    assert!(
+        stderr(&output).contains("note: scenarios/b is left out: name it to take it"),
+        "{}",
+        stderr(&output)
+    );
+    let output = listed(&["scenarios/b"]);
+    assert!(stdout(&output).contains("two"), "{}", stdout(&output));
+    assert_eq!(stderr(&output), "");
+}
+
+#[test]
+fn a_published_figure_with_rounding_is_judged_and_others_are_not() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let text = "schema = 1\nname = \"s\"\nduration_s = 4.0\nwarm_up_s = 1.0\nfidelity = \"rate\"\n\
+        [[filter]]\nname = \"f\"\n[filter.moving_average]\ntaps = 4\n";
+    let figure = |value: f64, more: &str| {
+        format!(
+            "[[published]]\nmetric = \"f.mean_deg_per_h\"\nvalue = {value}\nunit = \"1\"\n\
+             source = \"a paper\"\nrelative_to = \"raw\"\n{more}"
+        )
+    };
+    let figures = [
+        figure(1.0, "rounding = 0.05\n"),
+        figure(0.2, "rounding = 0.05\n"),
+        figure(1.0, ""),
+    ];
+    write(
+        folder.path(),
+        "s.toml",
+        &format!("{text}{}", figures.concat()),
+    );
+    let output = fogbench(folder.path(), &["run", "s.toml", "-o", "out"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let run = summary(&folder.path().join("out"), "s");
+    let verdict = |index: usize| run["published"][index]["verdict"].clone();
+    assert_eq!(verdict(0), "consistent with", "{}", run["published"]);
+    assert_eq!(verdict(1), "not reached");
+    assert_eq!(verdict(2), Value::Null);
+    let wrong = figures[0].replace("relative_to = \"raw\"", "relative_to = \"row\"");
+    write(folder.path(), "s.toml", &format!("{text}{wrong}"));
+    let output = fogbench(folder.path(), &["check", "s.toml"]);
+    assert_eq!(code(&output), 2);
+    assert!(
+        stderr(&output).contains("published[0].relative_to"),
+        "{}",
+        stderr(&output)
+    );
+}
