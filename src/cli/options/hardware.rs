@@ -240,7 +240,8 @@ pub(in crate::cli) struct ExportOptions {
         long = "filter",
         value_name = "NAME",
         requires = "scenario",
-        conflicts_with = "stimulus"
+        conflicts_with = "stimulus",
+        conflicts_with = "FilterOptions"
     )]
     pub(in crate::cli) name: Option<String>,
     /// Recorded stimulus: one column of numbers, NPY or text
