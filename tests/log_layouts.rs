@@ -885,6 +885,24 @@ fn a_reference_in_the_log_gives_delay_and_scale_of_a_swing() {
 }
 
 #[test]
+fn a_heading_that_holds_a_comma_is_named_in_quotes() {
+    let folder = scratch();
+    let seconds = |k: usize| format!("{:.2}", k as f64 / 100.0);
+    let heading = "time_s,\"rate, z [deg/s]\"\n";
+    write(
+        folder.path(),
+        "log.csv",
+        &table(heading, ",", 4000, seconds),
+    );
+    let column = ["--column", "\"rate, z [deg/s]\""];
+    let (json, _) = analysed(folder.path(), &[&["log.csv"][..], &column].concat());
+    assert_eq!(json["log"]["column"], "rate, z [deg/s]");
+    let several = ["--column", "rate, z [deg/s]"];
+    let message = refused(folder.path(), &[&["log.csv"][..], &several].concat());
+    assert!(message.contains("column"), "{message}");
+}
+
+#[test]
 fn gates_are_held_against_a_log() {
     let folder = scratch();
     let seconds = |k: usize| format!("{:.2}", k as f64 / 100.0);

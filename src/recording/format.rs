@@ -31,7 +31,8 @@ table! {
         /// Added to the numbers behind the scale, in their unit [default: 0].
         offset: Option<f64>, example 0.5, in -1e30..=1e30;
         /// Column by its heading, a part of it, its number from 1, or with `*` for any letters; several one
-        /// after another [default: the only one beside the time].
+        /// after another, as an option between commas, a heading that holds one in `"` [default: the only one
+        /// beside the time].
         column: Option<Vec<String>>, example ["gyro_z"];
         /// Column of what the gyro should show, such as the rate or the encoder's angle of the table, or
         /// another gyro: it takes the place of the true rate.

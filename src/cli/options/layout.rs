@@ -41,7 +41,11 @@ fn option(row: &'static Row, kind: Kind) -> Arg {
         .value_name(value.to_uppercase());
     match kind {
         Kind::Boolean => option.action(ArgAction::SetTrue),
-        Kind::Texts | Kind::Choices(_) => option
+        // Texts may hold commas: they are taken apart where their quotes are known.
+        Kind::Texts => option
+            .action(ArgAction::Append)
+            .value_parser(parser(row, kind)),
+        Kind::Choices(_) => option
             .action(ArgAction::Append)
             .value_delimiter(',')
             .value_parser(parser(row, kind)),
@@ -67,12 +71,35 @@ fn value(row: &'static Row, kind: Kind, given: &ArgMatches) -> Option<Setting> {
         Kind::Float(_) => given.get_one::<f64>(id).map(|number| (*number).into()),
         Kind::Integer(_) => given.get_one::<i64>(id).map(|number| (*number).into()),
         Kind::Boolean => given.get_flag(id).then(|| true.into()),
-        Kind::Texts | Kind::Choices(_) => {
+        Kind::Texts => {
+            let texts = given.get_many::<String>(id)?;
+            Some(texts.flat_map(|text| parts(text)).collect())
+        }
+        Kind::Choices(_) => {
             let texts = given.get_many::<String>(id)?;
             Some(texts.cloned().collect())
         }
         _ => given.get_one::<String>(id).map(|text| text.clone().into()),
     }
+}
+
+/// The texts of one argument: between commas, but for those inside of `"`.
+fn parts(text: &str) -> Vec<String> {
+    const QUOTE: char = '"';
+    let (mut parts, mut part, mut is_quoted) = (Vec::new(), String::new(), false);
+    for letter in text.chars() {
+        match letter {
+            QUOTE => is_quoted = !is_quoted,
+            ',' if !is_quoted => parts.push(std::mem::take(&mut part)),
+            letter => part.push(letter),
+        }
+    }
+    // A quote that does not end is a letter, as that of an inch is.
+    if is_quoted {
+        return text.split(',').map(str::to_owned).collect();
+    }
+    parts.push(part);
+    parts
 }
 
 impl FromArgMatches for LayoutOptions {
@@ -96,5 +123,18 @@ impl Args for LayoutOptions {
 
     fn augment_args_for_update(command: Command) -> Command {
         Self::augment_args(command)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parts;
+
+    #[test]
+    fn a_comma_inside_of_quotes_is_one_of_the_heading() {
+        assert_eq!(parts("g_x,g_y"), ["g_x", "g_y"]);
+        assert_eq!(parts("\"rate, z [deg/s]\",g_y"), ["rate, z [deg/s]", "g_y"]);
+        assert_eq!(parts("3.5\",g_y"), ["3.5\"", "g_y"]);
+        assert_eq!(parts("g,"), ["g", ""]);
     }
 }
