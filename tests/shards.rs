@@ -6,8 +6,7 @@ use std::process::{Command, Output};
 
 use crate::support::{code, fogbench, stderr, stdout, tree, write};
 
-/// A sweep with repeats and a table, a motion with repeats that only pooled figures judge, a campaign that stays
-/// in one piece, a run with samples and one whose filter fails.
+/// A sweep with repeats and a table, a swing with more of them, a run with samples and one whose filter fails.
 fn suite(folder: &Path) {
     let short = "schema = 1\nduration_s = 0.5\nwarm_up_s = 0.1\nfidelity = \"rate\"\n";
     let sweep = "repeats = 2\n[matrix]\n\"gyro.source.power_uw\" = [0.5, 0.87]\n\
@@ -103,6 +102,36 @@ fn merged_shards_are_an_unsharded_suite_to_the_byte() {
         stderr(&again)
     );
     assert!(expected == tree(&at.join("merged-2")));
+}
+
+#[test]
+fn an_assembly_on_a_table_with_an_encoder_is_the_same_in_parts() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let at = folder.path();
+    let text = "schema = 1\nname = \"case\"\nduration_s = 0.5\nwarm_up_s = 0.1\nfidelity = \"rate\"\n\
+                repeats = 3\n[gyro.assembly]\n[turntable.encoder]\nresolution_arcsec = 1.0\n\
+                [[filter]]\nname = \"lms\"\n[filter.lms]\ntaps = 4\n";
+    write(at, "own/case.toml", text);
+    let whole = fogbench(at, &["run", "own", "-o", "whole"]);
+    assert_eq!(code(&whole), 0, "{}", stderr(&whole));
+    shards(at, 2, "out", 1..=2);
+    let merged = fogbench(at, &["merge", "out", "-o", "merged"]);
+    assert_eq!(code(&merged), 0, "{}", stderr(&merged));
+    assert_eq!(stdout(&merged), stdout(&whole));
+    assert!(tree(&at.join("whole")) == tree(&at.join("merged")));
+}
+
+#[test]
+fn every_shard_asks_before_it_starts_a_program_and_a_plan_starts_none() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let at = folder.path();
+    let text = "schema = 1\nname = \"program\"\nduration_s = 0.5\nwarm_up_s = 0.1\nfidelity = \"rate\"\n\
+                [[filter]]\nname = \"own\"\n[filter.process]\ncommand = [\"cat\"]\n";
+    write(at, "own/program.toml", text);
+    let planned = fogbench(at, &["plan", "own", "-o", "p.plan"]);
+    assert_eq!(code(&planned), 0, "{}", stderr(&planned));
+    refused(&shard(at, "1/1", "out", &[]), "--allow-programs");
+    assert!(!at.join("out").exists());
 }
 
 #[test]
@@ -227,7 +256,7 @@ fn the_environment_says_which_shard_and_never_of_how_many() {
     refused(&run(&["own", "--shard-offset", "1"], &array), "never from");
 }
 
-/// Bytes of the files of a folder's shards.
+/// Files of a folder's shards.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("readable").flatten();
     let files = entries.map(|entry| entry.path());
