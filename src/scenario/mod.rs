@@ -65,7 +65,7 @@ pub use read::assumed::{AssumedInShort, AssumedValue};
 pub use read::compensation_source::load_calibration;
 pub use read::log_format::{load_log_format, log_format_toml};
 pub use read::manifest::manifest_toml;
-pub use read::moved::Movable;
+pub use read::moved::{Movable, NotMovable};
 pub use read::named_files::NamedFile;
 pub use read::problem::{Problem, load_problem, problem_keys};
 pub(crate) use read::resolve::UnsoundReading;
