@@ -20,6 +20,7 @@
 //! | `steps` | settling, overshoot, scale factor, threshold, dead band |
 //! | `sine` | fits of sines: one frequency, a free one, many |
 //! | `noise` | noise about the signal: level, colour, spectrum, bias stability |
+//! | `expected` | what the figures of a record are expected to be, and how far records scatter |
 //! | `trial` | what a filter does: DC gain, delay, noise-delay bound, readaptation |
 //! | `motion` | the metrics of each kind of motion: steady, swing, several sines, steps, any other |
 //! | `verdict` | what the metrics say a filter did |
@@ -32,6 +33,7 @@ mod allan;
 mod calibration;
 pub mod catalogue;
 mod estimate;
+mod expected;
 mod key;
 mod measure;
 mod motion;
@@ -78,6 +80,8 @@ pub use estimate::table::{ChannelFailure, ChannelMetrics};
 pub(crate) use estimate::text::{estimate_text, is_exact, plain, three_digits, wants_exponent};
 pub use estimate::two_runs::{DifferenceSums, TwoRuns};
 pub use estimate::value::{Estimate, IntervalKind, Metric};
+pub use expected::blocks::{BlockGeometry, ExpectedBlocks};
+pub use expected::channel::{ChannelTheory, ExpectedFigure, KnownSine, Words, largest_of_normals};
 pub use key::curve::{Column, Curve, CurveKey};
 pub(crate) use key::metric::{Against, Headline, Table};
 pub use key::metric::{Applies, Better, MetricKey, OfBlocks};
@@ -116,10 +120,6 @@ pub use theory::bound::{
     noise_power_gain,
 };
 pub use theory::claim::{Claim, ClaimedFigure, Lookalikes};
-pub use theory::figures::{
-    BlockGeometry, ChannelTheory, ExpectedBlocks, ExpectedFigure, KnownSine, Words,
-    largest_of_normals,
-};
 pub use theory::learning::Learning;
 pub use theory::memory::memory_samples;
 pub use theory::prediction::{Prediction, lags_needed, predict};

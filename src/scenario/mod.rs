@@ -70,7 +70,7 @@ pub use read::files::log_format::{load_log_format, log_format_toml};
 pub use read::files::manifest::manifest_toml;
 pub use read::files::named_files::NamedFile;
 pub use read::files::problem::{Problem, load_problem, problem_keys};
-pub use read::moved::Movable;
+pub use read::moved::{Movable, NotMovable};
 pub(crate) use read::resolve::UnsoundReading;
 pub use read::resolved::{InputFile, Resolved, SweepPoint};
 pub(crate) use read::suite::{Reading, read_suite};

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::experiment::infer::forms::{Form, form_of};
-use crate::experiment::infer::record::{Geometries, RecordTheory};
+use crate::experiment::infer::geometry::Geometries;
+use crate::experiment::infer::record::{Lack, RecordTheory};
 use crate::inference::{Forecast, Forecasts, Parameter, Print, Printed, Reading};
 use crate::metrics;
 use crate::scenario::{Problem, Resolved, ScenarioError, load_base_or_scenario};
@@ -302,9 +303,9 @@ impl Builder<'_> {
         resolved: &Resolved,
     ) -> Result<RecordTheory, Vec<ScenarioError>> {
         let keys = self.keys(&self.problem.config.records[record].name);
-        RecordTheory::new(resolved, &keys).map_err(|(place, message)| {
-            let at = format!("parameter[{}].keys", keys[place].1);
-            vec![self.problem.complaint(&at, format!("{at}: {message}"))]
+        RecordTheory::new(resolved, &keys).map_err(|error| {
+            let at = format!("parameter[{}].keys", keys[error.index].1);
+            vec![self.problem.complaint(&at, format!("{at}: {error}"))]
         })
     }
 
@@ -328,10 +329,10 @@ impl Builder<'_> {
                 let (channel, form) = &forms[index];
                 let added = match form {
                     Some(form) => theory.add(index, (channel, *form), &mut self.geometries),
-                    None => Err("it has no closed form".to_owned()),
+                    None => Err(Lack::Metric),
                 };
                 if let Err(lack) = added {
-                    lacks[index] = Some(lack);
+                    lacks[index] = Some(lack.to_string());
                 }
             }
             found.push(theory);
@@ -379,7 +380,7 @@ impl Builder<'_> {
         let mut found = Vec::new();
         for (index, row) in self.problem.config.parameters.iter().enumerate() {
             let mut unit = "";
-            for resolved in self.known.values() {
+            if let Some(resolved) = self.known.values().next() {
                 for key in &row.keys {
                     unit = resolved.unit_of(key);
                     let Some((low, high)) = resolved.range_of(key) else {
@@ -395,7 +396,6 @@ impl Builder<'_> {
                         errors.push(self.problem.complaint(&at, message));
                     }
                 }
-                break;
             }
             found.push(Parameter {
                 name: row.name.clone(),

@@ -2,6 +2,7 @@
 
 mod bench;
 mod forms;
+mod geometry;
 mod record;
 
 use std::path::Path;

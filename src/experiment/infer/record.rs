@@ -1,17 +1,17 @@
 //! Figures of one record in closed form, again and again with other numbers.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::experiment::infer::forms::Form;
+use crate::experiment::infer::geometry::{BLOCKS_MAX, Geometries, Staircase, staircase};
 use crate::filters::FilterConfig;
 use crate::gyro::{self, GyroConfig, WordNoise};
 use crate::inference::Forecast;
 use crate::metrics::{
     BlockGeometry, ChannelTheory, ExpectedFigure, KnownSine, NoiseCoefficients, Words, lags_needed,
-    largest_of_normals, samples_in,
+    samples_in,
 };
-use crate::scenario::{MotionClass, MotionConfig, Movable, Resolved, Scenario};
+use crate::scenario::{MotionClass, MotionConfig, Movable, NotMovable, Resolved, Scenario};
 use crate::signal::FilterShape;
 use crate::turntable::earth_rate_rad_per_s;
 use crate::units::{
@@ -24,26 +24,34 @@ const LAGS_MIN: usize = 16;
 /// Frequencies at which a bandwidth is looked for, and the range over that of the lowest sine.
 const BANDWIDTH_POINTS: u32 = 96;
 
-/// Most blocks of a bias stability.
-const BLOCKS_MAX: usize = 512;
-
-/// Geometries of blocks, which many readings share.
-#[derive(Debug, Default)]
-pub(crate) struct Geometries(BTreeMap<(u64, usize, u64), Arc<BlockGeometry>>);
-
-impl Geometries {
-    /// That of so many blocks behind a warm-up.
-    fn of(&mut self, time_s: f64, count: usize, warm_up_s: f64) -> Option<Arc<BlockGeometry>> {
-        let key = (time_s.to_bits(), count, warm_up_s.to_bits());
-        if let Some(known) = self.0.get(&key) {
-            return Some(known.clone());
-        }
-        let is_small = count <= BLOCKS_MAX;
-        let geometry = is_small.then(|| BlockGeometry::new(time_s, count, warm_up_s))??;
-        let geometry = Arc::new(geometry);
-        self.0.insert(key, geometry.clone());
-        Some(geometry)
-    }
+/// Why a figure has no closed form.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum Lack {
+    /// Nobody knows the channel.
+    #[error("no channel `{name}`: expected one of {known}")]
+    Channel {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// The blocks of a bias stability are too few or too many.
+    #[error("{length_s} s do not hold from 2 to {BLOCKS_MAX} blocks of {block_s} s")]
+    Blocks {
+        /// Length of the record, s.
+        length_s: f64,
+        /// Averaging time, s.
+        block_s: f64,
+    },
+    /// The record is none of which it holds.
+    #[error("it has no closed form {0}")]
+    Form(&'static str),
+    /// The metric is simulated alone.
+    #[error("it has no closed form")]
+    Metric,
+    /// Theory of filters ends.
+    #[error("{0}")]
+    Theory(&'static str),
 }
 
 /// A channel of a record.
@@ -62,17 +70,6 @@ pub(crate) struct Figure {
     /// Place among the channels of the record.
     channel: usize,
     form: Form,
-}
-
-/// Rates of a staircase and how well each is measured beside a noise of density 1.
-#[derive(Clone, Debug)]
-struct Staircase {
-    /// Rates at which the scale factor is read, rad/s.
-    rates_rad_per_s: Vec<f64>,
-    /// Expected largest and its scatter over the full scale, for a density of 1 (deg/h) sqrt(s).
-    largest: ExpectedFigure,
-    /// Deviation of the slope for a density of 1 (deg/h) sqrt(s).
-    slope_deviation: f64,
 }
 
 /// A record of which figures are forecast.
@@ -102,10 +99,7 @@ impl RecordTheory {
     ///
     /// # Errors
     /// What is wrong with a key, by its place.
-    pub(crate) fn new(
-        resolved: &Resolved,
-        keys: &[(String, usize)],
-    ) -> Result<Self, (usize, String)> {
+    pub(crate) fn new(resolved: &Resolved, keys: &[(String, usize)]) -> Result<Self, NotMovable> {
         let written: Vec<String> = keys.iter().map(|(key, _)| key.clone()).collect();
         let movable = resolved.movable(&written)?;
         let scenario = movable.scenario();
@@ -139,38 +133,35 @@ impl RecordTheory {
     ///
     /// # Errors
     /// Why it has no closed form here.
-    pub(crate) fn add(
+    pub(super) fn add(
         &mut self,
         index: usize,
         (name, form): (&str, Form),
         known: &mut Geometries,
-    ) -> Result<(), String> {
-        let names = || -> Vec<&str> {
-            self.channels
-                .iter()
-                .map(|channel| channel.name.as_str())
-                .collect()
-        };
-        let Some(channel) = self
+    ) -> Result<(), Lack> {
+        let found = self
             .channels
             .iter()
-            .position(|channel| channel.name == name)
-        else {
-            return Err(format!(
-                "no channel `{name}`: expected one of {}",
-                names().join(", ")
-            ));
-        };
+            .position(|channel| channel.name == name);
+        let channel = found.ok_or_else(|| {
+            let known = self.channels.iter().map(|channel| channel.name.as_str());
+            Lack::Channel {
+                name: name.to_owned(),
+                known: known.collect::<Vec<_>>().join(", "),
+            }
+        })?;
         self.supports(form, channel)?;
         if let Form::Blocks(time_s) = form {
             let scenario = self.movable.scenario();
             let time_s = time_s.unwrap_or(scenario.bias_averaging_time_s);
             let period_s = gyro::sample_period_s(&scenario.gyro);
             let count = samples_in(scenario.duration_s, period_s) / samples_in(time_s, period_s);
-            let geometry = known.of(time_s, count, scenario.warm_up_s).ok_or_else(|| {
-                let length = scenario.duration_s;
-                format!("{length} s do not hold from 2 to {BLOCKS_MAX} blocks of {time_s} s")
-            })?;
+            let geometry = known
+                .of(time_s, count, scenario.warm_up_s)
+                .ok_or(Lack::Blocks {
+                    length_s: scenario.duration_s,
+                    block_s: time_s,
+                })?;
             self.geometries.push((time_s, geometry));
         }
         self.figures.push(Figure {
@@ -182,9 +173,9 @@ impl RecordTheory {
     }
 
     /// Whether the record is one of which the form holds.
-    fn supports(&self, form: Form, channel: usize) -> Result<(), String> {
+    fn supports(&self, form: Form, channel: usize) -> Result<(), Lack> {
         let scenario = self.movable.scenario();
-        let no_form = |what: &str| Err(format!("it has no closed form {what}"));
+        let no_form = |what| Err(Lack::Form(what));
         if scenario.gyro.assembly.is_some() {
             return no_form("for three axes");
         }
@@ -205,11 +196,25 @@ impl RecordTheory {
             _ if wants_steps && self.staircase.is_none() => {
                 return no_form("without steps of the rate");
             }
+            Form::Bandwidth if channel > 0 => return no_form("of a filter"),
             Form::Bandwidth if !matches!(class, MotionClass::MultiSine { .. }) => {
                 return no_form("without several sines");
             }
             _ if !wants_steps && is_steps => return no_form("under steps of the rate"),
-            Form::Bandwidth if channel > 0 => return no_form("of a filter"),
+            Form::Bandwidth => {}
+            _ if matches!(
+                class,
+                MotionClass::MultiSine { .. }
+                    | MotionClass::Campaign(_)
+                    | MotionClass::General
+                    | MotionClass::Swing {
+                        is_from_rest: true,
+                        ..
+                    }
+            ) =>
+            {
+                return no_form("under this motion");
+            }
             _ => {}
         }
         let Some(own) = self.channels.get(channel).filter(|_| channel > 0) else {
@@ -229,7 +234,7 @@ impl RecordTheory {
             warm_up_s: 1.0,
             duration_s: 1.0,
         };
-        let theory = ChannelTheory::of_filter(shape, &probe)?;
+        let theory = ChannelTheory::of_filter(shape, &probe).map_err(Lack::Theory)?;
         if wants_steps && theory.gain_variance_s > 0.0 {
             return no_form("of weights that learn under steps of the rate");
         }
@@ -404,7 +409,10 @@ impl RecordTheory {
             return None;
         };
         let time_s = time_s.unwrap_or(self.movable.scenario().bias_averaging_time_s);
-        let found = self.geometries.iter().find(|(own, _)| *own == time_s)?;
+        let found = self
+            .geometries
+            .iter()
+            .find(|(own, _)| own.to_bits() == time_s.to_bits())?;
         Some(&found.1)
     }
 
@@ -419,7 +427,8 @@ impl RecordTheory {
         match (one.form, two.form) {
             (Form::Blocks(first), Form::Blocks(second)) => {
                 let default_s = self.movable.scenario().bias_averaging_time_s;
-                if first.unwrap_or(default_s) != second.unwrap_or(default_s) {
+                let [one_s, two_s] = [first, second].map(|own| own.unwrap_or(default_s));
+                if one_s.to_bits() != two_s.to_bits() {
                     return 0.0;
                 }
                 let coefficients = &moment.coefficients;
@@ -515,55 +524,5 @@ fn sine(scenario: &Scenario) -> Option<KnownSine> {
         amplitude_deg_per_h: rad_per_s_to_deg_per_h(swing.rate_amplitude_rad_per_s())
             * response.first()?.0,
         frequency_hz,
-    })
-}
-
-/// The dwells of a scale factor test or of steps.
-fn staircase(scenario: &Scenario) -> Option<Staircase> {
-    let motion = scenario.measured_motion();
-    let MotionClass::Steps(stairs) = motion.class() else {
-        return None;
-    };
-    let mut start_s = 0.0;
-    let mut dwells = Vec::new();
-    for (rate, end_s) in stairs.rates_deg_per_s.iter().zip(&stairs.ends_s) {
-        dwells.push((
-            deg_per_s_to_rad_per_s(*rate),
-            end_s - start_s - stairs.settle_s,
-        ));
-        start_s = *end_s;
-    }
-    let inner = if stairs.has_static_zeros {
-        dwells.get(1..dwells.len() - 1)?
-    } else {
-        &dwells
-    };
-    let rates_rad_per_s: Vec<f64> = inner.iter().map(|dwell| dwell.0).collect();
-    // What the zeros scatter moves all alike, which the line takes up.
-    let deviations: Vec<f64> = inner
-        .iter()
-        .map(|dwell| dwell.1.max(1e-9).sqrt().recip())
-        .collect();
-    let full = rad_per_s_to_deg_per_h(
-        rates_rad_per_s
-            .iter()
-            .fold(0.0_f64, |most, rate| most.max(rate.abs())),
-    );
-    let over_full: Vec<f64> = deviations
-        .iter()
-        .map(|deviation| deviation / full)
-        .collect();
-    let count = rates_rad_per_s.len() as f64;
-    let mean = rates_rad_per_s.iter().sum::<f64>() / count;
-    let (mut square, mut noise) = (0.0, 0.0);
-    for (rate, deviation) in rates_rad_per_s.iter().zip(&deviations) {
-        square += (rate - mean).powi(2);
-        noise += ((rate - mean) * deviation).powi(2);
-    }
-    let slope_deviation = noise.sqrt() / square / rad_per_s_to_deg_per_h(1.0);
-    Some(Staircase {
-        rates_rad_per_s,
-        largest: largest_of_normals(&over_full),
-        slope_deviation,
     })
 }

@@ -2,7 +2,6 @@
 
 pub(super) mod bound;
 pub(super) mod claim;
-pub(super) mod figures;
 pub(super) mod learning;
 pub(super) mod memory;
 pub(super) mod prediction;

@@ -2,7 +2,7 @@
 
 use crate::gyro::GyroConfig;
 use crate::scenario::config::Scenario;
-use crate::scenario::document::address::{self, Step};
+use crate::scenario::document::address::{self, AddressError, Step};
 use crate::scenario::document::deserialize::from_table;
 use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::keys::schema::{Key, Kind};
@@ -24,36 +24,40 @@ pub struct Movable {
     moves_turntable: bool,
 }
 
+/// A key that cannot be moved.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{fault}")]
+pub struct NotMovable {
+    /// Place of the key.
+    pub index: usize,
+    fault: MoveFault,
+}
+
+/// Why a key cannot be moved.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+enum MoveFault {
+    #[error(transparent)]
+    Address(#[from] AddressError),
+    #[error(
+        "{0} cannot be a parameter: expected a number of gyro or turntable; put other keys into a \
+         [[choice]]"
+    )]
+    Other(String),
+    #[error("{key} does not stand in {file}")]
+    Absent { key: String, file: String },
+}
+
 impl Resolved {
     /// The scenario with these keys to move, each as `--set` writes it.
     ///
     /// # Errors
     /// What is wrong with a key: it is unknown, no number with a fraction, or of another table than the
     /// gyro's and the turntable's.
-    pub fn movable(&self, keys: &[String]) -> Result<Movable, (usize, String)> {
+    pub fn movable(&self, keys: &[String]) -> Result<Movable, NotMovable> {
         let mut paths = Vec::new();
         for (index, written) in keys.iter().enumerate() {
-            let (path, key) = address::resolve(&self.tree, written)
-                .map_err(|error| (index, error.to_string()))?;
-            let is_number = matches!(
-                key,
-                Some(Key {
-                    kind: Kind::Float(_),
-                    ..
-                })
-            );
-            let is_reached = matches!(path.first(), Some(Step::Key(table)) if table == GYRO || table == TURNTABLE);
-            if !is_number || !is_reached || path.iter().any(|step| matches!(step, Step::Index(_))) {
-                let message = format!(
-                    "{written} cannot be a parameter: expected a number of gyro or turntable; put \
-                     other keys into a [[choice]]"
-                );
-                return Err((index, message));
-            }
-            if address::get(&self.tree, &path).is_none() {
-                return Err((index, format!("{written} does not stand in {}", self.file)));
-            }
-            paths.push(path);
+            let path = self.number(written);
+            paths.push(path.map_err(|fault| NotMovable { index, fault })?);
         }
         let moves = |table: &str| {
             let first =
@@ -68,6 +72,31 @@ impl Resolved {
             moves_gyro,
             moves_turntable,
         })
+    }
+
+    /// Where a number of gyro or turntable stands.
+    fn number(&self, written: &str) -> Result<Vec<Step>, MoveFault> {
+        let (path, key) = address::resolve(&self.tree, written)?;
+        let is_number = matches!(
+            key,
+            Some(Key {
+                kind: Kind::Float(_),
+                ..
+            })
+        );
+        let is_reached =
+            |step: &Step| matches!(step, Step::Key(table) if table == GYRO || table == TURNTABLE);
+        let is_plain = path.iter().all(|step| matches!(step, Step::Key(_)));
+        if !is_number || !is_plain || !path.first().is_some_and(is_reached) {
+            return Err(MoveFault::Other(written.to_owned()));
+        }
+        match address::get(&self.tree, &path) {
+            Some(_) => Ok(path),
+            None => Err(MoveFault::Absent {
+                key: written.to_owned(),
+                file: self.file.clone(),
+            }),
+        }
     }
 
     /// Range of a key that is a number; none of others.
