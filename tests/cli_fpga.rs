@@ -143,39 +143,6 @@ fn an_exported_folder_simulates_from_anywhere() {
 }
 
 #[test]
-fn an_export_takes_keys_of_its_scenario_and_refuses_options_that_it_would_not_heed() {
-    let folder = scratch();
-    write(
-        folder.path(),
-        "a.toml",
-        "schema = 1\nname = \"a\"\nduration_s = 1.0\nwarm_up_s = 0.0\nfidelity = \"rate\"\n\
-         [[filter]]\nname = \"rls\"\n[filter.rls]\npipeline = \"fpga\"\n",
-    );
-    let export = "export rtl out --scenario a.toml --filter rls --samples 5";
-    let run = |more: &str| {
-        let line = format!("{export} {more}");
-        let words: Vec<&str> = line.split(' ').collect();
-        fogbench(folder.path(), &words)
-    };
-    let refused = run("--taps 8");
-    assert_eq!(code(&refused), 2, "{}", stderr(&refused));
-    assert!(stderr(&refused).contains("--taps"), "{}", stderr(&refused));
-    let set = run("--set filter.rls.taps=8 --set filter.rls.forgetting_factor=0.97");
-    assert_eq!(code(&set), 0, "{}", stderr(&set));
-    let read = |name: &str| {
-        std::fs::read_to_string(folder.path().join("out").join(name)).expect("an exported file")
-    };
-    let top = read("rls_top.v");
-    for part in [".P(8)", ".ALPHA(64'h3fef0a3d70a3d70a)", ".CODE(1)"] {
-        assert!(top.contains(part), "no {part} in {top}");
-    }
-    let json: serde_json::Value = serde_json::from_str(&read("params.json")).expect("JSON");
-    assert_eq!(json["word_unit"], "deg/h");
-    assert_eq!(json["word_factor"], 3600.0);
-    assert_eq!(json["system_clocks_per_sample"], 372);
-}
-
-#[test]
 fn waveforms_and_recorded_stimuli_are_exported() {
     let folder = scratch();
     write(folder.path(), "s.csv", "1.0\n-2.5\n0.75\n");

@@ -240,8 +240,7 @@ pub(in crate::cli) struct ExportOptions {
         long = "filter",
         value_name = "NAME",
         requires = "scenario",
-        conflicts_with = "stimulus",
-        conflicts_with = "FilterOptions"
+        conflicts_with = "stimulus"
     )]
     pub(in crate::cli) name: Option<String>,
     /// Recorded stimulus: one column of numbers, NPY or text
