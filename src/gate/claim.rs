@@ -170,7 +170,7 @@ mod tests {
                 .unwrap()
                 .kind
         };
-        assert_eq!(kind(0.48), ClaimKind::Consistent);
+        assert_eq!(kind(0.49), ClaimKind::Consistent);
         assert_eq!(kind(0.3), ClaimKind::NotReached);
         assert_eq!(kind(0.9), ClaimKind::Exceeded);
         assert_eq!(judge_claim(&figure(0.48, None), &channels()), None);

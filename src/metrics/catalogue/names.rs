@@ -141,6 +141,9 @@ mod tests {
                 .unwrap_or("");
             let at = known.name.find(longest).unwrap_or(0) + longest.len() / 2;
             let slip = format!("{}{}", &known.name[..at], &known.name[at + 1..]);
+            if known_metrics().iter().any(|other| other.name == slip) {
+                continue;
+            }
             assert_eq!(suggestions(&slip), [known.name], "{slip}");
         }
     }
