@@ -18,8 +18,10 @@ const TOLD: f64 = 0.01;
 /// A parameter under a reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// Value of the most likely point.
+    /// Median.
     pub value: f64,
+    /// Value of the most likely point.
+    pub best: f64,
     /// End of the 95 % interval.
     pub low: f64,
     /// End of the 95 % interval.
@@ -202,7 +204,8 @@ impl Question<'_> {
                 };
                 let (low, high) = (at(TAIL), at(1.0 - TAIL));
                 Range {
-                    value: parameter.at(found.best.parts[index]),
+                    value: parameter.at(at(0.5)),
+                    best: parameter.at(found.best.parts[index]),
                     low: parameter.at(low),
                     high: parameter.at(high),
                     share: (high - low) / (1.0 - 2.0 * TAIL),

@@ -347,6 +347,7 @@ fn reading_json(sheet: &InferenceSheet, judged: &Judged) -> Value {
         .map(|(parameter, range)| {
             let value = json!({
                 "value": range.value,
+                "best": range.best,
                 "low": range.low,
                 "high": range.high,
                 "unit": parameter.unit,
