@@ -211,3 +211,34 @@ fn forecasts_agree_with_simulated_records_within_their_scatter() {
         );
     }
 }
+
+#[test]
+fn a_scenario_and_a_problem_are_told_from_each_other() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let at = folder.path();
+    write(at, "rest.toml", GYRO);
+    let problem = format!(
+        "name = \"p\"\n[[record]]\nname = \"rest\"\nscenario = \"rest.toml\"\n{}",
+        published(&[("rest", "raw.mean_deg_per_h", 1.0, "deg/h", 0.1)])
+    );
+    write(at, "problem.toml", &problem);
+    let said = |arguments: &[&str]| {
+        let output = fogbench(at, arguments);
+        assert_eq!(code(&output), 2, "{arguments:?}");
+        stderr(&output)
+    };
+    assert_eq!(
+        said(&["infer", "rest.toml"]).lines().next(),
+        Some(
+            "error: rest.toml:1:1: this is a scenario, which `fogbench run` takes: a problem of \
+             inference names it in [[record]]"
+        )
+    );
+    let refused = "error: problem.toml:1:1: this is a problem of inference, which `fogbench infer` \
+                   takes, not a scenario";
+    for command in ["run", "check"] {
+        let text = said(&[command, "problem.toml"]);
+        assert_eq!(text.lines().next(), Some(refused));
+        assert_eq!(text.matches("error: ").count(), 1, "{text}");
+    }
+}

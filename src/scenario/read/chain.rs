@@ -12,6 +12,7 @@ use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::read::discover::identity;
 use crate::scenario::read::draft::Draft;
 use crate::scenario::read::files::manifest;
+use crate::scenario::read::files::problem::is_problem;
 use crate::scenario::read::input::{self, Input, InputError};
 use crate::scenario::read::resolved::InputFile;
 
@@ -174,6 +175,12 @@ impl Chain {
             let is_file = file != Path::new(TEXT);
             let draft = manifest::read(root, source, self.sources, self.inputs, is_file)?;
             return Ok((draft, Vec::new()));
+        }
+        if is_problem(&root) {
+            let message =
+                "this is a problem of inference, which `fogbench infer` takes, not a scenario";
+            let start = Mark { source, start: 0 };
+            return Err(vec![self.sources.error(start, message)]);
         }
         let root = self.merge_bases(file, label, root, source);
         self.inputs.reverse();

@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use crate::declare::{Content, Key, Keys, Presence, Table as Declared};
 use crate::inference::ProblemConfig;
 use crate::scenario::check::leaf::check_leaf;
+use crate::scenario::config::Scenario;
 use crate::scenario::document::address::{self, nearest_mark};
 use crate::scenario::document::deserialize::from_table;
 use crate::scenario::document::source::{Label, Mark, Sources, shown_path};
@@ -58,6 +59,26 @@ pub fn problem_keys() -> &'static [Key] {
     &KEYS.get_or_init(|| Keys::of(&ProblemConfig::TABLE)).keys
 }
 
+/// Top-level keys of a document that the one declaration knows and the other does not.
+fn alone(root: &Table, own: &Declared, other: &Declared) -> usize {
+    let knows = |declared: &Declared, name: &str| declared.rows.iter().any(|row| row.name == name);
+    root.keys()
+        .filter(|name| knows(own, name) && !knows(other, name))
+        .count()
+}
+
+/// Whether a document is a problem rather than a scenario.
+pub(crate) fn is_problem(root: &Table) -> bool {
+    let (problem, scenario) = (&ProblemConfig::TABLE, &Scenario::TABLE);
+    alone(root, problem, scenario) > alone(root, scenario, problem)
+}
+
+/// Whether a document is a scenario rather than a problem.
+fn is_scenario(root: &Table) -> bool {
+    let (problem, scenario) = (&ProblemConfig::TABLE, &Scenario::TABLE);
+    alone(root, scenario, problem) > alone(root, problem, scenario)
+}
+
 /// Reads a problem and checks all that can be checked without the scenarios it names.
 ///
 /// # Errors
@@ -77,6 +98,10 @@ pub fn load_problem(file: &Path) -> Result<Problem, Vec<ScenarioError>> {
         let start = error.start;
         vec![sources.error(Mark { source, start }, error.message)]
     })?;
+    if is_scenario(&tree) {
+        let message = "this is a scenario, which `fogbench run` takes: a problem of inference names it in [[record]]";
+        return Err(vec![sources.error(start, message)]);
+    }
     let mut reader = Reader {
         sources: &sources,
         errors: Vec::new(),
