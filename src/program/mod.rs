@@ -81,7 +81,7 @@ impl Programs {
 }
 
 /// First argument of the program where it is to be a supervisor.
-pub const SUPERVISE: &str = "supervise-program";
+pub(crate) const SUPERVISE: &str = "supervise-program";
 
 #[cfg(test)]
 mod tests {

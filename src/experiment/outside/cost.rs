@@ -4,8 +4,10 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-pub use crate::program::SUPERVISE;
-use crate::program::{Greeting, Interrupted, Launch, Listener, Programs, Session};
+use crate::program::{self, Greeting, Interrupted, Launch, Listener, Programs, Session};
+
+/// First argument of the program where it is to be a supervisor.
+pub const SUPERVISE: &str = program::SUPERVISE;
 
 /// Blocks before those that are timed.
 const WARM_UP_BLOCKS: usize = 100;
