@@ -384,7 +384,7 @@ mod signals {
 
     /// Many repeats of one short run.
     fn many(folder: &Path) {
-        let text = "schema = 1\nname = \"many\"\nduration_s = 0.5\nwarm_up_s = 0.1\n\
+        let text = "schema = 1\nname = \"many\"\nduration_s = 5.0\nwarm_up_s = 0.1\n\
                     fidelity = \"rate\"\nrepeats = 40\n";
         write(folder, "own/many.toml", text);
     }
@@ -431,6 +431,8 @@ mod signals {
         let part = at.join("out/.fogbench/shard-0001-of-0002.fogshard.part");
         let mut child = start(at, "out");
         wait_for_work(&mut child, &part, 20_000);
+        // However fast it is, it is at work as long as the rest of this looks at it.
+        send(&child, "-STOP");
         // Meanwhile nobody else has the folder.
         for arguments in [
             &["run", "own", "-o", "out"][..],
@@ -449,6 +451,7 @@ mod signals {
             stdout(&status)
         );
         send(&child, "-TERM");
+        send(&child, "-CONT");
         assert_eq!(child.wait().expect("a child").code(), Some(75));
         let kept = fs::metadata(&part).expect("what is finished").len();
         let status = fogbench(at, &["status", "out"]);
