@@ -206,6 +206,15 @@ pub(in crate::cli) struct RunOptions {
     /// Start no further run once one has failed, be it by a gate
     #[arg(long)]
     pub(in crate::cli) fail_fast: bool,
+    #[command(flatten)]
+    pub(in crate::cli) shard: ShardOptions,
+    #[command(flatten)]
+    pub(in crate::cli) account: AccountOptions,
+}
+
+/// How a suite is judged and told, be it run or merged.
+#[derive(Args, Clone, Debug)]
+pub(in crate::cli) struct AccountOptions {
     /// Fail where no selected scenario has a gate
     #[arg(long)]
     pub(in crate::cli) require_gates: bool,
@@ -222,8 +231,6 @@ pub(in crate::cli) struct RunOptions {
     /// Form of the results on stdout
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(in crate::cli) format: Format,
-    #[command(flatten)]
-    pub(in crate::cli) shard: ShardOptions,
     #[command(flatten)]
     pub(in crate::cli) against: AgainstOptions,
     #[command(flatten)]

@@ -135,7 +135,7 @@ pub(in crate::cli) struct UpdateOptions {
 }
 
 /// What `run` compares its results with.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(in crate::cli) struct AgainstOptions {
     /// Compare the results with a baseline, or earlier results: end with 1 where one is worse or gone
     #[arg(long, value_name = "FILE")]

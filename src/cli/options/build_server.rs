@@ -12,7 +12,7 @@ pub(in crate::cli) enum Annotations {
 }
 
 /// What a build server gets of a suite.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(in crate::cli) struct BuildServerOptions {
     /// Write the JUnit verdict to FILE, with wall times
     #[arg(long, value_name = "FILE")]

@@ -4,10 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::options::arguments::SelectOptions;
-use crate::cli::options::baseline::AgainstOptions;
-use crate::cli::options::build_server::BuildServerOptions;
-use crate::cli::options::format::Format;
+use crate::cli::options::arguments::{AccountOptions, SelectOptions};
 use crate::wording::counted;
 
 /// Variables in which schedulers say which task of an array this is.
@@ -207,26 +204,8 @@ pub(in crate::cli) struct MergeOptions {
     /// Replace files and folders that fogbench did not write, or that were changed since
     #[arg(long)]
     pub(in crate::cli) force: bool,
-    /// Fail where no selected scenario has a gate
-    #[arg(long)]
-    pub(in crate::cli) require_gates: bool,
-    /// Threads, at most 256; 0 = RAYON_NUM_THREADS, else one per core; no result depends on it
-    #[arg(short, long, value_name = "N", default_value_t = 0,
-          value_parser = clap::value_parser!(u16).range(0..=256))]
-    pub(in crate::cli) jobs: u16,
-    /// Print the full account of every run, as for a single one; else a line of each scenario
-    #[arg(short, long, conflicts_with = "quiet")]
-    pub(in crate::cli) verbose: bool,
-    /// Print what failed and the verdict alone, and no progress
-    #[arg(short, long)]
-    pub(in crate::cli) quiet: bool,
-    /// Form of the results on stdout
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(in crate::cli) format: Format,
     #[command(flatten)]
-    pub(in crate::cli) against: AgainstOptions,
-    #[command(flatten)]
-    pub(in crate::cli) server: BuildServerOptions,
+    pub(in crate::cli) account: AccountOptions,
 }
 
 /// Options of `status`.

@@ -39,21 +39,21 @@ pub(super) struct Account {
 impl Account {
     pub(super) fn new(plans: &[Plan], options: &RunOptions) -> Self {
         let scenarios = scenarios(plans);
-        let detail = if options.quiet {
+        let detail = if options.account.quiet {
             Detail::Failures
-        } else if options.verbose || plans.len() == 1 {
+        } else if options.account.verbose || plans.len() == 1 {
             Detail::Full
         } else if scenarios.len() == 1 {
             Detail::Points
         } else {
             Detail::Line
         };
-        let is_told_at_once = options.format != Format::Text || detail == Detail::Full;
+        let is_told_at_once = options.account.format != Format::Text || detail == Detail::Full;
         let names = plans
             .iter()
             .map(|plan| plan.resolved().scenario.name.as_str());
         Self {
-            format: options.format,
+            format: options.account.format,
             detail,
             style: SuiteStyle::new(names, output::width(), output::colour()),
             folders: plans.iter().map(|plan| plan.resolved().folder()).collect(),

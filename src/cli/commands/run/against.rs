@@ -14,8 +14,14 @@ use crate::report::{comparison_with_baseline_markdown, comparison_with_baseline_
 /// A refusal is printed before its exit code is returned.
 pub(super) fn earlier(options: &RunOptions) -> Result<Option<Earlier>, Exit> {
     let select = &options.select;
-    let fail_on = outcomes(&options.against.fail_on)?;
-    let side = options.against.baseline.as_deref().map(side).transpose()?;
+    let fail_on = outcomes(&options.account.against.fail_on)?;
+    let side = options
+        .account
+        .against
+        .baseline
+        .as_deref()
+        .map(side)
+        .transpose()?;
     Ok(side.map(|side| Earlier {
         side,
         fail_on: fail_on.clone(),
@@ -62,7 +68,7 @@ impl Compared {
 }
 
 fn printed(judged: Judged, options: &RunOptions) -> Exit {
-    let is_text = options.format == Format::Text;
+    let is_text = options.account.format == Format::Text;
     let colour = is_text && output::colour();
     let text = comparison_with_baseline_text(judged, colour);
     if is_text {

@@ -32,7 +32,7 @@ pub(in crate::cli) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Re
         Ok(plans) => plans,
         Err(exit) => return Ok(exit),
     };
-    if options.require_gates && without_gates(&plans) {
+    if options.account.require_gates && without_gates(&plans) {
         return Ok(Exit::GateFailed);
     }
     let programs = match programs(&plans, options) {
@@ -76,7 +76,7 @@ pub(super) fn conclude_by(
     };
     let suite = SuiteOptions {
         earlier,
-        threads: usize::from(options.jobs),
+        threads: usize::from(options.account.jobs),
         force: options.force,
         resume: resume(options.resume),
         ..SuiteOptions::new(options.output.clone())
@@ -101,7 +101,7 @@ fn warn_of_threads(options: &RunOptions) {
 /// What the variable for the number of threads says in vain; none if it is not asked, or a number.
 fn senseless_threads(options: &RunOptions) -> Option<String> {
     let text = std::env::var("RAYON_NUM_THREADS").ok()?;
-    let is_idle = options.jobs > 0 || text.is_empty() || text.parse::<usize>().is_ok();
+    let is_idle = options.account.jobs > 0 || text.is_empty() || text.parse::<usize>().is_ok();
     (!is_idle).then_some(text)
 }
 

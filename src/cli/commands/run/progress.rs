@@ -53,7 +53,7 @@ impl<'a> Progress<'a> {
         interrupt: &'a Interrupt,
     ) -> Self {
         let total_s: f64 = plans.iter().map(Plan::simulated_s).sum();
-        let bar = if io::stderr().is_terminal() && !options.quiet {
+        let bar = if io::stderr().is_terminal() && !options.account.quiet {
             ProgressBar::new(whole(total_s))
         } else {
             ProgressBar::hidden()
@@ -134,14 +134,14 @@ impl<'a> Progress<'a> {
         for failure in &suite.failures {
             self.talk(&format!("error: {failure}"));
         }
-        let asked = thread_count(usize::from(self.options.jobs));
+        let asked = thread_count(usize::from(self.options.account.jobs));
         if suite.threads < asked {
             self.talk(&format!(
                 "warning: the system gave {} of {asked} threads",
                 suite.threads
             ));
         }
-        if !self.options.quiet {
+        if !self.options.account.quiet {
             let runs = counted(suite.runs.len(), "run");
             self.talk(&format!("{runs} in {}", self.clock.total()));
             self.talk(&format!("results in {}", self.options.output.display()));
@@ -169,7 +169,7 @@ impl<'a> Progress<'a> {
 
     /// Says now and then how far the suite is, where no bar does.
     fn beat(&self) {
-        if self.options.quiet || !self.bar.is_hidden() {
+        if self.options.account.quiet || !self.bar.is_hidden() {
             return;
         }
         if let Some(line) = self.clock.beat() {
@@ -182,7 +182,7 @@ impl<'a> Progress<'a> {
         let mut pending = self.pending();
         let mut text = pending.account.rest();
         let annotations = self.server.annotations(suite);
-        if self.options.format == Format::Text {
+        if self.options.account.format == Format::Text {
             text.push_str(&annotations);
         } else {
             annotations.lines().for_each(|line| self.talk(line));

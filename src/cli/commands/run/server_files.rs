@@ -31,7 +31,9 @@ impl<'a> ServerFiles<'a> {
             .map(|plan| plan.resolved().shown_file())
             .collect();
         let read = scenario_files.iter().map(Path::new);
-        let read: Vec<&Path> = read.chain(options.against.baseline.as_deref()).collect();
+        let read: Vec<&Path> = read
+            .chain(options.account.against.baseline.as_deref())
+            .collect();
         let files: Vec<SingleFile> = files(options).map(|(_, file)| file).collect();
         let below = place::real(&options.output);
         for (index, file) in files.iter().enumerate() {
@@ -96,7 +98,7 @@ impl<'a> ServerFiles<'a> {
 
     /// What a build server reads of a suite among its output; empty if nothing is asked for.
     pub(super) fn annotations(&self, suite: &SuiteOutcome) -> String {
-        match self.options.server.annotations {
+        match self.options.account.server.annotations {
             None => String::new(),
             Some(Annotations::Github) => {
                 let judged = suite.against.judged();
@@ -128,7 +130,7 @@ impl Kind {
 
 /// The files that are asked for.
 fn files(options: &RunOptions) -> impl Iterator<Item = (Kind, SingleFile<'_>)> {
-    let server = &options.server;
+    let server = &options.account.server;
     let asked = [
         (Kind::Junit, &server.junit),
         (Kind::Markdown, &server.summary_markdown),

@@ -40,7 +40,7 @@ pub(super) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exi
     };
     let shard = ShardOptions {
         output: options.output.clone(),
-        threads: usize::from(options.jobs),
+        threads: usize::from(options.account.jobs),
         force: options.force,
     };
     Ok(match run_shard(&plans, &list, &head, &shard, &watch) {
@@ -144,7 +144,7 @@ impl Watch<'_> {
             };
             return exit.worst(self.interrupt.exit().unwrap_or(exit));
         }
-        if !self.options.quiet {
+        if !self.options.account.quiet {
             output::talk(&format!(
                 "{name}: {done} of {units} done{before}, in {}",
                 outcome.place.display()
@@ -180,7 +180,7 @@ impl experiment::Progress for Watch<'_> {
 
 impl ShardObserver for Watch<'_> {
     fn unit_done(&self, folder: &str, done: usize, units: usize) {
-        if !self.options.quiet {
+        if !self.options.account.quiet {
             output::talk(&format!("{}: {done} of {units} done: {folder}", self.name));
         }
     }

@@ -7,8 +7,6 @@ use crate::cli::commands::select;
 use crate::cli::commands::shards::plan::select_options;
 use crate::cli::commands::shards::status::refused;
 use crate::cli::options::arguments::{RunOptions, SelectOptions};
-use crate::cli::options::baseline::AgainstOptions;
-use crate::cli::options::build_server::BuildServerOptions;
 use crate::cli::options::shard::{MergeOptions, ShardOptions};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
@@ -49,7 +47,7 @@ pub(in crate::cli) fn merge(options: &MergeOptions, interrupt: &Interrupt) -> io
     if let Err(error) = gathered.check(&list) {
         return Ok(refused(error));
     }
-    if options.require_gates && without_gates(&plans) {
+    if options.account.require_gates && without_gates(&plans) {
         return Ok(Exit::GateFailed);
     }
     run::conclude_by(&plans, &as_run, interrupt, None, |suite, observer| {
@@ -59,7 +57,6 @@ pub(in crate::cli) fn merge(options: &MergeOptions, interrupt: &Interrupt) -> io
 
 /// The options of a `run` that ends as the merge is to end.
 fn as_run(options: &MergeOptions, select: SelectOptions) -> RunOptions {
-    let (against, server) = (&options.against, &options.server);
     RunOptions {
         select,
         output: options.output.clone(),
@@ -67,21 +64,7 @@ fn as_run(options: &MergeOptions, select: SelectOptions) -> RunOptions {
         resume: None,
         allow_programs: false,
         fail_fast: false,
-        require_gates: options.require_gates,
-        jobs: options.jobs,
-        verbose: options.verbose,
-        quiet: options.quiet,
-        format: options.format,
         shard: ShardOptions::default(),
-        against: AgainstOptions {
-            baseline: against.baseline.clone(),
-            fail_on: against.fail_on.clone(),
-        },
-        server: BuildServerOptions {
-            junit: server.junit.clone(),
-            annotations: server.annotations,
-            summary_markdown: server.summary_markdown.clone(),
-            bmf: server.bmf.clone(),
-        },
+        account: options.account.clone(),
     }
 }
