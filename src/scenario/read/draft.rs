@@ -38,6 +38,31 @@ pub(crate) struct Draft {
     pub(crate) is_partial: bool,
 }
 
+impl Draft {
+    /// A record that was read whole, as a manifest or a calibration is.
+    pub(crate) fn of_record(
+        (root, root_mark): (Table, Mark),
+        sources: Sources,
+        file: String,
+        inputs: Vec<InputFile>,
+    ) -> Self {
+        Self {
+            root,
+            root_mark,
+            sources: Arc::new(sources),
+            file,
+            inputs,
+            named_files: Vec::new(),
+            log: None,
+            recorded: None,
+            warnings: Vec::new(),
+            remarks: Vec::new(),
+            is_record: true,
+            is_partial: false,
+        }
+    }
+}
+
 /// The origin of a resolved scenario, as a manifest records it.
 #[derive(Clone, Debug)]
 pub(crate) struct Recorded {

@@ -92,22 +92,9 @@ pub fn load_calibration(
     if let Some(table) = root.get_mut(TABLE).and_then(Node::as_table_mut) {
         table.insert(PARAMETERS.to_owned(), node);
     }
-    let resolved = Draft {
-        root,
-        root_mark: start,
-        sources: Arc::new(sources),
-        file: label.text(),
-        inputs: inputs.clone(),
-        named_files: Vec::new(),
-        log: None,
-        recorded: None,
-        warnings: Vec::new(),
-        remarks: Vec::new(),
-        is_record: true,
-        is_partial: false,
-    }
-    .resolve()
-    .map_err(|unsound| unsound.errors)?;
+    let resolved = Draft::of_record((root, start), sources, label.text(), inputs.clone())
+        .resolve()
+        .map_err(|unsound| unsound.errors)?;
     let found = resolved.scenario.compensation;
     let found = found.and_then(|compensation| compensation.parameters);
     let digest = inputs.into_iter().next().map(|input| input.digest);
@@ -226,20 +213,13 @@ fn written_campaign(
         let start = error.start;
         vec![own.error(Mark { source, start }, error.message)]
     })?;
-    resolve(Draft {
-        root,
-        root_mark: Mark { source, start: 0 },
-        sources: Arc::new(own),
-        file: label.text(),
-        inputs: Vec::new(),
-        named_files: Vec::new(),
-        log: None,
-        recorded: None,
-        warnings: Vec::new(),
-        remarks: Vec::new(),
-        is_record: true,
-        is_partial: false,
-    })
+    let start = Mark { source, start: 0 };
+    resolve(Draft::of_record(
+        (root, start),
+        own,
+        label.text(),
+        Vec::new(),
+    ))
 }
 
 /// Resolves a campaign; one that is a sweep or is compensated itself is refused.

@@ -124,19 +124,11 @@ pub(crate) fn read(
     let file = inputs.first().map(|input| input.file.clone());
     let file = file.unwrap_or_default();
     let warnings = other_version(&file, &version).into_iter().collect();
+    let root = (Arc::unwrap_or_clone(scenario), mark.unwrap_or(start));
     let mut draft = Draft {
-        root: Arc::unwrap_or_clone(scenario),
-        root_mark: mark.unwrap_or(start),
-        sources: Arc::new(sources),
-        file,
-        inputs,
-        named_files: Vec::new(),
-        log: None,
         recorded: Some(recorded),
         warnings,
-        remarks: Vec::new(),
-        is_record: true,
-        is_partial: false,
+        ..Draft::of_record(root, sources, file, inputs)
     };
     let is_sealed = is_as_sealed(draft.sources.text_of(start), is_file);
     draft.remarks = changes(&draft, start, version == TOOL_VERSION, is_sealed);
