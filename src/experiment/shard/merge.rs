@@ -1,7 +1,6 @@
 //! One output folder from the files of shards, as one unsharded suite would have written it.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::channel;
 
 use rayon::prelude::*;
 
@@ -12,9 +11,9 @@ use crate::comparison::Layout;
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{RecordLength, Repeat, notes, pool as pool_repeats, theory, verdicts};
 use crate::experiment::suite::{
-    Ledger, Observer, Resume, Suite, SuiteError, SuiteOptions, SuiteOutcome, SuiteOutput, conclude,
+    Ledger, Observer, Resume, Suite, SuiteError, SuiteOptions, SuiteOutcome, SuiteOutput, conduct,
     enter_failure, enter_files, enter_report, enter_unwritten, failed, layout, panic_text, pool,
-    report_of_plan, thread_count, wait,
+    report_of_plan, thread_count,
 };
 use crate::gyro::temperature_record;
 use crate::report::RunReport;
@@ -56,27 +55,11 @@ pub fn merge_shards(
         gathered: &gathered,
         parts: parts(list, &gathered),
     };
-    let conclude = || {
-        Ok(SuiteOutcome {
-            threads: pool.current_num_threads(),
-            ..conclude(plans, layout, suite)
-        })
+    let work = || {
+        let runs = (0..plans.len()).into_par_iter().with_max_len(1);
+        runs.for_each(|run| merger.merge(run));
     };
-    let (end_of_work, work) = channel();
-    let stopped = pool.in_place_scope(|scope| {
-        scope.spawn(move |_| {
-            let runs = (0..plans.len()).into_par_iter().with_max_len(1);
-            runs.for_each(|run| merger.merge(run));
-            drop(end_of_work);
-        });
-        (!wait(&work, observer)).then(|| {
-            let result = conclude();
-            output.sign_off();
-            observer.abandoned(&result);
-            result
-        })
-    });
-    stopped.unwrap_or_else(conclude)
+    conduct((plans, layout), suite, &pool, observer, work)
 }
 
 /// Where the result of a part of a run stands: index of the file, first byte and length; none where its shard

@@ -49,21 +49,34 @@ pub fn run_suite(
         earlier: options.earlier.as_ref(),
         ledger,
     };
+    let work = || run_all(plans, layout, suite, observer);
+    conduct((plans, layout), suite, &pool, observer, work)
+}
+
+/// Does the work of a suite on a pool and writes what it comes to; where the observer stops it in the middle of
+/// a long stage, it hears of that with what there is.
+pub(crate) fn conduct(
+    (plans, layout): (&[Plan], &Layout),
+    suite: &Suite,
+    pool: &rayon::ThreadPool,
+    observer: &dyn Observer,
+    work: impl FnOnce() + Send,
+) -> Result<SuiteOutcome, SuiteError> {
     let conclude = || {
         Ok(SuiteOutcome {
             threads: pool.current_num_threads(),
             ..conclude(plans, layout, suite)
         })
     };
-    let (end_of_work, work) = channel();
+    let (end_of_work, ends) = channel();
     let stopped = pool.in_place_scope(|scope| {
         scope.spawn(move |_| {
-            run_all(plans, layout, suite, observer);
+            work();
             drop(end_of_work);
         });
-        (!wait(&work, observer)).then(|| {
+        (!wait(&ends, observer)).then(|| {
             let result = conclude();
-            output.sign_off();
+            suite.output.sign_off();
             observer.abandoned(&result);
             result
         })
