@@ -80,6 +80,7 @@ pub mod random;
 #[cfg(feature = "scenario")]
 mod seal;
 pub mod signal;
+mod simd;
 pub mod units;
 pub mod vocabulary;
 mod wording;

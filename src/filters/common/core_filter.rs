@@ -4,6 +4,7 @@ use super::divergence::{Divergence, Fault, Watch};
 use super::filter::{Filter, Output, step_each};
 use super::front_end::{FrontEnd, FrontEndConfig, Register, adaptive_rule};
 use crate::signal::{FilterShape, WeightRule};
+use crate::simd::with_wide_vectors;
 use crate::vocabulary::DesiredSignal;
 
 /// Weights and the rule that updates them, on regressors and desired values given directly.
@@ -107,7 +108,7 @@ impl<C: Core> CoreFilter<C> {
     /// Words of coming samples, several side by side, of a filter with many given weights.
     fn words_of(&self, inputs: &[f64]) -> Option<impl Iterator<Item = Output> + use<C>> {
         let (weights, weight_sum) = self.core.given()?;
-        if weights.len() < LANES {
+        if weights.len() < WEIGHTS_MIN {
             return None;
         }
         let history = self.front_end.history();
@@ -122,11 +123,22 @@ impl<C: Core> CoreFilter<C> {
 
 /// Outputs that are summed side by side: each in the order of [`dot`], without waiting for the sum of
 /// another.
-const LANES: usize = 8;
+const LANES: usize = 16;
+
+/// Weights from which on sums side by side are faster than one by one.
+const WEIGHTS_MIN: usize = 8;
 
 /// The `count` inner products of the weights with the samples, oldest first, that begin with the first
 /// `weights.len()` of them.
 fn convolved(weights: &[f64], samples: &[f64], count: usize) -> Vec<f64> {
+    with_wide_vectors(
+        #[inline(always)]
+        || convolved_in_lanes(weights, samples, count),
+    )
+}
+
+#[inline(always)]
+fn convolved_in_lanes(weights: &[f64], samples: &[f64], count: usize) -> Vec<f64> {
     let newest = weights.len() - 1;
     let mut words = Vec::with_capacity(count);
     while words.len() + LANES <= count {

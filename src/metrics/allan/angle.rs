@@ -5,6 +5,8 @@
 
 use rayon::prelude::*;
 
+use crate::simd::with_wide_vectors;
+
 /// Samples that one thread integrates at a time.
 const PART: usize = 1 << 16;
 
@@ -92,9 +94,7 @@ pub(crate) fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f6
     let of_blocks = blocks.into_par_iter().map(|first| {
         let mut sums = vec![0.0; factors.len()];
         for start in (first..angle.len()).step_by(BLOCK).take(BLOCKS_IN_A_ROW) {
-            for (sum, &m) in sums.iter_mut().zip(factors) {
-                *sum += squares_of_starts(angle, start, start + BLOCK, m);
-            }
+            add_squares(&mut sums, factors, angle, (start, start + BLOCK));
         }
         sums
     });
@@ -109,42 +109,96 @@ pub(crate) fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f6
     sums
 }
 
-/// Sum of the squared second differences that start in a range, as far as there are such.
-fn squares_of_starts(angle: &[f64], start: usize, end: usize, m: usize) -> f64 {
-    let end = end.min(angle.len() - 2 * m);
-    if start >= end {
-        return 0.0;
+/// Averaging factors whose sums are taken side by side, so that none waits for the addition of another.
+const SIDE_BY_SIDE: usize = 4;
+
+/// Adds the squared second differences that start from `first` on and before `end`, as far as there
+/// are such, to the sum of each averaging factor.
+pub(crate) fn add_squares(
+    sums: &mut [f64],
+    factors: &[usize],
+    angle: &[f64],
+    (first, end): (usize, usize),
+) {
+    with_wide_vectors(
+        #[inline(always)]
+        || {
+            let sums = sums.chunks_mut(SIDE_BY_SIDE);
+            for (sums, factors) in sums.zip(factors.chunks(SIDE_BY_SIDE)) {
+                add_squares_of_few(sums, factors, angle, (first, end));
+            }
+        },
+    );
+}
+
+#[inline(always)]
+fn add_squares_of_few(
+    sums: &mut [f64],
+    factors: &[usize],
+    angle: &[f64],
+    (first, end): (usize, usize),
+) {
+    let last = |m: usize| end.min(angle.len().saturating_sub(2 * m));
+    if let Ok(few) = <[usize; SIDE_BY_SIDE]>::try_from(factors)
+        && few.iter().all(|&m| last(m) == end)
+    {
+        let squares = squares_in_lanes(few.map(|m| differing(angle, first, end, m)));
+        for (sum, squares) in sums.iter_mut().zip(squares) {
+            *sum += squares;
+        }
+        return;
     }
-    squared_second_differences(
-        &angle[start..end],
-        &angle[start + m..end + m],
-        &angle[start + 2 * m..end + 2 * m],
-    )
+    for (sum, &m) in sums.iter_mut().zip(factors) {
+        if first < last(m) {
+            let [squares] = squares_in_lanes([differing(angle, first, last(m), m)]);
+            *sum += squares;
+        }
+    }
+}
+
+/// The three angles of the second differences that start in a range.
+#[inline(always)]
+fn differing(angle: &[f64], first: usize, last: usize, m: usize) -> [&[f64]; 3] {
+    [0, m, 2 * m].map(|later| &angle[first + later..last + later])
 }
 
 /// `sum (c - 2b + a)^2` in eight interleaved sums, which the compiler turns into vectors.
 pub(crate) fn squared_second_differences(a: &[f64], b: &[f64], c: &[f64]) -> f64 {
+    let [squares] = with_wide_vectors(
+        #[inline(always)]
+        || squares_in_lanes([[a, b, c]]),
+    );
+    squares
+}
+
+/// The same of several a, b, c, all of one length.
+#[inline(always)]
+fn squares_in_lanes<const N: usize>(parts: [[&[f64]; 3]; N]) -> [f64; N] {
     const LANES: usize = 8;
-    let mut lanes = [0.0; LANES];
-    let (a_lanes, a_rest) = a.as_chunks::<LANES>();
-    let (b_lanes, b_rest) = b.as_chunks::<LANES>();
-    let (c_lanes, c_rest) = c.as_chunks::<LANES>();
-    for ((a, b), c) in a_lanes.iter().zip(b_lanes).zip(c_lanes) {
-        for lane in 0..LANES {
-            let difference = (a[lane] + c[lane]) - 2.0 * b[lane];
-            lanes[lane] += difference * difference;
+    let mut lanes = [[0.0; LANES]; N];
+    let length = parts[0][0].len();
+    let chunks = length / LANES;
+    let whole = parts.map(|part| part.map(|angles| &angles.as_chunks::<LANES>().0[..chunks]));
+    for chunk in 0..chunks {
+        for (lanes, [a, b, c]) in lanes.iter_mut().zip(&whole) {
+            let (a, b, c) = (&a[chunk], &b[chunk], &c[chunk]);
+            for lane in 0..LANES {
+                let difference = (a[lane] + c[lane]) - 2.0 * b[lane];
+                lanes[lane] += difference * difference;
+            }
         }
     }
-    let rest: f64 = a_rest
-        .iter()
-        .zip(b_rest)
-        .zip(c_rest)
-        .map(|((a, b), c)| {
-            let difference = (a + c) - 2.0 * b;
-            difference * difference
-        })
-        .sum();
-    lanes.iter().sum::<f64>() + rest
+    let mut sums = [0.0; N];
+    for ((sum, lanes), [a, b, c]) in sums.iter_mut().zip(lanes).zip(parts) {
+        let rest: f64 = (chunks * LANES..length)
+            .map(|at| {
+                let difference = (a[at] + c[at]) - 2.0 * b[at];
+                difference * difference
+            })
+            .sum();
+        *sum = lanes.iter().sum::<f64>() + rest;
+    }
+    sums
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use super::angle::{
-    angle_about_mean, mean_rate, second_difference_sums, squared_second_differences,
+    add_squares, angle_about_mean, mean_rate, second_difference_sums, squared_second_differences,
 };
 
 /// Samples whose short averaging times one thread handles at a time.
@@ -123,16 +123,7 @@ fn short_times(
     integrate(&rates[start..end], mean, 0.0, angle);
     let mut sums = vec![0.0; factors.len()];
     for first in (0..PART).step_by(BLOCK) {
-        for (sum, &m) in sums.iter_mut().zip(factors) {
-            let last = (first + BLOCK).min(angle.len().saturating_sub(2 * m));
-            if first < last {
-                *sum += squared_second_differences(
-                    &angle[first..last],
-                    &angle[first + m..last + m],
-                    &angle[first + 2 * m..last + 2 * m],
-                );
-            }
-        }
+        add_squares(&mut sums, factors, angle, (first, first + BLOCK));
     }
     let own = PART.min(rates.len() - start);
     Part {

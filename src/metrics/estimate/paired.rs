@@ -195,23 +195,20 @@ fn ends(values: &[f64], density: Spread, length: f64) -> Spread {
     }
 }
 
-/// Values delayed by a number of samples that need not be whole, linear between two.
+/// Values delayed by a number of samples that need not be whole, linear between two, in their order.
 ///
 /// The first ones, for which there is no earlier sample, stay as they are.
-pub(crate) fn delayed(values: &[f64], samples: f64) -> Vec<f64> {
+pub(crate) fn delayed(values: &[f64], samples: f64) -> impl Iterator<Item = f64> {
     let samples = samples.clamp(0.0, values.len() as f64 / 4.0);
     let whole = interval::round_to_count(samples.floor());
     let part = samples - samples.floor();
-    let at = |index: usize| {
-        let newer = index
-            .checked_sub(whole)
-            .map_or(values[index], |index| values[index]);
-        let older = index
-            .checked_sub(whole + 1)
-            .map_or(values[index], |index| values[index]);
-        (1.0 - part) * newer + part * older
+    let back = move |index: usize, samples: usize| {
+        index
+            .checked_sub(samples)
+            .map_or(values[index], |index| values[index])
     };
-    (0..values.len()).map(at).collect()
+    (0..values.len())
+        .map(move |index| (1.0 - part) * back(index, whole) + part * back(index, whole + 1))
 }
 
 /// Spectral density at zero frequency: variance of a mean times its length, from Hann windows.

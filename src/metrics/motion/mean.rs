@@ -259,26 +259,27 @@ pub(crate) fn paired_scatter(
     facts: &FilterFacts,
     cycle: Option<f64>,
 ) -> MeanScatter {
-    let minus = |raw: &[f64]| -> Vec<f64> {
-        own.iter()
-            .zip(raw)
-            .map(|(own, raw)| own - gain * raw)
+    let minus = |raw: f64, own: f64| own - gain * raw;
+    let plain = || -> Vec<f64> {
+        raw.iter()
+            .zip(own)
+            .map(|(raw, own)| minus(*raw, *own))
             .collect()
     };
     let reach = filter_reach(Some(facts));
     if let Some(given) = facts.given() {
         let density = density_at_zero(raw).scaled(given.dc_gain() - gain);
         let density = density.plus(rounding_density((own, raw), facts));
-        return MeanScatter::of_known_density(&minus(raw), density, reach, None);
+        return MeanScatter::of_known_density(&plain(), density, reach, None);
     }
     let delay = facts.delay_at_dc_samples();
     // Delayed, the first samples have no input.
-    let aligned = minus(&delayed(raw, delay));
-    let whole = reach.min(aligned.len() / 2);
-    let (plain, aligned) = (minus(raw), &aligned[whole..]);
+    let whole = reach.min(own.len() / 2);
+    let aligned = delayed(raw, delay).zip(own).skip(whole);
+    let aligned: Vec<f64> = aligned.map(|(raw, own)| minus(raw, *own)).collect();
     match cycle {
-        Some(cycle) => MeanScatter::of_paired_about_swing(&plain, aligned, reach, cycle),
-        None => MeanScatter::of_paired(&plain, aligned, reach, None),
+        Some(cycle) => MeanScatter::of_paired_about_swing(&plain(), &aligned, reach, cycle),
+        None => MeanScatter::of_paired(&plain(), &aligned, reach, None),
     }
 }
 

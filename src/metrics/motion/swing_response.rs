@@ -197,13 +197,16 @@ fn paired_scatter(
     let gain = channel.amplitude / reference.amplitude;
     let turned = channel.phase_rad - reference.phase_rad;
     let scale = 2.0 / channel.amplitude;
+    let phases = 0..own.len();
+    let swing: Vec<(f64, f64)> = phases
+        .map(|index| (clock.phase_rad(index) + channel.phase_rad).sin_cos())
+        .collect();
     // With the input turned by `turned`, and then by what a delay leaves of that.
-    let parts = |input: &[f64], turned: f64| -> [Vec<f64>; 2] {
+    let parts = |input: &mut dyn Iterator<Item = f64>, turned: f64| -> [Vec<f64>; 2] {
         let (sine, cosine) = turned.sin_cos();
         let (mut real, mut imaginary) = (Vec::new(), Vec::new());
-        for (index, (own, raw)) in own.iter().zip(input).enumerate() {
+        for ((own, raw), (s, c)) in own.iter().zip(input).zip(&swing) {
             let (re, im) = (own - gain * cosine * raw, -gain * sine * raw);
-            let (s, c) = (clock.phase_rad(index) + channel.phase_rad).sin_cos();
             real.push(scale * (re * c + im * s));
             imaginary.push(scale * (im * c - re * s));
         }
@@ -214,13 +217,13 @@ fn paired_scatter(
     if let Some(facts) = filter.filter(|facts| facts.given().is_some()) {
         // The response of given weights is what the fits show but for the ends.
         let density = rounding_density((&own, &raw), facts).scaled(scale / 2.0_f64.sqrt());
-        return parts(&raw, turned)
+        return parts(&mut raw.iter().copied(), turned)
             .map(|part| MeanScatter::of_known_density(&part, density, reach, Some(cycle)));
     }
     let angular = TAU * clock.frequency_hz * clock.sample_period_s;
     let delay = filter.map_or(0.0, FilterFacts::delay_at_dc_samples);
-    let plain = parts(&raw, turned);
-    let aligned = parts(&delayed(&raw, delay), turned + angular * delay);
+    let plain = parts(&mut raw.iter().copied(), turned);
+    let aligned = parts(&mut delayed(&raw, delay), turned + angular * delay);
     let first = reach.min(own.len() / 2);
     [0, 1].map(|part| {
         MeanScatter::of_paired(&plain[part], &aligned[part][first..], reach, Some(cycle))

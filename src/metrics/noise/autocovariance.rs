@@ -8,6 +8,7 @@ use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::curve::{Column, CurveKey};
 use crate::metrics::key::metric::{Applies, MetricKey, Needs};
+use crate::simd::with_wide_vectors;
 
 /// Lag.
 pub static LAG: Column = Column::new("lag_s", "s", "time between the two samples");
@@ -115,14 +116,11 @@ impl LaggedProducts {
                 let reach = (end + largest_lag).min(values.len());
                 deviations.clear();
                 deviations.extend(values[start..reach].iter().map(|value| value - centre));
-                for lag in 0..=largest_lag {
-                    // The last block of a short record may hold fewer samples than the lag.
-                    let later = deviations.get(lag..).unwrap_or_default();
-                    let pairs = (end - start).min(later.len());
-                    let (sum, count) = products(&deviations[..pairs], &later[..pairs]);
-                    sums[block][lag] += sum;
-                    counts[block][lag] += count;
-                }
+                let chunk = Chunk {
+                    deviations: &deviations,
+                    starts: end - start,
+                };
+                chunk.add_products(&mut sums[block], &mut counts[block]);
                 start = end;
             }
         }
@@ -189,6 +187,55 @@ impl LaggedProducts {
     }
 }
 
+/// Lags whose products are summed side by side, so that none waits for the addition of another.
+const SIDE_BY_SIDE: usize = 4;
+
+/// Deviations from the centre, of which the first `starts` are earlier samples of pairs.
+struct Chunk<'a> {
+    deviations: &'a [f64],
+    starts: usize,
+}
+
+impl Chunk<'_> {
+    /// Adds the products at each lag from 0 on, and the number of their pairs.
+    fn add_products(&self, sums: &mut [f64], counts: &mut [usize]) {
+        let few = sums.chunks_mut(SIDE_BY_SIDE);
+        let few = few.zip(counts.chunks_mut(SIDE_BY_SIDE)).enumerate();
+        for (index, (sums, counts)) in few {
+            let first = index * SIDE_BY_SIDE;
+            let longest = first + SIDE_BY_SIDE - 1;
+            if sums.len() == SIDE_BY_SIDE && self.starts + longest <= self.deviations.len() {
+                let later: [&[f64]; SIDE_BY_SIDE] =
+                    std::array::from_fn(|at| self.later(first + at));
+                let products = with_wide_vectors(
+                    #[inline(always)]
+                    || dots(&self.deviations[..self.starts], later),
+                );
+                if products.iter().all(|sum| !sum.is_nan()) {
+                    for ((sum, count), product) in sums.iter_mut().zip(counts).zip(products) {
+                        *sum += product;
+                        *count += self.starts;
+                    }
+                    continue;
+                }
+            }
+            for ((sum, count), lag) in sums.iter_mut().zip(counts).zip(first..) {
+                let later = self.later(lag);
+                let (product, pairs) = products(&self.deviations[..later.len()], later);
+                *sum += product;
+                *count += pairs;
+            }
+        }
+    }
+
+    /// Later samples of the pairs at a lag: the last chunk of a short record may hold fewer samples
+    /// than the lag.
+    fn later(&self, lag: usize) -> &[f64] {
+        let later = self.deviations.get(lag..).unwrap_or_default();
+        &later[..self.starts.min(later.len())]
+    }
+}
+
 /// Number of independent samples that say as much about the variance as the record does.
 ///
 /// `n R0^2 / sum R(k)^2` over positive and negative lags: the variance of a Gaussian sample
@@ -217,17 +264,32 @@ pub(crate) fn products(a: &[f64], b: &[f64]) -> (f64, usize) {
 
 /// Dot product in eight interleaved sums, which the compiler turns into vectors.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let [sum] = dots(a, [b]);
+    sum
+}
+
+/// Dot products of one slice with several of its length, each as [`dot`].
+#[inline(always)]
+fn dots<const N: usize>(a: &[f64], others: [&[f64]; N]) -> [f64; N] {
     const LANES: usize = 8;
-    let mut lanes = [0.0; LANES];
-    let (a_lanes, a_rest) = a.as_chunks::<LANES>();
-    let (b_lanes, b_rest) = b.as_chunks::<LANES>();
-    for (a, b) in a_lanes.iter().zip(b_lanes) {
-        for lane in 0..LANES {
-            lanes[lane] += a[lane] * b[lane];
+    let mut lanes = [[0.0; LANES]; N];
+    let (chunks, rest) = a.as_chunks::<LANES>();
+    let whole = others.map(|other| &other.as_chunks::<LANES>().0[..chunks.len()]);
+    for (index, a) in chunks.iter().enumerate() {
+        for (lanes, other) in lanes.iter_mut().zip(&whole) {
+            let b = &other[index];
+            for lane in 0..LANES {
+                lanes[lane] += a[lane] * b[lane];
+            }
         }
     }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
-    lanes.iter().sum::<f64>() + rest
+    let mut sums = [0.0; N];
+    for ((sum, lanes), other) in sums.iter_mut().zip(lanes).zip(others) {
+        let last = &other[chunks.len() * LANES..];
+        let rest: f64 = rest.iter().zip(last).map(|(a, b)| a * b).sum();
+        *sum = lanes.iter().sum::<f64>() + rest;
+    }
+    sums
 }
 
 #[cfg(test)]
