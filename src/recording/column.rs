@@ -3,10 +3,10 @@
 use std::io;
 
 use super::error::Place;
-use super::format::LogFormat;
 use super::input::push;
-use super::time_column::TimeColumn;
-use super::unit_text::Spelled;
+use super::log::format::LogFormat;
+use super::time::column::TimeColumn;
+use super::unit::spelling::Spelled;
 
 /// Numbers with the name of their column.
 #[derive(Clone, Debug, Default)]

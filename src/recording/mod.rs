@@ -6,6 +6,16 @@
 //!                  npy ──────────────────────────┘
 //! ```
 //!
+//! | room | subject |
+//! |---|---|
+//! | `text` | lines and cells, encodings, columns of numbers, words written |
+//! | `layout` | how the lines of a text hold a table |
+//! | `npy` | arrays |
+//! | `time` | stamps, clocks that begin again, equal spacing |
+//! | `unit` | units, how they are spelled, rates from numbers |
+//! | `log` | what is said of a log, its parts, its words |
+//! | `groups` | group means of a calibration |
+//!
 //! Invariant: a log comes out of here whole, in deg/h and equally spaced, or not at all; samples are
 //! missing (NaN) only where gaps were asked for. Every complaint names the file and the place in it, and
 //! what is in doubt the option by which it is said. Every command that takes numbers from a file takes
@@ -13,49 +23,34 @@
 
 mod bounds;
 mod column;
-mod convert;
-mod csv;
 mod error;
-mod facts;
-mod format;
 mod groups;
-mod groups_heading;
 mod input;
 mod layout;
 mod log;
-mod motion;
 mod npy;
-mod npy_heading;
-mod stamp;
-mod stretches;
-mod table;
 mod text;
-mod time_column;
-mod time_unit;
-mod timing;
-mod transcode;
+mod time;
 mod unit;
-mod unit_text;
-mod words;
 
 pub use bounds::{
     OutOfBounds, RATE_MAX_DEG_PER_H, SAMPLE_RATE_HZ, STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C,
     check_rate, check_sample_rate, check_temperature,
 };
 pub use column::EmptyLines;
-pub use csv::csv_text;
 pub use error::LogError;
-pub use facts::LogFacts;
-pub use format::LogFormat;
-pub use groups::{GROUPS_MAX, Mounting, RecordedGroup, RecordedGroups, read_groups};
+pub use groups::read::{GROUPS_MAX, Mounting, RecordedGroup, RecordedGroups, read_groups};
 pub use layout::words::{DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind};
-pub use log::{
-    AssemblyColumns, AssemblyLog, Log, Stretch, read_assembly_log, read_log, read_logs,
-    read_stimulus,
+pub use log::facts::LogFacts;
+pub use log::format::LogFormat;
+pub use log::motion::{LogMotion, UnknownLogMotion};
+pub use log::read::{
+    AssemblyColumns, AssemblyLog, read_assembly_log, read_log, read_logs, read_stimulus,
 };
-pub use motion::{LogMotion, UnknownLogMotion};
-pub use text::{Delimiter, Line, Lines, TextError};
-pub use time_unit::TimeUnit;
-pub use timing::Timing;
-pub use unit::{AngleBase, AngleUnit, LogUnit, Per, Prefix, RateUnit, UnknownRateUnit};
-pub use words::read_words;
+pub use log::record::{Log, Stretch};
+pub use log::words::read_words;
+pub use text::csv::csv_text;
+pub use text::lines::{Delimiter, Line, Lines, TextError};
+pub use time::timing::Timing;
+pub use time::unit::TimeUnit;
+pub use unit::kinds::{AngleBase, AngleUnit, LogUnit, Per, Prefix, RateUnit, UnknownRateUnit};

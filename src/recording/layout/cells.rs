@@ -1,9 +1,9 @@
 //! What cells are: numbers with either decimal sign, stamps, words.
 
 use super::words::{DecimalSign, Separator};
-use crate::recording::stamp::is_date;
-use crate::recording::text::Delimiter;
-use crate::recording::text::{NumberError, begins_like_number, finite, is_missing};
+use crate::recording::text::lines::Delimiter;
+use crate::recording::text::lines::{NumberError, begins_like_number, finite, is_missing};
+use crate::recording::time::stamp::is_date;
 
 /// Whether a cell is a number with this decimal sign.
 pub(in crate::recording) fn is_number(cell: &str, decimal: DecimalSign) -> bool {

@@ -2,11 +2,11 @@
 
 use super::cells::is_number;
 use super::{Layout, LayoutError};
-use crate::recording::format::LogFormat;
-use crate::recording::stamp::{Stamp, is_date};
-use crate::recording::text::{listed, shown};
-use crate::recording::time_unit::TimeUnit;
-use crate::recording::unit_text::{Spelled, name_of_heading};
+use crate::recording::log::format::LogFormat;
+use crate::recording::text::lines::{listed, shown};
+use crate::recording::time::stamp::{Stamp, is_date};
+use crate::recording::time::unit::TimeUnit;
+use crate::recording::unit::spelling::{Spelled, name_of_heading};
 
 /// Word that says that a file has no column of the time.
 pub(super) const NO_TIME: &str = "none";

@@ -1,6 +1,6 @@
 //! What is wrong with a table, or doubtful.
 
-use crate::recording::text::FirstLineError;
+use crate::recording::text::lines::FirstLineError;
 
 /// A complaint about a line.
 #[derive(Debug)]

@@ -3,8 +3,8 @@
 use super::Layout;
 use super::columns::{Chosen, NO_TIME};
 use super::words::{DecimalSign, Encoding, Separator};
-use crate::recording::format::LogFormat;
-use crate::recording::text::shown;
+use crate::recording::log::format::LogFormat;
+use crate::recording::text::lines::shown;
 use crate::wording::counted;
 
 impl Layout {

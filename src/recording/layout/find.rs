@@ -4,8 +4,8 @@ use super::cells::{DecimalFound, decimal_of, is_value, separator_of};
 use super::heading::{Above, HeadLine, above_rows};
 use super::words::{DecimalSign, Separator};
 use super::{Fault, Layout, LayoutError};
-use crate::recording::format::LogFormat;
-use crate::recording::text::{Delimiter, is_comment, is_heading, is_missing};
+use crate::recording::log::format::LogFormat;
+use crate::recording::text::lines::{Delimiter, is_comment, is_heading, is_missing};
 
 /// Lines at the end of the first ones that tell how rows look.
 const TAIL: usize = 40;

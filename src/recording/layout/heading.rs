@@ -4,9 +4,9 @@ use super::cells::is_number;
 use super::find::Rows;
 use super::words::Separator;
 use super::{Fault, LayoutError};
-use crate::recording::format::LogFormat;
-use crate::recording::text::{Delimiter, is_comment, is_heading, shown};
-use crate::recording::unit_text::{Spelled, spelled};
+use crate::recording::log::format::LogFormat;
+use crate::recording::text::lines::{Delimiter, is_comment, is_heading, shown};
+use crate::recording::unit::spelling::{Spelled, spelled};
 use crate::wording::counted;
 
 /// Most comments above the rows that are looked at for a heading.

@@ -22,8 +22,8 @@ pub(super) use error::{Fault, LayoutError};
 pub(super) use find::find;
 pub(super) use heading::HeadLine;
 
-use super::text::Delimiter;
-use super::unit_text::{Spelled, unit_of_heading};
+use crate::recording::text::lines::Delimiter;
+use crate::recording::unit::spelling::{Spelled, unit_of_heading};
 use words::{DecimalSign, Encoding, Separator};
 
 /// How a text holds a table.
@@ -107,7 +107,7 @@ impl Layout {
             return false;
         }
         let mut marks = self.marks.iter();
-        marks.any(|mark| super::text::is_comment(text, &[mark]))
+        marks.any(|mark| crate::recording::text::lines::is_comment(text, &[mark]))
     }
 
     /// Name of a column; its number where there is no heading but several columns.
@@ -122,7 +122,7 @@ impl Layout {
         let below = self
             .units
             .get(index)
-            .and_then(|unit| super::unit_text::spelled(unit));
+            .and_then(|unit| crate::recording::unit::spelling::spelled(unit));
         below.or_else(|| unit_of_heading(self.names.get(index)?))
     }
 }

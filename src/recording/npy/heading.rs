@@ -9,7 +9,7 @@ use std::fmt;
 use std::io::{self, Read};
 
 /// First bytes of every NPY file.
-pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+pub(in crate::recording) const MAGIC: &[u8] = b"\x93NUMPY";
 /// Longest heading, bytes; that of a plain array has 118.
 const HEADING_BYTES_MAX: u32 = 1 << 16;
 /// Most quantities of an array that has a sample in each column.
@@ -17,7 +17,7 @@ const COLUMNS_OF_TURNED_MAX: u64 = 64;
 
 /// Kind and size of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Word {
+pub(in crate::recording) enum Word {
     F2,
     F4,
     F8,
@@ -48,24 +48,24 @@ const WORDS: [(&str, Word, usize); 11] = [
 
 /// What stands before the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct NpyHeading {
-    pub(super) word: Word,
+pub(in crate::recording) struct NpyHeading {
+    pub(in crate::recording) word: Word,
     /// Bytes of a number.
-    pub(super) word_bytes: usize,
-    pub(super) is_big_endian: bool,
+    pub(in crate::recording) word_bytes: usize,
+    pub(in crate::recording) is_big_endian: bool,
     /// Samples.
-    pub(super) rows: u64,
+    pub(in crate::recording) rows: u64,
     /// Numbers of a sample.
-    pub(super) columns: u64,
+    pub(in crate::recording) columns: u64,
     /// Whether all numbers of a column stand together.
-    pub(super) is_by_column: bool,
+    pub(in crate::recording) is_by_column: bool,
     /// Bytes of the file before the first number.
-    pub(super) bytes: u64,
+    pub(in crate::recording) bytes: u64,
 }
 
 /// Why there is no heading.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum HeadingError {
+pub(in crate::recording) enum HeadingError {
     #[error("{0}")]
     Io(io::Error),
     #[error("not a whole NPY file: its heading is cut short")]
@@ -101,7 +101,7 @@ impl From<io::Error> for HeadingError {
 
 impl NpyHeading {
     /// Numbers of the array; of one that no machine holds, the largest count there is.
-    pub(super) fn count(&self) -> u64 {
+    pub(in crate::recording) fn count(&self) -> u64 {
         self.rows.saturating_mul(self.columns)
     }
 }
@@ -123,7 +123,7 @@ impl fmt::Display for NpyHeading {
 ///
 /// # Errors
 /// A file cut short, another version, a heading too long or of another form, another shape or type.
-pub(super) fn read(reader: &mut impl Read) -> Result<NpyHeading, HeadingError> {
+pub(in crate::recording) fn read(reader: &mut impl Read) -> Result<NpyHeading, HeadingError> {
     let mut start = [0; 8];
     reader.read_exact(&mut start)?;
     let (length, before) = match start[6] {
@@ -179,7 +179,7 @@ fn word_of(descr: &str) -> Result<(Word, usize, bool), HeadingError> {
         };
         Some((*word, *bytes, is_big_endian))
     });
-    found.ok_or_else(|| HeadingError::Word(super::text::shown(descr)))
+    found.ok_or_else(|| HeadingError::Word(crate::recording::text::lines::shown(descr)))
 }
 
 /// A shape as Python writes it; of a long one the beginning.

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use super::error::{LogError, Place};
-use super::input::{Input, failure, push};
-use super::log::read_stimulus;
-use super::npy_heading;
-use super::text::{Lines, TextError, shown};
+use super::read::read_stimulus;
+use crate::recording::error::{LogError, Place};
+use crate::recording::input::{Input, failure, push};
+use crate::recording::npy::heading;
+use crate::recording::text::lines::{Lines, TextError, shown};
 
 /// End of the name of a file of hexadecimal words, as `$writememh` makes it.
 const HEX: &str = "hex";
@@ -21,7 +21,7 @@ pub fn read_words(path: &Path) -> Result<Vec<f64>, LogError> {
     let is_hex = path
         .extension()
         .is_some_and(|end| end.eq_ignore_ascii_case(HEX));
-    let words = if input.starts_with(npy_heading::MAGIC) {
+    let words = if input.starts_with(heading::MAGIC) {
         drop(input);
         read_stimulus(path, None, usize::MAX)?
     } else if is_hex {

@@ -1,7 +1,7 @@
 //! The heading of a groups file: which column holds what, in which unit.
 
-use super::text::{Delimiter, shown};
-use super::unit::{RateUnit, SUFFIXES};
+use crate::recording::text::lines::{Delimiter, shown};
+use crate::recording::unit::kinds::{RateUnit, SUFFIXES};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Most columns of a heading: twice as many as there are quantities.
@@ -9,7 +9,7 @@ const COLUMNS_MAX: usize = 64;
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub(in crate::recording) enum Quantity {
     Group,
     Mounting,
     TableRate,
@@ -28,7 +28,7 @@ pub(super) enum Quantity {
 
 impl Quantity {
     /// Whether an empty cell is an error.
-    pub(super) fn is_required(self) -> bool {
+    pub(in crate::recording) fn is_required(self) -> bool {
         matches!(
             self,
             Self::Mounting | Self::TableRate | Self::Output(_) | Self::Temperature(_)
@@ -41,16 +41,16 @@ type OfAxis = fn(usize) -> Quantity;
 
 /// A column of the file.
 #[derive(Clone, Debug)]
-pub(super) struct HeadedColumn {
-    pub(super) name: String,
-    pub(super) quantity: Quantity,
+pub(in crate::recording) struct HeadedColumn {
+    pub(in crate::recording) name: String,
+    pub(in crate::recording) quantity: Quantity,
     /// Unit of a rate.
-    pub(super) unit: Option<RateUnit>,
+    pub(in crate::recording) unit: Option<RateUnit>,
 }
 
 /// What is wrong with a heading.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum GroupsHeadingError {
+pub(in crate::recording) enum GroupsHeadingError {
     #[error("{0} columns: expected at most {COLUMNS_MAX}")]
     TooMany(usize),
     /// Columns that are unknown, there twice or missing, all of them.
@@ -60,9 +60,9 @@ pub(super) enum GroupsHeadingError {
 
 /// The heading of a file.
 #[derive(Clone, Debug)]
-pub(super) struct Heading {
-    pub(super) delimiter: Delimiter,
-    pub(super) columns: Vec<HeadedColumn>,
+pub(in crate::recording) struct Heading {
+    pub(in crate::recording) delimiter: Delimiter,
+    pub(in crate::recording) columns: Vec<HeadedColumn>,
 }
 
 impl Heading {
@@ -70,7 +70,7 @@ impl Heading {
     ///
     /// # Errors
     /// Unknown, repeated and missing columns, all of them in one message.
-    pub(super) fn of(line: &str) -> Result<Self, GroupsHeadingError> {
+    pub(in crate::recording) fn of(line: &str) -> Result<Self, GroupsHeadingError> {
         let delimiter = Delimiter::of(line);
         let known = known();
         let mut columns: Vec<HeadedColumn> = Vec::new();
@@ -101,13 +101,13 @@ impl Heading {
     }
 
     /// Index of the column of a quantity.
-    pub(super) fn find(&self, quantity: Quantity) -> Option<usize> {
+    pub(in crate::recording) fn find(&self, quantity: Quantity) -> Option<usize> {
         let mut columns = self.columns.iter();
         columns.position(|column| column.quantity == quantity)
     }
 
     /// Unit of the column of a rate.
-    pub(super) fn unit(&self, quantity: Quantity) -> Option<RateUnit> {
+    pub(in crate::recording) fn unit(&self, quantity: Quantity) -> Option<RateUnit> {
         self.columns[self.find(quantity)?].unit
     }
 }

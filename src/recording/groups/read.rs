@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use super::bounds::{STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C};
-use super::error::{LogError, Place};
-use super::groups_heading::{Heading, Quantity};
-use super::input::read_whole;
-use super::table::fault;
-use super::text::{Lines, NumberError, finite, shown};
-use super::unit::RateUnit;
+use super::heading::{Heading, Quantity};
+use crate::recording::bounds::{STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C};
+use crate::recording::error::{LogError, Place};
+use crate::recording::input::read_whole;
+use crate::recording::text::lines::{Lines, NumberError, finite, shown};
+use crate::recording::text::table::fault;
+use crate::recording::unit::kinds::RateUnit;
 use crate::units::deg_per_h_to_deg_per_s;
 use crate::wording::exact;
 

@@ -4,12 +4,12 @@
 //! 19 digits of nanoseconds and twelve decimals of a second are kept alike. Libraries of dates end at
 //! nanoseconds and know no decimals of a count, which is why dates are read here as well.
 
-use super::layout::{is_number, plain_spelling, words::DecimalSign};
-use super::text::{finite, shown};
-use super::time_unit::TimeUnit;
+use super::unit::TimeUnit;
+use crate::recording::layout::{is_number, plain_spelling, words::DecimalSign};
+use crate::recording::text::lines::{finite, shown};
 
 /// Ticks of a second, or of a sample.
-pub(super) const TICKS: i128 = 1_000_000_000_000;
+pub(in crate::recording) const TICKS: i128 = 1_000_000_000_000;
 /// Ticks of a nanosecond.
 const TICKS_PER_NS: i128 = 1_000;
 /// Digits of [`TICKS`] behind the one.
@@ -19,17 +19,17 @@ const DAY: i128 = 86_400 * TICKS;
 
 /// A stamp, and what its spelling resolves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Stamp {
-    pub(super) ticks: i128,
+pub(in crate::recording) struct Stamp {
+    pub(in crate::recording) ticks: i128,
     /// One in its last digit, ticks.
-    pub(super) resolution: i128,
+    pub(in crate::recording) resolution: i128,
 }
 
 /// Why a cell is no stamp.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum StampError {
+pub(in crate::recording) enum StampError {
     #[error("{0}")]
-    Number(#[from] super::text::NumberError),
+    Number(#[from] crate::recording::text::lines::NumberError),
     #[error("`{0}` is no date or time of day: expected one as 2024-03-01T12:00:00.005Z")]
     Date(String),
     #[error("{0} is beyond the times that a clock shows")]
@@ -41,7 +41,7 @@ impl Stamp {
     ///
     /// # Errors
     /// No number, or no date where dates are expected.
-    pub(super) fn read(
+    pub(in crate::recording) fn read(
         cell: &str,
         unit: TimeUnit,
         decimal: DecimalSign,
@@ -65,7 +65,7 @@ impl Stamp {
     }
 
     /// The stamp that a number is; nothing beyond the times that a clock shows.
-    pub(super) fn of_number(number: f64, unit: TimeUnit) -> Option<Self> {
+    pub(in crate::recording) fn of_number(number: f64, unit: TimeUnit) -> Option<Self> {
         let ticks = number * as_float(ticks_of(unit));
         if ticks.is_nan() || ticks.abs() > 1e36 {
             return None;
@@ -79,14 +79,14 @@ impl Stamp {
     }
 
     /// The stamp that a whole number is.
-    pub(super) fn of_whole(number: i128, unit: TimeUnit) -> Option<Self> {
+    pub(in crate::recording) fn of_whole(number: i128, unit: TimeUnit) -> Option<Self> {
         let resolution = ticks_of(unit);
         let ticks = number.checked_mul(resolution)?;
         Some(Self { ticks, resolution })
     }
 
     /// The sum of two parts of a stamp.
-    pub(super) fn plus(self, other: Self) -> Self {
+    pub(in crate::recording) fn plus(self, other: Self) -> Self {
         Self {
             ticks: self.ticks.saturating_add(other.ticks),
             resolution: self.resolution.min(other.resolution),
@@ -95,7 +95,7 @@ impl Stamp {
 }
 
 /// Ticks of a unit.
-pub(super) fn ticks_of(unit: TimeUnit) -> i128 {
+pub(in crate::recording) fn ticks_of(unit: TimeUnit) -> i128 {
     unit.nanoseconds().map_or(TICKS, |ns| ns * TICKS_PER_NS)
 }
 
@@ -104,7 +104,7 @@ pub(super) fn ticks_of(unit: TimeUnit) -> i128 {
     clippy::cast_precision_loss,
     reason = "differences of stamps are small, and rounded once here"
 )]
-pub(super) fn as_float(ticks: i128) -> f64 {
+pub(in crate::recording) fn as_float(ticks: i128) -> f64 {
     // What fits into 64 bits, as most differences do, is converted faster.
     i64::try_from(ticks).map_or(ticks as f64, |ticks| ticks as f64)
 }
@@ -151,7 +151,7 @@ fn rounded(number: i128, over: i128) -> i128 {
 }
 
 /// Whether a cell is a date, a time of day or both.
-pub(super) fn is_date(cell: &str) -> bool {
+pub(in crate::recording) fn is_date(cell: &str) -> bool {
     date(cell).is_some()
 }
 

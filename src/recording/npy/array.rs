@@ -3,17 +3,17 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::column::{Column, Columns};
-use super::error::{LogError, Place};
-use super::format::LogFormat;
-use super::input::{failure, push};
-use super::layout::columns::{Chosen, Selection, choose};
-use super::layout::words::MissingWords;
-use super::layout::{Layout, LayoutError};
-use super::npy_heading::{self, HeadingError, NpyHeading, Word};
-use super::stamp::Stamp;
-use super::table::Wanted;
-use super::time_column::TimeColumn;
+use super::heading::{self, HeadingError, NpyHeading, Word};
+use crate::recording::column::{Column, Columns};
+use crate::recording::error::{LogError, Place};
+use crate::recording::input::{failure, push};
+use crate::recording::layout::columns::{Chosen, Selection, choose};
+use crate::recording::layout::words::MissingWords;
+use crate::recording::layout::{Layout, LayoutError};
+use crate::recording::log::format::LogFormat;
+use crate::recording::text::table::Wanted;
+use crate::recording::time::column::TimeColumn;
+use crate::recording::time::stamp::Stamp;
 
 /// Largest integer that binary64 holds with all below it.
 const INTEGER_MAX: u64 = 1 << 53;
@@ -39,13 +39,13 @@ struct Array<'a> {
 /// # Errors
 /// Another shape or number type, a file with less or more bytes than its heading says, a number that
 /// is not finite, an integer beyond binary64.
-pub(super) fn read(
+pub(in crate::recording) fn read(
     path: &Path,
     mut input: impl Read,
     length: Option<u64>,
     wanted: &Wanted<'_>,
 ) -> Result<Columns, LogError> {
-    let heading = npy_heading::read(&mut input).map_err(|error| match error {
+    let heading = heading::read(&mut input).map_err(|error| match error {
         HeadingError::Io(error) => failure(path, error),
         error => LogError::of_file(path, error),
     })?;

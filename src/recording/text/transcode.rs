@@ -2,7 +2,7 @@
 
 use std::io::{self, BufRead, Read};
 
-use super::layout::words::Encoding;
+use crate::recording::layout::words::Encoding;
 
 /// A byte order mark in each encoding that has one.
 const MARKS: [(&[u8], Encoding); 3] = [
@@ -13,7 +13,7 @@ const MARKS: [(&[u8], Encoding); 3] = [
 
 /// The encoding that the first bytes of a text tell: by their mark, or by letters of two bytes of which
 /// every other one is 0.
-pub(super) fn encoding_of(first: &[u8]) -> Encoding {
+pub(in crate::recording) fn encoding_of(first: &[u8]) -> Encoding {
     if let Some((_, encoding)) = MARKS.iter().find(|(mark, _)| first.starts_with(mark)) {
         return *encoding;
     }
@@ -29,7 +29,10 @@ pub(super) fn encoding_of(first: &[u8]) -> Encoding {
 }
 
 /// Bytes of a text as UTF-8; what is UTF-8 already passes as it is.
-pub(super) fn as_utf8<'a>(reader: impl BufRead + 'a, encoding: Encoding) -> Box<dyn BufRead + 'a> {
+pub(in crate::recording) fn as_utf8<'a>(
+    reader: impl BufRead + 'a,
+    encoding: Encoding,
+) -> Box<dyn BufRead + 'a> {
     match encoding {
         Encoding::Utf8 => Box::new(reader),
         encoding => Box::new(Transcoded {

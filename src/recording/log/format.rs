@@ -1,13 +1,13 @@
 //! What may be said of a log: one declaration for files (`[log]`), options and their documents.
 
-use super::layout::words::{
+use super::motion::LogMotion;
+use crate::declare::table;
+use crate::recording::layout::words::{
     DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind,
 };
-use super::motion::LogMotion;
-use super::time_unit::TimeUnit;
-use super::unit::LogUnit;
-use super::unit_text::Spelled;
-use crate::declare::table;
+use crate::recording::time::unit::TimeUnit;
+use crate::recording::unit::kinds::LogUnit;
+use crate::recording::unit::spelling::Spelled;
 use serde::Serialize;
 
 table! {
@@ -95,7 +95,7 @@ impl LogFormat {
     /// What is said of the reference: its unit alone, of which an angle runs on.
     ///
     /// * `in_heading`: what the heading of its column says.
-    pub(super) fn of_reference(&self, in_heading: Option<Spelled>) -> Self {
+    pub(in crate::recording) fn of_reference(&self, in_heading: Option<Spelled>) -> Self {
         let is_angle = match self.reference_unit {
             Some(given) => matches!(given, LogUnit::Angle(_)),
             None => matches!(in_heading, Some(Spelled::Angle(_))),

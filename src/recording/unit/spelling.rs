@@ -1,11 +1,11 @@
 //! Units as people spell them: in options, in headings, in a row of units.
 
-use super::time_unit::TimeUnit;
-use super::unit::{AngleBase, AngleUnit, Per, Prefix, RateUnit};
+use super::kinds::{AngleBase, AngleUnit, Per, Prefix, RateUnit};
+use crate::recording::time::unit::TimeUnit;
 
 /// What a text says of the numbers below it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Spelled {
+pub(in crate::recording) enum Spelled {
     /// A rate, or an angle turned in a sample.
     Rate(RateUnit),
     /// An angle.
@@ -86,7 +86,7 @@ const OTHERS: [&str; 30] = [
 ];
 
 /// The unit that a text is, and nothing else.
-pub(super) fn spelled(text: &str) -> Option<Spelled> {
+pub(in crate::recording) fn spelled(text: &str) -> Option<Spelled> {
     let text = plain_letters(text);
     let text = text.trim();
     let text = [('[', ']'), ('(', ')'), ('{', '}')]
@@ -171,7 +171,7 @@ fn prefix(text: &str) -> Option<Prefix> {
 
 /// The unit that a heading names behind the quantity: in brackets, behind a comma, as the end of a
 /// name, or as the whole of it.
-pub(super) fn unit_of_heading(heading: &str) -> Option<Spelled> {
+pub(in crate::recording) fn unit_of_heading(heading: &str) -> Option<Spelled> {
     if let Some(unit) = in_brackets(heading).and_then(spelled) {
         return Some(unit);
     }
@@ -217,7 +217,7 @@ fn in_brackets(heading: &str) -> Option<&str> {
 }
 
 /// A heading without the unit in brackets, in small letters: the name of the quantity.
-pub(super) fn name_of_heading(heading: &str) -> String {
+pub(in crate::recording) fn name_of_heading(heading: &str) -> String {
     let open = heading.find(['[', '(', '{']).unwrap_or(heading.len());
     heading[..open].trim().to_lowercase()
 }

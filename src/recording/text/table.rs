@@ -3,17 +3,17 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use super::column::{Column, Columns, EmptyLines, RowLines};
-use super::error::{LogError, Place};
-use super::format::LogFormat;
-use super::input::{Input, failure, push};
-use super::layout::columns::{Chosen, Selection, choose};
-use super::layout::words::MissingWords;
-use super::layout::{Fault, HeadLine, Layout, LayoutError, find, finite_in, is_number};
-use super::stamp::Stamp;
-use super::text::{Delimiter, Lines, TextError, is_missing, shown};
-use super::time_column::TimeColumn;
+use super::lines::{Delimiter, Lines, TextError, is_missing, shown};
 use super::transcode::{as_utf8, encoding_of};
+use crate::recording::column::{Column, Columns, EmptyLines, RowLines};
+use crate::recording::error::{LogError, Place};
+use crate::recording::input::{Input, failure, push};
+use crate::recording::layout::columns::{Chosen, Selection, choose};
+use crate::recording::layout::words::MissingWords;
+use crate::recording::layout::{Fault, HeadLine, Layout, LayoutError, find, finite_in, is_number};
+use crate::recording::log::format::LogFormat;
+use crate::recording::time::column::TimeColumn;
+use crate::recording::time::stamp::Stamp;
 
 /// Lines from which the layout is found.
 const HEAD_LINES: usize = 1000;
@@ -24,13 +24,13 @@ const SAMPLE_ROWS: usize = 50;
 
 /// What is read from a file.
 #[derive(Clone, Debug)]
-pub(super) struct Wanted<'a> {
-    pub(super) columns: Selection<'a>,
+pub(in crate::recording) struct Wanted<'a> {
+    pub(in crate::recording) columns: Selection<'a>,
     /// Whether the time is looked for.
-    pub(super) needs_time: bool,
-    pub(super) format: &'a LogFormat,
+    pub(in crate::recording) needs_time: bool,
+    pub(in crate::recording) format: &'a LogFormat,
     /// Samples after which reading ends.
-    pub(super) samples_max: usize,
+    pub(in crate::recording) samples_max: usize,
 }
 
 /// Reads columns, and that of the time where it is asked for or found.
@@ -38,7 +38,11 @@ pub(super) struct Wanted<'a> {
 /// # Errors
 /// Bytes that are no text, a layout in doubt, unknown columns and one asked for twice, lines of another
 /// width, cells that are no finite number.
-pub(super) fn read(path: &Path, input: Input, wanted: &Wanted<'_>) -> Result<Columns, LogError> {
+pub(in crate::recording) fn read(
+    path: &Path,
+    input: Input,
+    wanted: &Wanted<'_>,
+) -> Result<Columns, LogError> {
     let given = wanted.format.encoding;
     let encoding = given.unwrap_or_else(|| encoding_of(input.first()));
     let expected = match wanted.needs_time {
@@ -101,7 +105,7 @@ fn head(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Vec<HeadLine>, L
 }
 
 /// An error of a text at its line.
-pub(super) fn fault(path: &Path, error: TextError) -> LogError {
+pub(in crate::recording) fn fault(path: &Path, error: TextError) -> LogError {
     match error {
         TextError::Io(error) => failure(path, error),
         TextError::Content { line, message, .. } => LogError::at(path, Place::Line(line), message),

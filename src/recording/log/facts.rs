@@ -1,6 +1,6 @@
 //! What a log is, and the part of it that is measured.
 
-use super::log::{Log, Stretch};
+use super::record::{Log, Stretch};
 
 /// What a recorded log is, as the report prints it.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::column::Columns;
-use super::error::LogError;
 use super::format::LogFormat;
-use super::input::Input;
-use super::layout::columns::Selection;
-use super::table::{self, Wanted};
+use crate::recording::column::Columns;
+use crate::recording::error::LogError;
+use crate::recording::input::Input;
+use crate::recording::layout::columns::Selection;
+use crate::recording::text::table::{self, Wanted};
 
 /// Columns of a table of stretches.
 const BOUNDS: [&str; 2] = ["from_s", "to_s"];
@@ -44,7 +44,7 @@ fn until(to_s: f64) -> String {
 ///
 /// # Errors
 /// Parts that hold no row, a table of stretches that overlap.
-pub(super) fn parts(
+pub(in crate::recording) fn parts(
     path: &Path,
     columns: &Columns,
     count: usize,

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::unit_text::{Spelled, spelled};
+use super::spelling::{Spelled, spelled};
 use crate::declare::{Content, FromLiteral, Kind, Setting, Shape};
 use crate::units::{
     MICRO, MILLI, NANO, SECONDS_PER_HOUR, arcsec_to_rad, deg_to_rad, rad_per_s_to_deg_per_h,

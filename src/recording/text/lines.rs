@@ -106,7 +106,7 @@ impl<R: BufRead> Lines<R> {
     ///
     /// # Errors
     /// As [`Self::next_line`].
-    pub(super) fn next_unless(
+    pub(in crate::recording) fn next_unless(
         &mut self,
         is_passed: impl Fn(&str) -> bool,
     ) -> Result<Option<Line<'_>>, TextError> {
@@ -202,13 +202,13 @@ impl<R: BufRead> Lines<R> {
 }
 
 /// Whether a line begins with one of these marks; what a spreadsheet writes for a missing number does not.
-pub(super) fn is_comment(text: &str, marks: &[&str]) -> bool {
+pub(in crate::recording) fn is_comment(text: &str, marks: &[&str]) -> bool {
     let is_missing = |text: &str| SPREADSHEET_ERRORS.iter().any(|it| text.starts_with(it));
     marks.iter().any(|mark| text.starts_with(mark)) && !is_missing(text)
 }
 
 /// Whether a cell is a word for a missing number, or empty.
-pub(super) fn is_missing(cell: &str) -> bool {
+pub(in crate::recording) fn is_missing(cell: &str) -> bool {
     cell.is_empty()
         || SPREADSHEET_ERRORS.contains(&cell)
         || MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word))
@@ -311,7 +311,7 @@ fn unquoted(cell: &str) -> &str {
 
 /// Why a first line is neither a heading nor numbers.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum FirstLineError {
+pub(in crate::recording) enum FirstLineError {
     #[error("holds separators alone: expected a heading or numbers")]
     Separators,
     #[error(
@@ -329,7 +329,7 @@ pub(super) enum FirstLineError {
 ///
 /// # Errors
 /// A line without a number in which a cell begins like one, or that holds no word either.
-pub(super) fn is_heading(cells: &[&str]) -> Result<bool, FirstLineError> {
+pub(in crate::recording) fn is_heading(cells: &[&str]) -> Result<bool, FirstLineError> {
     if cells.is_empty() {
         return Err(FirstLineError::Separators);
     }
@@ -354,13 +354,13 @@ pub(super) fn is_heading(cells: &[&str]) -> Result<bool, FirstLineError> {
 }
 
 /// Whether a digit comes before any letter.
-pub(super) fn begins_like_number(cell: &str) -> bool {
+pub(in crate::recording) fn begins_like_number(cell: &str) -> bool {
     let first = cell.chars().find(|c| c.is_alphanumeric() || *c == '_');
     first.is_some_and(char::is_numeric)
 }
 
 /// A cell as messages repeat it: the beginning of a long one, nothing that a terminal obeys or hides.
-pub(super) fn shown(cell: &str) -> String {
+pub(in crate::recording) fn shown(cell: &str) -> String {
     let mut text: String = cell
         .chars()
         .take(SHOWN_CHARACTERS)
@@ -385,7 +385,7 @@ fn is_visible(c: char) -> bool {
 }
 
 /// Names as messages list them.
-pub(super) fn listed(names: &[String]) -> String {
+pub(in crate::recording) fn listed(names: &[String]) -> String {
     let first: Vec<String> = names.iter().take(LISTED_MAX).map(|it| shown(it)).collect();
     let more = names.len().saturating_sub(LISTED_MAX);
     let rest = if more > 0 {
@@ -398,7 +398,7 @@ pub(super) fn listed(names: &[String]) -> String {
 
 /// Why a cell is no number of a record.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum NumberError {
+pub(in crate::recording) enum NumberError {
     #[error("{0} is beyond the largest number, 1.8e308")]
     TooLarge(String),
     #[error("{0} is not a finite number")]
@@ -413,7 +413,7 @@ pub(super) enum NumberError {
 ///
 /// # Errors
 /// No number, or none that is finite.
-pub(super) fn finite(cell: &str) -> Result<f64, NumberError> {
+pub(in crate::recording) fn finite(cell: &str) -> Result<f64, NumberError> {
     match cell.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) if cell.contains(|c: char| c.is_ascii_digit()) => {

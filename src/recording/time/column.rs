@@ -3,10 +3,10 @@
 
 use std::io;
 
-use super::input::push;
-use super::layout::words::DecimalSign;
 use super::stamp::{Stamp, StampError, TICKS, as_float, ticks_of};
-use super::time_unit::TimeUnit;
+use super::unit::TimeUnit;
+use crate::recording::input::push;
+use crate::recording::layout::words::DecimalSign;
 
 /// Fewest and most bits of a counter that is taken to begin again at 0.
 const COUNTER_BITS: std::ops::RangeInclusive<u32> = 8..=64;
@@ -15,19 +15,19 @@ const CLOCKS_S: [i128; 2] = [86_400, 604_800];
 
 /// The stamps of a record.
 #[derive(Clone, Debug)]
-pub(super) struct TimeColumn {
+pub(in crate::recording) struct TimeColumn {
     /// Its name, of several columns with a plus between them.
-    pub(super) name: String,
+    pub(in crate::recording) name: String,
     /// Units of the columns.
-    pub(super) units: Vec<TimeUnit>,
+    pub(in crate::recording) units: Vec<TimeUnit>,
     /// Whether it was found rather than named.
-    pub(super) is_found: bool,
+    pub(in crate::recording) is_found: bool,
     /// What is worth saying of its unit.
-    pub(super) note: Option<String>,
+    pub(in crate::recording) note: Option<String>,
     /// Stamps from the first one on, s; of a counter samples.
-    pub(super) stamps: Vec<f64>,
+    pub(in crate::recording) stamps: Vec<f64>,
     /// How often the counter began again, and after which span, s.
-    pub(super) roll_overs: Option<(usize, f64)>,
+    pub(in crate::recording) roll_overs: Option<(usize, f64)>,
     clock: Clock,
 }
 
@@ -47,7 +47,7 @@ struct Clock {
 }
 
 impl TimeColumn {
-    pub(super) fn new(name: String, units: Vec<TimeUnit>, is_found: bool) -> Self {
+    pub(in crate::recording) fn new(name: String, units: Vec<TimeUnit>, is_found: bool) -> Self {
         Self {
             name,
             units,
@@ -60,7 +60,7 @@ impl TimeColumn {
     }
 
     /// Lets the clock begin again after a span, in the unit of the last column.
-    pub(super) fn rolls_over_after(&mut self, span: Option<f64>) {
+    pub(in crate::recording) fn rolls_over_after(&mut self, span: Option<f64>) {
         #[expect(
             clippy::cast_possible_truncation,
             reason = "the declaration of the key bounds it"
@@ -75,17 +75,17 @@ impl TimeColumn {
     }
 
     /// One in the last digit of a stamp, s; of a counter samples.
-    pub(super) fn last_digit(&self) -> f64 {
+    pub(in crate::recording) fn last_digit(&self) -> f64 {
         as_float(self.clock.resolution) / as_float(TICKS)
     }
 
     /// Whether it counts samples.
-    pub(super) fn is_counter(&self) -> bool {
+    pub(in crate::recording) fn is_counter(&self) -> bool {
         self.units == [TimeUnit::Samples]
     }
 
     /// The part of a stamp that a cell of one of the columns is.
-    pub(super) fn part(
+    pub(in crate::recording) fn part(
         &self,
         column: usize,
         cell: &str,
@@ -95,7 +95,7 @@ impl TimeColumn {
     }
 
     /// Takes the stamp of the next row; an error says that memory is used up.
-    pub(super) fn take(&mut self, stamp: Stamp) -> io::Result<()> {
+    pub(in crate::recording) fn take(&mut self, stamp: Stamp) -> io::Result<()> {
         let unit_ticks = || self.units.last().map_or(TICKS, |unit| ticks_of(*unit));
         let clock = &mut self.clock;
         if self.stamps.is_empty() {

@@ -1,29 +1,29 @@
 //! From the numbers of a column to rates: what the options and its heading say of their unit.
 
-use super::column::Column;
-use super::format::LogFormat;
-use super::layout::words::{HeadingUnits, WordKind};
-use super::text::shown;
-use super::unit::{AngleUnit, LogUnit, Per, RateUnit};
-use super::unit_text::Spelled;
+use super::kinds::{AngleUnit, LogUnit, Per, RateUnit};
+use super::spelling::Spelled;
+use crate::recording::column::Column;
+use crate::recording::layout::words::{HeadingUnits, WordKind};
+use crate::recording::log::format::LogFormat;
+use crate::recording::text::lines::shown;
 
 /// Sizes of the units that one count stands for.
 const SCALE: (f64, f64) = (1e-30, 1e30);
 
 /// How numbers become rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Conversion {
+pub(in crate::recording) struct Conversion {
     /// Unit of a rate, or of the angle turned in a sample.
-    pub(super) unit: RateUnit,
+    pub(in crate::recording) unit: RateUnit,
     /// The unit of a running angle whose differences are those angles.
-    pub(super) running: Option<AngleUnit>,
-    pub(super) scale: f64,
-    pub(super) offset: f64,
+    pub(in crate::recording) running: Option<AngleUnit>,
+    pub(in crate::recording) scale: f64,
+    pub(in crate::recording) offset: f64,
 }
 
 /// Why the unit of a column is not known, or in doubt.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum UnitError {
+pub(in crate::recording) enum UnitError {
     #[error("the unit of the numbers is not known: give --unit, such as deg/s")]
     Unknown,
     #[error(
@@ -63,7 +63,7 @@ impl Conversion {
     ///
     /// # Errors
     /// No unit, or two that contradict each other; a kind of number that the unit is not of.
-    pub(super) fn of(format: &LogFormat, column: &Column) -> Result<Self, UnitError> {
+    pub(in crate::recording) fn of(format: &LogFormat, column: &Column) -> Result<Self, UnitError> {
         let scale = format.scale.unwrap_or(1.0);
         if !(SCALE.0..=SCALE.1).contains(&scale.abs()) {
             return Err(UnitError::Scale(scale));
@@ -103,7 +103,7 @@ impl Conversion {
     }
 
     /// The unit as it is given.
-    pub(super) fn given(&self) -> LogUnit {
+    pub(in crate::recording) fn given(&self) -> LogUnit {
         match self.running {
             Some(angle) => LogUnit::Angle(angle),
             None => LogUnit::Rate(self.unit),
@@ -111,7 +111,7 @@ impl Conversion {
     }
 
     /// What a number is.
-    pub(super) fn kind(&self) -> WordKind {
+    pub(in crate::recording) fn kind(&self) -> WordKind {
         match (self.running, self.unit.per) {
             (Some(_), _) => WordKind::Angle,
             (None, Per::Sample) => WordKind::Increment,
@@ -120,7 +120,7 @@ impl Conversion {
     }
 
     /// The unit as it is shown.
-    pub(super) fn shown(&self) -> String {
+    pub(in crate::recording) fn shown(&self) -> String {
         match self.running {
             Some(angle) => format!("{angle} of a running angle"),
             None => self.unit.to_string(),
@@ -128,7 +128,7 @@ impl Conversion {
     }
 
     /// Rate that a number, or a difference of numbers, stands for, deg/h.
-    pub(super) fn rate_deg_per_h(&self, number: f64, sample_rate_hz: f64) -> f64 {
+    pub(in crate::recording) fn rate_deg_per_h(&self, number: f64, sample_rate_hz: f64) -> f64 {
         // An offset of nothing leaves a rate its sign and bits.
         let offset = if self.running.is_some() {
             0.0

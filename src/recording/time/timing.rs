@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::column::Columns;
-use super::error::LogError;
-use super::format::LogFormat;
-use super::text::shown;
-use super::time_column::TimeColumn;
-use super::time_unit::TimeUnit;
+use super::column::TimeColumn;
+use super::unit::TimeUnit;
+use crate::recording::column::Columns;
+use crate::recording::error::LogError;
+use crate::recording::log::format::LogFormat;
+use crate::recording::text::lines::shown;
 use crate::units::s_to_us;
 use crate::wording::{counted, plain};
 
@@ -42,13 +42,13 @@ pub struct Timing {
 
 /// Rows that are samples at equal spacing, and their rate.
 #[derive(Clone, Debug)]
-pub(super) struct Spacing {
-    pub(super) timing: Option<Timing>,
-    pub(super) sample_rate_hz: f64,
+pub(in crate::recording) struct Spacing {
+    pub(in crate::recording) timing: Option<Timing>,
+    pub(in crate::recording) sample_rate_hz: f64,
     /// Stretches of rows between which samples are missing.
-    pub(super) stretches: Vec<Range<usize>>,
+    pub(in crate::recording) stretches: Vec<Range<usize>>,
     /// What is worth saying.
-    pub(super) notes: Vec<String>,
+    pub(in crate::recording) notes: Vec<String>,
 }
 
 /// How stamps are looked at.
@@ -72,7 +72,7 @@ struct Clock<'a> {
 /// # Errors
 /// Stamps that do not ascend, a gap with place and size where the log is not to be cut there, two samples in
 /// the time of one, a given rate that the column contradicts, steps that doubt the unit.
-pub(super) fn timing(
+pub(in crate::recording) fn timing(
     path: &Path,
     columns: &Columns,
     time: &TimeColumn,
@@ -305,7 +305,7 @@ impl<'a> Clock<'a> {
 
 impl Timing {
     /// What is said of a time column without a gap, or cut at its gaps.
-    pub(super) fn note(&self, stretches: usize) -> String {
+    pub(in crate::recording) fn note(&self, stretches: usize) -> String {
         let gaps = match stretches {
             1 => "no gap".to_owned(),
             _ => counted(stretches - 1, "gap"),

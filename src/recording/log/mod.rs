@@ -1,0 +1,10 @@
+//! Logs: how they are read, the parts that are taken, their words.
+
+pub(super) mod facts;
+pub(super) mod format;
+pub(super) mod motion;
+pub(super) mod rates;
+pub(super) mod read;
+pub(super) mod record;
+pub(super) mod stretches;
+pub(super) mod words;

@@ -1,0 +1,284 @@
+//! From a file to rate words at equal spacing.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::format::LogFormat;
+use super::rates::{Words, angle_remark};
+use super::record::Log;
+use super::stretches::parts;
+use crate::recording::bounds::{check_sample_rate, check_temperature};
+use crate::recording::column::{Column, Columns};
+use crate::recording::error::LogError;
+use crate::recording::input::Input;
+use crate::recording::layout::columns::Selection;
+use crate::recording::npy::{array, heading};
+use crate::recording::text::table::{self, Wanted};
+use crate::recording::time::timing::{Spacing, timing};
+use crate::recording::unit::convert::Conversion;
+
+/// Columns of an assembly in one file, by name or number from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AssemblyColumns<'a> {
+    /// Rates of the gyros x, y, z.
+    pub gyros: [&'a str; 3],
+    /// Temperature of the assembly, deg C; none where it was not recorded.
+    pub temperature: Option<&'a str>,
+}
+
+/// Logs of an assembly.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AssemblyLog {
+    /// Logs of the gyros x, y, z, of one length.
+    pub gyros: [Log; 3],
+    /// Temperature at each of their words, deg C.
+    pub temperature_c: Option<Vec<f64>>,
+}
+
+/// Reads the log of one column, NPY by its first bytes and text otherwise.
+///
+/// # Errors
+/// [`LogError`]: whatever the file system says; a file that does not hold what `format` says of it;
+/// several columns.
+pub fn read_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
+    let mut logs = read_logs(path, format)?;
+    match (logs.pop(), logs.len()) {
+        (Some(log), 0) => Ok(log),
+        (_, others) => {
+            let count = others + 1;
+            let message = format!("{count} columns are named with --column: expected one here");
+            Err(LogError::of_file(path, message))
+        }
+    }
+}
+
+/// Reads the logs of the columns that a format names, in one pass.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_logs(path: &Path, format: &LogFormat) -> Result<Vec<Log>, LogError> {
+    let selection = Selection::Named(format.column.as_deref().unwrap_or_default());
+    let mut columns = read_columns(path, selection, format)?;
+    let mut data = std::mem::take(&mut columns.data);
+    let reference = match format.reference_column {
+        Some(_) => data.pop(),
+        None => None,
+    };
+    let spacing = spacing(path, &columns, &data, format)?;
+    let logs = data.into_iter();
+    let mut logs = logs
+        .map(|column| log(path, &columns, column, format, &spacing))
+        .collect::<Result<Vec<Log>, LogError>>()?;
+    if let Some(column) = reference {
+        let format = format.of_reference(column.unit);
+        let reference = log(path, &columns, column, &format, &spacing)?;
+        for log in &mut logs {
+            log.take_reference(&reference)
+                .map_err(|error| LogError::of_file(path, error))?;
+        }
+    }
+    Ok(logs)
+}
+
+/// Reads the logs of three gyros from one text, in one pass; `format.column` is not used.
+///
+/// # Errors
+/// As [`read_log`]; two quantities in one column, a temperature that no assembly has, missing samples.
+pub fn read_assembly_log(
+    path: &Path,
+    format: &LogFormat,
+    columns: &AssemblyColumns<'_>,
+) -> Result<AssemblyLog, LogError> {
+    let wanted = columns.gyros.into_iter().chain(columns.temperature);
+    let selection = Selection::Each(wanted.collect());
+    let mut columns = read_columns(path, selection, format)?;
+    let mut data = std::mem::take(&mut columns.data);
+    let spacing = spacing(path, &columns, &data, format)?;
+    let temperature = (data.len() > 3).then(|| data.remove(3));
+    let logs = data
+        .into_iter()
+        .map(|column| log(path, &columns, column, format, &spacing));
+    let logs = logs.collect::<Result<Vec<Log>, LogError>>()?;
+    if let Some(gappy) = logs.iter().find(|log| log.has_gaps()) {
+        let message = format!(
+            "column {}: samples are missing, which an assembly is not compensated over: --rows or --to-s \
+             takes a part without",
+            gappy.column.as_deref().unwrap_or_default()
+        );
+        return Err(LogError::of_file(path, message));
+    }
+    let gyros = logs
+        .try_into()
+        .map_err(|_| LogError::of_file(path, "expected three gyros"))?;
+    let temperature_c = match temperature {
+        Some(column) => {
+            for (row, &warmth) in column.values.iter().enumerate() {
+                check_temperature(warmth)
+                    .map_err(|error| LogError::at(path, columns.place(row), error))?;
+            }
+            let rows = spacing.stretches[0].clone();
+            Some(column.values[rows].to_vec())
+        }
+        None => None,
+    };
+    Ok(AssemblyLog {
+        gyros,
+        temperature_c,
+    })
+}
+
+/// Reads the first numbers of a file as they stand, at most `samples_max`: a stimulus.
+///
+/// * `column`: of a text, by its name or its number from 1; none where there is only one.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_stimulus(
+    path: &Path,
+    column: Option<&str>,
+    samples_max: usize,
+) -> Result<Vec<f64>, LogError> {
+    let column: Vec<String> = column.map(str::to_owned).into_iter().collect();
+    let format = LogFormat::default();
+    let wanted = Wanted {
+        columns: Selection::Named(&column),
+        needs_time: false,
+        format: &format,
+        samples_max,
+    };
+    let columns = read_wanted(path, &wanted)?;
+    let column = columns.data.into_iter().next();
+    Ok(column.map(|column| column.values).unwrap_or_default())
+}
+
+/// Reads columns of a log, all of its samples.
+fn read_columns(
+    path: &Path,
+    columns: Selection<'_>,
+    format: &LogFormat,
+) -> Result<Columns, LogError> {
+    let wanted = Wanted {
+        columns,
+        needs_time: true,
+        format,
+        samples_max: usize::MAX,
+    };
+    read_wanted(path, &wanted)
+}
+
+/// Reads columns of a text or an array; there is a sample.
+fn read_wanted(path: &Path, wanted: &Wanted<'_>) -> Result<Columns, LogError> {
+    let input = Input::open(path)?;
+    let columns = if input.starts_with(heading::MAGIC) {
+        let length = input.length();
+        array::read(path, input, length, wanted)?
+    } else {
+        table::read(path, input, wanted)?
+    };
+    if columns
+        .data
+        .first()
+        .is_none_or(|column| column.values.is_empty())
+    {
+        return Err(LogError::of_file(path, "holds no sample"));
+    }
+    Ok(columns)
+}
+
+/// What the time column says, the sample rate, and the stretches of rows that are taken.
+fn spacing(
+    path: &Path,
+    columns: &Columns,
+    data: &[Column],
+    format: &LogFormat,
+) -> Result<Spacing, LogError> {
+    let rows = data.first().map_or(0, |column| column.values.len());
+    let stretches = parts(path, columns, rows, format)?;
+    let spacing = match &columns.time {
+        Some(time) => timing(path, columns, time, format, &stretches),
+        None => by_rate(path, format, stretches),
+    };
+    let spacing = spacing.map_err(|error| with_units(path, data, format, error))?;
+    check_sample_rate(spacing.sample_rate_hz).map_err(|error| LogError::of_file(path, error))?;
+    Ok(spacing)
+}
+
+fn by_rate(
+    path: &Path,
+    format: &LogFormat,
+    stretches: Vec<Range<usize>>,
+) -> Result<Spacing, LogError> {
+    let Some(sample_rate_hz) = format.rate_hz else {
+        let message = "the sample rate is not known: give --rate-hz, or a time column with --time";
+        return Err(LogError::of_file(path, message));
+    };
+    Ok(Spacing {
+        timing: None,
+        sample_rate_hz,
+        stretches,
+        notes: Vec::new(),
+    })
+}
+
+/// A complaint about the time, with that about the unit of the numbers if there is one as well.
+fn with_units(path: &Path, data: &[Column], format: &LogFormat, error: LogError) -> LogError {
+    let unit = data
+        .iter()
+        .find_map(|column| Conversion::of(format, column).err());
+    match (error, unit) {
+        (LogError::Content { place, message }, Some(unit)) => LogError::Content {
+            place,
+            message: format!("{message}; {unit}"),
+        },
+        (LogError::Read { .. }, Some(unit)) => LogError::of_file(path, unit),
+        (error, None) => error,
+    }
+}
+
+/// One of the columns as a log.
+fn log(
+    path: &Path,
+    columns: &Columns,
+    column: Column,
+    format: &LogFormat,
+    spacing: &Spacing,
+) -> Result<Log, LogError> {
+    let conversion = Conversion::of(format, &column).map_err(|error| {
+        let doubts = spacing.notes.iter().map(|note| format!("; {note}"));
+        let message = format!("{error}{}", doubts.collect::<String>());
+        LogError::of_file(path, message)
+    })?;
+    let mut remarks = spacing.notes.clone();
+    remarks.extend(angle_remark(&column.values, &conversion));
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    let words = Words {
+        path,
+        columns,
+        conversion,
+        spacing,
+    };
+    let column_name = column.name.clone();
+    let (rate_deg_per_h, stretches) = words.of(column.values)?;
+    if rate_deg_per_h.is_empty() {
+        return Err(LogError::of_file(path, "holds no sample"));
+    }
+    Ok(Log {
+        file: name.to_string_lossy().into_owned(),
+        column: column_name,
+        unit: conversion.shown(),
+        rate_deg_per_h,
+        reference_deg_per_h: Vec::new(),
+        sample_rate_hz: spacing.sample_rate_hz,
+        timing: spacing.timing,
+        empty_lines: columns.empty_lines,
+        stretches,
+        layout: columns.layout.clone(),
+        format: LogFormat {
+            unit: Some(conversion.given()),
+            kind: Some(conversion.kind()),
+            ..columns.found.as_ref().unwrap_or(format).clone()
+        },
+        remarks,
+    })
+}

@@ -1,0 +1,180 @@
+//! A recorded log: words at equal spacing, and what was found out about them.
+
+use std::ops::Range;
+
+use super::format::LogFormat;
+use crate::recording::column::EmptyLines;
+use crate::recording::text::lines::shown;
+use crate::recording::time::timing::Timing;
+use crate::wording::counted;
+
+/// Most stretches whose means are named.
+const NAMED_STRETCHES: usize = 6;
+
+/// A recorded log.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Log {
+    /// Name of the file without its folder.
+    pub file: String,
+    /// Column of the numbers where the file has several or names its only one.
+    pub column: Option<String>,
+    /// Unit it was recorded in.
+    pub unit: String,
+    /// Rate words, deg/h: finite, or NaN where samples are missing.
+    pub rate_deg_per_h: Vec<f64>,
+    /// What the column of the reference shows at the words, deg/h; empty without one.
+    pub reference_deg_per_h: Vec<f64>,
+    /// Samples per second, Hz.
+    pub sample_rate_hz: f64,
+    /// What the time column says; none without one.
+    pub timing: Option<Timing>,
+    /// Empty lines between the samples.
+    pub empty_lines: EmptyLines,
+    /// Stretches of words between which samples are missing.
+    pub stretches: Vec<Stretch>,
+    /// What the file was taken for, in a line; none of an array.
+    pub layout: Option<String>,
+    /// The same as a format: what was given, and what was found.
+    pub format: LogFormat,
+    /// What else is worth saying of how it was read.
+    pub(super) remarks: Vec<String>,
+}
+
+/// Words at equal spacing without a gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// The words in the log.
+    pub words: Range<usize>,
+    /// Their mean, deg/h.
+    pub mean_deg_per_h: f64,
+}
+
+impl Log {
+    /// Sample period, s.
+    #[must_use]
+    pub fn sample_period_s(&self) -> f64 {
+        1.0 / self.sample_rate_hz
+    }
+
+    /// Holds a reference against the words: of an angle, or beside one, the first word has no partner.
+    pub(super) fn take_reference(&mut self, reference: &Self) -> Result<(), ReferenceError> {
+        if self.has_gaps() || reference.has_gaps() {
+            return Err(ReferenceError::Gaps);
+        }
+        let (words, rates) = (&mut self.rate_deg_per_h, &reference.rate_deg_per_h);
+        let count = words.len().min(rates.len());
+        words.drain(..words.len() - count);
+        self.reference_deg_per_h = rates[rates.len() - count..].to_vec();
+        self.stretches = vec![Stretch::of(words, 0..count)];
+        let name = reference.column.as_deref().unwrap_or_default();
+        self.remarks.push(format!(
+            "the true rate is what column {} shows, in {}",
+            shown(name),
+            reference.unit
+        ));
+        Ok(())
+    }
+
+    /// Whether samples are missing between the words.
+    #[must_use]
+    pub fn has_gaps(&self) -> bool {
+        self.stretches.len() > 1 || self.rate_deg_per_h.iter().any(|word| word.is_nan())
+    }
+
+    /// Moves every stretch to the mean of all words, so that noise is measured about each one's own.
+    pub fn take_about_common_mean(&mut self) {
+        if self.stretches.len() < 2 {
+            return;
+        }
+        let present = self.rate_deg_per_h.iter().filter(|word| !word.is_nan());
+        let (sum, count) = present.fold((0.0, 0.0), |(sum, count), word| (sum + word, count + 1.0));
+        for stretch in &self.stretches {
+            let step = sum / count - stretch.mean_deg_per_h;
+            for word in &mut self.rate_deg_per_h[stretch.words.clone()] {
+                *word += step;
+            }
+        }
+    }
+
+    /// What is worth saying about how it was read.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let EmptyLines { count, first } = self.empty_lines;
+        let mut notes = Vec::new();
+        match self.timing {
+            Some(timing) => notes.push(timing.note(self.stretches.len())),
+            None if count > 0 => notes.push(format!(
+                "{} between the samples, from line {first} on, passed over: the samples are taken to be \
+                 equally spaced all the same",
+                counted(count, "empty line")
+            )),
+            None => {}
+        }
+        notes.extend(self.remarks.iter().cloned());
+        notes.extend(self.stretches_note());
+        notes
+    }
+
+    /// What is said of several stretches: how long they are, their means and the largest step between two.
+    fn stretches_note(&self) -> Option<String> {
+        if self.stretches.len() < 2 {
+            let missing = self
+                .rate_deg_per_h
+                .iter()
+                .filter(|word| word.is_nan())
+                .count();
+            return (missing > 0).then(|| {
+                format!(
+                    "{} missing: nothing is put in their place, and no sum spans one",
+                    counted(missing, "sample")
+                )
+            });
+        }
+        let named = self.stretches.iter().take(NAMED_STRETCHES).map(|stretch| {
+            format!(
+                "{:.4} ({})",
+                stretch.mean_deg_per_h,
+                counted(stretch.words.len(), "sample")
+            )
+        });
+        let more = self.stretches.len().saturating_sub(NAMED_STRETCHES);
+        let more = match more {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let steps = self.stretches.windows(2);
+        let steps = steps.map(|two| two[1].mean_deg_per_h - two[0].mean_deg_per_h);
+        let largest = steps.fold(
+            0.0_f64,
+            |most, step| if step.abs() > most.abs() { step } else { most },
+        );
+        Some(format!(
+            "{} with gaps between them are pooled: no sum spans a gap, and each is taken about its own mean. \
+             Means {}{more} deg/h; the largest step from one to the next is {largest:.4} deg/h",
+            counted(self.stretches.len(), "part"),
+            named.collect::<Vec<_>>().join(", ")
+        ))
+    }
+}
+
+impl Stretch {
+    pub(in crate::recording) fn of(words: &[f64], range: Range<usize>) -> Self {
+        let present = words[range.clone()].iter().filter(|word| !word.is_nan());
+        let (sum, count) = present.fold((0.0, 0.0), |(sum, count), word| (sum + word, count + 1.0));
+        Self {
+            words: range,
+            mean_deg_per_h: sum / count,
+        }
+    }
+}
+
+/// Why a reference is not held against the words.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum ReferenceError {
+    #[error(
+        "samples are missing, and a reference is compared word by word: --rows, or --from-s and --to-s, takes \
+         a part without gaps"
+    )]
+    Gaps,
+}

@@ -1,0 +1,6 @@
+//! Numbers in text: lines and their cells, other encodings, columns, rate words written.
+
+pub(super) mod csv;
+pub(super) mod lines;
+pub(super) mod table;
+pub(super) mod transcode;
