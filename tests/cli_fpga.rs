@@ -79,6 +79,92 @@ fn bad_hardware_parameters_exit_2_and_say_the_range() {
     );
 }
 
+/// A scenario whose filter has fixed-point words.
+fn fixed_scenario(keys: &str) -> String {
+    format!(
+        "schema = 1\nname = \"a\"\nduration_s = 1.0\nwarm_up_s = 0.0\nfidelity = \"rate\"\n\
+         [[filter]]\nname = \"rls\"\n[filter.rls]\npipeline = \"fpga\"\nnumber_format = \"fixed\"\n\
+         {keys}"
+    )
+}
+
+#[test]
+fn a_fixed_point_filter_of_a_scenario_runs_and_its_export_proves_itself() {
+    let folder = scratch();
+    let keys = "taps = 8\nforgetting_factor = 0.97\ninitial_inverse_correlation = 1e-5\n\
+                [filter.rls.fixed]\nword_bits = 36\nrounding = \"nearest-even\"\n\
+                r.word_bits = 40\ny = { integer_bits = 2, overflow = \"wrap\" }\n";
+    write(folder.path(), "a.toml", &fixed_scenario(keys));
+    let output = fogbench(folder.path(), &["run", "a.toml", "-o", "out"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let rls = &summary(folder.path(), "out/a")["channels"]["rls"];
+    assert_eq!(rls["clocks_per_sample"]["value"], 252.0, "{rls}");
+    let arguments = "export rtl rtl --scenario a.toml --filter rls --samples 60";
+    let arguments: Vec<&str> = arguments.split(' ').collect();
+    let output = fogbench(folder.path(), &arguments);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let parameters = std::fs::read_to_string(folder.path().join("rtl/params.json"));
+    let parameters: serde_json::Value =
+        serde_json::from_str(&parameters.expect("parameters")).expect("JSON");
+    let formats = &parameters["formats"];
+    assert_eq!(parameters["p"], 8);
+    assert_eq!(formats["R"]["fraction_bits"], 26);
+    assert_eq!(formats["y"]["overflow"], "wrap");
+    assert_eq!(formats["k"]["rounding"], "nearest-even");
+    if Command::new("iverilog").arg("-V").output().is_err() {
+        assert!(!crate::support::is_ci(), "iverilog is missing under CI");
+        eprintln!("skipped: iverilog is not installed");
+        return;
+    }
+    let run = Command::new("sh")
+        .arg(folder.path().join("rtl/run.sh"))
+        .output();
+    let text = stdout(&run.expect("a shell"));
+    assert_eq!(text.matches("PASS").count(), 2, "{text}");
+}
+
+#[test]
+fn fixed_point_that_cannot_be_names_key_bits_and_limit() {
+    let folder = scratch();
+    let mut transcript = Transcript::of("fixed-point", "Fixed-point words that cannot be");
+    for keys in [
+        "",
+        "initial_inverse_correlation = 1e-15\n",
+        "initial_inverse_correlation = 1e-5\nfixed.word_bits = 49\n",
+        "initial_inverse_correlation = 1e-5\nfixed.x = \"Q1.31\"\n",
+        "initial_inverse_correlation = 1e-5\nfixed.r = { integer_bits = 40 }\n",
+        "initial_inverse_correlation = 1e-5\nfixed.y.rounding = \"up\"\n",
+        "initial_inverse_correlation = 1e-5\nupdate_sign = \"as-printed\"\n",
+        "initial_inverse_correlation = 1e-5\ndivision = \"elementwise\"\n",
+        "initial_inverse_correlation = 1e-7\nforgetting_factor = 0.001\n\
+         fixed.r = { integer_bits = 10, word_bits = 10 }\n",
+    ] {
+        write(folder.path(), "a.toml", &fixed_scenario(keys));
+        let output = fogbench(folder.path(), &["check", "a.toml"]);
+        assert_eq!(code(&output), 2, "{keys}{}", stdout(&output));
+        transcript.case(keys.trim_end(), stderr(&output));
+    }
+    write(folder.path(), "s.csv", "1.0\n2.0\n");
+    let arguments = "export waveform out --stimulus s.csv --number-format fixed";
+    let words: Vec<&str> = arguments.split(' ').collect();
+    let output = fogbench(folder.path(), &words);
+    assert_eq!(code(&output), 2);
+    transcript.case(arguments, stderr(&output));
+    transcript.check();
+}
+
+#[test]
+fn clocks_of_a_fixed_point_filter_are_printed() {
+    let folder = scratch();
+    let arguments = "timing --number-format fixed --divider-latency 48";
+    let words: Vec<&str> = arguments.split(' ').collect();
+    let text = stdout(&fogbench(folder.path(), &words));
+    for part in ["fixed point", "80 clocks a sample", "stalled         268"] {
+        assert!(text.contains(part), "no `{part}` in:\n{text}");
+    }
+    assert!(!text.contains("Table 1"), "{text}");
+}
+
 #[test]
 fn an_exported_folder_simulates_from_anywhere() {
     let folder = scratch();

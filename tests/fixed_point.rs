@@ -3,13 +3,16 @@
 use std::path::Path;
 use std::process::Command;
 
-use fogbench::fpga::export::write_fixed_rtl;
+use fogbench::fpga::export::{FixedExport, write_fixed_rtl};
 use fogbench::fpga::fixed::{
     CodePair, FixedRlsConfig, FixedRlsEngine, FixedRlsPipeline, FixedRlsSettings, FixedRlsState,
-    Format, Overflow, RlsFormats, Rounding, fixed_rls_clocks_per_sample, fixed_rls_latency_clocks,
+    Format, Overflow, RlsFormats, Rounding, fixed_board_usage, fixed_rls_clocks_per_sample,
+    fixed_rls_latency_clocks, fixed_rls_stalled_clocks, fixed_rls_usage,
 };
+use fogbench::vocabulary::{DesiredSignal, OutputRegister};
 
 use crate::support::stimulus::samples;
+use crate::support::{is_ci, is_long_rtl};
 
 const ROUNDINGS: [Rounding; 3] = [Rounding::Truncate, Rounding::HalfUp, Rounding::NearestEven];
 const OVERFLOWS: [Overflow; 2] = [Overflow::Saturate, Overflow::Wrap];
@@ -79,11 +82,9 @@ fn mix(seed: u32) -> FixedRlsConfig {
     FixedRlsConfig::new(settings).unwrap_or_else(|_| mix(seed + 1000))
 }
 
-/// Pairs in the words of a mix: a swing, noise, and the ends of the words.
-fn pairs(config: &FixedRlsConfig, count: u32) -> Vec<CodePair> {
+/// An export of a mix: a swing, noise, and the ends of the words; lags and registers in turn.
+fn export(config: &FixedRlsConfig, count: u32, trace_samples: usize) -> FixedExport {
     let mut draws = Draws(7);
-    let code = |format: Format, value: f64| format.of(value).code;
-    let formats = config.formats();
     let mut samples: Vec<f64> = (0..count)
         .map(|k| {
             let noise = f64::from(draws.below(2001)) / 1000.0 - 1.0;
@@ -91,16 +92,26 @@ fn pairs(config: &FixedRlsConfig, count: u32) -> Vec<CodePair> {
         })
         .collect();
     // Words of both ends; the wide words of another test are to stay within theirs.
-    if config.formats().input.width() < 48 && samples.len() > 9 {
+    if config.formats().desired.width() < 48 && samples.len() > 9 {
         samples[9] = -100.0;
     }
-    samples
-        .windows(2)
-        .map(|pair| CodePair {
-            input: code(formats.input, pair[0]),
-            desired: code(formats.desired, pair[1]),
-        })
-        .collect()
+    let format = config.formats().desired;
+    let taps = config.tap_count();
+    FixedExport {
+        config: *config,
+        desired: [DesiredSignal::Current, DesiredSignal::TwoSampleMean][taps % 2],
+        input_lag_samples: [1, 1, 3, 0][taps % 4],
+        output_register: [OutputRegister::NextSample, OutputRegister::Immediate][taps / 2 % 2],
+        samples: samples.iter().map(|value| format.of(*value).code).collect(),
+        full_scale: "1".to_owned(),
+        clock_mhz: 40.0,
+        trace_samples,
+    }
+}
+
+/// Pairs in the words of a mix.
+fn pairs(config: &FixedRlsConfig, count: u32) -> Vec<CodePair> {
+    export(config, count, 0).pairs()
 }
 
 /// Runs the clocked pipeline; checks period and latency, returns the words.
@@ -188,7 +199,7 @@ fn wide_fixed_point_words_follow_the_floating_point_filter() {
         initial_inverse_correlation: 1024.0,
         formats,
     })
-    .expect("sound settings, a writable folder, a shell");
+    .expect("sound settings");
     let mut fixed = FixedRlsEngine::new(config);
     let mut line = [0.0; 4];
     let mut weights = [0.0; 4];
@@ -232,7 +243,7 @@ fn short_fixed_point_words_die_under_a_swing_and_long_ones_live() {
             initial_inverse_correlation: 1024.0,
             formats,
         })
-        .expect("sound settings, a writable folder, a shell");
+        .expect("sound settings");
         let mut engine = FixedRlsEngine::new(config);
         for pair in swing.windows(2) {
             engine.process(CodePair {
@@ -276,10 +287,6 @@ fn constants_that_do_not_fit_name_bits_and_limit() {
     assert!(refused(wide).contains("at most 126 bits"));
 }
 
-fn is_ci() -> bool {
-    std::env::var("CI").is_ok_and(|value| value == "true")
-}
-
 fn has(program: &str) -> bool {
     let found = Command::new(program).arg("-V").output().is_ok();
     assert!(found || !is_ci(), "{program} is needed under CI=true");
@@ -289,26 +296,35 @@ fn has(program: &str) -> bool {
     found
 }
 
-/// Compiles and runs the testbench of a folder under Icarus Verilog; returns what it prints.
-fn simulate(dir: &Path) -> (bool, String) {
-    let script = "iverilog -g2012 -Wall -Wno-timescale -s tb_rls_fixed -o tb *.v && vvp -n tb";
+/// Runs the script of a folder; returns what it prints.
+fn simulate(dir: &Path, variables: &[(&str, &str)]) -> (bool, String) {
     let output = Command::new("sh")
-        .args(["-c", script])
-        .current_dir(dir)
+        .arg(dir.join("run.sh"))
+        .envs(variables.iter().copied())
+        .current_dir("/")
         .output()
-        .expect("sound settings, a writable folder, a shell");
+        .expect("a shell");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let text = text + &String::from_utf8_lossy(&output.stderr);
-    (output.status.success() && text.contains("PASS"), text)
+    (output.status.success(), text)
 }
 
-fn check_rtl(config: &FixedRlsConfig, count: u32, traced: usize) {
-    let dir = tempfile::tempdir().expect("sound settings, a writable folder, a shell");
-    let pairs = pairs(config, count);
-    write_fixed_rtl(dir.path(), config, &pairs, traced)
-        .expect("sound settings, a writable folder, a shell");
-    let (passed, text) = simulate(dir.path());
-    assert!(passed, "{config:?}: {text}");
+fn check_rtl(export: &FixedExport, variables: &[(&str, &str)]) {
+    let dir = tempfile::tempdir().expect("a scratch folder");
+    write_fixed_rtl(dir.path(), export).expect("a writable folder");
+    let (passed, text) = simulate(dir.path(), variables);
+    let benches = text.matches("PASS").count();
+    assert!(passed && benches == 2, "{export:?}: {text}");
+}
+
+/// Does something for every seed, two at a time.
+fn for_each_seed(seeds: std::ops::Range<u32>, check: impl Fn(u32) + Sync) {
+    std::thread::scope(|scope| {
+        for part in 0..2 {
+            let (seeds, check) = (seeds.clone(), &check);
+            scope.spawn(move || seeds.filter(|seed| seed % 2 == part).for_each(check));
+        }
+    });
 }
 
 #[test]
@@ -316,36 +332,56 @@ fn fixed_point_rtl_has_the_words_and_every_clock_of_the_model() {
     if !has("iverilog") {
         return;
     }
-    // All mixes with a thousand samples in CI; elsewhere each rounding with each overflow once.
-    let (mixes, count) = if is_ci() { (40, 1001) } else { (6, 21) };
-    for seed in 0..mixes {
-        check_rtl(&mix(seed), count, 10);
-    }
+    // All mixes with a thousand samples where time does not matter; elsewhere each rounding with each
+    // overflow once.
+    let (mixes, count) = if is_long_rtl() { (40, 1000) } else { (6, 20) };
+    for_each_seed(0..mixes, |seed| {
+        let config = mix(seed);
+        check_rtl(&export(&config, count, 10), &[]);
+        if seed < 5 {
+            check_rtl(&export(&config, 20, 10), &[("DIV_LATENCY", "9")]);
+        }
+    });
 }
 
 #[test]
 fn fixed_point_rtl_has_a_million_words_of_the_model_under_verilator() {
-    // A minute of C++ compilation each: in CI only.
-    if !is_ci() || !has("verilator") {
-        eprintln!("skipped: runs in CI with verilator only");
+    // A minute of C++ compilation each.
+    if !is_long_rtl() || !has("verilator") {
+        eprintln!("skipped: runs with FOGBENCH_RTL_LONG and verilator only");
         return;
     }
-    for seed in 0..4 {
-        let dir = tempfile::tempdir().expect("sound settings, a writable folder, a shell");
+    for_each_seed(0..4, |seed| {
         let config = mix(seed);
-        write_fixed_rtl(dir.path(), &config, &pairs(&config, 250_001), 10)
-            .expect("sound settings, a writable folder, a shell");
-        let script = "verilator --binary --timing -Wno-fatal -Wno-lint -Wno-style --Mdir obj -o tb \
-                      --top-module tb_rls_fixed *.v > log 2>&1 && obj/tb || { cat log; exit 1; }";
-        let output = Command::new("sh")
-            .args(["-c", script])
-            .current_dir(dir.path())
-            .output()
-            .expect("sound settings, a writable folder, a shell");
-        let text = String::from_utf8_lossy(&output.stdout);
-        assert!(
-            output.status.success() && text.contains("PASS"),
-            "{seed}: {text}"
+        check_rtl(&export(&config, 250_000, 10), &[("SIM", "verilator")]);
+    });
+}
+
+#[test]
+fn clocks_of_fixed_point_are_counted_on_the_model() {
+    for seed in 0..5 {
+        let config = mix(seed);
+        let p = config.tap_count() as u64;
+        let usage = fixed_rls_usage(config);
+        assert_eq!(usage.clocks_per_sample, 3 * p * p + 7 * p + 4);
+        assert_eq!(usage.latency_clocks, 3 * p * p + 5 * p + 3);
+        assert_eq!(usage.wake_up_clocks, 1);
+        let by_state: u64 = usage.states.iter().map(|state| state.clocks).sum();
+        assert_eq!(by_state, usage.clocks_per_sample);
+        assert_eq!(usage.divisions, p);
+        let triangle = p * (p + 1) / 2;
+        let scaling = u64::from(config.inverse_alpha().is_some()) * triangle;
+        assert_eq!(usage.multiplies, p * p + 3 * p + triangle + scaling);
+        assert_eq!(usage.additions, p * p + p + p + triangle + 1 + p);
+        let board = fixed_board_usage(config);
+        assert_eq!(board.clocks_per_sample, usage.clocks_per_sample);
+        // One clock for the pair, one to wake the core up.
+        assert_eq!(board.latency_clocks, usage.latency_clocks + 2);
+        let taps = config.tap_count();
+        assert_eq!(fixed_rls_stalled_clocks(taps, 1), usage.clocks_per_sample);
+        assert_eq!(
+            fixed_rls_stalled_clocks(taps, 9),
+            usage.clocks_per_sample + 8 * p
         );
     }
 }
@@ -356,20 +392,18 @@ fn a_wrong_fixed_point_constant_is_noticed() {
         return;
     }
     let config = mix(9);
-    let dir = tempfile::tempdir().expect("sound settings, a writable folder, a shell");
-    write_fixed_rtl(dir.path(), &config, &pairs(&config, 21), 10)
-        .expect("sound settings, a writable folder, a shell");
-    let path = dir.path().join("fixed.vh");
-    let text = std::fs::read_to_string(&path).expect("sound settings, a writable folder, a shell");
+    let dir = tempfile::tempdir().expect("a scratch folder");
+    write_fixed_rtl(dir.path(), &export(&config, 21, 10)).expect("a writable folder");
+    let path = dir.path().join("params.vh");
+    let text = std::fs::read_to_string(&path).expect("parameters");
     for (right, wrong) in [
         (".RY(0)", ".RY(1)"),
         (".RR(0)", ".RR(1)"),
         (".RK(0)", ".RK(2)"),
     ] {
         assert!(text.contains(right), "{text}");
-        std::fs::write(&path, text.replace(right, wrong))
-            .expect("sound settings, a writable folder, a shell");
-        let (passed, printed) = simulate(dir.path());
+        std::fs::write(&path, text.replace(right, wrong)).expect("a writable folder");
+        let (passed, printed) = simulate(dir.path(), &[]);
         assert!(
             !passed && printed.contains("MISMATCH"),
             "{right}: {printed}"

@@ -24,6 +24,7 @@ use fogbench::fpga::trace::hex;
 use fogbench::vocabulary::{DesiredSignal, Division, OutputRegister, UpdateSign};
 
 use crate::support::stimulus::{SETUPS, Setup, predictor_pairs, samples};
+use crate::support::{is_ci, is_long_rtl};
 
 /// Whether the programs are here; panics under CI=true if not.
 fn available(programs: &[&str]) -> bool {
@@ -38,21 +39,17 @@ fn available(programs: &[&str]) -> bool {
     false
 }
 
-/// Samples per set-up: everything in CI (some minutes of Icarus, which simulates about 65,000
-/// clocks per second), or at most `FOGBENCH_RTL_SAMPLES`; elsewhere enough to notice a fault.
-fn sample_count(in_ci: usize, elsewhere: usize) -> usize {
+/// Samples per set-up: everything in the long run (some minutes of Icarus, which simulates about
+/// 65,000 clocks per second), or at most `FOGBENCH_RTL_SAMPLES`; elsewhere enough to notice a fault.
+fn sample_count(in_long_run: usize, elsewhere: usize) -> usize {
     if let Ok(text) = std::env::var("FOGBENCH_RTL_SAMPLES") {
         let most: usize = text.parse().expect("FOGBENCH_RTL_SAMPLES is a count");
-        in_ci.min(most)
-    } else if is_ci() {
-        in_ci
+        in_long_run.min(most)
+    } else if is_long_rtl() {
+        in_long_run
     } else {
         elsewhere
     }
-}
-
-fn is_ci() -> bool {
-    std::env::var("CI").is_ok_and(|value| value == "true")
 }
 
 fn rls<F: Fp>(tap_count: usize, alpha: f64, division: Division) -> PipelineConfig<F> {

@@ -24,7 +24,7 @@ pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Opti
     let Some(settings) = filter.kind.settings().hardware() else {
         return Some("only a filter with pipeline = \"fpga\" has it");
     };
-    if MATRIX_METRICS.contains(&key) && !settings.core.kind().has_matrix {
+    if MATRIX_METRICS.contains(&key) && !settings.has_matrix() {
         return Some("a least-mean-squares filter has no matrix");
     }
     if *key == PREDICTED_FAILURE && settings.failure_samples().is_none() {
@@ -39,7 +39,7 @@ pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Opti
 /// made sure that the result is there by then.
 pub(super) fn latency_s(pipeline: Option<&FinishedPipeline>) -> f64 {
     match pipeline {
-        Some(pipeline) if pipeline.settings.output_register == OutputRegister::Immediate => {
+        Some(pipeline) if pipeline.settings.output_register() == OutputRegister::Immediate => {
             us_to_s(pipeline.timing.latency_us)
         }
         _ => 0.0,
@@ -62,7 +62,7 @@ pub(super) fn enter(
         let metric = metrics.put(key, Estimate::exact(value));
         metric
             .fields
-            .insert("clock_mhz", pipeline.settings.clock_mhz);
+            .insert("clock_mhz", pipeline.settings.clock_mhz());
     }
     match &pipeline.health {
         Some(health) => {

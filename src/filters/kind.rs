@@ -59,6 +59,16 @@ impl<S: FilterSettings> Condition<S> {
             acts: |settings| settings.hardware().is_some(),
         }
     }
+
+    /// A key of floating-point hardware.
+    pub(super) const fn float(key: &'static str) -> Self {
+        Self {
+            key,
+            needs: "only hardware of floating-point words has it; pipeline = \"fpga\" without \
+                    number_format = \"fixed\"",
+            acts: |settings| matches!(settings.hardware(), Some(PipelineSettings::Float(_))),
+        }
+    }
 }
 
 /// A key of any filter that other settings can leave without effect.

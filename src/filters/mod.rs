@@ -40,6 +40,7 @@ mod one_pole;
 mod process;
 mod replay;
 mod rls;
+mod rls_words;
 mod savitzky_golay;
 mod sign_lms;
 
@@ -66,6 +67,7 @@ pub use one_pole::{OnePoleFilterConfig, one_pole};
 pub use process::{Parameter, Parameters, ProcessFilterConfig, ProcessMode, is_file_argument};
 pub use replay::ReplayFilterConfig;
 pub use rls::{Rls, RlsConfig, RlsCore, RlsFilterConfig, covariance_digits_warning};
+pub use rls_words::{RlsWords, SignalWord, SignalWords};
 pub use savitzky_golay::{SavitzkyGolayFilterConfig, savitzky_golay};
 pub use sign_lms::{
     SignLms, SignLmsConfig, SignLmsCore, SignLmsFilterConfig, sign_lms_slew_per_sample,

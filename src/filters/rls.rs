@@ -1,15 +1,16 @@
 //! Recursive least squares in its textbook gain form.
 
 use super::common::{
-    Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, dot,
+    Complaints, Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, dot,
     least_squares_rule,
 };
 use super::hardware::{self, PipelineSettings};
 use super::kind::{Condition, ExpectedWords, FilterSettings};
+use super::rls_words::RlsWords;
 use crate::declare::table;
 use crate::signal::WeightRule;
 use crate::vocabulary::{
-    DesiredSignal, Division, NumberFormat, OutputRegister, Pipeline, UpdateOrder, UpdateSign,
+    DesiredSignal, Division, OutputRegister, Pipeline, UpdateOrder, UpdateSign, WordFormat,
 };
 
 table! {
@@ -33,9 +34,10 @@ table! {
         update_sign: UpdateSign = "corrected";
         /// Arithmetic: the recursion of the books, or the pipeline of the hardware with its bits and clocks.
         pipeline: Pipeline = "textbook";
-        /// Words of the hardware; -ftz flushes subnormal numbers to zero. This key and those below only
-        /// matter with pipeline = "fpga". Source of the default: the paper's double precision.
-        number_format: NumberFormat = "binary64";
+        /// Words of the hardware; -ftz flushes subnormal numbers to zero, "fixed" has a table of its own. This
+        /// key and those below only matter with pipeline = "fpga". Source of the default: the paper's double
+        /// precision.
+        number_format: WordFormat = "binary64";
         /// Clock of the hardware. Source of the default: the paper.
         clock_mhz: f64 = 40.0, in 1e-3..=10000.0, "MHz";
         /// One division per sample, or one for each element of the matrix. Source of the default: derived,
@@ -45,6 +47,7 @@ table! {
         /// bit, or (t_i r) t_j, which fails below a forgetting factor of 1. Source of the default: derived
         /// from the clocks of the paper's states.
         update_order: UpdateOrder = "schedule";
+        fixed: Option<RlsWords>;
     }
 }
 
@@ -54,13 +57,34 @@ impl FilterSettings for RlsFilterConfig {
             &[
                 Condition::hardware("number_format"),
                 Condition::hardware("clock_mhz"),
-                Condition::hardware("division"),
-                Condition::hardware("update_order"),
+                Condition::float("division"),
+                Condition::float("update_order"),
+                Condition {
+                    key: "fixed",
+                    needs: "pipeline = \"fpga\" and number_format = \"fixed\"",
+                    acts: |settings| settings.fixed_words().is_some(),
+                },
             ]
         }
     }
 
+    fn check(&self, complaints: &mut Complaints) {
+        let Some(words) = self.fixed_words() else {
+            return;
+        };
+        words.check(complaints);
+        if self.update_sign == UpdateSign::AsPrinted {
+            complaints.key(
+                "update_sign",
+                "= \"as-printed\" has no hardware in fixed point: use \"corrected\", or another number_format",
+            );
+        }
+    }
+
     fn notes(&self, words: &ExpectedWords) -> Vec<String> {
+        if let Some(fixed) = self.fixed_words() {
+            return fixed.notes(words.peak_deg_per_h);
+        }
         // The hardware warns by itself.
         if self.pipeline == Pipeline::Fpga {
             return Vec::new();
@@ -87,6 +111,15 @@ impl FilterSettings for RlsFilterConfig {
 
     fn hardware(&self) -> Option<PipelineSettings> {
         (self.pipeline == Pipeline::Fpga).then(|| hardware::rls(self))
+    }
+}
+
+impl RlsFilterConfig {
+    /// The fixed-point words of the hardware; none of floating point and of the textbook.
+    #[must_use]
+    pub fn fixed_words(&self) -> Option<RlsWords> {
+        let is_fixed = self.pipeline == Pipeline::Fpga && self.number_format == WordFormat::Fixed;
+        is_fixed.then(|| self.fixed.clone().unwrap_or_else(RlsWords::reference))
     }
 }
 

@@ -63,6 +63,9 @@ pub enum FpgaError {
         /// Word format of the pipeline.
         format: &'static str,
     },
+    /// There is no export of this form.
+    #[error("there is no waveform of fixed-point words: export rtl and run it with +VCD=wave.vcd")]
+    FixedWaveform,
     /// Two sequences that belong together differ in length.
     #[error("{name} holds {got} values: expected {want}, one per sample")]
     Length {

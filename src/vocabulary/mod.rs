@@ -16,7 +16,9 @@ pub use calibration::{CompensationForm, EstimatorKind, ForgettingForm};
 pub use filter::{
     ConstantUnit, DesiredSignal, InitialWeights, OutputRegister, Pipeline, SignLmsForm, UpdateSign,
 };
-pub use hardware::{Division, ExportForm, NumberFormat, UpdateOrder};
+pub use hardware::{
+    Division, ExportForm, NumberFormat, Overflow, Rounding, UpdateOrder, WordFormat,
+};
 pub use inference::Prior;
 pub use motion::{CaseAxis, PhaseRule};
 pub(crate) use word::words;

@@ -32,6 +32,16 @@ pub(crate) fn assert_close(got: f64, want: f64, rtol: f64, atol: f64) {
     );
 }
 
+/// Whether a missing program is a failure.
+pub(crate) fn is_ci() -> bool {
+    std::env::var("CI").is_ok_and(|value| value == "true")
+}
+
+/// Whether simulations of RTL run over all their samples, which takes minutes.
+pub(crate) fn is_long_rtl() -> bool {
+    std::env::var_os("FOGBENCH_RTL_LONG").is_some()
+}
+
 /// A path inside the repository.
 pub(crate) fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)

@@ -104,7 +104,7 @@ fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Exit
         }
         (None, None) => return Err(refused("give --scenario or --stimulus".to_owned())),
     };
-    if !settings.core.has_hardware() {
+    if !settings.has_hardware() {
         let complaint = "update_order = \"gain-first\" has no hardware to export: use \"schedule\"";
         return Err(refused(complaint.to_owned()));
     }

@@ -9,11 +9,12 @@ use crate::cli::options::format::Format;
 use crate::cli::options::hardware::{FilterOptions, TimingOptions};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
-use crate::filters::hardware::PipelineTiming;
+use crate::filters::hardware::{PipelineSettings, PipelineTiming};
 use crate::fpga::FpgaError;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::rls::{ScheduleReport, ScheduleSettings, TimingRow, schedule_clocks, table};
 use crate::fpga::timing::{check_clock, sample_period_us, sample_rate_max_khz};
+use crate::vocabulary::WordFormat;
 
 /// Prints Table 1, the counted pipeline, and what units with latency do to it.
 pub(in crate::cli) fn timing(options: &TimingOptions) -> io::Result<Exit> {
@@ -49,7 +50,7 @@ impl<'a> Report<'a> {
         let settings = filter.settings();
         let measured = settings.timing()?;
         check_clock(filter.clock_mhz)?;
-        let stalled = settings.core.stalled_clocks(options.units())?;
+        let stalled = settings.stalled_clocks(options.units())?;
         let mut report = Self {
             filter,
             table: Vec::new(),
@@ -57,7 +58,9 @@ impl<'a> Report<'a> {
             stalled,
             interleaved: None,
         };
-        if let CoreSettings::Rls(core) = &settings.core {
+        if let PipelineSettings::Float(settings) = &settings
+            && let CoreSettings::Rls(core) = &settings.core
+        {
             let load = core.load();
             let rows = table(
                 load.tap_count,
@@ -139,11 +142,15 @@ impl<'a> Report<'a> {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{}, {} taps, {clock_mhz} MHz, every operation in one clock (counted on the model)\n  \
+            "{}, {} taps, {}{clock_mhz} MHz, every operation in one clock (counted on the model)\n  \
              {} clocks a sample, {:.2} us, {:.1} kHz; result after {} clocks, {:.3} us; \
              {} more clock after idling",
             self.filter.kind_name(),
             self.filter.taps,
+            match self.filter.number_format {
+                WordFormat::Fixed => "fixed point, ",
+                WordFormat::Float(_) => "",
+            },
             usage.clocks_per_sample,
             self.measured.sample_period_us,
             self.measured.sample_rate_max_khz,
@@ -151,20 +158,7 @@ impl<'a> Report<'a> {
             self.measured.latency_us,
             usage.wake_up_clocks,
         );
-        let board = &self.measured.board;
-        let _ = writeln!(
-            text,
-            "  on a board: core {} clocks a sample; front end {} clocks from an integer code to its pair, \
-             {:.3} us;\n  system {} clocks a sample, {:.2} us; result {} clocks after the code, {:.3} us, \
-             from idle",
-            usage.clocks_per_sample,
-            board.front_end_clocks,
-            sample_period_us(board.front_end_clocks, clock_mhz),
-            board.clocks_per_sample,
-            sample_period_us(board.clocks_per_sample, clock_mhz),
-            board.latency_clocks,
-            sample_period_us(board.latency_clocks, clock_mhz),
-        );
+        self.write_board(&mut text);
         self.write_usage(&mut text);
         if !self.table.is_empty() {
             let _ = writeln!(
@@ -201,6 +195,37 @@ impl<'a> Report<'a> {
             line("interleaved", report.clocks, &bound);
         }
         text
+    }
+
+    /// What the front end of a board adds.
+    fn write_board(&self, text: &mut String) {
+        let usage = &self.measured.usage;
+        let clock_mhz = self.filter.clock_mhz;
+        let board = &self.measured.board;
+        let sample = match self.filter.number_format {
+            WordFormat::Fixed => ("a word of d", "the word"),
+            WordFormat::Float(_) => ("an integer code", "the code"),
+        };
+        let _ = writeln!(
+            text,
+            "  on a board: core {} clocks a sample; front end {} {} from {} to its pair, \
+             {:.3} us;\n  system {} clocks a sample, {:.2} us; result {} clocks after {}, {:.3} us, \
+             from idle",
+            usage.clocks_per_sample,
+            board.front_end_clocks,
+            if board.front_end_clocks == 1 {
+                "clock"
+            } else {
+                "clocks"
+            },
+            sample.0,
+            sample_period_us(board.front_end_clocks, clock_mhz),
+            board.clocks_per_sample,
+            sample_period_us(board.clocks_per_sample, clock_mhz),
+            board.latency_clocks,
+            sample.1,
+            sample_period_us(board.latency_clocks, clock_mhz),
+        );
     }
 
     /// Clocks per state, ports and units.

@@ -6,7 +6,8 @@ use clap::{Args, ValueEnum};
 
 use crate::cli::options::format::Format;
 use crate::cli::options::numbers::{OptionError, count_within, within};
-use crate::filters::hardware::PipelineSettings;
+use crate::filters::RlsWords;
+use crate::filters::hardware::{FixedSettings, FloatSettings, PipelineSettings, fixed_rls};
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
 use crate::fpga::rls::{RlsCore, RlsSettings};
@@ -14,12 +15,18 @@ use crate::fpga::sign_lms::SignLmsSettings;
 use crate::fpga::timing::{UnitTiming, Units};
 use crate::vocabulary::{
     DesiredSignal, Division, ExportForm, NumberFormat, OutputRegister, UpdateOrder, UpdateSign,
+    WordFormat,
 };
 
 /// Delay of a line enhancer described on the command line, samples; the default of scenarios.
 const LINE_ENHANCER_DELAY: usize = 15;
 /// Samples between two fresh sums of its norm; the default of scenarios.
 const LINE_ENHANCER_RECOMPUTE: u32 = 1000;
+
+/// Initial inverse correlation; the default of scenarios.
+const INVERSE_CORRELATION: f64 = 7.716e-4;
+/// The same that the formats of the reference hold: about 1024 in their full scale.
+const FIXED_INVERSE_CORRELATION: f64 = 1.97e-5;
 
 /// Clocks that hardware runs at, MHz: as of the keys of a scenario.
 const CLOCK_MHZ: (f64, f64) = (1e-3, 1e4);
@@ -75,15 +82,15 @@ pub(in crate::cli) struct FilterOptions {
         value_parser = within(1e-3, 1.0, "")
     )]
     forgetting_factor: f64,
-    /// Initial inverse correlation, in the inverse square of the words' unit
+    /// Initial inverse correlation, in the inverse square of the words' unit [default: 7.716e-4; of fixed
+    /// words 1.97e-5]
     #[arg(
         long,
         value_name = "D",
         allow_negative_numbers = true,
-        default_value_t = 7.716e-4,
         value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
-    pub(in crate::cli) initial_inverse_correlation: f64,
+    pub(in crate::cli) initial_inverse_correlation: Option<f64>,
     /// Step size of least mean squares; of sign-lms in the words' unit
     #[arg(
         long,
@@ -102,24 +109,23 @@ pub(in crate::cli) struct FilterOptions {
         value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
     pub(in crate::cli) regularisation: f64,
-    /// Words of the hardware
-    #[arg(long, value_enum, default_value_t = NumberFormat::Binary64)]
-    pub(in crate::cli) number_format: NumberFormat,
+    /// Words of the hardware; fixed (rls alone) has the formats of the reference
+    #[arg(long, value_enum, default_value_t = WordFormat::Float(NumberFormat::Binary64))]
+    pub(in crate::cli) number_format: WordFormat,
 }
 
 impl FilterOptions {
     /// The pipeline: the paper's front end for its kind.
     pub(in crate::cli) fn settings(&self) -> PipelineSettings {
+        let format = match self.number_format {
+            WordFormat::Float(format) => format,
+            // Of another kind it is refused beforehand.
+            WordFormat::Fixed => return PipelineSettings::Fixed(self.fixed()),
+        };
         let update_sign = UpdateSign::Corrected;
         let (core, desired, input_lag_samples) = match self.kind {
             Kind::Rls => {
-                let settings = RlsSettings {
-                    tap_count: self.taps,
-                    forgetting_factor: self.forgetting_factor,
-                    initial_inverse_correlation: self.initial_inverse_correlation,
-                    division: self.division,
-                    update_sign,
-                };
+                let settings = self.rls();
                 let order = UpdateOrder::Schedule;
                 let core = CoreSettings::Rls(RlsCore { settings, order });
                 (core, DesiredSignal::Current, 1)
@@ -148,12 +154,41 @@ impl FilterOptions {
                 (core, DesiredSignal::Current, LINE_ENHANCER_DELAY)
             }
         };
-        PipelineSettings {
+        PipelineSettings::Float(FloatSettings {
             core,
             desired,
             input_lag_samples,
             output_register: OutputRegister::NextSample,
-            format: self.number_format,
+            format,
+            clock_mhz: self.clock_mhz,
+        })
+    }
+
+    /// Recursive least squares.
+    fn rls(&self) -> RlsSettings {
+        RlsSettings {
+            tap_count: self.taps,
+            forgetting_factor: self.forgetting_factor,
+            initial_inverse_correlation: self.initial_inverse_correlation.unwrap_or(
+                match self.number_format {
+                    WordFormat::Float(_) => INVERSE_CORRELATION,
+                    WordFormat::Fixed => FIXED_INVERSE_CORRELATION,
+                },
+            ),
+            division: self.division,
+            update_sign: UpdateSign::Corrected,
+        }
+    }
+
+    /// Recursive least squares in the fixed-point words of the reference.
+    fn fixed(&self) -> FixedSettings {
+        let words = RlsWords::reference();
+        FixedSettings {
+            core: fixed_rls(&self.rls(), &words),
+            full_scale_deg_per_h: words.full_scale_deg_per_h,
+            desired: DesiredSignal::Current,
+            input_lag_samples: 1,
+            output_register: OutputRegister::NextSample,
             clock_mhz: self.clock_mhz,
         }
     }

@@ -14,7 +14,7 @@ use crate::cli::options::calibrate::CalibrateOptions;
 use crate::cli::options::hardware::{ExportOptions, FilterOptions, Kind, TimingOptions};
 use crate::cli::options::log::LogOptions;
 use crate::recording::LogMotion;
-use crate::vocabulary::ExportForm;
+use crate::vocabulary::{ExportForm, WordFormat};
 
 /// Reads the command line.
 ///
@@ -131,8 +131,29 @@ fn of_filter(options: &FilterOptions, given: &ArgMatches) -> Vec<String> {
     let idle = typed(given, foreign)
         .into_iter()
         .chain(typed(given, of_rls));
+    let mut complaints: Vec<String> = idle
+        .map(|option| {
+            format!("{option} has no effect on --kind {kind}: leave it out, or name another kind")
+        })
+        .collect();
+    if options.number_format == WordFormat::Fixed {
+        if options.kind == Kind::Rls {
+            complaints.extend(of_fixed(given, &["division"]));
+        } else {
+            complaints.push(
+                "--number-format fixed has no effect but on --kind rls: leave one of them out"
+                    .to_owned(),
+            );
+        }
+    }
+    complaints
+}
+
+/// Options that fixed point has no use for.
+fn of_fixed(given: &ArgMatches, ids: &[&str]) -> Vec<String> {
+    let idle = typed(given, ids).into_iter();
     idle.map(|option| {
-        format!("{option} has no effect on --kind {kind}: leave it out, or name another kind")
+        format!("{option} has no effect on --number-format fixed: leave one of them out")
     })
     .collect()
 }
@@ -140,6 +161,16 @@ fn of_filter(options: &FilterOptions, given: &ArgMatches) -> Vec<String> {
 fn of_timing(options: &TimingOptions, given: &ArgMatches) -> Vec<String> {
     let kind = options.filter.kind;
     let mut complaints = of_filter(&options.filter, given);
+    if kind == Kind::Rls && options.filter.number_format == WordFormat::Fixed {
+        // Nothing but its divider can be waited for.
+        const OF_FLOAT: [&str; 4] = [
+            "adder_latency",
+            "multiplier_latency",
+            "initiation_interval",
+            "ram_ports",
+        ];
+        complaints.extend(of_fixed(given, &OF_FLOAT));
+    }
     if kind != Kind::Rls && !typed(given, &["ram_ports"]).is_empty() {
         complaints.push(
             "--ram-ports has no effect but on --kind rls, the only one with an interleaved model: \
@@ -315,6 +346,26 @@ mod tests {
     }
 
     #[test]
+    fn what_fixed_point_lacks_is_refused() {
+        assert_idle(
+            "fogbench timing --number-format fixed --division elementwise --adder-latency 2 \
+             --multiplier-latency 2 --ram-ports 2",
+            &[
+                "--division",
+                "--adder-latency",
+                "--multiplier-latency",
+                "--ram-ports",
+            ],
+            "--number-format fixed",
+        );
+        assert_idle(
+            "fogbench timing --number-format fixed --kind lms",
+            &["--number-format fixed"],
+            "--kind rls",
+        );
+    }
+
+    #[test]
     fn a_key_given_twice_is_refused() {
         assert_idle(
             "fogbench calibrate a.toml --estimator batch --set calibration.apply=arls",
@@ -364,6 +415,7 @@ mod tests {
             "fogbench timing --division elementwise --forgetting-factor 0.9 --ram-ports 2",
             "fogbench timing --kind nlms --regularisation 1 --divider-latency 9",
             "fogbench timing --kind sign-lms --step-size 1 --divider-latency 9",
+            "fogbench timing --number-format fixed --forgetting-factor 0.9 --divider-latency 9",
             "fogbench export rtl out --scenario a.toml --filter rls --samples 20 --trace-samples 5",
             "fogbench export rtl out --scenario a.toml --kind lms --taps 8 --step-size 0.1",
             "fogbench export waveform out --stimulus a.csv --column 2 --samples 20 --trace-samples 20",

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::settings::{PipelineSettings, with_word};
+use super::fixed::FixedSettings;
+use super::pipeline::PipelineSettings;
+use super::settings::{FloatSettings, with_word};
 use crate::fpga::FpgaError;
 use crate::fpga::export::{
-    ExportSettings, IntegerCodes, TopLevel, stimulus_pairs, write_rtl, write_vectors,
-    write_waveform,
+    ExportSettings, FixedExport, IntegerCodes, TopLevel, stimulus_pairs, write_fixed_rtl,
+    write_fixed_vectors, write_rtl, write_vectors, write_waveform,
 };
 use crate::fpga::float_unit::Fp;
 use crate::fpga::trace::Window;
@@ -32,15 +34,20 @@ pub fn export_pipeline(
     stimulus: Stimulus,
     trace_samples: usize,
 ) -> Result<Vec<PathBuf>, FpgaError> {
-    with_word!(settings.format, F => {
-        export::<F>(folder, form, settings, stimulus, trace_samples)
-    })
+    match settings {
+        PipelineSettings::Float(settings) => with_word!(settings.format, F => {
+            export::<F>(folder, form, settings, stimulus, trace_samples)
+        }),
+        PipelineSettings::Fixed(settings) => {
+            export_fixed(folder, form, settings, &stimulus, trace_samples)
+        }
+    }
 }
 
 fn export<F: Fp>(
     folder: &Path,
     form: ExportForm,
-    settings: &PipelineSettings,
+    settings: &FloatSettings,
     stimulus: Stimulus,
     trace_samples: usize,
 ) -> Result<Vec<PathBuf>, FpgaError> {
@@ -76,7 +83,32 @@ fn export<F: Fp>(
     }
 }
 
-fn front_end_words(settings: &PipelineSettings) -> String {
+fn export_fixed(
+    folder: &Path,
+    form: ExportForm,
+    settings: &FixedSettings,
+    stimulus: &Stimulus,
+    trace_samples: usize,
+) -> Result<Vec<PathBuf>, FpgaError> {
+    let words = stimulus.words.iter();
+    let export = FixedExport {
+        config: settings.config()?,
+        desired: settings.desired,
+        input_lag_samples: settings.input_lag_samples,
+        output_register: settings.output_register,
+        samples: words.map(|word| settings.code(*word)).collect(),
+        full_scale: format!("{} deg/h", settings.full_scale_deg_per_h),
+        clock_mhz: settings.clock_mhz,
+        trace_samples,
+    };
+    match form {
+        ExportForm::Vectors => write_fixed_vectors(folder, &export),
+        ExportForm::Rtl => write_fixed_rtl(folder, &export),
+        ExportForm::Waveform => Err(FpgaError::FixedWaveform),
+    }
+}
+
+fn front_end_words(settings: &FloatSettings) -> String {
     let desired = match settings.desired {
         DesiredSignal::Current => "the newest sample",
         DesiredSignal::TwoSampleMean => "the mean of the two newest samples",

@@ -5,7 +5,7 @@
 //! reported.
 
 use super::monitor::{HealthSummary, Monitor};
-use super::settings::PipelineSettings;
+use super::settings::FloatSettings;
 use crate::filters::common::{Divergence, Fault, Filter, Output, Register, Watch};
 use crate::fpga::engine::Engine;
 use crate::fpga::float_unit::Fp;
@@ -36,7 +36,7 @@ pub(super) struct PipelineFilter<F, E> {
 
 impl<F: Fp, E: Engine<F>> PipelineFilter<F, E> {
     /// The engine of a pipeline in its reset state.
-    pub(super) fn new(settings: &PipelineSettings, engine: E, warm_up_samples: u64) -> Self {
+    pub(super) fn new(settings: &FloatSettings, engine: E, warm_up_samples: u64) -> Self {
         Self {
             front_end: settings.front_end(),
             weights: engine.weights().iter().map(|word| word.to_f64()).collect(),

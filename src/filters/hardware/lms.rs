@@ -1,6 +1,7 @@
 //! Least mean squares in hardware.
 
-use super::settings::PipelineSettings;
+use super::pipeline::PipelineSettings;
+use super::settings::FloatSettings;
 use crate::filters::lms::LmsFilterConfig;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
@@ -22,12 +23,12 @@ pub(in crate::filters) fn lms(config: &LmsFilterConfig) -> PipelineSettings {
         },
         update_sign: config.update_sign,
     };
-    PipelineSettings {
+    PipelineSettings::Float(FloatSettings {
         core: CoreSettings::Lms(settings),
         desired,
         input_lag_samples,
         output_register: config.output_register,
         format: config.number_format,
         clock_mhz: config.clock_mhz,
-    }
+    })
 }

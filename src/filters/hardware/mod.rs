@@ -8,17 +8,24 @@
 #[cfg(feature = "hdl")]
 mod export;
 mod filter;
+mod fixed;
 mod lms;
 mod monitor;
+mod pipeline;
 mod rls;
 mod settings;
 mod sign_lms;
+mod timing;
 
 #[cfg(feature = "hdl")]
 pub use export::{Stimulus, export_pipeline};
 pub use filter::HardwareFilter;
+pub use fixed::FixedSettings;
 pub(super) use lms::lms;
 pub use monitor::HealthSummary;
+pub use pipeline::{PipelineSettings, has_hardware, kind_names};
+pub use rls::fixed_rls;
 pub(super) use rls::rls;
-pub use settings::{PipelineSettings, PipelineTiming, has_hardware, kind_names};
+pub use settings::FloatSettings;
 pub(super) use sign_lms::sign_lms;
+pub use timing::PipelineTiming;

@@ -1,22 +1,21 @@
-//! A hardware pipeline with its front end: constants, checks, timing and the filter they stand for.
+//! A floating-point pipeline with its front end: constants, checks, timing and the filter they stand for.
 
 use super::filter::{HardwareFilter, PipelineFilter};
-use crate::filters::common::{Complaints, FrontEndConfig, adaptive_rule, least_squares_rule};
+use super::timing::PipelineTiming;
+use crate::filters::common::{FrontEndConfig, adaptive_rule, least_squares_rule};
 use crate::fpga::FpgaError;
-use crate::fpga::board::{BoardUsage, CodeScale, Surroundings};
+use crate::fpga::board::{CodeScale, Surroundings};
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::FrontEnd;
 use crate::fpga::health::Warning;
-use crate::fpga::kinds::{CoreSettings, CoreVisitor, KINDS, PipelineConfig};
+use crate::fpga::kinds::{CoreSettings, CoreVisitor, PipelineConfig};
 use crate::fpga::pipeline::Core;
-use crate::fpga::timing::{Usage, sample_period_us, sample_rate_max_khz};
 use crate::signal::FilterShape;
-use crate::units::s_to_us;
 use crate::vocabulary::{DesiredSignal, NumberFormat, OutputRegister};
 
-/// A hardware pipeline with its front end, before any check.
+/// A hardware pipeline of floating-point words with its front end, before any check.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PipelineSettings {
+pub struct FloatSettings {
     /// The filter.
     pub core: CoreSettings,
     /// What the filter is asked to reproduce.
@@ -29,22 +28,6 @@ pub struct PipelineSettings {
     pub format: NumberFormat,
     /// Clock, MHz.
     pub clock_mhz: f64,
-}
-
-/// What one sample costs, counted on the running model.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct PipelineTiming {
-    /// Clocks, states, ports and units of one back-to-back sample.
-    pub usage: Usage,
-    /// Clocks of the same behind a front end that takes integer codes.
-    pub board: BoardUsage,
-    /// Time of all clocks of a sample, us.
-    pub sample_period_us: f64,
-    /// From the accepting clock to the result, us.
-    pub latency_us: f64,
-    /// `1 / sample_period_us`, kHz.
-    pub sample_rate_max_khz: f64,
 }
 
 /// Runs `$body` with `$word` standing for the word type of a [`NumberFormat`].
@@ -72,18 +55,7 @@ macro_rules! with_word {
 }
 pub(super) use with_word;
 
-/// Names of the kinds of filters that have a hardware pipeline.
-pub fn kind_names() -> impl Iterator<Item = &'static str> {
-    KINDS.iter().map(|kind| kind.name)
-}
-
-/// Whether filters of a kind have a hardware pipeline.
-#[must_use]
-pub fn has_hardware(kind: &str) -> bool {
-    kind_names().any(|name| name == kind)
-}
-
-impl PipelineSettings {
+impl FloatSettings {
     /// Number of weights.
     #[must_use]
     pub fn tap_count(&self) -> usize {
@@ -102,34 +74,7 @@ impl PipelineSettings {
             let pipeline = constants.as_pipeline();
             (pipeline.clocked().usage(), pipeline.clocked().board_usage(around))
         });
-        let clock_mhz = self.clock_mhz;
-        Ok(PipelineTiming {
-            sample_period_us: sample_period_us(usage.clocks_per_sample, clock_mhz),
-            latency_us: sample_period_us(usage.latency_clocks, clock_mhz),
-            sample_rate_max_khz: sample_rate_max_khz(usage.clocks_per_sample, clock_mhz),
-            usage,
-            board,
-        })
-    }
-
-    /// Checks the constants in their word format, and that a sample is done before the next arrives.
-    pub(in crate::filters) fn check(&self, sample_rate_hz: f64, complaints: &mut Complaints) {
-        let timing = match self.timing() {
-            Ok(timing) => timing,
-            Err(error) => return complaints.table(&error.to_string()),
-        };
-        let period_us = s_to_us(1.0 / sample_rate_hz);
-        if timing.sample_period_us > period_us {
-            let message = format!(
-                "= {} is too slow: {} clocks a sample take {:.3} us, the gyro gives one every \
-                 {period_us:.3} us; use {:.3} MHz or more, or fewer taps",
-                self.clock_mhz,
-                timing.usage.clocks_per_sample,
-                timing.sample_period_us,
-                self.clock_mhz * timing.sample_period_us / period_us
-            );
-            complaints.key("clock_mhz", &message);
-        }
+        Ok(PipelineTiming::of(usage, board, self.clock_mhz))
     }
 
     /// Warns if the first updates cost the words their digits, for inputs up to `input_max`.
@@ -205,7 +150,7 @@ impl PipelineSettings {
 
 /// Puts the engine of any kind behind its front end.
 struct FilterBuilder<'a> {
-    settings: &'a PipelineSettings,
+    settings: &'a FloatSettings,
     warm_up_samples: u64,
 }
 

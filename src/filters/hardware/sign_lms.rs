@@ -1,6 +1,7 @@
 //! Line enhancer in hardware.
 
-use super::settings::PipelineSettings;
+use super::pipeline::PipelineSettings;
+use super::settings::FloatSettings;
 use crate::filters::sign_lms::SignLmsFilterConfig;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::sign_lms::SignLmsSettings;
@@ -9,7 +10,7 @@ use crate::vocabulary::{DesiredSignal, SignLmsForm};
 /// The pipeline that the keys stand for.
 pub(in crate::filters) fn sign_lms(config: &SignLmsFilterConfig) -> PipelineSettings {
     let textbook = config.on_words();
-    PipelineSettings {
+    PipelineSettings::Float(FloatSettings {
         core: CoreSettings::SignLms(SignLmsSettings {
             tap_count: textbook.taps,
             delay_samples: textbook.delay_samples,
@@ -26,5 +27,5 @@ pub(in crate::filters) fn sign_lms(config: &SignLmsFilterConfig) -> PipelineSett
         output_register: config.output_register,
         format: config.number_format,
         clock_mhz: config.clock_mhz,
-    }
+    })
 }

@@ -1,54 +1,127 @@
-//! The folder of a fixed-point pipeline: sources, testbench and vectors.
+//! The folder of a fixed-point pipeline: vectors, and RTL with its testbenches.
 
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::fixed_params::{fixed_json, fixed_macros};
+use super::fixed_top::fixed_top_verilog;
+use super::top::TOP_SAMPLES;
 use super::vectors::write_text;
 use crate::fpga::error::FpgaError;
 use crate::fpga::fixed::{
-    CodePair, FixedClock, FixedRlsConfig, FixedRlsPipeline, FixedRlsState, Format, Overflow,
-    Rounding, fixed_rls_clocks_per_sample, fixed_rls_latency_clocks,
+    CodePair, FixedClock, FixedFrontEnd, FixedRlsConfig, FixedRlsPipeline, FixedRlsState,
+    PortAccess, fixed_rls_clocks_per_sample,
 };
+use crate::vocabulary::{DesiredSignal, OutputRegister};
 
-const SOURCES: [(&str, &str); 4] = [
+/// Files of the RTL beside those of the export itself.
+const SOURCES: [(&str, &str); 9] = [
+    ("README.txt", include_str!("rtl/README_fixed.txt")),
     ("rls_fixed_core.v", include_str!("rtl/rls_fixed_core.v")),
     ("fx.v", include_str!("rtl/fx.v")),
     ("sp_ram.v", include_str!("rtl/sp_ram.v")),
+    ("fx_front_end.v", include_str!("rtl/fx_front_end.v")),
     ("tb_rls_fixed.v", include_str!("rtl/tb_rls_fixed.v")),
+    ("top_bench.v", include_str!("rtl/top_bench.v")),
+    ("tb_defaults.vh", include_str!("rtl/tb_defaults.vh")),
+    ("run.sh", include_str!("rtl/run.sh")),
 ];
 
-/// Letter of each signal in the names of the core's parameters.
-const LETTERS: [char; 8] = ['X', 'D', 'T', 'N', 'K', 'R', 'W', 'Y'];
+/// What to export of a fixed-point pipeline and how to describe it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FixedExport {
+    /// The core.
+    pub config: FixedRlsConfig,
+    /// What d reproduces.
+    pub desired: DesiredSignal,
+    /// Samples by which x is older than the newest.
+    pub input_lag_samples: usize,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+    /// Samples, codes of d.
+    pub samples: Vec<i64>,
+    /// What the value 1 stands for, in words; for the description alone.
+    pub full_scale: String,
+    /// Clock frequency in MHz; only described.
+    pub clock_mhz: f64,
+    /// Samples whose every clock goes into `trace.csv`.
+    pub trace_samples: usize,
+}
 
-/// Simulates the pair after pair, back to back from reset, and writes RTL, testbench and vectors;
-/// returns the files.
-///
-/// The testbench is run in the folder: `iverilog -g2012 -s tb_rls_fixed -o tb *.v && vvp -n tb`.
-///
-/// * `trace_samples`: samples whose every clock goes into `trace.csv`.
+impl FixedExport {
+    /// The pairs behind the front end.
+    #[must_use]
+    pub fn pairs(&self) -> Vec<CodePair> {
+        let formats = *self.config.formats();
+        let mut front_end = FixedFrontEnd::new(formats, self.desired, self.input_lag_samples);
+        let samples = self.samples.iter();
+        samples.map(|sample| front_end.pair(*sample)).collect()
+    }
+}
+
+/// Simulates the samples back to back from reset and writes vectors and parameters; returns the files.
 ///
 /// # Errors
-/// [`FpgaError::CountOutOfRange`] without pairs, [`FpgaError::Write`] if a file cannot be written.
-pub fn write_fixed_rtl(
-    dir: &Path,
-    config: &FixedRlsConfig,
-    pairs: &[CodePair],
-    trace_samples: usize,
-) -> Result<Vec<PathBuf>, FpgaError> {
-    if pairs.is_empty() {
+/// [`FpgaError::CountOutOfRange`] without samples, [`FpgaError::OutOfRange`] for the clock,
+/// [`FpgaError::Write`] if a file cannot be written.
+pub fn write_fixed_vectors(dir: &Path, export: &FixedExport) -> Result<Vec<PathBuf>, FpgaError> {
+    if export.samples.is_empty() {
         return Err(FpgaError::CountOutOfRange {
             name: "number of samples to export",
             value: 0,
             range: "at least 1",
         });
     }
+    crate::fpga::check::check_clock(export.clock_mhz)?;
     fs::create_dir_all(dir).map_err(|cause| FpgaError::write(dir, cause))?;
-    let mut pipeline = FixedRlsPipeline::new(*config);
-    let memories =
-        |pipeline: &FixedRlsPipeline| hex_lines(&[pipeline.rama(), pipeline.ramb()].concat());
+    let pairs = export.pairs();
+    let mut pipeline = FixedRlsPipeline::new(export.config);
     let before = memories(&pipeline);
-    let period = fixed_rls_clocks_per_sample(config.tap_count());
+    let (outputs, trace, rows) = simulate(&mut pipeline, &pairs, export.trace_samples);
+    let words: Vec<i64> = pairs
+        .iter()
+        .flat_map(|pair| [pair.input, pair.desired])
+        .collect();
+    let texts = [
+        ("in.hex", hex_lines(&words)),
+        (TOP_SAMPLES, hex_lines(&export.samples)),
+        ("y.hex", hex_lines(&outputs)),
+        ("ram_init.hex", before),
+        ("ram_final.hex", memories(&pipeline)),
+        ("trace.csv", trace),
+        ("params.json", fixed_json(export, rows)),
+        ("params.vh", fixed_macros(export, rows)),
+    ];
+    let mut files = Vec::new();
+    for (name, text) in texts {
+        files.push(write_text(dir, name, &text)?);
+    }
+    Ok(files)
+}
+
+/// Writes the vectors, and RTL with the constants, testbenches and a script that runs from anywhere;
+/// returns the files.
+///
+/// # Errors
+/// As [`write_fixed_vectors`].
+pub fn write_fixed_rtl(dir: &Path, export: &FixedExport) -> Result<Vec<PathBuf>, FpgaError> {
+    let mut files = write_fixed_vectors(dir, export)?;
+    for (name, text) in SOURCES {
+        files.push(write_text(dir, name, text)?);
+    }
+    let top = fixed_top_verilog(export);
+    files.push(write_text(dir, "rls_fixed_top.v", &top)?);
+    Ok(files)
+}
+
+/// Runs the pairs back to back; outputs, rows of the trace and their number.
+fn simulate(
+    pipeline: &mut FixedRlsPipeline,
+    pairs: &[CodePair],
+    trace_samples: usize,
+) -> (Vec<i64>, String, usize) {
+    let period = fixed_rls_clocks_per_sample(pipeline.config().tap_count());
     let traced = trace_samples.min(pairs.len()) * period;
     let (mut outputs, mut trace, mut rows) = (Vec::new(), String::new(), 0);
     let mut next = 0;
@@ -57,34 +130,24 @@ pub fn write_fixed_rtl(
         next += usize::from(clock.accepted);
         outputs.extend(clock.output);
         if clock.registers.state != FixedRlsState::Idle && rows < traced {
-            trace.push_str(&trace_row(&clock));
+            write_row(&mut trace, &clock);
             rows += 1;
         }
     }
-    let words = pairs.iter().flat_map(|pair| [pair.input, pair.desired]);
-    let texts = [
-        ("in.hex", hex_lines(&words.collect::<Vec<_>>())),
-        ("y.hex", hex_lines(&outputs)),
-        ("ram_init.hex", before),
-        ("ram_final.hex", memories(&pipeline)),
-        ("trace.csv", trace),
-        ("fixed.vh", parameters(config, pairs.len(), rows)),
-    ];
-    let mut files = Vec::new();
-    let texts = texts.iter().map(|(name, text)| (*name, text.as_str()));
-    for (name, text) in texts.chain(SOURCES) {
-        files.push(write_text(dir, name, text)?);
-    }
-    Ok(files)
+    (outputs, trace, rows)
+}
+
+fn memories(pipeline: &FixedRlsPipeline) -> String {
+    hex_lines(&[pipeline.rama(), pipeline.ramb()].concat())
 }
 
 fn hex_lines(words: &[i64]) -> String {
     words.iter().map(|word| format!("{word:016x}\n")).collect()
 }
 
-fn trace_row(clock: &FixedClock) -> String {
+fn write_row(trace: &mut String, clock: &FixedClock) {
     let r = &clock.registers;
-    let port = |access: crate::fpga::fixed::PortAccess| {
+    let port = |access: PortAccess| {
         let word = access.write.unwrap_or(0);
         format!(
             "{},{},{word:016x}",
@@ -92,8 +155,10 @@ fn trace_row(clock: &FixedClock) -> String {
             u8::from(access.write.is_some())
         )
     };
-    format!(
-        "{},{},{},{:032x},{:032x},{:016x},{:016x},{:016x},{:016x},{:016x},{}\n",
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        trace,
+        "{},{},{},{:032x},{:032x},{:016x},{:016x},{:016x},{:016x},{:016x},{}",
         r.state as u8,
         port(clock.rama),
         port(clock.ramb),
@@ -105,60 +170,23 @@ fn trace_row(clock: &FixedClock) -> String {
         r.error,
         r.output,
         r.head
-    )
+    );
 }
 
-/// Verilog macros of the testbench; the core's parameters all in one.
-fn parameters(config: &FixedRlsConfig, samples: usize, rows: usize) -> String {
-    let formats = config.formats().named();
-    let widths = formats.iter().map(|(_, format)| format.width());
-    let widest = widths.max().unwrap_or(0);
-    let mut core = format!(".P({}), .MW({widest})", config.tap_count());
-    for ((_, format), letter) in formats.iter().zip(LETTERS) {
-        let _ = write!(core, "{}", format_parameters(*format, letter));
-    }
-    let (factor, factor_bits) = config.inverse_alpha().unwrap_or((0, 0));
-    let _ = write!(
-        core,
-        ", .ALPHA(128'sh{:032x}), .SCALES({}), .IALPHA(64'sh{factor:016x}), .NI({factor_bits}), \
-         .DELTA(64'sh{:016x})",
-        config.alpha(),
-        u8::from(factor != 0),
-        config.delta()
-    );
-    let mut text = "// Parameters of this export.\n".to_owned();
-    let mut define = |name: &str, value: &str| {
-        let _ = writeln!(text, "`define FIXED_{name} {value}");
-    };
-    let p = config.tap_count();
-    define("P", &p.to_string());
-    define("MW", &widest.to_string());
-    for ((_, format), letter) in formats.iter().zip(LETTERS) {
-        define(&format!("W{letter}"), &format.width().to_string());
-    }
-    define("SAMPLES", &samples.to_string());
-    define("ROWS", &rows.to_string());
-    define("PERIOD", &fixed_rls_clocks_per_sample(p).to_string());
-    define("LATENCY", &fixed_rls_latency_clocks(p).to_string());
-    define("PARAMETERS", &core);
-    text
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fpga::registers::ControlState as _;
 
-fn format_parameters(format: Format, letter: char) -> String {
-    let mut text = format!(
-        ", .W{letter}({}), .N{letter}({})",
-        format.width(),
-        format.fraction_bits
-    );
-    // Nothing is rounded into the input's words.
-    if letter != 'X' && letter != 'D' {
-        let rounding = match format.rounding {
-            Rounding::Truncate => 0,
-            Rounding::HalfUp => 1,
-            Rounding::NearestEven => 2,
-        };
-        let saturates = u8::from(format.overflow == Overflow::Saturate);
-        let _ = write!(text, ", .R{letter}({rounding}), .S{letter}({saturates})");
+    #[test]
+    fn the_readme_of_fixed_point_states_files_and_state_codes() {
+        let (_, readme) = SOURCES[0];
+        let words = readme.split_whitespace().collect::<Vec<_>>().join(" ");
+        for (name, _) in SOURCES.iter().skip(1) {
+            assert!(words.contains(name), "{name}");
+        }
+        for (code, state) in FixedRlsState::NAMES.iter().enumerate() {
+            assert!(words.contains(&format!("{code} {state}")), "{code} {state}");
+        }
     }
-    text
 }

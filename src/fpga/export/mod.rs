@@ -21,6 +21,8 @@
 //! Checked by `rtl`, `waveform`.
 
 mod fixed;
+mod fixed_params;
+mod fixed_top;
 mod params;
 mod rtl;
 mod signals;
@@ -29,7 +31,7 @@ mod vectors;
 mod waveform;
 
 pub use super::kinds::PipelineConfig;
-pub use fixed::write_fixed_rtl;
+pub use fixed::{FixedExport, write_fixed_rtl, write_fixed_vectors};
 pub use rtl::write_rtl;
 pub use vectors::{ExportSettings, IntegerCodes, TopLevel, stimulus_pairs, write_vectors};
 pub use waveform::write_waveform;

@@ -12,6 +12,19 @@ use crate::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 /// File of the samples that a top level takes as words.
 pub(super) const TOP_SAMPLES: &str = "samples.hex";
 
+/// Head of the file of a top level.
+pub(super) const TOP_HEAD: &str =
+    "// The exported filter with its front end: every constant is that of params.json.
+//
+// A sample is taken in a clock in which sample_valid and sample_ready are both up; hold both
+// sample and sample_valid until then. result is right from the clock with result_valid on.
+// Reset is synchronous and may come in any clock; sample_ready may be up while the core still
+// clears its memories, and the sample waits. Samples that come while sample_ready is low are
+// lost unless they are held.
+`default_nettype none
+
+";
+
 /// Samples of a top level that takes words; none if it takes codes, which have a file already.
 pub(super) fn top_samples<F: Fp>(top: &TopLevel<F>) -> Option<String> {
     if top.surroundings.scale.is_some() {
@@ -28,7 +41,6 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
     let name = kind.name;
     let width = F::WIDTH;
     let forms_mean = around.desired == DesiredSignal::TwoSampleMean;
-    let is_late = around.output_register == OutputRegister::NextSample;
     let (bits, sample, unit) = match &around.scale {
         Some(scale) => (
             32,
@@ -56,23 +68,9 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
         let _ = write!(core, ",\n        .UPDATE_SUB({})", u8::from(subtracts));
     }
     let flushes = u8::from(F::FLUSHES_SUBNORMALS);
-    let register = if is_late {
-        RESULT_AT_NEXT
-            .replace("WIDTH-1", &(width - 1).to_string())
-            .replace("WIDTH", &width.to_string())
-    } else {
-        RESULT_AT_ONCE.to_owned()
-    };
+    let register = output_register(around.output_register, width);
     format!(
-        "// The exported filter with its front end: every constant is that of params.json.\n\
-         //\n\
-         // A sample is taken in a clock in which sample_valid and sample_ready are both up; hold both\n\
-         // sample and sample_valid until then. result is right from the clock with result_valid on.\n\
-         // Reset is synchronous and may come in any clock; sample_ready may be up while the core still\n\
-         // clears its memories, and the sample waits. Samples that come while sample_ready is low are\n\
-         // lost unless they are held.\n\
-         `default_nettype none\n\n\
-         module {name}_top #(\n    parameter DIV_LATENCY = 1       // clocks of the divider\n) (\n    \
+        "{TOP_HEAD}module {name}_top #(\n    parameter DIV_LATENCY = 1       // clocks of the divider\n) (\n    \
          input  wire        clk,\n    input  wire        rst,\n    \
          input  wire        sample_valid,\n    output wire        sample_ready,\n    \
          input  wire [{}:0] sample,         // {sample}\n    \
@@ -97,6 +95,16 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
         around.input_lag_samples,
         u8::from(forms_mean),
     )
+}
+
+/// Verilog of the output register.
+pub(super) fn output_register(register: OutputRegister, width: u32) -> String {
+    match register {
+        OutputRegister::NextSample => RESULT_AT_NEXT
+            .replace("WIDTH-1", &(width - 1).to_string())
+            .replace("WIDTH", &width.to_string()),
+        OutputRegister::Immediate => RESULT_AT_ONCE.to_owned(),
+    }
 }
 
 /// Output register of [`OutputRegister::Immediate`]: the core's own.

@@ -1,8 +1,9 @@
 //! What never changes while the fixed-point pipeline runs, and what each exact value becomes.
 
-use super::format::{EXACT_BITS, Format, Overflow, Rounding, Stored};
+use super::format::{EXACT_BITS, Format, Stored};
 use crate::fpga::check::check_tap_count;
 use crate::fpga::error::FpgaError;
+use crate::vocabulary::{Overflow, Rounding};
 
 /// Formats of the signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,6 +134,12 @@ impl FixedRlsConfig {
     #[must_use]
     pub fn alpha(&self) -> i128 {
         self.alpha
+    }
+
+    /// Fraction bits of [`Self::alpha`].
+    #[must_use]
+    pub fn alpha_fraction_bits(&self) -> u32 {
+        self.formats.input.fraction_bits + self.formats.intermediate.fraction_bits
     }
 
     /// Code of `1/alpha` and its fraction bits; none at alpha = 1.

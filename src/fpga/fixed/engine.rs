@@ -153,6 +153,12 @@ impl FixedRlsEngine {
         &self.weights
     }
 
+    /// Codes of R, row by row.
+    #[must_use]
+    pub fn inverse_correlation(&self) -> &[i64] {
+        &self.inverse
+    }
+
     /// The words RAMA holds after the last sample: ring of L, then k.
     #[must_use]
     pub fn rama(&self) -> Vec<i64> {

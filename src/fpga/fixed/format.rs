@@ -5,29 +5,10 @@
 //! stored into a word.
 
 use crate::fpga::error::FpgaError;
+use crate::vocabulary::{Overflow, Rounding};
 
 /// Bits that every exact value of a filter has to fit, sign included.
 pub(super) const EXACT_BITS: u32 = 127;
-
-/// How a value between two words is rounded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rounding {
-    /// To the word below: the bits are cut off.
-    Truncate,
-    /// To the nearest word, half way to the one above.
-    HalfUp,
-    /// To the nearest word, half way to the even one.
-    NearestEven,
-}
-
-/// What becomes of a value beyond the ends of the words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Overflow {
-    /// The end.
-    Saturate,
-    /// The bits beyond are cut off.
-    Wrap,
-}
 
 /// Format of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -53,6 +53,13 @@ pub const fn fixed_rls_latency_clocks(tap_count: usize) -> usize {
     3 * tap_count * tap_count + 5 * tap_count + 3
 }
 
+/// Clocks from one accepted sample to the next with a divider of `divider_clocks`, 1 or more.
+#[must_use]
+pub const fn fixed_rls_stalled_clocks(tap_count: usize, divider_clocks: u64) -> u64 {
+    let taps = tap_count as u64;
+    fixed_rls_clocks_per_sample(tap_count) as u64 + taps * (divider_clocks - 1)
+}
+
 /// Registers, named as in the RTL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedRegisters {
@@ -85,10 +92,23 @@ pub struct FixedRegisters {
 /// Use of a memory port in a clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PortAccess {
+    /// Whether the port is used.
+    pub is_used: bool,
     /// Address, 0 if unused.
     pub address: usize,
     /// Word written, if any.
     pub write: Option<i64>,
+}
+
+/// Use of the units in a clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UnitUse {
+    /// Products, that with 1/alpha among them.
+    pub products: u8,
+    /// Sums and differences.
+    pub sums: u8,
+    /// Quotients.
+    pub quotients: u8,
 }
 
 /// One clock: registers before its edge, ports, strobes.
@@ -101,6 +121,8 @@ pub struct FixedClock {
     pub rama: PortAccess,
     /// RAMB.
     pub ramb: PortAccess,
+    /// Units.
+    pub units: UnitUse,
     /// The offered pair was taken.
     pub accepted: bool,
     /// Code of the output, in the one clock in which its strobe is up.
@@ -115,6 +137,7 @@ pub struct FixedRlsPipeline {
     rama: SinglePortRam<i64>,
     ramb: SinglePortRam<i64>,
     ports: [PortAccess; 2],
+    units: UnitUse,
 }
 
 impl FixedRlsPipeline {
@@ -145,6 +168,7 @@ impl FixedRlsPipeline {
             rama: SinglePortRam::filled("RAMA", 2 * p, 0),
             ramb,
             ports: [PortAccess::default(); 2],
+            units: UnitUse::default(),
         }
     }
 
@@ -152,6 +176,12 @@ impl FixedRlsPipeline {
     pub fn reset(&mut self) {
         self.registers = Self::new(self.config).registers;
         self.registers.state = FixedRlsState::Clearing;
+    }
+
+    /// Constants.
+    #[must_use]
+    pub fn config(&self) -> &FixedRlsConfig {
+        &self.config
     }
 
     /// Registers, between two clocks.
@@ -177,6 +207,7 @@ impl FixedRlsPipeline {
     pub fn tick(&mut self, input: Option<CodePair>) -> FixedClock {
         let registers = self.registers;
         self.ports = [PortAccess::default(); 2];
+        self.units = UnitUse::default();
         let accepted = registers.state == FixedRlsState::RiLLoading && input.is_some();
         let strobes = registers.state == FixedRlsState::RfwReading && !registers.second;
         match (registers.state, input) {
@@ -192,23 +223,27 @@ impl FixedRlsPipeline {
             registers,
             rama: self.ports[0],
             ramb: self.ports[1],
+            units: self.units,
             accepted,
             output: strobes.then_some(registers.output),
         }
     }
 
     fn read_a(&mut self, address: usize) -> i64 {
+        self.ports[0].is_used = true;
         self.ports[0].address = address;
         self.rama.read(address)
     }
 
     fn read_b(&mut self, address: usize) -> i64 {
+        self.ports[1].is_used = true;
         self.ports[1].address = address;
         self.ramb.read(address)
     }
 
     fn write_a(&mut self, address: usize, word: i64) {
         self.ports[0] = PortAccess {
+            is_used: true,
             address,
             write: Some(word),
         };
@@ -217,6 +252,7 @@ impl FixedRlsPipeline {
 
     fn write_b(&mut self, address: usize, word: i64) {
         self.ports[1] = PortAccess {
+            is_used: true,
             address,
             write: Some(word),
         };
@@ -248,16 +284,19 @@ impl FixedRlsPipeline {
                 self.accumulate(self.registers.j, 0, FixedRlsState::OutWriting);
             }
             FixedRlsState::RiLWriting => {
-                let word = self.config.intermediate(self.last_sum()).code;
+                let sum = self.last_sum();
+                let word = self.config.intermediate(sum).code;
                 self.write_b(p + self.registers.i, word);
                 self.next_row(FixedRlsState::RiLReading, FixedRlsState::LrlReading);
             }
             FixedRlsState::LrlWriting => {
-                self.registers.denominator = self.config.denominator(self.last_sum()).code;
+                let sum = self.last_sum();
+                self.registers.denominator = self.config.denominator(sum).code;
                 self.registers.state = FixedRlsState::GainDividing;
             }
             FixedRlsState::GainDividing => {
                 let t_i = self.read_b(p + self.registers.i);
+                self.units.quotients += 1;
                 let gain = self.config.gain(t_i, self.registers.denominator).code;
                 self.write_a(p + self.registers.i, gain);
                 self.next_row(FixedRlsState::GainDividing, FixedRlsState::RfrReading);
@@ -266,7 +305,8 @@ impl FixedRlsPipeline {
             FixedRlsState::RfrWriting => self.correct_write(),
             FixedRlsState::RfrMirroring => self.correct_mirror(),
             FixedRlsState::OutWriting => {
-                self.registers.output = self.config.output(self.last_sum()).code;
+                let sum = self.last_sum();
+                self.registers.output = self.config.output(sum).code;
                 self.registers.state = FixedRlsState::RfwReading;
             }
             FixedRlsState::RfwReading => self.weight_read(),
@@ -282,14 +322,20 @@ impl FixedRlsPipeline {
         let l_j = self.read_a((self.registers.head + p - j) % p);
         let b_j = self.read_b(b);
         self.registers.accumulator = if j == 0 { first } else { self.last_sum() };
-        self.registers.product = i128::from(l_j) * i128::from(b_j);
+        self.registers.product = self.multiply(l_j, b_j);
         self.registers.j = (j + 1) % p;
         if self.registers.j == 0 {
             self.registers.state = done;
         }
     }
 
-    fn last_sum(&self) -> i128 {
+    fn multiply(&mut self, a: i64, b: i64) -> i128 {
+        self.units.products += 1;
+        i128::from(a) * i128::from(b)
+    }
+
+    fn last_sum(&mut self) -> i128 {
+        self.units.sums += 1;
         self.registers.accumulator + self.registers.product
     }
 
@@ -310,7 +356,7 @@ impl FixedRlsPipeline {
         } else {
             let k_i = self.read_a(p + i);
             let t_j = self.read_b(p + j);
-            self.registers.product = i128::from(k_i) * i128::from(t_j);
+            self.registers.product = self.multiply(k_i, t_j);
             self.registers.second = true;
         }
     }
@@ -327,6 +373,8 @@ impl FixedRlsPipeline {
     fn correct_write(&mut self) {
         let p = self.config.tap_count;
         let FixedRegisters { i, j, .. } = self.registers;
+        self.units.sums += 1;
+        self.units.products += u8::from(self.config.inverse_alpha.is_some());
         self.write_b(2 * p + i * p + j, self.corrected());
         if i == j {
             self.next_element();
@@ -363,13 +411,14 @@ impl FixedRlsPipeline {
             i, desired, output, ..
         } = self.registers;
         if !self.registers.second {
+            self.units.sums += 1;
             self.registers.error = self.config.error(desired, output).code;
             self.registers.second = true;
             return;
         }
         let k_i = self.read_a(self.config.tap_count + i);
         self.registers.read_latch = self.read_b(i);
-        self.registers.product = i128::from(k_i) * i128::from(self.registers.error);
+        self.registers.product = self.multiply(k_i, self.registers.error);
         self.registers.state = FixedRlsState::RfwWriting;
     }
 
@@ -380,6 +429,7 @@ impl FixedRlsPipeline {
             product,
             ..
         } = self.registers;
+        self.units.sums += 1;
         let weight = self.config.weight(read_latch, product).code;
         self.write_b(i, weight);
         // Passing through Idle would cost a clock of the sample period.

@@ -43,18 +43,24 @@
 //!
 //! Checked by `fixed_point`, `fixed::format::tests`.
 
+mod board;
 mod config;
 mod engine;
 mod format;
 mod machine;
+mod usage;
 
+pub use board::{FixedFrontEnd, fixed_board_usage};
 pub use config::{FixedRlsConfig, FixedRlsSettings, RlsFormats};
 pub use engine::{FixedHealth, FixedRlsEngine};
-pub use format::{Format, Overflow, Rounding, Stored};
+pub use format::{Format, Stored};
 pub use machine::{
-    FixedClock, FixedRegisters, FixedRlsPipeline, FixedRlsState, PortAccess,
-    fixed_rls_clocks_per_sample, fixed_rls_latency_clocks,
+    FixedClock, FixedRegisters, FixedRlsPipeline, FixedRlsState, PortAccess, UnitUse,
+    fixed_rls_clocks_per_sample, fixed_rls_latency_clocks, fixed_rls_stalled_clocks,
 };
+pub use usage::fixed_rls_usage;
+
+pub use crate::vocabulary::{Overflow, Rounding};
 
 /// One pair of words for the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -220,6 +220,8 @@ const CASES: &[Case] = &[
     case("filter[].rls.clock_mhz", "41.0", "", "pipeline = \"fpga\""),
     case("filter[].rls.division", "\"elementwise\"", "", "pipeline = \"fpga\""),
     case("filter[].rls.update_order", "\"gain-first\"", "", "pipeline = \"fpga\""),
+    case("filter[].rls.fixed", "{ word_bits = 40 }", "pipeline = \"fpga\"",
+        "pipeline = \"fpga\", number_format = \"fixed\", initial_inverse_correlation = 1e-5"),
     case("filter[].lms.regularisation_deg2_per_h2", "3.3", "normalised = false, step_size = 1e-9",
         "normalised = true"),
     case("filter[].lms.allow_unstable", "true", "normalised = true", "normalised = false, step_size = 1e-9"),

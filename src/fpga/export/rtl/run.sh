@@ -126,10 +126,18 @@ case "$sim" in
         exit 2 ;;
 esac
 # A simulator killed by an assertion ends with 134 and the like: one code for all of them.
-core="${CORE:-${filter}_core.v ${filter}_ctrl.v sp_ram.v fp_sim.v}"
+own=
+front=
+for file in "${filter}_core.v" "${filter}_ctrl.v" sp_ram.v fp_sim.v fx.v; do
+    if [ -f "$here/$file" ]; then own="$own $file"; fi
+done
+for file in front_end.v fx_front_end.v; do
+    if [ -f "$here/$file" ]; then front="$front $file"; fi
+done
+core="${CORE:-$own}"
 if [ "$bench" != top ]; then simulate "tb_$filter" "tb_$filter.v $core" "$@" || exit 1; fi
 # The top level is that of this folder's own vectors. A core of one's own is not in it.
 if [ "$bench" != core ] && [ "$vectors" = "$here" ] && [ -z "${BLACK_BOX-}" ] \
     && [ -f "$here/${filter}_top.v" ]; then
-    simulate top_bench "top_bench.v ${filter}_top.v front_end.v $core" "+VEC_DIR=$vectors" || exit 1
+    simulate top_bench "top_bench.v ${filter}_top.v $front $core" "+VEC_DIR=$vectors" || exit 1
 fi

@@ -17,3 +17,10 @@
 `ifndef VEC_DIV_LATENCY
 `define VEC_DIV_LATENCY 1
 `endif
+// Bits of a top level's ports.
+`ifndef VEC_TOP_SAMPLE_BITS
+`define VEC_TOP_SAMPLE_BITS (`VEC_TOP_CODE != 0 ? 32 : `VEC_WIDTH)
+`endif
+`ifndef VEC_TOP_RESULT_BITS
+`define VEC_TOP_RESULT_BITS `VEC_WIDTH
+`endif

@@ -1,15 +1,19 @@
-// Self-checking testbench of the fixed-point RLS core, with the constants of fixed.vh: resets in
+// Self-checking testbench of the fixed-point RLS core, with the constants of params.vh: resets in
 // every state, every word of y, the clocks of every sample, the memories before and after, and every
 // clock of trace.csv. The first mismatch ends the run non-zero.
 `timescale 1ps/1ps
-`include "fixed.vh"
+`include "params.vh"
+`include "tb_defaults.vh"
 
 module tb_rls_fixed;
-    localparam P       = `FIXED_P;
-    localparam SAMPLES = `FIXED_SAMPLES;
+    localparam P       = `VEC_TAPS;
+    localparam SAMPLES = `VEC_SAMPLES;
     localparam A_WORDS = 2 * P;
     localparam WORDS   = 4 * P + P * P;
     localparam CLEAR_CLOCKS = 2 * P + P * P;
+    localparam EXTRA   = (`VEC_DIV_LATENCY - 1) * P;    // clocks a slower divider adds
+    localparam PERIOD  = `VEC_PERIOD + EXTRA;
+    localparam LATENCY = `VEC_LATENCY + EXTRA;
     localparam [3:0] CLEAR = 4'd14;
 
     reg [63:0]    in_words [0:2*SAMPLES-1];
@@ -18,14 +22,16 @@ module tb_rls_fixed;
     reg [63:0]    final_words [0:WORDS-1];
     reg           clk, rst, valid, running, failed;
     wire          in_ready, out_valid;
+    // Longest path, in characters. Verilator 5.006 holds no longer string.
+    reg [8*256-1:0] vec_dir, path;
     wire [63:0]   x_full = in_words[taken < SAMPLES ? 2 * taken : 0];
     wire [63:0]   d_full = in_words[taken < SAMPLES ? 2 * taken + 1 : 1];
-    wire [`FIXED_WX-1:0] x = x_full[`FIXED_WX-1:0];
-    wire [`FIXED_WD-1:0] d = d_full[`FIXED_WD-1:0];
-    wire signed [`FIXED_WY-1:0] y;
+    wire [`VEC_WX-1:0] x = x_full[`VEC_WX-1:0];
+    wire [`VEC_WD-1:0] d = d_full[`VEC_WD-1:0];
+    wire signed [`VEC_WY-1:0] y;
     integer       cycle, taken, given, start, rows, k, target, waited, trace_file, scanned;
 
-    rls_fixed_core #(`FIXED_PARAMETERS) rls (
+    rls_fixed_core #(`VEC_CORE, .DIV_LATENCY(`VEC_DIV_LATENCY)) rls (
         .clk(clk), .rst(rst), .in_valid(valid), .in_ready(in_ready), .x(x), .d(d),
         .out_valid(out_valid), .y(y));
 
@@ -45,8 +51,8 @@ module tb_rls_fixed;
     task check_memories(input last);
         for (k = 0; k < WORDS; k = k + 1) begin
             want = last ? final_words[k] : init_words[k];
-            if (k < A_WORDS) have = {{(64-`FIXED_MW){rls.rama.mem[k][`FIXED_MW-1]}}, rls.rama.mem[k]};
-            else have = {{(64-`FIXED_MW){rls.ramb.mem[k-A_WORDS][`FIXED_MW-1]}},
+            if (k < A_WORDS) have = {{(64-`VEC_MW){rls.rama.mem[k][`VEC_MW-1]}}, rls.rama.mem[k]};
+            else have = {{(64-`VEC_MW){rls.ramb.mem[k-A_WORDS][`VEC_MW-1]}},
                          rls.ramb.mem[k-A_WORDS]};
             if (have !== want) fail(last ? "memory, end" : "memory, reset", want, have);
         end
@@ -69,11 +75,23 @@ module tb_rls_fixed;
     initial begin
         clk = 1'b0; rst = 1'b1; valid = 1'b0; running = 1'b0; failed = 1'b0;
         cycle = 0; taken = 0; given = 0; start = 0; rows = 0;
-        $readmemh("in.hex", in_words);
-        $readmemh("y.hex", y_words);
-        $readmemh("ram_init.hex", init_words);
-        $readmemh("ram_final.hex", final_words);
-        trace_file = $fopen("trace.csv", "r");
+        if (!$value$plusargs("VEC_DIR=%s", vec_dir)) vec_dir = ".";
+        $sformat(path, "%0s/in.hex", vec_dir);
+        $readmemh(path, in_words);
+        $sformat(path, "%0s/y.hex", vec_dir);
+        $readmemh(path, y_words);
+        $sformat(path, "%0s/ram_init.hex", vec_dir);
+        $readmemh(path, init_words);
+        $sformat(path, "%0s/ram_final.hex", vec_dir);
+        $readmemh(path, final_words);
+        $sformat(path, "%0s/trace.csv", vec_dir);
+        trace_file = $fopen(path, "r");
+`ifdef WAVE
+        if ($value$plusargs("VCD=%s", path)) begin
+            $dumpfile(path);
+            $dumpvars(0, rls);
+        end
+`endif
         if (trace_file == 0 || ^y_words[SAMPLES-1] === 1'bx) fail("vectors", 0, 0);
         repeat (2) @(negedge clk);
         rst = 1'b0;
@@ -89,7 +107,7 @@ module tb_rls_fixed;
             waited = 0;
             repeat (2) begin
                 @(negedge clk);
-                while (rls.state != target && waited < 4 * `FIXED_PERIOD) begin
+                while (rls.state != target && waited < 4 * PERIOD) begin
                     waited = waited + 1;
                     @(negedge clk);
                 end
@@ -140,26 +158,26 @@ module tb_rls_fixed;
     wire signed [63:0] y_full = y;
     always @(posedge clk) if (running && !failed) begin
         cycle <= cycle + 1;
-        if (rls.state != 4'd0 && rows < `FIXED_ROWS) check_row;
+        if (rls.state != 4'd0 && !rls.stall && rows < `VEC_TRACE_CLOCKS) check_row;
         if (valid && in_ready) begin
-            if (taken != 0 && cycle - start != `FIXED_PERIOD)
-                fail("period", `FIXED_PERIOD, cycle - start);
+            if (taken != 0 && cycle - start != PERIOD)
+                fail("period", PERIOD, cycle - start);
             start <= cycle;
             taken <= taken + 1;
             if (taken == SAMPLES - 1) valid <= 1'b0;
         end
         if (out_valid) begin
             if (y_full !== y_words[given]) fail("y", y_words[given], y_full);
-            if (cycle - start != `FIXED_LATENCY) fail("latency", `FIXED_LATENCY, cycle - start);
+            if (cycle - start != LATENCY) fail("latency", LATENCY, cycle - start);
             given <= given + 1;
         end
-        if (taken == SAMPLES && cycle - start == `FIXED_PERIOD) begin
+        if (taken == SAMPLES && cycle - start == PERIOD) begin
             if (given != SAMPLES) fail("results", SAMPLES, given);
             if (rls.state != 4'd0) fail("state, end", 0, rls.state);
             check_memories(1'b1);
             $display("PASS rls_fixed: %0d samples, %0d trace rows", SAMPLES, rows);
             $finish;
         end
-        if (cycle > (SAMPLES + 3) * `FIXED_PERIOD) fail("results", SAMPLES, given);
+        if (cycle > (SAMPLES + 3) * PERIOD) fail("results", SAMPLES, given);
     end
 endmodule

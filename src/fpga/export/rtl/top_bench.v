@@ -10,24 +10,28 @@
 
 module top_bench;
     localparam W       = `VEC_WIDTH;
-    localparam SB      = `VEC_TOP_CODE != 0 ? 32 : W;
+    localparam SB      = `VEC_TOP_SAMPLE_BITS;
+    localparam FB      = `VEC_TOP_CODE != 0 ? 32 : W;
+    localparam RB      = `VEC_TOP_RESULT_BITS;
     localparam SAMPLES = `VEC_SAMPLES;
 
-    reg [SB-1:0] samples [0:SAMPLES-1];
+    // Words of a width of their own stand sign-extended in their files.
+    reg [FB-1:0] samples [0:SAMPLES-1];
     reg [W-1:0]  y_words [0:SAMPLES-1];
 
     // Longest path, in characters. Verilator 5.006 holds no longer string.
     reg [8*256-1:0] vec_dir, path;
     reg             clk, rst, valid, failed;
     wire            ready, result_valid;
-    wire [W-1:0]    result;
+    wire [RB-1:0]   result;
     integer         cycle, taken, given, handed, start, first;
     // With the next-sample register result k stands for y of sample k-1, the first for +0.
     wire [W-1:0]    want = given < `VEC_TOP_NEXT ? {W{1'b0}} : y_words[given - `VEC_TOP_NEXT];
+    wire [FB-1:0]   next_sample = samples[taken < SAMPLES ? taken : 0];
 
     `VEC_TOP #(.DIV_LATENCY(`VEC_DIV_LATENCY)) top (
         .clk(clk), .rst(rst), .sample_valid(valid), .sample_ready(ready),
-        .sample(valid ? samples[taken < SAMPLES ? taken : 0] : {SB{1'b0}}),
+        .sample(valid ? next_sample[SB-1:0] : {SB{1'b0}}),
         .result_valid(result_valid), .result(result));
 
     always #(`VEC_CLOCK_PS / 2) clk = ~clk;
@@ -86,7 +90,7 @@ module top_bench;
             handed <= handed + 1;
         end
         if (result_valid) begin
-            if (result !== want) fail("result", want, result);
+            if (result !== want[RB-1:0]) fail("result", want, result);
             given <= given + 1;
             if (last_run && given == SAMPLES - 1) begin
                 $display("PASS %0s: %0d results, front end %0d clocks, period %0d", "top level",

@@ -1,0 +1,204 @@
+//! A fixed-point pipeline on the bench: its constants, its timing and the filter they stand for.
+
+use super::filter::HardwareFilter;
+use super::monitor::{HealthSummary, Monitor};
+use super::timing::PipelineTiming;
+use crate::filters::common::{
+    Complaints, Divergence, Fault, Filter, FrontEndConfig, Output, Register, Watch,
+    least_squares_rule,
+};
+use crate::fpga::FpgaError;
+use crate::fpga::engine::InverseCorrelation;
+use crate::fpga::fixed::{
+    FixedFrontEnd, FixedRlsConfig, FixedRlsEngine, FixedRlsSettings, fixed_board_usage,
+    fixed_rls_usage,
+};
+use crate::fpga::health::{Warning, wind_up_warning};
+use crate::signal::FilterShape;
+use crate::vocabulary::{DesiredSignal, OutputRegister};
+
+/// A fixed-point pipeline with its front end, before any check.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FixedSettings {
+    /// The filter, its constants in the full scale.
+    pub core: FixedRlsSettings,
+    /// Word that the value 1 stands for, deg/h.
+    pub full_scale_deg_per_h: f64,
+    /// What the filter is asked to reproduce.
+    pub desired: DesiredSignal,
+    /// Samples by which the regressors lag the newest sample.
+    pub input_lag_samples: usize,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+    /// Clock, MHz.
+    pub clock_mhz: f64,
+}
+
+impl FixedSettings {
+    /// The constants in their words.
+    ///
+    /// # Errors
+    /// What the pipeline refuses.
+    pub fn config(&self) -> Result<FixedRlsConfig, FpgaError> {
+        FixedRlsConfig::new(self.core)
+    }
+
+    /// The hold registers in front of the core.
+    pub(super) fn front_end(&self) -> FixedFrontEnd {
+        FixedFrontEnd::new(self.core.formats, self.desired, self.input_lag_samples)
+    }
+
+    /// The word of d for a sample.
+    pub(super) fn code(&self, word_deg_per_h: f64) -> i64 {
+        let format = self.core.formats.desired;
+        format.of(word_deg_per_h / self.full_scale_deg_per_h).code
+    }
+
+    pub(super) fn timing(&self) -> Result<PipelineTiming, FpgaError> {
+        let config = self.config()?;
+        let (usage, board) = (fixed_rls_usage(config), fixed_board_usage(config));
+        Ok(PipelineTiming::of(usage, board, self.clock_mhz))
+    }
+
+    /// Blames the key that a refused constant comes from.
+    pub(super) fn complain(&self, error: &FpgaError, complaints: &mut Complaints) {
+        let full_scale = self.full_scale_deg_per_h;
+        let per_square = |value: f64| value / full_scale / full_scale;
+        let delta = self.core.initial_inverse_correlation;
+        let advice = match error {
+            FpgaError::DoesNotFit { value, limit, .. } if value.to_bits() == delta.to_bits() => {
+                format!(
+                    "less than {:.4e} (deg/h)^-2, or more integer bits in fixed.r",
+                    per_square(*limit)
+                )
+            }
+            FpgaError::OutOfRange { value, .. } if value.to_bits() == delta.to_bits() => {
+                let step = self.core.formats.inverse.value(1);
+                format!(
+                    "{:.4e} (deg/h)^-2 or more, or more bits in fixed.r",
+                    per_square(step)
+                )
+            }
+            _ => return complaints.table(&error.to_string()),
+        };
+        let message = format!(
+            "= {:.4e} (deg/h)^-2, at a full scale of {full_scale} deg/h: {error}; use {advice}",
+            per_square(delta)
+        );
+        complaints.key("initial_inverse_correlation", &message);
+    }
+
+    pub(super) fn filter(
+        &self,
+        warm_up_samples: u64,
+    ) -> Result<Box<dyn HardwareFilter>, FpgaError> {
+        let engine = FixedRlsEngine::new(self.config()?);
+        Ok(Box::new(FixedPipelineFilter {
+            settings: *self,
+            front_end: self.front_end(),
+            weights: vec![0.0; self.core.tap_count],
+            engine,
+            register: Register::new(self.output_register),
+            watch: Watch::new(),
+            monitor: Monitor::new(self.core.tap_count, warm_up_samples),
+            samples: 0,
+            diverged: None,
+        }))
+    }
+
+    fn shape(&self) -> FilterShape {
+        let front_end = FrontEndConfig {
+            desired: self.desired,
+            input_lag_samples: self.input_lag_samples,
+            output_register: self.output_register,
+        };
+        let rule = least_squares_rule(self.desired, self.core.forgetting_factor);
+        front_end.shape(Some(self.core.tap_count), rule)
+    }
+}
+
+/// Fixed-point pipeline behind its front end.
+struct FixedPipelineFilter {
+    settings: FixedSettings,
+    front_end: FixedFrontEnd,
+    engine: FixedRlsEngine,
+    weights: Vec<f64>,
+    register: Register,
+    watch: Watch,
+    monitor: Monitor,
+    samples: u64,
+    diverged: Option<Divergence>,
+}
+
+impl FixedPipelineFilter {
+    fn advance(&mut self, input: f64, sample: u64) -> Result<Output, Fault> {
+        let formats = self.settings.core.formats;
+        let weight_sum = self.weights.iter().sum();
+        let pair = self.front_end.pair(self.settings.code(input));
+        let code = self.engine.process(pair);
+        for (held, word) in self.weights.iter_mut().zip(self.engine.weights()) {
+            *held = formats.weight.value(*word);
+        }
+        let result = Output {
+            value_deg_per_h: formats.output.value(code) * self.settings.full_scale_deg_per_h,
+            weight_sum,
+        };
+        let output = self.register.clock(result);
+        self.watch.check_input(input)?;
+        self.watch.check_output(result)?;
+        if self.monitor.is_due(sample) {
+            self.look(sample);
+        }
+        Ok(output)
+    }
+
+    /// Notes the state of the matrix. That it is no longer definite does not end a filter whose words
+    /// have ends.
+    fn look(&mut self, sample: u64) {
+        let format = self.settings.core.formats.inverse;
+        let codes = self.engine.inverse_correlation();
+        let matrix: Vec<f64> = codes.iter().map(|code| format.value(*code)).collect();
+        let inverse = InverseCorrelation {
+            matrix: &matrix,
+            tap_count: self.settings.core.tap_count,
+            delta: self.settings.core.initial_inverse_correlation,
+            alpha: self.settings.core.forgetting_factor,
+        };
+        drop(self.monitor.look(inverse, sample));
+    }
+}
+
+impl Filter for FixedPipelineFilter {
+    fn step(&mut self, input_deg_per_h: f64) -> Result<Output, Divergence> {
+        let sample = self.samples;
+        self.samples += 1;
+        let result = self.advance(input_deg_per_h, sample);
+        if let Some(divergence) = &self.diverged {
+            return Err(divergence.clone());
+        }
+        result.map_err(|fault| {
+            let divergence = fault.at(sample);
+            self.diverged = Some(divergence.clone());
+            divergence
+        })
+    }
+
+    fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    fn shape(&self) -> FilterShape {
+        self.settings.shape()
+    }
+}
+
+impl HardwareFilter for FixedPipelineFilter {
+    fn health(&mut self) -> Option<HealthSummary> {
+        self.look(self.samples.saturating_sub(1));
+        self.monitor.worst()
+    }
+
+    fn wind_up(&self) -> Option<Warning> {
+        wind_up_warning(self.monitor.latest()?, self.settings.core.forgetting_factor)
+    }
+}

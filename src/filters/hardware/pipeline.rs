@@ -1,0 +1,163 @@
+//! A hardware pipeline whatever its words: what the bench asks of it.
+
+use super::filter::HardwareFilter;
+use super::fixed::FixedSettings;
+use super::settings::FloatSettings;
+use super::timing::PipelineTiming;
+use crate::filters::common::Complaints;
+use crate::fpga::FpgaError;
+use crate::fpga::fixed::fixed_rls_stalled_clocks;
+use crate::fpga::health::Warning;
+use crate::fpga::kinds::KINDS;
+use crate::fpga::timing::Units;
+use crate::units::s_to_us;
+use crate::vocabulary::OutputRegister;
+
+/// A hardware pipeline with its front end, before any check.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PipelineSettings {
+    /// On floating-point words.
+    Float(FloatSettings),
+    /// On fixed-point words.
+    Fixed(FixedSettings),
+}
+
+/// Names of the kinds of filters that have a hardware pipeline.
+pub fn kind_names() -> impl Iterator<Item = &'static str> {
+    KINDS.iter().map(|kind| kind.name)
+}
+
+/// Whether filters of a kind have a hardware pipeline.
+#[must_use]
+pub fn has_hardware(kind: &str) -> bool {
+    kind_names().any(|name| name == kind)
+}
+
+impl PipelineSettings {
+    /// Number of weights.
+    #[must_use]
+    pub fn tap_count(&self) -> usize {
+        match self {
+            Self::Float(settings) => settings.tap_count(),
+            Self::Fixed(settings) => settings.core.tap_count,
+        }
+    }
+
+    /// When the result appears.
+    #[must_use]
+    pub fn output_register(&self) -> OutputRegister {
+        match self {
+            Self::Float(settings) => settings.output_register,
+            Self::Fixed(settings) => settings.output_register,
+        }
+    }
+
+    /// Clock, MHz.
+    #[must_use]
+    pub fn clock_mhz(&self) -> f64 {
+        match self {
+            Self::Float(settings) => settings.clock_mhz,
+            Self::Fixed(settings) => settings.clock_mhz,
+        }
+    }
+
+    /// Whether the filter keeps an inverse correlation matrix.
+    #[must_use]
+    pub fn has_matrix(&self) -> bool {
+        match self {
+            Self::Float(settings) => settings.core.kind().has_matrix,
+            Self::Fixed(_) => true,
+        }
+    }
+
+    /// Whether there is hardware with the engine's words.
+    #[must_use]
+    pub fn has_hardware(&self) -> bool {
+        match self {
+            Self::Float(settings) => settings.core.has_hardware(),
+            Self::Fixed(_) => true,
+        }
+    }
+
+    /// Rounds the constants to their words, checks them and counts one sample's clocks.
+    ///
+    /// # Errors
+    /// What the pipeline refuses: tap count, constants or formats out of range.
+    pub fn timing(&self) -> Result<PipelineTiming, FpgaError> {
+        match self {
+            Self::Float(settings) => settings.timing(),
+            Self::Fixed(settings) => settings.timing(),
+        }
+    }
+
+    /// Clocks per sample when the control machine waits for every result of these units; in fixed point
+    /// the divider alone can be waited for.
+    ///
+    /// # Errors
+    /// [`FpgaError::TapCount`], [`FpgaError::CountOutOfRange`].
+    pub fn stalled_clocks(&self, units: Units) -> Result<u64, FpgaError> {
+        match self {
+            Self::Float(settings) => settings.core.stalled_clocks(units),
+            Self::Fixed(settings) => {
+                units.check()?;
+                let divider_clocks = units.divider.latency_clocks;
+                Ok(fixed_rls_stalled_clocks(
+                    settings.core.tap_count,
+                    divider_clocks,
+                ))
+            }
+        }
+    }
+
+    /// Checks the constants in their words, and that a sample is done before the next arrives.
+    pub(in crate::filters) fn check(&self, sample_rate_hz: f64, complaints: &mut Complaints) {
+        let timing = match (self.timing(), self) {
+            (Ok(timing), _) => timing,
+            (Err(error), Self::Fixed(settings)) => return settings.complain(&error, complaints),
+            (Err(error), Self::Float(_)) => return complaints.table(&error.to_string()),
+        };
+        let period_us = s_to_us(1.0 / sample_rate_hz);
+        if timing.sample_period_us > period_us {
+            let clock_mhz = self.clock_mhz();
+            let message = format!(
+                "= {clock_mhz} is too slow: {} clocks a sample take {:.3} us, the gyro gives one every \
+                 {period_us:.3} us; use {:.3} MHz or more, or fewer taps",
+                timing.usage.clocks_per_sample,
+                timing.sample_period_us,
+                clock_mhz * timing.sample_period_us / period_us
+            );
+            complaints.key("clock_mhz", &message);
+        }
+    }
+
+    /// Warns if the first updates cost the words their digits, for inputs up to `input_max`.
+    #[must_use]
+    pub fn digits_warning(&self, input_max: f64) -> Option<Warning> {
+        match self {
+            Self::Float(settings) => settings.digits_warning(input_max),
+            Self::Fixed(_) => None,
+        }
+    }
+
+    /// Samples after which theory expects the gain-first order to fail; none for the others.
+    #[must_use]
+    pub fn failure_samples(&self) -> Option<f64> {
+        match self {
+            Self::Float(settings) => settings.failure_samples(),
+            Self::Fixed(_) => None,
+        }
+    }
+
+    /// The filter in front of the bench, bit for bit the hardware's.
+    ///
+    /// * `warm_up_samples`: samples before the record; health is summed up from there on.
+    ///
+    /// # Errors
+    /// As [`Self::timing`].
+    pub fn filter(&self, warm_up_samples: u64) -> Result<Box<dyn HardwareFilter>, FpgaError> {
+        match self {
+            Self::Float(settings) => settings.filter(warm_up_samples),
+            Self::Fixed(settings) => settings.filter(warm_up_samples),
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! The top level of a fixed-point export: core and front end with the exported constants.
+
+use super::fixed::FixedExport;
+use super::fixed_params::{core_parameters, format_parameters};
+use super::top::{TOP_HEAD, output_register};
+use crate::vocabulary::DesiredSignal;
+
+/// Verilog of the top level.
+pub(super) fn fixed_top_verilog(export: &FixedExport) -> String {
+    let formats = export.config.formats();
+    let (input, desired) = (formats.input, formats.desired);
+    let sample_bits = desired.width() - 1;
+    let result_bits = formats.output.width() - 1;
+    let means = export.desired == DesiredSignal::TwoSampleMean;
+    format!(
+        "{TOP_HEAD}module rls_fixed_top #(\n    parameter DIV_LATENCY = 1       // clocks of the divider\n) (\n    \
+         input  wire        clk,\n    input  wire        rst,\n    \
+         input  wire        sample_valid,\n    output wire        sample_ready,\n    \
+         input  wire [{sample_bits}:0] sample,         // Q{}.{} of {}\n    \
+         output wire        result_valid,   // one clock\n    \
+         output wire [{result_bits}:0] result          // Q{}.{} of the same\n);\n    \
+         wire        pair_valid, pair_ready, core_valid;\n    \
+         wire [{}:0] x;\n    wire [{sample_bits}:0] d;\n    wire [{result_bits}:0] y;\n\n    \
+         fx_front_end #(\n        {},\n        {},\n        .LAG({}), .MEAN({})\n    ) front (\n        \
+         .clk(clk), .rst(rst), .valid(sample_valid), .ready(sample_ready), .sample(sample),\n        \
+         .pair_valid(pair_valid), .pair_ready(pair_ready), .x(x), .d(d));\n\n    \
+         rls_fixed_core #(\n        {},\n        .DIV_LATENCY(DIV_LATENCY)\n    ) core (\n        \
+         .clk(clk), .rst(rst), .in_valid(pair_valid), .in_ready(pair_ready), .x(x), .d(d),\n        \
+         .out_valid(core_valid), .y(y));\n\n{}endmodule\n\n`default_nettype wire\n",
+        desired.integer_bits,
+        desired.fraction_bits,
+        export.full_scale,
+        formats.output.integer_bits,
+        formats.output.fraction_bits,
+        input.width() - 1,
+        format_parameters(input, 'X', true),
+        format_parameters(desired, 'D', true),
+        export.input_lag_samples,
+        u8::from(means),
+        core_parameters(export).replace(", .", ",\n        ."),
+        output_register(export.output_register, result_bits + 1),
+    )
+}
