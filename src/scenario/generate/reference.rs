@@ -266,6 +266,7 @@ impl Print {
         let Some(group) = group else {
             self.example(example, None, true);
             self.beside(if joined.is_empty() { table.beside } else { "" });
+            self.inside_example(path, table);
             return;
         };
         for (index, name) in group.alternatives.iter().enumerate() {
@@ -284,6 +285,20 @@ impl Print {
                 self.examples(&join(path, name), false, inner, "");
             }
             self.beside(table.beside);
+        }
+    }
+
+    /// Writes the tables inside a table that does not stand by default.
+    fn inside_example(&mut self, path: &str, table: &'static Table) {
+        for row in table.rows {
+            if let Content::Table(inner) = row.content
+                && !inner.rows.is_empty()
+                && !inner.is_renaming()
+            {
+                self.blank();
+                self.comment("", row.about());
+                self.examples(&join(path, row.name), false, inner, "");
+            }
         }
     }
 
