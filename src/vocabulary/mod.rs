@@ -17,7 +17,7 @@ pub use filter::{
     ConstantUnit, DesiredSignal, InitialWeights, OutputRegister, Pipeline, SignLmsForm, UpdateSign,
 };
 pub use hardware::{Division, ExportForm, NumberFormat, UpdateOrder};
-pub use inference::Prior;
+pub use inference::{InferredQuantity, Prior};
 pub use motion::{CaseAxis, PhaseRule};
 pub(crate) use word::words;
 pub use word::{UnknownWord, Word};
