@@ -70,6 +70,11 @@ impl Stream {
         StandardNormal.sample(&mut self.generator)
     }
 
+    /// The next draw from the uniform distribution between 0 and 1, by a normal one.
+    pub fn uniform(&mut self) -> f64 {
+        0.5 * statrs::function::erf::erfc(-self.normal() / std::f64::consts::SQRT_2)
+    }
+
     /// Fills `values` with independent draws from the standard normal distribution.
     #[inline]
     pub fn fill_normal(&mut self, values: &mut [f64]) {

@@ -55,6 +55,7 @@ mod generated;
 mod growth;
 mod gyro_effects;
 mod html_pages;
+mod infer_truth;
 mod injection;
 mod interruption;
 mod kalman_export;

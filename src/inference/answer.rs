@@ -2,12 +2,15 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
+use crate::inference::calibration::Levels;
 use crate::inference::forecast::{Forecast, Printed, likelihood};
 use crate::inference::search::{Found, Point};
 use crate::inference::space::{Parameter, Reading};
 
 /// Part of the weight that accepted readings hold together.
 const ACCEPTED: f64 = 0.95;
+/// Logarithm of a weight below the largest from which a point tells nothing, one figure let go.
+const NEGLIGIBLE: f64 = 25.0;
 /// Ends of intervals.
 const TAIL: f64 = 0.025;
 /// Correlation from which two parameters count as a ridge.
@@ -37,7 +40,7 @@ pub struct Judged {
     pub reading: usize,
     /// Probability once the figures are known.
     pub weight: f64,
-    /// Whether it is one of the fewest that hold 95 % of the probability.
+    /// Whether it is one of the fewest that hold the accepted part of the probability.
     pub is_accepted: bool,
     /// Logarithm of the probability of the figures under it.
     pub log_evidence: f64,
@@ -57,7 +60,7 @@ pub struct Explained {
     pub at_best: Option<(f64, f64)>,
     /// Printed less predicted over the deviation.
     pub pull: Option<f64>,
-    /// Whether the pull is within what the largest of so many is by chance in 95 %.
+    /// Whether the pull is within the limit.
     pub is_explained: Option<bool>,
 }
 
@@ -70,8 +73,8 @@ pub struct Ridge {
     pub parameters: [usize; 2],
     /// Correlation by the parts of their priors.
     pub correlation: f64,
-    /// The line between the ends: values of both at either end.
-    pub ends: [[f64; 2]; 2],
+    /// Parts of the priors at either end: points of the search, the outermost along the line.
+    pub ends: [Vec<f64>; 2],
 }
 
 /// What an experiment would tell.
@@ -100,6 +103,8 @@ pub struct Answer {
     pub experiments: Vec<Told>,
     /// Pull beyond which a figure is not explained.
     pub pull_limit: f64,
+    /// Part of the probability that the accepted readings are the fewest to hold.
+    pub accepted_part: f64,
     /// Forecasts made.
     pub forecasts: usize,
 }
@@ -115,12 +120,17 @@ pub struct Question<'a> {
     pub printed: &'a [Printed],
     /// Probability that a figure is not what its name says.
     pub doubt: f64,
+    /// Levels by which readings are accepted and figures explained.
+    pub levels: Levels,
 }
 
 impl Question<'_> {
     /// Weighs what has been found of every reading.
     #[must_use]
     pub fn answer(&self, found: &[Option<Found>]) -> Answer {
+        // A level below holds the truth over the priors, but not where figures leave it in doubt.
+        let level = self.levels.accepted.filter(|level| *level >= ACCEPTED);
+        let accepted_part = level.unwrap_or(ACCEPTED);
         let weights = self.weights(found);
         let mut order: Vec<usize> = (0..found.len())
             .filter(|reading| found[*reading].is_some())
@@ -132,7 +142,11 @@ impl Question<'_> {
             let Some(found) = &found[reading] else {
                 continue;
             };
-            let is_accepted = held < ACCEPTED;
+            // Up to a level, as a mark that is one of the draws itself is among what it holds.
+            let is_accepted = match level {
+                Some(level) => held <= level,
+                None => held < ACCEPTED,
+            };
             held += weights[reading];
             readings.push(Judged {
                 reading,
@@ -149,11 +163,10 @@ impl Question<'_> {
         let ridges = ridges
             .flat_map(|judged| self.ridges(judged.reading, found))
             .collect();
-        let count = self.printed.len().max(1) as f64;
-        let pull_limit = normal().inverse_cdf(0.5 + 0.5 * 0.95_f64.powf(1.0 / count));
+        let pull_limit = self.pull_limit();
         let best = readings.first().map(|judged| &judged.best);
         let figures = (0..self.printed.len())
-            .map(|figure| self.explained(figure, found, &weights, best, pull_limit))
+            .map(|figure| self.explained(figure, found, best, pull_limit))
             .collect();
         Answer {
             figures,
@@ -161,8 +174,35 @@ impl Question<'_> {
             readings,
             experiments: Vec::new(),
             pull_limit,
+            accepted_part,
             forecasts: found.iter().flatten().map(|found| found.forecasts).sum(),
         }
+    }
+
+    /// Pull beyond which a figure is not explained.
+    fn pull_limit(&self) -> f64 {
+        let count = self.printed.len().max(1) as f64;
+        let by_chance = || normal().inverse_cdf(0.5 + 0.5 * 0.95_f64.powf(1.0 / count));
+        self.levels.pull.unwrap_or_else(by_chance)
+    }
+
+    /// One figure beside all that is known from the others.
+    #[must_use]
+    pub fn explain(&self, figure: usize, found: &[Option<Found>]) -> Explained {
+        self.explained(figure, found, None, self.pull_limit())
+    }
+
+    /// Logarithm of the largest weight of a point.
+    fn top(&self, found: &[Option<Found>]) -> f64 {
+        let rows = found.iter().zip(self.readings);
+        let tops = rows.filter_map(|(found, reading)| {
+            let found = found.as_ref()?;
+            let each = reading.weight.ln() - (found.visits as f64).ln();
+            let own = found.visited.iter();
+            let own = own.map(|own| each + own.point.log_likelihood - own.log_density);
+            own.reduce(f64::max)
+        });
+        tops.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Probability of every reading once the figures are known.
@@ -236,21 +276,23 @@ impl Question<'_> {
                 if correlation.abs() < RIDGE {
                     continue;
                 }
-                let end = |sign: f64| {
-                    let part = |index: usize, variance: f64, sign: f64| {
-                        let reach = 3.0_f64.sqrt() * variance.sqrt();
-                        self.parameters[index].at((mean(index) + sign * reach).clamp(0.0, 1.0))
-                    };
-                    [
-                        part(one, own, sign),
-                        part(other, against, sign * correlation.signum()),
-                    ]
+                let along = |point: &&Point| {
+                    point.parts[one] / own.sqrt()
+                        + correlation.signum() * point.parts[other] / against.sqrt()
+                };
+                let order = |one: &&Point, other: &&Point| along(one).total_cmp(&along(other));
+                let ends = (
+                    found.points.iter().min_by(order),
+                    found.points.iter().max_by(order),
+                );
+                let (Some(low), Some(high)) = ends else {
+                    continue;
                 };
                 ridges.push(Ridge {
                     reading,
                     parameters: [one, other],
                     correlation,
-                    ends: [end(-1.0), end(1.0)],
+                    ends: [low.parts.clone(), high.parts.clone()],
                 });
             }
         }
@@ -262,26 +304,32 @@ impl Question<'_> {
         &self,
         figure: usize,
         found: &[Option<Found>],
-        weights: &[f64],
         best: Option<&Point>,
         pull_limit: f64,
     ) -> Explained {
         let printed = &self.printed[figure];
+        let top = self.top(found);
         let mut rows: Vec<(f64, f64, f64)> = Vec::new();
-        for (found, weight) in found.iter().zip(weights) {
+        for (found, reading) in found.iter().zip(self.readings) {
             let Some(found) = found else { continue };
-            let each = (weight / found.points.len() as f64).ln();
-            for point in &found.points {
+            let each = reading.weight.ln() - (found.visits as f64).ln();
+            for visited in &found.visited {
+                let point = &visited.point;
                 let Some(forecast) = &point.forecasts.figures[figure] else {
                     continue;
                 };
+                // What may not weigh anything is not worked out.
+                let most = each + point.log_likelihood - visited.log_density;
+                if most < top - NEGLIGIBLE + self.doubt.ln() {
+                    continue;
+                }
                 let others = likelihood(self.printed, &point.forecasts, self.doubt, Some(figure));
                 let Some((mean, variance)) = others.last else {
                     continue;
                 };
                 let (value, deviation) = figure_of(forecast, mean, variance);
                 rows.push((
-                    each + others.logarithm - point.log_likelihood,
+                    each + others.logarithm - visited.log_density,
                     value,
                     deviation,
                 ));

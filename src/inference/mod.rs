@@ -5,15 +5,23 @@
 //! rounded.
 
 mod answer;
+mod calibration;
+mod confirmation;
+mod drawing;
 mod forecast;
+mod gate;
 mod problem;
 mod search;
 mod space;
 
 pub use answer::{Answer, Explained, Judged, Question, Range, Ridge, Told};
+pub use calibration::{Calibration, Levels, Outcome, SHIFT, Shifted, Truth};
+pub use confirmation::{Candidate, Confirmation, Confirmed, Simulated};
 pub use forecast::{Forecast, Forecasts, Likelihood, Print, Printed, Scatter, likelihood};
+pub use gate::JudgedGate;
 pub use problem::{
-    ChoiceConfig, ExperimentConfig, ParameterConfig, PrintedConfig, ProblemConfig, RecordConfig,
+    ChoiceConfig, ExperimentConfig, ParameterConfig, PrintedConfig, ProblemConfig,
+    ProblemGateConfig, RecordConfig,
 };
-pub use search::{Found, Point, Search};
+pub use search::{Found, Point, Search, Visited};
 pub use space::{Parameter, Reading};

@@ -1,7 +1,7 @@
 //! What a problem file says.
 
 use crate::declare::table;
-use crate::vocabulary::Prior;
+use crate::vocabulary::{InferredQuantity, Prior};
 
 table! {
     /// A problem: printed figures, the records they were read from, and what is left open about these.
@@ -24,6 +24,7 @@ table! {
         choices as "choice": Vec<ChoiceConfig>;
         published as "published": Vec<PrintedConfig>;
         experiments as "experiment": Vec<ExperimentConfig>;
+        gates as "gate": Vec<ProblemGateConfig>;
     }
 }
 
@@ -105,5 +106,17 @@ table! {
         set: Option<Vec<String>>, example ["duration_s=36000.0"];
         /// Channel and metric that would be read.
         metric: String, example "rls.dc_gain";
+    }
+}
+
+table! {
+    /// Gates: what must be found. One that is not accepted gives exit code 1.
+    pub struct ProblemGateConfig {
+        /// What is judged.
+        of: InferredQuantity, example "unexplained-figures";
+        /// Least value that is accepted.
+        min: Option<f64>, example 0.0, in -1e30..=1e30;
+        /// Greatest value that is accepted.
+        max: Option<f64>, example 0.0, in -1e30..=1e30;
     }
 }

@@ -11,6 +11,7 @@
 //! | `layout` | aligned text and readable JSON |
 //! | `calibration` | a calibration as text, JSON, parameters and groups |
 //! | `text` | tables of runs and suites |
+//! | `infer` | answers of an inference as text and JSON |
 //! | `plot` | pictures |
 //! | `comparison` | tables over several scenarios |
 //! | `csv` | metrics, curves and repeats |
@@ -71,7 +72,9 @@ pub use json::summary::run_summary_json;
 pub use kalman::{KalmanReport, is_kalman_json, kalman_json};
 pub use log::{LogReport, log_json, log_text};
 pub use page::against::{comparison_page, is_comparison_page};
+pub use page::infer::infer_page;
 pub use page::suite::suite_page;
+pub use plot::infer::infer_pictures;
 pub use plot::{Pictures, SVG_BYTES_MAX, SweepPictures, sweep_pictures};
 pub use record::run::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
 pub use record::sweep::{PointFigure, PointOfSweep, assignments_text, swept_value};

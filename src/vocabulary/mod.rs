@@ -19,7 +19,7 @@ pub use filter::{
 pub use hardware::{
     Division, ExportForm, NumberFormat, Overflow, Rounding, UpdateOrder, WordFormat,
 };
-pub use inference::Prior;
+pub use inference::{InferredQuantity, Prior};
 pub use motion::{CaseAxis, PhaseRule};
 pub(crate) use word::words;
 pub use word::{UnknownWord, Word};

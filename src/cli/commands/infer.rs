@@ -1,6 +1,9 @@
 //! `fogbench infer`: which settings make all printed figures at once.
 
+use std::cell::Cell;
 use std::io;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
 
 use crate::cli::options::format::Format;
 use crate::cli::options::infer::InferOptions;
@@ -8,8 +11,10 @@ use crate::cli::terminal::complaint;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::cli::terminal::place::Place;
-use crate::experiment::{Inference, check_problem, infer as search};
-use crate::report::{InferenceSheet, infer_json, infer_text};
+use crate::experiment::{
+    CalibrateInference, Figures, Inference, Plan, check_problem, estimated_s, infer as search,
+};
+use crate::report::{InferenceSheet, PAGE, infer_json, infer_page, infer_pictures, infer_text};
 use crate::store::{OutputFolder, StoreError};
 
 /// Searches a problem and prints what its figures say; with a folder, writes it there as well.
@@ -27,16 +32,30 @@ pub(in crate::cli) fn infer(options: &InferOptions) -> io::Result<Exit> {
     if let Err(exit) = place.check(&[&options.path]) {
         return Ok(exit);
     }
-    let inference = match search(&options.path) {
+    let began = Instant::now();
+    let mut inference = match search(&options.path) {
         Ok(inference) => inference,
         Err(errors) => {
             complaint::print(&errors);
             return Ok(Exit::Usage);
         }
     };
+    if let Some(draws) = options.calibrate
+        && let Err(exit) = calibrate(&mut inference, options, draws, began.elapsed())
+    {
+        return Ok(exit);
+    }
+    if let Some(repeats) = options.confirm
+        && let Err(exit) = confirm(&mut inference, repeats)
+    {
+        return Ok(exit);
+    }
+    inference.judge();
     let sheet = sheet(&inference);
     let (text, json) = (infer_text(&sheet), infer_json(&sheet));
-    if let Err(exit) = place.fill(|folder| write(folder, &text, &json)) {
+    if options.output.is_some()
+        && let Err(exit) = fill(&inference, place, &text, &json)
+    {
         return Ok(exit);
     }
     output::data(&match options.format {
@@ -47,7 +66,86 @@ pub(in crate::cli) fn infer(options: &InferOptions) -> io::Result<Exit> {
             format!("{document}\n")
         }
     })?;
-    Ok(Exit::Success)
+    Ok(if inference.is_accepted() {
+        Exit::Success
+    } else {
+        Exit::GateFailed
+    })
+}
+
+/// Judges by levels that hold the truth over so many draws; says beforehand how long that takes.
+fn calibrate(
+    inference: &mut Inference,
+    options: &InferOptions,
+    draws: u32,
+    searched: Duration,
+) -> Result<(), Exit> {
+    // A search for the figures of a draw and one with a figure shifted.
+    let minutes = searched.as_secs_f64() * 2.0 * f64::from(draws) / 60.0;
+    let records = if options.simulated {
+        " and the simulation of their records"
+    } else {
+        ""
+    };
+    output::talk(&format!(
+        "{draws} draws: about {minutes:.1} min of searches{records}"
+    ));
+    let how = CalibrateInference {
+        draws,
+        figures: if options.simulated {
+            Figures::Simulated
+        } else {
+            Figures::Drawn
+        },
+    };
+    let count = AtomicU32::new(0);
+    let done = || {
+        let count = count.fetch_add(1, Ordering::Relaxed) + 1;
+        if (count * 10).is_multiple_of(draws.next_multiple_of(10)) {
+            output::talk(&format!("{count} of {draws} draws are done"));
+        }
+    };
+    match inference.calibrate(how, &done) {
+        Ok(calibration) => {
+            inference.judge_by(calibration);
+            Ok(())
+        }
+        Err(message) => {
+            complaint::print(&[message]);
+            Err(Exit::Usage)
+        }
+    }
+}
+
+/// Simulates what was found; says beforehand how long that takes.
+fn confirm(inference: &mut Inference, repeats: u32) -> Result<(), Exit> {
+    let candidates = inference.candidates();
+    let runs = inference.confirmation_runs(&candidates, repeats);
+    let confirmed = runs.and_then(|runs| {
+        let plans: Vec<Plan> = runs.iter().map(|run| run.plan.clone()).collect();
+        output::talk(&format!(
+            "confirmation: {} settings, {} runs, about {:.1} min of one core",
+            candidates.len(),
+            runs.len(),
+            estimated_s(&plans) / 60.0
+        ));
+        let (count, all) = (Cell::new(0_usize), runs.len());
+        let done = || {
+            count.set(count.get() + 1);
+            output::talk(&format!("{} of {all} runs are done", count.get()));
+        };
+        inference.confirm(candidates, repeats, runs, &(), &done)
+    });
+    match confirmed {
+        Ok(confirmation) => {
+            inference.confirmation = Some(confirmation);
+            Ok(())
+        }
+        Err(message) => {
+            complaint::print(&[message]);
+            Err(Exit::RunFailed)
+        }
+    }
 }
 
 /// What the report shows of an inference.
@@ -55,17 +153,43 @@ fn sheet(inference: &Inference) -> InferenceSheet<'_> {
     InferenceSheet {
         problem: &inference.problem.config,
         file: &inference.problem.file,
-        parameters: &inference.parameters,
-        readings: &inference.readings,
-        lacks: &inference.lacks,
+        parameters: inference.parameters(),
+        readings: inference.readings(),
+        lacks: inference.lacks(),
         answer: &inference.answer,
+        calibration: inference.calibration.as_ref(),
+        confirmation: inference.confirmation.as_ref(),
+        found: inference.found(),
+        gates: &inference.gates,
     }
 }
 
-fn write(folder: &OutputFolder, text: &str, json: &str) -> Result<(), StoreError> {
+/// Fills the output folder: the answer, its page and pictures, and ready scenarios.
+fn fill(inference: &Inference, place: Place, text: &str, json: &str) -> Result<(), Exit> {
+    let scenarios = inference.scenarios().map_err(|message| {
+        complaint::print(&[message]);
+        Exit::Usage
+    })?;
+    let names: Vec<String> = scenarios.iter().map(|(path, _)| path.clone()).collect();
+    let sheet = sheet(inference);
+    let pictures = infer_pictures(&sheet);
+    let page = infer_page(&sheet, &pictures, &names);
+    let own = [("infer.txt", text), ("infer.json", json), (PAGE, &page)];
+    let own = own.map(|(name, text)| (name.to_owned(), text.to_owned()));
+    let files = own.into_iter().chain(pictures.drawn).chain(scenarios);
+    let files: Vec<(String, String)> = files.collect();
+    place.fill(|folder| write(folder, &files))?;
+    for note in &pictures.notes {
+        output::talk(&format!("note: {note}"));
+    }
+    Ok(())
+}
+
+fn write(folder: &OutputFolder, files: &[(String, String)]) -> Result<(), StoreError> {
     let staged = folder.stage()?;
-    staged.write("infer.txt", text.as_bytes())?;
-    staged.write("infer.json", json.as_bytes())?;
+    for (path, text) in files {
+        staged.write(path, text.as_bytes())?;
+    }
     staged.seal_plainly()?;
     staged.put_files_in_place()
 }

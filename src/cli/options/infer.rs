@@ -14,7 +14,22 @@ pub(in crate::cli) struct InferOptions {
     /// Read and check the problem and its scenarios, and search nothing
     #[arg(long, conflicts_with = "output")]
     pub(in crate::cli) check: bool,
-    /// Folder for infer.json and infer.txt [default: neither is written]
+    /// Draw settings from the priors so often, infer them from their own figures, and judge by the levels
+    /// that then hold the truth in 95 % (the time is printed beforehand)
+    #[arg(long, value_name = "DRAWS", value_parser = clap::value_parser!(u32).range(20..=100_000),
+          conflicts_with = "check")]
+    pub(in crate::cli) calibrate: Option<u32>,
+    /// Simulate the records of these draws instead of drawing their figures from the forecasts
+    #[arg(long, requires = "calibrate")]
+    pub(in crate::cli) simulated: bool,
+    /// Simulate the most likely settings and the ends of their ridges: so often on the rate model and once
+    /// on the loop model (the time is printed beforehand)
+    #[arg(long, value_name = "REPEATS", num_args = 0..=1, require_equals = true,
+          default_missing_value = "4", value_parser = clap::value_parser!(u32).range(1..=1000),
+          conflicts_with = "check")]
+    pub(in crate::cli) confirm: Option<u32>,
+    /// Folder for infer.json, infer.txt, the page with its pictures and ready scenarios [default: none is
+    /// written]
     #[arg(short, long, value_name = "DIR")]
     pub(in crate::cli) output: Option<PathBuf>,
     /// Replace files in the folder that fogbench did not write

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::experiment::infer::forms::{Form, form_of};
 use crate::experiment::infer::geometry::Geometries;
 use crate::experiment::infer::record::{Lack, RecordTheory};
-use crate::inference::{Forecast, Forecasts, Parameter, Print, Printed, Reading};
+use crate::inference::{Forecast, Forecasts, Parameter, Print, Printed, ProblemConfig, Reading};
 use crate::metrics;
 use crate::scenario::{Problem, Resolved, ScenarioError, load_base_or_scenario};
 
@@ -186,6 +186,26 @@ fn readings(problem: &Problem) -> Result<Vec<Reading>, Vec<ScenarioError>> {
     Ok(found)
 }
 
+/// Keys that a record has under a reading, as key=value.
+pub(super) fn sets_of(config: &ProblemConfig, record: usize, reading: &Reading) -> Vec<String> {
+    let row = &config.records[record];
+    let mut sets = row.set.clone().unwrap_or_default();
+    for choice in &config.choices {
+        let is_chosen = reading
+            .answers
+            .iter()
+            .any(|(question, answer)| *question == choice.question && *answer == choice.answer);
+        let acts = choice
+            .records
+            .as_ref()
+            .is_none_or(|names| names.contains(&row.name));
+        if is_chosen && acts {
+            sets.extend(choice.set.iter().flatten().cloned());
+        }
+    }
+    sets
+}
+
 impl Builder<'_> {
     /// Channel and form of every figure; none of one without a closed form.
     fn forms(&self) -> Result<Vec<(String, Option<Form>)>, Vec<ScenarioError>> {
@@ -247,22 +267,8 @@ impl Builder<'_> {
         more: &[String],
         at: &str,
     ) -> Result<Resolved, Vec<ScenarioError>> {
-        let config = &self.problem.config;
-        let row = &config.records[record];
-        let mut sets = row.set.clone().unwrap_or_default();
-        for choice in &config.choices {
-            let is_chosen = reading
-                .answers
-                .iter()
-                .any(|(question, answer)| *question == choice.question && *answer == choice.answer);
-            let acts = choice
-                .records
-                .as_ref()
-                .is_none_or(|names| names.contains(&row.name));
-            if is_chosen && acts {
-                sets.extend(choice.set.iter().flatten().cloned());
-            }
-        }
+        let row = &self.problem.config.records[record];
+        let mut sets = sets_of(&self.problem.config, record, reading);
         sets.extend(more.iter().cloned());
         if let Some(resolved) = self.known.get(&(record, sets.clone())) {
             return Ok(resolved.clone());

@@ -7,6 +7,7 @@ pub(super) mod against;
 mod channels;
 mod document;
 mod gates;
+pub(super) mod infer;
 pub(super) mod pictures;
 mod repeats;
 pub(super) mod run;

@@ -11,6 +11,7 @@ mod calibration;
 mod comparison;
 mod drawing;
 pub(super) mod filter_response;
+pub(super) mod infer;
 pub(super) mod noise_delay;
 pub(super) mod rate;
 pub(super) mod rate_gain;

@@ -283,7 +283,26 @@ fn contradictions(problem: &Problem) -> Vec<ScenarioError> {
             errors.push(problem.complaint(&at, message));
         }
     }
+    errors.extend(gate_limits(problem));
     errors
+}
+
+/// Gates whose limits accept everything or nothing.
+fn gate_limits(problem: &Problem) -> Vec<ScenarioError> {
+    let gates = problem.config.gates.iter().enumerate();
+    gates
+        .filter_map(|(index, gate)| {
+            let at = format!("gate[{index}]");
+            let message = match (gate.min, gate.max) {
+                (None, None) => format!("{at}: expected min, max or both"),
+                (Some(min), Some(max)) if min > max => {
+                    format!("{at}.min = {min}: expected at most max, which is {max}")
+                }
+                _ => return None,
+            };
+            Some(problem.complaint(&at, message))
+        })
+        .collect()
 }
 
 /// Names that two rows of one table share.

@@ -1,11 +1,12 @@
-//! What figures say of the settings behind them, as text and JSON.
+//! What figures say of the settings behind them, as text.
 
 use std::fmt::Write as _;
 
-use serde_json::{Map, Value, json};
-
+use super::InferenceSheet;
+use crate::gate::limits_text;
 use crate::inference::{
-    Answer, Explained, Judged, Parameter, PrintedConfig, ProblemConfig, Reading, Ridge,
+    Calibration, Confirmation, Confirmed, Explained, Judged, JudgedGate, PrintedConfig, Reading,
+    Ridge, Shifted,
 };
 use crate::metrics::three_digits;
 
@@ -13,23 +14,6 @@ use crate::metrics::three_digits;
 const OTHERS_SHOWN: usize = 5;
 /// Width of an interval over the prior's from which the figures say nothing.
 const UNTOLD: f64 = 0.9;
-
-/// An inference to show.
-#[derive(Clone, Copy, Debug)]
-pub struct InferenceSheet<'a> {
-    /// Its problem.
-    pub problem: &'a ProblemConfig,
-    /// Bare name of the file.
-    pub file: &'a str,
-    /// Parameters.
-    pub parameters: &'a [Parameter],
-    /// Readings.
-    pub readings: &'a [Reading],
-    /// Why a figure has no closed form, by figure.
-    pub lacks: &'a [Option<String>],
-    /// What the figures say.
-    pub answer: &'a Answer,
-}
 
 /// The answer as text.
 #[must_use]
@@ -54,8 +38,9 @@ pub fn infer_text(sheet: &InferenceSheet) -> String {
     line(
         &mut text,
         format_args!(
-            "accepted {accepted} of {} readings: the fewest that hold 95 % of the probability",
-            sheet.readings.len()
+            "accepted {accepted} of {} readings: the fewest that hold {:.3} of the probability",
+            sheet.readings.len(),
+            answer.accepted_part
         ),
     );
     for (place, judged) in answer.readings.iter().enumerate() {
@@ -77,6 +62,19 @@ pub fn infer_text(sheet: &InferenceSheet) -> String {
     text.push_str(&figures_text(sheet));
     text.push_str(&ridges_text(sheet));
     text.push_str(&experiments_text(sheet));
+    if let Some(calibration) = sheet.calibration {
+        text.push_str(&calibration_text(calibration));
+    }
+    if let Some(confirmation) = sheet.confirmation {
+        text.push_str(&confirmation_text(sheet, confirmation));
+    }
+    if !sheet.gates.is_empty() {
+        line(&mut text, format_args!("\nGates"));
+    }
+    for gate in sheet.gates {
+        let word = if gate.is_accepted() { "PASS" } else { "FAIL" };
+        line(&mut text, format_args!("  {word} {}", gate_text(gate)));
+    }
     text
 }
 
@@ -86,7 +84,7 @@ fn line(text: &mut String, arguments: std::fmt::Arguments<'_>) {
 }
 
 /// Answers of a reading in words.
-fn answers(reading: &Reading) -> String {
+pub(in crate::report) fn answers(reading: &Reading) -> String {
     let answers = reading.answers.iter();
     let answers: Vec<String> = answers
         .map(|(question, answer)| format!("{question}: {answer}"))
@@ -215,8 +213,20 @@ fn ridges_text(sheet: &InferenceSheet) -> String {
     text
 }
 
+/// A gate in words.
+pub(in crate::report) fn gate_text(gate: &JudgedGate) -> String {
+    let value = gate
+        .value
+        .map_or_else(|| "nothing was found".to_owned(), three_digits);
+    format!(
+        "{}: {value}, wanted {}",
+        gate.of.word(),
+        limits_text(gate.min, gate.max)
+    )
+}
+
 /// A ridge in words.
-fn ridge_text(sheet: &InferenceSheet, ridge: &Ridge) -> String {
+pub(in crate::report) fn ridge_text(sheet: &InferenceSheet, ridge: &Ridge) -> String {
     let [one, other] = ridge
         .parameters
         .map(|parameter| &sheet.parameters[parameter]);
@@ -235,8 +245,8 @@ fn ridge_text(sheet: &InferenceSheet, ridge: &Ridge) -> String {
         "{} and {} trade off along {} to {} (correlation {:+.2}; {})",
         one.name,
         other.name,
-        end(ridge.ends[0]),
-        end(ridge.ends[1]),
+        end(sheet.ends(ridge)[0]),
+        end(sheet.ends(ridge)[1]),
         ridge.correlation,
         answers(&sheet.readings[ridge.reading])
     )
@@ -268,114 +278,142 @@ fn experiments_text(sheet: &InferenceSheet) -> String {
     text
 }
 
-/// The answer as JSON.
-#[must_use]
-pub fn infer_json(sheet: &InferenceSheet) -> String {
-    let answer = sheet.answer;
-    let readings: Vec<Value> = answer
-        .readings
-        .iter()
-        .map(|judged| reading_json(sheet, judged))
-        .collect();
-    let figures: Vec<Value> = sheet
-        .problem
-        .published
-        .iter()
-        .zip(&answer.figures)
-        .zip(sheet.lacks)
-        .map(|((printed, figure), lack)| figure_json(printed, figure, lack.as_deref()))
-        .collect();
-    let ridges: Vec<Value> = answer
-        .ridges
-        .iter()
-        .map(|ridge| {
-            let names = ridge
-                .parameters
-                .map(|parameter| sheet.parameters[parameter].name.as_str());
-            json!({
-                "reading": choices(&sheet.readings[ridge.reading]),
-                "parameters": names,
-                "correlation": ridge.correlation,
-                "from": ridge.ends[0],
-                "to": ridge.ends[1],
-                "words": ridge_text(sheet, ridge),
+/// How often answers hold the truth.
+pub(in crate::report) fn calibration_text(calibration: &Calibration) -> String {
+    let mut text = String::new();
+    let draws = calibration.outcomes.len();
+    line(
+        &mut text,
+        format_args!(
+            "\nCalibration: {draws} settings drawn from the priors, inferred from their own figures"
+        ),
+    );
+    line(
+        &mut text,
+        format_args!(
+            "  true reading accepted in {} by 0.95 of the probability{}",
+            calibration.count(|outcome| outcome.is_accepted),
+            calibration.levels.accepted.map_or_else(String::new, |level| {
+                format!("; readings before it hold {level:.3} or less in 95 %, and 0.95 or that level is taken, whichever is more")
             })
-        })
-        .collect();
-    let experiments: Vec<Value> = answer
-        .experiments
-        .iter()
-        .map(|told| {
-            let experiment = &sheet.problem.experiments[told.experiment];
-            json!({
-                "name": experiment.name,
-                "record": experiment.record,
-                "metric": experiment.metric,
-                "information_bit": told.information_bit,
-                "lowest": told.outcomes.0,
-                "highest": told.outcomes.1,
-                "standard_deviation": told.deviation,
+        ),
+    );
+    line(
+        &mut text,
+        format_args!(
+            "  at most a third of the {} readings accepted in {}, without those that print the same figures",
+            calibration.readings,
+            calibration.third()
+        ),
+    );
+    let (inside, all) = calibration.intervals();
+    if all > 0 {
+        line(
+            &mut text,
+            format_args!("  {inside} of {all} intervals of 95 % hold their value"),
+        );
+    }
+    let volumes = calibration.volumes();
+    if let Some(median) = volumes.get(volumes.len() / 2) {
+        line(
+            &mut text,
+            format_args!(
+                "  volume of the region over that of the information bound: {} at the median, at most 2 in {} of {}",
+                three_digits(*median),
+                volumes.iter().filter(|volume| **volume <= 2.0).count(),
+                volumes.len()
+            ),
+        );
+    }
+    line(
+        &mut text,
+        format_args!(
+            "  no figure called unexplained in {}{}",
+            calibration.count(|outcome| !outcome.has_unexplained),
+            calibration.levels.pull.map_or_else(String::new, |level| {
+                format!(
+                    "; the largest pull is {level:.2} or less in 95 %, which is the limit taken"
+                )
             })
-        })
-        .collect();
-    let document = json!({
-        "schema": 1,
-        "problem": sheet.problem.name,
-        "file": sheet.file,
-        "readings": readings,
-        "figures": figures,
-        "ridges": ridges,
-        "experiments": experiments,
-        "pull_limit": answer.pull_limit,
-        "forecasts": answer.forecasts,
+        ),
+    );
+    let shifted = |what: Shifted| calibration.count(|outcome| outcome.shifted == what);
+    line(
+        &mut text,
+        format_args!(
+            "  a figure shifted by 5 standard deviations: named in {}, within 2 of what others leave open in {}, \
+             missed in {}",
+            shifted(Shifted::Named),
+            shifted(Shifted::Open),
+            shifted(Shifted::Missed)
+        ),
+    );
+    text
+}
+
+/// Forecasts beside simulated records.
+fn confirmation_text(sheet: &InferenceSheet, confirmation: &Confirmation) -> String {
+    let mut text = String::new();
+    let (agreeing, all) = confirmation.agreeing();
+    line(
+        &mut text,
+        format_args!(
+            "\nConfirmation: {} settings simulated, {} records on the rate model and one on the loop model; \
+             {agreeing} of {all} forecasts agree",
+            confirmation.candidates.len(),
+            confirmation.repeats
+        ),
+    );
+    for candidate in &confirmation.candidates {
+        let names = sheet.parameters.iter().zip(&candidate.parts);
+        let values: Vec<String> = names
+            .map(|(parameter, part)| {
+                format!(
+                    "{} {} {}",
+                    parameter.name,
+                    three_digits(parameter.at(*part)),
+                    parameter.unit
+                )
+            })
+            .collect();
+        line(
+            &mut text,
+            format_args!("  {}: {}", candidate.name, values.join(", ")),
+        );
+        for (printed, figure) in sheet.problem.published.iter().zip(&candidate.figures) {
+            text.push_str(&confirmed_text(printed, figure, confirmation.repeats));
+        }
+    }
+    text
+}
+
+/// A figure published, predicted and simulated.
+fn confirmed_text(printed: &PrintedConfig, figure: &Confirmed, repeats: u32) -> String {
+    let mut text = String::new();
+    let verdict = match figure.agrees(repeats) {
+        Some(true) => "agrees",
+        Some(false) => "DISAGREES",
+        None => "simulated",
+    };
+    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), three_digits);
+    let interval = figure.rate_model.map_or_else(String::new, |own| {
+        format!(" [{}, {}]", three_digits(own.low), three_digits(own.high))
     });
-    format!("{document:#}\n")
-}
-
-/// Answers of a reading by question.
-fn choices(reading: &Reading) -> Value {
-    let answers = reading.answers.iter();
-    let pairs = answers.map(|(question, answer)| (question.clone(), json!(answer)));
-    Value::Object(pairs.collect::<Map<_, _>>())
-}
-
-fn reading_json(sheet: &InferenceSheet, judged: &Judged) -> Value {
-    let parameters = sheet
-        .parameters
-        .iter()
-        .zip(&judged.parameters)
-        .map(|(parameter, range)| {
-            let value = json!({
-                "value": range.value,
-                "best": range.best,
-                "low": range.low,
-                "high": range.high,
-                "unit": parameter.unit,
-                "share_of_prior": range.share,
-            });
-            (parameter.name.clone(), value)
-        });
-    json!({
-        "accepted": judged.is_accepted,
-        "weight": judged.weight,
-        "log_evidence": judged.log_evidence,
-        "choices": choices(&sheet.readings[judged.reading]),
-        "parameters": Value::Object(parameters.collect::<Map<_, _>>()),
-    })
-}
-
-fn figure_json(printed: &PrintedConfig, figure: &Explained, lack: Option<&str>) -> Value {
-    json!({
-        "record": printed.record,
-        "metric": printed.metric,
-        "unit": printed.unit,
-        "published": printed.value,
-        "predicted": figure.predicted.map(|predicted| predicted.0),
-        "standard_deviation": figure.predicted.map(|predicted| predicted.1),
-        "best": figure.at_best.map(|best| best.0),
-        "scatter": figure.at_best.map(|best| best.1),
-        "pull": figure.pull,
-        "explained": figure.is_explained,
-        "lack": lack,
-    })
+    line(
+        &mut text,
+        format_args!(
+            "    {verdict:<9}  {} {}: published {}, predicted {}, simulated {}{interval}, loop {} {}{}",
+            printed.record,
+            printed.metric,
+            printed.value,
+            number(figure.predicted.map(|own| own.value)),
+            number(figure.rate_model.map(|own| own.value)),
+            number(figure.loop_model.map(|own| own.value)),
+            printed.unit,
+            figure
+                .pull(printed.value)
+                .map_or_else(String::new, |pull| format!(", pull {pull:+.1}")),
+        ),
+    );
+    text
 }

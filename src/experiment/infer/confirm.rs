@@ -1,0 +1,202 @@
+//! Settings that were found, simulated: forecasts beside records.
+
+use super::Inference;
+use super::simulated::Settings;
+use crate::experiment::plan::Plan;
+use crate::experiment::run::Progress;
+use crate::inference::{Candidate, Confirmation, Confirmed, Simulated};
+use crate::metrics::{self, Estimate};
+
+/// Most ridges whose ends are simulated.
+const RIDGES_MAX: usize = 4;
+
+/// A record of settings, ready to be run.
+pub struct ConfirmationRun {
+    candidate: usize,
+    record: usize,
+    is_loop: bool,
+    /// Its plan.
+    pub plan: Plan,
+}
+
+impl Inference {
+    /// Settings worth a simulation: the most likely ones, and both ends of the ridges of the best reading.
+    #[must_use]
+    pub fn candidates(&self) -> Vec<Candidate> {
+        let Some(best) = self.answer.readings.first() else {
+            return Vec::new();
+        };
+        let candidate = |name: String, parts: &[f64]| Candidate {
+            name,
+            reading: best.reading,
+            parts: parts.to_vec(),
+            figures: Vec::new(),
+        };
+        let mut found = vec![candidate("best".to_owned(), &best.best.parts)];
+        let ridges = self.answer.ridges.iter();
+        let own = ridges.filter(|ridge| ridge.reading == best.reading);
+        for (index, ridge) in own.take(RIDGES_MAX).enumerate() {
+            for (end, parts) in ["low", "high"].iter().zip(&ridge.ends) {
+                found.push(candidate(format!("ridge-{}-{end}", index + 1), parts));
+            }
+        }
+        found
+    }
+
+    /// Plan of a record under some settings.
+    ///
+    /// # Errors
+    /// Complaints about the scenario.
+    pub fn plan_of(
+        &self,
+        candidate: &Candidate,
+        record: usize,
+        more: &[String],
+    ) -> Result<Plan, String> {
+        let settings = Settings {
+            reading: candidate.reading,
+            values: self.bench.values(&candidate.parts),
+        };
+        settings.plan(&self.problem, &self.bench, record, more)
+    }
+
+    /// Ready scenarios: every record of every candidate, and the experiments at the most likely settings;
+    /// each with its path below a folder.
+    ///
+    /// # Errors
+    /// Complaints about a scenario.
+    pub fn scenarios(&self) -> Result<Vec<(String, String)>, String> {
+        let config = &self.problem.config;
+        let candidates = self.candidates();
+        let mut files = Vec::new();
+        for candidate in &candidates {
+            for (record, row) in config.records.iter().enumerate() {
+                let plan = self.plan_of(candidate, record, &[])?;
+                let path = format!("scenarios/{}/{}.toml", candidate.name, row.name);
+                files.push((path, plan.resolved().to_toml()));
+            }
+        }
+        let Some(best) = candidates.first() else {
+            return Ok(files);
+        };
+        for experiment in &config.experiments {
+            let record = config
+                .records
+                .iter()
+                .position(|record| record.name == experiment.record);
+            let more = experiment.set.clone().unwrap_or_default();
+            let plan = self.plan_of(best, record.unwrap_or(0), &more)?;
+            let path = format!("scenarios/experiments/{}.toml", experiment.name);
+            files.push((path, plan.resolved().to_toml()));
+        }
+        Ok(files)
+    }
+
+    /// What a confirmation runs: every record of every candidate, repeated on the rate model and once on
+    /// the loop model.
+    ///
+    /// # Errors
+    /// Complaints about a scenario.
+    pub fn confirmation_runs(
+        &self,
+        candidates: &[Candidate],
+        repeats: u32,
+    ) -> Result<Vec<ConfirmationRun>, String> {
+        let models = [
+            (
+                false,
+                vec!["fidelity=\"rate\"".to_owned(), format!("repeats={repeats}")],
+            ),
+            (
+                true,
+                vec!["fidelity=\"loop\"".to_owned(), "repeats=1".to_owned()],
+            ),
+        ];
+        let mut runs = Vec::new();
+        for (index, candidate) in candidates.iter().enumerate() {
+            for record in 0..self.problem.config.records.len() {
+                for (is_loop, more) in &models {
+                    runs.push(ConfirmationRun {
+                        candidate: index,
+                        record,
+                        is_loop: *is_loop,
+                        plan: self.plan_of(candidate, record, more)?,
+                    });
+                }
+            }
+        }
+        Ok(runs)
+    }
+
+    /// Runs what a confirmation is made of.
+    ///
+    /// * `done`: hears of every run that is done.
+    ///
+    /// # Errors
+    /// Why a record cannot be run to its end.
+    pub fn confirm(
+        &self,
+        mut candidates: Vec<Candidate>,
+        repeats: u32,
+        runs: Vec<ConfirmationRun>,
+        progress: &dyn Progress,
+        done: &dyn Fn(),
+    ) -> Result<Confirmation, String> {
+        for candidate in &mut candidates {
+            let forecasts = self.bench.forecaster(candidate.reading)(&candidate.parts);
+            let forecasts = forecasts.unwrap_or_default().figures;
+            let printed = self.bench.printed.iter().enumerate();
+            candidate.figures = printed
+                .map(|(figure, printed)| Confirmed {
+                    predicted: forecasts.get(figure).copied().flatten(),
+                    print_deviation: printed.deviation(),
+                    ..Confirmed::default()
+                })
+                .collect();
+        }
+        for run in runs {
+            let figures = self.figures_of(&run, progress)?;
+            let into = &mut candidates[run.candidate].figures;
+            for (figure, simulated) in figures {
+                if run.is_loop {
+                    into[figure].loop_model = Some(simulated);
+                } else {
+                    into[figure].rate_model = Some(simulated);
+                }
+            }
+            done();
+        }
+        Ok(Confirmation {
+            repeats,
+            candidates,
+        })
+    }
+
+    /// Figures of one run, by their place in the problem.
+    fn figures_of(
+        &self,
+        run: &ConfirmationRun,
+        progress: &dyn Progress,
+    ) -> Result<Vec<(usize, Simulated)>, String> {
+        let record = &self.problem.config.records[run.record].name;
+        let ended = run
+            .plan
+            .run_with(progress)
+            .map_err(|error| format!("record {record}: {error}"))?;
+        let published = self.problem.config.published.iter().enumerate();
+        let own = published.filter(|(_, figure)| figure.record == *record);
+        Ok(own
+            .filter_map(|(index, figure)| Some((index, simulated(&ended, &figure.metric)?)))
+            .collect())
+    }
+}
+
+/// A metric of a run; none where it does not have it.
+pub(super) fn simulated(run: &crate::experiment::Run, written: &str) -> Option<Simulated> {
+    let (channel, name) = written.rsplit_once('.')?;
+    let key = metrics::find(name)?;
+    let Estimate {
+        value, low, high, ..
+    } = run.channel(channel).ok()?.metric(key).ok()?;
+    Some(Simulated { value, low, high })
+}

@@ -1,0 +1,83 @@
+//! Records of known settings, simulated.
+
+use super::bench::{Bench, sets_of};
+use super::confirm::simulated;
+use crate::experiment::plan::{Plan, plan_suite};
+use crate::scenario::Problem;
+
+/// Settings of a problem.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Settings {
+    /// The reading.
+    pub(super) reading: usize,
+    /// Values of the parameters.
+    pub(super) values: Vec<f64>,
+}
+
+impl Settings {
+    /// Keys that a record has under these settings, as key=value.
+    pub(super) fn sets(&self, problem: &Problem, bench: &Bench, record: usize) -> Vec<String> {
+        let config = &problem.config;
+        let mut sets = sets_of(config, record, &bench.readings[self.reading]);
+        let name = &config.records[record].name;
+        for (parameter, value) in config.parameters.iter().zip(&self.values) {
+            let records = parameter.records.as_ref();
+            if records.is_none_or(|names| names.contains(name)) {
+                sets.extend(parameter.keys.iter().map(|key| format!("{key}={value:?}")));
+            }
+        }
+        sets
+    }
+
+    /// The plan of a record.
+    ///
+    /// * `more`: keys over those of the settings.
+    ///
+    /// # Errors
+    /// Complaints about the scenario.
+    pub(super) fn plan(
+        &self,
+        problem: &Problem,
+        bench: &Bench,
+        record: usize,
+        more: &[String],
+    ) -> Result<Plan, String> {
+        let mut sets = self.sets(problem, bench, record);
+        sets.extend(more.iter().cloned());
+        let row = &problem.config.records[record];
+        let file = problem.beside(&row.scenario);
+        let plans = plan_suite(&[file], &sets).map_err(|errors| {
+            let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
+            format!("record {}: {}", row.name, errors.join("; "))
+        })?;
+        let plan = plans.into_iter().next();
+        plan.ok_or_else(|| format!("record {}: nothing to run", row.name))
+    }
+}
+
+/// Figures of one run of every record, in the order of the problem; none of one that the run does not
+/// have.
+///
+/// # Errors
+/// Why a record cannot be simulated.
+pub(super) fn simulate(
+    problem: &Problem,
+    bench: &Bench,
+    settings: &Settings,
+    more: &[String],
+) -> Result<Vec<Option<f64>>, String> {
+    let mut figures = vec![None; problem.config.published.len()];
+    for (record, row) in problem.config.records.iter().enumerate() {
+        let run = settings
+            .plan(problem, bench, record, more)?
+            .run()
+            .map_err(|error| format!("record {}: {error}", row.name))?;
+        for (figure, printed) in figures.iter_mut().zip(&problem.config.published) {
+            if printed.record != row.name {
+                continue;
+            }
+            *figure = simulated(&run, &printed.metric).map(|found| found.value);
+        }
+    }
+    Ok(figures)
+}
