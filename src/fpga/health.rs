@@ -166,9 +166,9 @@ fn rotate(work: &mut [f64], p: usize, i: usize, j: usize) {
     let tangent = if tau.is_infinite() {
         0.0
     } else {
-        1.0_f64.copysign(tau) / (tau.abs() + (tau * tau + 1.0).sqrt())
+        1.0_f64.copysign(tau) / (tau.abs() + tau.hypot(1.0))
     };
-    let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
+    let cosine = 1.0 / tangent.hypot(1.0);
     let sine = tangent * cosine;
     for k in 0..p {
         let (a, b) = (work[i * p + k], work[j * p + k]);
