@@ -36,7 +36,9 @@ pub use build::BUILD;
 pub use campaign::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
 };
-pub use infer::{CalibrateInference, ConfirmationRun, Figures, Inference, check_problem, infer};
+pub use infer::{
+    CalibrateInference, ConfirmationRun, Figures, Inference, RecordsError, check_problem, infer,
+};
 pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogSettings, LogTrial,
     LogTrialError, compensate_log, load_log_compensation, load_log_filters, load_log_gates,

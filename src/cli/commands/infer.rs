@@ -110,8 +110,8 @@ fn calibrate(
             inference.judge_by(calibration);
             Ok(())
         }
-        Err(message) => {
-            complaint::print(&[message]);
+        Err(error) => {
+            complaint::print(&[error.to_string()]);
             Err(Exit::Usage)
         }
     }
@@ -141,8 +141,8 @@ fn confirm(inference: &mut Inference, repeats: u32) -> Result<(), Exit> {
             inference.confirmation = Some(confirmation);
             Ok(())
         }
-        Err(message) => {
-            complaint::print(&[message]);
+        Err(error) => {
+            complaint::print(&[error.to_string()]);
             Err(Exit::RunFailed)
         }
     }
@@ -166,8 +166,8 @@ fn sheet(inference: &Inference) -> InferenceSheet<'_> {
 
 /// Fills the output folder: the answer, its page and pictures, and ready scenarios.
 fn fill(inference: &Inference, place: Place, text: &str, json: &str) -> Result<(), Exit> {
-    let scenarios = inference.scenarios().map_err(|message| {
-        complaint::print(&[message]);
+    let scenarios = inference.scenarios().map_err(|error| {
+        complaint::print(&[error.to_string()]);
         Exit::Usage
     })?;
     let names: Vec<String> = scenarios.iter().map(|(path, _)| path.clone()).collect();

@@ -1,7 +1,7 @@
 //! Settings that were found, simulated: forecasts beside records.
 
 use super::Inference;
-use super::simulated::Settings;
+use super::simulated::{RecordsError, Settings};
 use crate::experiment::plan::Plan;
 use crate::experiment::run::Progress;
 use crate::inference::{Candidate, Confirmation, Confirmed, Simulated};
@@ -52,7 +52,7 @@ impl Inference {
         candidate: &Candidate,
         record: usize,
         more: &[String],
-    ) -> Result<Plan, String> {
+    ) -> Result<Plan, RecordsError> {
         let settings = Settings {
             reading: candidate.reading,
             values: self.bench.values(&candidate.parts),
@@ -65,7 +65,7 @@ impl Inference {
     ///
     /// # Errors
     /// Complaints about a scenario.
-    pub fn scenarios(&self) -> Result<Vec<(String, String)>, String> {
+    pub fn scenarios(&self) -> Result<Vec<(String, String)>, RecordsError> {
         let config = &self.problem.config;
         let candidates = self.candidates();
         let mut files = Vec::new();
@@ -101,7 +101,7 @@ impl Inference {
         &self,
         candidates: &[Candidate],
         repeats: u32,
-    ) -> Result<Vec<ConfirmationRun>, String> {
+    ) -> Result<Vec<ConfirmationRun>, RecordsError> {
         let models = [
             (
                 false,
@@ -141,7 +141,7 @@ impl Inference {
         runs: Vec<ConfirmationRun>,
         progress: &dyn Progress,
         done: &dyn Fn(),
-    ) -> Result<Confirmation, String> {
+    ) -> Result<Confirmation, RecordsError> {
         for candidate in &mut candidates {
             let forecasts = self.bench.forecaster(candidate.reading)(&candidate.parts);
             let forecasts = forecasts.unwrap_or_default().figures;
@@ -177,12 +177,15 @@ impl Inference {
         &self,
         run: &ConfirmationRun,
         progress: &dyn Progress,
-    ) -> Result<Vec<(usize, Simulated)>, String> {
+    ) -> Result<Vec<(usize, Simulated)>, RecordsError> {
         let record = &self.problem.config.records[run.record].name;
         let ended = run
             .plan
             .run_with(progress)
-            .map_err(|error| format!("record {record}: {error}"))?;
+            .map_err(|error| RecordsError::Unfinished {
+                record: record.clone(),
+                reason: error.to_string(),
+            })?;
         let published = self.problem.config.published.iter().enumerate();
         let own = published.filter(|(_, figure)| figure.record == *record);
         Ok(own

@@ -3,7 +3,37 @@
 use super::bench::{Bench, sets_of};
 use super::confirm::simulated;
 use crate::experiment::plan::{Plan, plan_suite};
-use crate::scenario::Problem;
+use crate::scenario::{Problem, ScenarioError};
+
+/// Why there are no records of settings.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RecordsError {
+    /// The settings do not make a sound scenario.
+    #[error("record {record}: {}", complaints.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Scenario {
+        /// Name of the record.
+        record: String,
+        /// What is wrong with it.
+        complaints: Vec<ScenarioError>,
+    },
+    /// The scenario names nothing to run.
+    #[error("record {record}: nothing to run")]
+    Empty {
+        /// Name of the record.
+        record: String,
+    },
+    /// It cannot be run to its end.
+    #[error("record {record}: {reason}")]
+    Unfinished {
+        /// Name of the record.
+        record: String,
+        /// Why.
+        reason: String,
+    },
+    /// No gyro has what was drawn from the priors.
+    #[error("no gyro in {0} draws from the priors")]
+    NoGyro(usize),
+}
 
 /// Settings of a problem.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,17 +71,18 @@ impl Settings {
         bench: &Bench,
         record: usize,
         more: &[String],
-    ) -> Result<Plan, String> {
+    ) -> Result<Plan, RecordsError> {
         let mut sets = self.sets(problem, bench, record);
         sets.extend(more.iter().cloned());
         let row = &problem.config.records[record];
         let file = problem.beside(&row.scenario);
-        let plans = plan_suite(&[file], &sets).map_err(|errors| {
-            let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
-            format!("record {}: {}", row.name, errors.join("; "))
+        let record = || row.name.clone();
+        let plans = plan_suite(&[file], &sets).map_err(|complaints| RecordsError::Scenario {
+            record: record(),
+            complaints,
         })?;
         let plan = plans.into_iter().next();
-        plan.ok_or_else(|| format!("record {}: nothing to run", row.name))
+        plan.ok_or_else(|| RecordsError::Empty { record: record() })
     }
 }
 
@@ -65,13 +96,16 @@ pub(super) fn simulate(
     bench: &Bench,
     settings: &Settings,
     more: &[String],
-) -> Result<Vec<Option<f64>>, String> {
+) -> Result<Vec<Option<f64>>, RecordsError> {
     let mut figures = vec![None; problem.config.published.len()];
     for (record, row) in problem.config.records.iter().enumerate() {
         let run = settings
             .plan(problem, bench, record, more)?
             .run()
-            .map_err(|error| format!("record {}: {error}", row.name))?;
+            .map_err(|error| RecordsError::Unfinished {
+                record: row.name.clone(),
+                reason: error.to_string(),
+            })?;
         for (figure, printed) in figures.iter_mut().zip(&problem.config.published) {
             if printed.record != row.name {
                 continue;

@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::document::{by_value, document, facts, maybe, section, wide};
+use super::gates::unit_word;
 use super::pictures::{Shown, capital, pictures};
 use super::run::PAGE_BYTES_MAX;
 use crate::gate::{plain, three_digits};
@@ -195,7 +196,7 @@ fn figure_row(
         td.num data-v=(figure.pull.map_or_else(String::new, by_value)) {
             @if let Some(pull) = figure.pull { (format!("{pull:+.1}")) }
         }
-        td { (printed.unit) }
+        td { (unit_word(&printed.unit)) }
     } }
 }
 
