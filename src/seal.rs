@@ -19,6 +19,11 @@ pub(crate) fn digest_of_words(words: &[f64]) -> String {
     hasher.finalize().to_hex().to_string()
 }
 
+/// BLAKE3 of bytes, hexadecimal.
+pub(crate) fn digest_of_bytes(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
 /// Words that are hashed together.
 const WORDS_AT_ONCE: usize = 1 << 12;
 

@@ -4,7 +4,9 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::support::{code, fogbench, repository, stderr, stdout, summary, write};
+use crate::support::{
+    assert_close, code, field, fogbench, repository, stderr, stdout, summary, write,
+};
 
 fn claims() -> Vec<(String, String)> {
     let entries = fs::read_dir(repository("scenarios/docket")).expect("the docket is there");
@@ -91,4 +93,28 @@ fn a_published_figure_with_rounding_is_judged_and_others_are_not() {
         "{}",
         stderr(&output)
     );
+}
+
+#[test]
+fn known_answers_of_least_squares_at_rest_are_those_that_their_scenario_says() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let path = repository("scenarios/docket/rls.toml");
+    let short = ["--set", "duration_s=24.0", "--set", "warm_up_s=8.0"];
+    let run = ["run", path.to_str().expect("a path"), "-o", "out"];
+    let output = fogbench(folder.path(), &[&run[..], &short[..]].concat());
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let result = summary(&folder.path().join("out"), "docket-rls");
+    let gain = |key: &str| field(&result, &format!("filter.{key}"), "value");
+    // Weights of a record of half a minute still scatter by some hundredths.
+    assert_close(gain("dc_gain"), 0.495, 0.0, 0.03);
+    assert_close(gain("step_gain_1s"), 0.50, 0.0, 0.03);
+    assert_close(gain("lasting_rate_gain"), 0.88, 0.0, 0.03);
+    assert_close(gain("twin_mean_ratio"), gain("dc_gain"), 0.0, 0.03);
+    let text = fs::read_to_string(path).expect("the scenario is there");
+    for figure in ["0.495", "0.50", "0.88"] {
+        assert!(text.contains(figure), "{figure}");
+    }
+    // What is left out for one reason is said once.
+    let verdict = result["channels"]["filter"]["verdict"].to_string();
+    assert_eq!(verdict.matches("left out by").count(), 1, "{verdict}");
 }

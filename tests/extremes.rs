@@ -17,7 +17,7 @@ const SHORT: &str = "schema = 1\nduration_s = 0.1\nwarm_up_s = 0.1\nfidelity = \
                      bias_averaging_time_s = 0.01\n";
 
 /// What stands beside the key under test, by the beginning of its path: longest first.
-const BESIDE: [(&str, &str); 29] = [
+const BESIDE: [(&str, &str); 30] = [
     (
         "turntable.swing",
         "rate_amplitude_deg_per_s = 1.0\nfrequency_hz = 50.0\nsoft_start_s = 0.05",
@@ -45,6 +45,10 @@ const BESIDE: [(&str, &str); 29] = [
     (
         "turntable.chirp",
         "rate_amplitude_deg_per_s = 1.0\nstart_frequency_hz = 50.0\nend_frequency_hz = 100.0\nsweep_s = 0.05\nsoft_start_s = 0.05\nsoft_stop_s = 0.01",
+    ),
+    (
+        "turntable.test_signal",
+        "shape = \"step\"\nrate_amplitude_deg_per_s = 1.0\nlength_s = 0.05",
     ),
     (
         "turntable.script.points",

@@ -439,6 +439,13 @@ mod process {
             ("rotation", motion("rotation", "rate_deg_per_s = 10.0")),
             ("trapezoid", motion("trapezoid", trapezoid)),
             ("chirp", motion("chirp", chirp)),
+            (
+                "test-signal",
+                motion(
+                    "test_signal",
+                    "shape = \"blocks\"\nrate_amplitude_deg_per_s = 1.0\nlength_s = 100.0",
+                ),
+            ),
             ("script", motion("script.points", script)),
             ("calibration", campaign),
             (

@@ -98,6 +98,7 @@ mod properties;
 mod pulse_words;
 mod readers;
 mod recording;
+mod records;
 mod registry;
 mod replay;
 mod report;

@@ -1,10 +1,11 @@
-//! Trapezoids, sweeps and scripts against their closed forms.
+//! Trapezoids, sweeps, test signals and scripts against their closed forms.
 
 use std::f64::consts::TAU;
 
 use fogbench::scenario::{
     ChirpConfig, MotionConfig, MountingConfig, Progression, ScriptConfig, ScriptPoints,
-    SecondOrderServoConfig, ServoConfig, SiteConfig, TrapezoidConfig, TurntableConfig,
+    SecondOrderServoConfig, ServoConfig, SignalShape, SiteConfig, TestSignalConfig,
+    TrapezoidConfig, TurntableConfig,
 };
 use fogbench::signal::MotionSegment;
 use fogbench::turntable::{CommandExtremes, Surroundings, Turntable};
@@ -133,6 +134,81 @@ fn trapezoids_join_and_keep_to_their_extremes() {
     assert_close(rate, motion.rate_max_rad_per_s(), 1e-12, 0.0);
     assert_close(acceleration, extremes.acceleration_rad_per_s2, 1e-9, 0.0);
     assert_close(extremes.jump_rad_per_s, 0.0, 0.0, 0.0);
+}
+
+/// One of the four signals of Donoho and Johnstone at a share of its length, by the words of their table.
+fn donoho_johnstone(shape: SignalShape, t: f64) -> f64 {
+    let sign = |t: f64| if t < 0.0 { -1.0 } else { 1.0 };
+    match shape {
+        SignalShape::Blocks => {
+            let at = [
+                0.1, 0.13, 0.15, 0.23, 0.25, 0.4, 0.44, 0.65, 0.76, 0.78, 0.81,
+            ];
+            let heights = [4.0, -5.0, 3.0, -4.0, 5.0, -4.2, 2.1, 4.3, -3.1, 2.1, -4.2];
+            let jumps = at.iter().zip(heights);
+            let sum: f64 = jumps
+                .map(|(at, height)| height * 0.5 * (1.0 + sign(t - at)))
+                .sum();
+            sum / 5.2
+        }
+        SignalShape::Step => 0.5 * (1.0 + sign(t - 0.5)),
+        SignalShape::Heavisine => {
+            (4.0 * (2.0 * TAU * t).sin() - sign(t - 0.3) - sign(0.72 - t)) / 6.0
+        }
+        SignalShape::Doppler => 2.0 * (t * (1.0 - t)).sqrt() * (TAU * 1.05 / (t + 0.05)).sin(),
+    }
+}
+
+#[test]
+fn known_answer_of_the_signals_that_wavelet_methods_are_tried_on() {
+    let shapes = [
+        SignalShape::Blocks,
+        SignalShape::Step,
+        SignalShape::Heavisine,
+        SignalShape::Doppler,
+    ];
+    for shape in shapes {
+        let config = TestSignalConfig {
+            shape,
+            rate_amplitude_deg_per_s: 3.0,
+            length_s: 5.0,
+            ..TestSignalConfig::reference()
+        };
+        let motion = MotionConfig::TestSignal(config);
+        let bound = extremes(&motion);
+        let record = recorded(table(motion), 24_000);
+        let mut before = 0.0;
+        let (mut largest, mut jump): (f64, f64) = (0.0, 0.0);
+        for (index, (rate, _)) in record.iter().enumerate() {
+            // A word ends its sample, and a jump begins the next.
+            let t = (index + 1) as f64 / 20_000.0;
+            let just_before = t - 1e-9;
+            let want = if t > 1.0 {
+                if shape == SignalShape::Step { 3.0 } else { 0.0 }
+            } else {
+                3.0 * donoho_johnstone(shape, just_before)
+            };
+            assert!((rate - want).abs() < 1e-5, "{shape:?} {t}: {rate} {want}");
+            largest = largest.max(rate.abs());
+            jump = jump.max((rate - before).abs());
+            before = *rate;
+        }
+        let jump = deg_per_s_to_rad_per_s(jump);
+        let turned = bound.acceleration_rad_per_s2 * PERIOD_S;
+        assert!(
+            jump <= (bound.jump_rad_per_s + turned) * (1.0 + 1e-9),
+            "{shape:?} {jump} {bound:?}"
+        );
+        let least = if shape == SignalShape::Doppler {
+            2.7
+        } else {
+            2.9999
+        };
+        assert!(
+            (least..=3.0 + 1e-9).contains(&largest),
+            "{shape:?} {largest}"
+        );
+    }
 }
 
 fn chirp(progression: Progression, is_angle: bool) -> ChirpConfig {

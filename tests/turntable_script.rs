@@ -159,12 +159,20 @@ fn profiles_that_the_record_cannot_hold_are_refused() {
              end_frequency_hz = {end_hz:?}\nsweep_s = {sweep_s:?}\n"
         )
     };
+    let test_signal = |shape: &str, length_s: f64| {
+        format!(
+            "[turntable.test_signal]\nshape = \"{shape}\"\nrate_amplitude_deg_per_s = 1.0\n\
+             length_s = {length_s:?}\n"
+        )
+    };
     let cases = [
         format!("{trapezoid}acceleration_deg_per_s2 = 20.0\nboth_senses = true\n"),
         format!("{trapezoid}acceleration_deg_per_s2 = 1e5\n"),
         format!("{trapezoid}acceleration_deg_per_s2 = 1.0\n").replace("10.0", "0.0"),
         chirp(999.0, 1.0),
         chirp(10.0, 3.0),
+        test_signal("blocks", 3.0),
+        test_signal("doppler", 0.1),
     ];
     said_to_each(
         MOTION,

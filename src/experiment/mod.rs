@@ -17,6 +17,8 @@ mod output_file;
 mod outside;
 mod pipeline_metrics;
 mod plan;
+#[cfg(feature = "report")]
+mod reference_records;
 mod run;
 mod scenario;
 #[cfg(feature = "report")]
@@ -48,6 +50,8 @@ pub use outside::{ProgramFiles, program_files};
 #[cfg(feature = "cli")]
 pub use outside::{SUPERVISE, exchange_times};
 pub use plan::{Plan, Sound, check_suite, plan_suite};
+#[cfg(feature = "report")]
+pub use reference_records::{RecordsError, ReferenceRecord, reference_records, write_records};
 pub use run::{Progress, Run, RunError, Samples, UnknownName};
 pub use scenario::Scenario;
 #[cfg(feature = "report")]

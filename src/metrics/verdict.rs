@@ -1,15 +1,15 @@
 //! The verdict on a filter: what the intervals of its metrics say it does to signal and noise.
 
-use super::estimate::interval::NORMAL_QUANTILE;
 use super::estimate::table::ChannelMetrics;
 use super::estimate::value::Estimate;
 use super::key::metric::MetricKey;
-use super::motion::mean::{MEAN, MEAN_RATIO};
 use super::motion::steps::SETTLED_GAIN;
 use super::motion::swing::{AMPLITUDE_RATIO, DELAY_VS_RAW};
 use super::noise::level::NOISE_GAIN;
 use super::steps::staircase::SCALE_FACTOR_ERROR;
-use super::trial::black_box::{MEMORY_1_PERCENT, SINE_FREQUENCY, SINE_GAIN, STEP_GAINS};
+use super::trial::black_box::{
+    MEMORY_1_PERCENT, SINE_FREQUENCY, SINE_GAIN, STEP_GAINS, TWIN_MEAN_RATIO,
+};
 use super::trial::dc_gain::{ANGLE_RANDOM_WALK_OVER_DC_GAIN, DC_GAIN};
 use super::trial::noise_delay::NOISE_GAIN_OVER_BOUND;
 use super::trial::predicted::DELAY_AT_DC;
@@ -175,9 +175,6 @@ pub fn filter_verdict(channel: &ChannelMetrics) -> Option<FilterVerdict> {
     })
 }
 
-/// Least standard errors of a mean of which a ratio is told.
-const MEAN_PER_ERROR_MIN: f64 = 10.0;
-
 /// Times the memory that a period must hold for the gain of a sine to be one at DC.
 const PERIOD_PER_MEMORY_MIN: f64 = 30.0;
 
@@ -197,14 +194,8 @@ fn least_gain(channel: &ChannelMetrics) -> Option<Finding> {
     if twins.is_empty() {
         return None;
     }
-    let is_sure = |mean: &Estimate| {
-        let error = (mean.high - mean.low) / (2.0 * NORMAL_QUANTILE);
-        mean.value.abs() >= MEAN_PER_ERROR_MIN * error
-    };
-    let mean_ratio = known(&MEAN)
-        .filter(is_sure)
-        .and_then(|_| known(&MEAN_RATIO));
-    let all = twins.into_iter().chain(mean_ratio).chain(known(&DC_GAIN));
+    let all = twins.into_iter().chain(known(&TWIN_MEAN_RATIO));
+    let all = all.chain(known(&DC_GAIN));
     let least = all.min_by(|one, other| one.high.total_cmp(&other.high));
     least.map(|least| Finding::new(least, GAIN_TOLERANCE))
 }
@@ -345,25 +336,31 @@ mod tests {
             ("noise_gain", 0.23, 0.25),
             ("step_gain_1s", 0.5, 0.5),
             ("step_gain_10s", 0.7, 0.7),
-            ("mean_ratio", 0.9, 0.9),
+            ("twin_mean_ratio", 0.9, 0.9),
+            // What is learned of a lasting rate does not count.
+            ("lasting_rate_gain", 0.4, 0.4),
         ];
         let verdict = filter_verdict(&channel(&entries)).unwrap();
         let gain = verdict.dc_gain.unwrap();
         assert!((gain.estimate.value - 0.5).abs() < 1e-12);
         assert_eq!(verdict.deed, Deed::Attenuates);
-        // A sine within thirty memories says nothing of DC, and neither does a mean in doubt.
+        // A sine within thirty memories says nothing of DC, and a mean that may be 1 is no less.
         let mut entries = channel(&[
             ("dc_gain", 1.0, 1.0),
             ("step_gain_1s", 1.0, 1.0),
             ("sine_gain", 0.3, 0.3),
             ("memory_1_percent_s", 0.1, 0.1),
-            ("mean_deg_per_h", -1.0, 3.0),
-            ("mean_ratio", 0.2, 0.3),
+            ("twin_mean_ratio", 0.98, 1.01),
         ]);
         let sine = entries.metrics.get_mut("sine_gain").unwrap();
         sine.fields.insert(SINE_FREQUENCY, 1.0);
         let verdict = filter_verdict(&entries).unwrap();
         assert_eq!(verdict.dc_gain.unwrap().against_one, AgainstOne::Equal);
+        entries
+            .metrics
+            .extend(channel(&[("twin_mean_ratio", 0.2, 0.3)]).metrics);
+        let verdict = filter_verdict(&entries).unwrap();
+        assert_eq!(verdict.dc_gain.unwrap().against_one, AgainstOne::Below);
     }
 
     #[test]

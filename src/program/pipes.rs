@@ -188,13 +188,12 @@ fn words(stdout: &mut impl Read, wanted: u32) -> Result<Vec<f64>, Broken> {
         let part = &mut bytes[..8 * (wanted - words.len()).min(WORDS_AT_ONCE)];
         stdout.read_exact(part).map_err(|_| Broken::Closed)?;
         let (parts, _) = part.as_chunks::<8>();
-        for bytes in parts {
-            let value = f64::from_le_bytes(*bytes);
-            if !value.is_finite() {
-                let index = words.len();
-                return Err(Broken::Wrong(ProgramError::NotFinite { index, value }));
-            }
-            words.push(value);
+        let start = words.len();
+        words.extend(parts.iter().map(|bytes| f64::from_le_bytes(*bytes)));
+        if let Some(index) = words[start..].iter().position(|value| !value.is_finite()) {
+            let index = start + index;
+            let value = words[index];
+            return Err(Broken::Wrong(ProgramError::NotFinite { index, value }));
         }
     }
     Ok(words)

@@ -218,9 +218,14 @@ impl<'a> Session<'a> {
     /// If there are more words than a count can say.
     pub(crate) fn exchange(&mut self, words: &[f64]) -> Result<Vec<f64>, Interrupted> {
         let count = u32::try_from(words.len()).expect("a record has fewer words than 2^32");
-        let mut bytes = Vec::with_capacity(4 + 8 * words.len());
-        bytes.extend(count.to_le_bytes());
-        bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+        let mut bytes = vec![0; 4 + 8 * words.len()];
+        let (head, body) = bytes.split_at_mut(4);
+        head.copy_from_slice(&count.to_le_bytes());
+        // In chunks of eight, which become one copy.
+        let (places, _) = body.as_chunks_mut::<8>();
+        for (place, word) in places.iter_mut().zip(words) {
+            *place = word.to_le_bytes();
+        }
         let wait = self.wait("answer to a block");
         match self.ask(bytes, Expected::Words(count), wait)? {
             Answer::Words(words) => Ok(words),
@@ -267,13 +272,14 @@ impl<'a> Session<'a> {
         expected: Expected,
         wait: Wait,
     ) -> Result<Answer, Interrupted> {
-        // A thread that is gone has met the end of its pipe, which the answer tells.
         let is_last = matches!(expected, Expected::End);
+        // Whoever reads the answer first: it waits at the pipe when the answer comes. A thread that is gone has
+        // met the end of its pipe, which the answer tells.
+        let _ = self.pipes.expect.send(expected);
         let _ = self.pipes.write.as_ref().map(|write| write.send(bytes));
         if is_last {
             self.pipes.write = None;
         }
-        let _ = self.pipes.expect.send(expected);
         let deadline = Instant::now() + Duration::from_secs_f64(wait.timeout_s);
         loop {
             self.hear();

@@ -40,8 +40,8 @@ pub use crate::turntable::{
     AxisConfig, CampaignConfig, CampaignGroup, ChirpConfig, DirectDriveServoConfig, EncoderConfig,
     MotionClass, MotionConfig, MountingConfig, MultiSineConfig, PreferredSeries, Progression,
     RotationConfig, ScaleFactorTestConfig, ScriptConfig, ScriptPoints, SecondOrderServoConfig,
-    ServoConfig, SiteConfig, Stairs, StaticConfig, StepsConfig, SwingConfig, TEST_RATES_MIN,
-    TrapezoidConfig, TurntableConfig,
+    ServoConfig, SignalShape, SiteConfig, Stairs, StaticConfig, StepsConfig, SwingConfig,
+    TEST_RATES_MIN, TestSignalConfig, TrapezoidConfig, TurntableConfig,
 };
 pub(crate) use check::cross::comparison::slug;
 pub(crate) use check::cross::{RESERVED, reserved};

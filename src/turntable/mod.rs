@@ -33,9 +33,9 @@ pub use injected::InjectedSignal;
 pub use motion::{
     CampaignConfig, CampaignGroup, ChirpConfig, CommandExtremes, MotionChecks, MotionClass,
     MotionConfig, MultiSineConfig, PreferredSeries, Progression, RotationConfig,
-    ScaleFactorTestConfig, ScriptConfig, ScriptPoints, Stairs, StaticConfig, StepsConfig,
-    Surroundings, SwingConfig, TEST_RATES_MIN, TrapezoidConfig, campaign_angles_rad, dwell_ends,
-    first_measured_index, step_indices,
+    ScaleFactorTestConfig, ScriptConfig, ScriptPoints, SignalShape, Stairs, StaticConfig,
+    StepsConfig, Surroundings, SwingConfig, TEST_RATES_MIN, TestSignalConfig, TrapezoidConfig,
+    campaign_angles_rad, dwell_ends, first_measured_index, step_indices,
 };
 pub use servo::{DirectDriveServoConfig, IdealServoConfig, SecondOrderServoConfig, ServoConfig};
 pub use site::{AxisConfig, MountingConfig, SiteConfig};

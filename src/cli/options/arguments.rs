@@ -14,6 +14,7 @@ use crate::cli::options::hardware::{ExportOptions, TimingOptions};
 use crate::cli::options::infer::InferOptions;
 use crate::cli::options::init::InitOptions;
 use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
+use crate::cli::options::records::RecordsOptions;
 use crate::cli::options::shard::{MergeOptions, PlanOptions, ShardOptions, StatusOptions};
 use crate::cli::terminal::output::Colour;
 
@@ -90,6 +91,8 @@ pub(in crate::cli) enum Command {
     Timing(TimingOptions),
     /// Write golden vectors, waveforms or RTL of a hardware pipeline into a folder
     Export(ExportOptions),
+    /// Write words of a gyro with their true rate, for filters to be tried on and published against
+    Records(RecordsOptions),
     /// Print completions of this command line for a shell
     Completions(CompletionsOptions),
     /// Print the page of the manual, or write those of all commands, as roff

@@ -1,21 +1,27 @@
-//! Gains for small changes of the rate: a step at mid-record, and sines.
+//! Gains for small changes of the rate: one that lasts, a step at mid-record, and sines; and mean out over mean in.
 
 use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
 use super::Figure;
-use super::subject::{Lack, Twins};
-use crate::metrics::catalogue::{ADAPTATION_MEMORY, SINE_GAIN};
+use super::subject::{Lack, Twins, std_of};
+use crate::metrics::catalogue::{ADAPTATION_MEMORY, LASTING_RATE_GAIN, SINE_GAIN, TWIN_MEAN_RATIO};
 use crate::metrics::{GainUnits, MetricKey, SINE_FREQUENCY, STEP_GAINS, TwinFigure};
 use crate::turntable::first_measured_index;
 
-/// Sizes of a change in standard deviations of a word's noise; the figure is that of the first.
-const SIZES: [(f64, &str); 3] = [
-    (0.1, "gain_at_0p1_sigma"),
-    (0.01, "gain_at_0p01_sigma"),
-    (1.0, "gain_at_1_sigma"),
-];
+/// Size of a change in standard deviations of a word's noise, and the field of the gain for it.
+type Size = (f64, &'static str);
+
+const HUNDREDTH: Size = (0.01, "gain_at_0p01_sigma");
+const TENTH: Size = (0.1, "gain_at_0p1_sigma");
+const WHOLE: Size = (1.0, "gain_at_1_sigma");
+
+/// Sizes of steps and sines; the figure is that of the first.
+const SIZES: [Size; 3] = [TENTH, HUNDREDTH, WHOLE];
+
+/// Sizes of a rate that lasts: one of a tenth already teaches an adaptive filter that it is there.
+const LASTING_SIZES: [Size; 3] = [HUNDREDTH, TENTH, WHOLE];
 
 /// Signs of a change.
 const SIGNS: [f64; 2] = [1.0, -1.0];
@@ -28,10 +34,21 @@ const SINES: [(usize, &str); 4] = [
     (128, "gain_at_64_times"),
 ];
 
+/// Blocks of the second half whose means tell how sure a mean is, and Student's t of as many.
+const BLOCKS: (usize, f64) = (10, 2.262);
+
+/// Least standard errors of a mean of which a ratio is told.
+const MEAN_PER_ERROR_MIN: f64 = 10.0;
+
 /// Keys of what is told here.
 pub(super) fn keys() -> impl Iterator<Item = &'static MetricKey> {
     let steps = STEP_GAINS.iter().map(|(key, _)| *key);
-    steps.chain([&ADAPTATION_MEMORY, &SINE_GAIN])
+    steps.chain([
+        &ADAPTATION_MEMORY,
+        &SINE_GAIN,
+        &LASTING_RATE_GAIN,
+        &TWIN_MEAN_RATIO,
+    ])
 }
 
 /// The answer to a change of one size and sign, over its size.
@@ -39,6 +56,8 @@ struct Answer {
     size: f64,
     field: &'static str,
     sign: f64,
+    /// Change of the words, deg/h.
+    scale: f64,
     /// By sample.
     gain: Vec<f64>,
 }
@@ -48,8 +67,8 @@ struct Answer {
 /// * `memory_s`: behind which the gain for a step is taken.
 pub(super) fn gains(twins: &Twins, memory_s: f64) -> Vec<(&'static MetricKey, Figure)> {
     let middle = twins.middle();
-    let steps = answers(twins, |at| f64::from(u8::from(at >= middle)));
-    let sines = answers(twins, |at| sines_at(twins, at));
+    let steps = answers(twins, &SIZES, |at| f64::from(u8::from(at >= middle)));
+    let sines = answers(twins, &SIZES, |at| sines_at(twins, at));
     let mut found: Vec<(&'static MetricKey, Figure)> = STEP_GAINS
         .iter()
         .map(|(key, time_s)| {
@@ -62,6 +81,18 @@ pub(super) fn gains(twins: &Twins, memory_s: f64) -> Vec<(&'static MetricKey, Fi
         each(&steps, |steps| adaptation(twins, steps)),
     ));
     found.push((&SINE_GAIN, each(&sines, |sines| sine_gain(twins, sines))));
+    drop((steps, sines));
+    let lasting = answers(twins, &LASTING_SIZES, |_| 1.0);
+    found.push((
+        &LASTING_RATE_GAIN,
+        each(&lasting, |lasting| {
+            Ok(pooled(lasting, |answer| mean(&answer.gain[middle..])))
+        }),
+    ));
+    found.push((
+        &TWIN_MEAN_RATIO,
+        each(&lasting, |lasting| mean_ratio(twins, lasting)),
+    ));
     found
 }
 
@@ -74,11 +105,15 @@ fn each(answers: &Result<Vec<Answer>, Lack>, figure: impl Fn(&[Answer]) -> Figur
 }
 
 /// The answers to a change of every size and sign.
-fn answers(twins: &Twins, shape: impl Fn(usize) -> f64 + Sync) -> Result<Vec<Answer>, Lack> {
+fn answers(
+    twins: &Twins,
+    sizes: &[Size],
+    shape: impl Fn(usize) -> f64 + Sync,
+) -> Result<Vec<Answer>, Lack> {
     let (sizes, signs) = if twins.is_whole {
-        (&SIZES[..], &SIGNS[..])
+        (sizes, &SIGNS[..])
     } else {
-        (&SIZES[..1], &SIGNS[..1])
+        (&sizes[..1], &SIGNS[..1])
     };
     let cases: Vec<(f64, &'static str, f64)> = sizes
         .iter()
@@ -93,36 +128,85 @@ fn answers(twins: &Twins, shape: impl Fn(usize) -> f64 + Sync) -> Result<Vec<Ans
             size,
             field,
             sign,
+            scale,
             gain,
         })
     };
     cases.par_iter().map(answer).collect()
 }
 
-/// The mean over signs of what each answer of the first size shows, and fields for the other sizes.
+/// Mean of some numbers.
+fn mean(numbers: &[f64]) -> f64 {
+    numbers.iter().sum::<f64>() / numbers.len() as f64
+}
+
+/// Mean out over mean in over the second half, of the sizes and signs that leave the mean sure.
+fn mean_ratio(twins: &Twins, lasting: &[Answer]) -> Figure {
+    let words = &twins.words[twins.middle()..];
+    let own = &twins.own[twins.middle()..];
+    let (count, student) = BLOCKS;
+    let length = words.len() / count;
+    let blocks = |of: &dyn Fn(usize) -> f64| {
+        let means: Vec<f64> = (0..count)
+            .map(|block| {
+                let at = block * length..(block + 1) * length;
+                at.map(of).sum::<f64>() / length as f64
+            })
+            .collect();
+        std_of(&means) / ((count - 1) as f64).sqrt()
+    };
+    let (mean_in, mean_out) = (mean(words), mean(own));
+    let error = blocks(&|at| words[at]);
+    let is_sure = |mean: f64| mean.abs() >= MEAN_PER_ERROR_MIN * error;
+    let ratio = |answer: &Answer| {
+        let mean_in = mean_in + answer.scale;
+        let mean_out = mean_out + answer.scale * mean(&answer.gain[twins.middle()..]);
+        if is_sure(mean_in) {
+            mean_out / mean_in
+        } else {
+            f64::NAN
+        }
+    };
+    let figure = pooled(lasting, ratio);
+    if !figure.value.is_finite() {
+        return Err(format!(
+            "the mean of {mean_in:.4} deg/h is less than {MEAN_PER_ERROR_MIN} of its standard errors of \
+             {error:.4} deg/h"
+        )
+        .into());
+    }
+    // What output and input do not share of their noise, both ends of the record among it.
+    let own_ratio = figure.value;
+    let apart = blocks(&|at| own[at] - own_ratio * words[at]);
+    let half = student * apart / (mean_in + lasting[0].scale).abs();
+    Ok(figure.within(half).with("standard_error_deg_per_h", error))
+}
+
+/// The mean over signs of what each answer of the first size shows, and fields for all sizes; answers that
+/// show no number are left out.
 fn pooled(answers: &[Answer], of: impl Fn(&Answer) -> f64) -> TwinFigure {
     let mean = |field: &str| {
         let own = answers.iter().filter(|answer| answer.field == field);
-        let (sum, count) = own.fold((0.0, 0.0), |(sum, count), answer| {
-            (sum + of(answer), count + 1.0)
-        });
+        let own = own.map(&of).filter(|shown| shown.is_finite());
+        let (sum, count) = own.fold((0.0, 0.0), |(sum, count), shown| (sum + shown, count + 1.0));
         (count > 0.0).then_some(sum / count)
     };
-    let first = mean(SIZES[0].1).unwrap_or(f64::NAN);
+    let first = answers.first().map_or("", |answer| answer.field);
+    let value = mean(first).unwrap_or(f64::NAN);
     let sizes = SIZES
         .iter()
         .filter_map(|(_, field)| Some((*field, mean(field)?)));
-    let mut figure = TwinFigure::alone(first);
+    let mut figure = TwinFigure::alone(value);
     figure.fields.extend(sizes);
     let of_sign = |sign: f64| {
-        let own = answers.iter().find(|answer| {
-            (answer.sign - sign).abs() < 0.5 && (answer.size - SIZES[0].0).abs() <= 0.0
-        });
-        own.map(&of)
+        let is_own = |answer: &&Answer| (answer.sign - sign).abs() < 0.5 && answer.field == first;
+        answers.iter().find(is_own).map(&of)
     };
     match of_sign(1.0).zip(of_sign(-1.0)) {
-        Some((up, down)) => figure.with("difference_of_signs", up - down),
-        None => figure,
+        Some((up, down)) if (up - down).is_finite() => {
+            figure.with("difference_of_signs", up - down)
+        }
+        _ => figure,
     }
 }
 

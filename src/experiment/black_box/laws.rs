@@ -2,7 +2,9 @@
 
 use super::Figure;
 use super::subject::{Lack, Twins, rms};
-use crate::metrics::catalogue::{GLITCH_RESPONSE, LINEARITY_ERROR, TIME_INVARIANCE_ERROR};
+use crate::metrics::catalogue::{
+    GLITCH_RESPONSE, LINEARITY_ERROR, SATURATION_GAIN, START_UP, TIME_INVARIANCE_ERROR,
+};
 use crate::metrics::{MetricKey, TwinFigure};
 use crate::random::Streams;
 
@@ -10,10 +12,12 @@ use crate::random::Streams;
 type Law = fn(&Twins) -> Figure;
 
 /// What is told here, with its key.
-pub(super) const LAWS: [(&MetricKey, Law); 3] = [
+pub(super) const LAWS: [(&MetricKey, Law); 5] = [
     (&LINEARITY_ERROR, linearity),
     (&TIME_INVARIANCE_ERROR, time_invariance),
     (&GLITCH_RESPONSE, glitch),
+    (&START_UP, start_up),
+    (&SATURATION_GAIN, saturation),
 ];
 
 /// Period of the added swing, samples, and its amplitude in standard deviations of the noise.
@@ -24,6 +28,19 @@ const SHIFT: usize = 137;
 
 /// Standard deviations of the noise that a glitch has.
 const GLITCH: f64 = 100.0;
+
+/// Sizes of large steps, standard deviations of the noise, and the field of the gain of each.
+const LARGE: [(f64, &str); 3] = [
+    (1e2, "gain_at_100_sigma"),
+    (1e3, "gain_at_1000_sigma"),
+    (1e5, "gain_at_100000_sigma"),
+];
+
+/// Part of the largest difference below which a start is over.
+const STARTED: f64 = 0.01;
+
+/// Part of what is left of the record that a start must leave unchanged to be known.
+const START_MARGIN: f64 = 0.1;
 
 /// Largest departure from linearity.
 fn linearity(twins: &Twins) -> Figure {
@@ -97,4 +114,52 @@ fn glitch(twins: &Twins) -> Figure {
         .fold(0.0, |most: f64, own| most.max(own.abs()));
     let beyond = change.iter().filter(|own| own.abs() > twins.sigma).count();
     Ok(TwinFigure::alone(largest / height).with("samples_beyond_sigma", beyond as f64))
+}
+
+/// How long it matters that the record began.
+fn start_up(twins: &Twins) -> Figure {
+    let middle = twins.middle();
+    let begun = twins.answer(&twins.words[middle..])?;
+    let pairs = begun.iter().zip(&twins.own[middle..]);
+    let changes: Vec<f64> = pairs.map(|(begun, own)| (begun - own).abs()).collect();
+    let largest = changes.iter().fold(0.0, |most: f64, own| most.max(*own));
+    let is_over = |change: &f64| *change <= (STARTED * largest).max(twins.rounding());
+    let last = changes.iter().rposition(|change| !is_over(change));
+    let samples = last.map_or(0, |last| last + 1);
+    if samples as f64 > (1.0 - START_MARGIN) * changes.len() as f64 {
+        let left_s = changes.len() as f64 * twins.sample_period_s;
+        return Err(
+            format!("it takes longer than the second half of the record, {left_s:.4} s").into(),
+        );
+    }
+    let figure = TwinFigure::alone(samples as f64 * twins.sample_period_s);
+    Ok(figure.with("largest_deg_per_h", largest))
+}
+
+/// How the gain falls as a step becomes large.
+fn saturation(twins: &Twins) -> Figure {
+    let middle = twins.middle();
+    let tail = twins.words.len() - middle / 2;
+    let gain = |height: f64| -> Result<f64, Lack> {
+        let words = twins.changed(|at, word| if at < middle { word } else { word + height });
+        let change = twins.difference(&words)?;
+        let tail = &change[tail..];
+        Ok(tail.iter().sum::<f64>() / (height * tail.len() as f64))
+    };
+    let (mut least, mut largest) = (f64::INFINITY, 0.0_f64);
+    let mut figure = TwinFigure::alone(f64::NAN);
+    for (size, field) in LARGE {
+        let height = size * twins.sigma;
+        let gains = [gain(height)?, gain(-height)?];
+        for gain in gains {
+            least = least.min(gain);
+            largest = largest.max(gain);
+        }
+        figure.fields.insert(field, 0.5 * (gains[0] + gains[1]));
+    }
+    if largest <= 0.0 {
+        return Err("the filter passes no large step".into());
+    }
+    figure.value = least / largest;
+    Ok(figure)
 }

@@ -15,8 +15,8 @@ const PARTS: [f64; 2] = [1e-2, 1e-3];
 /// Part of what is left of the record that the memory must leave unchanged to be known.
 const MARGIN: f64 = 0.1;
 
-/// Memory to 1 % and to 0.1 %, by one word changed by its noise.
-pub(super) fn direct(twins: &Twins) -> [Figure; 2] {
+/// Memory to 1 % and to 0.1 % and delay, by one word changed by its noise.
+pub(super) fn direct(twins: &Twins) -> [Figure; 3] {
     let places = if twins.is_whole {
         &PLACES[..]
     } else {
@@ -38,9 +38,33 @@ pub(super) fn direct(twins: &Twins) -> [Figure; 2] {
         })
         .collect();
     match changes {
-        Ok(changes) => PARTS.map(|part| of_changes(twins, &changes, part)),
-        Err(lack) => [Err(lack.again()), Err(lack)],
+        Ok(changes) => {
+            let [percent, tenth] = PARTS.map(|part| of_changes(twins, &changes, part));
+            let delay = delay(twins, &changes, &tenth);
+            [percent, tenth, delay]
+        }
+        Err(lack) => [Err(lack.again()), Err(lack.again()), Err(lack)],
     }
+}
+
+/// Centroid of the changes within twice the memory, beyond which a millionth of one pole is left.
+fn delay(twins: &Twins, changes: &[(usize, Vec<f64>)], memory: &Figure) -> Figure {
+    let memory = memory.as_ref().map_err(Lack::again)?;
+    let memory = twins.samples(memory.value);
+    let reach = 2 * memory + twins.register_samples();
+    let (mut moment, mut sum) = (0.0, 0.0);
+    for (place, change) in changes {
+        for (age, own) in change[*place..].iter().take(reach).enumerate() {
+            moment += age as f64 * own;
+            sum += own;
+        }
+    }
+    if sum.abs() <= twins.rounding() {
+        return Err("what one word changes in the outputs adds up to nothing".into());
+    }
+    let samples = moment / sum;
+    let figure = TwinFigure::alone(1e3 * samples * twins.sample_period_s);
+    Ok(figure.with("samples", samples))
 }
 
 /// The longest memory of several words.

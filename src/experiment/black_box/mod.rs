@@ -8,9 +8,10 @@ mod laws;
 mod look_ahead;
 mod memory;
 mod subject;
+mod swing;
 
 use crate::experiment::run::Unfinished;
-use crate::metrics::catalogue::{LOOK_AHEAD, MEMORY_0P1_PERCENT, MEMORY_1_PERCENT};
+use crate::metrics::catalogue::{DELAY_AT_REST, LOOK_AHEAD, MEMORY_0P1_PERCENT, MEMORY_1_PERCENT};
 use crate::metrics::{Applies, BlackBox, MetricKey, TwinFigure, Unavailable};
 use crate::scenario::{BlackBoxTrial, Scenario};
 
@@ -68,28 +69,44 @@ pub(super) fn examine(
         }
     };
     keep(&LOOK_AHEAD, look_ahead::look_ahead(&twins))?;
-    let [percent, tenth] = memory::direct(&twins);
+    let [percent, tenth, delay] = memory::direct(&twins);
     let percent_s = keep(&MEMORY_1_PERCENT, percent)?;
     let memory_s = keep(&MEMORY_0P1_PERCENT, tenth)?.or(percent_s);
+    keep(&DELAY_AT_REST, delay)?;
     for (key, figure) in gains::gains(&twins, memory_s.unwrap_or(0.0)) {
         keep(key, figure)?;
     }
-    for (key, law) in laws::LAWS {
-        let figure = if is_whole {
-            law(&twins)
-        } else {
-            Err("trial.black_box = \"brief\" leaves it out".into())
-        };
-        keep(key, figure)?;
+    if is_whole {
+        for (key, law) in laws::LAWS {
+            keep(key, law(&twins))?;
+        }
+        for (key, figure) in swing::KEYS.into_iter().zip(swing::swing(&twins, memory_s)) {
+            keep(key, figure)?;
+        }
+    } else {
+        for key in keys_of_whole() {
+            keep(key, Err("left out by trial.black_box = \"brief\"".into()))?;
+        }
     }
     Ok(Some(found))
 }
 
 /// Keys of everything that twins tell.
 fn all_keys() -> Vec<&'static MetricKey> {
-    let first = [&LOOK_AHEAD, &MEMORY_1_PERCENT, &MEMORY_0P1_PERCENT];
+    let first = [
+        &LOOK_AHEAD,
+        &MEMORY_1_PERCENT,
+        &MEMORY_0P1_PERCENT,
+        &DELAY_AT_REST,
+    ];
+    let first = first.into_iter().chain(gains::keys());
+    first.chain(keys_of_whole()).collect()
+}
+
+/// Keys of what is only told where everything is asked for.
+fn keys_of_whole() -> impl Iterator<Item = &'static MetricKey> {
     let laws = laws::LAWS.iter().map(|(key, _)| *key);
-    first.into_iter().chain(gains::keys()).chain(laws).collect()
+    laws.chain(swing::KEYS)
 }
 
 /// The same lacking figures for one reason, where words of a channel cannot be made again.

@@ -5,6 +5,7 @@ use crate::experiment::channel_filter::Arithmetic;
 use crate::experiment::run::{RecordLength, Unfinished};
 use crate::filters::FilterKind;
 use crate::metrics::Unavailable;
+use crate::turntable::first_measured_index;
 
 /// How a filter is handed its words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -191,6 +192,13 @@ impl<'a> Twins<'a> {
     /// Samples by which a register delays its outputs.
     pub(super) fn register_samples(&self) -> usize {
         self.subject.register_samples()
+    }
+
+    /// Samples of a time that is a whole number of them but for rounding.
+    pub(super) fn samples(&self, time_s: f64) -> usize {
+        let period_s = self.sample_period_s;
+        let samples = first_measured_index(time_s - 1e-3 * period_s, period_s);
+        usize::try_from(samples).unwrap_or(usize::MAX)
     }
 
     /// First word of the second half.

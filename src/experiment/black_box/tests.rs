@@ -3,8 +3,9 @@
 use super::*;
 use crate::filters::{FilterKind, LmsFilterConfig, RlsFilterConfig};
 use crate::metrics::catalogue::{
-    ADAPTATION_MEMORY, GLITCH_RESPONSE, LINEARITY_ERROR, SINE_GAIN, STEP_GAIN_1S, STEP_GAIN_10S,
-    TIME_INVARIANCE_ERROR,
+    ADAPTATION_MEMORY, DELAY_UNDER_SWING, GLITCH_RESPONSE, LASTING_RATE_GAIN, LINEARITY_ERROR,
+    SATURATION_GAIN, SINE_GAIN, START_UP, STEP_GAIN_1S, STEP_GAIN_10S, SWING_READAPTATION,
+    TIME_INVARIANCE_ERROR, TWIN_MEAN_RATIO,
 };
 use crate::random::Streams;
 use crate::vocabulary::DesiredSignal;
@@ -81,6 +82,60 @@ fn known_answer_of_a_moving_average_of_eight() {
     assert_near(&found, &LINEARITY_ERROR, 0.0, 1e-12);
     assert_near(&found, &TIME_INVARIANCE_ERROR, 0.0, 1e-9);
     assert_near(&found, &GLITCH_RESPONSE, 0.125, 1e-12);
+    assert_near(&found, &LASTING_RATE_GAIN, 1.0, 1e-9);
+    assert_near(&found, &TWIN_MEAN_RATIO, 1.0, 0.01);
+    assert_near(&found, &DELAY_AT_REST, 3.5, 1e-6);
+    assert_near(&found, &DELAY_UNDER_SWING, 3.5, 1e-6);
+    // A start lacks up to seven words; the last of them may be small.
+    assert_near(&found, &START_UP, 7.0 * PERIOD_S, 1.5 * PERIOD_S);
+    assert_near(&found, &SATURATION_GAIN, 1.0, 1e-9);
+    assert_near(&found, &SWING_READAPTATION, 0.2, 0.201);
+}
+
+#[test]
+fn known_answer_of_a_filter_whose_range_ends() {
+    let limit = 1000.0;
+    let clipped = move |words: &[f64]| -> Vec<f64> {
+        let clip = |word: &f64| word.clamp(-limit, limit);
+        words.iter().map(clip).collect()
+    };
+    let found = by(clipped, 8000);
+    // Steps of 100 sigma end at half their height, those of 100 000 at a two-thousandth.
+    assert_near(&found, &SATURATION_GAIN, 0.001, 1e-4);
+    assert_near(&found, &STEP_GAIN_1S, 1.0, 1e-9);
+}
+
+#[test]
+fn a_mean_in_doubt_gives_no_ratio() {
+    let words: Vec<f64> = record(8000).iter().map(|word| word - 8.47).collect();
+    let found = examined(&Given(<[f64]>::to_vec, Handing::Words), &words);
+    assert_eq!(found.value(&TWIN_MEAN_RATIO), None);
+    assert_near(&found, &LASTING_RATE_GAIN, 1.0, 1e-9);
+}
+
+#[test]
+fn the_runs_of_a_filter_are_as_many_as_the_page_says() {
+    let runs = |trial| {
+        let runs = std::sync::atomic::AtomicUsize::new(0);
+        let counted = |words: &[f64]| {
+            runs.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            words.to_vec()
+        };
+        let input = TwinInput {
+            words_deg_per_h: &record(8000),
+            sample_period_s: PERIOD_S,
+        };
+        let found = examine(&Given(counted, Handing::Words), &input, Some(trial));
+        assert!(found.is_ok_and(|found| found.is_some()));
+        runs.into_inner()
+    };
+    let page = include_str!("../../../docs/own-filter.md");
+    let said = format!(
+        "some {} runs of\nthe filter, where `\"whole\"` takes {}",
+        runs(BlackBoxTrial::Brief).next_multiple_of(10),
+        runs(BlackBoxTrial::Whole).next_multiple_of(10)
+    );
+    assert!(page.contains(&said), "{said}");
 }
 
 #[test]
@@ -110,6 +165,8 @@ fn known_answer_of_one_pole_which_remembers_4_6_time_constants() {
     );
     assert_near(&found, &LOOK_AHEAD, 0.0, 0.0);
     assert_near(&found, &STEP_GAIN_1S, 1.0, 1e-3);
+    // (1 - part) / part samples.
+    assert_near(&found, &DELAY_AT_REST, 99.0, 0.1);
     assert_near(&found, &LINEARITY_ERROR, 0.0, 1e-9);
     assert_near(&found, &TIME_INVARIANCE_ERROR, 0.0, 1e-9);
 }
@@ -216,6 +273,12 @@ fn known_answer_of_least_squares_that_forget_nothing() {
     assert_near(&found, &STEP_GAIN_1S, wiener, 0.05);
     assert_near(&found, &STEP_GAIN_10S, wiener, 0.15);
     assert_near(&found, &SINE_GAIN, wiener, 0.15);
+    assert_near(&found, &TWIN_MEAN_RATIO, wiener, 0.1);
+    // What lasts is learned: g + m dg/dm = g + 2 g (1 - g).
+    let lasting = wiener + 2.0 * wiener * (1.0 - wiener);
+    assert_near(&found, &LASTING_RATE_GAIN, lasting, 0.1);
+    // A large step leaves the filter nothing but itself to predict.
+    assert!(found.value(&SATURATION_GAIN) > Some(0.9));
     // What the weights have learned does not end with the record.
     assert_eq!(found.value(&ADAPTATION_MEMORY), None);
     assert!(found.value(&LINEARITY_ERROR) > Some(0.05));
@@ -226,6 +289,7 @@ fn known_answer_of_normalised_least_mean_squares() {
     // It learns to be the mean of two words, which it aims at, and is as good as fixed.
     let found = built_in(&FilterKind::Lms(LmsFilterConfig::reference()), 20_000);
     assert_near(&found, &MEMORY_0P1_PERCENT, 2.0 * PERIOD_S, 1e-12);
+    assert_near(&found, &DELAY_AT_REST, 0.5 + 1.0, 1e-3);
     assert_near(&found, &STEP_GAIN_1S, 1.0, 1e-9);
     assert_near(&found, &LINEARITY_ERROR, 0.0, 1e-9);
     // A predictor has nothing but noise to learn from.

@@ -72,6 +72,67 @@ pub static SINE_GAIN: MetricKey = MetricKey::of_twins(
 )
 .heading("sine gain");
 
+/// Gain for a rate that is there from the first word on.
+pub static LASTING_RATE_GAIN: MetricKey = MetricKey::of_twins(
+    "lasting_rate_gain",
+    "1",
+    "gain over the second half of the record for a rate of a hundredth of the noise that is added from the first word on: an adaptive filter learns it",
+)
+.heading("lasting rate gain");
+
+/// Mean out over mean in.
+pub static TWIN_MEAN_RATIO: MetricKey = MetricKey::of_twins(
+    "twin_mean_ratio",
+    "1",
+    "mean output over mean input, both of the second half of the record with the same rate added, where the mean input is ten of its standard errors",
+)
+.heading("mean out / mean in");
+
+/// Delay of one word.
+pub static DELAY_AT_REST: MetricKey = MetricKey::of_twins(
+    "delay_at_rest_ms",
+    "ms",
+    "centroid of what one word that is changed by its noise changes in the outputs, within twice the memory to 0.1 %",
+)
+.lower_is_better()
+.heading("delay of one word");
+
+/// Delay of a swing.
+pub static DELAY_UNDER_SWING: MetricKey = MetricKey::of_twins(
+    "delay_under_swing_ms",
+    "ms",
+    "delay of a swing of ten standard deviations of the noise that begins at mid-record, over the last quarter of the record",
+)
+.lower_is_better()
+.heading("delay under a swing");
+
+/// Time in which a swing is learned.
+pub static SWING_READAPTATION: MetricKey = MetricKey::of_twins(
+    "swing_readaptation_s",
+    "s",
+    "time after the same swing begins until the gain for it stays within 1 % of the one at the end",
+)
+.lower_is_better()
+.heading("readaptation to a swing");
+
+/// Start-up.
+pub static START_UP: MetricKey = MetricKey::of_twins(
+    "start_up_s",
+    "s",
+    "time after which the outputs of a record that begins at mid-record differ from those of the whole record by less than 1 % of their largest difference",
+)
+.lower_is_better()
+.heading("start-up");
+
+/// Saturation.
+pub static SATURATION_GAIN: MetricKey = MetricKey::of_twins(
+    "saturation_gain",
+    "1",
+    "least of the gains for steps at mid-record of 100, 1000 and 100 000 standard deviations of the noise, up and down, over the largest of them",
+)
+.higher_is_better()
+.heading("gain in saturation");
+
 /// Departure from linearity.
 pub static LINEARITY_ERROR: MetricKey = MetricKey::of_twins(
     "linearity_error",
@@ -123,6 +184,8 @@ pub struct TwinFigure {
     pub value: f64,
     /// What defines it.
     pub fields: BTreeMap<&'static str, f64>,
+    /// Half width of its interval where the record tells it.
+    pub half_width: Option<f64>,
 }
 
 impl TwinFigure {
@@ -132,7 +195,15 @@ impl TwinFigure {
         Self {
             value,
             fields: BTreeMap::new(),
+            half_width: None,
         }
+    }
+
+    /// The same with the half width of its interval.
+    #[must_use]
+    pub fn within(mut self, half_width: f64) -> Self {
+        self.half_width = Some(half_width);
+        self
     }
 
     /// The same with a field.
@@ -170,10 +241,11 @@ pub(crate) fn put_black_box(found: &BlackBox, is_fixed: bool, metrics: &mut Chan
     for (key, figure) in &found.figures {
         match figure {
             Ok(figure) => {
-                let estimate = if is_fixed || **key == LOOK_AHEAD {
-                    Estimate::exact(figure.value)
-                } else {
-                    Estimate::without_interval(figure.value, ONE_RECORD)
+                let value = figure.value;
+                let estimate = match figure.half_width {
+                    Some(half) => Estimate::with_interval(value, value - half, value + half),
+                    None if is_fixed || **key == LOOK_AHEAD => Estimate::exact(value),
+                    None => Estimate::without_interval(value, ONE_RECORD),
                 };
                 let fields = &mut metrics.put(key, estimate).fields;
                 fields.extend(figure.fields.iter().map(|(name, value)| (*name, *value)));

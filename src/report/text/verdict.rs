@@ -2,13 +2,15 @@
 
 use crate::gate::{estimate_text, plain};
 use crate::metrics::catalogue::{
-    ADAPTATION_MEMORY, GLITCH_RESPONSE, LINEARITY_ERROR, LOOK_AHEAD, MEMORY_0P1_PERCENT,
-    MEMORY_1_PERCENT, NOISE_DELAY_BOUND_NOISE_GAIN, READAPTATION_TIME, SINE_GAIN, STEP_GAIN_1S,
-    STEP_GAIN_10S, STEP_GAIN_100S, TIME_INVARIANCE_ERROR,
+    ADAPTATION_MEMORY, DELAY_AT_REST, DELAY_UNDER_SWING, GLITCH_RESPONSE, LASTING_RATE_GAIN,
+    LINEARITY_ERROR, LOOK_AHEAD, MEMORY_0P1_PERCENT, MEMORY_1_PERCENT,
+    NOISE_DELAY_BOUND_NOISE_GAIN, READAPTATION_TIME, SATURATION_GAIN, SINE_GAIN, START_UP,
+    STEP_GAIN_1S, STEP_GAIN_10S, STEP_GAIN_100S, SWING_READAPTATION, TIME_INVARIANCE_ERROR,
+    TWIN_MEAN_RATIO,
 };
 use crate::metrics::{
-    AgainstOne, ChannelMetrics, Deed, Estimate, FilterVerdict, Finding, Metric, MetricKey,
-    REACHES_START, filter_verdict,
+    AgainstOne, ChannelMetrics, Deed, Estimate, FilterVerdict, Finding, MetricKey, REACHES_START,
+    filter_verdict,
 };
 
 /// Digits of an interval's half width.
@@ -188,62 +190,80 @@ fn readaptation(channel: &ChannelMetrics, verdict: &FilterVerdict) -> Option<Str
     bound.then(|| format!("does not learn the new motion: {reason}"))
 }
 
-/// What twins of the record show, one clause for each; nothing where none ran.
+/// What a figure of twins is called in the verdict: key, words before and after its value.
+const CLAUSES: [(&MetricKey, &str, &str); 17] = [
+    (&MEMORY_1_PERCENT, "remembers a word for ", " s to 1 %"),
+    (&MEMORY_0P1_PERCENT, "", " s to 0.1 %"),
+    (&DELAY_AT_REST, "delays a word by ", " ms"),
+    (&DELAY_UNDER_SWING, "a swing by ", " ms"),
+    (&START_UP, "starts within ", " s"),
+    (&ADAPTATION_MEMORY, "has learned a small step after ", " s"),
+    (&SWING_READAPTATION, "a swing after ", " s"),
+    (&TWIN_MEAN_RATIO, "mean out over mean in ", ""),
+    (&STEP_GAIN_1S, "gain for a small step over 1 s ", ""),
+    (&STEP_GAIN_10S, "gain over 10 s ", ""),
+    (&STEP_GAIN_100S, "gain over 100 s ", ""),
+    (&SINE_GAIN, "gain for a small slow sine ", ""),
+    (
+        &LASTING_RATE_GAIN,
+        "gain for a small rate from the first word on ",
+        "",
+    ),
+    (
+        &SATURATION_GAIN,
+        "least gain for large steps over the largest ",
+        "",
+    ),
+    (&LINEARITY_ERROR, "departs from a linear filter by ", ""),
+    (
+        &TIME_INVARIANCE_ERROR,
+        "from one that does not change by ",
+        "",
+    ),
+    (&GLITCH_RESPONSE, "passes ", " of a single word far outside"),
+];
+
+/// What twins of the record show, one clause for each, and one for each reason why others are lacking; nothing
+/// where none ran.
 fn black_box(channel: &ChannelMetrics) -> Vec<String> {
-    let known = |key: &MetricKey, say: &dyn Fn(String) -> String| {
-        let said = channel.get(key).map(|metric| say(text(&metric.estimate)));
-        said.or_else(|| {
-            let reason = channel.why_unavailable(key)?;
-            Some(format!("{}: {reason}", key.title()))
-        })
-    };
-    let ahead = channel.get(&LOOK_AHEAD);
-    let is_causal = ahead.is_some_and(|ahead| ahead.estimate.value <= 0.0);
-    let reaches = |ahead: &Metric| {
-        ahead
-            .fields
-            .get(REACHES_START)
-            .is_some_and(|all| *all > 0.0)
-    };
-    let at_least = if ahead.is_some_and(reaches) {
-        "at least "
-    } else {
-        ""
-    };
-    let ahead = known(&LOOK_AHEAD, &|samples| {
-        if is_causal {
-            "looks at no word ahead".to_owned()
-        } else {
-            format!("looks {at_least}{samples} samples ahead")
-        }
+    let known = CLAUSES.iter().filter_map(|(key, before, after)| {
+        let value = text(&channel.get(key)?.estimate);
+        Some(format!("{before}{value}{after}"))
     });
-    let gain = |of: &'static str| move |gain: String| format!("gain {of} {gain}");
-    let clauses = [
-        ahead,
-        known(&MEMORY_1_PERCENT, &|time_s| {
-            format!("remembers a word for {time_s} s to 1 %")
-        }),
-        known(&MEMORY_0P1_PERCENT, &|time_s| {
-            format!("{time_s} s to 0.1 %")
-        }),
-        known(&ADAPTATION_MEMORY, &|time_s| {
-            format!("has learned a small step after {time_s} s")
-        }),
-        known(&STEP_GAIN_1S, &gain("for a small step over 1 s")),
-        known(&STEP_GAIN_10S, &gain("over 10 s")),
-        known(&STEP_GAIN_100S, &gain("over 100 s")),
-        known(&SINE_GAIN, &gain("for a small slow sine")),
-        known(&LINEARITY_ERROR, &|error| {
-            format!("departs from a linear filter by {error}")
-        }),
-        known(&TIME_INVARIANCE_ERROR, &|error| {
-            format!("from one that does not change by {error}")
-        }),
-        known(&GLITCH_RESPONSE, &|part| {
-            format!("passes {part} of a single word far outside")
-        }),
-    ];
-    clauses.into_iter().flatten().collect()
+    let keys = CLAUSES.iter().map(|(key, _, _)| *key);
+    let keys: Vec<&MetricKey> = [&LOOK_AHEAD].into_iter().chain(keys).collect();
+    let why = |key: &MetricKey| channel.why_unavailable(key);
+    let lacking = keys.iter().enumerate().filter_map(|(at, key)| {
+        let reason = why(key)?;
+        let is_first = keys[..at]
+            .iter()
+            .all(|earlier| why(earlier) != Some(reason));
+        let same = keys.iter().filter(|other| why(other) == Some(reason));
+        let titles: Vec<String> = same.map(|other| other.title()).collect();
+        is_first.then(|| format!("{}: {reason}", titles.join(", ")))
+    });
+    look_ahead(channel)
+        .into_iter()
+        .chain(known)
+        .chain(lacking)
+        .collect()
+}
+
+/// How far the filter looks ahead.
+fn look_ahead(channel: &ChannelMetrics) -> Option<String> {
+    let ahead = channel.get(&LOOK_AHEAD)?;
+    if ahead.estimate.value <= 0.0 {
+        return Some("looks at no word ahead".to_owned());
+    }
+    let reaches_start = ahead
+        .fields
+        .get(REACHES_START)
+        .is_some_and(|all| *all > 0.0);
+    let at_least = if reaches_start { "at least " } else { "" };
+    Some(format!(
+        "looks {at_least}{} samples ahead",
+        text(&ahead.estimate)
+    ))
 }
 
 /// Noise against the least that unit DC gain allows.
@@ -288,6 +308,7 @@ fn least(channel: &ChannelMetrics) -> String {
 mod tests {
     use super::*;
     use crate::metrics::Metric;
+    use crate::metrics::catalogue::DC_GAIN;
 
     fn words(entries: &[(&str, f64, f64)]) -> String {
         let metrics = entries.iter().map(|(name, low, high)| {
@@ -363,6 +384,23 @@ mod tests {
             "{said}"
         );
         assert!(said.contains("DC gain 0.5"), "{said}");
+    }
+
+    #[test]
+    fn what_twins_leave_out_for_one_reason_has_one_clause() {
+        let mut channel = ChannelMetrics::default();
+        channel.put(&DC_GAIN, Estimate::exact(1.0));
+        channel.miss(&LINEARITY_ERROR, "nobody asked for it");
+        channel.miss(&STEP_GAIN_10S, "the record is short");
+        channel.miss(&GLITCH_RESPONSE, "nobody asked for it");
+        let said = verdict_text(&channel).expect("a filter has a verdict");
+        assert!(
+            said.ends_with(
+                "; step gain, 10 s: the record is short; linearity error, glitch response: \
+                 nobody asked for it"
+            ),
+            "{said}"
+        );
     }
 
     #[test]

@@ -10,9 +10,9 @@ table! {
         /// the filter runs on the same words plus one rate and is free to adapt. Source of the default: it
         /// takes twelve times the time of the filter.
         rate_gain: bool = false;
-        /// Measure look-ahead, memory, gains, linearity and time invariance of every filter by twins of its own
-        /// record, from its first word on, 2^20 words at most. Without it nothing is: in full it takes some sixty times the time of
-        /// the filter.
+        /// Measure look-ahead, memory, gains, delays, start-up, saturation, linearity and time invariance of every
+        /// filter by twins of its own record, from its first word on, 2^20 words at most. Without it nothing is: in full it takes
+        /// some seventy times the time of the filter.
         black_box: Option<BlackBoxTrial>, example "whole";
         /// Whether filters go on from one rate of a staircase or scale factor test to the next, or start
         /// afresh at each, half-way through settle_s. Source of the default: a filter in service is not reset when the rate changes.
@@ -23,7 +23,7 @@ table! {
 words! {
     /// What twins of the record are to show of a filter.
     pub enum BlackBoxTrial {
-        /// Look-ahead, memory and gains, for a change of one size and sign.
+        /// Look-ahead, memory, delay of a word and gains, for a change of one size and sign.
         Brief = "brief",
         /// Everything, for changes of three sizes and both signs.
         Whole = "whole",

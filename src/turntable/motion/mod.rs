@@ -24,6 +24,7 @@ pub use kinds::scale_factor_test::{PreferredSeries, ScaleFactorTestConfig, TEST_
 pub use kinds::script::{ScriptConfig, ScriptPoints};
 pub use kinds::steps::StepsConfig;
 pub use kinds::swing::SwingConfig;
+pub use kinds::test_signal::{SignalShape, TestSignalConfig};
 pub use kinds::trapezoid::TrapezoidConfig;
 pub use samples::{dwell_ends, first_measured_index, step_indices};
 pub use stairs::Stairs;
@@ -50,6 +51,7 @@ alternatives! {
         Rotation(RotationConfig) = "rotation",
         Trapezoid(TrapezoidConfig) = "trapezoid",
         Chirp(ChirpConfig) = "chirp",
+        TestSignal(TestSignalConfig) = "test_signal",
         Script(ScriptConfig) = "script",
         Calibration(CampaignConfig) = "calibration",
     }

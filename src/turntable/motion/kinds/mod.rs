@@ -9,4 +9,5 @@ pub(in crate::turntable::motion) mod scale_factor_test;
 pub(in crate::turntable::motion) mod script;
 pub(in crate::turntable::motion) mod steps;
 pub(in crate::turntable::motion) mod swing;
+pub(in crate::turntable::motion) mod test_signal;
 pub(in crate::turntable::motion) mod trapezoid;
