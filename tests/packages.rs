@@ -1,6 +1,8 @@
 //! The packages that the lock file names.
 
 use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
@@ -72,4 +74,48 @@ fn the_library_alone_brings_at_most_sixty_packages() {
     let alone = count("");
     assert!(alone <= 60, "{alone} packages without features");
     assert!(alone < count("cli"), "the program needs more");
+}
+
+/// Rust files of a folder and those below it.
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("the folder is there");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    paths
+        .flat_map(|path| {
+            if path.is_dir() {
+                rust_files(&path)
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                vec![path]
+            } else {
+                Vec::new()
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn the_packaged_crate_holds_every_file_that_the_program_embeds() {
+    let output = Command::new(env!("CARGO"))
+        .args(["package", "--list", "--allow-dirty", "--offline"])
+        .current_dir(repository(""))
+        .output()
+        .expect("cargo starts");
+    assert!(output.status.success(), "cargo package --list");
+    let text = stdout(&output);
+    let packaged: BTreeSet<&str> = text.lines().collect();
+    let mut embedded = 0;
+    for file in rust_files(&repository("src")) {
+        let source = fs::read_to_string(&file).expect("a source is text");
+        for part in source.split("include_str!(\"").skip(1) {
+            let name = part.split('"').next().expect("a name");
+            let path = file.with_file_name(name);
+            let path = path.canonicalize().expect("an embedded file is there");
+            let root = repository("").canonicalize().expect("the repository");
+            let path = path.strip_prefix(root).expect("a file of the repository");
+            let path = path.to_str().expect("a name in ASCII");
+            assert!(packaged.contains(path), "{path} is not packaged");
+            embedded += 1;
+        }
+    }
+    assert!(embedded > 20, "embedded files are found, {embedded}");
 }

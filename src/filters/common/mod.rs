@@ -6,6 +6,7 @@ mod divergence;
 mod filter;
 mod fixed;
 mod front_end;
+pub(in crate::filters) mod lanes;
 pub(in crate::filters) mod sections;
 
 pub use complaints::{Complaint, Complaints};

@@ -1,0 +1,169 @@
+//! Hot paths against plain ones in the same run, with limits.
+//!
+//! `cargo bench --bench ratios` prints the ratio of their times, the least of many short ones in
+//! alternation; with `-- --check` a ratio above its limit in `benches/ratios.toml` is a failure.
+
+#[path = "../tests/support/as_printed.rs"]
+mod as_printed;
+#[path = "plain_loop.rs"]
+mod plain_loop;
+#[path = "../tests/support/reference_gyro.rs"]
+mod reference_gyro;
+
+use std::hint::black_box;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use fogbench::filters::{
+    CoreFilter, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, Rls, RlsConfig,
+};
+use fogbench::gyro::LoopModel;
+use fogbench::random::Streams;
+use fogbench::signal::MotionSegment;
+use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
+
+use plain_loop::PlainLoop;
+use reference_gyro::reference_gyro;
+
+/// Limits by name.
+const LIMITS: &str = include_str!("ratios.toml");
+/// Samples of a filter in one timing: some tenths of a millisecond, which many timings see undisturbed.
+const SAMPLES: usize = 10_000;
+/// Words of a gyro in one timing.
+const WORDS: u32 = 200;
+/// Timings of each of the two.
+const ROUNDS: usize = 400;
+
+/// Least time of one call, in seconds, of the fast and of the plain path, called in alternation.
+fn least_times_s(mut fast: impl FnMut() -> f64, mut plain: impl FnMut() -> f64) -> (f64, f64) {
+    fn time_s(path: &mut impl FnMut() -> f64) -> f64 {
+        let start = Instant::now();
+        black_box(path());
+        start.elapsed().as_secs_f64()
+    }
+    (0..ROUNDS).fold((f64::INFINITY, f64::INFINITY), |(a, b), _| {
+        (a.min(time_s(&mut fast)), b.min(time_s(&mut plain)))
+    })
+}
+
+/// A hot path as it was measured.
+struct Measured {
+    name: &'static str,
+    fast_ns: f64,
+    plain_ns: f64,
+}
+
+fn run(filter: &mut dyn Filter, input: &[f64]) -> f64 {
+    let step = |sample: &f64| filter.step(*sample).map_or(f64::NAN, |o| o.value_deg_per_h);
+    input.iter().map(step).sum()
+}
+
+fn filter(name: &'static str, fast: &mut dyn Filter, plain: &mut dyn Filter) -> Measured {
+    let mut input = vec![0.0; SAMPLES];
+    Streams::new(1, 0).stream("bench").fill_normal(&mut input);
+    let (fast_s, plain_s) = least_times_s(
+        || run(fast, black_box(&input)),
+        || run(plain, black_box(&input)),
+    );
+    let per_sample = 1e9 / SAMPLES as f64;
+    Measured {
+        name,
+        fast_ns: fast_s * per_sample,
+        plain_ns: plain_s * per_sample,
+    }
+}
+
+fn front_end(desired: DesiredSignal, input_lag_samples: usize) -> FrontEndConfig {
+    FrontEndConfig {
+        desired,
+        input_lag_samples,
+        output_register: OutputRegister::NextSample,
+    }
+}
+
+fn rls() -> Measured {
+    let config = RlsConfig {
+        taps: 4,
+        forgetting_factor: 0.999,
+        initial_inverse_correlation: 1.0,
+        update_sign: UpdateSign::Corrected,
+        front_end: front_end(DesiredSignal::Current, 1),
+    };
+    let mut plain = CoreFilter::with_core(as_printed::Rls::new(&config), &config.front_end);
+    filter("rls_4", &mut Rls::new(&config), &mut plain)
+}
+
+fn lms(name: &'static str, step_size: f64, normalisation: Normalisation) -> Measured {
+    let config = LmsConfig {
+        taps: 10,
+        step_size,
+        normalisation,
+        update_sign: UpdateSign::Corrected,
+        front_end: front_end(DesiredSignal::TwoSampleMean, 0),
+    };
+    let mut plain = CoreFilter::with_core(as_printed::Lms::new(&config), &config.front_end);
+    filter(name, &mut Lms::new(&config), &mut plain)
+}
+
+fn loop_model(name: &'static str, latency_periods: u32) -> Measured {
+    let mut config = reference_gyro();
+    config.controller.loop_latency_periods = latency_periods;
+    let streams = Streams::new(1, 0);
+    let mut model = LoopModel::new(&config, 1.0, &streams).expect("the reference gyro is sound");
+    let mut plain = PlainLoop::new(&config, model.controller().gain, &streams);
+    let segment = MotionSegment::hermite(1.7e-2, 1e-7, 1.700_01e-2, 1e-7);
+    let (fast_s, plain_s) = least_times_s(
+        || {
+            for _ in 0..WORDS {
+                black_box(model.next_word(black_box(&segment)));
+            }
+            0.0
+        },
+        || {
+            let word = |_| plain.next_word_rad_per_s(black_box(&segment.rate_rad_per_s));
+            (0..WORDS).map(word).sum()
+        },
+    );
+    let per_half_period = 1e9 / f64::from(WORDS * config.output.half_periods_per_sample);
+    Measured {
+        name,
+        fast_ns: fast_s * per_half_period,
+        plain_ns: plain_s * per_half_period,
+    }
+}
+
+fn main() -> ExitCode {
+    let limits: toml::Table = LIMITS.parse().expect("the limits are TOML");
+    let is_checked = std::env::args().any(|argument| argument == "--check");
+    let energy = Normalisation::Energy {
+        regularisation_deg2_per_h2: 1.0,
+    };
+    let measured = [
+        rls(),
+        lms("nlms_10", 0.8, energy),
+        lms("lms_10", 1e-3, Normalisation::None),
+        loop_model("loop_model_latency_1", 1),
+        loop_model("loop_model_latency_0", 0),
+    ];
+    let mut has_failed = limits.len() != measured.len();
+    for Measured {
+        name,
+        fast_ns,
+        plain_ns,
+    } in measured
+    {
+        let limit = limits.get(name).and_then(toml::Value::as_float);
+        let limit = limit.unwrap_or_else(|| panic!("benches/ratios.toml has no limit of {name}"));
+        let ratio = fast_ns / plain_ns;
+        let verdict = if ratio <= limit { "" } else { ", too slow" };
+        has_failed |= ratio > limit;
+        println!(
+            "{name}: {fast_ns:.2} ns, plain {plain_ns:.2} ns, ratio {ratio:.2}, at most {limit}{verdict}"
+        );
+    }
+    if is_checked && has_failed {
+        eprintln!("a ratio is above its limit in benches/ratios.toml, or a limit has no bench");
+        return ExitCode::FAILURE;
+    }
+    ExitCode::SUCCESS
+}
