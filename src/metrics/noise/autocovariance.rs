@@ -115,18 +115,30 @@ impl LaggedProducts {
                 let reach = (end + largest_lag).min(values.len());
                 deviations.clear();
                 deviations.extend(values[start..reach].iter().map(|value| value - centre));
-                for lag in 0..=largest_lag {
-                    // The last block of a short record may hold fewer samples than the lag.
-                    let later = deviations.get(lag..).unwrap_or_default();
-                    let pairs = (end - start).min(later.len());
-                    let (sum, count) = products(&deviations[..pairs], &later[..pairs]);
-                    sums[block][lag] += sum;
-                    counts[block][lag] += count;
-                }
+                add_products(
+                    &deviations,
+                    end - start,
+                    &mut sums[block],
+                    &mut counts[block],
+                );
                 start = end;
             }
         }
         Self { sums, counts }
+    }
+
+    /// The same about another centre, `step` above: of blocks with these sums of deviations.
+    ///
+    /// What the ends of a block have more or less of at a lag is not counted.
+    fn moved_by(mut self, step: f64, deviations: &[f64]) -> Self {
+        let blocks = self.sums.iter_mut().zip(&self.counts).zip(deviations);
+        for ((sums, counts), deviation) in blocks {
+            for (sum, count) in sums.iter_mut().zip(counts) {
+                let share = *count as f64 / counts[0].max(1) as f64;
+                *sum += step * (*count as f64 * step - 2.0 * share * deviation);
+            }
+        }
+        self
     }
 
     /// Number of blocks.
@@ -189,6 +201,113 @@ impl LaggedProducts {
     }
 }
 
+/// Adds the products of the first `own` deviations with those behind them at every lag.
+fn add_products(deviations: &[f64], own: usize, sums: &mut [f64], counts: &mut [usize]) {
+    for (lag, (sum, count)) in sums.iter_mut().zip(counts).enumerate() {
+        // The last block of a short record may hold fewer samples than the lag.
+        let later = deviations.get(lag..).unwrap_or_default();
+        let pairs = own.min(later.len());
+        let (more, found) = products(&deviations[..pairs], &later[..pairs]);
+        *sum += more;
+        *count += found;
+    }
+}
+
+/// Lagged products of a record while it comes in, in twenty to forty blocks of equal length.
+#[derive(Clone, Debug)]
+pub(crate) struct LaggedStream {
+    centre: f64,
+    lags: usize,
+    blocks: usize,
+    /// Chunks of a block.
+    block_chunks: usize,
+    /// Chunks of the last block.
+    filled: usize,
+    products: LaggedProducts,
+    /// Sum of the deviations of each block.
+    deviations: Vec<f64>,
+    /// Deviations whose partners are still to come.
+    waiting: Vec<f64>,
+}
+
+impl LaggedStream {
+    /// Of a record about a value near its mean.
+    pub(crate) fn new(centre: f64, largest_lag: usize, blocks: usize) -> Self {
+        Self {
+            centre,
+            lags: largest_lag,
+            blocks,
+            block_chunks: 1,
+            filled: 0,
+            products: LaggedProducts {
+                sums: Vec::new(),
+                counts: Vec::new(),
+            },
+            deviations: Vec::new(),
+            waiting: Vec::new(),
+        }
+    }
+
+    /// Takes the next values.
+    pub(crate) fn extend(&mut self, values: &[f64]) {
+        let centre = self.centre;
+        self.waiting
+            .extend(values.iter().map(|value| value - centre));
+        let mut first = 0;
+        while self.waiting.len() - first >= CHUNK + self.lags {
+            let waiting = std::mem::take(&mut self.waiting);
+            self.add(&waiting[first..first + CHUNK + self.lags], CHUNK);
+            self.waiting = waiting;
+            first += CHUNK;
+        }
+        self.waiting.drain(..first);
+    }
+
+    fn add(&mut self, deviations: &[f64], own: usize) {
+        if self.filled == 0 {
+            self.products.sums.push(vec![0.0; self.lags + 1]);
+            self.products.counts.push(vec![0; self.lags + 1]);
+            self.deviations.push(0.0);
+        }
+        let LaggedProducts { sums, counts } = &mut self.products;
+        let block = sums.len() - 1;
+        add_products(deviations, own, &mut sums[block], &mut counts[block]);
+        self.deviations[block] += deviations[..own].iter().sum::<f64>();
+        self.filled += 1;
+        if self.filled == self.block_chunks {
+            self.filled = 0;
+            if sums.len() == 2 * self.blocks {
+                self.merge();
+            }
+        }
+    }
+
+    /// Makes one block of two.
+    fn merge(&mut self) {
+        let LaggedProducts { sums, counts } = &mut self.products;
+        let half = sums.len() / 2;
+        for block in 0..half {
+            for lag in 0..=self.lags {
+                sums[block][lag] = sums[2 * block][lag] + sums[2 * block + 1][lag];
+                counts[block][lag] = counts[2 * block][lag] + counts[2 * block + 1][lag];
+            }
+            self.deviations[block] = self.deviations[2 * block] + self.deviations[2 * block + 1];
+        }
+        sums.truncate(half);
+        counts.truncate(half);
+        self.deviations.truncate(half);
+        self.block_chunks *= 2;
+    }
+
+    /// The products of all that came, about its mean.
+    pub(crate) fn finish(mut self, mean: f64) -> LaggedProducts {
+        let waiting = std::mem::take(&mut self.waiting);
+        let own = waiting.len();
+        self.add(&waiting, own);
+        self.products.moved_by(mean - self.centre, &self.deviations)
+    }
+}
+
 /// Number of independent samples that say as much about the variance as the record does.
 ///
 /// `n R0^2 / sum R(k)^2` over positive and negative lags: the variance of a Gaussian sample
@@ -246,6 +365,30 @@ mod tests {
                 .sum::<f64>()
                 / (values.len() - lag) as f64;
             assert!((got - plain).abs() < 1e-9 * plain.abs().max(1.0));
+        }
+    }
+
+    #[test]
+    fn a_stream_has_the_products_of_the_whole_record() {
+        let values: Vec<f64> = (0..123_456_u32)
+            .map(|k| f64::from((k * 7919) % 1013) + 1e-4 * f64::from(k))
+            .collect();
+        let mut stream = LaggedStream::new(500.0, 5, 4);
+        for piece in values.chunks(10_007) {
+            stream.extend(piece);
+        }
+        let mean = interval::mean(&values);
+        let found = stream.finish(mean);
+        assert!((4..=8).contains(&found.blocks()));
+        let whole = LaggedProducts::new(&values, mean, 5, 4).autocovariance();
+        let variance = whole[0];
+        for (lag, (found, whole)) in found.autocovariance().iter().zip(&whole).enumerate() {
+            // A lag shares all but the ends of a block with its sums.
+            let tolerance = if lag == 0 { 1e-12 } else { 1e-5 };
+            assert!(
+                (found - whole).abs() < tolerance * variance,
+                "{lag}: {found} {whole}"
+            );
         }
     }
 
