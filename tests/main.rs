@@ -76,6 +76,7 @@ mod least_noise;
 mod library;
 mod log_layouts;
 mod log_scenarios;
+mod log_stream;
 mod metrics_file;
 mod metrics_intervals;
 mod metrics_records;

@@ -668,11 +668,13 @@ fn pipes_are_read_and_endless_devices_are_refused() {
     let output = piped(&npy_bytes(1, "<f8", 300, &data), &log);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let mut transcript = Transcript::of(READERS, "Pipes and endless devices");
-    for count in [299, 301] {
-        let output = piped(&npy_bytes(1, "<f8", count, &data), &log);
-        let given = format!("a pipe of 300 numbers whose heading names {count}");
-        transcript.case(given, stderr(&output));
-    }
+    let output = piped(&npy_bytes(1, "<f8", 299, &data), &log);
+    let given = "a pipe of 300 numbers whose heading names 299";
+    transcript.case(given.to_owned(), stderr(&output));
+    let output = piped(&npy_bytes(1, "<f8", 301, &data), &log);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let note = "the input ended behind 300 of the 301 numbers that its heading names";
+    assert!(stdout(&output).contains(note), "{}", stdout(&output));
     for arguments in [
         &["analyze", "/dev/zero", "--unit", "deg/h", "--rate-hz", "1"][..],
         &["export", "vectors", "o", "--stimulus", "/dev/zero"],

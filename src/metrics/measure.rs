@@ -35,7 +35,7 @@ pub static DIVERGED_AT: MetricKey = MetricKey::new(
 .closing_tables();
 
 /// Points of the spectrum in the report.
-const SPECTRUM_POINTS_MAX: usize = 400;
+pub(crate) const SPECTRUM_POINTS_MAX: usize = 400;
 
 /// Measures one channel.
 ///
@@ -243,9 +243,38 @@ fn explain_missing(
     filter: Option<&FilterFacts>,
     metrics: &mut ChannelMetrics,
 ) {
+    let of = Recorded {
+        samples: record.channel_deg_per_h.len(),
+        sample_period_s: record.sample_period_s,
+        has_truth: record.truth().is_some(),
+        has_encoder: record.encoder_rad.is_some(),
+    };
+    explain_absence(of, settings, filter, metrics);
+}
+
+/// What a record holds, its samples left out.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Recorded {
+    /// How many samples it has.
+    pub(crate) samples: usize,
+    /// Sample period, s.
+    pub(crate) sample_period_s: f64,
+    /// Whether the true rate is known.
+    pub(crate) has_truth: bool,
+    /// Whether the table has an encoder.
+    pub(crate) has_encoder: bool,
+}
+
+/// Gives a reason to every metric of the catalogue that has neither a value nor a reason yet.
+pub(crate) fn explain_absence(
+    record: Recorded,
+    settings: &Settings,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) {
     let is_filter = filter.is_some();
     let hidden = filter.and_then(|facts| facts.shape.hidden_reason());
-    let duration_s = record.channel_deg_per_h.len() as f64 * record.sample_period_s;
+    let duration_s = record.samples as f64 * record.sample_period_s;
     for known in known_metrics() {
         if **known == DIVERGED_AT
             || matches!(
@@ -266,9 +295,9 @@ fn explain_missing(
             settings.bias_averaging_time_s,
         )
         .err()
-        .or_else(|| truth_lack(known, record.truth().is_some(), is_filter).map(Unavailable::from))
+        .or_else(|| truth_lack(known, record.has_truth, is_filter).map(Unavailable::from))
         .or_else(|| repeats_lack(known, 1))
-        .or_else(|| encoder_lack(known, record.encoder_rad.is_some()).map(Unavailable::from))
+        .or_else(|| encoder_lack(known, record.has_encoder).map(Unavailable::from))
         .unwrap_or_else(|| match known.applies {
             Applies::Pipeline => PIPELINE_ONLY.into(),
             _ => hidden.unwrap_or("the record is too short for it").into(),

@@ -28,6 +28,7 @@
 //! | `pool` | independent repeats, and conditions compared |
 //! | `measure` | all of it for one channel |
 //! | `quality` | what is the matter with the words of a log: outliers, smoothing |
+//! | `stream` | records too long to be kept, measured while their words come in |
 
 mod allan;
 mod calibration;
@@ -45,6 +46,7 @@ mod record;
 mod sine;
 mod state_space;
 mod steps;
+mod stream;
 mod theory;
 mod trial;
 mod verdict;
@@ -115,6 +117,7 @@ pub use steps::scale_factor::{
 pub use steps::settling::{Settling, settling};
 pub use steps::shape::Step;
 pub use steps::small_input::smallest_answered;
+pub use stream::words::{NOT_STREAMED, StreamLack, WordStream};
 pub use theory::bound::{
     LeastNoise, NoiseDelayBound, bound_taps, noise_delay_bound, noise_delay_bound_coloured,
     noise_power_gain,

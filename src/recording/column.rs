@@ -30,6 +30,8 @@ pub(crate) struct Columns {
     pub(crate) layout: Option<String>,
     /// The same as it could have been given; none of an array.
     pub(super) found: Option<LogFormat>,
+    /// What is worth saying of how the file ended.
+    pub(super) note: Option<String>,
     /// Empty lines between the rows.
     pub(crate) empty_lines: EmptyLines,
     /// Where each row stands; rows of an array stand at their index.

@@ -73,6 +73,11 @@ impl Input {
         })
     }
 
+    /// Takes a pipe for one that is not kept: it may go on as long as it will.
+    pub(super) fn let_go_on(&mut self) {
+        self.left = u64::MAX;
+    }
+
     /// Bytes of the file; none where only the reading tells.
     pub(super) fn length(&self) -> Option<u64> {
         self.length

@@ -40,7 +40,9 @@ pub use bounds::{
 pub use column::EmptyLines;
 pub use error::LogError;
 pub use groups::read::{GROUPS_MAX, Mounting, RecordedGroup, RecordedGroups, read_groups};
-pub use layout::words::{DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind};
+pub use layout::words::{
+    DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind, WordType,
+};
 pub use log::facts::LogFacts;
 pub use log::format::LogFormat;
 pub use log::motion::{LogMotion, UnknownLogMotion};
@@ -48,6 +50,7 @@ pub use log::read::{
     AssemblyColumns, AssemblyLog, read_assembly_log, read_log, read_logs, read_stimulus,
 };
 pub use log::record::{Log, Stretch};
+pub use log::stream::{KEPT_WORDS, LogSource, LogStream, open_log};
 pub use log::words::read_words;
 pub use text::csv::csv_text;
 pub use text::lines::{Delimiter, Line, Lines, TextError};

@@ -67,6 +67,7 @@ pub use read::assumed::{AssumedInShort, AssumedValue};
 pub use read::discover::left_out;
 pub use read::files::compensation_source::load_calibration;
 pub use read::files::log_format::{load_log_format, log_format_toml};
+pub(crate) use read::files::log_source::digest_of_log;
 pub use read::files::manifest::manifest_toml;
 pub use read::files::named_files::NamedFile;
 pub use read::files::problem::{Problem, load_problem, problem_keys};

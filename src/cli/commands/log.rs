@@ -12,10 +12,13 @@ use crate::cli::terminal::output;
 use crate::cli::terminal::place::{self, Place};
 use crate::experiment::{
     LogFilters, LogInput, LogSettings, LogTrial, Progress, compensate_log, load_log_compensation,
-    load_log_filters, load_log_gates, try_log,
+    load_log_filters, load_log_gates, try_log, try_log_stream,
 };
 use crate::program::Programs;
-use crate::recording::{AssemblyColumns, Log, LogError, LogFormat, read_assembly_log, read_logs};
+use crate::recording::{
+    AssemblyColumns, Log, LogError, LogFormat, LogSource, LogStream, open_log, read_assembly_log,
+    read_logs,
+};
 use crate::report::{is_kalman_json, log_json, log_text};
 use crate::scenario::{AllanConfig, load_log_format, log_format_toml, slug};
 use crate::store::SingleFile;
@@ -37,7 +40,7 @@ pub(in crate::cli) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
     {
         return Ok(exit);
     }
-    let logs = match read(&options.log) {
+    let logs = match read(&options.log, open) {
         Ok(logs) => logs,
         Err(exit) => return Ok(exit),
     };
@@ -87,7 +90,7 @@ pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
     if let Err(exit) = place(&options.log).check(&inputs) {
         return Ok(exit);
     }
-    let logs = match read(&options.log) {
+    let logs = match read(&options.log, whole) {
         Ok(logs) => logs,
         Err(exit) => return Ok(exit),
     };
@@ -108,9 +111,17 @@ pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
     conclude(logs, filters, &options.log, options.csv).map(|(exit, _)| exit)
 }
 
-/// A log that was read.
+/// What is measured.
+enum Words {
+    /// All of a log.
+    Whole(Box<LogInput>),
+    /// A log while it comes in.
+    Stream(Box<LogStream>),
+}
+
+/// A log that was read, or is.
 struct ReadLog {
-    input: LogInput,
+    words: Words,
     sample_rate_hz: f64,
     /// Name of the column, where the file has several.
     column: Option<String>,
@@ -123,9 +134,45 @@ impl From<Log> for ReadLog {
             sample_rate_hz: log.sample_rate_hz,
             column: log.column.clone(),
             format: log.format.clone(),
-            input: log.into(),
+            words: Words::Whole(Box::new(log.into())),
         }
     }
+}
+
+impl From<Box<LogStream>> for ReadLog {
+    fn from(stream: Box<LogStream>) -> Self {
+        let log = stream.log();
+        Self {
+            sample_rate_hz: log.sample_rate_hz,
+            column: log.column.clone(),
+            format: log.format.clone(),
+            words: Words::Stream(stream),
+        }
+    }
+}
+
+/// Reads a log, or opens one that is too long to be kept.
+fn open(path: &Path, format: &LogFormat) -> Result<Vec<ReadLog>, LogError> {
+    Ok(match open_log(path, format)? {
+        LogSource::Whole(logs) => told(logs),
+        LogSource::Stream(stream) => {
+            tell_layout(stream.log());
+            vec![stream.into()]
+        }
+    })
+}
+
+/// Reads a log as a whole.
+fn whole(path: &Path, format: &LogFormat) -> Result<Vec<ReadLog>, LogError> {
+    read_logs(path, format).map(told)
+}
+
+/// Says what the file was taken for.
+fn told(logs: Vec<Log>) -> Vec<ReadLog> {
+    if let Some(log) = logs.first() {
+        tell_layout(log);
+    }
+    logs.into_iter().map(ReadLog::from).collect()
 }
 
 /// Where the results go.
@@ -143,14 +190,12 @@ fn inputs(options: &LogOptions) -> Vec<&Path> {
 }
 
 /// The words to measure: of each column that is named, or of three and a calibration.
-fn read(options: &LogOptions) -> Result<Vec<ReadLog>, Exit> {
+fn read(
+    options: &LogOptions,
+    reader: fn(&Path, &LogFormat) -> Result<Vec<ReadLog>, LogError>,
+) -> Result<Vec<ReadLog>, Exit> {
     let (Some(calibration), Some(axis)) = (&options.calibration, options.axis) else {
-        let logs =
-            read_logs(&options.file, &format(options)?).map_err(|error| unreadable(&error))?;
-        if let Some(log) = logs.first() {
-            tell_layout(log);
-        }
-        return Ok(logs.into_iter().map(ReadLog::from).collect());
+        return reader(&options.file, &format(options)?).map_err(|error| unreadable(&error));
     };
     let [x, y, z] = &options.columns[..] else {
         let count = options.columns.len();
@@ -182,7 +227,11 @@ fn read(options: &LogOptions) -> Result<Vec<ReadLog>, Exit> {
         sample_rate_hz,
         column: None,
         format: format.clone(),
-        input: LogInput::Compensated(compensate_log(logs, &compensation, axis)),
+        words: Words::Whole(Box::new(LogInput::Compensated(compensate_log(
+            logs,
+            &compensation,
+            axis,
+        )))),
     }])
 }
 
@@ -249,7 +298,11 @@ fn conclude(
     let (mut trials, mut taken) = (Vec::new(), Vec::new());
     for log in logs {
         let settings = settings(options, &log.format);
-        let mut trial = match try_log(log.input, filters, &settings, &programs) {
+        let trial = match log.words {
+            Words::Whole(input) => try_log(*input, filters, &settings, &programs),
+            Words::Stream(stream) => try_log_stream(*stream, &settings, &programs),
+        };
+        let mut trial = match trial {
             Ok(trial) => trial,
             Err(error) => {
                 output::talk(&format!("error: {error}"));

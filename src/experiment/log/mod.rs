@@ -4,6 +4,7 @@ mod compensation;
 mod filters;
 mod gates;
 mod run;
+mod stream;
 mod trial;
 #[cfg(feature = "report")]
 mod written;
@@ -12,4 +13,5 @@ pub use compensation::{CompensatedLog, LogCompensation, compensate_log, load_log
 pub use filters::{LogFilters, load_log_filters};
 pub use gates::{LogGates, load_log_gates};
 pub(crate) use run::run_log;
+pub use stream::try_log_stream;
 pub use trial::{LogInput, LogSettings, LogTrial, LogTrialError, try_log};

@@ -5,7 +5,7 @@ use super::trial::{LogInput, LogSettings, try_log};
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{Faults, Progress, Results, Simulation, Unfinished, unless_stopped};
 use crate::recording::{LogFormat, read_log};
-use crate::scenario::NamedFile;
+use crate::scenario::{NamedFile, digest_of_log};
 
 /// Reads the log of a plan again, puts it through the filters and measures.
 ///
@@ -28,7 +28,7 @@ pub(crate) fn run_log(
     })?;
     if plan
         .log()
-        .is_none_or(|facts| facts.samples != log.rate_deg_per_h.len())
+        .is_none_or(|facts| facts.digest != digest_of_log(&log))
     {
         let message = format!("{name} has changed since it was read");
         return Err(Unfinished::Failed(message));

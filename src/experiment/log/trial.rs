@@ -102,7 +102,7 @@ pub fn try_log(
         LogInput::Compensated(CompensatedLog { log, words, notes }) => (log, Some(words), notes),
     };
     let sample_period_s = log.sample_period_s();
-    let length = record_length(&log, settings)?;
+    let length = record_length(&log, log.rate_deg_per_h.len(), settings)?;
     let is_compensated = compensated.is_some();
     let clash = filters.and_then(|filters| clash(filters, is_compensated));
     if let Some(message) = clash.or_else(|| refusal_of_gaps(&log, filters, settings)) {
@@ -221,7 +221,11 @@ fn clash(filters: &LogFilters, is_compensated: bool) -> Option<String> {
 }
 
 /// How the words of a log, those behind the warm-up, are measured.
-fn metric_settings(settings: &LogSettings, measured: &[f64], sample_period_s: f64) -> Settings {
+pub(super) fn metric_settings(
+    settings: &LogSettings,
+    measured: &[f64],
+    sample_period_s: f64,
+) -> Settings {
     let fit_tau_min_s = settings.fit_tau_min_s;
     Settings {
         motion: metric_motion(settings.motion),
@@ -299,8 +303,12 @@ fn run(
         .collect()
 }
 
-fn record_length(log: &Log, settings: &LogSettings) -> Result<RecordLength, LogTrialError> {
-    let samples = log.rate_deg_per_h.len();
+/// Parts of a log of so many samples: those that are left out, those that are measured.
+pub(super) fn record_length(
+    log: &Log,
+    samples: usize,
+    settings: &LogSettings,
+) -> Result<RecordLength, LogTrialError> {
     let refuse = |message: String| LogTrialError {
         file: log.file.clone(),
         message,

@@ -33,8 +33,10 @@ impl LogTrial {
 
     /// Words that were measured, missing ones not counted.
     fn present(&self) -> usize {
-        let measured = &self.record.raw_deg_per_h[self.length.warm_up..];
-        measured.iter().filter(|word| !word.is_nan()).count()
+        // Those of a log that streamed are not kept, and none of them is missing.
+        let kept = self.record.raw_deg_per_h.get(self.length.warm_up..);
+        let missing = kept.unwrap_or_default().iter().filter(|word| word.is_nan());
+        self.length.measured - missing.count()
     }
 
     /// The noise of the words as a linear system, JSON; that without outliers where there are any.

@@ -5,7 +5,7 @@ const MEANS_MIN: usize = 30;
 
 /// Most block means looked at, from the start of the record: their autocorrelation is then known to
 /// 0.003, where the laws lie 0.3 and more apart.
-const MEANS_MAX: usize = 1 << 17;
+pub(crate) const MEANS_MAX: usize = 1 << 17;
 
 /// Least order of integration that calls for another difference; white noise has 0.
 const DIFFERENCE_FROM: f64 = 0.25;
@@ -117,7 +117,7 @@ pub(crate) fn identify_noise(
 ) -> Option<PowerLaw> {
     let m = averaged_samples;
     let blocks = (angle.len().saturating_sub(1) / m).min(MEANS_MAX);
-    let mut means: Vec<f64> = (0..blocks)
+    let means: Vec<f64> = (0..blocks)
         .map(|block| {
             let (start, end) = (block * m, (block + 1) * m);
             if missing.is_some_and(|sum| sum[end] > sum[start]) {
@@ -127,6 +127,11 @@ pub(crate) fn identify_noise(
             }
         })
         .collect();
+    identify_by_means(means, order)
+}
+
+/// As [`identify_noise`] by the block means themselves, of which missing ones are NaN.
+pub(crate) fn identify_by_means(mut means: Vec<f64>, order: usize) -> Option<PowerLaw> {
     let present = means.iter().filter(|mean| !mean.is_nan()).count();
     if present < MEANS_MIN {
         return None;

@@ -39,6 +39,27 @@ impl AllanPoint {
         }
     }
 
+    /// The point of an averaging factor, with the degrees of freedom of white noise.
+    pub(crate) fn of_differences(
+        averaged_samples: usize,
+        differences: Differences,
+        angle_count: usize,
+        sample_period_s: f64,
+    ) -> Self {
+        let m = averaged_samples as f64;
+        // The angle is in units of one sample period, which cancels against tau.
+        let deviation = (differences.sum / (2.0 * m * m * differences.weight as f64)).sqrt();
+        let white = degrees_of_freedom(NoiseType::White, angle_count, averaged_samples);
+        let freedom = (white * differences.share).max(1.0);
+        Self {
+            tau_s: m * sample_period_s,
+            averaged_samples,
+            deviation_deg_per_h: interval::deviation(deviation, freedom),
+            degrees_of_freedom: freedom,
+            count: differences.count,
+        }
+    }
+
     /// The point with another Allan variance, (deg/h)^2, whose interval is not looked at.
     pub(crate) fn with_variance(mut self, variance: f64) -> Self {
         self.deviation_deg_per_h.value = variance.sqrt();
@@ -50,6 +71,19 @@ impl AllanPoint {
     pub fn variance(&self) -> f64 {
         self.deviation_deg_per_h.value * self.deviation_deg_per_h.value
     }
+}
+
+/// Second differences of the angle at one averaging factor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Differences {
+    /// Sum of their squares.
+    pub(crate) sum: f64,
+    /// Starts that the sum stands for.
+    pub(crate) weight: usize,
+    /// How many they are.
+    pub(crate) count: usize,
+    /// Share of those possible.
+    pub(crate) share: f64,
 }
 
 /// Noise type that sets the degrees of freedom of an Allan variance of rate.
@@ -166,24 +200,20 @@ pub fn overlapping_allan_at(
         .filter(|(_, (_, count))| *count > 0);
     supported
         .map(|(&m, (sum, count))| {
-            let m_f = m as f64;
-            // The angle is in units of one sample period, which cancels against tau.
-            let deviation = (sum / (2.0 * m_f * m_f * count as f64)).sqrt();
             let share = count as f64 / possible(m) as f64;
-            let freedom = (degrees_of_freedom(NoiseType::White, angle_count, m) * share).max(1.0);
-            AllanPoint {
-                tau_s: m_f * sample_period_s,
-                averaged_samples: m,
-                deviation_deg_per_h: interval::deviation(deviation, freedom),
-                degrees_of_freedom: freedom,
+            let differences = Differences {
+                sum,
+                weight: count,
                 count,
-            }
+                share,
+            };
+            AllanPoint::of_differences(m, differences, angle_count, sample_period_s)
         })
         .collect()
 }
 
 /// Distinct averaging factors on a logarithmic grid from 1 to `largest`.
-fn averaging_factors(largest: usize) -> Vec<usize> {
+pub(crate) fn averaging_factors(largest: usize) -> Vec<usize> {
     let mut factors: Vec<usize> = (0_i32..)
         .map(|step| round_to_count(10.0_f64.powf(f64::from(step) / POINTS_PER_DECADE)))
         .take_while(|&factor| factor <= largest)

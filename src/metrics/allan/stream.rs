@@ -1,105 +1,182 @@
 //! Overlapping Allan deviation of a record too long to be kept.
 
 use super::angle::squared_second_differences;
-use super::overlapping::{AllanPoint, NoiseType, degrees_of_freedom};
-use crate::metrics::estimate::interval;
+use super::noise_identification::MEANS_MAX;
+use super::overlapping::{AllanPoint, Differences};
 
 /// Longest averaging factor, in samples, whose differences start at every sample: 2^18.
 const DENSE_FACTOR_MAX: usize = 1 << 18;
 
+/// Longest averaging factor that is ever served, samples.
+const FACTOR_MAX: usize = 1 << 44;
+
 /// New angles after which the sums of a level move on.
 const BLOCK: usize = 8192;
 
-/// Overlapping Allan deviation at octave averaging times from samples that come one after another.
+/// Starts in an averaging time, at least, where differences do not start at every sample.
+const STARTS_PER_TAU: usize = 1 << 10;
+
+/// Overlapping Allan deviation from samples that come one after another.
 ///
 /// For m up to 2^18 the differences start at every sample, exactly as in
-/// [`overlapping_allan_at`](crate::metrics::overlapping_allan_at). Beyond, angles are kept at every second,
-/// fourth, ... sample, so that the starts are tau/2^18 apart: such a difference repeats its
-/// neighbour to four parts in a million, and nothing is lost. Memory is two averaging times of
-/// angles per level and one level per doubling of the record: 10 MB at first, 100 MB at 1e9 samples.
+/// [`overlapping_allan_at`](crate::metrics::overlapping_allan_at). Beyond, angles are kept at every 256th,
+/// 65536th, ... sample, so that the starts are tau/1024 apart or less: such a difference repeats its
+/// neighbour to a part in a million, and nothing is lost. Memory is two averaging times of
+/// angles per level and one level per factor of 256 of the record: 6 MB each.
 ///
 /// The rate of the first sample is left out of the integration, which cancels in every difference
 /// and keeps the digits of the rest.
 #[derive(Clone, Debug)]
 pub struct AllanStream {
-    dense_factor_max: usize,
     sample_period_s: f64,
     offset_deg_per_h: Option<f64>,
     samples: usize,
+    /// Samples from which on differences of long averaging times start at some samples only.
+    thinned_from: usize,
     angle: f64,
     levels: Vec<Level>,
+    means: Vec<Means>,
 }
 
 /// Angles at one spacing, and the sums of the differences formed from them.
 #[derive(Clone, Debug)]
 struct Level {
-    /// Averaging factors served, in spacings of this level, rising.
-    factors: Vec<usize>,
-    sums: Vec<f64>,
-    counts: Vec<usize>,
+    /// Samples from one angle to the next.
+    spacing: usize,
+    /// Those served, the averaging factor rising.
+    terms: Vec<Term>,
     /// Newest angles; those before `done` have been the last one of their differences.
     angles: Vec<f64>,
     done: usize,
-    /// Whether the next angle is one that the level above keeps as well.
-    even: bool,
+    /// Angles that are no longer kept.
+    dropped: usize,
+}
+
+/// The sum of one averaging factor.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    /// Averaging factor in spacings of its level.
+    factor: usize,
+    sum: f64,
+    /// Starts that the sum stands for.
+    weight: usize,
+    /// Differences that it is made of.
+    count: usize,
+}
+
+/// Means of blocks of so many samples at the start of a record.
+#[derive(Clone, Debug)]
+struct Means {
+    block: usize,
+    values: Vec<f64>,
+    last_angle: f64,
+}
+
+/// What a stream knows of an averaging factor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StreamedSum {
+    /// Averaging factor, samples.
+    pub(crate) averaged_samples: usize,
+    /// Sum of the squared second differences of the angle.
+    pub(crate) sum: f64,
+    /// Starts that the sum stands for.
+    pub(crate) weight: usize,
+    /// Differences that it is made of.
+    pub(crate) count: usize,
+}
+
+impl StreamedSum {
+    /// The point that it gives of so many angles.
+    pub(crate) fn point(&self, angles: usize, sample_period_s: f64) -> AllanPoint {
+        let differences = Differences {
+            sum: self.sum,
+            weight: self.weight,
+            count: self.count,
+            share: 1.0,
+        };
+        AllanPoint::of_differences(self.averaged_samples, differences, angles, sample_period_s)
+    }
+}
+
+impl Term {
+    /// Adds the differences whose last angles are `first .. end`, of those one in `stride`.
+    fn add(&mut self, angles: &[f64], (first, end): (usize, usize), stride: usize) {
+        let m = self.factor;
+        if first >= end {
+            return;
+        }
+        let (a, b, c) = (
+            &angles[first - 2 * m..end - 2 * m],
+            &angles[first - m..end - m],
+            &angles[first..end],
+        );
+        let count = (end - first).div_ceil(stride);
+        let sum = match stride {
+            1 => squared_second_differences(a, b, c),
+            _ => (0..c.len())
+                .step_by(stride)
+                .map(|k| {
+                    let difference = (a[k] + c[k]) - 2.0 * b[k];
+                    difference * difference
+                })
+                .sum(),
+        };
+        self.sum += stride as f64 * sum;
+        self.weight += stride * count;
+        self.count += count;
+    }
 }
 
 impl Level {
     /// A level that holds the first angle of every record, zero.
-    fn new(factors: Vec<usize>) -> Self {
+    fn new(spacing: usize) -> Self {
         Self {
-            sums: vec![0.0; factors.len()],
-            counts: vec![0; factors.len()],
-            factors,
+            spacing,
+            terms: Vec::new(),
             angles: vec![0.0],
             done: 0,
-            even: false,
+            dropped: 0,
         }
     }
 
     /// Angles that later differences reach back to.
     fn history(&self) -> usize {
-        2 * self.factors[self.factors.len() - 1]
+        self.terms.last().map_or(0, |term| 2 * term.factor)
     }
 
-    /// Forms every difference whose last angle is new.
-    fn advance(&mut self) {
+    /// Forms every difference whose last angle is new; of those behind `thinned_from` some.
+    fn advance(&mut self, thinned_from: usize) {
         let end = self.angles.len();
-        for ((&m, sum), count) in self
-            .factors
-            .iter()
-            .zip(&mut self.sums)
-            .zip(&mut self.counts)
-        {
-            let first = self.done.max(2 * m);
-            if first < end {
-                *sum += squared_second_differences(
-                    &self.angles[first - 2 * m..end - 2 * m],
-                    &self.angles[first - m..end - m],
-                    &self.angles[first..end],
-                );
-                *count += end - first;
-            }
+        let border = (thinned_from / self.spacing)
+            .saturating_sub(self.dropped)
+            .clamp(self.done, end);
+        for term in &mut self.terms {
+            let first = self.done.max(2 * term.factor);
+            term.add(&self.angles, (first, border), 1);
+            let stride = (term.factor / STARTS_PER_TAU).checked_ilog2();
+            let stride = stride.map_or(1, |power| 1 << power);
+            // Starts are multiples of the stride, however the record comes in pieces.
+            let first = (self.dropped + first.max(border)).next_multiple_of(stride);
+            term.add(&self.angles, (first - self.dropped, end), stride);
         }
         self.done = end;
     }
 
-    /// Takes an angle; true if the level above keeps it as well.
-    fn push(&mut self, angle: f64) -> bool {
-        self.angles.push(angle);
+    /// Takes angles.
+    fn extend(&mut self, angles: impl Iterator<Item = f64>, thinned_from: usize) {
+        self.angles.extend(angles);
         if self.angles.len() - self.done >= BLOCK {
-            self.advance();
+            self.advance(thinned_from);
         }
         let history = self.history();
         // Moved once per half a history of new angles, so that moving costs two copies an angle.
         if self.angles.len() >= history + history / 2 + BLOCK {
-            self.advance();
-            self.angles.drain(..self.angles.len() - history);
+            self.advance(thinned_from);
+            let old = self.angles.len() - history;
+            self.angles.drain(..old);
+            self.dropped += old;
             self.done = history;
         }
-        let even = self.even;
-        self.even = !even;
-        even
     }
 }
 
@@ -114,35 +191,104 @@ impl AllanStream {
     /// down to a power of two; a smaller one takes less memory.
     #[must_use]
     pub fn with_dense_factor_max(sample_period_s: f64, dense_factor_max: usize) -> Self {
-        let octaves = dense_factor_max.max(1).ilog2();
-        let factors = (0..=octaves).map(|power| 1 << power).collect();
+        let dense = 1 << dense_factor_max.max(1).ilog2();
+        let octaves = (0..FACTOR_MAX.ilog2()).map(|power| 1 << power);
+        Self::of_factors(sample_period_s, dense, octaves.collect())
+    }
+
+    /// An empty record that is looked at by these averaging factors, rising, samples; beyond
+    /// `dense_factor_max` they are rounded to the spacing of the angles that are kept.
+    pub(crate) fn of_factors(
+        sample_period_s: f64,
+        dense_factor_max: usize,
+        factors: Vec<usize>,
+    ) -> Self {
+        let step = (dense_factor_max / STARTS_PER_TAU).max(2);
+        let step = 1 << step.ilog2();
+        let mut levels = vec![Level::new(1)];
+        for factor in factors.into_iter().take_while(|it| *it <= FACTOR_MAX) {
+            let mut level = levels.len() - 1;
+            while factor / levels[level].spacing > dense_factor_max {
+                levels.push(Level::new(levels[level].spacing * step));
+                level += 1;
+            }
+            let Level { spacing, terms, .. } = &mut levels[level];
+            let factor = (factor + *spacing / 2) / *spacing;
+            if terms.last().is_none_or(|last| last.factor < factor) {
+                terms.push(Term {
+                    factor,
+                    sum: 0.0,
+                    weight: 0,
+                    count: 0,
+                });
+            }
+        }
         Self {
-            dense_factor_max: 1 << octaves,
             sample_period_s,
             offset_deg_per_h: None,
             samples: 0,
+            thinned_from: usize::MAX,
             angle: 0.0,
-            levels: vec![Level::new(factors)],
+            levels,
+            means: Vec::new(),
         }
+    }
+
+    /// Lets differences start at every sample in the first so many samples alone: behind them those of
+    /// averaging times from 2048 samples on start tau/1024 apart or nearer.
+    pub(crate) fn thinned_from(self, samples: usize) -> Self {
+        Self {
+            thinned_from: samples,
+            ..self
+        }
+    }
+
+    /// Keeps means over blocks of these lengths, samples, of the start of the record.
+    pub(crate) fn with_means(mut self, blocks: &[usize]) -> Self {
+        let means = |block: &usize| Means {
+            block: *block,
+            values: Vec::new(),
+            last_angle: 0.0,
+        };
+        self.means = blocks.iter().map(means).collect();
+        self
     }
 
     /// Takes the next samples of the rate, deg/h.
     pub fn extend(&mut self, rate_deg_per_h: &[f64]) {
-        for &rate in rate_deg_per_h {
-            let offset = *self.offset_deg_per_h.get_or_insert(rate);
-            self.angle += rate - offset;
-            self.samples += 1;
-            self.push_angle();
-        }
-    }
-
-    fn push_angle(&mut self) {
-        let mut index = 0;
-        while self.levels[index].push(self.angle) {
-            index += 1;
-            if index == self.levels.len() {
-                self.levels.push(Level::new(vec![self.dense_factor_max]));
+        for rates in rate_deg_per_h.chunks(BLOCK) {
+            let offset = *self.offset_deg_per_h.get_or_insert(rates[0]);
+            let mut angle = self.angle;
+            let angles = rates.iter().map(|rate| {
+                angle += rate - offset;
+                angle
+            });
+            let (dense, coarse) = self.levels.split_at_mut(1);
+            dense[0].angles.extend(angles);
+            self.angle = angle;
+            let before = self.samples;
+            self.samples += rates.len();
+            let angles = &dense[0].angles;
+            let at = |sample: usize| angles[angles.len() - 1 - (self.samples - sample)];
+            let new = |spacing: usize| {
+                let first = before / spacing + 1;
+                (first..=self.samples / spacing).map(move |index| index * spacing)
+            };
+            for level in coarse {
+                level.extend(new(level.spacing).map(at), self.thinned_from);
             }
+            for means in &mut self.means {
+                for sample in new(means.block) {
+                    let angle = at(sample);
+                    if means.values.len() < MEANS_MAX {
+                        means
+                            .values
+                            .push((angle - means.last_angle) / means.block as f64);
+                        means.last_angle = angle;
+                    }
+                }
+            }
+            dense[0].extend(std::iter::empty(), self.thinned_from);
         }
     }
 
@@ -150,6 +296,31 @@ impl AllanStream {
     #[must_use]
     pub fn samples(&self) -> usize {
         self.samples
+    }
+
+    /// The means over blocks of a length that [`with_means`](Self::with_means) names, of the start of the
+    /// record.
+    pub(crate) fn means(&self, block: usize) -> Option<&[f64]> {
+        let means = self.means.iter().find(|means| means.block == block);
+        means.map(|means| means.values.as_slice())
+    }
+
+    /// The mean squares so far, up to an averaging factor.
+    pub(crate) fn sums(&mut self, factor_max: usize) -> Vec<StreamedSum> {
+        let thinned_from = self.thinned_from;
+        let mut sums = Vec::new();
+        for level in &mut self.levels {
+            level.advance(thinned_from);
+            let terms = level.terms.iter().filter(|term| term.count > 0);
+            sums.extend(terms.map(|term| StreamedSum {
+                averaged_samples: term.factor * level.spacing,
+                sum: term.sum,
+                weight: term.weight,
+                count: term.count,
+            }));
+        }
+        sums.retain(|sum| sum.averaged_samples <= factor_max);
+        sums
     }
 
     /// The points supported so far: m = 1, 2, 4, ... up to a quarter of the record.
@@ -160,28 +331,9 @@ impl AllanStream {
     /// [`mixed_degrees_of_freedom`](crate::metrics::mixed_degrees_of_freedom).
     #[must_use]
     pub fn points(&mut self) -> Vec<AllanPoint> {
-        let mut points = Vec::new();
-        for (power, level) in self.levels.iter_mut().enumerate() {
-            level.advance();
-            for ((factor, &sum), &count) in level.factors.iter().zip(&level.sums).zip(&level.counts)
-            {
-                let m = factor << power;
-                if m > self.samples / 4 {
-                    return points;
-                }
-                let m_f = m as f64;
-                let deviation = (sum / (2.0 * m_f * m_f * count as f64)).sqrt();
-                let freedom = degrees_of_freedom(NoiseType::White, self.samples + 1, m);
-                points.push(AllanPoint {
-                    tau_s: m_f * self.sample_period_s,
-                    averaged_samples: m,
-                    deviation_deg_per_h: interval::deviation(deviation, freedom),
-                    degrees_of_freedom: freedom,
-                    count,
-                });
-            }
-        }
-        points
+        let (angles, period_s) = (self.samples + 1, self.sample_period_s);
+        let sums = self.sums(self.samples / 4).into_iter();
+        sums.map(|sum| sum.point(angles, period_s)).collect()
     }
 }
 
@@ -251,7 +403,7 @@ mod tests {
             let levels = stream.levels.iter();
             levels.map(|level| level.angles.capacity()).sum::<usize>()
         };
-        // Sixty-four times the record adds six levels, each below 2^14 angles of capacity.
-        assert!(held(64 * 20_000) <= held(20_000) + 6 * (1 << 14));
+        // Sixty-four times the record adds six levels, each below 2^15 angles of capacity.
+        assert!(held(64 * 20_000) <= held(20_000) + 6 * (1 << 15));
     }
 }

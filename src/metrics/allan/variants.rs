@@ -212,34 +212,74 @@ pub fn allan_variant_at(
         let sum = |&m: &usize| sum_of_squares(&angle, missing, m, estimator);
         factors.par_iter().map(sum).collect()
     };
+    let found = factors.iter().zip(identified).zip(sums);
+    let found = found.map(|((&m, noise), (sum, count))| FoundSum {
+        averaged_samples: m,
+        noise,
+        sum,
+        weight: count,
+        count,
+        possible: possible(m),
+    });
+    points_of(found, angle.len(), sample_period_s, options)
+}
+
+/// What was found at an averaging factor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FoundSum {
+    /// The factor.
+    pub(crate) averaged_samples: usize,
+    /// Noise that was identified at it.
+    pub(crate) noise: Option<PowerLaw>,
+    /// Sum of the squared differences.
+    pub(crate) sum: f64,
+    /// Starts that the sum stands for.
+    pub(crate) weight: usize,
+    /// Differences it is made of.
+    pub(crate) count: usize,
+    /// Differences of a record that misses no sample.
+    pub(crate) possible: usize,
+}
+
+/// The points of a curve of the family.
+///
+/// * `found`: with the averaging factor rising.
+/// * `angles`: angles of the record, one more than its samples.
+pub(crate) fn points_of(
+    found: impl Iterator<Item = FoundSum>,
+    angles: usize,
+    sample_period_s: f64,
+    options: &AllanOptions,
+) -> Vec<AllanVariantPoint> {
+    let estimator = options.estimator;
     let mut noise = PowerLaw::RateWhite;
-    let mut points = Vec::with_capacity(factors.len());
-    for ((&m, found), (sum, count)) in factors.iter().zip(identified).zip(sums) {
-        noise = found.unwrap_or(noise);
-        let possible = possible(m);
-        if count == 0 {
+    let mut points = Vec::new();
+    for at in found {
+        noise = at.noise.unwrap_or(noise);
+        if at.count == 0 {
             continue;
         }
+        let m = at.averaged_samples;
         let m_f = m as f64;
         let scale = match estimator {
             AllanEstimator::Overlapping | AllanEstimator::Plain => 2.0 * m_f * m_f,
             AllanEstimator::Modified => 2.0 * m_f * m_f * m_f * m_f,
             AllanEstimator::Hadamard | AllanEstimator::PlainHadamard => 6.0 * m_f * m_f,
         };
-        let whole = combined_degrees_of_freedom(noise, differences, angle.len(), m);
-        let freedom = (whole * count as f64 / possible as f64).max(1.0);
-        let deviation = (sum / (scale * count as f64)).sqrt();
+        let whole = combined_degrees_of_freedom(noise, estimator.differences(), angles, m);
+        let freedom = (whole * at.count as f64 / at.possible as f64).max(1.0);
+        let deviation = (at.sum / (scale * at.weight as f64)).sqrt();
         points.push(AllanVariantPoint {
             point: AllanPoint {
                 tau_s: m_f * sample_period_s,
                 averaged_samples: m,
                 deviation_deg_per_h: interval::deviation_at(deviation, freedom, options.confidence),
                 degrees_of_freedom: freedom,
-                count,
+                count: at.count,
             },
             noise,
-            noise_identified: found.is_some(),
-            left_out: possible - count,
+            noise_identified: at.noise.is_some(),
+            left_out: at.possible - at.count,
         });
     }
     points

@@ -31,6 +31,102 @@ pub fn block_means(rate_deg_per_h: &[f64], block_samples: usize) -> Vec<f64> {
         .collect()
 }
 
+/// Block means of a record while it comes in, so many at most.
+#[derive(Clone, Debug)]
+pub(crate) struct BlockStream {
+    block_samples: usize,
+    most: usize,
+    sum: f64,
+    filled: usize,
+    means: Vec<f64>,
+    is_full: bool,
+}
+
+impl BlockStream {
+    /// Of blocks of so many samples.
+    pub(crate) fn new(block_samples: usize, most: usize) -> Self {
+        Self {
+            block_samples: block_samples.max(1),
+            most,
+            sum: 0.0,
+            filled: 0,
+            means: Vec::new(),
+            is_full: false,
+        }
+    }
+
+    /// Takes the next values.
+    pub(crate) fn extend(&mut self, mut values: &[f64]) {
+        while !values.is_empty() && !self.is_full {
+            let (own, rest) = values.split_at((self.block_samples - self.filled).min(values.len()));
+            // One after the other, as the mean of a whole block is summed.
+            self.sum = own.iter().fold(self.sum, |sum, value| sum + value);
+            self.filled += own.len();
+            values = rest;
+            if self.filled == self.block_samples {
+                self.means.push(self.sum / self.block_samples as f64);
+                (self.sum, self.filled) = (0.0, 0);
+                self.is_full = self.means.len() > self.most;
+            }
+        }
+    }
+
+    /// Samples of a block.
+    pub(crate) fn block_samples(&self) -> usize {
+        self.block_samples
+    }
+
+    /// The means of all whole blocks; nothing where they are too many to be kept.
+    pub(crate) fn means(&self) -> Option<&[f64]> {
+        (!self.is_full).then_some(self.means.as_slice())
+    }
+}
+
+/// Means of a whole record in so many to twice as many blocks, while it comes in.
+#[derive(Clone, Debug)]
+pub(crate) struct CoarseStream {
+    blocks: BlockStream,
+    least: usize,
+}
+
+impl CoarseStream {
+    /// Of `least` to twice as many blocks once there are as many samples.
+    pub(crate) fn new(least: usize) -> Self {
+        Self {
+            blocks: BlockStream::new(1, usize::MAX),
+            least,
+        }
+    }
+
+    /// Takes the next values.
+    pub(crate) fn extend(&mut self, values: &[f64]) {
+        for values in values.chunks(self.least) {
+            self.blocks.extend(values);
+            while self.blocks.means.len() >= 2 * self.least {
+                self.merge();
+            }
+        }
+    }
+
+    /// Makes one block of two; one without a partner is not whole yet.
+    fn merge(&mut self) {
+        let blocks = &mut self.blocks;
+        let whole = blocks.means.len() / 2 * 2;
+        for mean in blocks.means.drain(whole..) {
+            blocks.sum += mean * blocks.block_samples as f64;
+            blocks.filled += blocks.block_samples;
+        }
+        let pairs = blocks.means.chunks_exact(2);
+        blocks.means = pairs.map(|two| 0.5 * (two[0] + two[1])).collect();
+        blocks.block_samples *= 2;
+    }
+
+    /// The means.
+    pub(crate) fn means(&self) -> &[f64] {
+        &self.blocks.means
+    }
+}
+
 /// Number of whole samples in an averaging time, at least 1.
 #[must_use]
 pub fn samples_in(averaging_time_s: f64, sample_period_s: f64) -> usize {
@@ -62,6 +158,28 @@ pub fn block_label_s(averaging_time_s: f64, sample_period_s: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_stream_has_the_means_of_the_whole_record_whatever_the_pieces() {
+        let values: Vec<f64> = (0..10_007_u32).map(|k| f64::from(k * k % 101)).collect();
+        for piece in [1, 7, 64, 5000] {
+            let mut blocks = BlockStream::new(13, 1000);
+            let mut few = BlockStream::new(13, 10);
+            let mut coarse = CoarseStream::new(16);
+            for values in values.chunks(piece) {
+                blocks.extend(values);
+                few.extend(values);
+                coarse.extend(values);
+            }
+            assert_eq!(blocks.means(), Some(&block_means(&values, 13)[..]));
+            assert_eq!(few.means(), None);
+            let block = coarse.blocks.block_samples;
+            assert!((16..32).contains(&coarse.means().len()), "{piece}");
+            for (found, whole) in coarse.means().iter().zip(block_means(&values, block)) {
+                assert!((found - whole).abs() < 1e-9, "{piece}: {found} {whole}");
+            }
+        }
+    }
 
     #[test]
     fn blocks_are_labelled_with_the_time_they_hold() {

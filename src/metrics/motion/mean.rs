@@ -77,7 +77,7 @@ pub static MAXIMUM: MetricKey = MetricKey::new(
 .run_column(5);
 
 /// Samples over which the words of a gyro are correlated.
-const GYRO_REACH: usize = 15;
+pub(crate) const GYRO_REACH: usize = 15;
 
 /// Enters the mean and, where the truth is known, its error against the mean truth.
 pub(crate) fn put_mean(
@@ -102,8 +102,18 @@ pub(crate) fn put_mean(
 /// Enters what every record has, whatever its motion: the smallest and the largest sample.
 pub(crate) fn put_extremes(record: &Record, metrics: &mut ChannelMetrics) {
     let values = record.channel_deg_per_h;
+    put_range(extremes(values), metrics);
+}
+
+/// Smallest and largest of some values.
+pub(crate) fn extremes(values: &[f64]) -> [f64; 2] {
     let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    [smallest, largest]
+}
+
+/// Enters the smallest and the largest sample.
+pub(crate) fn put_range([smallest, largest]: [f64; 2], metrics: &mut ChannelMetrics) {
     metrics.put(&MINIMUM, Estimate::exact(smallest));
     metrics.put(&MAXIMUM, Estimate::exact(largest));
 }

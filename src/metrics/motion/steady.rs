@@ -7,12 +7,13 @@ use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
 use crate::metrics::allan::noise_fit::{
     ANGLE_RANDOM_WALK, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, fit_noise,
 };
-use crate::metrics::allan::overlapping::overlapping_allan;
+use crate::metrics::allan::overlapping::{AllanPoint, overlapping_allan};
 use crate::metrics::allan::pulses::entry::{enter_lack, enter_pulses};
 use crate::metrics::allan::pulses::recognition::PulseWords;
-use crate::metrics::allan::variants::allan_variant;
+use crate::metrics::allan::variants::{AllanEstimator, AllanVariantPoint, allan_variant};
 use crate::metrics::estimate::blocks::RATIO_BLOCKS;
 use crate::metrics::estimate::influence::Spread;
+use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::{
     ChannelMetrics, DEGREES_OF_FREEDOM, EXPECTED, RAW_CORRELATION,
 };
@@ -66,7 +67,12 @@ pub(crate) fn measure_steady(
         ..*record
     });
     let fit = measure_allan(record, settings, filter, pulses.as_ref(), metrics);
-    measure_bias(record, settings, fit.as_ref(), metrics);
+    let means_of = |block: usize| {
+        let means = blocks::block_means(record.channel_deg_per_h, block);
+        Ok((means, blocks::block_means(record.raw_deg_per_h, block)))
+    };
+    let times = (record.sample_period_s, settings.bias_averaging_time_s);
+    measure_bias(times, means_of, fit.as_ref(), metrics);
     measure_mean(record, fit.as_ref(), filter, metrics);
     let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
     let blocks = filter.map_or(RATIO_BLOCKS, FilterFacts::blocks);
@@ -148,7 +154,7 @@ fn measure_allan(
         .windows(2)
         .any(|two| two[0] < two[1] || two[1] < two[0]);
     let fitted = if !varies {
-        Err("the output does not vary over the record".into())
+        Err(NO_CHANGE.into())
     } else if let Some(pulses) = pulses {
         pulses.fit(words, sample_period_s, range, filter.is_none())
     } else {
@@ -160,10 +166,39 @@ fn measure_allan(
             samples: words.len(),
         })
     };
-    let variant = allan_variant(words, sample_period_s, &settings.allan);
-    let estimator = settings.allan.estimator;
+    let curves = Curves {
+        points,
+        variant: allan_variant(words, sample_period_s, &settings.allan),
+        estimator: settings.allan.estimator,
+        duration_s,
+    };
+    let fit = enter_allan(curves, fitted, metrics);
+    if let (None, Some(pulses)) = (&fit, pulses.filter(|_| filter.is_none())) {
+        enter_lack(pulses, range, metrics);
+    }
+    fit
+}
+
+/// The Allan curves of a channel.
+pub(crate) struct Curves {
+    /// The overlapping Allan deviation that the noise is fitted to.
+    pub(crate) points: Vec<AllanPoint>,
+    /// The curve of the settings.
+    pub(crate) variant: Vec<AllanVariantPoint>,
+    /// Its estimator.
+    pub(crate) estimator: AllanEstimator,
+    /// Length of the record, s.
+    pub(crate) duration_s: f64,
+}
+
+/// Enters both curves and the noise terms of a fit, or why there is none.
+pub(crate) fn enter_allan(
+    curves: Curves,
+    fitted: Result<RecordFit, Unavailable>,
+    metrics: &mut ChannelMetrics,
+) -> Option<NoiseFit> {
     let fit = fitted.as_ref().ok().map(|it| &it.fit);
-    put_allan_curve(&variant, estimator, fit, metrics);
+    put_allan_curve(&curves.variant, curves.estimator, fit, metrics);
     match fitted {
         Ok(RecordFit {
             fit,
@@ -171,43 +206,54 @@ fn measure_allan(
             samples,
         }) => {
             let points = mixed_degrees_of_freedom(&points, &fit.coefficients(), samples + 1);
-            enter_fit(&points, &fit, duration_s, metrics);
+            enter_fit(&points, &fit, curves.duration_s, metrics);
             enter_pulses(&fit, metrics);
             Some(fit)
         }
         Err(reason) => {
-            put_fit_curve(&points, None, metrics);
+            put_fit_curve(&curves.points, None, metrics);
             for key in FIT_METRICS {
                 metrics.miss(key, reason.clone());
-            }
-            if let Some(pulses) = pulses.filter(|_| filter.is_none()) {
-                enter_lack(pulses, range, metrics);
             }
             None
         }
     }
 }
 
-/// Bias stability at the fixed averaging times and at the scenario's.
-fn measure_bias(
-    record: &Record,
-    settings: &Settings,
-    fit: Option<&NoiseFit>,
-    metrics: &mut ChannelMetrics,
-) {
-    for (name, averaging_time_s) in [
+/// Averaging times of bias stability, s, each with its metric: the fixed ones and the scenario's.
+pub(crate) fn averaging_times_s(own_s: f64) -> [(&'static MetricKey, f64); 4] {
+    [
         (&BIAS_STABILITY_1S, 1.0),
         (&BIAS_STABILITY_10S, 10.0),
         (&BIAS_STABILITY_100S, 100.0),
-        (&BIAS_STABILITY, settings.bias_averaging_time_s),
-    ] {
-        if let Some(reason) = averaging_lack(averaging_time_s, record.sample_period_s) {
+        (&BIAS_STABILITY, own_s),
+    ]
+}
+
+/// Bias stability at the fixed averaging times and at the scenario's.
+///
+/// * `times`: sample period and the scenario's averaging time, s.
+/// * `means_of`: means of the channel and of raw over blocks of so many samples.
+pub(crate) fn measure_bias(
+    (sample_period_s, own_s): (f64, f64),
+    means_of: impl Fn(usize) -> Result<(Vec<f64>, Vec<f64>), Unavailable>,
+    fit: Option<&NoiseFit>,
+    metrics: &mut ChannelMetrics,
+) {
+    for (name, averaging_time_s) in averaging_times_s(own_s) {
+        if let Some(reason) = averaging_lack(averaging_time_s, sample_period_s) {
             metrics.miss(name, reason);
             continue;
         }
-        let block = blocks::samples_in(averaging_time_s, record.sample_period_s);
-        let averaging_time_s = blocks::block_label_s(averaging_time_s, record.sample_period_s);
-        let means = blocks::block_means(record.channel_deg_per_h, block);
+        let block = blocks::samples_in(averaging_time_s, sample_period_s);
+        let averaging_time_s = blocks::block_label_s(averaging_time_s, sample_period_s);
+        let (means, raw_means) = match means_of(block) {
+            Ok(means) => means,
+            Err(reason) => {
+                metrics.miss(name, reason);
+                continue;
+            }
+        };
         if means.len() < BLOCKS_MIN {
             let reason = format!(
                 "the record holds {} of {} s; a standard deviation with an interval needs \
@@ -231,7 +277,6 @@ fn measure_bias(
         metric.fields.insert("block_samples", block as f64);
         metric.fields.insert("count", means.len() as f64);
         metric.fields.insert(DEGREES_OF_FREEDOM, freedom);
-        let raw_means = blocks::block_means(record.raw_deg_per_h, block);
         if let Some(correlation) = bias_stability::correlation(&means, &raw_means) {
             metric.fields.insert(RAW_CORRELATION, correlation);
         }
@@ -265,9 +310,7 @@ fn measure_mean(
     let duration_s = values.len() as f64 * record.sample_period_s;
     let slow = match (record.drift, fit) {
         (None, Some(fit)) => {
-            let means = blocks::equal_block_means(values, TENTHS);
-            let shown = SLOW_OVER_TENTHS * interval::sample_variance(&means);
-            fit.slow_mean_variance(duration_s).min(shown)
+            slow_variance(fit, &blocks::equal_block_means(values, TENTHS), duration_s)
         }
         _ => 0.0,
     };
@@ -275,21 +318,44 @@ fn measure_mean(
         Ok(spread) => spread.plus(Spread::known(slow)).about(mean),
         Err(reason) => Estimate::without_interval(mean, reason),
     };
-    put_mean(
+    let truth = record.truth().map(interval::mean);
+    enter_mean(
         estimate,
-        record.truth().map(interval::mean),
+        truth,
         duration_s,
+        record.drift_variance() + slow,
         metrics,
     );
-    let drift = record.drift_variance() + slow;
+}
+
+/// Variance that slow noise gives to the mean of a record, no more than its tenths show.
+pub(crate) fn slow_variance(fit: &NoiseFit, tenths: &[f64], duration_s: f64) -> f64 {
+    let shown = SLOW_OVER_TENTHS * interval::sample_variance(tenths);
+    fit.slow_mean_variance(duration_s).min(shown)
+}
+
+/// Enters a mean.
+///
+/// * `drift`: variance, in its interval, of the input's slow noise.
+pub(crate) fn enter_mean(
+    mean: Estimate,
+    truth_deg_per_h: Option<f64>,
+    duration_s: f64,
+    drift: f64,
+    metrics: &mut ChannelMetrics,
+) {
+    put_mean(mean, truth_deg_per_h, duration_s, metrics);
     if let Some(metric) = metrics.get_mut(&MEAN).filter(|_| drift > 0.0) {
         metric.fields.insert(SLOW_NOISE, drift.sqrt());
     }
     metrics.mark_exact(&[&MEAN, &MEAN_ERROR]);
 }
 
+/// Why nothing is fitted to words that stand still.
+pub(crate) const NO_CHANGE: &str = "the output does not vary over the record";
+
 /// Parts of a record of whose means slow noise makes some.
-const TENTHS: usize = 10;
+pub(crate) const TENTHS: usize = 10;
 
 /// Most that slow noise adds to the variance of a mean, over the variance of the means of its tenths: a fit
 /// to short averaging times may find terms that the record as a whole refutes. A random walk adds

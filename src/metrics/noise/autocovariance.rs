@@ -116,15 +116,30 @@ impl LaggedProducts {
                 let reach = (end + largest_lag).min(values.len());
                 deviations.clear();
                 deviations.extend(values[start..reach].iter().map(|value| value - centre));
-                let chunk = Chunk {
-                    deviations: &deviations,
-                    starts: end - start,
-                };
-                chunk.add_products(&mut sums[block], &mut counts[block]);
+                add_products(
+                    &deviations,
+                    end - start,
+                    &mut sums[block],
+                    &mut counts[block],
+                );
                 start = end;
             }
         }
         Self { sums, counts }
+    }
+
+    /// The same about another centre, `step` above: of blocks with these sums of deviations.
+    ///
+    /// What the ends of a block have more or less of at a lag is not counted.
+    fn moved_by(mut self, step: f64, deviations: &[f64]) -> Self {
+        let blocks = self.sums.iter_mut().zip(&self.counts).zip(deviations);
+        for ((sums, counts), deviation) in blocks {
+            for (sum, count) in sums.iter_mut().zip(counts) {
+                let share = *count as f64 / counts[0].max(1) as f64;
+                *sum += step * (*count as f64 * step - 2.0 * share * deviation);
+            }
+        }
+        self
     }
 
     /// Number of blocks.
@@ -190,49 +205,132 @@ impl LaggedProducts {
 /// Lags whose products are summed side by side, so that none waits for the addition of another.
 const SIDE_BY_SIDE: usize = 4;
 
-/// Deviations from the centre, of which the first `starts` are earlier samples of pairs.
-struct Chunk<'a> {
-    deviations: &'a [f64],
-    starts: usize,
+/// Adds the products of the first `own` deviations with those behind them at every lag.
+fn add_products(deviations: &[f64], own: usize, sums: &mut [f64], counts: &mut [usize]) {
+    // The last block of a short record may hold fewer samples than the lag.
+    let later = |lag: usize| {
+        let later = deviations.get(lag..).unwrap_or_default();
+        &later[..own.min(later.len())]
+    };
+    let few = sums.chunks_mut(SIDE_BY_SIDE);
+    let few = few.zip(counts.chunks_mut(SIDE_BY_SIDE)).enumerate();
+    for (index, (sums, counts)) in few {
+        let first = index * SIDE_BY_SIDE;
+        if sums.len() == SIDE_BY_SIDE && own + first + SIDE_BY_SIDE <= deviations.len() {
+            let others: [&[f64]; SIDE_BY_SIDE] = std::array::from_fn(|at| later(first + at));
+            let products = with_wide_vectors(
+                #[inline(always)]
+                || dots(&deviations[..own], others),
+            );
+            if products.iter().all(|sum| !sum.is_nan()) {
+                for ((sum, count), product) in sums.iter_mut().zip(counts).zip(products) {
+                    *sum += product;
+                    *count += own;
+                }
+                continue;
+            }
+        }
+        for ((sum, count), lag) in sums.iter_mut().zip(counts).zip(first..) {
+            let later = later(lag);
+            let (more, found) = products(&deviations[..later.len()], later);
+            *sum += more;
+            *count += found;
+        }
+    }
 }
 
-impl Chunk<'_> {
-    /// Adds the products at each lag from 0 on, and the number of their pairs.
-    fn add_products(&self, sums: &mut [f64], counts: &mut [usize]) {
-        let few = sums.chunks_mut(SIDE_BY_SIDE);
-        let few = few.zip(counts.chunks_mut(SIDE_BY_SIDE)).enumerate();
-        for (index, (sums, counts)) in few {
-            let first = index * SIDE_BY_SIDE;
-            let longest = first + SIDE_BY_SIDE - 1;
-            if sums.len() == SIDE_BY_SIDE && self.starts + longest <= self.deviations.len() {
-                let later: [&[f64]; SIDE_BY_SIDE] =
-                    std::array::from_fn(|at| self.later(first + at));
-                let products = with_wide_vectors(
-                    #[inline(always)]
-                    || dots(&self.deviations[..self.starts], later),
-                );
-                if products.iter().all(|sum| !sum.is_nan()) {
-                    for ((sum, count), product) in sums.iter_mut().zip(counts).zip(products) {
-                        *sum += product;
-                        *count += self.starts;
-                    }
-                    continue;
-                }
-            }
-            for ((sum, count), lag) in sums.iter_mut().zip(counts).zip(first..) {
-                let later = self.later(lag);
-                let (product, pairs) = products(&self.deviations[..later.len()], later);
-                *sum += product;
-                *count += pairs;
+/// Lagged products of a record while it comes in, in twenty to forty blocks of equal length.
+#[derive(Clone, Debug)]
+pub(crate) struct LaggedStream {
+    centre: f64,
+    lags: usize,
+    blocks: usize,
+    /// Chunks of a block.
+    block_chunks: usize,
+    /// Chunks of the last block.
+    filled: usize,
+    products: LaggedProducts,
+    /// Sum of the deviations of each block.
+    deviations: Vec<f64>,
+    /// Deviations whose partners are still to come.
+    waiting: Vec<f64>,
+}
+
+impl LaggedStream {
+    /// Of a record about a value near its mean.
+    pub(crate) fn new(centre: f64, largest_lag: usize, blocks: usize) -> Self {
+        Self {
+            centre,
+            lags: largest_lag,
+            blocks,
+            block_chunks: 1,
+            filled: 0,
+            products: LaggedProducts {
+                sums: Vec::new(),
+                counts: Vec::new(),
+            },
+            deviations: Vec::new(),
+            waiting: Vec::new(),
+        }
+    }
+
+    /// Takes the next values.
+    pub(crate) fn extend(&mut self, values: &[f64]) {
+        let centre = self.centre;
+        self.waiting
+            .extend(values.iter().map(|value| value - centre));
+        let mut first = 0;
+        while self.waiting.len() - first >= CHUNK + self.lags {
+            let waiting = std::mem::take(&mut self.waiting);
+            self.add(&waiting[first..first + CHUNK + self.lags], CHUNK);
+            self.waiting = waiting;
+            first += CHUNK;
+        }
+        self.waiting.drain(..first);
+    }
+
+    fn add(&mut self, deviations: &[f64], own: usize) {
+        if self.filled == 0 {
+            self.products.sums.push(vec![0.0; self.lags + 1]);
+            self.products.counts.push(vec![0; self.lags + 1]);
+            self.deviations.push(0.0);
+        }
+        let LaggedProducts { sums, counts } = &mut self.products;
+        let block = sums.len() - 1;
+        add_products(deviations, own, &mut sums[block], &mut counts[block]);
+        self.deviations[block] += deviations[..own].iter().sum::<f64>();
+        self.filled += 1;
+        if self.filled == self.block_chunks {
+            self.filled = 0;
+            if sums.len() == 2 * self.blocks {
+                self.merge();
             }
         }
     }
 
-    /// Later samples of the pairs at a lag: the last chunk of a short record may hold fewer samples
-    /// than the lag.
-    fn later(&self, lag: usize) -> &[f64] {
-        let later = self.deviations.get(lag..).unwrap_or_default();
-        &later[..self.starts.min(later.len())]
+    /// Makes one block of two.
+    fn merge(&mut self) {
+        let LaggedProducts { sums, counts } = &mut self.products;
+        let half = sums.len() / 2;
+        for block in 0..half {
+            for lag in 0..=self.lags {
+                sums[block][lag] = sums[2 * block][lag] + sums[2 * block + 1][lag];
+                counts[block][lag] = counts[2 * block][lag] + counts[2 * block + 1][lag];
+            }
+            self.deviations[block] = self.deviations[2 * block] + self.deviations[2 * block + 1];
+        }
+        sums.truncate(half);
+        counts.truncate(half);
+        self.deviations.truncate(half);
+        self.block_chunks *= 2;
+    }
+
+    /// The products of all that came, about its mean.
+    pub(crate) fn finish(mut self, mean: f64) -> LaggedProducts {
+        let waiting = std::mem::take(&mut self.waiting);
+        let own = waiting.len();
+        self.add(&waiting, own);
+        self.products.moved_by(mean - self.centre, &self.deviations)
     }
 }
 
@@ -308,6 +406,30 @@ mod tests {
                 .sum::<f64>()
                 / (values.len() - lag) as f64;
             assert!((got - plain).abs() < 1e-9 * plain.abs().max(1.0));
+        }
+    }
+
+    #[test]
+    fn a_stream_has_the_products_of_the_whole_record() {
+        let values: Vec<f64> = (0..123_456_u32)
+            .map(|k| f64::from((k * 7919) % 1013) + 1e-4 * f64::from(k))
+            .collect();
+        let mut stream = LaggedStream::new(500.0, 5, 4);
+        for piece in values.chunks(10_007) {
+            stream.extend(piece);
+        }
+        let mean = interval::mean(&values);
+        let found = stream.finish(mean);
+        assert!((4..=8).contains(&found.blocks()));
+        let whole = LaggedProducts::new(&values, mean, 5, 4).autocovariance();
+        let variance = whole[0];
+        for (lag, (found, whole)) in found.autocovariance().iter().zip(&whole).enumerate() {
+            // A lag shares all but the ends of a block with its sums.
+            let tolerance = if lag == 0 { 1e-12 } else { 1e-5 };
+            assert!(
+                (found - whole).abs() < tolerance * variance,
+                "{lag}: {found} {whole}"
+            );
         }
     }
 

@@ -1,8 +1,10 @@
 //! Power spectral density of a rate record.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
+use realfft::{RealFftPlanner, RealToComplex};
 
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::ChannelMetrics;
@@ -37,6 +39,9 @@ pub static PSD: CurveKey = CurveKey::new(
 
 /// Longest segment, samples: 2^18 at 4 kHz reaches down to 15 mHz.
 const SEGMENT_MAX: usize = 1 << 18;
+
+/// Shortest segment, samples.
+const SEGMENT_MIN: usize = 4;
 
 /// Segments, at least, that a spectrum is averaged over (before overlap).
 const SEGMENTS_MIN: usize = 8;
@@ -76,65 +81,154 @@ pub fn segment_samples(record_samples: usize) -> usize {
 #[must_use]
 pub fn welch(rate_deg_per_h: &[f64], sample_period_s: f64, segment_samples: usize) -> Spectrum {
     let length = segment_samples;
-    let mut spectrum = Spectrum {
-        frequency_hz: Vec::new(),
-        density_deg2_per_h2_per_hz: Vec::new(),
-    };
-    if length < 4 || rate_deg_per_h.len() < length {
-        return spectrum;
+    if length < SEGMENT_MIN || rate_deg_per_h.len() < length {
+        return Spectrum::empty();
     }
     let mean = interval::mean_of_present(rate_deg_per_h);
-    let window: Vec<f64> = (0..length)
-        .map(|k| 0.5 - 0.5 * (2.0 * PI * k as f64 / length as f64).cos())
-        .collect();
-    let window_power: f64 = window.iter().map(|weight| weight * weight).sum();
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    let mut input = transform.make_input_vec();
-    let mut output = transform.make_output_vec();
-    let mut scratch = transform.make_scratch_vec();
-    let mut power = vec![0.0; output.len()];
+    let mut welch = Welch::new(length, mean);
     let step = length / 2;
-    let all = (rate_deg_per_h.len() - length) / step + 1;
-    let mut segments = 0;
-    for segment in 0..all {
-        let values = &rate_deg_per_h[segment * step..segment * step + length];
+    for segment in 0..(rate_deg_per_h.len() - length) / step + 1 {
+        welch.add(&rate_deg_per_h[segment * step..segment * step + length]);
+    }
+    welch.spectrum(sample_period_s, mean)
+}
+
+impl Spectrum {
+    fn empty() -> Self {
+        Self {
+            frequency_hz: Vec::new(),
+            density_deg2_per_h2_per_hz: Vec::new(),
+        }
+    }
+}
+
+/// The powers of segments while they come in.
+pub(crate) struct Welch {
+    centre: f64,
+    window: Vec<f64>,
+    transform: Arc<dyn RealToComplex<f64>>,
+    input: Vec<f64>,
+    output: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+    power: Vec<f64>,
+    /// Sum of the real parts of the first bin, which holds what the centre misses of the mean.
+    first: f64,
+    segments: u32,
+}
+
+impl Welch {
+    /// Of segments of `length` samples, at least four, about a rate near the mean.
+    pub(crate) fn new(length: usize, centre: f64) -> Self {
+        let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+        let output = transform.make_output_vec();
+        Self {
+            centre,
+            window: (0..length)
+                .map(|k| 0.5 - 0.5 * (2.0 * PI * k as f64 / length as f64).cos())
+                .collect(),
+            input: transform.make_input_vec(),
+            power: vec![0.0; output.len()],
+            scratch: transform.make_scratch_vec(),
+            output,
+            transform,
+            first: 0.0,
+            segments: 0,
+        }
+    }
+
+    /// Samples of a segment.
+    pub(crate) fn length(&self) -> usize {
+        self.window.len()
+    }
+
+    /// Adds a segment; one with a missing sample (NaN) is left out.
+    pub(crate) fn add(&mut self, values: &[f64]) {
         if values.iter().any(|value| value.is_nan()) {
-            continue;
+            return;
         }
-        segments += 1;
-        for ((slot, value), weight) in input.iter_mut().zip(values).zip(&window) {
-            *slot = (value - mean) * weight;
+        self.segments += 1;
+        for ((slot, value), weight) in self.input.iter_mut().zip(values).zip(&self.window) {
+            *slot = (value - self.centre) * weight;
         }
-        transform
-            .process_with_scratch(&mut input, &mut output, &mut scratch)
+        self.transform
+            .process_with_scratch(&mut self.input, &mut self.output, &mut self.scratch)
             .expect("buffers were made by this very plan");
-        for (sum, bin) in power.iter_mut().zip(&output) {
+        for (sum, bin) in self.power.iter_mut().zip(&self.output) {
             *sum += bin.norm_sqr();
         }
+        self.first += self.output[1].re;
     }
-    if segments == 0 {
-        return spectrum;
-    }
-    let scale = 2.0 * sample_period_s / (f64::from(segments) * window_power);
-    let resolution_hz = 1.0 / (length as f64 * sample_period_s);
-    for (bin, sum) in power.iter().enumerate().skip(1) {
-        let sides = if 2 * bin == length { 0.5 } else { 1.0 };
-        spectrum.frequency_hz.push(bin as f64 * resolution_hz);
+
+    /// The density of what was added about its mean.
+    pub(crate) fn spectrum(&self, sample_period_s: f64, mean: f64) -> Spectrum {
+        let mut spectrum = Spectrum::empty();
+        if self.segments == 0 {
+            return spectrum;
+        }
+        let length = self.length();
+        let segments = f64::from(self.segments);
+        // The window turns a constant into the bins 0 and 1, there `-length/4` of it.
+        let left = (mean - self.centre) * length as f64 / 4.0;
+        let mut power = self.power.clone();
+        power[1] += 2.0 * left * self.first + segments * left * left;
+        let window_power: f64 = self.window.iter().map(|weight| weight * weight).sum();
+        let scale = 2.0 * sample_period_s / (segments * window_power);
+        let resolution_hz = 1.0 / (length as f64 * sample_period_s);
+        for (bin, sum) in power.iter().enumerate().skip(1) {
+            let sides = if 2 * bin == length { 0.5 } else { 1.0 };
+            spectrum.frequency_hz.push(bin as f64 * resolution_hz);
+            spectrum
+                .density_deg2_per_h2_per_hz
+                .push(sum * scale * sides);
+        }
         spectrum
-            .density_deg2_per_h2_per_hz
-            .push(sum * scale * sides);
     }
-    spectrum
+}
+
+/// The spectrum of a record while it comes in.
+pub(crate) struct WelchStream {
+    welch: Option<Welch>,
+    /// Samples of the segments to come.
+    waiting: Vec<f64>,
+}
+
+impl WelchStream {
+    /// Of segments of `length` samples about a rate near the mean; nothing of fewer than four.
+    pub(crate) fn new(length: usize, centre: f64) -> Self {
+        Self {
+            welch: (length >= SEGMENT_MIN).then(|| Welch::new(length, centre)),
+            waiting: Vec::new(),
+        }
+    }
+
+    /// Takes the next samples.
+    pub(crate) fn extend(&mut self, values: &[f64]) {
+        let Some(welch) = &mut self.welch else {
+            return;
+        };
+        self.waiting.extend_from_slice(values);
+        let (length, mut first) = (welch.length(), 0);
+        while self.waiting.len() - first >= length {
+            welch.add(&self.waiting[first..first + length]);
+            first += length / 2;
+        }
+        self.waiting.drain(..first);
+    }
+
+    /// The density of all segments about the mean of the record.
+    pub(crate) fn spectrum(&self, sample_period_s: f64, mean: f64) -> Spectrum {
+        let welch = self.welch.as_ref();
+        welch.map_or_else(Spectrum::empty, |welch| {
+            welch.spectrum(sample_period_s, mean)
+        })
+    }
 }
 
 /// Averages a spectrum in bins of equal ratio, `points_max` at most; low bins stay single.
 #[must_use]
 pub fn log_binned(spectrum: &Spectrum, points_max: usize) -> Spectrum {
     let count = spectrum.frequency_hz.len();
-    let mut binned = Spectrum {
-        frequency_hz: Vec::new(),
-        density_deg2_per_h2_per_hz: Vec::new(),
-    };
+    let mut binned = Spectrum::empty();
     if count == 0 {
         return binned;
     }

@@ -48,7 +48,8 @@ pub fn examine_log(
             return None;
         }
     };
-    put_outliers(&outliers, record, first_index, metrics);
+    let place = (first_index, record.first_stamp_s, record.sample_period_s);
+    put_outliers(&outliers, place, metrics);
     if outliers.events.is_empty() {
         return None;
     }
@@ -107,10 +108,12 @@ fn put_smoothing(words: &[f64], sample_period_s: f64, metrics: &mut ChannelMetri
     }
 }
 
-fn put_outliers(
+/// Enters the outliers and their list.
+///
+/// * `place`: index in the log of the first word of the record, its stamp, and the sample period, s.
+pub(crate) fn put_outliers(
     outliers: &Outliers,
-    record: &Record,
-    first_index: usize,
+    (first_index, first_stamp_s, sample_period_s): (usize, f64, f64),
     metrics: &mut ChannelMetrics,
 ) {
     let count = outliers.events.len() as f64;
@@ -124,7 +127,7 @@ fn put_outliers(
     }
     let entries = outliers.events.iter().map(|event| OutlierEntry {
         index: first_index + event.first,
-        time_s: record.first_stamp_s + event.first as f64 * record.sample_period_s,
+        time_s: first_stamp_s + event.first as f64 * sample_period_s,
         words: event.words,
         size_deg_per_h: event.size_deg_per_h,
         size_deviations: event.size_deviations,

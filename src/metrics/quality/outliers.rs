@@ -67,6 +67,8 @@ pub struct Outlier {
     pub size_deg_per_h: f64,
     /// The same in standard deviations of such a distance.
     pub size_deviations: f64,
+    /// Distance of its nearest word in such standard deviations, beyond what both sides say.
+    least_deviations: f64,
 }
 
 /// What a record shows of outliers.
@@ -124,59 +126,165 @@ impl Outliers {
 /// too short a record, or more outliers than one word in a hundred.
 pub fn find_outliers(words_deg_per_h: &[f64]) -> Result<Outliers, Unavailable> {
     let words = words_deg_per_h;
-    let distinct = distinct_values(words);
-    if distinct < DISTINCT_MIN {
-        return Err(format!(
-            "off: the words have {}, fewer than {DISTINCT_MIN}",
-            counted(distinct, "distinct value")
-        )
-        .into());
-    }
-    let step = smallest_change(words);
-    if are_pulses(words, step) {
-        return Err(format!(
-            "off: the words are counted pulses of {} deg/h, which a word holds or does not hold",
-            plain(to_digits(step, 4))
-        )
-        .into());
-    }
-    let Some(search) = Search::new(words, step) else {
-        return Err(format!(
-            "off: {} are too few to tell by",
-            counted(words.len(), "word")
-        )
-        .into());
+    let search = Search {
+        words,
+        scale: Scale::of(words)?,
     };
     let events = search.events();
-    if events.len() as f64 > (SHARE_MAX * words.len() as f64).max(5.0) {
-        return Err(format!(
-            "off: {} of {} begin an outlier; the noise is not Gaussian, or changes",
-            events.len(),
-            counted(words.len(), "word")
-        )
-        .into());
-    }
+    check_share(events.len(), words.len())?;
     Ok(Outliers {
         events,
-        threshold_deg_per_h: search.threshold * search.scatters[0],
-        threshold_deviations: search.threshold,
+        threshold_deg_per_h: search.scale.threshold * search.scale.scatters[0],
+        threshold_deviations: search.scale.threshold,
     })
 }
 
-/// A record and how its words scatter.
-struct Search<'a> {
-    words: &'a [f64],
+/// Refuses more outliers than one word in a hundred.
+fn check_share(events: usize, words: usize) -> Result<(), Unavailable> {
+    if events as f64 <= (SHARE_MAX * words as f64).max(5.0) {
+        return Ok(());
+    }
+    Err(format!(
+        "off: {events} of {} begin an outlier; the noise is not Gaussian, or changes",
+        counted(words, "word")
+    )
+    .into())
+}
+
+/// The outliers of a record while it comes in: by the scatter of its first words.
+pub(crate) struct OutlierStream {
+    scale: Scale,
+    /// Words that were not judged yet, and their neighbours.
+    waiting: Vec<f64>,
+    /// Index in the record of the first of them.
+    first: usize,
+    /// Index from which on words were not judged.
+    next: usize,
+    events: Vec<Outlier>,
+}
+
+impl OutlierStream {
+    /// Words that are judged together.
+    const PIECE: usize = 1 << 18;
+    /// Words on either side of a piece that its judgement takes in.
+    const MARGIN: usize = NEIGHBOURS + BURST_MAX + 4 * SIDE;
+    /// Most outliers that are kept.
+    const EVENTS_MAX: usize = 1 << 17;
+
+    /// Of a record that begins with these words, which are taken by [`extend`](Self::extend) all the same.
+    ///
+    /// # Errors
+    /// As [`find_outliers`] of the first words.
+    pub(crate) fn new(first_words: &[f64]) -> Result<Self, Unavailable> {
+        Ok(Self {
+            scale: Scale::of(first_words)?,
+            waiting: Vec::new(),
+            first: 0,
+            next: 0,
+            events: Vec::new(),
+        })
+    }
+
+    /// Takes the next words.
+    pub(crate) fn extend(&mut self, words: &[f64]) {
+        self.waiting.extend_from_slice(words);
+        while self.waiting.len() >= Self::PIECE + 2 * Self::MARGIN {
+            let end = self.first + Self::PIECE + Self::MARGIN;
+            self.judge_up_to(end);
+            let old = end - Self::MARGIN - self.first;
+            self.waiting.drain(..old);
+            self.first += old;
+        }
+    }
+
+    /// Judges the words before an index.
+    fn judge_up_to(&mut self, end: usize) {
+        let reach = (end + Self::MARGIN - self.first).min(self.waiting.len());
+        let search = Search {
+            words: &self.waiting[..reach],
+            scale: self.scale,
+        };
+        let found = search.events().into_iter().map(|event| Outlier {
+            first: self.first + event.first,
+            ..event
+        });
+        let own = found.filter(|event| (self.next..end).contains(&event.first));
+        let room = Self::EVENTS_MAX + 1 - self.events.len().min(Self::EVENTS_MAX + 1);
+        self.events.extend(own.take(room));
+        self.next = end;
+    }
+
+    /// The outliers of the whole record.
+    ///
+    /// # Errors
+    /// More of them than one word in a hundred, or than are kept.
+    pub(crate) fn finish(mut self) -> Result<Outliers, Unavailable> {
+        let count = self.first + self.waiting.len();
+        self.judge_up_to(count);
+        check_share(self.events.len(), count)?;
+        if self.events.len() > Self::EVENTS_MAX {
+            let most = Self::EVENTS_MAX;
+            return Err(format!("off: more than {most} outliers, the most that are kept").into());
+        }
+        let scale = self.scale.of_record(count);
+        self.events
+            .retain(|event| event.least_deviations > scale.threshold);
+        Ok(Outliers {
+            events: self.events,
+            threshold_deg_per_h: scale.threshold * scale.scatters[0],
+            threshold_deviations: scale.threshold,
+        })
+    }
+}
+
+/// How the words of a record scatter.
+#[derive(Clone, Copy, Debug)]
+struct Scale {
     /// Change from word to word at which a burst may begin or end.
     edge: f64,
     drift: f64,
     /// Standard deviation of the prediction of the middle of a burst of [`BURST_LENGTHS`].
     scatters: [f64; BURST_LENGTHS.len()],
+    /// Places by which the least known of them is known.
+    places: usize,
+    /// Words of the record.
+    record: usize,
     threshold: f64,
 }
 
-impl<'a> Search<'a> {
+impl Scale {
+    /// That of a record.
+    ///
+    /// # Errors
+    /// Words that cannot be judged: few distinct values, counted pulses, too few words.
+    fn of(words: &[f64]) -> Result<Self, Unavailable> {
+        let distinct = distinct_values(words);
+        if distinct < DISTINCT_MIN {
+            return Err(format!(
+                "off: the words have {}, fewer than {DISTINCT_MIN}",
+                counted(distinct, "distinct value")
+            )
+            .into());
+        }
+        let step = smallest_change(words);
+        if are_pulses(words, step) {
+            return Err(format!(
+                "off: the words are counted pulses of {} deg/h, which a word holds or does not hold",
+                plain(to_digits(step, 4))
+            )
+            .into());
+        }
+        Self::by_step(words, step).ok_or_else(|| {
+            format!(
+                "off: {} are too few to tell by",
+                counted(words.len(), "word")
+            )
+            .into()
+        })
+    }
+
     /// Nothing where the record is too short to say how it scatters.
-    fn new(words: &'a [f64], step: f64) -> Option<Self> {
+    fn by_step(words: &[f64], step: f64) -> Option<Self> {
         let least = if step.is_finite() { step } else { 0.0 };
         let stride = (words.len() / CHANGES_MAX).max(1);
         let changes = || (1..words.len()).step_by(stride);
@@ -192,14 +300,32 @@ impl<'a> Search<'a> {
             places = places.min(count);
         }
         Some(Self {
-            words,
             edge: EDGE * change,
             drift,
             scatters,
+            places,
+            record: words.len(),
             threshold: threshold(places, words.len())?,
         })
     }
 
+    /// The same in a record of so many words.
+    fn of_record(self, words: usize) -> Self {
+        Self {
+            record: words,
+            threshold: threshold(self.places, words).unwrap_or(self.threshold),
+            ..self
+        }
+    }
+}
+
+/// A record, or a part of it, whose words are judged.
+struct Search<'a> {
+    words: &'a [f64],
+    scale: Scale,
+}
+
+impl Search<'_> {
     /// Outliers in the order of time.
     fn events(&self) -> Vec<Outlier> {
         let edges = self.edges();
@@ -238,7 +364,7 @@ impl<'a> Search<'a> {
                 let end = (start + PART).min(self.words.len());
                 let pairs = self.words[start - 1..end].windows(2).enumerate();
                 pairs
-                    .filter(|(_, two)| (two[1] - two[0] - self.drift).abs() > self.edge)
+                    .filter(|(_, two)| (two[1] - two[0] - self.scale.drift).abs() > self.scale.edge)
                     .map(|(offset, _)| start + offset)
                     .collect()
             })
@@ -257,7 +383,7 @@ impl<'a> Search<'a> {
             .filter(|side| side.len() >= NEIGHBOURS)
             .filter_map(|side| {
                 let (scatter, places) = prediction_scatter(side, end - first)?;
-                Some(scatter * threshold(places, count)?)
+                Some(scatter * threshold(places, self.scale.record)?)
             })
             .fold(0.0, f64::max)
     }
@@ -273,9 +399,9 @@ impl<'a> Search<'a> {
         let sides = Sides::of(self.words, (first, end), is_left_out)?;
         let length = end - first;
         let class = BURST_LENGTHS.iter().position(|it| *it >= length)?;
-        let scatter = self.scatters[class];
+        let scatter = self.scale.scatters[class];
         let local = LOCAL_SIZE_MIN * PER_MEDIAN * sides.scatter();
-        let needed = (self.threshold * scatter).max(local);
+        let needed = (self.scale.threshold * scatter).max(local);
         let (mut size, mut least) = (0.0_f64, f64::INFINITY);
         for (offset, word) in self.words[first..end].iter().enumerate() {
             let [low, high] = sides.range(offset as f64);
@@ -295,6 +421,7 @@ impl<'a> Search<'a> {
             words: length,
             size_deg_per_h: size,
             size_deviations: size.abs() / scatter,
+            least_deviations: least / scatter,
         })
     }
 }
@@ -447,6 +574,39 @@ mod tests {
         let cubes: Vec<f64> = white(7, 5000).iter().map(|it| it.powi(9)).collect();
         assert!(why(&cubes).contains("begin an outlier"), "{}", why(&cubes));
         assert!(why(&white(8, 12)).contains("12 words are too few"));
+    }
+
+    #[test]
+    fn a_stream_finds_what_the_whole_record_has() {
+        let mut words = white(11, 700_000);
+        let piece = OutlierStream::PIECE;
+        for place in [
+            5,
+            piece,
+            piece + OutlierStream::MARGIN,
+            2 * piece + 3,
+            699_990,
+        ] {
+            words[place] += 40.0;
+        }
+        for word in &mut words[piece - 10..piece - 3] {
+            *word -= 25.0;
+        }
+        let whole = find_outliers(&words).unwrap();
+        assert_eq!(whole.events.len(), 6);
+        for step in [1000, 70_001, 700_000] {
+            let mut stream = OutlierStream::new(&words).unwrap();
+            for part in words.chunks(step) {
+                stream.extend(part);
+            }
+            assert_eq!(stream.finish().unwrap(), whole, "{step}");
+        }
+        // By the scatter of a part of the record the threshold is still that of all of it.
+        let mut stream = OutlierStream::new(&words[..100_000]).unwrap();
+        stream.extend(&words);
+        let found = stream.finish().unwrap();
+        assert_eq!(found.events.len(), 6);
+        assert!((found.threshold_deviations / whole.threshold_deviations - 1.0).abs() < 0.01);
     }
 
     #[test]

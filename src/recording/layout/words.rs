@@ -60,4 +60,48 @@ words! {
         /// The sample is missing.
         Gap = "gap",
     }
+
+    /// Type of words that stand alone in a file.
+    pub enum WordType {
+        /// Whole numbers of 8 bits with a sign.
+        I1 = "i1",
+        /// Whole numbers of 16 bits with a sign, the low byte first.
+        I2 = "i2",
+        /// Whole numbers of 16 bits with a sign, the high byte first.
+        I2Be = "i2-be",
+        /// Whole numbers of 32 bits with a sign, the low byte first.
+        I4 = "i4",
+        /// Whole numbers of 32 bits with a sign, the high byte first.
+        I4Be = "i4-be",
+        /// Whole numbers of 64 bits with a sign, the low byte first.
+        I8 = "i8",
+        /// Whole numbers of 64 bits with a sign, the high byte first.
+        I8Be = "i8-be",
+        /// Whole numbers of 8 bits without a sign.
+        U1 = "u1",
+        /// Whole numbers of 16 bits without a sign, the low byte first.
+        U2 = "u2",
+        /// Whole numbers of 16 bits without a sign, the high byte first.
+        U2Be = "u2-be",
+        /// Whole numbers of 32 bits without a sign, the low byte first.
+        U4 = "u4",
+        /// Whole numbers of 32 bits without a sign, the high byte first.
+        U4Be = "u4-be",
+        /// Whole numbers of 64 bits without a sign, the low byte first.
+        U8 = "u8",
+        /// Whole numbers of 64 bits without a sign, the high byte first.
+        U8Be = "u8-be",
+        /// binary16, the low byte first.
+        F2 = "f2",
+        /// binary16, the high byte first.
+        F2Be = "f2-be",
+        /// binary32, the low byte first.
+        F4 = "f4",
+        /// binary32, the high byte first.
+        F4Be = "f4-be",
+        /// binary64, the low byte first.
+        F8 = "f8",
+        /// binary64, the high byte first.
+        F8Be = "f8-be",
+    }
 }

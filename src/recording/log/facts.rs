@@ -21,6 +21,9 @@ pub struct LogFacts {
     pub has_gaps: bool,
     /// Whether a column of the log shows the true rate.
     pub has_truth: bool,
+    /// Digest of its words and those of the true rate, by which a log is known again; empty until it is
+    /// entered.
+    pub digest: String,
 }
 
 impl Log {
@@ -36,6 +39,7 @@ impl Log {
             parts: self.stretches.len(),
             has_gaps: self.has_gaps(),
             has_truth: !self.reference_deg_per_h.is_empty(),
+            digest: String::new(),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::motion::LogMotion;
 use crate::declare::table;
 use crate::recording::layout::words::{
-    DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind,
+    DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind, WordType,
 };
 use crate::recording::time::unit::TimeUnit;
 use crate::recording::unit::kinds::LogUnit;
@@ -16,6 +16,9 @@ table! {
     pub struct LogFormat {
         /// The log that a scenario measures, in place of table and gyro: NPY, or text with columns.
         file: Option<String>, example "log.csv", kind File;
+        /// Type of the words of a file that holds nothing else, no heading either: `i2` and the like of 1 to 8
+        /// bytes, `u2`, `f4`, `f8`; `i2-be` if the high byte comes first.
+        dtype: Option<WordType>, example "i2";
         /// Samples per second [default: what the column of the time says].
         rate_hz: Option<f64>, example 100.0, in 1e-6..=1e9, "Hz";
         /// Unit of the numbers: deg/h, deg/s or dps, mdeg/s, arcsec/s, rad/s, nrad/s, rpm and the like; as

@@ -6,5 +6,6 @@ pub(super) mod motion;
 pub(super) mod rates;
 pub(super) mod read;
 pub(super) mod record;
+pub(super) mod stream;
 pub(super) mod stretches;
 pub(super) mod words;

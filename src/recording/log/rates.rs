@@ -4,11 +4,12 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::record::Stretch;
-use crate::recording::bounds::check_rate;
+use crate::recording::bounds::{OutOfBounds, check_rate};
 use crate::recording::column::Columns;
 use crate::recording::error::LogError;
 use crate::recording::time::timing::Spacing;
 use crate::recording::unit::convert::Conversion;
+use crate::recording::unit::kinds::RateUnit;
 use crate::wording::plain;
 
 /// Lag-one correlation of words from which on they may be a running angle.
@@ -77,20 +78,42 @@ impl Words<'_> {
 
     /// The rate of a number, deg/h.
     fn rate(&self, number: f64, row: usize) -> Result<f64, LogError> {
-        if number.is_nan() {
-            return Ok(number);
-        }
-        let rate = self
-            .conversion
-            .rate_deg_per_h(number, self.spacing.sample_rate_hz);
-        let unit = self.conversion.unit;
-        let message = match check_rate(rate) {
-            Ok(()) => return Ok(rate),
-            Err(error) if rate.is_finite() => format!("{number:?} {unit}: {error}"),
-            Err(_) => format!("{number:?} {unit} is not a finite rate in deg/h"),
-        };
-        Err(LogError::at(self.path, self.columns.place(row), message))
+        rate_of(&self.conversion, self.spacing.sample_rate_hz, number)
+            .map_err(|error| LogError::at(self.path, self.columns.place(row), error))
     }
+}
+
+/// The rate of a number, deg/h; that of a missing one is missing.
+///
+/// # Errors
+/// One that no gyro has.
+pub(super) fn rate_of(
+    conversion: &Conversion,
+    sample_rate_hz: f64,
+    number: f64,
+) -> Result<f64, RateError> {
+    let rate = conversion.rate_deg_per_h(number, sample_rate_hz);
+    match check_rate(rate) {
+        Ok(()) => Ok(rate),
+        Err(_) if number.is_nan() => Ok(number),
+        Err(bounds) => Err(RateError {
+            number,
+            unit: conversion.unit,
+            bounds: rate.is_finite().then_some(bounds),
+        }),
+    }
+}
+
+/// A number whose rate no gyro has.
+#[derive(Debug, thiserror::Error)]
+#[error("{number:?} {unit}{}", .bounds.as_ref().map_or_else(
+    || " is not a finite rate in deg/h".to_owned(),
+    |bounds| format!(": {bounds}")
+))]
+pub(super) struct RateError {
+    number: f64,
+    unit: RateUnit,
+    bounds: Option<OutOfBounds>,
 }
 
 /// Whether all angles lie within one turn, as those of an encoder do.

@@ -12,7 +12,7 @@ use crate::recording::column::{Column, Columns};
 use crate::recording::error::LogError;
 use crate::recording::input::Input;
 use crate::recording::layout::columns::Selection;
-use crate::recording::npy::{array, heading};
+use crate::recording::npy::array;
 use crate::recording::text::table::{self, Wanted};
 use crate::recording::time::timing::{Spacing, timing};
 use crate::recording::unit::convert::Conversion;
@@ -58,8 +58,25 @@ pub fn read_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
 /// # Errors
 /// As [`read_log`].
 pub fn read_logs(path: &Path, format: &LogFormat) -> Result<Vec<Log>, LogError> {
-    let selection = Selection::Named(format.column.as_deref().unwrap_or_default());
-    let mut columns = read_columns(path, selection, format)?;
+    logs_of(path, read_wanted(path, &wanted_by(format))?, format)
+}
+
+/// What a format asks for of a log.
+pub(super) fn wanted_by(format: &LogFormat) -> Wanted<'_> {
+    Wanted {
+        columns: Selection::Named(format.column.as_deref().unwrap_or_default()),
+        needs_time: true,
+        format,
+        samples_max: usize::MAX,
+    }
+}
+
+/// The logs of columns that were read.
+pub(super) fn logs_of(
+    path: &Path,
+    mut columns: Columns,
+    format: &LogFormat,
+) -> Result<Vec<Log>, LogError> {
     let mut data = std::mem::take(&mut columns.data);
     let reference = match format.reference_column {
         Some(_) => data.pop(),
@@ -170,24 +187,23 @@ fn read_columns(
 /// Reads columns of a text or an array; there is a sample.
 fn read_wanted(path: &Path, wanted: &Wanted<'_>) -> Result<Columns, LogError> {
     let input = Input::open(path)?;
-    let columns = if input.starts_with(heading::MAGIC) {
-        let length = input.length();
-        array::read(path, input, length, wanted)?
-    } else {
-        table::read(path, input, wanted)?
+    let columns = match array::is_array(&input, wanted.format) {
+        true => array::read(path, input, wanted)?,
+        false => table::read(path, input, wanted)?,
     };
-    if columns
-        .data
-        .first()
-        .is_none_or(|column| column.values.is_empty())
-    {
-        return Err(LogError::of_file(path, "holds no sample"));
+    with_samples(path, columns)
+}
+
+/// Columns that hold a sample.
+pub(super) fn with_samples(path: &Path, columns: Columns) -> Result<Columns, LogError> {
+    match columns.rows() {
+        0 => Err(LogError::of_file(path, "holds no sample")),
+        _ => Ok(columns),
     }
-    Ok(columns)
 }
 
 /// What the time column says, the sample rate, and the stretches of rows that are taken.
-fn spacing(
+pub(super) fn spacing(
     path: &Path,
     columns: &Columns,
     data: &[Column],
@@ -218,6 +234,7 @@ fn by_rate(
         sample_rate_hz,
         stretches,
         notes: Vec::new(),
+        steps: None,
     })
 }
 
@@ -237,7 +254,7 @@ fn with_units(path: &Path, data: &[Column], format: &LogFormat, error: LogError)
 }
 
 /// One of the columns as a log.
-fn log(
+pub(super) fn log(
     path: &Path,
     columns: &Columns,
     column: Column,
@@ -250,6 +267,7 @@ fn log(
         LogError::of_file(path, message)
     })?;
     let mut remarks = spacing.notes.clone();
+    remarks.extend(columns.note.clone());
     remarks.extend(angle_remark(&column.values, &conversion));
     let name = path.file_name().unwrap_or(path.as_os_str());
     let words = Words {

@@ -76,6 +76,11 @@ impl Log {
         Ok(())
     }
 
+    /// Adds what is worth saying.
+    pub(super) fn remark(&mut self, remark: Option<String>) {
+        self.remarks.extend(remark);
+    }
+
     /// Whether samples are missing between the words.
     #[must_use]
     pub fn has_gaps(&self) -> bool {

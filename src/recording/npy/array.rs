@@ -1,12 +1,12 @@
 //! NPY files of one dimension or two: binary64, binary32, binary16 or integers of 8 to 64 bits.
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::heading::{self, HeadingError, NpyHeading, Word};
 use crate::recording::column::{Column, Columns};
 use crate::recording::error::{LogError, Place};
-use crate::recording::input::{failure, push};
+use crate::recording::input::{Input, failure, push};
 use crate::recording::layout::columns::{Chosen, Selection, choose};
 use crate::recording::layout::words::MissingWords;
 use crate::recording::layout::{Layout, LayoutError};
@@ -34,28 +34,232 @@ struct Array<'a> {
 
 /// Reads columns of the array of a file.
 ///
-/// * `length`: bytes of the file, where they are known before it is read.
-///
 /// # Errors
 /// Another shape or number type, a file with less or more bytes than its heading says, a number that
 /// is not finite, an integer beyond binary64.
 pub(in crate::recording) fn read(
     path: &Path,
-    mut input: impl Read,
-    length: Option<u64>,
+    mut input: Input,
     wanted: &Wanted<'_>,
 ) -> Result<Columns, LogError> {
-    let heading = heading::read(&mut input).map_err(|error| match error {
+    let heading = read_heading(path, &mut input, wanted.format)?;
+    read_behind(path, heading, input, wanted)
+}
+
+/// Whether a file is an array: by its first bytes, or because that is said.
+pub(in crate::recording) fn is_array(input: &Input, format: &LogFormat) -> bool {
+    format.dtype.is_some() || input.starts_with(heading::MAGIC)
+}
+
+/// Reads the heading, or makes up that of words that stand alone.
+///
+/// # Errors
+/// Another shape or number type, a file with less or more bytes than its heading says.
+pub(in crate::recording) fn read_heading(
+    path: &Path,
+    input: &mut Input,
+    format: &LogFormat,
+) -> Result<NpyHeading, LogError> {
+    if let Some(dtype) = format.dtype {
+        let endless = NpyHeading::of_words(dtype, u64::MAX);
+        let Some(length) = input.length() else {
+            return Ok(endless);
+        };
+        let bytes = endless.word_bytes as u64;
+        let left = length % bytes;
+        if left > 0 {
+            let within = LengthError::Within(endless, left);
+            return Err(LogError::of_file(path, within));
+        }
+        return Ok(NpyHeading::of_words(dtype, length / bytes));
+    }
+    let length = input.length();
+    let heading = heading::read(input).map_err(|error| match error {
         HeadingError::Io(error) => failure(path, error),
         error => LogError::of_file(path, error),
     })?;
     if let Some(length) = length {
         check_length(&heading, length).map_err(|error| LogError::of_file(path, error))?;
     }
+    Ok(heading)
+}
+
+/// Reads columns behind the heading.
+///
+/// # Errors
+/// As [`read`].
+pub(in crate::recording) fn read_behind(
+    path: &Path,
+    heading: NpyHeading,
+    mut input: Input,
+    wanted: &Wanted<'_>,
+) -> Result<Columns, LogError> {
     let chosen = chosen(&heading, wanted).map_err(|error| LogError::of_file(path, error))?;
+    if heading.columns == 1 {
+        let is_gap = wanted.format.missing == Some(MissingWords::Gap);
+        let may_end = wanted.needs_time && input.length().is_none();
+        let mut words = ArrayWords::new(path, heading, may_end, is_gap);
+        let mut values = Vec::new();
+        while values.len() < wanted.samples_max && words.read(&mut input, &mut values)? {}
+        values.truncate(wanted.samples_max);
+        return Ok(words.columns(values));
+    }
     let mut array = Array::new(path, heading, chosen, wanted);
     array.read(&mut input)?;
     array.end()
+}
+
+/// Checks that an array of one dimension has the columns that are asked for.
+///
+/// # Errors
+/// Names of columns that it has not.
+pub(in crate::recording) fn check_columns(
+    path: &Path,
+    heading: &NpyHeading,
+    wanted: &Wanted<'_>,
+) -> Result<(), LogError> {
+    let chosen = chosen(heading, wanted);
+    chosen
+        .map(|_| ())
+        .map_err(|error| LogError::of_file(path, error))
+}
+
+/// How many numbers there are to come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Count {
+    /// So many, and nothing behind them.
+    Exactly(u64),
+    /// So many at most: the end of the input ends the record.
+    AtMost(u64),
+}
+
+/// The numbers of an array of one dimension while they are read.
+pub(in crate::recording) struct ArrayWords {
+    path: PathBuf,
+    heading: NpyHeading,
+    count: Count,
+    is_gap: bool,
+    /// Numbers read.
+    row: u64,
+    chunk: Vec<u8>,
+}
+
+impl ArrayWords {
+    /// Begins behind the heading.
+    ///
+    /// * `may_end`: whether the numbers that the heading names are as many as there may be at most.
+    pub(in crate::recording) fn new(
+        path: &Path,
+        heading: NpyHeading,
+        may_end: bool,
+        is_gap: bool,
+    ) -> Self {
+        Self {
+            path: path.to_owned(),
+            count: match may_end {
+                true => Count::AtMost(heading.rows),
+                false => Count::Exactly(heading.rows),
+            },
+            heading,
+            is_gap,
+            row: 0,
+            chunk: vec![0; CHUNK_BYTES],
+        }
+    }
+
+    /// Numbers that were read, as columns, with a note of those that are not there.
+    pub(in crate::recording) fn columns(&self, values: Vec<f64>) -> Columns {
+        let column = Column {
+            values,
+            ..Column::default()
+        };
+        Columns {
+            data: vec![column],
+            note: self.early_end(),
+            ..Columns::default()
+        }
+    }
+
+    /// What is said of an input that ended before all numbers that its heading names, if it did.
+    pub(in crate::recording) fn early_end(&self) -> Option<String> {
+        match self.count {
+            Count::AtMost(most) if self.row < most && most < u64::MAX => Some(format!(
+                "the input ended behind {} of the {most} numbers that its heading names",
+                self.row
+            )),
+            _ => None,
+        }
+    }
+
+    /// Appends the next numbers; whether there were any.
+    ///
+    /// # Errors
+    /// An input that ends too soon or within a number, or goes on behind the last; a number that is not
+    /// finite, an integer beyond binary64.
+    pub(in crate::recording) fn read(
+        &mut self,
+        input: &mut impl Read,
+        values: &mut Vec<f64>,
+    ) -> Result<bool, LogError> {
+        let word_bytes = self.heading.word_bytes;
+        let (Count::Exactly(all) | Count::AtMost(all)) = self.count;
+        let wanted = (all - self.row).min((CHUNK_BYTES / word_bytes) as u64);
+        let wanted = usize::try_from(wanted).unwrap_or(0) * word_bytes;
+        let failed = |error| failure(&self.path, error);
+        let filled = fill(input, &mut self.chunk[..wanted]).map_err(failed)?;
+        if filled < wanted {
+            let is_whole = filled.is_multiple_of(word_bytes);
+            if matches!(self.count, Count::Exactly(_)) {
+                return Err(LogError::of_file(
+                    &self.path,
+                    LengthError::CutShort(self.heading),
+                ));
+            }
+            if !is_whole {
+                let left = (filled % word_bytes) as u64;
+                return Err(LogError::of_file(
+                    &self.path,
+                    LengthError::Within(self.heading, left),
+                ));
+            }
+        } else if wanted == 0 && all < u64::MAX {
+            let more = fill(input, &mut [0]).map_err(failed)?;
+            if more > 0 {
+                let there_is_more = LengthError::More(self.heading, None);
+                return Err(LogError::of_file(&self.path, there_is_more));
+            }
+        }
+        let count = filled / word_bytes;
+        let reserved = values.try_reserve(count);
+        reserved
+            .map_err(|error| failed(std::io::Error::new(std::io::ErrorKind::OutOfMemory, error)))?;
+        for word in self.chunk[..filled].chunks_exact(word_bytes) {
+            let value = match number(&self.heading, word) {
+                Err(WordError::NotFinite(value)) if self.is_gap && value.is_nan() => value,
+                value => value.map_err(|error| {
+                    let row = usize::try_from(self.row).unwrap_or(usize::MAX);
+                    LogError::at(&self.path, Place::Index(row), error)
+                })?,
+            };
+            values.push(value);
+            self.row += 1;
+        }
+        Ok(count > 0)
+    }
+}
+
+/// Fills a buffer as far as the input goes; how far that is.
+fn fill(input: &mut impl Read, buffer: &mut [u8]) -> std::io::Result<usize> {
+    let mut filled = 0;
+    while filled < buffer.len() {
+        match input.read(&mut buffer[filled..]) {
+            Ok(0) => break,
+            Ok(more) => filled += more,
+            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(filled)
 }
 
 /// Why columns of an array are not known.
@@ -258,6 +462,9 @@ enum LengthError {
     TooShort { heading: NpyHeading, there: u64 },
     #[error("not a whole NPY file: its {}, and it ends before them", named(.0))]
     CutShort(NpyHeading),
+    /// With the bytes of the number that is not whole.
+    #[error("ends within a number: {1} of its {bytes} bytes are there", bytes = .0.word_bytes)]
+    Within(NpyHeading, u64),
     /// With the number of bytes where it is known.
     #[error(
         "its NPY {}, and {}more bytes follow them: expected one array and nothing behind it",

@@ -8,6 +8,8 @@
 use std::fmt;
 use std::io::{self, Read};
 
+use crate::recording::layout::words::WordType;
+
 /// First bytes of every NPY file.
 pub(in crate::recording) const MAGIC: &[u8] = b"\x93NUMPY";
 /// Longest heading, bytes; that of a plain array has 118.
@@ -45,6 +47,9 @@ const WORDS: [(&str, Word, usize); 11] = [
     ("u4", Word::U4, 4),
     ("u8", Word::U8, 8),
 ];
+
+/// End of the name of a type whose high byte comes first.
+const HIGH_BYTE_FIRST: &str = "-be";
 
 /// What stands before the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,6 +119,25 @@ impl fmt::Display for NpyHeading {
             "row by row"
         };
         write!(f, "an array of {} columns, {order}", self.columns)
+    }
+}
+
+impl NpyHeading {
+    /// That of words that stand alone, so many at most.
+    pub(in crate::recording) fn of_words(dtype: WordType, rows: u64) -> Self {
+        let name = dtype.word();
+        let letters = name.trim_end_matches(HIGH_BYTE_FIRST);
+        let found = WORDS.iter().find(|(known, _, _)| *known == letters);
+        let (_, word, word_bytes) = *found.unwrap_or(&WORDS[0]);
+        Self {
+            word,
+            word_bytes,
+            is_big_endian: name.ends_with(HIGH_BYTE_FIRST),
+            rows,
+            columns: 1,
+            is_by_column: false,
+            bytes: 0,
+        }
     }
 }
 

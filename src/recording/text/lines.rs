@@ -130,6 +130,44 @@ impl<R: BufRead> Lines<R> {
         }))
     }
 
+    /// Passes whole lines that are in the buffer already, each with its number and without its end, as long
+    /// as they are taken.
+    ///
+    /// A line that is not taken is the next one of [`Self::next_unless`].
+    ///
+    /// # Errors
+    /// The system's.
+    pub(super) fn pass_while(
+        &mut self,
+        mut is_taken: impl FnMut(&[u8], usize) -> bool,
+    ) -> io::Result<()> {
+        if self.number == 0 {
+            return Ok(());
+        }
+        let available = match self.reader.fill_buf() {
+            Ok(available) => available,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => return Ok(()),
+            Err(error) => return Err(error),
+        };
+        // The LF that still belongs to the line before.
+        let mut passed = match available.first() {
+            Some(first) => usize::from(std::mem::take(&mut self.is_after_cr) && *first == b'\n'),
+            None => 0,
+        };
+        while let Some(length) = memchr::memchr(b'\n', &available[passed..]) {
+            let line = &available[passed..passed + length];
+            let line = line.strip_suffix(b"\r").unwrap_or(line);
+            if !is_taken(line, self.number + 1) {
+                break;
+            }
+            self.number += 1;
+            passed += length + 1;
+        }
+        self.end += passed;
+        self.reader.consume(passed);
+        Ok(())
+    }
+
     /// Reads a line; whether there was one.
     fn advance(&mut self) -> Result<bool, TextError> {
         let mut bytes = std::mem::take(&mut self.line).into_bytes();

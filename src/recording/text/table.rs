@@ -1,15 +1,16 @@
 //! Columns of numbers in text.
 
 use std::io::BufRead;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::lines::{Delimiter, Lines, TextError, is_missing, shown};
+use super::plain::{plain_length, plain_number, plain_stamp};
 use super::transcode::{as_utf8, encoding_of};
 use crate::recording::column::{Column, Columns, EmptyLines, RowLines};
 use crate::recording::error::{LogError, Place};
 use crate::recording::input::{Input, failure, push};
 use crate::recording::layout::columns::{Chosen, Selection, choose};
-use crate::recording::layout::words::MissingWords;
+use crate::recording::layout::words::{DecimalSign, MissingWords};
 use crate::recording::layout::{Fault, HeadLine, Layout, LayoutError, find, finite_in, is_number};
 use crate::recording::log::format::LogFormat;
 use crate::recording::time::column::TimeColumn;
@@ -43,47 +44,152 @@ pub(in crate::recording) fn read(
     input: Input,
     wanted: &Wanted<'_>,
 ) -> Result<Columns, LogError> {
-    let given = wanted.format.encoding;
-    let encoding = given.unwrap_or_else(|| encoding_of(input.first()));
-    let expected = match wanted.needs_time {
-        true => "neither NPY nor text in UTF-8: --encoding names another",
-        false => "neither NPY nor text in UTF-8",
-    };
-    let mut lines = Lines::new(as_utf8(input, encoding), expected);
-    let head = head(path, &mut lines)?;
-    let at = |fault: Fault| match fault.line {
-        Some(line) => LogError::at(path, Place::Line(line), fault.error),
-        None => LogError::of_file(path, fault.error),
-    };
-    let Some(mut layout) = find(&head, wanted.format).map_err(at)? else {
+    let Some(mut rows) = Rows::open(path, input, wanted)? else {
         return Ok(Columns::default());
     };
-    layout.encoding = encoding;
-    let said = layout.heading_line.unwrap_or(layout.first_row_line);
-    let chosen = chosen(&layout, &head, wanted)
-        .map_err(|error| LogError::at(path, Place::Line(said), error))?;
-    let mut table = Table::new(layout, chosen, wanted);
-    let mut empty = None;
-    for line in &head {
-        empty = empty.or(line.empty_before);
-        if line.number < table.layout.first_row_line || table.layout.is_comment(line.text.trim()) {
-            continue;
-        }
-        table.line(path, &line.text, line.number, empty.take())?;
-        if table.columns.rows() >= wanted.samples_max {
-            return Ok(table.columns);
-        }
-    }
-    drop(head);
-    while table.columns.rows() < wanted.samples_max {
-        let layout = &table.layout;
-        let line = lines.next_unless(|text| layout.is_comment(text));
-        let Some(line) = line.map_err(|error| fault(path, error))? else {
-            break;
+    rows.read_up_to(wanted.samples_max)?;
+    Ok(rows.table.columns)
+}
+
+/// The rows of a text while they are read.
+pub(in crate::recording) struct Rows {
+    path: PathBuf,
+    lines: Lines<Box<dyn BufRead + Send>>,
+    /// First lines that were looked at and not read yet, the first of them last.
+    head: Vec<HeadLine>,
+    table: Table,
+}
+
+impl Rows {
+    /// Finds the layout; nothing of a text without rows.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub(in crate::recording) fn open(
+        path: &Path,
+        input: Input,
+        wanted: &Wanted<'_>,
+    ) -> Result<Option<Self>, LogError> {
+        let given = wanted.format.encoding;
+        let encoding = given.unwrap_or_else(|| encoding_of(input.first()));
+        let expected = match wanted.needs_time {
+            true => "neither NPY nor text in UTF-8: --encoding names another",
+            false => "neither NPY nor text in UTF-8",
         };
-        table.line(path, line.text, line.number, line.empty_before)?;
+        let mut lines = Lines::new(as_utf8(input, encoding), expected);
+        let mut head = head(path, &mut lines)?;
+        let at = |fault: Fault| match fault.line {
+            Some(line) => LogError::at(path, Place::Line(line), fault.error),
+            None => LogError::of_file(path, fault.error),
+        };
+        let Some(mut layout) = find(&head, wanted.format).map_err(at)? else {
+            return Ok(None);
+        };
+        layout.encoding = encoding;
+        let said = layout.heading_line.unwrap_or(layout.first_row_line);
+        let chosen = chosen(&layout, &head, wanted)
+            .map_err(|error| LogError::at(path, Place::Line(said), error))?;
+        head.reverse();
+        let table = Table::new(layout, chosen, wanted);
+        Ok(Some(Self {
+            path: path.to_owned(),
+            lines,
+            head,
+            table,
+        }))
     }
-    table.end(path)
+
+    /// What was read and not taken.
+    pub(in crate::recording) fn columns(&self) -> &Columns {
+        &self.table.columns
+    }
+
+    /// All that was read.
+    pub(in crate::recording) fn into_columns(self) -> Columns {
+        self.table.columns
+    }
+
+    /// Takes what was read, but for the last stamp: rows count from there on.
+    pub(in crate::recording) fn take(&mut self) -> Columns {
+        let columns = &mut self.table.columns;
+        self.table.taken += columns.rows();
+        let data = columns.data.iter().map(|column| Column {
+            name: column.name.clone(),
+            unit: column.unit,
+            values: Vec::new(),
+        });
+        let next = Columns {
+            data: data.collect(),
+            time: columns.time.as_mut().map(TimeColumn::going_on),
+            lines: Some(RowLines::default()),
+            ..Columns::default()
+        };
+        std::mem::replace(columns, next)
+    }
+
+    /// Exchanges the numbers of the first column for an empty buffer.
+    pub(in crate::recording) fn take_values(&mut self, values: &mut Vec<f64>) {
+        let columns = &mut self.table.columns;
+        self.table.taken += columns.rows();
+        if let Some(column) = columns.data.first_mut() {
+            std::mem::swap(&mut column.values, values);
+        }
+    }
+
+    /// Forgets what was read, but for the last stamp: rows count from there on.
+    pub(in crate::recording) fn clear(&mut self) {
+        let columns = &mut self.table.columns;
+        self.table.taken += columns.rows();
+        for column in &mut columns.data {
+            column.values = Vec::new();
+        }
+        columns.lines = Some(RowLines::default());
+        if let Some(time) = &mut columns.time {
+            let last = time.stamps.pop();
+            time.stamps = last.into_iter().collect();
+        }
+    }
+
+    /// Reads on until there are so many rows; whether the text goes on.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub(in crate::recording) fn read_up_to(&mut self, rows: usize) -> Result<bool, LogError> {
+        let Self {
+            path,
+            lines,
+            head,
+            table,
+        } = self;
+        let mut empty = None;
+        while table.columns.rows() < rows
+            && let Some(line) = head.pop()
+        {
+            empty = empty.or(line.empty_before);
+            let is_above = line.number < table.layout.first_row_line;
+            if is_above || table.layout.is_comment(line.text.trim()) {
+                continue;
+            }
+            table.line(path, &line.text, line.number, empty.take())?;
+        }
+        while table.columns.rows() < rows {
+            let passed = lines.pass_while(|line, number| {
+                table.columns.rows() < rows && table.plain_row(line, number)
+            });
+            passed.map_err(|error| failure(path, error))?;
+            if table.columns.rows() >= rows {
+                break;
+            }
+            let layout = &table.layout;
+            let line = lines.next_unless(|text| layout.is_comment(text));
+            let Some(line) = line.map_err(|error| fault(path, error))? else {
+                table.check_end(path)?;
+                return Ok(false);
+            };
+            table.line(path, line.text, line.number, line.empty_before)?;
+        }
+        Ok(true)
+    }
 }
 
 /// The first lines, comments among them.
@@ -163,6 +269,12 @@ struct Table {
     words: Vec<(usize, String)>,
     /// Values of a record that is spread over lines.
     record: Vec<String>,
+    /// Rows that were read and taken away.
+    taken: usize,
+    /// What stands between plain numbers, if it is a byte of its own.
+    plain_separator: Option<u8>,
+    /// Values of a row of plain numbers.
+    plain_values: Vec<f64>,
 }
 
 /// What is wrong with a row.
@@ -199,12 +311,21 @@ impl Table {
             time
         });
         let missing = wanted.format.missing;
+        let plain_separator = match layout.delimiter() {
+            Delimiter::Character(separator) => u8::try_from(separator).ok(),
+            Delimiter::Blanks if layout.cells == 1 => Some(b' '),
+            Delimiter::Blanks => None,
+        };
+        let is_plain = layout.decimal == DecimalSign::Point && layout.wrapped.is_none();
         Self {
+            plain_separator: plain_separator.filter(|_| is_plain),
+            plain_values: vec![0.0; chosen.data.len()],
             columns: Columns {
                 data: data.collect(),
                 time,
                 layout: Some(line),
                 found: Some(found),
+                note: None,
                 lines: Some(RowLines::default()),
                 empty_lines: EmptyLines::default(),
             },
@@ -214,7 +335,13 @@ impl Table {
             is_log: wanted.needs_time,
             words: Vec::new(),
             record: Vec::new(),
+            taken: 0,
         }
+    }
+
+    /// Rows that were read.
+    fn seen(&self) -> usize {
+        self.taken + self.columns.rows()
     }
 
     /// Takes a line.
@@ -225,7 +352,7 @@ impl Table {
         number: usize,
         empty_before: Option<usize>,
     ) -> Result<(), LogError> {
-        if self.columns.rows() > 0 {
+        if self.seen() > 0 {
             self.columns.empty_lines.extend(empty_before);
         }
         let taken = match self.layout.wrapped {
@@ -255,9 +382,63 @@ impl Table {
         }
     }
 
+    /// Takes a line that is a row of plain numbers between separators of one byte; whether it was one.
+    ///
+    /// What is not is left as it is for [`Self::row`], which says what it is.
+    #[inline]
+    fn plain_row(&mut self, line: &[u8], number: usize) -> bool {
+        let Some(separator) = self.plain_separator.filter(|_| self.seen() > 1) else {
+            return false;
+        };
+        // Comments do not begin as numbers do.
+        if !matches!(line.first(), Some(b'0'..=b'9' | b'-' | b'+' | b'.')) {
+            return false;
+        }
+        let (mut rest, mut stamp) = (line, Stamp::NOTHING);
+        let width = self.roles.len();
+        for (index, role) in self.roles.iter().enumerate() {
+            let length = match *role {
+                Role::Nothing => plain_length(rest, separator),
+                Role::Data(position) => {
+                    let Some((value, length)) = plain_number(rest, separator) else {
+                        return false;
+                    };
+                    self.plain_values[position] = value;
+                    length
+                }
+                Role::Time(position) => {
+                    let unit = self.columns.time.as_ref().map(|time| time.units[position]);
+                    let found = unit.and_then(|unit| plain_stamp(rest, separator, unit));
+                    let Some((part, length)) = found else {
+                        return false;
+                    };
+                    stamp = stamp.plus(part);
+                    length
+                }
+            };
+            rest = match (rest.get(length), index + 1 == width) {
+                (None, true) => &[],
+                (Some(byte), false) if *byte == separator => &rest[length + 1..],
+                _ => return false,
+            };
+        }
+        let row = self.columns.rows();
+        for (column, value) in self.columns.data.iter_mut().zip(&self.plain_values) {
+            if push(&mut column.values, *value).is_err() {
+                return false;
+            }
+        }
+        let is_stamped = match &mut self.columns.time {
+            Some(time) => time.take(stamp).is_ok(),
+            None => true,
+        };
+        let lines = self.columns.lines.as_mut();
+        is_stamped && lines.is_none_or(|lines| lines.take(row, number).is_ok())
+    }
+
     /// Takes a line that is a row.
     fn row(&mut self, text: &str) -> Result<(), RowError> {
-        if self.columns.rows() < 2 && self.layout.names.is_empty() {
+        if self.seen() < 2 && self.layout.names.is_empty() {
             let cells = self.layout.delimiter().cells_up_to(text, self.layout.cells);
             self.hold_against_first(&cells).map_err(RowError::Layout)?;
         }
@@ -275,10 +456,7 @@ impl Table {
     fn take<'a>(&mut self, cells: impl Iterator<Item = &'a str>) -> Result<(), RowError> {
         let (mut count, mut beyond) = (0, 0);
         let mut fault = None;
-        let mut stamp = Stamp {
-            ticks: 0,
-            resolution: i128::MAX,
-        };
+        let mut stamp = Stamp::NOTHING;
         for (index, cell) in cells.enumerate() {
             match self.roles.get(index) {
                 Some(role) if fault.is_none() => {
@@ -371,10 +549,10 @@ impl Table {
         Ok(())
     }
 
-    /// What was read, once the file has ended.
-    fn end(self, path: &Path) -> Result<Columns, LogError> {
+    /// Refuses the end of a file within a record.
+    fn check_end(&self, path: &Path) -> Result<(), LogError> {
         if self.record.is_empty() {
-            return Ok(self.columns);
+            return Ok(());
         }
         let error = LayoutError::WrappedEnd {
             got: self.record.len(),
@@ -387,7 +565,7 @@ impl Table {
     /// where the second has numbers. It would be taken for a sample.
     fn hold_against_first(&mut self, cells: &[&str]) -> Result<(), LayoutError> {
         let decimal = self.layout.decimal;
-        if self.columns.rows() == 0 {
+        if self.seen() == 0 {
             let words = cells.iter().enumerate();
             let words = words.filter(|(_, cell)| !is_number(cell, decimal));
             self.words = words.map(|(index, cell)| (index, shown(cell))).collect();

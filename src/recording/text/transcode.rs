@@ -30,9 +30,9 @@ pub(in crate::recording) fn encoding_of(first: &[u8]) -> Encoding {
 
 /// Bytes of a text as UTF-8; what is UTF-8 already passes as it is.
 pub(in crate::recording) fn as_utf8<'a>(
-    reader: impl BufRead + 'a,
+    reader: impl BufRead + Send + 'a,
     encoding: Encoding,
-) -> Box<dyn BufRead + 'a> {
+) -> Box<dyn BufRead + Send + 'a> {
     match encoding {
         Encoding::Utf8 => Box::new(reader),
         encoding => Box::new(Transcoded {

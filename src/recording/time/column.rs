@@ -59,6 +59,17 @@ impl TimeColumn {
         }
     }
 
+    /// The same column behind its last stamp.
+    pub(in crate::recording) fn going_on(&mut self) -> Self {
+        let stamps = std::mem::take(&mut self.stamps);
+        let rest = Self {
+            stamps: stamps.last().copied().into_iter().collect(),
+            ..self.clone()
+        };
+        self.stamps = stamps;
+        rest
+    }
+
     /// Lets the clock begin again after a span, in the unit of the last column.
     pub(in crate::recording) fn rolls_over_after(&mut self, span: Option<f64>) {
         #[expect(

@@ -6,6 +6,7 @@
 
 use super::unit::TimeUnit;
 use crate::recording::layout::{is_number, plain_spelling, words::DecimalSign};
+use crate::recording::text::decimal::Decimal;
 use crate::recording::text::lines::{finite, shown};
 
 /// Ticks of a second, or of a sample.
@@ -37,6 +38,12 @@ pub(in crate::recording) enum StampError {
 }
 
 impl Stamp {
+    /// What the parts of a stamp are added to.
+    pub(in crate::recording) const NOTHING: Self = Self {
+        ticks: 0,
+        resolution: i128::MAX,
+    };
+
     /// The stamp that a cell is.
     ///
     /// # Errors
@@ -49,9 +56,9 @@ impl Stamp {
         if unit == TimeUnit::Iso {
             return date(cell).ok_or_else(|| StampError::Date(shown(cell)));
         }
-        let unit_ticks = ticks_of(unit);
         let spelled = plain_spelling(cell, decimal);
-        if let Some(stamp) = decimal_number(&spelled, unit_ticks) {
+        let digits = Decimal::of(spelled.as_bytes());
+        if let Some(stamp) = digits.and_then(|digits| Self::of_decimal(digits, unit)) {
             return Ok(stamp);
         }
         if is_date(cell) && !is_number(cell, decimal) {
@@ -109,39 +116,27 @@ pub(in crate::recording) fn as_float(ticks: i128) -> f64 {
     i64::try_from(ticks).map_or(ticks as f64, |ticks| ticks as f64)
 }
 
-/// A number of digits with a decimal point or none.
-fn decimal_number(cell: &str, unit_ticks: i128) -> Option<Stamp> {
-    /// Most digits that 64 bits hold, whatever they are.
-    const DIGITS: usize = 19;
-    let (is_negative, digits) = match cell.as_bytes() {
-        [b'-', digits @ ..] => (true, digits),
-        [b'+', digits @ ..] => (false, digits),
-        digits => (false, digits),
-    };
-    let point = digits.iter().position(|byte| *byte == b'.');
-    let count = digits.len() - usize::from(point.is_some());
-    if count == 0 || count > DIGITS {
-        return None;
+impl Stamp {
+    /// The stamp that a number of digits is; nothing of too many decimals.
+    #[inline]
+    pub(in crate::recording) fn of_decimal(number: Decimal, unit: TimeUnit) -> Option<Self> {
+        let unit_ticks = ticks_of(unit);
+        let power = 10_u64.checked_pow(u32::try_from(number.decimals).ok()?)?;
+        let unit = u64::try_from(unit_ticks).ok()?;
+        let digits = i128::from(number.digits);
+        let magnitude = match unit % power {
+            0 => digits * i128::from(unit / power),
+            _ => rounded(digits * unit_ticks, i128::from(power)),
+        };
+        Some(Self {
+            ticks: if number.is_negative {
+                -magnitude
+            } else {
+                magnitude
+            },
+            resolution: i128::from((unit / power).max(1)),
+        })
     }
-    let mut number = 0_u64;
-    for (place, byte) in digits.iter().enumerate() {
-        if Some(place) == point {
-            continue;
-        }
-        let digit = byte.is_ascii_digit().then(|| u64::from(byte - b'0'))?;
-        number = number * 10 + digit;
-    }
-    let decimals = point.map_or(0, |point| digits.len() - point - 1);
-    let power = 10_u64.pow(u32::try_from(decimals).ok()?);
-    let unit = u64::try_from(unit_ticks).ok()?;
-    let magnitude = match unit % power {
-        0 => i128::from(number) * i128::from(unit / power),
-        _ => rounded(i128::from(number) * unit_ticks, i128::from(power)),
-    };
-    Some(Stamp {
-        ticks: if is_negative { -magnitude } else { magnitude },
-        resolution: i128::from((unit / power).max(1)),
-    })
 }
 
 /// A quotient, rounded to the nearest.

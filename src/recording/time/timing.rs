@@ -49,6 +49,21 @@ pub(in crate::recording) struct Spacing {
     pub(in crate::recording) stretches: Vec<Range<usize>>,
     /// What is worth saying.
     pub(in crate::recording) notes: Vec<String>,
+    /// What a step between stamps may be; none where there are none.
+    pub(in crate::recording) steps: Option<Steps>,
+}
+
+/// What a step between stamps may be.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::recording) struct Steps {
+    period: f64,
+    /// What the last digit of a stamp resolves, where that is not far below the period; else 0.
+    coarseness: f64,
+    /// Whether stamps that are alike are two samples in the time that the last digit resolves.
+    may_repeat: bool,
+    /// Longest step that is jitter, if it is given.
+    max_gap_s: Option<f64>,
+    unit: &'static str,
 }
 
 /// How stamps are looked at.
@@ -59,12 +74,8 @@ struct Clock<'a> {
     format: &'a LogFormat,
     /// The period that the stamps tell.
     found: f64,
-    /// That which was given, if one was.
-    period: f64,
-    /// What the last digit of a stamp resolves, where that is not far below the period; else 0.
-    coarseness: f64,
-    /// Whether stamps that are alike are two samples in the time that the last digit resolves.
-    may_repeat: bool,
+    /// What a step may be; the period is that which was given, if one was.
+    steps: Steps,
 }
 
 /// Checks the stamps of some stretches of rows.
@@ -87,6 +98,7 @@ pub(in crate::recording) fn timing(
             sample_rate_hz,
             stretches: stretches.to_vec(),
             notes: Vec::new(),
+            steps: None,
         });
     }
     if steps == 0 {
@@ -95,7 +107,7 @@ pub(in crate::recording) fn timing(
     }
     let clock = Clock::of(path, columns, time, format, stretches);
     // Stamps of another clock altogether have no gaps.
-    if (clock.period / clock.found).ln().abs() > RATE_CLEARLY_OTHER {
+    if (clock.steps.period / clock.found).ln().abs() > RATE_CLEARLY_OTHER {
         return Err(clock.contradiction(1.0 / clock.found));
     }
     let mut cut = Vec::new();
@@ -131,7 +143,40 @@ pub(in crate::recording) fn timing(
         timing: Some(spacing),
         stretches: cut,
         notes,
+        steps: Some(clock.steps),
     })
+}
+
+impl Steps {
+    /// Checks a step.
+    ///
+    /// # Errors
+    /// What speaks against equal spacing.
+    pub(in crate::recording) fn check(&self, step: f64) -> Result<(), StepError> {
+        let Self { period, unit, .. } = *self;
+        if let Some(most_s) = self.max_gap_s {
+            if step < 0.0 {
+                return Err(StepError::Descent { step, unit });
+            }
+            return match step > most_s {
+                true => Err(StepError::Gap { step, period, unit }),
+                false => Ok(()),
+            };
+        }
+        if step < 0.0 || (step <= 0.0 && !self.may_repeat) {
+            return Err(StepError::Descent { step, unit });
+        }
+        // Stamps that are rounded down stand up to a last digit from where they belong, either way.
+        let rounded = self.coarseness * if self.may_repeat { 1.01 } else { 0.99 };
+        let open = rounded.max(STEP_TOLERANCE * period);
+        if step > period + open {
+            return Err(StepError::Gap { step, period, unit });
+        }
+        if step < period - open {
+            return Err(StepError::Crowd { step, period, unit });
+        }
+        Ok(())
+    }
 }
 
 impl<'a> Clock<'a> {
@@ -160,9 +205,13 @@ impl<'a> Clock<'a> {
             time,
             format,
             found,
-            period,
-            coarseness: if is_coarse { last_digit } else { 0.0 },
-            may_repeat: is_coarse && repeats_by_rounding(&time.stamps, median, last_digit),
+            steps: Steps {
+                period,
+                coarseness: if is_coarse { last_digit } else { 0.0 },
+                may_repeat: is_coarse && repeats_by_rounding(&time.stamps, median, last_digit),
+                max_gap_s: format.max_gap_s,
+                unit: if time.is_counter() { "" } else { " s" },
+            },
         }
     }
 
@@ -172,7 +221,7 @@ impl<'a> Clock<'a> {
         let stamps = &self.time.stamps[rows.clone()];
         for (offset, pair) in stamps.windows(2).enumerate() {
             let step = pair[1] - pair[0];
-            let Err(complaint) = self.check_step(step) else {
+            let Err(complaint) = self.steps.check(step) else {
                 continue;
             };
             let row = rows.start + offset + 1;
@@ -185,33 +234,6 @@ impl<'a> Clock<'a> {
             return Err(LogError::at(self.path, self.columns.place(row), message));
         }
         found.push(first..rows.end);
-        Ok(())
-    }
-
-    fn check_step(&self, step: f64) -> Result<(), StepError> {
-        let Self { period, .. } = *self;
-        let unit = if self.time.is_counter() { "" } else { " s" };
-        if let Some(most_s) = self.format.max_gap_s {
-            if step < 0.0 {
-                return Err(StepError::Descent { step, unit });
-            }
-            return match step > most_s {
-                true => Err(StepError::Gap { step, period, unit }),
-                false => Ok(()),
-            };
-        }
-        if step < 0.0 || (step <= 0.0 && !self.may_repeat) {
-            return Err(StepError::Descent { step, unit });
-        }
-        // Stamps that are rounded down stand up to a last digit from where they belong, either way.
-        let rounded = self.coarseness * if self.may_repeat { 1.01 } else { 0.99 };
-        let open = rounded.max(STEP_TOLERANCE * period);
-        if step > period + open {
-            return Err(StepError::Gap { step, period, unit });
-        }
-        if step < period - open {
-            return Err(StepError::Crowd { step, period, unit });
-        }
         Ok(())
     }
 
@@ -248,6 +270,7 @@ impl<'a> Clock<'a> {
             sample_rate_hz,
             stretches,
             notes,
+            steps: Some(self.steps),
         })
     }
 
@@ -283,12 +306,12 @@ impl<'a> Clock<'a> {
             unit,
             TimeUnit::Milliseconds | TimeUnit::Microseconds | TimeUnit::Nanoseconds
         );
-        (is_fine && self.period < ODD_STEP * unit_s).then(|| {
+        (is_fine && self.steps.period < ODD_STEP * unit_s).then(|| {
             format!(
                 "column {}: steps of {} {unit} would be samples at {} Hz: --time-unit says what its stamps \
                  are, in seconds it were {} Hz",
                 shown(&self.time.name),
-                plain(self.period / unit_s),
+                plain(self.steps.period / unit_s),
                 plain(rate_hz),
                 plain(rate_hz * unit_s)
             )
@@ -419,7 +442,7 @@ fn as_float(count: usize) -> f64 {
 
 /// What speaks against equal spacing between two stamps.
 #[derive(Debug, thiserror::Error)]
-enum StepError {
+pub(in crate::recording) enum StepError {
     #[error(
         "the time goes from one stamp to the next by {step:.9}{unit}: stamps must ascend; if they are \
          rounded too coarsely, say --time none and give --rate-hz"

@@ -3,7 +3,7 @@
 //! It is read whole when the scenario is, so that what is wrong with it is said before the first run,
 //! and again when it runs: nothing of it is kept in between.
 
-use crate::recording::{LogFacts, LogFormat, read_log};
+use crate::recording::{Log, LogFacts, LogFormat, read_log};
 use crate::scenario::document::deserialize::from_table;
 use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::{Node, Table, Value};
@@ -11,6 +11,7 @@ use crate::scenario::message::error::ScenarioError;
 use crate::scenario::message::excerpt::bounded;
 use crate::scenario::read::files::named_files::{LOG as TABLE, NamedFile};
 use crate::scenario::read::resolved::Resolved;
+use crate::seal::digest_of_words;
 
 const FILE_KEY: &str = "log.file";
 const SEGMENTS_KEY: &str = "log.segments";
@@ -53,10 +54,19 @@ pub(crate) fn read_into(
             format!("{FILE_KEY}: {}", in_keys(&error.to_string())),
         )
     })?;
-    let facts = log.facts();
+    let facts = LogFacts {
+        digest: digest_of_log(&log),
+        ..log.facts()
+    };
     enter_length(root, &facts)
         .map_err(|(mark, error)| complain(mark.unwrap_or(place), error.to_string()))?;
     Ok(Some(facts))
+}
+
+/// Digest of the words of a log and of its true rate: a log that was read again is the same by it.
+pub(crate) fn digest_of_log(log: &Log) -> String {
+    let parts = [&log.rate_deg_per_h, &log.reference_deg_per_h];
+    parts.map(|words| digest_of_words(words)).join(" ")
 }
 
 /// Gives the scenario of a log a duration where the log was not read, as something else is wrong.
@@ -140,5 +150,29 @@ impl Resolved {
     pub(crate) fn log_source(&self) -> Option<(&NamedFile, LogFormat)> {
         let format = self.scenario.log.clone()?;
         Some((self.named_file(FILE_KEY)?, found(format, &self.named_files)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::RateUnit;
+
+    #[test]
+    fn a_log_of_as_many_other_words_has_another_digest() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let digest = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            let format = LogFormat {
+                rate_hz: Some(100.0),
+                unit: Some(RateUnit::DEG_PER_H.into()),
+                ..LogFormat::default()
+            };
+            digest_of_log(&read_log(&path, &format).unwrap())
+        };
+        let first = digest("1.5\n2.5\n");
+        assert_eq!(first, digest("1.50\n2.50\n"));
+        assert_ne!(first, digest("1.5\n2.6\n"));
     }
 }

@@ -1,0 +1,361 @@
+//! Logs too long to be kept: their words while they come in.
+
+use std::path::{Path, PathBuf};
+
+use super::format::LogFormat;
+use super::rates::rate_of;
+use super::read::{log, logs_of, spacing, wanted_by, with_samples};
+use super::record::Log;
+use crate::recording::column::Columns;
+use crate::recording::error::{LogError, Place};
+use crate::recording::input::Input;
+use crate::recording::layout::words::MissingWords;
+use crate::recording::npy::array::{self, ArrayWords};
+use crate::recording::npy::heading::NpyHeading;
+use crate::recording::text::lines::shown;
+use crate::recording::text::table::{Rows, Wanted};
+use crate::recording::time::timing::Spacing;
+use crate::recording::unit::convert::Conversion;
+
+/// Most words of a log from a pipe that are kept: a longer one streams.
+pub const KEPT_WORDS: usize = 10_000_000;
+
+/// Most words of a file that are kept.
+const FILE_WORDS_KEPT: usize = 100_000_000;
+
+/// Words that are read at a time.
+const BLOCK: usize = 1 << 17;
+
+/// A log, whole or while it comes in.
+pub enum LogSource {
+    /// All of it, one log for each column.
+    Whole(Vec<Log>),
+    /// Its first words, and the rest as it is read.
+    Stream(Box<LogStream>),
+}
+
+/// A log of one column of which the first words were read.
+pub struct LogStream {
+    path: PathBuf,
+    /// What is known of the log, its first words among it.
+    log: Log,
+    conversion: Conversion,
+    spacing: Spacing,
+    rest: Rest,
+    /// Rows that were read before the block that is read now.
+    rows_before: usize,
+}
+
+/// What is still to be read.
+enum Rest {
+    Array(Box<(ArrayWords, Input)>),
+    Text(Box<Rows>),
+}
+
+/// How much of a log is kept.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kept {
+    /// Most words of a pipe, and the first words of a log that streams.
+    pub(crate) words: usize,
+    /// Most words of a file.
+    pub(crate) of_file: usize,
+}
+
+/// Opens a log: one of many words as a stream, if what is asked for of it streams.
+///
+/// # Errors
+/// As [`read_log`](super::read::read_log), as far as it is read.
+pub fn open_log(path: &Path, format: &LogFormat) -> Result<LogSource, LogError> {
+    let kept = Kept {
+        words: KEPT_WORDS,
+        of_file: FILE_WORDS_KEPT,
+    };
+    open_keeping(path, format, kept)
+}
+
+/// As [`open_log`], of which so much is kept.
+pub(crate) fn open_keeping(
+    path: &Path,
+    format: &LogFormat,
+    kept: Kept,
+) -> Result<LogSource, LogError> {
+    let mut input = Input::open(path)?;
+    if streams(format) {
+        input.let_go_on();
+    }
+    let wanted = wanted_by(format);
+    let most = match input.length() {
+        Some(_) => kept.of_file,
+        None => kept.words,
+    };
+    if array::is_array(&input, format) {
+        let heading = array::read_heading(path, &mut input, format)?;
+        return open_array(path, heading, input, &wanted, (most, kept.words));
+    }
+    let Some(mut rows) = Rows::open(path, input, &wanted)? else {
+        return Err(LogError::of_file(path, "holds no sample"));
+    };
+    let goes_on = rows.read_up_to(if streams(format) { most } else { usize::MAX })?;
+    if !goes_on {
+        let columns = with_samples(path, rows.into_columns())?;
+        return logs_of(path, columns, format).map(LogSource::Whole);
+    }
+    let columns = rows.take();
+    let found = Found::of(path, columns, format)?;
+    Ok(found.with(path, Rest::Text(Box::new(rows))))
+}
+
+/// Whether a log streams under a format: one column, all of it, without gaps or a reference.
+fn streams(format: &LogFormat) -> bool {
+    let column = format.column.as_deref().unwrap_or_default();
+    let is_one = column.len() < 2 && column.iter().all(|name| !name.contains('*'));
+    let has_parts = format.rows.is_some()
+        || format.from_s.is_some()
+        || format.to_s.is_some()
+        || format.segments.is_some()
+        || format.split_gaps == Some(true);
+    let has_gaps = format.missing == Some(MissingWords::Gap);
+    is_one && !has_parts && !has_gaps && format.reference_column.is_none()
+}
+
+fn open_array(
+    path: &Path,
+    heading: NpyHeading,
+    mut input: Input,
+    wanted: &Wanted<'_>,
+    (most, first): (usize, usize),
+) -> Result<LogSource, LogError> {
+    let format = wanted.format;
+    let is_long = heading.rows > most as u64;
+    if !is_long || heading.columns != 1 || !streams(format) {
+        let columns = array::read_behind(path, heading, input, wanted)?;
+        let columns = with_samples(path, columns)?;
+        return logs_of(path, columns, format).map(LogSource::Whole);
+    }
+    array::check_columns(path, &heading, wanted)?;
+    let may_end = input.length().is_none();
+    let mut words = ArrayWords::new(path, heading, may_end, false);
+    let mut values = Vec::new();
+    let mut goes_on = true;
+    while goes_on && values.len() < first {
+        goes_on = words.read(&mut input, &mut values)?;
+    }
+    let columns = with_samples(path, words.columns(values))?;
+    if !goes_on {
+        return logs_of(path, columns, format).map(LogSource::Whole);
+    }
+    let found = Found::of(
+        path,
+        Columns {
+            note: None,
+            ..columns
+        },
+        format,
+    )?;
+    Ok(found.with(path, Rest::Array(Box::new((words, input)))))
+}
+
+/// What the first words of a log say of it.
+struct Found {
+    log: Log,
+    conversion: Conversion,
+    spacing: Spacing,
+}
+
+impl Found {
+    fn of(path: &Path, mut columns: Columns, format: &LogFormat) -> Result<Self, LogError> {
+        let data = std::mem::take(&mut columns.data);
+        let spacing = spacing(path, &columns, &data, format)?;
+        let Some(column) = data.into_iter().next() else {
+            return Err(LogError::of_file(path, "holds no sample"));
+        };
+        let conversion = Conversion::of(format, &column);
+        let log = log(path, &columns, column, format, &spacing)?;
+        let conversion = conversion.map_err(|error| LogError::of_file(path, error))?;
+        if conversion.running.is_some() {
+            let message = format!(
+                "a running angle does not stream: expected {} samples at most, --rows takes a part of them",
+                log.rate_deg_per_h.len()
+            );
+            return Err(LogError::of_file(path, message));
+        }
+        Ok(Self {
+            log,
+            conversion,
+            spacing,
+        })
+    }
+
+    fn with(self, path: &Path, rest: Rest) -> LogSource {
+        LogSource::Stream(Box::new(LogStream {
+            path: path.to_owned(),
+            rows_before: self.log.rate_deg_per_h.len(),
+            log: self.log,
+            conversion: self.conversion,
+            spacing: self.spacing,
+            rest,
+        }))
+    }
+}
+
+impl LogStream {
+    /// What is known of the log; its words are those that were read first, until they are taken.
+    #[must_use]
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// Takes the first words, deg/h.
+    pub fn take_first_words(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.log.rate_deg_per_h)
+    }
+
+    /// Reads the next words, deg/h, in place of those of the buffer; none at the end.
+    ///
+    /// # Errors
+    /// Whatever is wrong with them, at its place.
+    pub fn read(&mut self, words: &mut Vec<f64>) -> Result<(), LogError> {
+        words.clear();
+        match &mut self.rest {
+            Rest::Array(array) => {
+                let (array, input) = &mut **array;
+                while words.len() < BLOCK && array.read(input, words)? {}
+                if words.is_empty() {
+                    self.log.remark(array.early_end());
+                }
+            }
+            Rest::Text(rows) => {
+                rows.read_up_to(BLOCK)?;
+                rows.take_values(words);
+                check_steps(&self.path, rows, &self.spacing)?;
+            }
+        }
+        let rate_hz = self.spacing.sample_rate_hz;
+        for (row, word) in words.iter_mut().enumerate() {
+            *word = rate_of(&self.conversion, rate_hz, *word).map_err(|error| {
+                let place = match &self.rest {
+                    Rest::Array(_) => Place::Index(self.rows_before + row),
+                    Rest::Text(rows) => rows.columns().place(row),
+                };
+                LogError::at(&self.path, place, error)
+            })?;
+        }
+        self.rows_before += words.len();
+        if let Rest::Text(rows) = &mut self.rest {
+            rows.clear();
+        }
+        Ok(())
+    }
+
+    /// What is known of the log, once all of its words were read.
+    #[must_use]
+    pub fn into_log(self) -> Log {
+        self.log
+    }
+}
+
+/// Holds the stamps of a block, that of the row before it first, against the spacing of the first rows.
+fn check_steps(path: &Path, rows: &Rows, spacing: &Spacing) -> Result<(), LogError> {
+    let columns = rows.columns();
+    let (Some(time), Some(steps)) = (&columns.time, spacing.steps) else {
+        return Ok(());
+    };
+    for (row, pair) in time.stamps.windows(2).enumerate() {
+        steps.check(pair[1] - pair[0]).map_err(|error| {
+            let message = format!("column {}: {error}", shown(&time.name));
+            LogError::at(path, columns.place(row), message)
+        })?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::layout::words::WordType;
+    use crate::recording::log::read::read_log;
+    use crate::recording::unit::kinds::RateUnit;
+
+    const KEPT: Kept = Kept {
+        words: 1000,
+        of_file: 1000,
+    };
+
+    fn format() -> LogFormat {
+        LogFormat {
+            unit: Some(RateUnit::DEG_PER_H.into()),
+            ..LogFormat::default()
+        }
+    }
+
+    fn scratch(content: &[u8]) -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log");
+        std::fs::write(&path, content).unwrap();
+        (folder, path)
+    }
+
+    /// All words of a log that streams, and the log.
+    fn streamed(path: &Path, format: &LogFormat) -> Result<(Vec<f64>, Log), LogError> {
+        let LogSource::Stream(mut stream) = open_keeping(path, format, KEPT)? else {
+            panic!("it is kept");
+        };
+        let mut words = stream.take_first_words();
+        assert!(words.len() >= KEPT.words && words.len() < KEPT.words + BLOCK);
+        let mut block = Vec::new();
+        loop {
+            stream.read(&mut block)?;
+            if block.is_empty() {
+                return Ok((words, stream.into_log()));
+            }
+            words.extend_from_slice(&block);
+        }
+    }
+
+    #[test]
+    fn words_that_stand_alone_are_those_of_the_whole_file() {
+        let counts = (0..300_000_u32).map(|k| i16::try_from(k % 251).unwrap() - 125);
+        let bytes: Vec<u8> = counts.flat_map(i16::to_be_bytes).collect();
+        let (_folder, path) = scratch(&bytes);
+        let format = LogFormat {
+            dtype: Some(WordType::I2Be),
+            scale: Some(0.25),
+            rate_hz: Some(100.0),
+            ..format()
+        };
+        let whole = read_log(&path, &format).unwrap();
+        assert_eq!(whole.rate_deg_per_h[3..4], [0.25 * (3.0 - 125.0)]);
+        assert_eq!(streamed(&path, &format).unwrap().0, whole.rate_deg_per_h);
+        std::fs::write(&path, &bytes[..4001]).unwrap();
+        let error = read_log(&path, &format).unwrap_err().to_string();
+        assert!(
+            error.ends_with("ends within a number: 1 of its 2 bytes are there"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn rows_of_a_text_are_those_of_the_whole_file_and_their_stamps_are_checked() {
+        use std::fmt::Write as _;
+        let mut text = "time_s,rate\n".to_owned();
+        for k in 0..200_000 {
+            writeln!(text, "{}.{:02},{}", k / 100, k % 100, (k * 37) % 101).unwrap();
+        }
+        let (_folder, path) = scratch(text.as_bytes());
+        let whole = read_log(&path, &format()).unwrap();
+        let (words, log) = streamed(&path, &format()).unwrap();
+        assert_eq!(words, whole.rate_deg_per_h);
+        assert!((log.sample_rate_hz / whole.sample_rate_hz - 1.0).abs() < 1e-9);
+        let gap = text.replace("1900.50,", "1901.50,");
+        std::fs::write(&path, gap).unwrap();
+        let error = streamed(&path, &format()).unwrap_err().to_string();
+        assert!(
+            error.contains("log:190052: column time_s: gap of 1.010000000 s"),
+            "{error}"
+        );
+        let word = text.replace("1900.50,", "1900.50,x");
+        std::fs::write(&path, word).unwrap();
+        let error = streamed(&path, &format()).unwrap_err().to_string();
+        assert!(error.contains("log:190052: column rate: `x"), "{error}");
+    }
+}
