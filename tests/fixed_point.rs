@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use fogbench::filters::RlsWords;
 use fogbench::fpga::export::{FixedExport, write_fixed_rtl};
 use fogbench::fpga::fixed::{
     CodePair, FixedRlsConfig, FixedRlsEngine, FixedRlsPipeline, FixedRlsSettings, FixedRlsState,
@@ -12,7 +13,7 @@ use fogbench::fpga::fixed::{
 use fogbench::vocabulary::{DesiredSignal, OutputRegister};
 
 use crate::support::stimulus::samples;
-use crate::support::{is_ci, is_long_rtl};
+use crate::support::{is_ci, is_long_rtl, repository};
 
 const ROUNDINGS: [Rounding; 3] = [Rounding::Truncate, Rounding::HalfUp, Rounding::NearestEven];
 const OVERFLOWS: [Overflow; 2] = [Overflow::Saturate, Overflow::Wrap];
@@ -420,5 +421,20 @@ fn a_wrong_fixed_point_constant_is_noticed() {
             !passed && printed.contains("MISMATCH"),
             "{right}: {printed}"
         );
+    }
+}
+
+#[test]
+fn the_page_says_the_integer_bits_that_stand_by_default() {
+    let page = std::fs::read_to_string(repository("docs/hardware.md")).expect("the page is there");
+    let words = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("x, d and y have 1 integer bit"), "{words}");
+    for (name, word) in RlsWords::reference().signals().named() {
+        let said = format!("{name} {}", word.integer_bits);
+        let is_said = match name {
+            "x" | "d" | "y" => word.integer_bits == 1,
+            _ => words.contains(&said),
+        };
+        assert!(is_said, "{said}");
     }
 }

@@ -69,7 +69,7 @@ macro_rules! signals {
 
         impl SignalWords {
             /// Every signal by its name.
-            pub fn named(&self) -> impl Iterator<Item = (&'static str, SignalWord)> {
+            pub fn named(self) -> impl Iterator<Item = (&'static str, SignalWord)> {
                 [$((stringify!($name), self.$name)),+].into_iter()
             }
         }

@@ -67,6 +67,7 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
         | Command::Budget(_)
         | Command::Claim(_)
         | Command::Infer(_)
+        | Command::Wordlength(_)
         | Command::Completions(_)
         | Command::Man(_) => Vec::new(),
     }
