@@ -124,6 +124,82 @@ fn a_fixed_point_filter_of_a_scenario_runs_and_its_export_proves_itself() {
 }
 
 #[test]
+fn words_that_are_too_short_are_told_beside_their_twin_in_binary64() {
+    let folder = scratch();
+    let text = fixed_scenario("initial_inverse_correlation = 1.97e-5\n").replace(
+        "[[filter]]",
+        "[turntable.swing]\nfrequency_hz = 10.0\nrate_amplitude_deg_per_s = 1.0\nsoft_start_s = 0.0\n[[filter]]",
+    );
+    let float = "[[filter]]\nname = \"float\"\n[filter.rls]\npipeline = \"fpga\"\n\
+                 initial_inverse_correlation = 1.97e-5\n";
+    write(folder.path(), "a.toml", &format!("{text}{float}"));
+    let run = |out: &str, set: &[&str]| {
+        let mut arguments = vec!["run", "a.toml", "-o", out];
+        arguments.extend(set.iter().flat_map(|one| ["--set", *one]));
+        let output = fogbench(folder.path(), &arguments);
+        let words = summary(&folder.path().join(out), "a")["channels"].clone();
+        (code(&output), words)
+    };
+    let figure = |channel: &serde_json::Value, name: &str| channel[name]["value"].as_f64();
+    let (exit, channels) = run("wide", &["filter.rls.fixed.word_bits=44"]);
+    assert_eq!(exit, 0);
+    let (wide, float) = (&channels["rls"], &channels["float"]);
+    for signal in ["x", "d", "t", "den", "k", "r", "w", "y"] {
+        assert_eq!(
+            figure(wide, &format!("overflows_{signal}")),
+            Some(0.0),
+            "{signal}"
+        );
+    }
+    assert_eq!(figure(wide, "indefinite_at_s"), None);
+    assert!(figure(wide, "rounding_error_over_signal").expect("an error") < 1e-6);
+    // The twin is the channel of the same filter in binary64.
+    for (own, difference, unit) in [
+        ("delay_vs_raw_ms", "delay_minus_binary64_us", 1e-3),
+        ("dc_gain", "dc_gain_minus_binary64", 1.0),
+    ] {
+        let found = figure(wide, difference).expect("a difference") * unit;
+        let wanted = figure(wide, own).expect("a figure") - figure(float, own).expect("a figure");
+        assert!((found - wanted).abs() < 1e-9, "{own}: {found:e} {wanted:e}");
+        assert!(wanted.abs() < 1e-5, "{own}: {wanted:e}");
+    }
+    assert_eq!(figure(float, "overflows_x"), None);
+    // Sixteen bits hold R for a moment; half the full scale is too small for the swing.
+    let (exit, channels) = run("short", &["filter.rls.fixed.word_bits=16"]);
+    let short = &channels["rls"];
+    assert_ne!(exit, 0, "{short}");
+    let indefinite_at = figure(short, "indefinite_at_s").expect("R fails");
+    let diverged_at = figure(short, "diverged_at_s").expect("the output fails");
+    assert!(indefinite_at <= diverged_at && diverged_at < 1.0, "{short}");
+    let (_, channels) = run("small", &["filter.rls.fixed.full_scale_deg_per_h=1800"]);
+    let overflows = figure(&channels["rls"], "overflows_d").expect("a count");
+    assert!(overflows > 0.0, "{overflows}");
+}
+
+#[test]
+fn figures_of_fixed_point_are_gated_and_refused_elsewhere() {
+    let folder = scratch();
+    let gate = |channel: &str| {
+        format!(
+            "{}[[filter]]\nname = \"float\"\n[filter.rls]\npipeline = \"fpga\"\n\
+             [[gate]]\nmetric = \"{channel}.angle_random_walk_over_binary64\"\nmax = 1.01\n",
+            fixed_scenario("initial_inverse_correlation = 1.97e-5\n")
+        )
+    };
+    write(folder.path(), "a.toml", &gate("float"));
+    let refused = fogbench(folder.path(), &["check", "a.toml"]);
+    assert_eq!(code(&refused), 2);
+    let text = stderr(&refused);
+    assert!(
+        text.contains("only a filter with number_format = \"fixed\" has it"),
+        "{text}"
+    );
+    write(folder.path(), "a.toml", &gate("rls"));
+    let passed = fogbench(folder.path(), &["run", "a.toml", "-o", "out"]);
+    assert_eq!(code(&passed), 0, "{}{}", stdout(&passed), stderr(&passed));
+}
+
+#[test]
 fn fixed_point_that_cannot_be_names_key_bits_and_limit() {
     let folder = scratch();
     let mut transcript = Transcript::of("fixed-point", "Fixed-point words that cannot be");

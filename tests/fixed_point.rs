@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use fogbench::filters::RlsWords;
 use fogbench::fpga::export::{FixedExport, write_fixed_rtl};
 use fogbench::fpga::fixed::{
     CodePair, FixedRlsConfig, FixedRlsEngine, FixedRlsPipeline, FixedRlsSettings, FixedRlsState,
@@ -12,7 +13,7 @@ use fogbench::fpga::fixed::{
 use fogbench::vocabulary::{DesiredSignal, OutputRegister};
 
 use crate::support::stimulus::samples;
-use crate::support::{is_ci, is_long_rtl};
+use crate::support::{is_ci, is_long_rtl, repository};
 
 const ROUNDINGS: [Rounding; 3] = [Rounding::Truncate, Rounding::HalfUp, Rounding::NearestEven];
 const OVERFLOWS: [Overflow; 2] = [Overflow::Saturate, Overflow::Wrap];
@@ -76,6 +77,7 @@ fn mix(seed: u32) -> FixedRlsConfig {
         tap_count: [1, 4, 8, 2, 3][seed as usize % 5],
         forgetting_factor: alpha,
         initial_inverse_correlation: (largest / 8.0).min(1024.0),
+        inverse_floor: [0, 0, 1, 3][seed as usize % 4],
         formats,
     };
     // A few of the drawn formats need more exact bits than there are: the next seed then.
@@ -197,6 +199,7 @@ fn wide_fixed_point_words_follow_the_floating_point_filter() {
         tap_count: 4,
         forgetting_factor: 0.999,
         initial_inverse_correlation: 1024.0,
+        inverse_floor: 0,
         formats,
     })
     .expect("sound settings");
@@ -235,12 +238,13 @@ fn short_fixed_point_words_die_under_a_swing_and_long_ones_live() {
     // One deg/s at 10 Hz and noise at 4 kHz, full scale 2 deg/s, alpha 1: R shrinks as 1/k until its
     // words no longer hold it. In 5 s words of 22 bits get there, and words of 32 bits do not.
     let swing = samples("rocking", 20_000);
-    let indefinite_at = |width: u32| {
+    let run = |width: u32, floor: i64| {
         let formats = uniform(width, Rounding::HalfUp, Overflow::Saturate);
         let config = FixedRlsConfig::new(FixedRlsSettings {
             tap_count: 4,
             forgetting_factor: 1.0,
             initial_inverse_correlation: 1024.0,
+            inverse_floor: floor,
             formats,
         })
         .expect("sound settings");
@@ -251,11 +255,14 @@ fn short_fixed_point_words_die_under_a_swing_and_long_ones_live() {
                 desired: formats.desired.of(pair[1] / 2.0).code,
             });
         }
-        engine.health().indefinite_at
+        engine.health()
     };
-    let died = indefinite_at(22).expect("words of 22 bits die");
+    let died = run(22, 0).indefinite_at.expect("words of 22 bits die");
     assert!(died > 100, "{died}");
-    assert_eq!(indefinite_at(32), None);
+    assert_eq!(run(32, 0).indefinite_at, None);
+    // A floor of one step keeps the diagonal above zero.
+    let held = run(22, 1);
+    assert!(held.floored > 0, "{held:?}");
 }
 
 #[test]
@@ -264,6 +271,7 @@ fn constants_that_do_not_fit_name_bits_and_limit() {
         tap_count: 4,
         forgetting_factor: alpha,
         initial_inverse_correlation: delta,
+        inverse_floor: 0,
         formats: uniform(width, Rounding::HalfUp, Overflow::Saturate),
     };
     let refused = |settings| FixedRlsConfig::new(settings).unwrap_err().to_string();
@@ -276,6 +284,11 @@ fn constants_that_do_not_fit_name_bits_and_limit() {
         "initial inverse correlation = 1e-9 is out of range: expected at least one step of R in fixed \
          point"
     );
+    let floor = FixedRlsSettings {
+        inverse_floor: i64::MAX,
+        ..settings(1024.0, 32, 1.0)
+    };
+    assert!(refused(floor).contains("floor of R"));
     assert!(refused(settings(1024.0, 32, 0.0)).contains("forgetting factor"));
     assert!(refused(settings(1024.0, 49, 1.0)).contains("2 to 48 bits"));
     let mut wide = settings(1024.0, 48, 1.0);
@@ -408,5 +421,20 @@ fn a_wrong_fixed_point_constant_is_noticed() {
             !passed && printed.contains("MISMATCH"),
             "{right}: {printed}"
         );
+    }
+}
+
+#[test]
+fn the_page_says_the_integer_bits_that_stand_by_default() {
+    let page = std::fs::read_to_string(repository("docs/hardware.md")).expect("the page is there");
+    let words = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("x, d and y have 1 integer bit"), "{words}");
+    for (name, word) in RlsWords::reference().signals().named() {
+        let said = format!("{name} {}", word.integer_bits);
+        let is_said = match name {
+            "x" | "d" | "y" => word.integer_bits == 1,
+            _ => words.contains(&said),
+        };
+        assert!(is_said, "{said}");
     }
 }

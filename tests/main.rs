@@ -126,3 +126,4 @@ mod turntable_servo;
 mod vibration;
 mod waveform;
 mod waveform_model;
+mod word_length;

@@ -324,8 +324,8 @@ fn every_metric_is_yielded_pooled_headed_and_documented() {
         );
         let is_of_repeats = [&BIAS_REPEATABILITY, &SCALE_FACTOR_REPEATABILITY].contains(key);
         let is_yielded = match key.applies {
-            // The tests of campaigns, of failures, of logs and of black boxes have those.
-            Applies::Calibration | Applies::Log | Applies::Twins => true,
+            // The tests of campaigns, of failures, of logs, of black boxes and of fixed point have those.
+            Applies::Calibration | Applies::Log | Applies::Twins | Applies::FixedPoint => true,
             Applies::Pipeline => pipelines.contains(name),
             _ if name == "diverged_at_s" => true,
             _ if is_of_repeats => pooled.metrics.contains(name),

@@ -6,7 +6,9 @@
 //! first sample on and is free to adapt; its mean output differs by that rate times the gain.
 
 use crate::experiment::run::{RateTwins, RecordLength};
-use crate::filters::hardware::{HardwareFilter, HealthSummary, PipelineSettings, PipelineTiming};
+use crate::filters::hardware::{
+    FixedSummary, HardwareFilter, HealthSummary, PipelineSettings, PipelineTiming,
+};
 use crate::filters::{Divergence, Filter, FilterKind, Output};
 use crate::metrics::{BlackBox, ChannelFailure, RateGain};
 use crate::signal::{FilterShape, Section, WeightRule};
@@ -27,6 +29,8 @@ pub(super) struct ChannelFilter {
     twin: Option<Arithmetic>,
     rate_twins: Option<RateTwins>,
     output_deg_per_h: Vec<f64>,
+    /// Of fixed-point words: what the same filter makes of them in binary64.
+    binary64: Binary64Words,
     warm_up_samples: usize,
     measured_samples: usize,
     failure: Option<Divergence>,
@@ -101,6 +105,33 @@ pub(super) struct FinishedPipeline {
     pub(super) health: Option<HealthSummary>,
     /// What is said of a matrix that forgetting has wound up.
     pub(super) wind_up: Option<String>,
+    /// What became of its words, if they are fixed point.
+    pub(super) fixed: Option<FixedSummary>,
+}
+
+/// Output words of a filter in binary64, and the sums of the weights that made them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Binary64Words {
+    /// Output words, deg/h, warm-up included.
+    pub(super) output_deg_per_h: Vec<f64>,
+    /// Sum over the measured record.
+    weight_sum_total: f64,
+    measured: u32,
+}
+
+impl Binary64Words {
+    /// Time mean of the sum of the weights over the measured record.
+    pub(super) fn dc_gain(&self) -> Option<f64> {
+        (self.measured > 0).then(|| self.weight_sum_total / f64::from(self.measured))
+    }
+
+    fn push(&mut self, output: Output, is_measured: bool) {
+        self.output_deg_per_h.push(output.value_deg_per_h);
+        if is_measured {
+            self.weight_sum_total += output.weight_sum;
+            self.measured += 1;
+        }
+    }
 }
 
 /// Output words of a filter that did not fail, and its gains.
@@ -122,6 +153,8 @@ pub(super) struct FilterWords {
     pub(super) block_weights: Vec<Vec<f64>>,
     /// What twins tell of words that only their maker can make again; none of a filter of the bench.
     pub(super) black_box: Option<BlackBox>,
+    /// Of fixed-point words: those of the same filter in binary64.
+    pub(super) binary64: Option<Binary64Words>,
 }
 
 impl FilterWords {
@@ -136,6 +169,7 @@ impl FilterWords {
             mean_weights: None,
             block_weights: Vec::new(),
             black_box: None,
+            binary64: None,
         }
     }
 }
@@ -217,6 +251,7 @@ impl ChannelFilter {
             twin: adapts.then(arithmetic),
             rate_twins: rate_gain.then(|| RateTwins::new(length, arithmetic)),
             output_deg_per_h: Vec::with_capacity(length.total()),
+            binary64: Binary64Words::default(),
             warm_up_samples: length.warm_up,
             failure: None,
             restarts: None,
@@ -285,6 +320,11 @@ impl ChannelFilter {
         }
         let output = self.filter.step(word_deg_per_h)?;
         self.output_deg_per_h.push(output.value_deg_per_h);
+        if let Arithmetic::Hardware(filter) = &self.filter
+            && let Some(output) = filter.twin()
+        {
+            self.binary64.push(output, is_measured);
+        }
         let twin = self.twin.as_mut();
         match twin.map(|twin| twin.step(word_deg_per_h + ADDED_RATE_DEG_PER_H)) {
             Some(Ok(twin)) if is_measured => {
@@ -355,6 +395,9 @@ impl ChannelFilter {
                     })
                 }),
                 block_dc_gains_adapted: self.block_dc_gains_adapted(),
+                binary64: (self.binary64.output_deg_per_h.len() == self.output_deg_per_h.len())
+                    .then_some(self.binary64)
+                    .filter(|words| !words.output_deg_per_h.is_empty()),
                 output_deg_per_h: self.output_deg_per_h,
                 black_box: None,
             }),
@@ -402,6 +445,7 @@ impl ChannelFilter {
             timing: settings.timing().expect(CHECKED),
             health: filter.health(),
             wind_up: filter.wind_up().map(|warning| warning.to_string()),
+            fixed: filter.fixed(),
         })
     }
 }

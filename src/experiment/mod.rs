@@ -29,6 +29,7 @@ mod starter;
 mod stimulus;
 #[cfg(feature = "report")]
 mod suite;
+mod word_length;
 
 #[cfg(feature = "report")]
 pub use baseline::{SideError, read_baseline_file, read_output, read_side, side_of_runs};
@@ -68,4 +69,7 @@ pub use stimulus::{input_digest, scenario_stimulus};
 pub use suite::{
     Against, Earlier, Observer, Resume, SuiteError, SuiteOptions, SuiteOutcome, THREADS_MAX,
     run_suite, start_threads, thread_count, write_runs,
+};
+pub use word_length::{
+    WordLengthError, WordLengthLimits, WordLengthTrial, WordLengths, word_lengths,
 };

@@ -1,13 +1,16 @@
 //! What a hardware pipeline adds to its channel's table, and what must be said of it.
 
 use super::channel_filter::{FinishedFilter, FinishedPipeline};
+use crate::filters::hardware::FixedSummary;
 use crate::metrics::catalogue::{
-    ASYMMETRY_MAX, CLOCKS_PER_SAMPLE, CONDITION_NUMBER, LATENCY, PREDICTED_FAILURE, SAMPLE_PERIOD,
+    ANGLE_RANDOM_WALK, ANGLE_RANDOM_WALK_OVER_BINARY64, ASYMMETRY_MAX, CLOCKS_PER_SAMPLE,
+    CONDITION_NUMBER, DC_GAIN, DC_GAIN_MINUS_BINARY64, DELAY_MINUS_BINARY64, DELAY_VS_RAW,
+    INDEFINITE_AT, LATENCY, PREDICTED_FAILURE, ROUNDING_ERROR_OVER_SIGNAL, SAMPLE_PERIOD,
     SAMPLE_RATE_MAX, SMALLEST_PIVOT,
 };
-use crate::metrics::{Applies, ChannelMetrics, Estimate, MetricKey};
+use crate::metrics::{Applies, ChannelMetrics, Estimate, FIXED_POINT_ONLY, MetricKey, OVERFLOWS};
 use crate::scenario::Scenario;
-use crate::units::us_to_s;
+use crate::units::{ms_to_s, s_to_us, us_to_s};
 use crate::vocabulary::OutputRegister;
 use crate::wording::counted;
 
@@ -17,13 +20,16 @@ pub(super) static MATRIX_METRICS: [&MetricKey; 3] =
 
 /// Why a channel can never have a metric of hardware pipelines; nothing for other metrics.
 pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<&'static str> {
-    if key.applies != Applies::Pipeline {
+    if ![Applies::Pipeline, Applies::FixedPoint].contains(&key.applies) {
         return None;
     }
     let filter = scenario.filter_of(channel)?;
     let Some(settings) = filter.kind.settings().hardware() else {
         return Some("only a filter with pipeline = \"fpga\" has it");
     };
+    if key.applies == Applies::FixedPoint && !settings.is_fixed() {
+        return Some(FIXED_POINT_ONLY);
+    }
     if MATRIX_METRICS.contains(&key) && !settings.has_matrix() {
         return Some("a least-mean-squares filter has no matrix");
     }
@@ -97,6 +103,53 @@ pub(super) fn enter(
             &PREDICTED_FAILURE,
             "only the gain-first order is expected to fail",
         ),
+    }
+}
+
+/// Enters what fixed-point words did to the filter, beside the same filter in binary64.
+///
+/// * `binary64`: what was measured of that one; none if this filter failed.
+pub(super) fn enter_fixed(
+    fixed: &FixedSummary,
+    binary64: Option<&ChannelMetrics>,
+    sample_period_s: f64,
+    metrics: &mut ChannelMetrics,
+) {
+    for (key, count) in OVERFLOWS.into_iter().zip(fixed.overflows) {
+        metrics.put(key, Estimate::exact(whole(count)));
+    }
+    match fixed.indefinite_at {
+        Some(sample) => {
+            let stamp_s = whole(sample + 1) * sample_period_s;
+            metrics.put(&INDEFINITE_AT, Estimate::exact(stamp_s));
+        }
+        None => metrics.miss(
+            &INDEFINITE_AT,
+            "denominators and the diagonal of R stayed above zero",
+        ),
+    }
+    if let Some(ratio) = fixed.error_over_signal {
+        metrics.put(&ROUNDING_ERROR_OVER_SIGNAL, Estimate::exact(ratio));
+    }
+    let Some(binary64) = binary64 else {
+        return;
+    };
+    let pair = |key: &MetricKey| {
+        let own = metrics.get(key)?.estimate.value;
+        Some((own, binary64.get(key)?.estimate.value))
+    };
+    let ratio = pair(&ANGLE_RANDOM_WALK).map(|(own, twin)| own / twin);
+    let gain = pair(&DC_GAIN).map(|(own, twin)| own - twin);
+    let delay = pair(&DELAY_VS_RAW).map(|(own, twin)| s_to_us(ms_to_s(own - twin)));
+    for (key, value) in [
+        (&ANGLE_RANDOM_WALK_OVER_BINARY64, ratio),
+        (&DC_GAIN_MINUS_BINARY64, gain),
+        (&DELAY_MINUS_BINARY64, delay),
+    ] {
+        match value.filter(|value| value.is_finite()) {
+            Some(value) => drop(metrics.put(key, Estimate::exact(value))),
+            None => metrics.miss(key, "the record does not give it of both"),
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::common::lanes::{self, LANES, Lanes, Turns};
 use super::common::{
-    Complaints, Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, least_squares_rule,
+    Complaints, Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output,
+    least_squares_rule,
 };
 use super::hardware::{self, PipelineSettings};
 use super::kind::{Condition, ExpectedWords, FilterSettings};

@@ -17,6 +17,9 @@ table! {
         rounding: Rounding = "half-up";
         /// What becomes of values beyond the ends, in every signal that does not say otherwise.
         overflow: Overflow = "saturate";
+        /// Smallest diagonal element of R, in its last bits, which keeps a filter that forgets nothing alive;
+        /// 0 for none.
+        r_floor_steps: u32 = 0, in 0..=1000000;
         x: RegressorWord;
         d: DesiredWord;
         t: IntermediateWord;
@@ -66,12 +69,29 @@ macro_rules! signals {
 
         impl SignalWords {
             /// Every signal by its name.
-            pub fn named(&self) -> impl Iterator<Item = (&'static str, SignalWord)> {
+            pub fn named(self) -> impl Iterator<Item = (&'static str, SignalWord)> {
                 [$((stringify!($name), self.$name)),+].into_iter()
             }
         }
 
         impl RlsWords {
+            /// The same words but for the bits of one signal.
+            #[must_use]
+            pub fn with_bits(mut self, signal: &str, bits: u32) -> Self {
+                $(if signal == stringify!($name) {
+                    self.$name.word_bits = Some(bits);
+                })+
+                self
+            }
+
+            /// The same words, of these bits in every signal.
+            #[must_use]
+            pub fn uniform(mut self, bits: u32) -> Self {
+                self.word_bits = bits;
+                $(self.$name.word_bits = None;)+
+                self
+            }
+
             /// The formats, what the table of a signal leaves out taken from that of all.
             #[must_use]
             pub fn signals(&self) -> SignalWords {
@@ -119,6 +139,40 @@ impl RlsWords {
                 complaints.key(&format!("fixed.{name}.integer_bits"), &message);
             }
         }
+    }
+
+    /// Bits of one word of every signal together.
+    #[must_use]
+    pub fn total_bits(&self) -> u32 {
+        self.signals().named().map(|(_, word)| word.word_bits).sum()
+    }
+
+    /// The table as a scenario holds it.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        let mut text = format!(
+            "full_scale_deg_per_h = {:?}\nword_bits = {}\nrounding = \"{}\"\noverflow = \"{}\"\n\
+             r_floor_steps = {}\n",
+            self.full_scale_deg_per_h,
+            self.word_bits,
+            self.rounding,
+            self.overflow,
+            self.r_floor_steps
+        );
+        for (name, word) in self.signals().named() {
+            let mut keys = format!("integer_bits = {}", word.integer_bits);
+            if word.word_bits != self.word_bits {
+                keys.push_str(&format!(", word_bits = {}", word.word_bits));
+            }
+            if word.rounding != self.rounding {
+                keys.push_str(&format!(", rounding = \"{}\"", word.rounding));
+            }
+            if word.overflow != self.overflow {
+                keys.push_str(&format!(", overflow = \"{}\"", word.overflow));
+            }
+            text.push_str(&format!("{name} = {{ {keys} }}\n"));
+        }
+        text
     }
 
     /// What must be said of words up to a peak.

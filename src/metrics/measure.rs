@@ -228,7 +228,7 @@ fn refuse_rest(reason: &Unavailable, metrics: &mut ChannelMetrics) {
         let is_own = **known == DIVERGED_AT
             || matches!(
                 known.applies,
-                Applies::Pipeline | Applies::Log | Applies::Twins
+                Applies::Pipeline | Applies::FixedPoint | Applies::Log | Applies::Twins
             );
         if !is_own && metrics.get(known).is_none() {
             metrics.miss(known, reason.clone());
@@ -279,7 +279,7 @@ pub(crate) fn explain_absence(
         if **known == DIVERGED_AT
             || matches!(
                 known.applies,
-                Applies::Calibration | Applies::Log | Applies::Twins
+                Applies::Calibration | Applies::FixedPoint | Applies::Log | Applies::Twins
             )
             || metrics.get(known).is_some()
             || metrics.why_unavailable(known).is_some()

@@ -96,6 +96,7 @@ pub use noise::bias_stability::{
 pub use noise::memory::{correlation_length_samples, record_fit_tau_min_s};
 pub use noise::spectrum::{Spectrum, log_binned, segment_samples, welch};
 pub use noise::truth_response::known_motion;
+pub(crate) use pipeline::{FIXED_POINT_ONLY, OVERFLOWS};
 pub use pool::aggregate::aggregate;
 pub use pool::repeatability::repeats_lack;
 pub use pool::sensitivity::{ConditionPoint, change_divisor, largest_change_per_unit};

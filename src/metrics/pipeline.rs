@@ -73,3 +73,128 @@ pub static CONDITION_NUMBER: MetricKey = MetricKey::of_pipelines(
     "1",
     "largest ratio of the extreme eigenvalues of that matrix",
 );
+
+/// Why other channels lack the figures of fixed-point words.
+pub(crate) const FIXED_POINT_ONLY: &str = "only a filter with number_format = \"fixed\" has it";
+
+/// Words of x beyond the ends of their format.
+pub static OVERFLOWS_X: MetricKey = MetricKey::of_fixed_point(
+    "overflows_x",
+    "1",
+    "words of x beyond the ends of their format, warm-up included",
+)
+.lower_is_better();
+
+/// Words of d beyond the ends of their format.
+pub static OVERFLOWS_D: MetricKey = MetricKey::of_fixed_point(
+    "overflows_d",
+    "1",
+    "words of d beyond the ends of their format, warm-up included",
+)
+.lower_is_better();
+
+/// Words of t beyond the ends of their format.
+pub static OVERFLOWS_T: MetricKey = MetricKey::of_fixed_point(
+    "overflows_t",
+    "1",
+    "words of t beyond the ends of their format, warm-up included",
+)
+.lower_is_better();
+
+/// Words of the denominator beyond the ends of their format.
+pub static OVERFLOWS_DEN: MetricKey = MetricKey::of_fixed_point(
+    "overflows_den",
+    "1",
+    "words of the denominator beyond the ends of their format, warm-up included",
+)
+.lower_is_better();
+
+/// Words of k beyond the ends of their format.
+pub static OVERFLOWS_K: MetricKey = MetricKey::of_fixed_point(
+    "overflows_k",
+    "1",
+    "words of k beyond the ends of their format, warm-up included",
+)
+.lower_is_better();
+
+/// Words of R beyond the ends of their format.
+pub static OVERFLOWS_R: MetricKey = MetricKey::of_fixed_point(
+    "overflows_r",
+    "1",
+    "words of R beyond the ends of their format, warm-up included",
+)
+.lower_is_better();
+
+/// Words of W beyond the ends of their format.
+pub static OVERFLOWS_W: MetricKey = MetricKey::of_fixed_point(
+    "overflows_w",
+    "1",
+    "words of W beyond the ends of their format, warm-up included",
+)
+.lower_is_better();
+
+/// Words of y and e beyond the ends of their format.
+pub static OVERFLOWS_Y: MetricKey = MetricKey::of_fixed_point(
+    "overflows_y",
+    "1",
+    "words of y and e beyond the ends of their format, warm-up included",
+)
+.lower_is_better();
+
+/// Words beyond the ends of the signals, in the order of their formats.
+pub(crate) static OVERFLOWS: [&MetricKey; 8] = [
+    &OVERFLOWS_X,
+    &OVERFLOWS_D,
+    &OVERFLOWS_T,
+    &OVERFLOWS_DEN,
+    &OVERFLOWS_K,
+    &OVERFLOWS_R,
+    &OVERFLOWS_W,
+    &OVERFLOWS_Y,
+];
+
+/// When the inverse correlation matrix stopped being definite.
+pub static INDEFINITE_AT: MetricKey = MetricKey::of_fixed_point(
+    "indefinite_at_s",
+    "s",
+    "stamp of the first sample with a denominator or a diagonal element of R at or below zero; the filter may \
+     live on, and has diverged once its output is a hundredth of the full scale off that of its twin in binary64",
+)
+.higher_is_better()
+.heading("indefinite at");
+
+/// Error of the output over the signal.
+pub static ROUNDING_ERROR_OVER_SIGNAL: MetricKey = MetricKey::of_fixed_point(
+    "rounding_error_over_signal",
+    "1",
+    "rms of the output minus that of the same filter in binary64, over the rms of the latter",
+)
+.lower_is_better()
+.heading("rounding/signal");
+
+/// Angle random walk over that of the twin.
+pub static ANGLE_RANDOM_WALK_OVER_BINARY64: MetricKey = MetricKey::of_fixed_point(
+    "angle_random_walk_over_binary64",
+    "1",
+    "angle random walk over that of the same filter in binary64 on the same words",
+)
+.lower_is_better()
+.heading("ARW/binary64")
+.closing_tables();
+
+/// DC gain minus that of the twin.
+pub static DC_GAIN_MINUS_BINARY64: MetricKey = MetricKey::of_fixed_point(
+    "dc_gain_minus_binary64",
+    "1",
+    "DC gain minus that of the same filter in binary64 on the same words",
+)
+.heading("DC gain - binary64");
+
+/// Delay minus that of the twin.
+pub static DELAY_MINUS_BINARY64: MetricKey = MetricKey::of_fixed_point(
+    "delay_minus_binary64_us",
+    "us",
+    "delay against raw minus that of the same filter in binary64 on the same words",
+)
+.heading("delay - binary64")
+.closing_tables();

@@ -14,3 +14,4 @@ pub(in crate::cli) mod select;
 pub(in crate::cli) mod shards;
 pub(in crate::cli) mod shell;
 pub(in crate::cli) mod timing;
+pub(in crate::cli) mod wordlength;

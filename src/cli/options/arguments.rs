@@ -16,6 +16,7 @@ use crate::cli::options::init::InitOptions;
 use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
 use crate::cli::options::records::RecordsOptions;
 use crate::cli::options::shard::{MergeOptions, PlanOptions, ShardOptions, StatusOptions};
+use crate::cli::options::wordlength::WordLengthOptions;
 use crate::cli::terminal::output::Colour;
 
 /// Version and build of the program.
@@ -89,6 +90,8 @@ pub(in crate::cli) enum Command {
     Calibrate(CalibrateOptions),
     /// Print clocks, units and sample rates of a filter in hardware
     Timing(TimingOptions),
+    /// Find the shortest fixed-point words of a filter in hardware, and say what each bit costs
+    Wordlength(WordLengthOptions),
     /// Write golden vectors, waveforms or RTL of a hardware pipeline into a folder
     Export(ExportOptions),
     /// Write words of a gyro with their true rate, for filters to be tried on and published against

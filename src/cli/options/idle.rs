@@ -68,6 +68,7 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
         | Command::Claim(_)
         | Command::Infer(_)
         | Command::Records(_)
+        | Command::Wordlength(_)
         | Command::Completions(_)
         | Command::Man(_) => Vec::new(),
     }

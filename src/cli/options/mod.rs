@@ -16,4 +16,5 @@ pub(in crate::cli) mod log;
 pub(in crate::cli) mod numbers;
 pub(in crate::cli) mod records;
 pub(in crate::cli) mod shard;
+pub(in crate::cli) mod wordlength;
 pub(in crate::cli) mod words;

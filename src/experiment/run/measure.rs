@@ -277,9 +277,30 @@ impl Cut<'_> {
         };
         if let Some(pipeline) = &filter.pipeline {
             pipeline_metrics::enter(pipeline, self.sample_period_s, &mut metrics);
+            if let Some(fixed) = &pipeline.fixed {
+                let binary64 = self.measure_binary64(filter);
+                let period_s = self.sample_period_s;
+                pipeline_metrics::enter_fixed(fixed, binary64.as_ref(), period_s, &mut metrics);
+            }
             metrics.keep_finite();
         }
         metrics
+    }
+}
+
+impl Cut<'_> {
+    /// What is measured of the same filter in binary64; none of other words than fixed-point ones, and
+    /// of a filter that failed.
+    fn measure_binary64(&self, filter: &FinishedFilter) -> Option<ChannelMetrics> {
+        let words = filter.words.as_ref().ok()?;
+        let twin = words.binary64.as_ref()?;
+        let alone = FilterWords {
+            dc_gain: twin.dc_gain(),
+            ..FilterWords::alone(Vec::new())
+        };
+        let facts = filter_facts(filter, &alone);
+        let input = self.record.filter_input_deg_per_h();
+        Some(self.measure(&twin.output_deg_per_h, input, Some(&facts)))
     }
 }
 

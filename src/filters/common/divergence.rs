@@ -29,6 +29,8 @@ pub enum DivergenceKind {
     LostPositiveDefiniteness,
     /// The inverse correlation matrix is no longer symmetric.
     LostSymmetry,
+    /// Fixed-point words have led the output away from that of the same filter in binary64.
+    WordsTooShort,
 }
 
 /// A filter has diverged.

@@ -96,7 +96,7 @@ fn export_fixed(
         desired: settings.desired,
         input_lag_samples: settings.input_lag_samples,
         output_register: settings.output_register,
-        samples: words.map(|word| settings.code(*word)).collect(),
+        samples: words.map(|word| settings.stored(*word).code).collect(),
         full_scale: format!("{} deg/h", settings.full_scale_deg_per_h),
         clock_mhz: settings.clock_mhz,
         trace_samples,

@@ -4,6 +4,7 @@
 //! word that is not finite goes through the engine first, as through the hardware, and is then
 //! reported.
 
+use super::fixed::FixedSummary;
 use super::monitor::{HealthSummary, Monitor};
 use super::settings::FloatSettings;
 use crate::filters::common::{Divergence, Fault, Filter, Output, Register, Watch};
@@ -19,6 +20,14 @@ pub trait HardwareFilter: Filter {
     fn health(&mut self) -> Option<HealthSummary>;
     /// Whether forgetting has wound the matrix up by the newest look.
     fn wind_up(&self) -> Option<Warning>;
+    /// What became of fixed-point words; none for filters without them.
+    fn fixed(&self) -> Option<FixedSummary> {
+        None
+    }
+    /// The newest output of the same filter in binary64, of fixed-point words.
+    fn twin(&self) -> Option<Output> {
+        None
+    }
 }
 
 /// Pipeline behind its front end, with the output register and the watch for divergence.

@@ -2,20 +2,25 @@
 
 use super::filter::HardwareFilter;
 use super::monitor::{HealthSummary, Monitor};
+use super::settings::FloatSettings;
 use super::timing::PipelineTiming;
 use crate::filters::common::{
-    Complaints, Divergence, Fault, Filter, FrontEndConfig, Output, Register, Watch,
+    Complaints, Divergence, DivergenceKind, Fault, Filter, FrontEndConfig, Output, Register, Watch,
     least_squares_rule,
 };
 use crate::fpga::FpgaError;
 use crate::fpga::engine::InverseCorrelation;
 use crate::fpga::fixed::{
-    FixedFrontEnd, FixedRlsConfig, FixedRlsEngine, FixedRlsSettings, fixed_board_usage,
+    FixedFrontEnd, FixedRlsConfig, FixedRlsEngine, FixedRlsSettings, Stored, fixed_board_usage,
     fixed_rls_usage,
 };
 use crate::fpga::health::{Warning, wind_up_warning};
+use crate::fpga::kinds::CoreSettings;
+use crate::fpga::rls::{RlsCore, RlsSettings};
 use crate::signal::FilterShape;
-use crate::vocabulary::{DesiredSignal, OutputRegister};
+use crate::vocabulary::{
+    DesiredSignal, Division, NumberFormat, OutputRegister, UpdateOrder, UpdateSign,
+};
 
 /// A fixed-point pipeline with its front end, before any check.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,9 +54,32 @@ impl FixedSettings {
     }
 
     /// The word of d for a sample.
-    pub(super) fn code(&self, word_deg_per_h: f64) -> i64 {
+    pub(super) fn stored(&self, word_deg_per_h: f64) -> Stored {
         let format = self.core.formats.desired;
-        format.of(word_deg_per_h / self.full_scale_deg_per_h).code
+        format.of(word_deg_per_h / self.full_scale_deg_per_h)
+    }
+
+    /// The same filter in binary64.
+    fn twin(&self) -> FloatSettings {
+        let full_scale = self.full_scale_deg_per_h;
+        let delta = self.core.initial_inverse_correlation / full_scale / full_scale;
+        FloatSettings {
+            core: CoreSettings::Rls(RlsCore {
+                settings: RlsSettings {
+                    tap_count: self.core.tap_count,
+                    forgetting_factor: self.core.forgetting_factor,
+                    initial_inverse_correlation: delta,
+                    division: Division::Reciprocal,
+                    update_sign: UpdateSign::Corrected,
+                },
+                order: UpdateOrder::Schedule,
+            }),
+            desired: self.desired,
+            input_lag_samples: self.input_lag_samples,
+            output_register: self.output_register,
+            format: NumberFormat::Binary64,
+            clock_mhz: self.clock_mhz,
+        }
     }
 
     pub(super) fn timing(&self) -> Result<PipelineTiming, FpgaError> {
@@ -101,6 +129,8 @@ impl FixedSettings {
             register: Register::new(self.output_register),
             watch: Watch::new(),
             monitor: Monitor::new(self.core.tap_count, warm_up_samples),
+            twin: Twin::new(self.twin().filter(0)?, warm_up_samples),
+            desired_overflows: 0,
             samples: 0,
             diverged: None,
         }))
@@ -117,6 +147,81 @@ impl FixedSettings {
     }
 }
 
+/// What became of the words of a fixed-point filter.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct FixedSummary {
+    /// Words beyond the ends of each signal, in the order of the formats.
+    pub overflows: [u64; 8],
+    /// First sample, warm-up included, with a denominator or a diagonal element of R at or below zero.
+    pub indefinite_at: Option<u64>,
+    /// Root of the mean square of the output's distance from the twin's, over that of the twin's output,
+    /// over the record; none without a record.
+    pub error_over_signal: Option<f64>,
+}
+
+/// Part of the full scale by which an output that counts as sound may differ from that of the twin.
+const ERROR_MAX: f64 = 0.01;
+/// Samples in which the first weights are found, whatever the words.
+const ERROR_GRACE_SAMPLES: u64 = 64;
+
+/// The same filter in binary64 on the same samples, and how far the words have come from it.
+struct Twin {
+    filter: Box<dyn HardwareFilter>,
+    first_sample: u64,
+    newest: Option<Output>,
+    error_squares: f64,
+    squares: f64,
+}
+
+impl Twin {
+    fn new(filter: Box<dyn HardwareFilter>, warm_up_samples: u64) -> Self {
+        Self {
+            filter,
+            first_sample: warm_up_samples,
+            newest: None,
+            error_squares: 0.0,
+            squares: 0.0,
+        }
+    }
+
+    /// Compares an output of the fixed-point filter with its own.
+    fn compare(
+        &mut self,
+        input: f64,
+        output: Output,
+        sample: u64,
+        full_scale: f64,
+    ) -> Result<(), Fault> {
+        self.newest = self.filter.step(input).ok();
+        let Some(twin) = self.newest else {
+            return Ok(());
+        };
+        let error = (output.value_deg_per_h - twin.value_deg_per_h).abs();
+        if sample >= self.first_sample {
+            self.error_squares += error * error;
+            self.squares += twin.value_deg_per_h * twin.value_deg_per_h;
+        }
+        let limit = ERROR_MAX * full_scale;
+        if sample < ERROR_GRACE_SAMPLES || error <= limit {
+            return Ok(());
+        }
+        let message = format!(
+            "the output is {:.1} deg/h, that of the same filter in binary64 {:.1} deg/h: further off \
+             than {limit} deg/h, a hundredth of the full scale",
+            output.value_deg_per_h, twin.value_deg_per_h
+        );
+        Err(Fault {
+            kind: DivergenceKind::WordsTooShort,
+            message,
+        })
+    }
+
+    fn error_over_signal(&self) -> Option<f64> {
+        (self.squares > 0.0).then(|| (self.error_squares / self.squares).sqrt())
+    }
+}
+
 /// Fixed-point pipeline behind its front end.
 struct FixedPipelineFilter {
     settings: FixedSettings,
@@ -126,6 +231,8 @@ struct FixedPipelineFilter {
     register: Register,
     watch: Watch,
     monitor: Monitor,
+    twin: Twin,
+    desired_overflows: u64,
     samples: u64,
     diverged: Option<Divergence>,
 }
@@ -133,19 +240,23 @@ struct FixedPipelineFilter {
 impl FixedPipelineFilter {
     fn advance(&mut self, input: f64, sample: u64) -> Result<Output, Fault> {
         let formats = self.settings.core.formats;
+        let full_scale = self.settings.full_scale_deg_per_h;
         let weight_sum = self.weights.iter().sum();
-        let pair = self.front_end.pair(self.settings.code(input));
+        let stored = self.settings.stored(input);
+        self.desired_overflows += u64::from(stored.overflowed);
+        let pair = self.front_end.pair(stored.code);
         let code = self.engine.process(pair);
         for (held, word) in self.weights.iter_mut().zip(self.engine.weights()) {
             *held = formats.weight.value(*word);
         }
         let result = Output {
-            value_deg_per_h: formats.output.value(code) * self.settings.full_scale_deg_per_h,
+            value_deg_per_h: formats.output.value(code) * full_scale,
             weight_sum,
         };
         let output = self.register.clock(result);
         self.watch.check_input(input)?;
         self.watch.check_output(result)?;
+        self.twin.compare(input, output, sample, full_scale)?;
         if self.monitor.is_due(sample) {
             self.look(sample);
         }
@@ -200,5 +311,28 @@ impl HardwareFilter for FixedPipelineFilter {
 
     fn wind_up(&self) -> Option<Warning> {
         wind_up_warning(self.monitor.latest()?, self.settings.core.forgetting_factor)
+    }
+
+    fn fixed(&self) -> Option<FixedSummary> {
+        let health = self.engine.health();
+        let [input, mean] = self.front_end.overflows();
+        Some(FixedSummary {
+            overflows: [
+                input,
+                mean + self.desired_overflows,
+                health.intermediate_overflows,
+                health.denominator_overflows,
+                health.gain_overflows,
+                health.inverse_overflows,
+                health.weight_overflows,
+                health.output_overflows,
+            ],
+            indefinite_at: health.indefinite_at,
+            error_over_signal: self.twin.error_over_signal(),
+        })
+    }
+
+    fn twin(&self) -> Option<Output> {
+        self.twin.newest
     }
 }

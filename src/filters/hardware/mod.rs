@@ -20,7 +20,7 @@ mod timing;
 #[cfg(feature = "hdl")]
 pub use export::{Stimulus, export_pipeline};
 pub use filter::HardwareFilter;
-pub use fixed::FixedSettings;
+pub use fixed::{FixedSettings, FixedSummary};
 pub(super) use lms::lms;
 pub use monitor::HealthSummary;
 pub use pipeline::{PipelineSettings, has_hardware, kind_names};

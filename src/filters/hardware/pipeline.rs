@@ -61,6 +61,12 @@ impl PipelineSettings {
         }
     }
 
+    /// Whether its words are fixed point.
+    #[must_use]
+    pub fn is_fixed(&self) -> bool {
+        matches!(self, Self::Fixed(_))
+    }
+
     /// Whether the filter keeps an inverse correlation matrix.
     #[must_use]
     pub fn has_matrix(&self) -> bool {

@@ -57,6 +57,7 @@ pub fn fixed_rls(settings: &RlsSettings, words: &RlsWords) -> FixedRlsSettings {
         tap_count: settings.tap_count,
         forgetting_factor: settings.forgetting_factor,
         initial_inverse_correlation: delta,
+        inverse_floor: i64::from(words.r_floor_steps),
         formats: RlsFormats {
             input: format(signals.x),
             desired: format(signals.d),

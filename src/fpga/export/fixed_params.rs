@@ -70,10 +70,11 @@ pub(super) fn core_parameters(export: &FixedExport) -> String {
     let _ = write!(
         core,
         ", .ALPHA(128'sh{:032x}), .SCALES({}), .IALPHA(64'sh{factor:016x}), .NI({factor_bits}), \
-         .DELTA(64'sh{:016x})",
+         .DELTA(64'sh{:016x}), .FLOOR(64'sh{:016x})",
         config.alpha(),
         u8::from(factor != 0),
-        config.delta()
+        config.delta(),
+        config.floor()
     );
     core
 }
@@ -131,6 +132,7 @@ pub(super) fn fixed_json(export: &FixedExport, rows: usize) -> String {
         ("inverse_alpha_code", factor),
         ("inverse_alpha_fraction_bits", factor_bits),
         ("delta_code", config.delta().to_string()),
+        ("floor_code", config.floor().to_string()),
         ("desired", format!("\"{}\"", export.desired)),
         ("input_lag_samples", export.input_lag_samples.to_string()),
         ("output_register", format!("\"{}\"", export.output_register)),

@@ -26,6 +26,7 @@ pub struct FixedFrontEnd {
     lag: usize,
     /// Newest first.
     held: Vec<i64>,
+    overflows: [u64; 2],
 }
 
 impl FixedFrontEnd {
@@ -39,7 +40,14 @@ impl FixedFrontEnd {
             desired,
             lag,
             held: vec![0; lag.max(1)],
+            overflows: [0; 2],
         }
+    }
+
+    /// Words of x and of d beyond the ends, in this order.
+    #[must_use]
+    pub fn overflows(&self) -> [u64; 2] {
+        self.overflows
     }
 
     /// The pair of the next sample, a code of d.
@@ -53,14 +61,18 @@ impl FixedFrontEnd {
             DesiredSignal::Current => sample,
             DesiredSignal::TwoSampleMean => {
                 let sum = i128::from(sample) + i128::from(self.held[0]);
-                format.store(sum, format.fraction_bits + 1).code
+                let stored = format.store(sum, format.fraction_bits + 1);
+                self.overflows[1] += u64::from(stored.overflowed);
+                stored.code
             }
         };
         self.held.rotate_right(1);
         self.held[0] = sample;
         let input = self.formats.input;
+        let input = input.store(i128::from(old), format.fraction_bits);
+        self.overflows[0] += u64::from(input.overflowed);
         CodePair {
-            input: input.store(i128::from(old), format.fraction_bits).code,
+            input: input.code,
             desired,
         }
     }

@@ -52,6 +52,8 @@ pub struct FixedRlsSettings {
     pub forgetting_factor: f64,
     /// Initial inverse correlation delta, > 0, in the inverse square of the input's full scale.
     pub initial_inverse_correlation: f64,
+    /// Smallest code of a diagonal element of R; 0: none.
+    pub inverse_floor: i64,
     /// Formats of the signals.
     pub formats: RlsFormats,
 }
@@ -67,6 +69,8 @@ pub struct FixedRlsConfig {
     pub(super) inverse_alpha: Option<i64>,
     pub(super) inverse_alpha_fraction_bits: u32,
     pub(super) delta: i64,
+    /// Smallest code of a diagonal element of R; 0: none.
+    pub(super) floor: i64,
 }
 
 impl FixedRlsConfig {
@@ -106,6 +110,13 @@ impl FixedRlsConfig {
                 format: "fixed point",
             });
         }
+        if !(0..=stored.code).contains(&settings.inverse_floor) {
+            return Err(FpgaError::CountOutOfRange {
+                name: "floor of R",
+                value: settings.inverse_floor.unsigned_abs(),
+                range: "0 to the code of the initial inverse correlation",
+            });
+        }
         let (inverse_alpha, inverse_alpha_fraction_bits) = inverse_alpha(alpha, formats.inverse)?;
         let scale = formats.input.fraction_bits + formats.intermediate.fraction_bits;
         Ok(Self {
@@ -115,6 +126,7 @@ impl FixedRlsConfig {
             inverse_alpha,
             inverse_alpha_fraction_bits,
             delta: stored.code,
+            floor: settings.inverse_floor,
         })
     }
 
@@ -147,6 +159,21 @@ impl FixedRlsConfig {
     pub fn inverse_alpha(&self) -> Option<(i64, u32)> {
         let code = self.inverse_alpha?;
         Some((code, self.inverse_alpha_fraction_bits))
+    }
+
+    /// Smallest code of a diagonal element of R; 0: none.
+    #[must_use]
+    pub fn floor(&self) -> i64 {
+        self.floor
+    }
+
+    /// The element of a diagonal that the floor holds up.
+    pub(super) fn floored(&self, element: i64) -> i64 {
+        if self.floor > 0 {
+            element.max(self.floor)
+        } else {
+            element
+        }
     }
 
     /// Code of the initial diagonal of R.

@@ -20,6 +20,8 @@ pub struct FixedHealth {
     pub weight_overflows: u64,
     /// Outputs and errors beyond the ends.
     pub output_overflows: u64,
+    /// Diagonal elements of R that the floor held up.
+    pub floored: u64,
     /// First sample with a denominator or a diagonal element of R at or below zero.
     pub indefinite_at: Option<u64>,
 }
@@ -126,8 +128,13 @@ impl FixedRlsEngine {
                 if self.config.inverse_alpha.is_some() {
                     *overflows += u64::from(grown.overflowed);
                 }
-                self.inverse[i * p + j] = grown.code;
-                self.inverse[j * p + i] = grown.code;
+                let mut code = grown.code;
+                if i == j {
+                    code = self.config.floored(code);
+                    self.health.floored += u64::from(code != grown.code);
+                }
+                self.inverse[i * p + j] = code;
+                self.inverse[j * p + i] = code;
             }
         }
     }

@@ -363,11 +363,18 @@ impl FixedRlsPipeline {
 
     fn corrected(&self) -> i64 {
         let FixedRegisters {
+            i,
+            j,
             read_latch,
             product,
             ..
         } = self.registers;
-        self.config.inverse(read_latch, product)[1].code
+        let code = self.config.inverse(read_latch, product)[1].code;
+        if i == j {
+            self.config.floored(code)
+        } else {
+            code
+        }
     }
 
     fn correct_write(&mut self) {

@@ -17,6 +17,7 @@
 //! den     = Q_den(alpha + L0*t0 + L1*t1 + ...)
 //! k[i]    = Q_k(t[i] / den)                                p divisions
 //! R[i][j] = Q_R(Q_R(R[i][j] - k[i]*t[j]) * ialpha)         i <= j; alpha = 1: Q_R(R[i][j] - k[i]*t[j])
+//! R[i][i] not below a floor, if there is one
 //! y       = Q_y(L0*W0 + L1*W1 + ...)                       weights before the update
 //! e       = Q_y(d - y)
 //! W[i]    = Q_W(W[i] + k[i]*e)

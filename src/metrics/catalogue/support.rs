@@ -183,32 +183,29 @@ fn check_tail(key: &MetricKey, samples: usize, last_step_index: usize) -> Result
 pub(crate) fn check_motion(known: &MetricKey, motion: &Motion) -> Result<(), Unavailable> {
     let fits = matches!(
         (known.applies, motion),
-        (Applies::Always | Applies::Pipeline | Applies::Twins, _)
-            | (
-                Applies::Steady | Applies::SteadyOrSwing | Applies::Separable,
-                Motion::Steady
-            )
-            | (
-                Applies::Swing
-                    | Applies::Tones
-                    | Applies::SteadyOrSwing
-                    | Applies::Moving
-                    | Applies::Separable,
-                Motion::Swing { .. } | Motion::SwingFromRest { .. }
-            )
-            | (
-                Applies::Tones | Applies::MultiSine | Applies::Moving | Applies::Separable,
-                Motion::MultiSine { .. }
-            )
-            | (
-                Applies::Steps | Applies::Moving | Applies::Separable,
-                Motion::Steps { .. }
-            )
-            | (
-                Applies::Onset,
-                Motion::Steps { .. } | Motion::SwingFromRest { .. } | Motion::General
-            )
-            | (Applies::Moving, Motion::General)
+        (
+            Applies::Always | Applies::Pipeline | Applies::FixedPoint | Applies::Twins,
+            _
+        ) | (
+            Applies::Steady | Applies::SteadyOrSwing | Applies::Separable,
+            Motion::Steady
+        ) | (
+            Applies::Swing
+                | Applies::Tones
+                | Applies::SteadyOrSwing
+                | Applies::Moving
+                | Applies::Separable,
+            Motion::Swing { .. } | Motion::SwingFromRest { .. }
+        ) | (
+            Applies::Tones | Applies::MultiSine | Applies::Moving | Applies::Separable,
+            Motion::MultiSine { .. }
+        ) | (
+            Applies::Steps | Applies::Moving | Applies::Separable,
+            Motion::Steps { .. }
+        ) | (
+            Applies::Onset,
+            Motion::Steps { .. } | Motion::SwingFromRest { .. } | Motion::General
+        ) | (Applies::Moving, Motion::General)
     );
     if fits {
         return Ok(());

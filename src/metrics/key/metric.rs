@@ -30,6 +30,8 @@ pub enum Applies {
     Separable,
     /// Every record of a filter that is a hardware pipeline.
     Pipeline,
+    /// Every record of a filter that is a hardware pipeline of fixed-point words.
+    FixedPoint,
     /// The estimates of a calibration campaign, which are no records.
     Calibration,
     /// The words of a recorded log.
@@ -56,6 +58,7 @@ impl Applies {
         match self {
             Self::Always => "any motion",
             Self::Pipeline => "a filter that is a hardware pipeline",
+            Self::FixedPoint => "a filter that is a hardware pipeline of fixed-point words",
             Self::Steady => "a table at rest or at constant rate",
             Self::Swing => "a swing",
             Self::Tones => "a swing or several sines",
@@ -362,6 +365,17 @@ impl MetricKey {
         definition: &'static str,
     ) -> Self {
         Self::of_filters(name, unit, Applies::Pipeline, definition).needs(Needs::Nothing)
+    }
+
+    /// A figure of a hardware pipeline of fixed-point words.
+    pub(crate) const fn of_fixed_point(
+        name: &'static str,
+        unit: &'static str,
+        definition: &'static str,
+    ) -> Self {
+        Self::of_filters(name, unit, Applies::FixedPoint, definition)
+            .needs(Needs::Nothing)
+            .by_choice()
     }
 
     /// A figure that twins of its record give of a filter.

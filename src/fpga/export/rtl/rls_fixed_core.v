@@ -11,6 +11,7 @@
 //   den  = Qden(ALPHA + L_0*t_0 + ...)
 //   k_i  = Qk(t_i / den)
 //   R_ij = QR(QR(R_ij - k_i*t_j) * IALPHA)           i <= j, also to R_ji; SCALES = 0: no IALPHA
+//   R_ii >= FLOOR, if there is one
 //   y    = Qy(L_0*W_0 + ...)                         weights before the update
 //   W_i  = QW(W_i + k_i*Qy(d - y))
 //
@@ -39,6 +40,7 @@ module rls_fixed_core #(
     parameter signed [63:0] IALPHA = 64'sd1,
     parameter NI = 0,               // fraction bits of IALPHA
     parameter signed [63:0] DELTA  = 64'sd1,            // initial diagonal of R
+    parameter signed [63:0] FLOOR  = 64'sd0,            // smallest diagonal element of R; 0: none
     parameter DIV_LATENCY = 1
 ) (
     input  wire          clk,
@@ -231,9 +233,12 @@ module rls_fixed_core #(
     // Sign extension and cutting of constants.
     /* verilator lint_off WIDTH */
     wire signed [MW-1:0] delta_word = DELTA;
+    wire signed [MW-1:0] floor_word = FLOOR;
     wire signed [MW-1:0] zero = {MW{1'b0}};
-    wire signed [MW-1:0] xm = x_word, km = k_word, tm = t_word, rm = r_word, wm = w_word;
+    wire signed [MW-1:0] xm = x_word, km = k_word, tm = t_word, wm = w_word;
+    wire signed [MW-1:0] r_mw = r_word;
     /* verilator lint_on WIDTH */
+    wire signed [MW-1:0] rm = FLOOR > 0 && i == j && r_mw < floor_word ? floor_word : r_mw;
     wire signed [MW-1:0] ra_wdata = clear ? zero : state == LOAD ? xm : km;
     wire signed [MW-1:0] rb_wdata = clear ? (!second && i == j ? delta_word : zero)
                                   : state == RIL_W ? tm : state == RFW_W ? wm : rm;

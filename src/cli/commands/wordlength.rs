@@ -1,0 +1,125 @@
+//! `fogbench wordlength`: the shortest fixed-point words of a filter.
+
+use std::fmt::Write as _;
+use std::io;
+
+use serde_json::{Value, json};
+
+use crate::cli::options::format::Format;
+use crate::cli::options::wordlength::WordLengthOptions;
+use crate::cli::terminal::complaint;
+use crate::cli::terminal::exit::Exit;
+use crate::cli::terminal::output;
+use crate::experiment::{WordLengthLimits, WordLengthTrial, WordLengths, plan_suite, word_lengths};
+use crate::wording::counted;
+
+/// Searches and prints the trials, and the table of the shortest words.
+pub(in crate::cli) fn wordlength(options: &WordLengthOptions) -> io::Result<Exit> {
+    let plans = match plan_suite(std::slice::from_ref(&options.path), &options.set) {
+        Ok(plans) => plans,
+        Err(errors) => {
+            complaint::print(&errors);
+            return Ok(Exit::Usage);
+        }
+    };
+    let path = options.path.display();
+    let [plan] = plans.as_slice() else {
+        let runs = counted(plans.len(), "run");
+        complaint::print(&[format!("{path}: holds {runs}: expected one")]);
+        return Ok(Exit::Usage);
+    };
+    let limits = WordLengthLimits {
+        arw_ratio_max: options.max_arw_ratio,
+        delay_change_max_us: options.max_delay_change_us,
+        survive_s: options.survive_s,
+    };
+    let found = match word_lengths(plan, &options.name, limits, &mut |_| {}) {
+        Ok(found) => found,
+        Err(error) => {
+            complaint::print(&[format!("{path}: {error}")]);
+            return Ok(Exit::Usage);
+        }
+    };
+    output::data(&match options.format {
+        Format::Text => text(&found, &options.name),
+        Format::Json => format!("{:#}\n", json_of(&found)),
+        Format::Jsonl => format!("{}\n", json_of(&found)),
+    })?;
+    Ok(match found.best() {
+        Some(_) => Exit::Success,
+        None => Exit::GateFailed,
+    })
+}
+
+fn text(found: &WordLengths, name: &str) -> String {
+    let mut text = format!(
+        "{} of the gyro; * no other words are better in bits, noise, delay and life at once\n",
+        counted(found.samples, "sample")
+    );
+    text.push_str(
+        "   bits   x  d  t den  k  r  w  y  ARW/binary64  delay - binary64 us  indefinite s  fails s\n",
+    );
+    for trial in &found.uniform {
+        write_row(&mut text, found, trial);
+    }
+    if !found.greedy.is_empty() {
+        text.push_str("signal by signal\n");
+    }
+    for trial in &found.greedy {
+        write_row(&mut text, found, trial);
+    }
+    match found.best() {
+        Some(best) => {
+            // Writing to a string cannot fail.
+            let _ = write!(
+                text,
+                "\n# filter `{name}`: pipeline = \"fpga\", number_format = \"fixed\"\n\
+                 [filter.rls.fixed]\n{}",
+                best.words.to_toml()
+            );
+        }
+        None => text.push_str("\nno words of up to 48 bits do\n"),
+    }
+    text
+}
+
+fn write_row(text: &mut String, found: &WordLengths, trial: &WordLengthTrial) {
+    let mark = if found.is_pareto(trial) { '*' } else { ' ' };
+    let _ = write!(text, "{mark}  {:>4} ", trial.words.total_bits());
+    for (_, word) in trial.words.signals().named() {
+        let _ = write!(text, " {:>2}", word.word_bits);
+    }
+    let figure = |value: Option<f64>, digits: usize| {
+        value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
+    };
+    let _ = writeln!(
+        text,
+        "  {:>12}  {:>19}  {:>12}  {:>7}",
+        figure(trial.arw_ratio, 4),
+        figure(trial.delay_change_us, 3),
+        figure(trial.indefinite_at_s, 3),
+        figure(trial.diverged_at_s, 3)
+    );
+}
+
+fn json_of(found: &WordLengths) -> Value {
+    let trial = |trial: &WordLengthTrial| {
+        let signals = trial.words.signals();
+        let bits: serde_json::Map<String, Value> = signals
+            .named()
+            .map(|(name, word)| (name.to_owned(), word.word_bits.into()))
+            .collect();
+        json!({
+            "word_bits": bits, "total_bits": trial.words.total_bits(),
+            "arw_ratio": trial.arw_ratio, "delay_change_us": trial.delay_change_us,
+            "indefinite_at_s": trial.indefinite_at_s, "diverged_at_s": trial.diverged_at_s,
+            "does": trial.does, "pareto": found.is_pareto(trial),
+        })
+    };
+    json!({
+        "samples": found.samples,
+        "uniform": found.uniform.iter().map(trial).collect::<Vec<_>>(),
+        "greedy": found.greedy.iter().map(trial).collect::<Vec<_>>(),
+        "best": found.best().map(|best| best.words.to_toml()),
+    })
+}

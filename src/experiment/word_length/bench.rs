@@ -1,0 +1,267 @@
+//! One trial of word lengths.
+
+use crate::experiment::plan::Plan;
+use crate::experiment::run::{first_words, motion};
+use crate::filters::hardware::PipelineSettings;
+use crate::filters::{FilterKind, FilterSettings as _, RlsFilterConfig, RlsWords};
+use crate::fpga::FpgaError;
+use crate::gyro::GyroError;
+use crate::metrics::{Motion, SwingClock, fit_swing, overlapping_allan_at};
+use crate::units::s_to_us;
+use crate::vocabulary::{NumberFormat, Pipeline, WordFormat};
+
+/// Averaging time at which noise is compared, s.
+const ALLAN_S: f64 = 0.1;
+
+/// What words have to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WordLengthLimits {
+    /// Largest ratio of the Allan deviations at 0.1 s to that of binary64.
+    pub arw_ratio_max: f64,
+    /// Largest change of the delay against binary64, us.
+    pub delay_change_max_us: f64,
+    /// Time that the filter has to live, s; none: the scenario's.
+    pub survive_s: Option<f64>,
+}
+
+/// Why there is nothing to try.
+#[derive(Debug, thiserror::Error)]
+pub enum WordLengthError {
+    /// No such filter.
+    #[error("there is no filter `{name}` of recursive least squares: expected one of {known}")]
+    NoFilter {
+        /// Name that was given.
+        name: String,
+        /// Names of those that are there.
+        known: String,
+    },
+    /// The filter refuses its constants.
+    #[error(transparent)]
+    Pipeline(#[from] FpgaError),
+    /// The gyro has no words.
+    #[error(transparent)]
+    Gyro(#[from] GyroError),
+    /// The filter fails in binary64.
+    #[error("the filter fails in binary64: {0}")]
+    Twin(String),
+}
+
+/// What some word lengths make of the filter.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct WordLengthTrial {
+    /// The words.
+    pub words: RlsWords,
+    /// Ratio of the Allan deviations at 0.1 s to that of binary64; none of a filter that failed.
+    pub arw_ratio: Option<f64>,
+    /// Delay minus that of binary64, us; none without a swing and of a filter that failed.
+    pub delay_change_us: Option<f64>,
+    /// When R was no longer definite, s.
+    pub indefinite_at_s: Option<f64>,
+    /// When the output failed, s.
+    pub diverged_at_s: Option<f64>,
+    /// Whether the words do what they have to.
+    pub does: bool,
+}
+
+/// The words of the gyro and what the filter makes of them in binary64.
+pub(super) struct Bench {
+    config: RlsFilterConfig,
+    input: Vec<f64>,
+    warm_up: usize,
+    period_s: f64,
+    motion: Motion,
+    limits: WordLengthLimits,
+    twin: Figures,
+}
+
+/// Noise and phase of some output words.
+#[derive(Clone, Copy, Debug)]
+struct Figures {
+    allan_deg_per_h: Option<f64>,
+    phase_rad: Option<f64>,
+    frequency_hz: f64,
+}
+
+impl Bench {
+    pub(super) fn new(
+        plan: &Plan,
+        name: &str,
+        limits: WordLengthLimits,
+    ) -> Result<Self, WordLengthError> {
+        let scenario = &plan.resolved().scenario;
+        let of_rls = scenario
+            .filters
+            .iter()
+            .filter_map(|filter| match &filter.kind {
+                FilterKind::Rls(config) => Some((filter.name.as_str(), config)),
+                _ => None,
+            });
+        let found = of_rls.clone().find(|(known, _)| *known == name);
+        let Some((_, config)) = found else {
+            let known: Vec<&str> = of_rls.map(|(known, _)| known).collect();
+            return Err(WordLengthError::NoFilter {
+                name: name.to_owned(),
+                known: known.join(", "),
+            });
+        };
+        let period_s = plan.sample_period_s();
+        let length = plan.record_length();
+        let asked = limits
+            .survive_s
+            .map_or(0, |life_s| samples(life_s / period_s));
+        let input = first_words(scenario, asked.max(length.total()))?;
+        let config = RlsFilterConfig {
+            pipeline: Pipeline::Fpga,
+            ..config.clone()
+        };
+        let mut bench = Self {
+            config,
+            input,
+            warm_up: length.warm_up,
+            period_s,
+            motion: motion(scenario, period_s),
+            limits,
+            twin: Figures {
+                allan_deg_per_h: None,
+                phase_rad: None,
+                frequency_hz: 0.0,
+            },
+        };
+        let float = RlsFilterConfig {
+            number_format: WordFormat::Float(NumberFormat::Binary64),
+            ..bench.config.clone()
+        };
+        let (outputs, failure) = bench.run(&float)?.0;
+        if let Some((_, message)) = failure {
+            return Err(WordLengthError::Twin(message));
+        }
+        bench.twin = bench.figures(&outputs);
+        Ok(bench)
+    }
+
+    /// The words that the filter has, or those of the reference.
+    pub(super) fn words(&self) -> RlsWords {
+        let given = self.config.fixed.clone();
+        given.unwrap_or_else(RlsWords::reference)
+    }
+
+    /// Samples that every trial filters.
+    pub(super) fn samples(&self) -> usize {
+        self.input.len()
+    }
+
+    /// Tries some words.
+    pub(super) fn trial(&self, words: RlsWords) -> Result<WordLengthTrial, WordLengthError> {
+        let config = RlsFilterConfig {
+            number_format: WordFormat::Fixed,
+            fixed: Some(words.clone()),
+            ..self.config.clone()
+        };
+        let ((outputs, failure), indefinite_at) = self.run(&config)?;
+        let stamp_s = |sample: u64| count(sample + 1) * self.period_s;
+        let diverged_at_s = failure.map(|(sample, _)| stamp_s(sample));
+        let figures = match diverged_at_s {
+            None => self.figures(&outputs),
+            Some(_) => Figures {
+                allan_deg_per_h: None,
+                phase_rad: None,
+                frequency_hz: 0.0,
+            },
+        };
+        let pair = |own: Option<f64>, twin: Option<f64>| own.zip(twin);
+        let arw_ratio =
+            pair(figures.allan_deg_per_h, self.twin.allan_deg_per_h).map(|(own, twin)| own / twin);
+        let delay_change_us = pair(figures.phase_rad, self.twin.phase_rad).map(|(own, twin)| {
+            let later = (twin - own) / std::f64::consts::TAU;
+            // The nearest turn.
+            s_to_us((later - later.round()) / figures.frequency_hz)
+        });
+        let does = diverged_at_s.is_none()
+            && arw_ratio.is_some_and(|ratio| ratio <= self.limits.arw_ratio_max)
+            && delay_change_us.is_none_or(|us| us.abs() <= self.limits.delay_change_max_us);
+        Ok(WordLengthTrial {
+            words,
+            arw_ratio,
+            delay_change_us,
+            indefinite_at_s: indefinite_at.map(stamp_s),
+            diverged_at_s,
+            does,
+        })
+    }
+
+    /// Filters the words: the outputs, when and why it failed, when R was no longer definite.
+    #[expect(clippy::type_complexity, reason = "taken apart where it is called")]
+    fn run(
+        &self,
+        config: &RlsFilterConfig,
+    ) -> Result<((Vec<f64>, Option<(u64, String)>), Option<u64>), FpgaError> {
+        let settings: PipelineSettings = config.hardware().expect("pipeline = \"fpga\" is set");
+        let mut filter = settings.filter(self.warm_up as u64)?;
+        let mut outputs = Vec::with_capacity(self.input.len());
+        let mut failure = None;
+        for word in &self.input {
+            match filter.step(*word) {
+                Ok(output) => outputs.push(output.value_deg_per_h),
+                Err(divergence) => {
+                    failure = Some((divergence.sample, divergence.message));
+                    break;
+                }
+            }
+        }
+        let indefinite_at = filter.fixed().and_then(|fixed| fixed.indefinite_at);
+        Ok(((outputs, failure), indefinite_at))
+    }
+
+    /// Noise beside the swing, and the phase of the swing.
+    fn figures(&self, outputs: &[f64]) -> Figures {
+        let record = &outputs[self.warm_up.min(outputs.len())..];
+        let frequency_hz = match self.motion {
+            Motion::Swing { frequency_hz } | Motion::SwingFromRest { frequency_hz } => frequency_hz,
+            _ => 0.0,
+        };
+        let clock = SwingClock {
+            frequency_hz,
+            sample_period_s: self.period_s,
+            first_stamp_s: 0.0,
+        };
+        let fit = if frequency_hz > 0.0 {
+            fit_swing(record, &clock).ok().map(|fit| fit.whole)
+        } else {
+            None
+        };
+        let noise: Vec<f64> = match &fit {
+            None => record.to_vec(),
+            Some(sine) => {
+                let values = record.iter().enumerate();
+                values
+                    .map(|(index, value)| {
+                        let phase = clock.phase_rad(index) + sine.phase_rad;
+                        value - sine.amplitude * phase.cos()
+                    })
+                    .collect()
+            }
+        };
+        let factor = samples(ALLAN_S / self.period_s).max(1);
+        let points = overlapping_allan_at(&noise, self.period_s, &[factor]);
+        Figures {
+            allan_deg_per_h: points.first().map(|point| point.deviation_deg_per_h.value),
+            phase_rad: fit.map(|sine| sine.phase_rad),
+            frequency_hz,
+        }
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a count of samples of a positive time"
+)]
+fn samples(count: f64) -> usize {
+    count.round() as usize
+}
+
+#[expect(clippy::cast_precision_loss, reason = "far below 2^53")]
+fn count(samples: u64) -> f64 {
+    samples as f64
+}

@@ -1,0 +1,77 @@
+//! `fogbench wordlength`: what a bit costs, and the shortest words that do.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::support::{code, fogbench, stderr, stdout, write};
+
+/// A swing of the paper, short, and a filter without fixed-point words.
+const SWING: &str = "schema = 1\nname = \"a\"\nduration_s = 1.0\nwarm_up_s = 0.25\nfidelity = \"rate\"\n\
+    [turntable.swing]\nfrequency_hz = 10.0\nrate_amplitude_deg_per_s = 1.0\nsoft_start_s = 0.25\n\
+    [[filter]]\nname = \"rls\"\n[filter.rls]\ninitial_inverse_correlation = 1.97e-5\n";
+
+fn search(folder: &Path, options: &[&str]) -> (i32, String, String) {
+    write(folder, "a.toml", SWING);
+    let arguments = [&["wordlength", "a.toml"], options].concat();
+    let output = fogbench(folder, &arguments);
+    (code(&output), stdout(&output), stderr(&output))
+}
+
+#[test]
+fn the_shortest_words_do_and_shorter_ones_do_not() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let (exit, text, talk) = search(folder.path(), &["--filter", "rls", "--format", "json"]);
+    assert_eq!(exit, 0, "{text}{talk}");
+    let found: Value = serde_json::from_str(&text).expect("JSON");
+    let rows = |name: &str| found[name].as_array().expect("trials").clone();
+    let (uniform, greedy) = (rows("uniform"), rows("greedy"));
+    let (last, shorter) = uniform.split_last().expect("a trial");
+    assert_eq!(last["does"], true);
+    assert!(!shorter.is_empty() && shorter.iter().all(|trial| trial["does"] == false));
+    assert!(
+        shorter
+            .iter()
+            .any(|trial| trial["indefinite_at_s"].is_number())
+    );
+    // Signal by signal the words only become shorter, and go on doing.
+    assert_eq!(greedy.len(), 8);
+    let bits = |trial: &Value| trial["total_bits"].as_u64().expect("bits");
+    let mut before = bits(last);
+    for trial in &greedy {
+        assert_eq!(trial["does"], true, "{trial}");
+        assert!(trial["arw_ratio"].as_f64().expect("a ratio") <= 1.01);
+        assert!(trial["delay_change_us"].as_f64().expect("a delay").abs() <= 1.0);
+        assert!(bits(trial) <= before);
+        before = bits(trial);
+    }
+    assert!(before < bits(last), "no signal can be shorter");
+    // The table that is printed is one of a scenario, and its filter does in a run as well.
+    let table = found["best"].as_str().expect("a table");
+    let keys = "pipeline = \"fpga\"\nnumber_format = \"fixed\"\n[filter.rls.fixed]\n";
+    write(folder.path(), "b.toml", &format!("{SWING}{keys}{table}"));
+    let run = fogbench(folder.path(), &["run", "b.toml", "-o", "out"]);
+    assert_eq!(code(&run), 0, "{}{}", stdout(&run), stderr(&run));
+}
+
+#[test]
+fn what_no_words_do_is_said() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let options = [
+        "--filter",
+        "rls",
+        "--max-delay-change-us",
+        "1e-6",
+        "--max-arw-ratio",
+        "0.5",
+    ];
+    let (exit, text, _) = search(folder.path(), &options);
+    assert_eq!(exit, 1, "{text}");
+    assert!(text.contains("no words of up to 48 bits do"), "{text}");
+    let (exit, _, talk) = search(folder.path(), &["--filter", "lms"]);
+    assert_eq!(exit, 2);
+    assert!(
+        talk.contains("no filter `lms` of recursive least squares: expected one of rls"),
+        "{talk}"
+    );
+}
