@@ -96,7 +96,7 @@ impl Inference {
         }
         let turn = draw as usize;
         let figure = told[turn % told.len()];
-        let sign = if turn / told.len() % 2 == 0 {
+        let sign = if (turn / told.len()).is_multiple_of(2) {
             1.0
         } else {
             -1.0
