@@ -40,7 +40,7 @@ pub use campaign::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
 };
 pub use infer::{
-    CalibrateInference, ConfirmationRun, Figures, Inference, RecordsError, check_problem, infer,
+    CalibrateInference, ConfirmationRun, Figures, Inference, SimulationError, check_problem, infer,
 };
 pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogSettings, LogTrial,

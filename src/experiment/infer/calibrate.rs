@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::bench::Bench;
-use super::simulated::{RecordsError, Settings, simulate};
+use super::simulated::{Settings, SimulationError, simulate};
 use super::{Inference, question, search};
 use crate::inference::{Calibration, Forecasts, Levels, Outcome, Printed, SHIFT, Shifted, Truth};
 use crate::random::{Stream, Streams};
@@ -40,8 +40,8 @@ impl Inference {
         &self,
         how: CalibrateInference,
         done: &(dyn Fn() + Sync),
-    ) -> Result<Calibration, RecordsError> {
-        let outcomes: Result<Vec<Outcome>, RecordsError> = (0..how.draws)
+    ) -> Result<Calibration, SimulationError> {
+        let outcomes: Result<Vec<Outcome>, SimulationError> = (0..how.draws)
             .into_par_iter()
             .map(|draw| {
                 let outcome = self.draw(draw, how.figures)?;
@@ -53,12 +53,12 @@ impl Inference {
     }
 
     /// One draw and what its answer is worth.
-    fn draw(&self, draw: u32, figures: Figures) -> Result<Outcome, RecordsError> {
+    fn draw(&self, draw: u32, figures: Figures) -> Result<Outcome, SimulationError> {
         let bench = &self.bench;
         // The search of the printed figures has the seed itself.
         let seed = self.problem.config.seed.wrapping_add(1 + u64::from(draw));
         let mut stream = Streams::new(seed, 0).stream("calibration");
-        let mut truth = settings(bench, &mut stream).ok_or(RecordsError::NoGyro(TRIES))?;
+        let mut truth = settings(bench, &mut stream).ok_or(SimulationError::NoGyro(TRIES))?;
         let drawn = match figures {
             Figures::Drawn => truth.forecasts.drawn(&mut stream),
             Figures::Simulated => {

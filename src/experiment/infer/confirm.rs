@@ -1,7 +1,7 @@
 //! Settings that were found, simulated: forecasts beside records.
 
 use super::Inference;
-use super::simulated::{RecordsError, Settings};
+use super::simulated::{Settings, SimulationError};
 use crate::experiment::plan::Plan;
 use crate::experiment::run::Progress;
 use crate::inference::{Candidate, Confirmation, Confirmed, Simulated};
@@ -52,7 +52,7 @@ impl Inference {
         candidate: &Candidate,
         record: usize,
         more: &[String],
-    ) -> Result<Plan, RecordsError> {
+    ) -> Result<Plan, SimulationError> {
         let settings = Settings {
             reading: candidate.reading,
             values: self.bench.values(&candidate.parts),
@@ -65,7 +65,7 @@ impl Inference {
     ///
     /// # Errors
     /// Complaints about a scenario.
-    pub fn scenarios(&self) -> Result<Vec<(String, String)>, RecordsError> {
+    pub fn scenarios(&self) -> Result<Vec<(String, String)>, SimulationError> {
         let config = &self.problem.config;
         let candidates = self.candidates();
         let mut files = Vec::new();
@@ -101,7 +101,7 @@ impl Inference {
         &self,
         candidates: &[Candidate],
         repeats: u32,
-    ) -> Result<Vec<ConfirmationRun>, RecordsError> {
+    ) -> Result<Vec<ConfirmationRun>, SimulationError> {
         let models = [
             (
                 false,
@@ -141,7 +141,7 @@ impl Inference {
         runs: Vec<ConfirmationRun>,
         progress: &dyn Progress,
         done: &dyn Fn(),
-    ) -> Result<Confirmation, RecordsError> {
+    ) -> Result<Confirmation, SimulationError> {
         for candidate in &mut candidates {
             let forecasts = self.bench.forecaster(candidate.reading)(&candidate.parts);
             let forecasts = forecasts.unwrap_or_default().figures;
@@ -177,12 +177,12 @@ impl Inference {
         &self,
         run: &ConfirmationRun,
         progress: &dyn Progress,
-    ) -> Result<Vec<(usize, Simulated)>, RecordsError> {
+    ) -> Result<Vec<(usize, Simulated)>, SimulationError> {
         let record = &self.problem.config.records[run.record].name;
         let ended = run
             .plan
             .run_with(progress)
-            .map_err(|error| RecordsError::Unfinished {
+            .map_err(|error| SimulationError::Unfinished {
                 record: record.clone(),
                 reason: error.to_string(),
             })?;

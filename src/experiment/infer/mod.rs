@@ -23,7 +23,7 @@ use crate::scenario::{Problem, ScenarioError, load_problem};
 
 pub use calibrate::{CalibrateInference, Figures};
 pub use confirm::ConfirmationRun;
-pub use simulated::RecordsError;
+pub use simulated::SimulationError;
 
 /// Points of each accepted reading at which experiments are weighed.
 const POINTS_OF_EXPERIMENTS: usize = 64;

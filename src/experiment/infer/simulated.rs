@@ -7,7 +7,7 @@ use crate::scenario::{Problem, ScenarioError};
 
 /// Why there are no records of settings.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RecordsError {
+pub enum SimulationError {
     /// The settings do not make a sound scenario.
     #[error("record {record}: {}", complaints.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Scenario {
@@ -71,18 +71,18 @@ impl Settings {
         bench: &Bench,
         record: usize,
         more: &[String],
-    ) -> Result<Plan, RecordsError> {
+    ) -> Result<Plan, SimulationError> {
         let mut sets = self.sets(problem, bench, record);
         sets.extend(more.iter().cloned());
         let row = &problem.config.records[record];
         let file = problem.beside(&row.scenario);
         let record = || row.name.clone();
-        let plans = plan_suite(&[file], &sets).map_err(|complaints| RecordsError::Scenario {
+        let plans = plan_suite(&[file], &sets).map_err(|complaints| SimulationError::Scenario {
             record: record(),
             complaints,
         })?;
         let plan = plans.into_iter().next();
-        plan.ok_or_else(|| RecordsError::Empty { record: record() })
+        plan.ok_or_else(|| SimulationError::Empty { record: record() })
     }
 }
 
@@ -96,13 +96,13 @@ pub(super) fn simulate(
     bench: &Bench,
     settings: &Settings,
     more: &[String],
-) -> Result<Vec<Option<f64>>, RecordsError> {
+) -> Result<Vec<Option<f64>>, SimulationError> {
     let mut figures = vec![None; problem.config.published.len()];
     for (record, row) in problem.config.records.iter().enumerate() {
         let run = settings
             .plan(problem, bench, record, more)?
             .run()
-            .map_err(|error| RecordsError::Unfinished {
+            .map_err(|error| SimulationError::Unfinished {
                 record: row.name.clone(),
                 reason: error.to_string(),
             })?;
