@@ -16,7 +16,7 @@ pub use calibration::{CompensationForm, EstimatorKind, ForgettingForm};
 pub use filter::{
     ConstantUnit, DesiredSignal, InitialWeights, OutputRegister, Pipeline, SignLmsForm, UpdateSign,
 };
-pub use hardware::{Division, ExportForm, NumberFormat, UpdateOrder};
+pub use hardware::{Device, Division, ExportForm, NumberFormat, UnitSource, UpdateOrder};
 pub use inference::Prior;
 pub use motion::{CaseAxis, PhaseRule};
 pub(crate) use word::words;

@@ -39,6 +39,8 @@ struct Report<'a> {
     table: Vec<TimingRow>,
     measured: PipelineTiming,
     stalled: u64,
+    /// Whether the machine has units of these latencies.
+    exists: bool,
     /// Recursive least squares only.
     interleaved: Option<ScheduleReport>,
 }
@@ -49,12 +51,17 @@ impl<'a> Report<'a> {
         let settings = filter.settings();
         let measured = settings.timing()?;
         check_clock(filter.clock_mhz)?;
-        let stalled = settings.core.stalled_clocks(options.units())?;
+        let units = options.units();
+        let stalled = settings.core.stalled_clocks(units)?;
+        // The RTL of every kind waits for its divider.
+        let only_the_divider_waits =
+            units.adder.latency_clocks == 1 && units.multiplier.latency_clocks == 1;
         let mut report = Self {
             filter,
             table: Vec::new(),
             measured,
             stalled,
+            exists: settings.core.config_with::<f64>(units).is_ok() || only_the_divider_waits,
             interleaved: None,
         };
         if let CoreSettings::Rls(core) = &settings.core {
@@ -70,7 +77,7 @@ impl<'a> Report<'a> {
                 ram_ports: options.ram_ports,
                 symmetric_half: false,
             };
-            report.interleaved = Some(schedule_clocks(load, options.units(), schedule)?);
+            report.interleaved = Some(schedule_clocks(load, units, schedule)?);
         }
         Ok(report)
     }
@@ -125,8 +132,10 @@ impl<'a> Report<'a> {
             "table": rows,
             "stalled": model(self.stalled),
         });
+        document["stalled"]["estimate"] = (!self.exists).into();
         if let Some(report) = &self.interleaved {
             document["interleaved"] = model(report.clocks);
+            document["interleaved"]["estimate"] = true.into();
             document["interleaved"]["bound"] = report.bound.name().into();
         }
         document
@@ -195,9 +204,15 @@ impl<'a> Report<'a> {
                 sample_rate_max_khz(clocks, clock_mhz)
             );
         };
-        line("stalled", self.stalled, "the control waits for each result");
+        let waits = "the control waits for each result";
+        let basis = if self.exists {
+            waits.to_owned()
+        } else {
+            format!("estimate; {waits}")
+        };
+        line("stalled", self.stalled, &basis);
         if let Some(report) = &self.interleaved {
-            let bound = format!("bound by: {}", report.bound.name());
+            let bound = format!("estimate; bound by: {}", report.bound.name());
             line("interleaved", report.clocks, &bound);
         }
         text

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
-use crate::vocabulary::{Division, ExportForm, NumberFormat, Word as _};
+use crate::vocabulary::{Device, Division, ExportForm, NumberFormat, UnitSource, Word as _};
 
 macro_rules! option_values {
     ($($word:ty),+) => {$(
@@ -19,4 +19,4 @@ macro_rules! option_values {
     )+};
 }
 
-option_values!(Division, ExportForm, NumberFormat);
+option_values!(Device, Division, ExportForm, NumberFormat, UnitSource);

@@ -15,7 +15,7 @@ mod settings;
 mod sign_lms;
 
 #[cfg(feature = "hdl")]
-pub use export::{Stimulus, export_pipeline};
+pub use export::{HardwareParts, Stimulus, export_pipeline, export_pipeline_of};
 pub use filter::HardwareFilter;
 pub(super) use lms::lms;
 pub use monitor::HealthSummary;
