@@ -62,6 +62,9 @@ fn bad_hardware_parameters_exit_2_and_say_the_range() {
         &format!("{good} --initial-inverse-correlation=-1"),
         "export vectors out --stimulus bad.csv",
         "export vectors out --stimulus words.csv",
+        &format!("{good} --synth ecp5"),
+        &format!("{good} --kind nlms --adder-latency 3"),
+        "export rtl out --stimulus good.csv --synth ecp5 --units behavioural",
     ] {
         let words: Vec<&str> = arguments.split(' ').collect();
         let output = fogbench(folder.path(), &words);

@@ -107,6 +107,7 @@ mod resets;
 mod resume;
 mod rows;
 mod rtl;
+mod rtl_units;
 mod scale_factor_test;
 mod scenario_errors;
 mod selection;

@@ -144,7 +144,7 @@ fn stalled_clocks_match_the_rtl_and_the_worked_table() {
     #[rustfmt::skip]
     let worked = [
         ("paper", 108, 108), ("divider-10", 117, 252), ("hardfloat", 163, 988),
-        ("amd-hls", 500, 875), ("amd-fpo-deep", 1632, 2247), ("altfp-short", 663, 738),
+        ("amd-hls", 530, 905), ("amd-fpo-deep", 1692, 2307), ("altfp-short", 663, 738),
         ("altfp-deep", 1411, 2161),
     ];
     for (name, reciprocal, element) in worked {
@@ -157,7 +157,7 @@ fn stalled_clocks_match_the_rtl_and_the_worked_table() {
         units("opencores-double-fpu"),
     )
     .unwrap();
-    assert_eq!(slow, 2433);
+    assert_eq!(slow, 2523);
     // RTL with a 58-clock divider: 165 and 1020.
     let divider_58 = Units {
         divider: UnitTiming::iterative(58),

@@ -14,6 +14,8 @@
 //! | Adding, Halving (mean of two only) | `sum <- word + XP`, then `sum <- sum * 0.5` |
 //! | Offering, until the core takes the pair | the hold chain moves; a waiting sample is taken |
 //!
+//! Where a sum or a product takes several clocks, so does its row of the table.
+//!
 //! The front end has a converter and a multiplier of its own and works while the core does: it adds
 //! latency, and no clock to the core's period, which is longer than its own for every filter.
 //!
@@ -121,6 +123,8 @@ pub struct Board<M: Machine> {
     core: Sequencer<M>,
     surroundings: Surroundings,
     phase: Phase,
+    /// Clocks that the phase has lasted.
+    waited: u64,
     code: i32,
     scaled: f64,
     word: M::Word,
@@ -141,6 +145,7 @@ impl<M: Machine> Board<M> {
             core,
             surroundings,
             phase: Phase::Waiting,
+            waited: 0,
             code: 0,
             scaled: 0.0,
             word: zero,
@@ -163,6 +168,7 @@ impl<M: Machine> Board<M> {
         self.core.reset();
         self.front_end = FrontEnd::new(desired, input_lag_samples);
         self.phase = Phase::Waiting;
+        self.waited = 0;
         self.held = M::Word::ZERO;
         self.result = None;
     }
@@ -256,6 +262,17 @@ impl<M: Machine> Board<M> {
     }
 
     fn advance(&mut self) {
+        let units = self.core.units();
+        let clocks = match self.phase {
+            Phase::Scaling | Phase::Converting | Phase::Halving => units.multiplier.latency_clocks,
+            Phase::Adding => units.adder.latency_clocks,
+            Phase::Waiting | Phase::Offering => 1,
+        };
+        self.waited += 1;
+        if self.waited < clocks {
+            return;
+        }
+        self.waited = 0;
         let factor = |of: fn(&CodeScale) -> f64| self.surroundings.scale.as_ref().map_or(1.0, of);
         match self.phase {
             Phase::Scaling => {

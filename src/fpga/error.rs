@@ -66,6 +66,11 @@ pub enum FpgaError {
     /// There is no export of this form.
     #[error("there is no waveform of fixed-point words: export rtl and run it with +VCD=wave.vcd")]
     FixedWaveform,
+    /// Fixed-point words have units of their own.
+    #[error(
+        "fixed-point words have units of their own, of one clock: leave --units, --synth and the latencies out"
+    )]
+    FixedUnits,
     /// Two sequences that belong together differ in length.
     #[error("{name} holds {got} values: expected {want}, one per sample")]
     Length {

@@ -63,6 +63,16 @@ macro_rules! kinds {
                 }
             }
 
+            /// The same with units of these latencies.
+            ///
+            /// # Errors
+            /// What the pipeline refuses.
+            pub fn config_with<F: Fp>(&self, units: Units) -> Result<PipelineConfig<F>, FpgaError> {
+                match self {
+                    $(Self::$kind(core) => core.config_with(units).map(PipelineConfig::$kind),)+
+                }
+            }
+
             /// Clocks per sample when the control machine waits for every result of these units.
             ///
             /// # Errors

@@ -17,6 +17,9 @@
 //! A strobe wakes an idle machine into its loading state. A strobe withdrawn before that state puts
 //! it back to idle. The last clock of a sample goes straight to loading if the next strobe is up.
 //!
+//! Units may take several clocks ([`Machine::units`]). A clock of the machine is then a step: it
+//! lasts as long as the slowest unit that it uses, and nothing moves before its last clock.
+//!
 //! A reset, in any clock, sets all registers and begins to clear: [`Machine::CLEARING`] writes every
 //! word of both memories anew, one of each a clock, and takes no sample meanwhile. Clocks are
 //! counted from where that ends.
@@ -27,12 +30,13 @@ use super::front_end::Pair;
 use super::memory::SinglePortRam;
 use super::probe::{NoProbe, PortView, Probe, Tick};
 use super::registers::{ControlState, Registers};
+use super::timing::Units;
 
 /// Control machine of a pipeline with its registers: what each state does in its clock.
 ///
 /// A step reads registers and memories first and assigns after: all values read are those before
 /// the edge. Operand order is that of the RTL.
-pub trait Machine {
+pub trait Machine: Clone {
     /// Word format.
     type Word: Fp;
     /// Synthesis-time constants.
@@ -61,7 +65,13 @@ pub trait Machine {
     /// The same, for the sequencer's handshake.
     fn registers_mut(&mut self) -> &mut Registers<Self::State, Self::Word>;
 
-    /// Whether the output strobe is up in this clock.
+    /// Latencies of the units.
+    #[inline]
+    fn units(&self) -> Units {
+        Units::ONE_CLOCK
+    }
+
+    /// Whether the output strobe is up in the first clock of this step.
     fn strobes_output(&self) -> bool;
 
     /// Clock of the loading state, in which `pair` is taken.
@@ -71,7 +81,7 @@ pub trait Machine {
         datapath: &mut Datapath<'_, Self::Word, Q>,
     );
 
-    /// Clock of any state but idle and loading; clearing is one.
+    /// Step of any state but idle and loading; clearing is one.
     ///
     /// * `next_waits`: whether the input strobe is up.
     fn step<Q: Probe<Self::Word>>(
@@ -120,15 +130,22 @@ pub struct Sequencer<M: Machine> {
     machine: M,
     /// RAMA, RAMB.
     memories: [SinglePortRam<M::Word>; 2],
+    /// Whether some unit takes more than a clock.
+    waits: bool,
+    /// Clocks that the step under way still takes; none in its first one.
+    left: u64,
 }
 
 impl<M: Machine> Sequencer<M> {
     /// A pipeline just out of reset, its memories cleared.
     #[must_use]
     pub fn new(config: M::Config) -> Self {
+        let machine = M::new(config);
         Self {
             memories: M::memories(&config),
-            machine: M::new(config),
+            waits: machine.units().longest_clocks() > 1,
+            machine,
+            left: 0,
         }
     }
 
@@ -137,12 +154,20 @@ impl<M: Machine> Sequencer<M> {
     pub fn reset(&mut self) {
         self.machine = M::new(*self.machine.config());
         self.machine.registers_mut().state = M::CLEARING;
+        self.left = 0;
     }
 
     /// The constants.
     #[must_use]
     pub fn config(&self) -> &M::Config {
         self.machine.config()
+    }
+
+    /// Latencies of the units.
+    #[inline]
+    #[must_use]
+    pub fn units(&self) -> Units {
+        self.machine.units()
     }
 
     /// The control machine with all its registers, between two clocks.
@@ -185,10 +210,12 @@ impl<M: Machine> Sequencer<M> {
     ) -> Tick<M::Word> {
         let state = self.machine.registers().state;
         let accepted = state == M::LOADING && input.is_some();
-        let output = self
-            .machine
-            .strobes_output()
-            .then_some(self.machine.registers().output);
+        let strobes = self.left == 0 && self.machine.strobes_output();
+        let output = strobes.then_some(self.machine.registers().output);
+        if self.waits && self.unit_is_busy(state, input.is_some()) {
+            probe.wait(state.code(), output.is_some());
+            return Tick { accepted, output };
+        }
         if Q::WATCHES {
             let ports = PortView {
                 input_valid: input.is_some(),
@@ -216,6 +243,31 @@ impl<M: Machine> Sequencer<M> {
         Tick { accepted, output }
     }
 
+    /// Counts a clock of the step under way; whether a unit that it uses needs another one.
+    fn unit_is_busy(&mut self, state: M::State, next_waits: bool) -> bool {
+        if state == M::LOADING || state == M::State::IDLE || state == M::CLEARING {
+            return false;
+        }
+        if self.left == 0 {
+            self.left = self.step_clocks(next_waits);
+        }
+        self.left -= 1;
+        self.left > 0
+    }
+
+    /// Clocks of the step that begins. The units that it uses are those that it uses in fact: a copy is
+    /// sent ahead to see.
+    fn step_clocks(&self, next_waits: bool) -> u64 {
+        let mut uses = UnitsInUse {
+            units: self.machine.units(),
+            clocks: 1,
+        };
+        let mut memories = self.memories.clone();
+        let datapath = &mut Datapath::new(&mut memories, &mut uses);
+        self.machine.clone().step(next_waits, datapath);
+        uses.clocks
+    }
+
     /// Runs back-to-back samples to completion, appending one output word per pair.
     pub fn run(&mut self, pairs: &[Pair<M::Word>], outputs: &mut Vec<M::Word>) {
         self.run_probed(pairs, outputs, &mut NoProbe);
@@ -234,5 +286,23 @@ impl<M: Machine> Sequencer<M> {
             next += usize::from(tick.accepted);
             outputs.extend(tick.output);
         }
+    }
+}
+
+/// Notes how long the slowest unit in use takes.
+struct UnitsInUse {
+    units: Units,
+    clocks: u64,
+}
+
+impl<F: Fp> Probe<F> for UnitsInUse {
+    fn multiply(&mut self, _a: F, _b: F, _q: F) {
+        self.clocks = self.clocks.max(self.units.multiplier.latency_clocks);
+    }
+    fn add(&mut self, _a: F, _b: F, _subtract: bool, _q: F) {
+        self.clocks = self.clocks.max(self.units.adder.latency_clocks);
+    }
+    fn divide(&mut self, _a: F, _b: F, _q: F) {
+        self.clocks = self.clocks.max(self.units.divider.latency_clocks);
     }
 }

@@ -56,6 +56,22 @@ pub trait Core {
     /// What the pipeline refuses.
     fn config<F: Fp>(&self) -> Result<Self::Config<F>, FpgaError>;
 
+    /// The same with units of these latencies.
+    ///
+    /// # Errors
+    /// What the pipeline refuses; one whose units take a clock each refuses all others.
+    fn config_with<F: Fp>(&self, units: Units) -> Result<Self::Config<F>, FpgaError> {
+        units.check()?;
+        if units.longest_clocks() > 1 {
+            return Err(FpgaError::CountOutOfRange {
+                name: "latency of a unit",
+                value: units.longest_clocks(),
+                range: "1 clock, as only rls has units of more",
+            });
+        }
+        self.config()
+    }
+
     /// Clock-less engine in its reset state.
     ///
     /// # Errors
@@ -97,6 +113,11 @@ pub trait Pipeline<F: Fp> {
 
     /// Clocks from accepting a sample until its result can be read.
     fn latency_clocks(&self) -> usize;
+
+    /// Latencies of the units. The clocks above are those of units of one clock.
+    fn units(&self) -> Units {
+        Units::ONE_CLOCK
+    }
 
     /// Sign of the weight update.
     fn update_sign(&self) -> UpdateSign {

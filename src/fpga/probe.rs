@@ -68,6 +68,11 @@ pub trait Probe<F: Fp> {
     const WATCHES: bool = true;
     /// A clock begins; all registers and ports before the edge.
     fn clock(&mut self, _registers: &RegisterView<F>, _ports: &PortView<F>) {}
+    /// A clock passes in which a unit is not done yet: registers and memories keep their words.
+    ///
+    /// * `state`: state code of the control machine.
+    /// * `output_valid`: output strobe.
+    fn wait(&mut self, _state: u8, _output_valid: bool) {}
     /// RAMA is read (`write` none) or written.
     fn rama(&mut self, _address: usize, _write: Option<F>, _read: F) {}
     /// RAMB is read (`write` none) or written.

@@ -77,7 +77,8 @@ impl Window {
     }
 }
 
-/// A probe that hands each clock of a window to a sink, one clock late.
+/// A probe that hands each clock of a window to a sink, one clock late. Clocks in which a unit is
+/// waited for count, and are not handed out.
 ///
 /// Call [`Recorder::finish`] after the last tick, or the last clock is lost.
 #[derive(Debug)]
@@ -129,6 +130,10 @@ impl<F: Fp, S: FnMut(&ClockRecord<F>)> Probe<F> for Recorder<F, S> {
             adder: None,
             divider: None,
         });
+        self.clock += 1;
+    }
+
+    fn wait(&mut self, _state: u8, _output_valid: bool) {
         self.clock += 1;
     }
 

@@ -56,6 +56,24 @@ words! {
         GainFirst = "gain-first",
     }
 
+    /// Floating-point units of an export of RTL.
+    pub enum UnitSource {
+        /// Computed by the simulator: fast, for simulation only.
+        Behavioural = "behavioural",
+        /// Verilog that synthesises.
+        Synthesizable = "synthesizable",
+    }
+
+    /// Family of devices that an export of RTL is synthesised for.
+    pub enum Device {
+        /// Lattice iCE40.
+        Ice40 = "ice40",
+        /// Lattice ECP5.
+        Ecp5 = "ecp5",
+        /// AMD 7 series.
+        Xilinx = "xilinx",
+    }
+
     /// What an export of a pipeline writes.
     pub enum ExportForm {
         /// Stimulus, response, memories, parameters and per-clock trace.

@@ -17,7 +17,8 @@ pub use filter::{
     ConstantUnit, DesiredSignal, InitialWeights, OutputRegister, Pipeline, SignLmsForm, UpdateSign,
 };
 pub use hardware::{
-    Division, ExportForm, NumberFormat, Overflow, Rounding, UpdateOrder, WordFormat,
+    Device, Division, ExportForm, NumberFormat, Overflow, Rounding, UnitSource, UpdateOrder,
+    WordFormat,
 };
 pub use inference::{InferredQuantity, Prior};
 pub use motion::{CaseAxis, PhaseRule};

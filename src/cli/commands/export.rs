@@ -12,7 +12,7 @@ use crate::cli::terminal::place::Place;
 use crate::experiment::{input_digest, plan_suite, scenario_stimulus};
 use crate::filters::FilterConfig;
 use crate::filters::hardware::{
-    PipelineSettings, Stimulus, export_pipeline, has_hardware, kind_names,
+    PipelineSettings, Stimulus, export_pipeline_of, has_hardware, kind_names,
 };
 use crate::fpga::FpgaError;
 use crate::recording::read_stimulus;
@@ -44,7 +44,15 @@ pub(in crate::cli) fn export(options: &ExportOptions) -> io::Result<Exit> {
     let digest = input_digest_toml(&input_digest(&stimulus.words));
     let filled = place.fill(|folder| {
         let staged = folder.stage()?;
-        exported = export_pipeline(staged.path(), form, &settings, stimulus, trace_samples);
+        let parts = options.parts();
+        exported = export_pipeline_of(
+            staged.path(),
+            form,
+            &settings,
+            stimulus,
+            trace_samples,
+            parts,
+        );
         let Ok(files) = &mut exported else {
             return Ok(());
         };
@@ -75,6 +83,10 @@ pub(in crate::cli) fn export(options: &ExportOptions) -> io::Result<Exit> {
             if form == ExportForm::Rtl {
                 let script = options.folder.join("run.sh");
                 output::talk(&format!("simulate with: sh {}", script.display()));
+                if options.synth.is_some() {
+                    let script = options.folder.join("synth.sh");
+                    output::talk(&format!("synthesise with: sh {}", script.display()));
+                }
             }
             Ok(Exit::Success)
         }
@@ -110,6 +122,9 @@ fn prepare(options: &ExportOptions) -> Result<(PipelineSettings, Stimulus), Exit
     }
     settings
         .timing()
+        .map_err(|error| refused(error.to_string()))?;
+    settings
+        .check_units(options.parts().latencies)
         .map_err(|error| refused(error.to_string()))?;
     Ok((settings, stimulus))
 }

@@ -40,6 +40,8 @@ struct Report<'a> {
     table: Vec<TimingRow>,
     measured: PipelineTiming,
     stalled: u64,
+    /// Whether the machine has units of these latencies.
+    exists: bool,
     /// Recursive least squares only.
     interleaved: Option<ScheduleReport>,
 }
@@ -50,12 +52,18 @@ impl<'a> Report<'a> {
         let settings = filter.settings();
         let measured = settings.timing()?;
         check_clock(filter.clock_mhz)?;
-        let stalled = settings.stalled_clocks(options.units())?;
+        let units = options.units();
+        let stalled = settings.stalled_clocks(units)?;
+        // The RTL of every kind waits for its divider.
+        let only_the_divider_waits =
+            units.adder.latency_clocks == 1 && units.multiplier.latency_clocks == 1;
+        let takes_them = settings.check_units(units).is_ok();
         let mut report = Self {
             filter,
             table: Vec::new(),
             measured,
             stalled,
+            exists: takes_them || only_the_divider_waits,
             interleaved: None,
         };
         if let PipelineSettings::Float(settings) = &settings
@@ -73,7 +81,7 @@ impl<'a> Report<'a> {
                 ram_ports: options.ram_ports,
                 symmetric_half: false,
             };
-            report.interleaved = Some(schedule_clocks(load, options.units(), schedule)?);
+            report.interleaved = Some(schedule_clocks(load, units, schedule)?);
         }
         Ok(report)
     }
@@ -128,8 +136,10 @@ impl<'a> Report<'a> {
             "table": rows,
             "stalled": model(self.stalled),
         });
+        document["stalled"]["estimate"] = (!self.exists).into();
         if let Some(report) = &self.interleaved {
             document["interleaved"] = model(report.clocks);
+            document["interleaved"]["estimate"] = true.into();
             document["interleaved"]["bound"] = report.bound.name().into();
         }
         document
@@ -189,9 +199,15 @@ impl<'a> Report<'a> {
                 sample_rate_max_khz(clocks, clock_mhz)
             );
         };
-        line("stalled", self.stalled, "the control waits for each result");
+        let waits = "the control waits for each result";
+        let basis = if self.exists {
+            waits.to_owned()
+        } else {
+            format!("estimate; {waits}")
+        };
+        line("stalled", self.stalled, &basis);
         if let Some(report) = &self.interleaved {
-            let bound = format!("bound by: {}", report.bound.name());
+            let bound = format!("estimate; bound by: {}", report.bound.name());
             line("interleaved", report.clocks, &bound);
         }
         text

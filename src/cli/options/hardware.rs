@@ -7,15 +7,18 @@ use clap::{Args, ValueEnum};
 use crate::cli::options::format::Format;
 use crate::cli::options::numbers::{OptionError, count_within, within};
 use crate::filters::RlsWords;
-use crate::filters::hardware::{FixedSettings, FloatSettings, PipelineSettings, fixed_rls};
+use crate::filters::hardware::{
+    FixedSettings, FloatSettings, HardwareParts, PipelineSettings, fixed_rls,
+};
+use crate::fpga::export::RtlParts;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
 use crate::fpga::rls::{RlsCore, RlsSettings};
 use crate::fpga::sign_lms::SignLmsSettings;
 use crate::fpga::timing::{UnitTiming, Units};
 use crate::vocabulary::{
-    DesiredSignal, Division, ExportForm, NumberFormat, OutputRegister, UpdateOrder, UpdateSign,
-    WordFormat,
+    DesiredSignal, Device, Division, ExportForm, NumberFormat, OutputRegister, UnitSource,
+    UpdateOrder, UpdateSign, WordFormat,
 };
 
 /// Delay of a line enhancer described on the command line, samples; the default of scenarios.
@@ -206,11 +209,9 @@ impl FilterOptions {
     }
 }
 
-/// Options of `timing`.
+/// Latencies of the units.
 #[derive(Args, Debug)]
-pub(in crate::cli) struct TimingOptions {
-    #[command(flatten)]
-    pub(in crate::cli) filter: FilterOptions,
+pub(in crate::cli) struct LatencyOptions {
     /// Clocks of an addition
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clocks())]
     adder_latency: u64,
@@ -220,6 +221,30 @@ pub(in crate::cli) struct TimingOptions {
     /// Clocks of a division
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clocks())]
     divider_latency: u64,
+}
+
+impl LatencyOptions {
+    /// The three units, with at most this many clocks between two operations.
+    fn units(&self, initiation_interval: u64) -> Units {
+        let unit = |latency_clocks: u64| UnitTiming {
+            latency_clocks,
+            interval_clocks: initiation_interval.min(latency_clocks),
+        };
+        Units {
+            adder: unit(self.adder_latency),
+            multiplier: unit(self.multiplier_latency),
+            divider: unit(self.divider_latency),
+        }
+    }
+}
+
+/// Options of `timing`.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct TimingOptions {
+    #[command(flatten)]
+    pub(in crate::cli) filter: FilterOptions,
+    #[command(flatten)]
+    latencies: LatencyOptions,
     /// Clocks between two operations of a unit; at most its latency counts
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clocks())]
     initiation_interval: u64,
@@ -240,15 +265,7 @@ fn clocks() -> impl Fn(&str) -> Result<u64, OptionError> + Clone + Send + Sync +
 impl TimingOptions {
     /// The three units.
     pub(in crate::cli) fn units(&self) -> Units {
-        let unit = |latency_clocks: u64| UnitTiming {
-            latency_clocks,
-            interval_clocks: self.initiation_interval.min(latency_clocks),
-        };
-        Units {
-            adder: unit(self.adder_latency),
-            multiplier: unit(self.multiplier_latency),
-            divider: unit(self.divider_latency),
-        }
+        self.latencies.units(self.initiation_interval)
     }
 }
 
@@ -299,4 +316,29 @@ pub(in crate::cli) struct ExportOptions {
     pub(in crate::cli) trace_samples: usize,
     #[command(flatten)]
     pub(in crate::cli) filter: FilterOptions,
+    #[command(flatten)]
+    latencies: LatencyOptions,
+    /// Floating-point units of RTL [default: behavioural, with --synth synthesizable]
+    #[arg(long, value_enum, value_name = "UNITS")]
+    pub(in crate::cli) units: Option<UnitSource>,
+    /// Family of devices for which synth.sh, written into the folder, synthesises the filter
+    #[arg(long, value_enum, value_name = "DEVICE")]
+    pub(in crate::cli) synth: Option<Device>,
+}
+
+impl ExportOptions {
+    /// What the hardware is made of.
+    pub(in crate::cli) fn parts(&self) -> HardwareParts {
+        let units = self.units.unwrap_or(match self.synth {
+            Some(_) => UnitSource::Synthesizable,
+            None => UnitSource::Behavioural,
+        });
+        HardwareParts {
+            latencies: self.latencies.units(1),
+            rtl: RtlParts {
+                units,
+                device: self.synth,
+            },
+        }
+    }
 }

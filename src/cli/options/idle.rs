@@ -14,7 +14,7 @@ use crate::cli::options::calibrate::CalibrateOptions;
 use crate::cli::options::hardware::{ExportOptions, FilterOptions, Kind, TimingOptions};
 use crate::cli::options::log::LogOptions;
 use crate::recording::LogMotion;
-use crate::vocabulary::{ExportForm, WordFormat};
+use crate::vocabulary::{ExportForm, UnitSource, WordFormat};
 
 /// Reads the command line.
 ///
@@ -223,6 +223,21 @@ fn of_export(options: &ExportOptions, given: &ArgMatches) -> Vec<String> {
              as many",
             options.samples, options.trace_samples
         ));
+    }
+    if options.what != ExportForm::Rtl {
+        let idle = typed(given, &["units", "synth"]).into_iter();
+        complaints.extend(
+            idle.map(|option| {
+                format!("{option} has no effect but on an export of rtl: leave it out")
+            }),
+        );
+    }
+    if options.synth.is_some() && options.units == Some(UnitSource::Behavioural) {
+        complaints.push(
+            "--units behavioural has no effect beside --synth: leave it out, as they cannot be \
+             synthesised"
+                .to_owned(),
+        );
     }
     complaints
 }

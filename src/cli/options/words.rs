@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
-use crate::vocabulary::{Division, ExportForm, Word as _, WordFormat};
+use crate::vocabulary::{Device, Division, ExportForm, UnitSource, Word as _, WordFormat};
 
 macro_rules! option_values {
     ($($word:ty),+) => {$(
@@ -19,4 +19,4 @@ macro_rules! option_values {
     )+};
 }
 
-option_values!(Division, ExportForm, WordFormat);
+option_values!(Device, Division, ExportForm, UnitSource, WordFormat);

@@ -7,10 +7,11 @@ use super::pipeline::PipelineSettings;
 use super::settings::{FloatSettings, with_word};
 use crate::fpga::FpgaError;
 use crate::fpga::export::{
-    ExportSettings, FixedExport, IntegerCodes, TopLevel, stimulus_pairs, write_fixed_rtl,
-    write_fixed_vectors, write_rtl, write_vectors, write_waveform,
+    ExportSettings, FixedExport, IntegerCodes, RtlParts, TopLevel, stimulus_pairs, write_fixed_rtl,
+    write_fixed_vectors, write_rtl_parts, write_vectors, write_waveform,
 };
 use crate::fpga::float_unit::Fp;
+use crate::fpga::timing::Units;
 use crate::fpga::trace::Window;
 use crate::vocabulary::{DesiredSignal, ExportForm};
 
@@ -23,7 +24,24 @@ pub struct Stimulus {
     pub codes: Option<IntegerCodes>,
 }
 
-/// Writes the folder; returns its files. The update is in the schedule's order, the hardware's.
+/// What an export's hardware is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HardwareParts {
+    /// Latencies of the units.
+    pub latencies: Units,
+    /// What an export of RTL may have or leave out.
+    pub rtl: RtlParts,
+}
+
+impl HardwareParts {
+    /// Units of one clock, computed by the simulator.
+    pub const PLAIN: Self = Self {
+        latencies: Units::ONE_CLOCK,
+        rtl: RtlParts::PLAIN,
+    };
+}
+
+/// [`export_pipeline_of`] the plain parts.
 ///
 /// # Errors
 /// Constants or stimulus that the pipeline refuses, and files that cannot be written.
@@ -34,10 +52,28 @@ pub fn export_pipeline(
     stimulus: Stimulus,
     trace_samples: usize,
 ) -> Result<Vec<PathBuf>, FpgaError> {
+    let parts = HardwareParts::PLAIN;
+    export_pipeline_of(folder, form, settings, stimulus, trace_samples, parts)
+}
+
+/// Writes the folder; returns its files. The update is in the schedule's order, the hardware's.
+///
+/// # Errors
+/// Constants, latencies or stimulus that the pipeline refuses, and files that cannot be written.
+pub fn export_pipeline_of(
+    folder: &Path,
+    form: ExportForm,
+    settings: &PipelineSettings,
+    stimulus: Stimulus,
+    trace_samples: usize,
+    parts: HardwareParts,
+) -> Result<Vec<PathBuf>, FpgaError> {
+    settings.check_units(parts.latencies)?;
     match settings {
         PipelineSettings::Float(settings) => with_word!(settings.format, F => {
-            export::<F>(folder, form, settings, stimulus, trace_samples)
+            export::<F>(folder, form, settings, stimulus, trace_samples, parts)
         }),
+        PipelineSettings::Fixed(_) if parts.rtl != RtlParts::PLAIN => Err(FpgaError::FixedUnits),
         PipelineSettings::Fixed(settings) => {
             export_fixed(folder, form, settings, &stimulus, trace_samples)
         }
@@ -50,9 +86,10 @@ fn export<F: Fp>(
     settings: &FloatSettings,
     stimulus: Stimulus,
     trace_samples: usize,
+    parts: HardwareParts,
 ) -> Result<Vec<PathBuf>, FpgaError> {
     let pairs = stimulus_pairs(&stimulus.words, &mut settings.front_end::<F>())?;
-    let pipeline = settings.constants::<F>()?;
+    let pipeline = settings.core.config_with::<F>(parts.latencies)?;
     // Codes whose words are not theirs bit for bit, as those of means: the board takes words.
     let codes = stimulus.codes.as_ref();
     let codes = codes.filter(|codes| codes.give(&stimulus.words));
@@ -71,12 +108,13 @@ fn export<F: Fp>(
     };
     match form {
         ExportForm::Vectors => write_vectors(folder, &export, &pairs),
-        ExportForm::Rtl => write_rtl(folder, &export, &pairs),
+        ExportForm::Rtl => write_rtl_parts(folder, &export, &pairs, parts.rtl),
         ExportForm::Waveform => {
             let samples = export.trace_samples as u64;
+            let used = export.pipeline.as_pipeline().clocked().usage();
             let window = Window {
                 first_clock: 0,
-                clock_count: 1 + samples * export.pipeline.as_pipeline().clocks_per_sample() as u64,
+                clock_count: 1 + samples * used.clocks_per_sample,
             };
             write_waveform(folder, &export, &pairs, window)
         }

@@ -18,7 +18,7 @@ mod sign_lms;
 mod timing;
 
 #[cfg(feature = "hdl")]
-pub use export::{Stimulus, export_pipeline};
+pub use export::{HardwareParts, Stimulus, export_pipeline, export_pipeline_of};
 pub use filter::HardwareFilter;
 pub use fixed::{FixedSettings, FixedSummary};
 pub(super) use lms::lms;

@@ -115,6 +115,18 @@ impl PipelineSettings {
         }
     }
 
+    /// Checks that its machine takes units of these latencies.
+    ///
+    /// # Errors
+    /// What the pipeline refuses.
+    pub fn check_units(&self, units: Units) -> Result<(), FpgaError> {
+        match self {
+            Self::Float(settings) => settings.core.config_with::<f64>(units).map(drop),
+            Self::Fixed(_) if units == Units::ONE_CLOCK => Ok(()),
+            Self::Fixed(_) => Err(FpgaError::FixedUnits),
+        }
+    }
+
     /// Checks the constants in their words, and that a sample is done before the next arrives.
     pub(in crate::filters) fn check(&self, sample_rate_hz: f64, complaints: &mut Complaints) {
         let timing = match (self.timing(), self) {

@@ -13,6 +13,7 @@
 //! | `wave.vcd`, `wave.fst`, `states.gtkwfilter` | a window of clocks with readable states |
 //! | `params.vh` | the same for the testbench, as Verilog macros |
 //! | `*_top.v`, `samples.hex` | the filter with its constants and its front end; its samples if not codes |
+//! | `synth.sh` | synthesis of the top level for a family of devices, if asked for |
 //! | `*.v`, `*.vh`, `run.sh`, `test_cocotb.py` | RTL, testbench, script, cocotb test |
 //! | `README.txt` | how to run it, every format, how to put in units or a core of one's own |
 //!
@@ -32,6 +33,6 @@ mod waveform;
 
 pub use super::kinds::PipelineConfig;
 pub use fixed::{FixedExport, write_fixed_rtl, write_fixed_vectors};
-pub use rtl::write_rtl;
+pub use rtl::{RtlParts, write_rtl, write_rtl_parts};
 pub use vectors::{ExportSettings, IntegerCodes, TopLevel, stimulus_pairs, write_vectors};
 pub use waveform::write_waveform;

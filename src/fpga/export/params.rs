@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::vectors::{ExportSettings, TopLevel};
 use crate::fpga::float_unit::Fp;
 use crate::fpga::pipeline::Macro;
+use crate::fpga::timing::Units;
 use crate::fpga::trace::hex;
 use crate::vocabulary::{OutputRegister, UpdateSign};
 
@@ -51,6 +52,15 @@ pub(super) fn params_vh<F: Fp>(
     define("SAMPLES", samples.to_string());
     define("PERIOD", pipeline.clocks_per_sample().to_string());
     define("LATENCY", pipeline.latency_clocks().to_string());
+    let used = pipeline.clocked().usage();
+    let own_clocks = [
+        ("UNITS_PERIOD", used.clocks_per_sample),
+        ("UNITS_LATENCY", used.latency_clocks),
+    ];
+    let waits = pipeline.units().longest_clocks() > 1;
+    for (name, clocks) in own_clocks.into_iter().filter(|_| waits) {
+        define(name, clocks.to_string());
+    }
     define("TRACE_CLOCKS", trace_rows.to_string());
     // A Verilog number without a width has 32 bits.
     let period_ps = (2 * half_period_ps(settings.clock_mhz)).min(2_000_000_000);
@@ -69,7 +79,24 @@ pub(super) fn params_vh<F: Fp>(
         define("TOP_FRONT", clocks.front_end_clocks.to_string());
         define("TOP_PERIOD", clocks.clocks_per_sample.to_string());
     }
+    // Latencies given to run.sh win.
+    for (name, clocks) in unit_latencies(pipeline.units())
+        .into_iter()
+        .filter(|_| waits)
+    {
+        let name = format!("VEC_{name}");
+        let _ = writeln!(text, "`ifndef {name}\n`define {name} {clocks}\n`endif");
+    }
     text
+}
+
+/// Latencies of the units under the names of the cores' parameters.
+pub(super) fn unit_latencies(units: Units) -> [(&'static str, u64); 3] {
+    [
+        ("ADD_LATENCY", units.adder.latency_clocks),
+        ("MUL_LATENCY", units.multiplier.latency_clocks),
+        ("DIV_LATENCY", units.divider.latency_clocks),
+    ]
 }
 
 /// Parameters for people and programs: numbers, their bits, and the choices behind the bits.
@@ -114,11 +141,14 @@ pub(super) fn params_json<F: Fp>(
     }
     add("front_end", quote(&settings.front_end));
     add("clock_mhz", format!("{}", settings.clock_mhz));
-    add(
-        "clocks_per_sample",
-        pipeline.clocks_per_sample().to_string(),
-    );
-    add("latency_clocks", pipeline.latency_clocks().to_string());
+    let used = pipeline.clocked().usage();
+    add("clocks_per_sample", used.clocks_per_sample.to_string());
+    add("latency_clocks", used.latency_clocks.to_string());
+    if pipeline.units().longest_clocks() > 1 {
+        for (name, clocks) in unit_latencies(pipeline.units()) {
+            add(&name.to_lowercase(), clocks.to_string());
+        }
+    }
     add("samples", samples.to_string());
     add("trace_clocks", trace_rows.to_string());
     for (name, value) in board_fields(settings) {

@@ -7,11 +7,12 @@ use super::vectors::{ExportSettings, write_text, write_vectors};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
+use crate::vocabulary::{Device, UnitSource};
 
 /// Files of every pipeline.
 const SHARED: [(&str, &str); 9] = [
     ("README.txt", include_str!("rtl/README.txt")),
-    ("fp_sim.v", include_str!("rtl/fp_sim.v")),
+    ("fp_wait.v", include_str!("rtl/fp_wait.v")),
     ("sp_ram.v", include_str!("rtl/sp_ram.v")),
     ("front_end.v", include_str!("rtl/front_end.v")),
     ("top_bench.v", include_str!("rtl/top_bench.v")),
@@ -20,6 +21,30 @@ const SHARED: [(&str, &str); 9] = [
     ("run.sh", include_str!("rtl/run.sh")),
     ("test_cocotb.py", include_str!("rtl/test_cocotb.py")),
 ];
+
+/// Units that the simulator computes, and those that synthesise.
+const BEHAVIOURAL: (&str, &str) = ("fp_sim.v", include_str!("rtl/fp_sim.v"));
+const SYNTHESIZABLE: (&str, &str) = ("fp_units.v", include_str!("rtl/fp_units.v"));
+
+/// Script of the synthesis, its places still open.
+const SYNTHESIS: (&str, &str) = ("synth.sh", include_str!("rtl/synth.sh"));
+
+/// What an export of RTL may have or leave out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RtlParts {
+    /// Floating-point units.
+    pub units: UnitSource,
+    /// Family of devices for which a script synthesises the top level; its units have to synthesise.
+    pub device: Option<Device>,
+}
+
+impl RtlParts {
+    /// Units computed by the simulator, no script of a synthesis.
+    pub const PLAIN: Self = Self {
+        units: UnitSource::Behavioural,
+        device: None,
+    };
+}
 
 /// Writes vectors, RTL, testbench, run script and cocotb test, and with the surroundings of the core
 /// the top level for a board; returns the files.
@@ -34,9 +59,27 @@ pub fn write_rtl<F: Fp>(
     settings: &ExportSettings<F>,
     pairs: &[Pair<F>],
 ) -> Result<Vec<PathBuf>, FpgaError> {
+    write_rtl_parts(dir, settings, pairs, RtlParts::PLAIN)
+}
+
+/// [`write_rtl`] with a choice of the units, and with a script for synthesis where a device is named
+/// and the top level is there.
+///
+/// # Errors
+/// As [`write_vectors`].
+pub fn write_rtl_parts<F: Fp>(
+    dir: &Path,
+    settings: &ExportSettings<F>,
+    pairs: &[Pair<F>],
+    parts: RtlParts,
+) -> Result<Vec<PathBuf>, FpgaError> {
     let mut files = write_vectors(dir, settings, pairs)?;
     let own = settings.pipeline.as_pipeline().kind().sources;
-    for (name, text) in SHARED.into_iter().chain(own) {
+    let units = match parts.units {
+        UnitSource::Behavioural => BEHAVIOURAL,
+        UnitSource::Synthesizable => SYNTHESIZABLE,
+    };
+    for (name, text) in SHARED.into_iter().chain([units]).chain(own) {
         files.push(write_text(dir, name, text)?);
     }
     if let Some(top) = &settings.top {
@@ -47,8 +90,22 @@ pub fn write_rtl<F: Fp>(
         if let Some(text) = top_samples(top) {
             files.push(write_text(dir, TOP_SAMPLES, &text)?);
         }
+        if let Some(device) = parts.device {
+            let (script, text) = SYNTHESIS;
+            let text = synthesis(text, kind.name, device, units.0);
+            files.push(write_text(dir, script, &text)?);
+        }
     }
     Ok(files)
+}
+
+/// Script of the synthesis of a kind's top level for a device.
+fn synthesis(text: &str, kind: &str, device: Device, units: &str) -> String {
+    let sources =
+        format!("{kind}_top.v front_end.v {kind}_core.v {kind}_ctrl.v sp_ram.v fp_wait.v {units}");
+    text.replace("@DEVICE@", device.word())
+        .replace("@TOP@", &format!("{kind}_top"))
+        .replace("@SOURCES@", &sources)
 }
 
 #[cfg(test)]

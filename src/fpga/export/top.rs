@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::params::macro_value;
+use super::params::{macro_value, unit_latencies};
 use super::vectors::{ExportSettings, TopLevel};
 use crate::fpga::board::Surroundings;
 use crate::fpga::float_unit::Fp;
@@ -68,9 +68,17 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
         let _ = write!(core, ",\n        .UPDATE_SUB({})", u8::from(subtracts));
     }
     let flushes = u8::from(F::FLUSHES_SUBNORMALS);
+    let [(_, add), (_, mul), (_, div)] = unit_latencies(pipeline.units());
+    let waits = if kind.sources[1].1.contains(" ADD_LATENCY ") {
+        ".ADD_LATENCY(ADD_LATENCY), .MUL_LATENCY(MUL_LATENCY),\n        "
+    } else {
+        ""
+    };
     let register = output_register(around.output_register, width);
     format!(
-        "{TOP_HEAD}module {name}_top #(\n    parameter DIV_LATENCY = 1       // clocks of the divider\n) (\n    \
+        "{TOP_HEAD}module {name}_top #(\n    parameter ADD_LATENCY = {add},      // clocks of the adder\n    \
+         parameter MUL_LATENCY = {mul},      // clocks of the multiplier\n    \
+         parameter DIV_LATENCY = {div}       // clocks of the divider\n) (\n    \
          input  wire        clk,\n    input  wire        rst,\n    \
          input  wire        sample_valid,\n    output wire        sample_ready,\n    \
          input  wire [{}:0] sample,         // {sample}\n    \
@@ -79,10 +87,11 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
          wire        pair_valid, pair_ready, core_valid;\n    \
          wire [{}:0] x, d, y;\n\n    \
          front_end #(\n        .W({width}), .CODE({}), .LSB({}), .FACTOR({}),\n        \
-         .LAG({}), .MEAN({}), .FTZ({flushes})\n    ) front (\n        \
+         .LAG({}), .MEAN({}), .FTZ({flushes}),\n        \
+         .ADD_LATENCY(ADD_LATENCY), .MUL_LATENCY(MUL_LATENCY)\n    ) front (\n        \
          .clk(clk), .rst(rst), .valid(sample_valid), .ready(sample_ready), .sample(sample),\n        \
          .pair_valid(pair_valid), .pair_ready(pair_ready), .x(x), .d(d));\n\n    \
-         {name}_core #(\n        {core},\n        .FTZ({flushes}), .DIV_LATENCY(DIV_LATENCY)\n    ) core (\n        \
+         {name}_core #(\n        {core},\n        .FTZ({flushes}), {waits}.DIV_LATENCY(DIV_LATENCY)\n    ) core (\n        \
          .clk(clk), .rst(rst), .in_valid(pair_valid), .in_ready(pair_ready), .x(x), .d(d),\n        \
          .out_valid(core_valid), .y(y));\n\n{register}endmodule\n\n`default_nettype wire\n",
         bits - 1,

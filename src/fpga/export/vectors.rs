@@ -65,11 +65,14 @@ impl<F: Fp> ExportSettings<F> {
     pub(super) fn window(&self, samples: usize) -> Window {
         let clocks = match samples {
             0 => 0,
-            _ => 1 + samples * self.pipeline.as_pipeline().clocks_per_sample(),
+            _ => {
+                let used = self.pipeline.as_pipeline().clocked().usage();
+                1 + samples as u64 * used.clocks_per_sample
+            }
         };
         Window {
             first_clock: 0,
-            clock_count: clocks as u64,
+            clock_count: clocks,
         }
     }
 }

@@ -32,13 +32,14 @@ pub struct RlsLoad {
 /// Clocks per RLS sample when the control machine waits for every result.
 ///
 /// ```text
-/// mac = Lm + p*La
+/// mac = Lm + (p-1)max(Lm,La) + La
 /// RFR = p^2(2Lm+La+s) + max(0, Ld-Lm)      element division: p^2(Lm+Ld+La+s)
 /// T   = 1 + p*mac + mac + RFR + p*mac + mac + La + p(Lm+La)
 /// ```
 /// with `s` the clocks of the product with `1/alpha`: none at alpha = 1, and none if adder and
 /// multiplier take one clock each, however slow the divider is, because the RTL then chains
-/// subtraction and product. One clock each gives `4+6p+5p^2`.
+/// subtraction and product. One clock each gives `4+6p+5p^2`. These are the clocks of the machine: it
+/// and the RTL have them for units of any latency.
 ///
 /// # Errors
 /// [`FpgaError::TapCount`], [`FpgaError::CountOutOfRange`].
@@ -46,6 +47,18 @@ pub struct RlsLoad {
 /// # Source
 /// Derived; agrees with RTL whose divider takes 10, 56 and 58 clocks (117, 163, 165 at p = 4).
 pub fn rls_stalled_clocks(load: RlsLoad, units: Units) -> Result<u64, FpgaError> {
+    let latency = rls_stalled_latency(load, units)?;
+    let p = load.tap_count as u64;
+    let (la, lm) = (units.adder.latency_clocks, units.multiplier.latency_clocks);
+    Ok(latency + la + p * (lm + la))
+}
+
+/// Clocks from accepting a sample until its result can be read when the control machine waits for
+/// every result: `T` without its last two terms, the error and the update of the weights.
+///
+/// # Errors
+/// [`FpgaError::TapCount`], [`FpgaError::CountOutOfRange`].
+pub fn rls_stalled_latency(load: RlsLoad, units: Units) -> Result<u64, FpgaError> {
     check_tap_count(load.tap_count)?;
     units.check()?;
     let p = load.tap_count as u64;
@@ -53,10 +66,9 @@ pub fn rls_stalled_clocks(load: RlsLoad, units: Units) -> Result<u64, FpgaError>
     let lm = units.multiplier.latency_clocks;
     let ld = units.divider.latency_clocks;
     let s = units.forgetting_clocks(load.forgets);
-    let mac = lm + p * la;
     let correction = match load.division {
         Division::Reciprocal => p * p * (2 * lm + la + s) + ld.saturating_sub(lm),
         Division::Elementwise => p * p * (lm + ld + la + s),
     };
-    Ok(1 + 2 * (p + 1) * mac + correction + la + p * (lm + la))
+    Ok(1 + 2 * (p + 1) * units.dot_clocks(p) + correction)
 }

@@ -3,6 +3,7 @@
 use crate::fpga::check::{check_positive, check_tap_count};
 use crate::fpga::error::FpgaError;
 use crate::fpga::float_unit::Fp;
+use crate::fpga::timing::Units;
 use crate::vocabulary::{Division, UpdateSign};
 
 /// Settings of an RLS pipeline in plain numbers, before any check.
@@ -29,6 +30,7 @@ pub struct RlsConfig<F> {
     pub(crate) delta: F,
     pub(crate) division: Division,
     pub(crate) update_sign: UpdateSign,
+    pub(crate) units: Units,
 }
 
 impl<F: Fp> RlsConfig<F> {
@@ -62,7 +64,23 @@ impl<F: Fp> RlsConfig<F> {
             delta,
             division: settings.division,
             update_sign: settings.update_sign,
+            units: Units::ONE_CLOCK,
         })
+    }
+
+    /// The same with units of other latencies: same words, more clocks.
+    ///
+    /// # Errors
+    /// [`FpgaError::CountOutOfRange`] naming the unit.
+    pub fn with_units(self, units: Units) -> Result<Self, FpgaError> {
+        units.check()?;
+        Ok(Self { units, ..self })
+    }
+
+    /// Latencies of the units; their intervals do not count, as the control waits for each result.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        self.units
     }
 
     /// Number of weights p.

@@ -74,6 +74,10 @@ impl Core for RlsCore {
         Ok(RlsEngine::with_order(self.config()?, self.order))
     }
 
+    fn config_with<F: Fp>(&self, units: Units) -> Result<RlsConfig<F>, FpgaError> {
+        self.config()?.with_units(units)
+    }
+
     fn stalled_clocks(&self, units: Units) -> Result<u64, FpgaError> {
         rls_stalled_clocks(self.load(), units)
     }
@@ -112,6 +116,10 @@ impl<F: Fp> Pipeline<F> for RlsConfig<F> {
 
     fn latency_clocks(&self) -> usize {
         rls_latency_clocks(self.tap_count)
+    }
+
+    fn units(&self) -> Units {
+        self.units
     }
 
     fn update_sign(&self) -> UpdateSign {

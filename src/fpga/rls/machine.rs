@@ -9,6 +9,7 @@ use crate::fpga::machine::{Machine, Sequencer};
 use crate::fpga::memory::SinglePortRam;
 use crate::fpga::probe::Probe;
 use crate::fpga::registers::Registers;
+use crate::fpga::timing::Units;
 use crate::vocabulary::{Division, UpdateSign};
 
 /// The clocked RLS pipeline. RAMA: `0..p` ring of L, `p..2p` t, then M. RAMB: `0..p` W, `p..2p` t,
@@ -62,6 +63,11 @@ impl<F: Fp> Machine for RlsMachine<F> {
     #[inline]
     fn registers_mut(&mut self) -> &mut Registers<RlsState, F> {
         &mut self.registers
+    }
+
+    #[inline]
+    fn units(&self) -> Units {
+        self.config.units
     }
 
     #[inline]
@@ -244,14 +250,25 @@ impl<F: Fp> RlsMachine<F> {
     }
 
     /// RFR_writing: `(R - correction) * ialpha`, the only clock that chains two operations. At
-    /// alpha = 1 the multiplier is by-passed: `x * 1 = x` for every word that leaves a unit.
+    /// alpha = 1 the multiplier is by-passed: `x * 1 = x` for every word that leaves a unit. Units of
+    /// more than a clock are not chained: the difference stays in P for a step.
     #[inline]
     fn correct_write(&mut self, datapath: &mut Datapath<'_, F, impl Probe<F>>) {
-        let difference = datapath.subtract(self.registers.read_latch, self.registers.product);
-        let corrected = if self.config.inverse_alpha == F::ONE {
-            difference
+        let scales = self.config.inverse_alpha != F::ONE;
+        let difference = if self.registers.phase == 3 {
+            self.registers.product
         } else {
+            datapath.subtract(self.registers.read_latch, self.registers.product)
+        };
+        if scales && self.registers.phase == 2 && !self.config.units.chain() {
+            self.registers.product = difference;
+            self.registers.phase = 3;
+            return;
+        }
+        let corrected = if scales {
             datapath.multiply(difference, self.config.inverse_alpha)
+        } else {
+            difference
         };
         datapath.write_b(self.element(), corrected);
         self.registers.phase = 0;

@@ -46,7 +46,9 @@ mod schedule;
 mod state;
 mod table;
 
-pub use clocks::{RlsLoad, rls_clocks_per_sample, rls_latency_clocks, rls_stalled_clocks};
+pub use clocks::{
+    RlsLoad, rls_clocks_per_sample, rls_latency_clocks, rls_stalled_clocks, rls_stalled_latency,
+};
 pub use config::{RlsConfig, RlsSettings};
 pub use declaration::RlsCore;
 pub use engine::RlsEngine;

@@ -79,8 +79,27 @@ impl Units {
         self.divider.check("divider latency")
     }
 
+    /// Latency of the slowest.
+    #[must_use]
+    pub(in crate::fpga) fn longest_clocks(self) -> u64 {
+        let Self {
+            adder,
+            multiplier,
+            divider,
+        } = self;
+        let both = adder.latency_clocks.max(multiplier.latency_clocks);
+        both.max(divider.latency_clocks)
+    }
+
+    /// Clocks of a dot product over `taps` words when the control waits for every result: a product,
+    /// products beside sums, the last sum.
+    pub(in crate::fpga) fn dot_clocks(self, taps: u64) -> u64 {
+        let (la, lm) = (self.adder.latency_clocks, self.multiplier.latency_clocks);
+        lm + (taps - 1) * la.max(lm) + la
+    }
+
     /// Whether subtraction and product with `1/alpha` fit one clock, as in the RTL.
-    fn chain(self) -> bool {
+    pub(in crate::fpga) fn chain(self) -> bool {
         self.adder.latency_clocks == 1 && self.multiplier.latency_clocks == 1
     }
 

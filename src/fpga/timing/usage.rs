@@ -73,6 +73,15 @@ impl<F: Fp> Probe<F> for Counter {
         }
         self.clock += 1;
     }
+    fn wait(&mut self, state: u8, output_valid: bool) {
+        if output_valid {
+            self.finished.push(self.clock);
+        }
+        if self.counts() {
+            self.states[usize::from(state)] += 1;
+        }
+        self.clock += 1;
+    }
     fn rama(&mut self, _address: usize, _write: Option<F>, _read: F) {
         self.rama += u64::from(self.counts());
     }

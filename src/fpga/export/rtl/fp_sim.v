@@ -1,9 +1,9 @@
 // Behavioural floating-point units for simulation: fp_add, fp_mul, fp_div.
 //
 // These three modules are the place for a vendor's or an open unit. What the pipelines need:
-//   fp_add, fp_mul  q = RN(a op b) within the clock (combinational);
-//   fp_div          q = RN(a / b); a and b are held while req is up; done rises in the clock in
-//                   which q is right, LATENCY clocks counted from the rise of req.
+//   q = RN(a op b) in the clock in which done rises, LATENCY clocks counted from the rise of req, and
+//   on until take; a, b and req are held until then. LATENCY = 1 is combinational. fp_wait.v counts.
+//   Units whose clocks vary are waited for as well. fp_units.v has units for synthesis.
 // RN = round to nearest, ties to even. W = 64 is IEEE 754 binary64, W = 32 binary32. Every NaN
 // leaves as the canonical quiet NaN (sign 0, top fraction bit 1), as vendor units do. FTZ = 1
 // replaces subnormal operands and results by a zero of the same sign, as most vendor units do.
@@ -139,16 +139,25 @@ endmodule
 
 // q = a + b, or a - b if sub.
 module fp_add #(
-    parameter W   = 64,
-    parameter FTZ = 0
+    parameter W       = 64,
+    parameter FTZ     = 0,
+    parameter LATENCY = 1
 ) (
+    input  wire         clk,
+    input  wire         rst,
+    input  wire         req,
+    input  wire         take,
     input  wire [W-1:0] a,
     input  wire [W-1:0] b,
     input  wire         sub,
+    output wire         done,
     output wire [W-1:0] q
 );
+    fp_wait #(.LATENCY(LATENCY)) count (
+        .clk(clk), .rst(rst), .req(req), .take(take), .first(), .done(done));
+
     fp_unit #(.W(W), .FTZ(FTZ), .OP(0)) unit (
-        .enable(1'b1), .negate(sub), .a(a), .b(b), .q(q));
+        .enable(done), .negate(sub), .a(a), .b(b), .q(q));
 `ifdef WAVE
     /* verilator lint_off UNUSED */
     real a_real, b_real, q_real;
@@ -161,15 +170,24 @@ endmodule
 
 // q = a * b.
 module fp_mul #(
-    parameter W   = 64,
-    parameter FTZ = 0
+    parameter W       = 64,
+    parameter FTZ     = 0,
+    parameter LATENCY = 1
 ) (
+    input  wire         clk,
+    input  wire         rst,
+    input  wire         req,
+    input  wire         take,
     input  wire [W-1:0] a,
     input  wire [W-1:0] b,
+    output wire         done,
     output wire [W-1:0] q
 );
+    fp_wait #(.LATENCY(LATENCY)) count (
+        .clk(clk), .rst(rst), .req(req), .take(take), .first(), .done(done));
+
     fp_unit #(.W(W), .FTZ(FTZ), .OP(1)) unit (
-        .enable(1'b1), .negate(1'b0), .a(a), .b(b), .q(q));
+        .enable(done), .negate(1'b0), .a(a), .b(b), .q(q));
 `ifdef WAVE
     /* verilator lint_off UNUSED */
     real a_real, b_real, q_real;
@@ -180,7 +198,7 @@ module fp_mul #(
 `endif
 endmodule
 
-// q = a / b, right when done; LATENCY clocks, 1 = combinational.
+// q = a / b.
 module fp_div #(
     parameter W       = 64,
     parameter FTZ     = 0,
@@ -189,16 +207,14 @@ module fp_div #(
     input  wire         clk,
     input  wire         rst,
     input  wire         req,
+    input  wire         take,
     input  wire [W-1:0] a,
     input  wire [W-1:0] b,
     output wire         done,
     output wire [W-1:0] q
 );
-    reg [15:0] waited;
-    always @(posedge clk)
-        if (rst | ~req | done) waited <= 16'd0;
-        else waited <= waited + 16'd1;
-    assign done = req & ({16'd0, waited} == LATENCY - 1);
+    fp_wait #(.LATENCY(LATENCY)) count (
+        .clk(clk), .rst(rst), .req(req), .take(take), .first(), .done(done));
 
     fp_unit #(.W(W), .FTZ(FTZ), .OP(2)) unit (
         .enable(done), .negate(1'b0), .a(a), .b(b), .q(q));

@@ -8,8 +8,9 @@
 // in binary64: two products, each rounded; a single one with LSB * FACTOR has other bits. For W = 32
 // that is rounded once more. CODE = 0: sample is the word itself.
 //
-// Clocks from taking a sample to pair_valid: 3, without codes 1; with MEAN 2 more. A sample is taken
-// in the clock in which the core takes the pair, so that the front end works while the core does.
+// Clocks from taking a sample to pair_valid: 1, with codes 2 products more, with MEAN a sum and a
+// product more. A sample is taken in the clock in which the core takes the pair, so that the front end
+// works while the core does.
 // Reset is synchronous. Synthesizable, given fp_add and fp_mul.
 `default_nettype none
 
@@ -21,6 +22,8 @@ module front_end #(
     parameter        LAG    = 1,            // samples by which x is older than the newest, 0 to 64
     parameter        MEAN   = 0,            // 1: d is the mean of the two newest
     parameter        FTZ    = 0,            // 1: units flush subnormals
+    parameter        ADD_LATENCY = 1,       // clocks of a sum
+    parameter        MUL_LATENCY = 1,       // clocks of a product
     parameter        SB     = CODE != 0 ? 32 : W        // bits of a sample (derived)
 ) (
     input  wire          clk,
@@ -46,6 +49,8 @@ module front_end #(
     wire [W-1:0]       word;        // its word
     wire [W-1:0]       mean;
 
+    // What a state asks its unit for is done.
+    wire scaled_done, sum_done, half_done;
     wire handed = pair_valid & pair_ready;
     wire take   = valid & ready;
     assign ready      = (state == WAITING) | handed;
@@ -56,10 +61,10 @@ module front_end #(
         else if (take) state <= CODE != 0 ? SCALING : AFTER_WORD;
         else
             case (state)
-                SCALING:    state <= CONVERTING;
-                CONVERTING: state <= AFTER_WORD;
-                ADDING:     state <= HALVING;
-                HALVING:    state <= OFFERING;
+                SCALING:    if (scaled_done) state <= CONVERTING;
+                CONVERTING: if (scaled_done) state <= AFTER_WORD;
+                ADDING:     if (sum_done) state <= HALVING;
+                HALVING:    if (half_done) state <= OFFERING;
                 OFFERING:   state <= handed ? WAITING : OFFERING;
                 default:    state <= WAITING;
             endcase
@@ -78,10 +83,10 @@ module front_end #(
                 begin
                     m = code[31] ? ~code + 32'd1 : code;
                     e = 11'd1054;
-                    for (k = 0; k < 31; k = k + 1)
-                        if (!m[31]) begin
-                            m = m << 1;
-                            e = e - 11'd1;
+                    for (k = 4; k >= 0; k = k - 1)
+                        if (m >> (32 - (1 << k)) == 32'd0) begin
+                            m = m << (1 << k);
+                            e = e - (11'd1 << k);
                         end
                     widen = m == 32'd0 ? 64'd0 : {code[31], e, m[30:0], 21'd0};
                 end
@@ -90,7 +95,9 @@ module front_end #(
             reg  [63:0] scaled;
             reg  [W-1:0] converted;
             wire [63:0] product;
-            fp_mul #(.W(64), .FTZ(0)) scale (
+            fp_mul #(.W(64), .FTZ(0), .LATENCY(MUL_LATENCY)) scale (
+                .clk(clk), .rst(rst), .req(state == SCALING || state == CONVERTING),
+                .take(scaled_done), .done(scaled_done),
                 .a(state == CONVERTING ? scaled : widen(taken)),
                 .b(state == CONVERTING ? FACTOR : LSB),
                 .q(product));
@@ -106,12 +113,13 @@ module front_end #(
                     scaled    <= 64'd0;
                     converted <= {W{1'b0}};
                 end else begin
-                    if (state == SCALING)    scaled    <= product;
-                    if (state == CONVERTING) converted <= rounded;
+                    if (state == SCALING && scaled_done)    scaled    <= product;
+                    if (state == CONVERTING && scaled_done) converted <= rounded;
                 end
             assign word = converted;
         end else begin : uncoded
-            assign word = taken;
+            assign word        = taken;
+            assign scaled_done = 1'b1;
         end
 
         if (MEAN != 0) begin : averaged
@@ -120,15 +128,21 @@ module front_end #(
             /* verilator lint_off WIDTH */
             localparam [W-1:0] HALF = W == 64 ? 64'h3fe0000000000000 : 64'h3f000000;
             /* verilator lint_on WIDTH */
-            fp_add #(.W(W), .FTZ(FTZ)) add (.a(word), .b(held[W-1:0]), .sub(1'b0), .q(added));
-            fp_mul #(.W(W), .FTZ(FTZ)) half (.a(sum), .b(HALF), .q(halved));
+            fp_add #(.W(W), .FTZ(FTZ), .LATENCY(ADD_LATENCY)) add (
+                .clk(clk), .rst(rst), .req(state == ADDING), .take(sum_done), .done(sum_done),
+                .a(word), .b(held[W-1:0]), .sub(1'b0), .q(added));
+            fp_mul #(.W(W), .FTZ(FTZ), .LATENCY(MUL_LATENCY)) half (
+                .clk(clk), .rst(rst), .req(state == HALVING), .take(half_done), .done(half_done),
+                .a(sum), .b(HALF), .q(halved));
             always @(posedge clk)
                 if (rst) sum <= {W{1'b0}};
-                else if (state == ADDING) sum <= added;
-                else if (state == HALVING) sum <= halved;
+                else if (sum_done) sum <= added;
+                else if (half_done) sum <= halved;
             assign mean = sum;
         end else begin : newest
-            assign mean = word;
+            assign mean      = word;
+            assign sum_done  = 1'b1;
+            assign half_done = 1'b1;
         end
 
         if (LAG == 0) begin : direct

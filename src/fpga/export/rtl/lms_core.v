@@ -79,13 +79,18 @@ module lms_core #(
         .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_wdata), .rdata(rb_rdata));
 
     wire [W-1:0] gain = NLMS != 0 ? rcp : MU;
+    /* verilator lint_off UNUSED */
+    wire add_done, mul_done;       // at once
+    /* verilator lint_on UNUSED */
     fp_mul #(.W(W), .FTZ(FTZ)) mul (
+        .clk(clk), .rst(rst), .req(1'b1), .take(1'b1), .done(mul_done),
         .a(mul_sel == 3'd3 ? dd : mul_sel == 3'd4 ? ee : ra_rdata),
         .b(mul_sel == 3'd0 ? rb_rdata : mul_sel == 3'd1 ? ra_rdata : mul_sel == 3'd2 ? ee
          : mul_sel == 3'd3 ? HALF : gain),
         .q(mul_q));
 
     fp_add #(.W(W), .FTZ(FTZ)) add (
+        .clk(clk), .rst(rst), .req(1'b1), .take(1'b1), .done(add_done),
         .a(add_sel == 2'd0 ? acc : add_sel == 2'd1 ? rr : add_sel == 2'd2 ? dd : x),
         .b(add_sel == 2'd2 ? yy : add_sel == 2'd3 ? xp : p),
         .sub(add_sel == 2'd2 || (add_sel == 2'd1 && UPDATE_SUB != 0)),
@@ -95,7 +100,7 @@ module lms_core #(
     generate
         if (NLMS != 0) begin : with_divider
             fp_div #(.W(W), .FTZ(FTZ), .LATENCY(DIV_LATENCY)) div (
-                .clk(clk), .rst(rst), .req(div_req), .a(MU), .b(den), .done(div_done), .q(div_q));
+                .clk(clk), .rst(rst), .req(div_req), .take(div_done), .a(MU), .b(den), .done(div_done), .q(div_q));
         end else begin : without_divider
             assign div_done = div_req;
             assign div_q    = {W{1'b0}};

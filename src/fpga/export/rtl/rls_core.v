@@ -32,6 +32,8 @@ module rls_core #(
     parameter         DIV_ELEM    = 0,      // 0: one division per sample; 1: one per element
     parameter         UPDATE_SUB  = 0,      // 1: W - M*e, as printed; diverges
     parameter         FTZ         = 0,      // 1: units flush subnormals
+    parameter         ADD_LATENCY = 1,      // clocks of the adder
+    parameter         MUL_LATENCY = 1,      // clocks of the multiplier
     parameter         DIV_LATENCY = 1       // clocks of the divider
 ) (
     input  wire         clk,
@@ -49,8 +51,9 @@ module rls_core #(
     localparam [W-1:0] ONE = W == 64 ? 64'h3ff0000000000000 : 64'h3f800000;
     /* verilator lint_on WIDTH */
 
-    wire          ra_we, ra_sel, rb_we, rb_sel, p_en, p_div, acc_en, acc_first, acc_alpha;
-    wire          rr_en, den_en, rcp_en, d_en, e_en, y_en, div_req, div_done, clear, clear_diag;
+    wire          ra_we, ra_sel, rb_we, rb_sel, p_en, p_div, p_sum, acc_en, acc_first, acc_alpha;
+    wire          rr_en, den_en, rcp_en, d_en, e_en, y_en, clear, clear_diag;
+    wire          add_req, add_done, mul_req, mul_done, div_req, div_done, take;
     wire [RA-1:0] ra_addr;
     wire [RB-1:0] rb_addr;
     wire [1:0]    mul_sel, add_sel;
@@ -60,13 +63,19 @@ module rls_core #(
     wire [W-1:0]  ra_rdata, rb_rdata, mul_q, add_q, div_q;
     reg  [W-1:0]  p, acc, rr, den, rcp, dd, ee, yy;
 
-    rls_ctrl #(.P(P), .DIV_ELEM(DIV_ELEM)) ctrl (
+    // x * 1.0 = x for every word that leaves a unit: with ALPHA = 1 the multiplier is by-passed,
+    // so that subtract and multiply do not share a clock.
+    localparam UNITY = IALPHA == ONE;
+    localparam SPLIT = !UNITY && (ADD_LATENCY > 1 || MUL_LATENCY > 1);
+
+    rls_ctrl #(.P(P), .DIV_ELEM(DIV_ELEM), .SCALE(!UNITY), .SPLIT(SPLIT)) ctrl (
         .clk(clk), .rst(rst), .in_valid(in_valid), .in_ready(in_ready), .out_valid(out_valid),
-        .div_req(div_req), .div_done(div_done), .state(state),
+        .add_req(add_req), .add_done(add_done), .mul_req(mul_req), .mul_done(mul_done),
+        .div_req(div_req), .div_done(div_done), .take(take), .state(state),
         .ra_addr(ra_addr), .ra_we(ra_we), .ra_sel(ra_sel),
         .rb_addr(rb_addr), .rb_we(rb_we), .rb_sel(rb_sel),
         .mul_sel(mul_sel), .add_sel(add_sel), .p_en(p_en), .p_div(p_div),
-        .acc_en(acc_en), .acc_first(acc_first), .acc_alpha(acc_alpha), .rr_en(rr_en),
+        .p_sum(p_sum), .acc_en(acc_en), .acc_first(acc_first), .acc_alpha(acc_alpha), .rr_en(rr_en),
         .den_en(den_en), .rcp_en(rcp_en), .d_en(d_en), .e_en(e_en), .y_en(y_en),
         .clear(clear), .clear_diag(clear_diag));
 
@@ -81,25 +90,25 @@ module rls_core #(
              .DIAG_COUNT(P), .DIAG_WORD(DELTA)) ramb (
         .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_wdata), .rdata(rb_rdata));
 
-    // x * 1.0 = x for every word that leaves a unit: with ALPHA = 1 the multiplier is by-passed,
-    // so that subtract and multiply do not share a clock.
     wire          scale = mul_sel == 2'd2;
-    wire          unity = IALPHA == ONE;
+    wire [W-1:0]  scaled = SPLIT ? p : add_q;
     wire [W-1:0]  product;
-    fp_mul #(.W(W), .FTZ(FTZ)) mul (
-        .a(mul_sel == 2'd1 ? p : scale && !unity ? add_q : ra_rdata),
+    fp_mul #(.W(W), .FTZ(FTZ), .LATENCY(MUL_LATENCY)) mul (
+        .clk(clk), .rst(rst), .req(mul_req), .take(take),
+        .a(mul_sel == 2'd1 ? p : scale && !UNITY ? scaled : ra_rdata),
         .b(mul_sel == 2'd1 ? rcp : mul_sel == 2'd3 ? ee : scale ? IALPHA : rb_rdata),
-        .q(product));
-    assign mul_q = scale && unity ? add_q : product;
+        .done(mul_done), .q(product));
+    assign mul_q = scale && UNITY ? add_q : product;
 
-    fp_add #(.W(W), .FTZ(FTZ)) add (
+    fp_add #(.W(W), .FTZ(FTZ), .LATENCY(ADD_LATENCY)) add (
+        .clk(clk), .rst(rst), .req(add_req), .take(take),
         .a(add_sel == 2'd0 ? acc : add_sel == 2'd2 ? dd : rr),
         .b(add_sel == 2'd2 ? yy : p),
         .sub(add_sel == 2'd1 || add_sel == 2'd2 || (add_sel == 2'd3 && UPDATE_SUB != 0)),
-        .q(add_q));
+        .done(add_done), .q(add_q));
 
     fp_div #(.W(W), .FTZ(FTZ), .LATENCY(DIV_LATENCY)) div (
-        .clk(clk), .rst(rst), .req(div_req), .a(DIV_ELEM != 0 ? p : ONE), .b(den),
+        .clk(clk), .rst(rst), .req(div_req), .take(take), .a(DIV_ELEM != 0 ? p : ONE), .b(den),
         .done(div_done), .q(div_q));
 
     always @(posedge clk)
@@ -113,7 +122,7 @@ module rls_core #(
             ee  <= {W{1'b0}};
             yy  <= {W{1'b0}};
         end else begin
-            if (p_en)   p   <= p_div ? div_q : mul_q;
+            if (p_en)   p   <= p_div ? div_q : p_sum ? add_q : mul_q;
             if (acc_en) acc <= !acc_first ? add_q : acc_alpha ? ALPHA : {W{1'b0}};
             if (rr_en)  rr  <= rb_rdata;
             if (den_en) den <= add_q;

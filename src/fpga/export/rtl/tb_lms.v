@@ -12,6 +12,9 @@ module tb_lms;
     localparam RAMA_WORDS = N;
     localparam RAMB_WORDS = N;
     localparam DIVISIONS  = `VEC_NLMS != 0 ? 1 : 0;
+    localparam PERIOD     = `VEC_PERIOD + (`VEC_DIV_LATENCY - 1) * DIVISIONS;
+    localparam TRACED     = 1;
+    localparam LATENCY    = `VEC_LATENCY + (`VEC_DIV_LATENCY - 1) * DIVISIONS;
     localparam CLEARING   = 10;
 
     reg          clk, rst;

@@ -15,7 +15,23 @@ module tb_rls;
     localparam P          = `VEC_TAPS;
     localparam RAMA_WORDS = 2 * P;
     localparam RAMB_WORDS = 2 * P + P * P;
-    localparam DIVISIONS  = `VEC_DIV_ELEM != 0 ? P * P : 1;
+    // Clocks of a sample: a step lasts as long as the slowest unit that it asks for.
+    localparam LA   = `VEC_ADD_LATENCY;
+    localparam LM   = `VEC_MUL_LATENCY;
+    localparam LD   = `VEC_DIV_LATENCY;
+    localparam DOT  = LM + (P - 1) * (LA > LM ? LA : LM) + LA;
+    localparam LS   = `VEC_ALPHA == (W == 64 ? 64'h3ff0000000000000 : 64'h3f800000)
+                    || LA + LM == 2 ? 0 : LM;
+    localparam RFR  = `VEC_DIV_ELEM != 0 ? P * P * (LM + LD + LA + LS)
+                    : P * P * (2 * LM + LA + LS) + (LD > LM ? LD - LM : 0);
+    localparam LATENCY = 1 + 2 * (P + 1) * DOT + RFR;
+    localparam PERIOD  = LATENCY + LA + P * (LM + LA);
+    // With latencies from run.sh the control may take a step that the trace does not have.
+`ifdef VEC_OTHER_UNITS
+    localparam TRACED = LS == 0;
+`else
+    localparam TRACED = 1;
+`endif
     localparam CLEARING   = 14;
 
     reg          clk, rst;
@@ -25,7 +41,7 @@ module tb_rls;
     rls_core #(
         .P(P), .W(W), .ALPHA(`VEC_ALPHA), .IALPHA(`VEC_IALPHA), .DELTA(`VEC_DELTA),
         .DIV_ELEM(`VEC_DIV_ELEM), .UPDATE_SUB(`VEC_UPDATE_SUB), .FTZ(`VEC_FTZ),
-        .DIV_LATENCY(`VEC_DIV_LATENCY)
+        .ADD_LATENCY(`VEC_ADD_LATENCY), .MUL_LATENCY(`VEC_MUL_LATENCY), .DIV_LATENCY(`VEC_DIV_LATENCY)
     ) rls (
         .clk(clk), .rst(rst), .in_valid(strobe), .in_ready(in_ready),
         .x(x), .d(d), .out_valid(out_valid), .y(y));

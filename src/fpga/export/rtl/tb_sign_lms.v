@@ -12,6 +12,9 @@ module tb_sign_lms;
     localparam RAMA_WORDS = M;
     localparam RAMB_WORDS = M;
     localparam DIVISIONS  = 1;
+    localparam PERIOD     = `VEC_PERIOD + (`VEC_DIV_LATENCY - 1) * DIVISIONS;
+    localparam TRACED     = 1;
+    localparam LATENCY    = `VEC_LATENCY + (`VEC_DIV_LATENCY - 1) * DIVISIONS;
     localparam CLEARING   = 11;
 
     reg          clk, rst;

@@ -50,7 +50,9 @@ def runner():
     declared = re.findall(r"^\s*parameter\s+(?:\[.*?\]\s*)?(\w+)", core, re.MULTILINE)
     # The first parameter of a core is its tap count, under the filter's usual letter.
     names = {key: key for key in declared} | {"TAPS": declared[0], "WIDTH": "W"}
-    sources = [HERE / name for name in (f"{top}.v", f"{kind}_ctrl.v", "sp_ram.v", "fp_sim.v")]
+    units = "fp_units.v" if (HERE / "fp_units.v").exists() else "fp_sim.v"
+    names_of_sources = (f"{top}.v", f"{kind}_ctrl.v", "sp_ram.v", "fp_wait.v", units)
+    sources = [HERE / name for name in names_of_sources]
     simulator = get_runner(os.environ.get("SIM", "icarus"))
     with tempfile.TemporaryDirectory() as build:
         simulator.build(
@@ -160,7 +162,7 @@ if os.environ.get("COCOTB_TEST_MODULES"):
         monitor = Monitor(dut)
         cocotb.start_soon(monitor.run())
         await Driver(dut, pairs, pause).run()
-        period = int(given["PERIOD"])
+        period = int(given.get("UNITS_PERIOD", given["PERIOD"]))
         for _ in range(period + 2):
             await RisingEdge(dut.clk)
         return given, expected, monitor
@@ -172,9 +174,9 @@ if os.environ.get("COCOTB_TEST_MODULES"):
         checker = Checker()
         checker.compare("y", expected, monitor.words)
         latencies = [out - start for start, out in zip(monitor.taken, monitor.given)]
-        checker.compare("latency", [int(given["LATENCY"])] * len(expected), latencies)
+        checker.compare("latency", [int(given.get("UNITS_LATENCY", given["LATENCY"]))] * len(expected), latencies)
         periods = [b - a for a, b in zip(monitor.taken, monitor.taken[1:])]
-        checker.compare("period", [int(given["PERIOD"])] * (len(expected) - 1), periods)
+        checker.compare("period", [int(given.get("UNITS_PERIOD", given["PERIOD"]))] * (len(expected) - 1), periods)
         rama = [int(dut.rama.mem[k].value) for k in range(len(dut.rama.mem))]
         ramb = [int(dut.ramb.mem[k].value) for k in range(len(dut.ramb.mem))]
         checker.compare("memory", words(vector_folder(), "ram_final.hex"), rama + ramb)
@@ -184,12 +186,13 @@ if os.environ.get("COCOTB_TEST_MODULES"):
     async def with_pauses(dut):
         """After a reset the same words and latency, with random pauses between the samples."""
         rng = random.Random(1)
-        longest = 3 * int(parameters(vector_folder())["PERIOD"])
+        given = parameters(vector_folder())
+        longest = 3 * int(given.get("UNITS_PERIOD", given["PERIOD"]))
         given, expected, monitor = await run_all(dut, lambda: rng.randrange(longest))
         checker = Checker()
         checker.compare("y", expected, monitor.words)
         latencies = [out - start for start, out in zip(monitor.taken, monitor.given)]
-        checker.compare("latency", [int(given["LATENCY"])] * len(expected), latencies)
+        checker.compare("latency", [int(given.get("UNITS_LATENCY", given["LATENCY"]))] * len(expected), latencies)
         checker.finish()
 
 
