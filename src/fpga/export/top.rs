@@ -57,18 +57,8 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
     }
     let flushes = u8::from(F::FLUSHES_SUBNORMALS);
     let [(_, add), (_, mul), (_, div)] = unit_latencies(pipeline.units());
-    let waits = if kind.sources[1].1.contains(" ADD_LATENCY ") {
-        ".ADD_LATENCY(ADD_LATENCY), .MUL_LATENCY(MUL_LATENCY),\n        "
-    } else {
-        ""
-    };
-    let register = if is_late {
-        RESULT_AT_NEXT
-            .replace("WIDTH-1", &(width - 1).to_string())
-            .replace("WIDTH", &width.to_string())
-    } else {
-        RESULT_AT_ONCE.to_owned()
-    };
+    let waits = latencies_of_core(kind.sources[1].1);
+    let register = result_register(is_late, width);
     format!(
         "// The exported filter with its front end: every constant is that of params.json.\n\
          //\n\
@@ -106,6 +96,26 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
         around.input_lag_samples,
         u8::from(forms_mean),
     )
+}
+
+/// Latencies that the Verilog of a core takes beside its divider's.
+fn latencies_of_core(core: &str) -> &'static str {
+    if core.contains(" ADD_LATENCY ") {
+        ".ADD_LATENCY(ADD_LATENCY), .MUL_LATENCY(MUL_LATENCY),\n        "
+    } else {
+        ""
+    }
+}
+
+/// Verilog of the output register for words of this width.
+fn result_register(is_late: bool, width: u32) -> String {
+    if is_late {
+        RESULT_AT_NEXT
+            .replace("WIDTH-1", &(width - 1).to_string())
+            .replace("WIDTH", &width.to_string())
+    } else {
+        RESULT_AT_ONCE.to_owned()
+    }
 }
 
 /// Output register of [`OutputRegister::Immediate`]: the core's own.
