@@ -81,12 +81,7 @@ pub(in crate::cli) fn export(options: &ExportOptions) -> io::Result<Exit> {
             output::data(&names)?;
             output::talk(&counted(samples, "sample"));
             if form == ExportForm::Rtl {
-                let script = options.folder.join("run.sh");
-                output::talk(&format!("simulate with: sh {}", script.display()));
-                if options.synth.is_some() {
-                    let script = options.folder.join("synth.sh");
-                    output::talk(&format!("synthesise with: sh {}", script.display()));
-                }
+                tell_scripts(options);
             }
             Ok(Exit::Success)
         }
@@ -97,6 +92,16 @@ pub(in crate::cli) fn export(options: &ExportOptions) -> io::Result<Exit> {
                 _ => Exit::Usage,
             })
         }
+    }
+}
+
+/// Says how an export of RTL is simulated and synthesised.
+fn tell_scripts(options: &ExportOptions) {
+    let script = options.folder.join("run.sh");
+    output::talk(&format!("simulate with: sh {}", script.display()));
+    if options.synth.is_some() {
+        let script = options.folder.join("synth.sh");
+        output::talk(&format!("synthesise with: sh {}", script.display()));
     }
 }
 

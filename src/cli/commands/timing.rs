@@ -199,13 +199,7 @@ impl<'a> Report<'a> {
                 sample_rate_max_khz(clocks, clock_mhz)
             );
         };
-        let waits = "the control waits for each result";
-        let basis = if self.exists {
-            waits.to_owned()
-        } else {
-            format!("estimate; {waits}")
-        };
-        line("stalled", self.stalled, &basis);
+        line("stalled", self.stalled, self.stalled_basis());
         if let Some(report) = &self.interleaved {
             let bound = format!("estimate; bound by: {}", report.bound.name());
             line("interleaved", report.clocks, &bound);
@@ -242,6 +236,15 @@ impl<'a> Report<'a> {
             sample.1,
             sample_period_us(board.latency_clocks, clock_mhz),
         );
+    }
+
+    /// What the stalled count stands for.
+    fn stalled_basis(&self) -> &'static str {
+        if self.exists {
+            "the control waits for each result"
+        } else {
+            "estimate; the control waits for each result"
+        }
     }
 
     /// Clocks per state, ports and units.

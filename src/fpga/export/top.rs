@@ -69,11 +69,7 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
     }
     let flushes = u8::from(F::FLUSHES_SUBNORMALS);
     let [(_, add), (_, mul), (_, div)] = unit_latencies(pipeline.units());
-    let waits = if kind.sources[1].1.contains(" ADD_LATENCY ") {
-        ".ADD_LATENCY(ADD_LATENCY), .MUL_LATENCY(MUL_LATENCY),\n        "
-    } else {
-        ""
-    };
+    let waits = latencies_of_core(kind.sources[1].1);
     let register = output_register(around.output_register, width);
     format!(
         "{TOP_HEAD}module {name}_top #(\n    parameter ADD_LATENCY = {add},      // clocks of the adder\n    \
@@ -113,6 +109,15 @@ pub(super) fn output_register(register: OutputRegister, width: u32) -> String {
             .replace("WIDTH-1", &(width - 1).to_string())
             .replace("WIDTH", &width.to_string()),
         OutputRegister::Immediate => RESULT_AT_ONCE.to_owned(),
+    }
+}
+
+/// Latencies that the Verilog of a core takes beside its divider's.
+fn latencies_of_core(core: &str) -> &'static str {
+    if core.contains(" ADD_LATENCY ") {
+        ".ADD_LATENCY(ADD_LATENCY), .MUL_LATENCY(MUL_LATENCY),\n        "
+    } else {
+        ""
     }
 }
 
