@@ -479,8 +479,8 @@ fn assert_same(filter: &mut dyn Filter, printed: &mut dyn Filter, input: &[f64],
 
 #[test]
 fn looking_ahead_changes_no_word() {
-    let rocking = swing(36_000.0, 10.0, 20.0, 20_000);
-    let resting = constant(8.47, 22.8, 20_000);
+    let rocking = swing(36_000.0, 10.0, 20.0, 5000);
+    let resting = constant(8.47, 22.8, 5000);
     let mut silent = resting[..3000].to_vec();
     silent.extend([0.0; 500]);
     silent.extend(&resting[..500]);
