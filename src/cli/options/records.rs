@@ -15,7 +15,7 @@ pub(in crate::cli) struct RecordsOptions {
           value_parser = PossibleValuesParser::new(reference_records().iter().map(|record| record.name)))]
     pub(in crate::cli) names: Vec<String>,
     /// Folder for the records, their data sheet and checksums
-    #[arg(short, long = "output", value_name = "DIR")]
+    #[arg(short = 'o', long = "output", value_name = "DIR")]
     pub(in crate::cli) folder: PathBuf,
     /// Replace files in the folder that fogbench did not write
     #[arg(long)]
