@@ -168,7 +168,9 @@ fn the_page_of_filters_names_every_kind() {
     let tables = reference
         .lines()
         .filter_map(|line| line.strip_prefix("#| [filter."));
-    let kinds: BTreeSet<&str> = tables.filter_map(|rest| rest.strip_suffix(']')).collect();
+    let tables = tables.filter_map(|rest| rest.strip_suffix(']'));
+    // A table inside a kind's is none of its own.
+    let kinds: BTreeSet<&str> = tables.filter(|name| !name.contains('.')).collect();
     let filters = page("docs/filters.md").text;
     assert!(kinds.contains("rls"), "{kinds:?}");
     for kind in kinds {
