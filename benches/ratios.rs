@@ -3,8 +3,6 @@
 //! `cargo bench --bench ratios` prints the ratio of their times, the least of many short ones in
 //! alternation; with `-- --check` a ratio above its limit in `benches/ratios.toml` is a failure.
 
-#[path = "../tests/support/as_printed.rs"]
-mod as_printed;
 #[path = "plain_loop.rs"]
 mod plain_loop;
 #[path = "../tests/support/reference_gyro.rs"]
@@ -14,21 +12,15 @@ use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use fogbench::filters::{
-    CoreFilter, Filter, FrontEndConfig, Lms, LmsConfig, Normalisation, Rls, RlsConfig,
-};
 use fogbench::gyro::LoopModel;
 use fogbench::random::Streams;
 use fogbench::signal::MotionSegment;
-use fogbench::vocabulary::{DesiredSignal, OutputRegister, UpdateSign};
 
 use plain_loop::PlainLoop;
 use reference_gyro::reference_gyro;
 
 /// Limits by name.
 const LIMITS: &str = include_str!("ratios.toml");
-/// Samples of a filter in one timing: some tenths of a millisecond, which many timings see undisturbed.
-const SAMPLES: usize = 10_000;
 /// Words of a gyro in one timing.
 const WORDS: u32 = 200;
 /// Timings of each of the two.
@@ -51,58 +43,6 @@ struct Measured {
     name: &'static str,
     fast_ns: f64,
     plain_ns: f64,
-}
-
-fn run(filter: &mut dyn Filter, input: &[f64]) -> f64 {
-    let step = |sample: &f64| filter.step(*sample).map_or(f64::NAN, |o| o.value_deg_per_h);
-    input.iter().map(step).sum()
-}
-
-fn filter(name: &'static str, fast: &mut dyn Filter, plain: &mut dyn Filter) -> Measured {
-    let mut input = vec![0.0; SAMPLES];
-    Streams::new(1, 0).stream("bench").fill_normal(&mut input);
-    let (fast_s, plain_s) = least_times_s(
-        || run(fast, black_box(&input)),
-        || run(plain, black_box(&input)),
-    );
-    let per_sample = 1e9 / SAMPLES as f64;
-    Measured {
-        name,
-        fast_ns: fast_s * per_sample,
-        plain_ns: plain_s * per_sample,
-    }
-}
-
-fn front_end(desired: DesiredSignal, input_lag_samples: usize) -> FrontEndConfig {
-    FrontEndConfig {
-        desired,
-        input_lag_samples,
-        output_register: OutputRegister::NextSample,
-    }
-}
-
-fn rls() -> Measured {
-    let config = RlsConfig {
-        taps: 4,
-        forgetting_factor: 0.999,
-        initial_inverse_correlation: 1.0,
-        update_sign: UpdateSign::Corrected,
-        front_end: front_end(DesiredSignal::Current, 1),
-    };
-    let mut plain = CoreFilter::with_core(as_printed::Rls::new(&config), &config.front_end);
-    filter("rls_4", &mut Rls::new(&config), &mut plain)
-}
-
-fn lms(name: &'static str, step_size: f64, normalisation: Normalisation) -> Measured {
-    let config = LmsConfig {
-        taps: 10,
-        step_size,
-        normalisation,
-        update_sign: UpdateSign::Corrected,
-        front_end: front_end(DesiredSignal::TwoSampleMean, 0),
-    };
-    let mut plain = CoreFilter::with_core(as_printed::Lms::new(&config), &config.front_end);
-    filter(name, &mut Lms::new(&config), &mut plain)
 }
 
 fn loop_model(name: &'static str, latency_periods: u32) -> Measured {
@@ -135,13 +75,7 @@ fn loop_model(name: &'static str, latency_periods: u32) -> Measured {
 fn main() -> ExitCode {
     let limits: toml::Table = LIMITS.parse().expect("the limits are TOML");
     let is_checked = std::env::args().any(|argument| argument == "--check");
-    let energy = Normalisation::Energy {
-        regularisation_deg2_per_h2: 1.0,
-    };
     let measured = [
-        rls(),
-        lms("nlms_10", 0.8, energy),
-        lms("lms_10", 1e-3, Normalisation::None),
         loop_model("loop_model_latency_1", 1),
         loop_model("loop_model_latency_0", 0),
     ];

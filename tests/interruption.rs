@@ -531,8 +531,10 @@ mod process {
     #[test]
     fn other_commands_end_at_a_signal() {
         let folder = scratch();
-        let (_, campaign) = kinds().swap_remove(9);
-        scenario(folder.path(), "campaign", &campaign);
+        let kinds = kinds();
+        let campaign = kinds.iter().find(|(name, _)| *name == "calibration");
+        let (_, campaign) = campaign.expect("a kind of motion");
+        scenario(folder.path(), "campaign", campaign);
         let values: Vec<String> = (1..=5000).map(|step| format!("{step}.0")).collect();
         let matrix = format!(
             "{SHORT}[matrix]\n\"gyro.source.power_uw\" = [{}]\n",

@@ -1,7 +1,6 @@
 //! Least mean squares, plain and normalised.
 
-use super::common::lanes::{self, Lanes, Turns};
-use super::common::{Complaints, Core, CoreFilter, Fault, Filter, FrontEndConfig, Output};
+use super::common::{Complaints, Core, CoreFilter, Fault, Filter, FrontEndConfig, Output, dot};
 use super::hardware::{self, PipelineSettings};
 use super::kind::{Condition, ExpectedWords, FilterSettings};
 use crate::declare::table;
@@ -123,29 +122,6 @@ pub enum Normalisation {
     },
 }
 
-impl Normalisation {
-    /// Step along the regressors. The division by their energy does not wait for the error.
-    #[inline(always)]
-    fn step(self, signed_step_size: f64, energy: f64, error: f64) -> f64 {
-        let Self::Energy {
-            regularisation_deg2_per_h2: epsilon,
-        } = self
-        else {
-            return signed_step_size * error;
-        };
-        let energy = epsilon + energy;
-        let gain = signed_step_size / energy;
-        if energy > 0.0 && gain.is_finite() {
-            gain * error
-        } else if energy > 0.0 {
-            signed_step_size * error / energy
-        } else {
-            // Silent taps without regularisation: there is nothing to learn from.
-            0.0
-        }
-    }
-}
-
 /// Settings of a least-mean-squares filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LmsConfig {
@@ -178,27 +154,13 @@ impl Lms {
 /// Weights W: `y = W'L`, then `W = W + mu (d - y) L`, the step divided by `epsilon + L'L` in the
 /// normalised form.
 ///
-/// Computed looking ahead: with V the weights before the newest update, M its regressors and s its step,
-///
-/// ```text
-/// y = V'L + s M'L
-/// ```
-///
-/// is the same prediction, in which all but a product and a sum is known before s is. A sample then waits
-/// for the one before for a quarter of the time.
-///
 /// # Source
 /// Widrow and Hoff's rule, the paper's equation (9) with the sign that converges; the normalised
 /// form is that of Haykin, Adaptive Filter Theory. Checked by
-/// `normalised_lms_learns_the_mean_of_two_samples`, and against the equations as they are printed by
-/// `looking_ahead_changes_no_word`.
+/// `normalised_lms_learns_the_mean_of_two_samples`.
 #[derive(Clone, Debug)]
 pub struct LmsCore {
-    taps: usize,
-    /// W, and behind it L of the newest update.
-    states: Turns,
-    /// Step of the newest update.
-    step: f64,
+    weights: Vec<f64>,
     signed_step_size: f64,
     normalisation: Normalisation,
 }
@@ -211,77 +173,43 @@ impl LmsCore {
     #[must_use]
     pub fn new(config: &LmsConfig) -> Self {
         assert!(config.taps > 0, "a filter has at least one tap");
-        let zeros = vec![Lanes::ZERO; 2 * lanes::blocks(config.taps)];
         Self {
-            taps: config.taps,
-            states: Turns::new(zeros),
-            step: 0.0,
+            weights: vec![0.0; config.taps],
             signed_step_size: config.update_sign.factor() * config.step_size,
             normalisation: config.normalisation,
         }
     }
-
-    /// An update of a filter of that many blocks of lanes: a constant where it is called, so that no loop
-    /// is left.
-    #[inline(always)]
-    fn update_blocks(
-        &mut self,
-        taps: usize,
-        blocks: usize,
-        regressors: &[f64],
-        desired: f64,
-    ) -> Output {
-        let regressors = &regressors[..taps];
-        let (newest, older) = self.states.newest_and_older();
-        let (weights, before) = newest[..2 * blocks].split_at(blocks);
-        let (older, now) = older[..2 * blocks].split_at_mut(blocks);
-        let [mut ahead, mut common, mut energy, mut weight_sum] = [Lanes::ZERO; 4];
-        for (block, now) in now.iter_mut().enumerate() {
-            let lanes = lanes::block(regressors, block);
-            ahead += older[block] * lanes;
-            common += before[block] * lanes;
-            energy += lanes * lanes;
-            weight_sum += weights[block];
-            *now = lanes;
-        }
-        let output = Output {
-            value_deg_per_h: lanes::sum(ahead) + self.step * lanes::sum(common),
-            weight_sum: lanes::sum(weight_sum),
-        };
-        let error = desired - output.value_deg_per_h;
-        let energy = lanes::sum(energy);
-        self.step = self
-            .normalisation
-            .step(self.signed_step_size, energy, error);
-        let step = Lanes::splat(self.step);
-        for ((older, weights), now) in older.iter_mut().zip(weights).zip(now.iter()) {
-            *older = *weights + step * *now;
-        }
-        self.states.turn();
-        output
-    }
 }
 
 impl Core for LmsCore {
-    #[inline(always)]
     fn update(&mut self, regressors: &[f64], desired: f64) -> Result<Output, Fault> {
-        let taps = self.taps;
-        Ok(match (taps, lanes::blocks(taps)) {
-            (10, _) => self.update_blocks(10, 3, regressors, desired), // that of the paper
-            (_, 1) => self.update_blocks(taps, 1, regressors, desired),
-            (_, 2) => self.update_blocks(taps, 2, regressors, desired),
-            (_, 3) => self.update_blocks(taps, 3, regressors, desired),
-            (_, 4) => self.update_blocks(taps, 4, regressors, desired),
-            (_, blocks) => self.update_blocks(taps, blocks, regressors, desired),
-        })
-    }
-
-    fn reads_blocks(&self) -> bool {
-        true
+        let output = Output {
+            value_deg_per_h: dot(&self.weights, regressors),
+            weight_sum: self.weights.iter().sum(),
+        };
+        let correction = self.signed_step_size * (desired - output.value_deg_per_h);
+        let step = match self.normalisation {
+            Normalisation::None => correction,
+            Normalisation::Energy {
+                regularisation_deg2_per_h2: epsilon,
+            } => {
+                let energy = epsilon + dot(regressors, regressors);
+                // Silent taps without regularisation: there is nothing to learn from.
+                if energy > 0.0 {
+                    correction / energy
+                } else {
+                    0.0
+                }
+            }
+        };
+        for (weight, regressor) in self.weights.iter_mut().zip(regressors) {
+            *weight += step * regressor;
+        }
+        Ok(output)
     }
 
     fn weights(&self) -> &[f64] {
-        &lanes::numbers(self.states.newest())[..self.taps]
+        &self.weights
     }
 }
 

@@ -7,9 +7,8 @@
 //!            └ desired d = x[k]  or  (x[k] + x[k-1]) / 2 ──> e = d - y ──> update of W
 //! ```
 //!
-//! [`Rls`] is the gain form of recursive least squares, [`Lms`] the least mean squares filter,
-//! normalised or not; both compute what the books print, looking ahead by one update, so that a sample
-//! does not wait for the division of the one before. [`SignLms`] is the line enhancer of patent CN101221046 with
+//! [`Rls`] is the gain form of recursive least squares as the books print it, [`Lms`] the least
+//! mean squares filter, normalised or not, [`SignLms`] the line enhancer of patent CN101221046 with
 //! its normalised and unity-gain forms. All share the front end, the output register and the
 //! watch for divergence. Beside them stand [`FixedFilter`] (moving average, Savitzky-Golay),
 //! [`RecursiveFilter`] (one pole, Butterworth), [`Kalman`] for a constant rate, and

@@ -1,8 +1,7 @@
 //! Recursive least squares in its textbook gain form.
 
-use super::common::lanes::{self, LANES, Lanes, Turns};
 use super::common::{
-    Complaints, Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output,
+    Complaints, Core, CoreFilter, DivergenceKind, Fault, Filter, FrontEndConfig, Output, dot,
     least_squares_rule,
 };
 use super::hardware::{self, PipelineSettings};
@@ -159,69 +158,29 @@ impl Rls {
 ///
 /// ```text
 /// y = W'L                          prediction with the weights before the update
-/// t = P L, g = lambda + L't        the gain is t / g
-/// s = (d - y) / g, W = W + s t
-/// P = (P - t t' / g) / lambda      (t_i t_j) / g: symmetric to the bit
+/// k = P L / (lambda + L'P L)       gain
+/// W = W + k (d - y)
+/// P = (P - k L'P) / lambda         upper triangle, mirrored: symmetric to the bit
 /// ```
 ///
 /// After n updates W minimises `lambda^n |W|^2 / delta + sum lambda^(n-i) (d_i - W'L_i)^2`.
-/// Symmetry matters: an asymmetry of P grows by `1 / lambda` per sample and at lambda = 0.99 ruins
+/// Mirroring matters: an asymmetry of P grows by `1 / lambda` per sample and at lambda = 0.99 ruins
 /// binary64 in some thousand samples.
-///
-/// Computed looking ahead: with V and Q the weights and the matrix before the newest update, and t, s and
-/// g of that update,
-///
-/// ```text
-/// u = Q L, q = t'L
-/// y = V'L + s q
-/// t = (u - t q / g) / lambda
-/// g = lambda + (L'u - q^2 / g) / lambda
-/// ```
-///
-/// are the same numbers. u, q, V'L and L'u wait for nothing of the newest division, so that a sample waits
-/// for the one before for a third of the time.
 ///
 /// # Source
 /// Haykin, Adaptive Filter Theory, the exponentially weighted recursive-least-squares algorithm;
 /// the paper's equations (6) to (8) are the same recursion with the updated P in the gain. Checked by
-/// `recursive_least_squares_equals_regularised_batch_least_squares`, and against the equations as they
-/// are printed by `looking_ahead_changes_no_word`.
+/// `recursive_least_squares_equals_regularised_batch_least_squares`.
 #[derive(Clone, Debug)]
 pub struct RlsCore {
-    taps: usize,
-    /// P row by row, every row filled up to whole blocks, and W behind it.
-    states: Turns,
-    newest: Update,
+    weights: Vec<f64>,
+    /// P, row major.
+    inverse_correlation: Vec<f64>,
+    /// `P L` of the newest update.
+    projection: Vec<f64>,
     forgetting_factor: f64,
     inverse_forgetting_factor: f64,
     sign: f64,
-    /// Room for the update of a filter of many taps.
-    room: Vec<Lanes>,
-}
-
-/// What the newest update made of the state before it.
-#[derive(Clone, Debug)]
-struct Update {
-    /// t, the projection `P L`.
-    projection: Vec<Lanes>,
-    /// `1 / g`.
-    gain: f64,
-    /// s.
-    step: f64,
-    /// lambda; 1 before there was an update.
-    forgetting_factor: f64,
-    /// `1 / lambda`; 1 before there was an update.
-    inverse_forgetting_factor: f64,
-}
-
-/// What a sample needs before it meets the newest update.
-struct Prediction {
-    /// y.
-    output: Output,
-    /// q.
-    common: f64,
-    /// `L'u`.
-    energy: f64,
 }
 
 impl RlsCore {
@@ -247,25 +206,17 @@ impl RlsCore {
             delta > 0.0 && delta.is_finite(),
             "the initial inverse correlation {delta} is positive"
         );
-        let blocks = lanes::blocks(taps);
-        let mut state = vec![Lanes::ZERO; (taps + 1) * blocks];
-        for (tap, row) in state.chunks_exact_mut(blocks).take(taps).enumerate() {
-            row[tap / LANES].as_mut_array()[tap % LANES] = delta;
+        let mut inverse_correlation = vec![0.0; taps * taps];
+        for diagonal in inverse_correlation.iter_mut().step_by(taps + 1) {
+            *diagonal = delta;
         }
         Self {
-            taps,
-            states: Turns::new(state),
-            newest: Update {
-                projection: vec![Lanes::ZERO; blocks],
-                gain: 0.0,
-                step: 0.0,
-                forgetting_factor: 1.0,
-                inverse_forgetting_factor: 1.0,
-            },
+            weights: vec![0.0; taps],
+            inverse_correlation,
+            projection: vec![0.0; taps],
             forgetting_factor,
             inverse_forgetting_factor: 1.0 / forgetting_factor,
             sign: config.update_sign.factor(),
-            room: vec![Lanes::ZERO; 2 * blocks],
         }
     }
 
@@ -276,103 +227,36 @@ impl RlsCore {
 
     /// Inverse correlation matrix P, `[p * p]`, row major, (deg/h)^-2.
     #[must_use]
-    pub fn inverse_correlation(&self) -> Vec<f64> {
-        let row_length = LANES * lanes::blocks(self.taps);
-        let rows = lanes::numbers(self.states.newest()).chunks_exact(row_length);
-        let rows = rows.take(self.taps).map(|row| &row[..self.taps]);
-        rows.flatten().copied().collect()
+    pub fn inverse_correlation(&self) -> &[f64] {
+        &self.inverse_correlation
     }
 
-    /// An update of a filter of so many blocks of lanes that they stay in registers.
-    #[inline(always)]
-    fn update_within<const BLOCKS: usize>(
-        &mut self,
-        taps: usize,
-        regressors: &[f64],
-        desired: f64,
-    ) -> Result<Output, Fault> {
-        let mut newest = [Lanes::ZERO; BLOCKS];
-        let mut ahead = [Lanes::ZERO; BLOCKS];
-        self.update_blocks(taps, &regressors[..taps], desired, &mut newest, &mut ahead)
-    }
-
-    /// An update of a filter of any size.
-    fn update_any(&mut self, regressors: &[f64], desired: f64) -> Result<Output, Fault> {
-        let (taps, mut room) = (self.taps, std::mem::take(&mut self.room));
-        let (newest, ahead) = room.split_at_mut(lanes::blocks(taps));
-        let result = self.update_blocks(taps, &regressors[..taps], desired, newest, ahead);
-        self.room = room;
-        result
-    }
-
-    /// The update, with room for t and u.
-    #[inline(always)]
-    fn update_blocks(
-        &mut self,
-        taps: usize,
-        regressors: &[f64],
-        desired: f64,
-        projection: &mut [Lanes],
-        ahead: &mut [Lanes],
-    ) -> Result<Output, Fault> {
-        let blocks = projection.len();
-        projection.copy_from_slice(&self.newest.projection[..blocks]);
-        let (newest, older) = self.states.newest_and_older();
-        let (newest, older) = (
-            &newest[..(taps + 1) * blocks],
-            &mut older[..(taps + 1) * blocks],
-        );
-        let (matrix, weights) = newest.split_at(taps * blocks);
-        let (older_matrix, older_weights) = older.split_at_mut(taps * blocks);
-
-        project(older_matrix, regressors, ahead);
-        let step = self.newest.step;
-        let prediction = predict(
-            [weights, older_weights, projection, ahead],
-            step,
-            regressors,
-        );
-        let Prediction {
-            output,
-            common,
-            energy,
-        } = prediction;
-        // g with the factor lambda of the update before: its inverse comes with one division.
-        let (before, gain) = (self.newest.forgetting_factor, self.newest.gain);
-        let scaled = (before * self.forgetting_factor + energy) - (common * common) * gain;
-        if !is_positive(scaled) {
-            return Err(self.fault(scaled / before));
+    /// `P = (P - k L'P) / lambda`; says whether the diagonal is still positive and finite.
+    fn update_inverse_correlation(&mut self, denominator: f64) -> bool {
+        let taps = self.weights.len();
+        let mut is_definite = true;
+        for row in 0..taps {
+            let gain = self.projection[row] / denominator;
+            for column in row..taps {
+                let index = row * taps + column;
+                let reduced = self.inverse_correlation[index] - gain * self.projection[column];
+                let updated = reduced * self.inverse_forgetting_factor;
+                self.inverse_correlation[index] = updated;
+                self.inverse_correlation[column * taps + row] = updated;
+            }
+            let diagonal = self.inverse_correlation[row * (taps + 1)];
+            is_definite &= diagonal > 0.0 && diagonal < f64::INFINITY;
         }
-        let inverse = Lanes::splat(self.newest.inverse_forgetting_factor);
-        let correction = Lanes::splat(common * gain);
-        let gain = before / scaled;
-        let step = self.sign * (desired - output.value_deg_per_h) * gain;
-        for (block, projection) in projection.iter_mut().enumerate() {
-            *projection = (ahead[block] - correction * *projection) * inverse;
-            older_weights[block] = weights[block] + Lanes::splat(step) * *projection;
-        }
-        let scale = self.inverse_forgetting_factor;
-        let is_definite = reduce(matrix, older_matrix, projection, gain, scale);
-        self.states.turn();
-        self.newest.projection[..blocks].copy_from_slice(projection);
-        self.newest.gain = gain;
-        self.newest.step = step;
-        self.newest.forgetting_factor = self.forgetting_factor;
-        self.newest.inverse_forgetting_factor = scale;
-        if is_definite {
-            Ok(output)
-        } else {
-            Err(self.fault(scaled / before))
-        }
+        is_definite
     }
 
     /// What is wrong with P once its diagonal or the denominator has given it away.
-    #[cold]
     fn fault(&self, denominator: f64) -> Fault {
-        let matrix = self.inverse_correlation();
-        let diagonal = matrix.iter().step_by(self.taps + 1);
-        let smallest = diagonal.fold(f64::INFINITY, |min, value| min.min(*value));
-        let has_overflowed = matrix.iter().any(|p| !p.is_finite());
+        let diagonal = self.inverse_correlation.iter();
+        let smallest = diagonal
+            .step_by(self.weights.len() + 1)
+            .fold(f64::INFINITY, |min, value| min.min(*value));
+        let has_overflowed = self.inverse_correlation.iter().any(|p| !p.is_finite());
         if has_overflowed || !denominator.is_finite() {
             let message = "the inverse correlation matrix is not finite".to_owned();
             return Fault {
@@ -391,112 +275,33 @@ impl RlsCore {
     }
 }
 
-/// Whether a number is positive and finite.
-#[inline(always)]
-fn is_positive(number: f64) -> bool {
-    number > 0.0 && number <= f64::MAX
-}
-
-/// `u = Q L`, by the columns of the symmetric Q; those of even and odd index are summed side by side.
-#[inline(always)]
-fn project(matrix: &[Lanes], regressors: &[f64], ahead: &mut [Lanes]) {
-    let blocks = ahead.len();
-    for (block, ahead) in ahead.iter_mut().enumerate() {
-        let (mut even, mut odd) = (Lanes::ZERO, Lanes::ZERO);
-        for (index, regressor) in regressors.iter().enumerate() {
-            let product = matrix[index * blocks + block] * Lanes::splat(*regressor);
-            if index % 2 == 0 {
-                even += product;
-            } else {
-                odd += product;
-            }
-        }
-        *ahead = even + odd;
-    }
-}
-
-/// Inner products of the regressors with V, t and u, and the sum of W.
-#[inline(always)]
-fn predict(
-    [weights, older_weights, projection, ahead]: [&[Lanes]; 4],
-    step: f64,
-    regressors: &[f64],
-) -> Prediction {
-    let [mut value, mut common, mut energy, mut weight_sum] = [Lanes::ZERO; 4];
-    for (block, weights) in weights.iter().enumerate() {
-        let lanes = lanes::block(regressors, block);
-        value += older_weights[block] * lanes;
-        common += projection[block] * lanes;
-        energy += ahead[block] * lanes;
-        weight_sum += *weights;
-    }
-    let common = lanes::sum(common);
-    Prediction {
-        output: Output {
-            value_deg_per_h: lanes::sum(value) + step * common,
-            weight_sum: lanes::sum(weight_sum),
-        },
-        common,
-        energy: lanes::sum(energy),
-    }
-}
-
-/// `P = (P - t t' / g) / lambda`; says whether the diagonal is still positive and finite.
-#[inline(always)]
-fn reduce(
-    matrix: &[Lanes],
-    reduced: &mut [Lanes],
-    projection: &[Lanes],
-    gain: f64,
-    scale: f64,
-) -> bool {
-    let blocks = projection.len();
-    let taps = matrix.len() / blocks;
-    let (gain, scale) = (Lanes::splat(gain), Lanes::splat(scale));
-    let mut is_definite = true;
-    for (block, lanes) in projection.iter().enumerate() {
-        let mut diagonal = [1.0; LANES];
-        let rows = diagonal.iter_mut().take(taps - block * LANES).enumerate();
-        for (lane, diagonal) in rows {
-            let row = (block * LANES + lane) * blocks;
-            let element = Lanes::splat(lanes.as_array()[lane]);
-            for (column, projection) in projection.iter().enumerate() {
-                let product = (element * *projection) * gain;
-                reduced[row + column] = (matrix[row + column] - product) * scale;
-            }
-            *diagonal = reduced[row + block].as_array()[lane];
-        }
-        let diagonal = Lanes::new(diagonal);
-        let is_finite = diagonal.simd_le(Lanes::splat(f64::MAX));
-        is_definite &= (diagonal.simd_gt(Lanes::ZERO) & is_finite).all();
-    }
-    is_definite
-}
-
 impl Core for RlsCore {
-    #[inline(always)]
     fn update(&mut self, regressors: &[f64], desired: f64) -> Result<Output, Fault> {
-        // Sizes of the paper and its neighbours without a loop.
-        match self.taps {
-            1 => self.update_within::<1>(1, regressors, desired),
-            2 => self.update_within::<1>(2, regressors, desired),
-            3 => self.update_within::<1>(3, regressors, desired),
-            4 => self.update_within::<1>(4, regressors, desired),
-            taps @ ..=8 => self.update_within::<2>(taps, regressors, desired),
-            _ => self.update_any(regressors, desired),
+        let taps = self.weights.len();
+        let output = Output {
+            value_deg_per_h: dot(&self.weights, regressors),
+            weight_sum: self.weights.iter().sum(),
+        };
+        let rows = self.inverse_correlation.chunks_exact(taps);
+        for (projection, row) in self.projection.iter_mut().zip(rows) {
+            *projection = dot(row, regressors);
         }
-    }
-
-    fn reads_blocks(&self) -> bool {
-        true
+        let denominator = self.forgetting_factor + dot(regressors, &self.projection);
+        if !(denominator > 0.0 && denominator < f64::INFINITY) {
+            return Err(self.fault(denominator));
+        }
+        let step = self.sign * (desired - output.value_deg_per_h) / denominator;
+        for (weight, projection) in self.weights.iter_mut().zip(&self.projection) {
+            *weight += step * projection;
+        }
+        if !self.update_inverse_correlation(denominator) {
+            return Err(self.fault(denominator));
+        }
+        Ok(output)
     }
 
     fn weights(&self) -> &[f64] {
-        let (_, weights) = self
-            .states
-            .newest()
-            .split_at(self.taps * lanes::blocks(self.taps));
-        &lanes::numbers(weights)[..self.taps]
+        &self.weights
     }
 
     fn rule(&self, desired: DesiredSignal) -> WeightRule {

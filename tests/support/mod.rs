@@ -8,7 +8,6 @@ use std::process::{Command, Output};
 use fogbench::declare::{Content, Presence};
 use fogbench::filters::FilterKind;
 
-pub(crate) mod as_printed;
 pub(crate) mod generated;
 pub(crate) mod gyro_cases;
 pub(crate) mod junit;

@@ -101,11 +101,12 @@ pub(crate) fn value(metrics: &ChannelMetrics, name: &str) -> f64 {
 
 pub(crate) fn every_metric_is_answered(metrics: &ChannelMetrics) {
     let known = fogbench::metrics::known_metrics().iter();
-    // Those of estimates are no metrics of a record, and logs are examined beside it, and twins run where a scenario asks for it.
+    // Those of estimates are no metrics of a record, logs are examined beside it, twins run where a scenario
+    // asks for it, and fixed-point words are those of some pipelines.
     let of_record = |applies| {
         !matches!(
             applies,
-            Applies::Calibration | Applies::Log | Applies::Twins
+            Applies::Calibration | Applies::Log | Applies::Twins | Applies::FixedPoint
         )
     };
     for known in known.filter(|known| of_record(known.applies)) {

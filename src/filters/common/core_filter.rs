@@ -27,12 +27,6 @@ pub trait Core: Send {
         None
     }
 
-    /// Whether an update takes its regressors several at a time. They are the same numbers, in memory that
-    /// can be read so without waiting; a zero is then positive.
-    fn reads_blocks(&self) -> bool {
-        false
-    }
-
     /// Number of regressors that an update takes.
     fn regressors(&self) -> usize {
         self.weights().len()
@@ -63,7 +57,7 @@ impl<C: Core> CoreFilter<C> {
         let taps = Some(core.weights().len()).filter(|taps| *taps > 0);
         let shape = front_end.shape(taps, core.rule(front_end.desired));
         Self {
-            front_end: FrontEnd::new(front_end, core.regressors(), core.reads_blocks()),
+            front_end: FrontEnd::new(front_end, core.regressors()),
             core,
             register: Register::new(front_end.output_register),
             watch: Watch::new(),

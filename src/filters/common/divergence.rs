@@ -88,15 +88,15 @@ impl Watch {
     ///
     /// # Errors
     /// [`DivergenceKind::NotFinite`].
-    #[inline]
     pub fn check_input(&mut self, input: f64) -> Result<(), Fault> {
         if !input.is_finite() {
-            return Err(not_finite(input));
+            let message = format!("the input word is {input}");
+            return Err(Fault {
+                kind: DivergenceKind::NotFinite,
+                message,
+            });
         }
-        let magnitude = input.abs();
-        if magnitude > self.input_max {
-            self.input_max = magnitude;
-        }
+        self.input_max = self.input_max.max(input.abs());
         Ok(())
     }
 
@@ -104,23 +104,7 @@ impl Watch {
     ///
     /// # Errors
     /// [`DivergenceKind::NotFinite`] or [`DivergenceKind::Overflow`].
-    #[inline]
     pub fn check_output(&mut self, output: Output) -> Result<(), Fault> {
-        let magnitude = output.value_deg_per_h.abs();
-        // A word that is not a number fails every comparison.
-        if magnitude <= SUSPECT_RATIO * self.input_max
-            && magnitude <= OVERFLOW_ABSOLUTE
-            && output.weight_sum.abs() <= f64::MAX
-        {
-            self.suspects = self.suspects.saturating_sub(1);
-            return Ok(());
-        }
-        self.judge_suspect(output)
-    }
-
-    /// Says whether a suspect result is a fault.
-    #[cold]
-    fn judge_suspect(&mut self, output: Output) -> Result<(), Fault> {
         let Output {
             value_deg_per_h: value,
             weight_sum,
@@ -134,6 +118,10 @@ impl Watch {
         }
         let magnitude = value.abs();
         let input_max = self.input_max;
+        if magnitude <= SUSPECT_RATIO * input_max && magnitude <= OVERFLOW_ABSOLUTE {
+            self.suspects = self.suspects.saturating_sub(1);
+            return Ok(());
+        }
         self.suspects += 1;
         let message = if magnitude > OVERFLOW_RATIO * input_max || magnitude > OVERFLOW_ABSOLUTE {
             format!("the output is {value:e} with no input above {input_max}")
@@ -149,14 +137,5 @@ impl Watch {
             kind: DivergenceKind::Overflow,
             message,
         })
-    }
-}
-
-/// The fault of an input that is not a number, or not a finite one.
-#[cold]
-fn not_finite(input: f64) -> Fault {
-    Fault {
-        kind: DivergenceKind::NotFinite,
-        message: format!("the input word is {input}"),
     }
 }

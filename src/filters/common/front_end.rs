@@ -1,7 +1,6 @@
 //! What stands around the weights: delay line, desired signal and output register.
 
 use super::filter::Output;
-use super::lanes::{self, LANES, Lanes};
 use crate::signal::{FilterShape, WeightRule};
 use crate::vocabulary::{DesiredSignal, OutputRegister};
 
@@ -79,7 +78,6 @@ impl DelayLine {
         }
     }
 
-    #[inline]
     fn push(&mut self, sample: f64) {
         let length = self.twice.len() / 2;
         self.head = if self.head == 0 { length } else { self.head } - 1;
@@ -87,67 +85,8 @@ impl DelayLine {
         self.twice[self.head + length] = sample;
     }
 
-    #[inline]
     fn newest_first(&self) -> &[f64] {
         &self.twice[self.head..self.head + self.twice.len() / 2]
-    }
-}
-
-/// Most regressors that are moved with every sample, not the place of the newest in their stead.
-const BLOCKED_MAX: usize = 64;
-
-/// A few of the newest samples, newest first, in blocks that are written and read whole.
-///
-/// A vector that spans numbers which were just written one by one waits until the processor is done with
-/// the sample before, and with it all that need not wait. So every sample makes one block, of itself and
-/// the three before, and is the newest of it; those of every fourth sample stand in one row.
-#[derive(Clone, Debug)]
-struct Blocks {
-    rows: [Box<[Lanes]>; LANES],
-    row: usize,
-    /// The newest samples, each with a gap behind it that keeps them from being read as one vector.
-    recent: [[f64; 2]; LANES - 1],
-}
-
-impl Blocks {
-    fn new(samples: usize) -> Self {
-        let row = || vec![Lanes::ZERO; lanes::blocks(samples)].into_boxed_slice();
-        Self {
-            rows: std::array::from_fn(|_| row()),
-            row: 0,
-            recent: [[0.0; 2]; LANES - 1],
-        }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, sample: f64) -> &[f64] {
-        let [[a, _], [b, _], [c, _]] = self.recent;
-        self.recent[2][0] = b;
-        self.recent[1][0] = a;
-        self.recent[0][0] = sample;
-        self.row = (self.row + 1) % LANES;
-        let row = &mut self.rows[self.row];
-        // A sum is a vector, which is written as one; the four numbers would be written one by one.
-        let newest = Lanes::new([sample, a, b, c]) + Lanes::ZERO;
-        match &mut **row {
-            [first] => *first = newest,
-            [first, second] => {
-                *second = *first;
-                *first = newest;
-            }
-            [first, second, third] => {
-                *third = *second;
-                *second = *first;
-                *first = newest;
-            }
-            many => {
-                let mut moved = newest;
-                for block in many {
-                    moved = std::mem::replace(block, moved);
-                }
-            }
-        }
-        lanes::numbers(row)
     }
 }
 
@@ -155,19 +94,16 @@ impl Blocks {
 #[derive(Clone, Debug)]
 pub(super) struct FrontEnd {
     line: DelayLine,
-    /// The regressors, if they are few and the core reads several at a time.
-    blocks: Option<Blocks>,
     desired: DesiredSignal,
     lag: usize,
     taps: usize,
 }
 
 impl FrontEnd {
-    pub(super) fn new(config: &FrontEndConfig, taps: usize, in_blocks: bool) -> Self {
+    pub(super) fn new(config: &FrontEndConfig, taps: usize) -> Self {
         let lag = config.input_lag_samples;
         Self {
             line: DelayLine::new((lag + taps).max(config.desired.weights().len())),
-            blocks: (in_blocks && taps <= BLOCKED_MAX).then(|| Blocks::new(taps)),
             desired: config.desired,
             lag,
             taps,
@@ -181,7 +117,6 @@ impl FrontEnd {
     }
 
     /// Takes a sample; returns the regressors, newest first, and the desired value.
-    #[inline(always)]
     pub(super) fn push(&mut self, sample: f64) -> (&[f64], f64) {
         self.line.push(sample);
         let history = self.line.newest_first();
@@ -189,11 +124,7 @@ impl FrontEnd {
             DesiredSignal::Current => history[0],
             DesiredSignal::TwoSampleMean => 0.5 * (history[0] + history[1]),
         };
-        let regressors = match &mut self.blocks {
-            Some(blocks) => &blocks.push(history[self.lag])[..self.taps],
-            None => &history[self.lag..self.lag + self.taps],
-        };
-        (regressors, desired)
+        (&history[self.lag..self.lag + self.taps], desired)
     }
 }
 
@@ -215,7 +146,6 @@ impl Register {
     }
 
     /// Takes the result of this sample; returns the word that is visible at its tick.
-    #[inline]
     pub fn clock(&mut self, result: Output) -> Output {
         match self.kind {
             OutputRegister::NextSample => std::mem::replace(&mut self.held, result),

@@ -6,7 +6,6 @@ mod divergence;
 mod filter;
 mod fixed;
 mod front_end;
-pub(in crate::filters) mod lanes;
 pub(in crate::filters) mod sections;
 
 pub use complaints::{Complaint, Complaints};
