@@ -42,6 +42,7 @@ pub static DELAY_VS_RAW: MetricKey = MetricKey::of_filters(
     "phase delay behind the raw channel at the swing frequency; of several sines the lowest",
 )
 .lower_is_better()
+.synonyms(&["delay"])
 .heading("delay vs raw")
 .run_column(9)
 .tables(&[Table::Swing, Table::MultiSine])
