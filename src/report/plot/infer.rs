@@ -29,7 +29,7 @@ const POINTS_MAX: usize = 200;
 /// Letters of a reading or a figure in a legend.
 const LETTERS_MAX: usize = 38;
 
-/// The pictures of an inference: those of [`INFER_PICTURES`] that there is something to draw of.
+/// The pictures of an inference: those of `INFER_PICTURES` that there is something to draw of.
 #[must_use]
 pub fn infer_pictures(sheet: &InferenceSheet) -> Pictures {
     let drawn = [pulls(sheet), profile(sheet), ridge(sheet)];
