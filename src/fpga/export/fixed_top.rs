@@ -13,7 +13,10 @@ pub(super) fn fixed_top_verilog(export: &FixedExport) -> String {
     let result_bits = formats.output.width() - 1;
     let means = export.desired == DesiredSignal::TwoSampleMean;
     format!(
-        "{TOP_HEAD}module rls_fixed_top #(\n    parameter DIV_LATENCY = 1       // clocks of the divider\n) (\n    \
+        "{TOP_HEAD}module rls_fixed_top #(\n    \
+         // Adder and multiplier take one clock; a bench of any filter may say so.\n    \
+         parameter ADD_LATENCY = 1,\n    parameter MUL_LATENCY = 1,\n    \
+         parameter DIV_LATENCY = 1       // clocks of the divider\n) (\n    \
          input  wire        clk,\n    input  wire        rst,\n    \
          input  wire        sample_valid,\n    output wire        sample_ready,\n    \
          input  wire [{sample_bits}:0] sample,         // Q{}.{} of {}\n    \
