@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::support::inference::{number, published};
 use crate::support::transcript::Transcript;
 use crate::support::{code, fogbench, stderr, stdout, write};
 use fogbench::Scenario;
@@ -20,23 +21,6 @@ rls = { taps = 4, forgetting_factor = 1.0, desired = "current", input_lag_sample
 name = "mean"
 moving_average = { taps = 4 }
 "#;
-
-fn number(value: &Value) -> f64 {
-    value
-        .as_f64()
-        .unwrap_or_else(|| panic!("{value} is no number"))
-}
-
-/// Printed figures as a problem has them: record, metric, value, unit, step.
-fn published(rows: &[(&str, &str, f64, &str, f64)]) -> String {
-    let rows = rows.iter().map(|(record, metric, value, unit, step)| {
-        format!(
-            "[[published]]\nrecord = \"{record}\"\nmetric = \"{metric}\"\nvalue = {value:?}\n\
-             unit = \"{unit}\"\nrounding = {step:?}\nsource = \"made up\"\n"
-        )
-    });
-    rows.collect()
-}
 
 fn answer(folder: &Path, problem: &str) -> Value {
     write(folder, "problem.toml", problem);

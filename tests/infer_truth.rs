@@ -6,6 +6,7 @@
 
 use std::path::Path;
 
+use crate::support::inference::{number, published};
 use crate::support::{code, fogbench, stderr, stdout, write};
 use fogbench::Scenario;
 use serde_json::Value;
@@ -64,29 +65,13 @@ answer = "10"
 set = ["filter.rls.taps=10"]
 "#;
 
-fn published(rows: &[(&str, f64, &str, f64)]) -> String {
-    let rows = rows.iter().map(|(metric, value, unit, step)| {
-        format!(
-            "[[published]]\nrecord = \"rest\"\nmetric = \"{metric}\"\nvalue = {value:?}\n\
-             unit = \"{unit}\"\nrounding = {step:?}\nsource = \"made up\"\n"
-        )
-    });
-    rows.collect()
-}
-
 fn figures() -> String {
     published(&[
-        ("raw.mean_deg_per_h", 8.5, "deg/h", 0.1),
-        ("raw.noise_std_deg_per_h", 19.0, "deg/h", 0.1),
-        ("rls.dc_gain", 0.49, "1", 0.01),
-        ("rls.noise_gain", 0.12, "1", 0.01),
+        ("rest", "raw.mean_deg_per_h", 8.5, "deg/h", 0.1),
+        ("rest", "raw.noise_std_deg_per_h", 19.0, "deg/h", 0.1),
+        ("rest", "rls.dc_gain", 0.49, "1", 0.01),
+        ("rest", "rls.noise_gain", 0.12, "1", 0.01),
     ])
-}
-
-fn number(value: &Value) -> f64 {
-    value
-        .as_f64()
-        .unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 fn count(value: &Value) -> u64 {
@@ -202,6 +187,7 @@ fn power_and_technical_noise_are_not_told_apart_at_one_angle_random_walk() {
          name = \"technical\"\nkeys = [\"gyro.noise.technical_phase_urad_per_sqrt_hz\"]\nlow = 0.0\n\
          high = 3.0\n",
         published(&[(
+            "rest",
             "raw.angle_random_walk_deg_per_sqrt_h",
             walk,
             "deg/sqrt(h)",
@@ -240,7 +226,7 @@ fn bandwidth_and_mean_rate_are_not_told_apart_at_one_dc_gain() {
          keys = [\"gyro.controller.loop_bandwidth_hz\"]\nlow = 500.0\nhigh = 4000.0\n\
          prior = \"log-uniform\"\n[[parameter]]\nname = \"latitude\"\n\
          keys = [\"turntable.site.latitude_deg\"]\nlow = 5.0\nhigh = 60.0\n",
-        published(&[("rls.dc_gain", 0.49, "1", 0.01)])
+        published(&[("rest", "rls.dc_gain", 0.49, "1", 0.01)])
     );
     let found = answer(folder.path(), &problem, &[]);
     let ends = ends(&found, ["bandwidth", "latitude"]);
@@ -280,7 +266,7 @@ fn a_confirmation_simulates_what_was_found_and_leaves_scenarios_that_run() {
          keys = [\"turntable.site.latitude_deg\"]\nlow = 5.0\nhigh = 60.0\n[[experiment]]\n\
          name = \"level-axis\"\nrecord = \"rest\"\nset = [\"turntable.site.latitude_deg=0.0\"]\n\
          metric = \"rls.dc_gain\"\n[[gate]]\nof = \"disagreeing-forecasts\"\nmax = 0.0\n",
-        published(&[("rls.dc_gain", 0.49, "1", 0.01)])
+        published(&[("rest", "rls.dc_gain", 0.49, "1", 0.01)])
     );
     let options = ["--confirm=4", "-o", "found"];
     let found = answer(at, &problem, &options);
@@ -323,7 +309,7 @@ fn a_gate_that_is_not_accepted_gives_exit_code_1() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let at = folder.path();
     write(at, "rest.toml", GYRO);
-    let figure = published(&[("raw.mean_deg_per_h", 8.5, "deg/h", 0.1)]);
+    let figure = published(&[("rest", "raw.mean_deg_per_h", 8.5, "deg/h", 0.1)]);
     let problem = |gate: &str| {
         format!(
             "schema = 1\nname = \"gated\"\npoints = 32\n[[record]]\nname = \"rest\"\n\

@@ -386,27 +386,28 @@ mod tests {
     use super::*;
     use crate::inference::forecast::{Forecast, Print};
 
-    #[test]
-    fn a_search_finds_mean_spread_and_evidence_of_a_normal_posterior() {
-        // One figure, the sum of two parameters, each uniform from 0 to 1.
-        let printed = [Printed {
+    /// One figure, the sum of two parameters, each uniform from 0 to 1.
+    const SEARCH: Search<'_> = Search {
+        printed: &[Printed {
             value: 1.0,
             print: Print::Stated { deviation: 0.02 },
-        }];
-        let search = Search {
-            printed: &printed,
-            doubt: 1e-9,
-            parameters: 2,
-            points: 512,
-        };
-        let mut forecast = |parts: &[f64]| {
-            Some(Forecasts {
-                figures: vec![Some(Forecast::normal(parts[0] + parts[1], 1e-6))],
-                correlations: Vec::new(),
-            })
-        };
-        let found = search
-            .run(&Streams::new(1, 0), &mut forecast)
+        }],
+        doubt: 1e-9,
+        parameters: 2,
+        points: 512,
+    };
+
+    fn sum_of_parts(parts: &[f64]) -> Option<Forecasts> {
+        Some(Forecasts {
+            figures: vec![Some(Forecast::normal(parts[0] + parts[1], 1e-6))],
+            correlations: Vec::new(),
+        })
+    }
+
+    #[test]
+    fn a_search_finds_mean_spread_and_evidence_of_a_normal_posterior() {
+        let found = SEARCH
+            .run(&Streams::new(1, 0), &mut sum_of_parts)
             .expect("points");
         let count = found.points.len() as f64;
         let sum: f64 = found
@@ -437,31 +438,15 @@ mod tests {
         assert!((whole - expected).abs() < 0.1, "{whole} {expected}");
         let without = weigh(&|_| 0.0);
         assert!((without - 1.0).abs() < 0.1, "{without}");
-        let again = search.run(&Streams::new(1, 0), &mut forecast);
+        let again = SEARCH.run(&Streams::new(1, 0), &mut sum_of_parts);
         assert_eq!(again, Some(found));
     }
 
     #[test]
     fn the_evidence_of_parts_that_move_together_has_no_bias() {
-        let printed = [Printed {
-            value: 1.0,
-            print: Print::Stated { deviation: 0.02 },
-        }];
-        let search = Search {
-            printed: &printed,
-            doubt: 1e-9,
-            parameters: 2,
-            points: 512,
-        };
-        let mut forecast = |parts: &[f64]| {
-            Some(Forecasts {
-                figures: vec![Some(Forecast::normal(parts[0] + parts[1], 1e-6))],
-                correlations: Vec::new(),
-            })
-        };
         let seeds = 24_u32;
         let evidence = (0..seeds).map(|seed| {
-            let found = search.run(&Streams::new(u64::from(seed), 0), &mut forecast);
+            let found = SEARCH.run(&Streams::new(u64::from(seed), 0), &mut sum_of_parts);
             found.expect("points").log_evidence / f64::from(seeds)
         });
         let mean: f64 = evidence.sum();

@@ -10,6 +10,7 @@ use fogbench::filters::FilterKind;
 
 pub(crate) mod generated;
 pub(crate) mod gyro_cases;
+pub(crate) mod inference;
 pub(crate) mod junit;
 pub(crate) mod patent_cases;
 pub(crate) mod reference_gyro;

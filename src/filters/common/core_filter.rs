@@ -1,6 +1,6 @@
 //! A filter: front end, weights and their update, output register, watch.
 
-use super::divergence::{Divergence, Fault, Watch};
+use super::divergence::{Divergence, Fault, Life, Watch};
 use super::filter::{Filter, Output, step_each};
 use super::front_end::{FrontEnd, FrontEndConfig, Register, adaptive_rule};
 use crate::signal::{FilterShape, WeightRule};
@@ -46,8 +46,7 @@ pub struct CoreFilter<C> {
     register: Register,
     watch: Watch,
     shape: FilterShape,
-    samples: u64,
-    diverged: Option<Divergence>,
+    life: Life,
 }
 
 impl<C: Core> CoreFilter<C> {
@@ -62,8 +61,7 @@ impl<C: Core> CoreFilter<C> {
             register: Register::new(front_end.output_register),
             watch: Watch::new(),
             shape,
-            samples: 0,
-            diverged: None,
+            life: Life::default(),
         }
     }
 
@@ -80,16 +78,10 @@ impl<C: Core> CoreFilter<C> {
         input_deg_per_h: f64,
         update: impl FnOnce(&mut C, &[f64], f64) -> Result<Output, Fault>,
     ) -> Result<Output, Divergence> {
-        if let Some(divergence) = &self.diverged {
-            return Err(divergence.clone());
-        }
-        let sample = self.samples;
-        self.samples += 1;
-        self.advance(input_deg_per_h, update).map_err(|fault| {
-            let divergence = fault.at(sample);
-            self.diverged = Some(divergence.clone());
-            divergence
-        })
+        self.life.goes_on()?;
+        let sample = self.life.next_sample();
+        let result = self.advance(input_deg_per_h, update);
+        self.life.judge(sample, result)
     }
 
     #[inline]

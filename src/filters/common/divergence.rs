@@ -67,6 +67,56 @@ impl Fault {
     }
 }
 
+/// Samples that a filter has taken, and what ended it: the first divergence stays.
+#[derive(Clone, Debug, Default)]
+pub(in crate::filters) struct Life {
+    samples: u64,
+    diverged: Option<Divergence>,
+}
+
+impl Life {
+    /// Whether it goes on.
+    ///
+    /// # Errors
+    /// What has ended it.
+    #[inline]
+    pub(in crate::filters) fn goes_on(&self) -> Result<(), Divergence> {
+        self.diverged.clone().map_or(Ok(()), Err)
+    }
+
+    /// Index of the sample that comes, which counts as taken.
+    #[inline]
+    pub(in crate::filters) fn next_sample(&mut self) -> u64 {
+        let sample = self.samples;
+        self.samples += 1;
+        sample
+    }
+
+    /// Index of the newest sample.
+    #[must_use]
+    pub(in crate::filters) fn newest_sample(&self) -> u64 {
+        self.samples.saturating_sub(1)
+    }
+
+    /// What came of a sample; of a filter that has ended, its end.
+    ///
+    /// # Errors
+    /// What has ended it, now or before.
+    #[inline]
+    pub(in crate::filters) fn judge<T>(
+        &mut self,
+        sample: u64,
+        result: Result<T, Fault>,
+    ) -> Result<T, Divergence> {
+        self.goes_on()?;
+        result.map_err(|fault| {
+            let divergence = fault.at(sample);
+            self.diverged = Some(divergence.clone());
+            divergence
+        })
+    }
+}
+
 /// Watches the words that enter and leave a core.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {

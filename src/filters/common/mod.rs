@@ -11,6 +11,7 @@ pub(in crate::filters) mod sections;
 pub use complaints::{Complaint, Complaints};
 pub(super) use core_filter::dot;
 pub use core_filter::{Core, CoreFilter};
+pub(in crate::filters) use divergence::Life;
 pub use divergence::{Divergence, DivergenceKind, Fault, Watch};
 pub use filter::{Filter, Output};
 pub use fixed::{FixedCore, FixedFilter};

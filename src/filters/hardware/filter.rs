@@ -7,7 +7,7 @@
 use super::fixed::FixedSummary;
 use super::monitor::{HealthSummary, Monitor};
 use super::settings::FloatSettings;
-use crate::filters::common::{Divergence, Fault, Filter, Output, Register, Watch};
+use crate::filters::common::{Divergence, Fault, Filter, Life, Output, Register, Watch};
 use crate::fpga::engine::Engine;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::FrontEnd;
@@ -39,8 +39,7 @@ pub(super) struct PipelineFilter<F, E> {
     watch: Watch,
     shape: FilterShape,
     monitor: Monitor,
-    samples: u64,
-    diverged: Option<Divergence>,
+    life: Life,
 }
 
 impl<F: Fp, E: Engine<F>> PipelineFilter<F, E> {
@@ -54,8 +53,7 @@ impl<F: Fp, E: Engine<F>> PipelineFilter<F, E> {
             watch: Watch::new(),
             shape: settings.shape(),
             monitor: Monitor::new(settings.tap_count(), warm_up_samples),
-            samples: 0,
-            diverged: None,
+            life: Life::default(),
         }
     }
 
@@ -85,17 +83,10 @@ impl<F: Fp, E: Engine<F>> PipelineFilter<F, E> {
 
 impl<F: Fp, E: Engine<F> + Send> Filter for PipelineFilter<F, E> {
     fn step(&mut self, input_deg_per_h: f64) -> Result<Output, Divergence> {
-        let sample = self.samples;
-        self.samples += 1;
+        let sample = self.life.next_sample();
+        // Hardware goes on whatever its words were.
         let result = self.advance(input_deg_per_h, sample);
-        if let Some(divergence) = &self.diverged {
-            return Err(divergence.clone());
-        }
-        result.map_err(|fault| {
-            let divergence = fault.at(sample);
-            self.diverged = Some(divergence.clone());
-            divergence
-        })
+        self.life.judge(sample, result)
     }
 
     fn weights(&self) -> &[f64] {
@@ -111,7 +102,7 @@ impl<F: Fp, E: Engine<F> + Send> HardwareFilter for PipelineFilter<F, E> {
     fn health(&mut self) -> Option<HealthSummary> {
         if let Some(inverse) = self.engine.inverse_correlation() {
             // What it finds is part of the summary; the run is over, so nothing can fail any more.
-            drop(self.monitor.look(inverse, self.samples.saturating_sub(1)));
+            drop(self.monitor.look(inverse, self.life.newest_sample()));
         }
         self.monitor.worst()
     }

@@ -5,8 +5,8 @@ use super::monitor::{HealthSummary, Monitor};
 use super::settings::FloatSettings;
 use super::timing::PipelineTiming;
 use crate::filters::common::{
-    Complaints, Divergence, DivergenceKind, Fault, Filter, FrontEndConfig, Output, Register, Watch,
-    least_squares_rule,
+    Complaints, Divergence, DivergenceKind, Fault, Filter, FrontEndConfig, Life, Output, Register,
+    Watch, least_squares_rule,
 };
 use crate::fpga::FpgaError;
 use crate::fpga::engine::InverseCorrelation;
@@ -131,8 +131,7 @@ impl FixedSettings {
             monitor: Monitor::new(self.core.tap_count, warm_up_samples),
             twin: Twin::new(self.twin().filter(0)?, warm_up_samples),
             desired_overflows: 0,
-            samples: 0,
-            diverged: None,
+            life: Life::default(),
         }))
     }
 
@@ -233,8 +232,7 @@ struct FixedPipelineFilter {
     monitor: Monitor,
     twin: Twin,
     desired_overflows: u64,
-    samples: u64,
-    diverged: Option<Divergence>,
+    life: Life,
 }
 
 impl FixedPipelineFilter {
@@ -281,17 +279,10 @@ impl FixedPipelineFilter {
 
 impl Filter for FixedPipelineFilter {
     fn step(&mut self, input_deg_per_h: f64) -> Result<Output, Divergence> {
-        let sample = self.samples;
-        self.samples += 1;
+        let sample = self.life.next_sample();
+        // Hardware goes on whatever its words were.
         let result = self.advance(input_deg_per_h, sample);
-        if let Some(divergence) = &self.diverged {
-            return Err(divergence.clone());
-        }
-        result.map_err(|fault| {
-            let divergence = fault.at(sample);
-            self.diverged = Some(divergence.clone());
-            divergence
-        })
+        self.life.judge(sample, result)
     }
 
     fn weights(&self) -> &[f64] {
@@ -305,7 +296,7 @@ impl Filter for FixedPipelineFilter {
 
 impl HardwareFilter for FixedPipelineFilter {
     fn health(&mut self) -> Option<HealthSummary> {
-        self.look(self.samples.saturating_sub(1));
+        self.look(self.life.newest_sample());
         self.monitor.worst()
     }
 
