@@ -8,7 +8,6 @@ use super::Figure;
 use super::subject::{Lack, Twins, std_of};
 use crate::metrics::catalogue::{ADAPTATION_MEMORY, LASTING_RATE_GAIN, SINE_GAIN, TWIN_MEAN_RATIO};
 use crate::metrics::{GainUnits, MetricKey, SINE_FREQUENCY, STEP_GAINS, TwinFigure};
-use crate::turntable::first_measured_index;
 
 /// Size of a change in standard deviations of a word's noise, and the field of the gain for it.
 type Size = (f64, &'static str);
@@ -185,9 +184,12 @@ fn mean_ratio(twins: &Twins, lasting: &[Answer]) -> Figure {
 /// The mean over signs of what each answer of the first size shows, and fields for all sizes; answers that
 /// show no number are left out.
 fn pooled(answers: &[Answer], of: impl Fn(&Answer) -> f64) -> TwinFigure {
+    let shown: Vec<(&Answer, f64)> = answers.iter().map(|answer| (answer, of(answer))).collect();
     let mean = |field: &str| {
-        let own = answers.iter().filter(|answer| answer.field == field);
-        let own = own.map(&of).filter(|shown| shown.is_finite());
+        let own = shown.iter().filter(|(answer, _)| answer.field == field);
+        let own = own
+            .map(|(_, shown)| *shown)
+            .filter(|shown| shown.is_finite());
         let (sum, count) = own.fold((0.0, 0.0), |(sum, count), shown| (sum + shown, count + 1.0));
         (count > 0.0).then_some(sum / count)
     };
@@ -199,8 +201,9 @@ fn pooled(answers: &[Answer], of: impl Fn(&Answer) -> f64) -> TwinFigure {
     let mut figure = TwinFigure::alone(value);
     figure.fields.extend(sizes);
     let of_sign = |sign: f64| {
-        let is_own = |answer: &&Answer| (answer.sign - sign).abs() < 0.5 && answer.field == first;
-        answers.iter().find(is_own).map(&of)
+        let is_own = |answer: &Answer| (answer.sign - sign).abs() < 0.5 && answer.field == first;
+        let own = shown.iter().find(|(answer, _)| is_own(answer));
+        own.map(|(_, shown)| *shown)
     };
     match of_sign(1.0).zip(of_sign(-1.0)) {
         Some((up, down)) if (up - down).is_finite() => {
@@ -212,21 +215,15 @@ fn pooled(answers: &[Answer], of: impl Fn(&Answer) -> f64) -> TwinFigure {
 
 /// Mean gain over a time behind the step.
 fn step_gain(twins: &Twins, steps: &[Answer], time_s: f64, memory_s: f64) -> Figure {
-    let samples = |time_s: f64| {
-        let samples = first_measured_index(time_s, twins.sample_period_s);
-        usize::try_from(samples).unwrap_or(usize::MAX)
-    };
-    let start = twins.middle() + twins.register_samples() + samples(memory_s);
-    let end = start.saturating_add(samples(time_s).max(1));
+    let start = twins.middle() + twins.register_samples() + twins.samples(memory_s);
+    let end = start.saturating_add(twins.samples(time_s).max(1));
     if end > twins.words.len() {
         let left_s = (twins.words.len() - twins.middle()) as f64 * twins.sample_period_s;
         return Err(
             format!("the {left_s:.4} s behind the step do not hold memory and {time_s} s").into(),
         );
     }
-    let figure = pooled(steps, |step| {
-        step.gain[start..end].iter().sum::<f64>() / (end - start) as f64
-    });
+    let figure = pooled(steps, |step| mean(&step.gain[start..end]));
     Ok(figure.with("from_s", memory_s))
 }
 
@@ -247,8 +244,7 @@ fn adaptation(twins: &Twins, steps: &[Answer]) -> Figure {
             .for_each(|(sum, gain)| *sum += gain);
     }
     mean.iter_mut().for_each(|sum| *sum /= count);
-    let tail = &mean[mean.len() - mean.len() / 4..];
-    let last = tail.iter().sum::<f64>() / tail.len() as f64;
+    let last = self::mean(&mean[mean.len() - mean.len() / 4..]);
     let ones = vec![1.0; mean.len()];
     let units = GainUnits::of_step(&mean, &ones, twins.sample_period_s);
     let found = units.readaptation(last).map_err(Lack::Reason)?;

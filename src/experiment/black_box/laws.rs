@@ -1,6 +1,7 @@
 //! Whether a filter keeps the laws of a linear one that does not change, and what it makes of a glitch.
 
 use super::Figure;
+use super::memory::MARGIN;
 use super::subject::{Lack, Twins, rms};
 use crate::metrics::catalogue::{
     GLITCH_RESPONSE, LINEARITY_ERROR, SATURATION_GAIN, START_UP, TIME_INVARIANCE_ERROR,
@@ -38,9 +39,6 @@ const LARGE: [(f64, &str); 3] = [
 
 /// Part of the largest difference below which a start is over.
 const STARTED: f64 = 0.01;
-
-/// Part of what is left of the record that a start must leave unchanged to be known.
-const START_MARGIN: f64 = 0.1;
 
 /// Largest departure from linearity.
 fn linearity(twins: &Twins) -> Figure {
@@ -126,7 +124,7 @@ fn start_up(twins: &Twins) -> Figure {
     let is_over = |change: &f64| *change <= (STARTED * largest).max(twins.rounding());
     let last = changes.iter().rposition(|change| !is_over(change));
     let samples = last.map_or(0, |last| last + 1);
-    if samples as f64 > (1.0 - START_MARGIN) * changes.len() as f64 {
+    if samples as f64 > (1.0 - MARGIN) * changes.len() as f64 {
         let left_s = changes.len() as f64 * twins.sample_period_s;
         return Err(
             format!("it takes longer than the second half of the record, {left_s:.4} s").into(),

@@ -13,7 +13,7 @@ const PLACES: [usize; 3] = [4, 3, 5];
 const PARTS: [f64; 2] = [1e-2, 1e-3];
 
 /// Part of what is left of the record that the memory must leave unchanged to be known.
-const MARGIN: f64 = 0.1;
+pub(super) const MARGIN: f64 = 0.1;
 
 /// Memory to 1 % and to 0.1 % and delay, by one word changed by its noise.
 pub(super) fn direct(twins: &Twins) -> [Figure; 3] {
@@ -54,8 +54,9 @@ fn delay(twins: &Twins, changes: &[(usize, Vec<f64>)], memory: &Figure) -> Figur
     let reach = 2 * memory + twins.register_samples();
     let (mut moment, mut sum) = (0.0, 0.0);
     for (place, change) in changes {
-        for (age, own) in change[*place..].iter().take(reach).enumerate() {
-            moment += age as f64 * own;
+        // A filter that looks ahead changes outputs before the word as well.
+        for (at, own) in change.iter().enumerate().take(place.saturating_add(reach)) {
+            moment += (at as f64 - *place as f64) * own;
             sum += own;
         }
     }

@@ -10,6 +10,8 @@ mod memory;
 mod subject;
 mod swing;
 
+use rayon::prelude::*;
+
 use crate::experiment::run::Unfinished;
 use crate::metrics::catalogue::{DELAY_AT_REST, LOOK_AHEAD, MEMORY_0P1_PERCENT, MEMORY_1_PERCENT};
 use crate::metrics::{Applies, BlackBox, MetricKey, TwinFigure, Unavailable};
@@ -77,8 +79,9 @@ pub(super) fn examine(
         keep(key, figure)?;
     }
     if is_whole {
-        for (key, law) in laws::LAWS {
-            keep(key, law(&twins))?;
+        let laws = laws::LAWS.par_iter().map(|(key, law)| (*key, law(&twins)));
+        for (key, figure) in laws.collect::<Vec<_>>() {
+            keep(key, figure)?;
         }
         for (key, figure) in swing::KEYS.into_iter().zip(swing::swing(&twins, memory_s)) {
             keep(key, figure)?;

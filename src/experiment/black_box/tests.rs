@@ -179,6 +179,8 @@ fn known_answer_of_filters_that_look_ahead() {
     );
     let found = examined(&three, &record(4000));
     assert_near(&found, &LOOK_AHEAD, 3.0, 0.0);
+    // Ages -3 to 0: their mean.
+    assert_near(&found, &DELAY_AT_REST, -1.5 * 1e3 * PERIOD_S, 1e-6);
     let mean = |words: &[f64]| {
         let mean = words.iter().sum::<f64>() / words.len() as f64;
         vec![mean; words.len()]
