@@ -47,6 +47,19 @@ impl MotionChecks<'_> {
         needed_s > self.duration_s * (1.0 + TIME_SLACK)
     }
 
+    /// Whether the length under a key fits into the record; refuses one that outlasts it.
+    pub(super) fn fits(&mut self, key: &str, length_s: f64) -> bool {
+        let is_too_long = self.is_too_long(length_s);
+        if is_too_long {
+            let message = format!(
+                "{key} = {length_s:?} s is too long: allowed up to duration_s = {:?} s",
+                self.duration_s
+            );
+            self.complain(key, message);
+        }
+        !is_too_long
+    }
+
     /// Refuses a soft start that is longer than the warm-up.
     pub(super) fn soft_start(&mut self, key: &str, soft_start_s: f64) {
         let warm_up_s = self.warm_up_s;

@@ -86,14 +86,7 @@ impl Motion for ChirpConfig {
             self.start_frequency_hz,
         );
         checks.frequency("turntable.chirp.end_frequency_hz", self.end_frequency_hz);
-        if checks.is_too_long(self.sweep_s) {
-            let message = format!(
-                "turntable.chirp.sweep_s = {:?} s is too long: allowed up to duration_s = \
-                 {:?} s",
-                self.sweep_s, checks.duration_s
-            );
-            checks.complain("turntable.chirp.sweep_s", message);
-        }
+        checks.fits("turntable.chirp.sweep_s", self.sweep_s);
     }
 
     fn is_idle(&self, key: &str, duration_s: f64) -> bool {

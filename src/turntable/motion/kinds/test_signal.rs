@@ -177,13 +177,7 @@ impl Motion for TestSignalConfig {
         let key = "turntable.test_signal.length_s";
         let length_s = self.length_s;
         let shortest_s = SAMPLES_PER_PART_MIN * self.shape.parts() * checks.sample_period_s;
-        if checks.is_too_long(length_s) {
-            let message = format!(
-                "{key} = {length_s:?} s is too long: allowed up to duration_s = {:?} s",
-                checks.duration_s
-            );
-            checks.complain(key, message);
-        } else if length_s < shortest_s {
+        if checks.fits(key, length_s) && length_s < shortest_s {
             let message = format!(
                 "{key} = {length_s:?} s is too short for {}: allowed from {} s, \
                  {SAMPLES_PER_PART_MIN} output samples for its shortest part",
