@@ -4,7 +4,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::inference::calibration::Levels;
 use crate::inference::forecast::{Forecast, Printed, likelihood};
-use crate::inference::search::{Found, Point};
+use crate::inference::search::{Found, Point, covariance};
 use crate::inference::space::{Parameter, Reading};
 
 /// Part of the weight that accepted readings hold together.
@@ -107,6 +107,21 @@ pub struct Answer {
     pub accepted_part: f64,
     /// Forecasts made.
     pub forecasts: usize,
+}
+
+impl Answer {
+    /// Readings that are accepted, the most probable first.
+    pub fn accepted(&self) -> impl Iterator<Item = &Judged> + Clone {
+        self.readings.iter().filter(|judged| judged.is_accepted)
+    }
+
+    /// Number of figures that are explained, and of those of which it is told.
+    #[must_use]
+    pub fn explained(&self) -> (usize, usize) {
+        let told = self.figures.iter().filter_map(|own| own.is_explained);
+        let explained = told.clone().filter(|is_explained| *is_explained);
+        (explained.count(), told.count())
+    }
 }
 
 /// What is asked.
@@ -259,20 +274,13 @@ impl Question<'_> {
         let Some(found) = &found[reading] else {
             return Vec::new();
         };
-        let count = found.points.len() as f64;
-        let column = |index: usize| found.points.iter().map(move |point| point.parts[index]);
-        let mean = |index: usize| column(index).sum::<f64>() / count;
-        let product = |one: usize, other: usize| {
-            let (own, against) = (mean(one), mean(other));
-            let pairs = column(one).zip(column(other));
-            pairs.map(|(a, b)| (a - own) * (b - against)).sum::<f64>() / count
-        };
+        let covariance = covariance(&found.points, self.parameters.len());
         let mut ridges = Vec::new();
         for one in 0..self.parameters.len() {
             for other in one + 1..self.parameters.len() {
-                let (own, against) = (product(one, one), product(other, other));
+                let (own, against) = (covariance[(one, one)], covariance[(other, other)]);
                 let correlation =
-                    product(one, other) / (own * against).sqrt().max(f64::MIN_POSITIVE);
+                    covariance[(one, other)] / (own * against).sqrt().max(f64::MIN_POSITIVE);
                 if correlation.abs() < RIDGE {
                     continue;
                 }

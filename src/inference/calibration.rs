@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 use crate::inference::answer::{Answer, Explained};
 use crate::inference::forecast::{Forecasts, Printed};
-use crate::inference::search::{Found, Point};
+use crate::inference::search::{Found, Point, covariance};
 
 /// Part of the draws that a level holds.
 const HELD: f64 = 0.95;
@@ -165,7 +165,8 @@ impl Truth {
             .take_while(|judged| judged.reading != self.reading);
         // From plus zero: a sum of nothing is minus zero.
         let held_before = before.fold(0.0, |held, judged| held + judged.weight);
-        let accepted = answer.readings.iter().filter(|judged| judged.is_accepted);
+        let accepted = answer.accepted();
+        let (explained, told) = answer.explained();
         let equivalent = accepted.clone().filter(|judged| {
             let points = found[judged.reading].as_ref().map(|found| &found.points);
             judged.reading != self.reading
@@ -187,10 +188,7 @@ impl Truth {
                 Some((0.5 * (spread - bound)).exp())
             }),
             largest_pull: pulls(&answer.figures).fold(0.0, largest),
-            has_unexplained: answer
-                .figures
-                .iter()
-                .any(|figure| figure.is_explained == Some(false)),
+            has_unexplained: explained < told,
             shifted,
         }
     }
@@ -292,19 +290,6 @@ impl Truth {
 
 fn pulls(figures: &[Explained]) -> impl Iterator<Item = f64> {
     figures.iter().filter_map(|figure| figure.pull)
-}
-
-/// Covariance of the parts of points.
-fn covariance(points: &[Point], parameters: usize) -> DMatrix<f64> {
-    let count = points.len().max(1) as f64;
-    let mean = |index: usize| points.iter().map(|point| point.parts[index]).sum::<f64>() / count;
-    let means: Vec<f64> = (0..parameters).map(mean).collect();
-    DMatrix::from_fn(parameters, parameters, |row, column| {
-        let products = points
-            .iter()
-            .map(|point| (point.parts[row] - means[row]) * (point.parts[column] - means[column]));
-        products.sum::<f64>() / count
-    })
 }
 
 /// None of a matrix that is not positive.

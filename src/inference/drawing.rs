@@ -27,7 +27,7 @@ impl Forecasts {
     pub fn drawn(&self, stream: &mut Stream) -> Vec<Option<f64>> {
         let count = self.figures.len();
         let normals = DVector::from_fn(count, |_, _| stream.normal());
-        let deviates = lower_factor(self.correlation_matrix()) * normals;
+        let deviates = lower_factor(self.correlation_matrix(), |_| PIVOT_MIN) * normals;
         let figures = self.figures.iter().zip(deviates.iter());
         figures
             .map(|(forecast, deviate)| forecast.as_ref().map(|own| own.figure(*deviate)))
@@ -47,12 +47,15 @@ impl Printed {
     }
 }
 
-/// Lower factor of a matrix of correlations; what is not positive by rounding is taken as none.
-fn lower_factor(mut matrix: DMatrix<f64>) -> DMatrix<f64> {
+/// Lower factor of a covariance matrix.
+///
+/// * `floor`: least pivot of a variance, in place of one that is not positive by rounding.
+pub(crate) fn lower_factor(mut matrix: DMatrix<f64>, floor: impl Fn(f64) -> f64) -> DMatrix<f64> {
     let count = matrix.nrows();
     for column in 0..count {
         let done: f64 = (0..column).map(|k| matrix[(column, k)].powi(2)).sum();
-        let pivot = (matrix[(column, column)] - done).max(PIVOT_MIN).sqrt();
+        let own = matrix[(column, column)];
+        let pivot = (own - done).max(floor(own)).sqrt();
         matrix[(column, column)] = pivot;
         for row in column + 1..count {
             let done: f64 = (0..column)

@@ -51,17 +51,12 @@ fn value(
     answer: &Answer,
     confirmation: Option<&Confirmation>,
 ) -> Option<f64> {
-    let verdicts = answer.figures.iter().map(|figure| figure.is_explained);
+    let (explained, told) = answer.explained();
     let pulls = answer.figures.iter().filter_map(|figure| figure.pull);
     match of {
-        InferredQuantity::UnexplainedFigures => {
-            Some(verdicts.filter(|verdict| *verdict == Some(false)).count() as f64)
-        }
+        InferredQuantity::UnexplainedFigures => Some((told - explained) as f64),
         InferredQuantity::LargestPull => pulls.map(f64::abs).reduce(f64::max),
-        InferredQuantity::AcceptedReadings => {
-            let accepted = answer.readings.iter().filter(|judged| judged.is_accepted);
-            Some(accepted.count() as f64)
-        }
+        InferredQuantity::AcceptedReadings => Some(answer.accepted().count() as f64),
         InferredQuantity::WeightOfBest => answer.readings.first().map(|judged| judged.weight),
         InferredQuantity::DisagreeingForecasts => confirmation.map(|confirmation| {
             let (agreeing, all) = confirmation.agreeing();

@@ -1,5 +1,8 @@
 //! Points of the space of parameters, spread as the figures make them likely.
 
+use nalgebra::DMatrix;
+
+use crate::inference::drawing::lower_factor;
 use crate::inference::forecast::{Forecasts, Printed, likelihood};
 use crate::random::{Stream, Streams};
 
@@ -115,7 +118,8 @@ impl Search<'_> {
         let mut stream = streams.stream("search");
         let mut power = 0.0;
         let mut steps = vec![Step::of(&points, power, log_evidence)];
-        let mut met = points.clone();
+        let mut visits = points.len();
+        let mut met = self.weighty(&points, &best);
         for _ in 0..STEPS_MAX {
             if power >= 1.0 {
                 break;
@@ -139,18 +143,30 @@ impl Search<'_> {
                 }
             });
             steps.push(Step::of(&points, power, log_evidence));
-            met.extend_from_slice(&points);
+            visits += points.len();
+            // The best point only becomes better: what tells nothing beside this one never does.
+            met.extend(self.weighty(&points, &best));
         }
-        let visits = met.len();
-        let least = best.log_likelihood - SILENT + self.doubt.ln();
+        let met = self.weighty(&met, &best).into_iter();
+        let visited = met.map(|point| Visited {
+            log_density: log_density(&steps, visits, point.log_likelihood),
+            point,
+        });
         Some(Found {
-            visited: visited(met, &steps, least),
+            visited: visited.collect(),
             visits,
             points,
             best,
             log_evidence,
             forecasts: made,
         })
+    }
+
+    /// Points that tell something with any one figure left out.
+    fn weighty(&self, points: &[Point], best: &Point) -> Vec<Point> {
+        let least = best.log_likelihood - SILENT + self.doubt.ln();
+        let of_weight = points.iter().filter(|point| point.log_likelihood > least);
+        of_weight.cloned().collect()
     }
 
     /// Moves every point a few times; returns the most likely ones met.
@@ -165,7 +181,8 @@ impl Search<'_> {
         if count == 0 {
             return None;
         }
-        let factor = spread_factor(points, count);
+        // The spread of points that came together is taken as a little.
+        let factor = lower_factor(covariance(points, count), |own| 1e-6 * own + 1e-18);
         let mut best: Option<Point> = None;
         for _ in 0..ROUNDS_MAX {
             let mut taken = 0;
@@ -204,7 +221,7 @@ impl Search<'_> {
 /// Where a point might move: along one direction of the spread of all points, or along all.
 fn proposed(
     point: &Point,
-    factor: &[f64],
+    factor: &DMatrix<f64>,
     (is_along_one, length): (bool, f64),
     stream: &mut Stream,
 ) -> Vec<f64> {
@@ -227,7 +244,7 @@ fn proposed(
         .collect();
     let parts = (0..count).map(|row| {
         let along: f64 = (0..=row)
-            .map(|column| factor[row * count + column] * normals[column])
+            .map(|column| factor[(row, column)] * normals[column])
             .sum();
         point.parts[row] + length * reach * along
     });
@@ -250,18 +267,6 @@ impl Step {
             count: points.len(),
         }
     }
-}
-
-/// Points of all steps above a likelihood, each with its density.
-fn visited(met: Vec<Point>, steps: &[Step], least: f64) -> Vec<Visited> {
-    let visits = met.len();
-    let of_weight = met.into_iter().filter(|point| point.log_likelihood > least);
-    of_weight
-        .map(|point| Visited {
-            log_density: log_density(steps, visits, point.log_likelihood),
-            point,
-        })
-        .collect()
 }
 
 /// Logarithm of the density of the points of all steps over that of the prior.
@@ -352,33 +357,17 @@ fn drawn(points: &[Point], weights: &[f64], count: usize, offset: f64) -> Vec<Po
     found
 }
 
-/// Lower factor of the covariance of the points, row by row.
-fn spread_factor(points: &[Point], count: usize) -> Vec<f64> {
-    let number = points.len() as f64;
-    let mean = |row: usize| points.iter().map(|point| point.parts[row]).sum::<f64>() / number;
-    let means: Vec<f64> = (0..count).map(mean).collect();
-    let covariance = |row: usize, column: usize| {
+/// Covariance of the parts of points.
+pub(crate) fn covariance(points: &[Point], parameters: usize) -> DMatrix<f64> {
+    let count = points.len().max(1) as f64;
+    let mean = |index: usize| points.iter().map(|point| point.parts[index]).sum::<f64>() / count;
+    let means: Vec<f64> = (0..parameters).map(mean).collect();
+    DMatrix::from_fn(parameters, parameters, |row, column| {
         let products = points
             .iter()
             .map(|point| (point.parts[row] - means[row]) * (point.parts[column] - means[column]));
-        products.sum::<f64>() / number
-    };
-    let mut factor = vec![0.0; count * count];
-    for column in 0..count {
-        let done = |row: usize, factor: &[f64]| {
-            (0..column)
-                .map(|k| factor[row * count + k] * factor[column * count + k])
-                .sum::<f64>()
-        };
-        let own = covariance(column, column);
-        let pivot = (own - done(column, &factor)).max(1e-6 * own + 1e-18);
-        let root = pivot.sqrt();
-        factor[column * count + column] = root;
-        for row in column + 1..count {
-            factor[row * count + column] = (covariance(row, column) - done(row, &factor)) / root;
-        }
-    }
-    factor
+        products.sum::<f64>() / count
+    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! `fogbench infer`: which settings make all printed figures at once.
 
-use std::cell::Cell;
 use std::io;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
@@ -129,12 +128,12 @@ fn confirm(inference: &mut Inference, repeats: u32) -> Result<(), Exit> {
             runs.len(),
             estimated_s(&plans) / 60.0
         ));
-        let (count, all) = (Cell::new(0_usize), runs.len());
+        let (count, all) = (AtomicU32::new(0), runs.len());
         let done = || {
-            count.set(count.get() + 1);
-            output::talk(&format!("{} of {all} runs are done", count.get()));
+            let count = count.fetch_add(1, Ordering::Relaxed) + 1;
+            output::talk(&format!("{count} of {all} runs are done"));
         };
-        inference.confirm(candidates, repeats, runs, &(), &done)
+        inference.confirm(candidates, repeats, &runs, &(), &done)
     });
     match confirmed {
         Ok(confirmation) => {

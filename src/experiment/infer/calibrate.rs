@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::bench::Bench;
 use super::simulated::{Settings, SimulationError, simulate};
 use super::{Inference, question, search};
-use crate::inference::{Calibration, Forecasts, Levels, Outcome, Printed, SHIFT, Shifted, Truth};
+use crate::inference::{Calibration, Levels, Outcome, SHIFT, Shifted, Truth};
 use crate::random::{Stream, Streams};
 
 /// Draws of settings after which a reading has no gyro.
@@ -66,8 +66,7 @@ impl Inference {
                     reading: truth.reading,
                     values: bench.values(&truth.parts),
                 };
-                let more = [format!("seed={}", seed % (1 << 32))];
-                let measured = simulate(&self.problem, bench, &settings, &more)?;
+                let measured = simulate(&self.problem, bench, &settings, seed)?;
                 let told = truth.forecasts.figures.iter().zip(measured);
                 told.map(|(forecast, value)| forecast.and(value)).collect()
             }
@@ -123,14 +122,12 @@ fn settings(bench: &Bench, stream: &mut Stream) -> Option<Truth> {
             }
         }
         let parts: Vec<f64> = bench.parameters.iter().map(|_| stream.uniform()).collect();
-        let forecasts: Option<Forecasts> = bench.forecaster(reading)(&parts);
-        let printed: Vec<Printed> = bench.printed.clone();
-        if let Some(forecasts) = forecasts {
+        if let Some(forecasts) = bench.forecaster(reading)(&parts) {
             return Some(Truth {
                 reading,
                 parts,
                 forecasts,
-                printed,
+                printed: bench.printed.clone(),
             });
         }
     }

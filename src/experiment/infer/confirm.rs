@@ -1,11 +1,12 @@
 //! Settings that were found, simulated: forecasts beside records.
 
+use rayon::prelude::*;
+
 use super::Inference;
-use super::simulated::{Settings, SimulationError};
+use super::simulated::{Settings, SimulationError, figures_of};
 use crate::experiment::plan::Plan;
 use crate::experiment::run::Progress;
 use crate::inference::{Candidate, Confirmation, Confirmed, Simulated};
-use crate::metrics::{self, Estimate};
 
 /// Most ridges whose ends are simulated.
 const RIDGES_MAX: usize = 4;
@@ -138,9 +139,9 @@ impl Inference {
         &self,
         mut candidates: Vec<Candidate>,
         repeats: u32,
-        runs: Vec<ConfirmationRun>,
+        runs: &[ConfirmationRun],
         progress: &dyn Progress,
-        done: &dyn Fn(),
+        done: &(dyn Fn() + Sync),
     ) -> Result<Confirmation, SimulationError> {
         for candidate in &mut candidates {
             let forecasts = self.bench.forecaster(candidate.reading)(&candidate.parts);
@@ -154,52 +155,29 @@ impl Inference {
                 })
                 .collect();
         }
-        for run in runs {
-            let figures = self.figures_of(&run, progress)?;
+        let told: Vec<Result<Vec<(usize, Simulated)>, SimulationError>> = runs
+            .par_iter()
+            .with_max_len(1)
+            .map(|run| {
+                let figures = figures_of(&self.problem, run.record, &run.plan, progress)?;
+                done();
+                Ok(figures)
+            })
+            .collect();
+        // In their order, whichever was done first.
+        for (run, figures) in runs.iter().zip(told) {
             let into = &mut candidates[run.candidate].figures;
-            for (figure, simulated) in figures {
+            for (figure, simulated) in figures? {
                 if run.is_loop {
                     into[figure].loop_model = Some(simulated);
                 } else {
                     into[figure].rate_model = Some(simulated);
                 }
             }
-            done();
         }
         Ok(Confirmation {
             repeats,
             candidates,
         })
     }
-
-    /// Figures of one run, by their place in the problem.
-    fn figures_of(
-        &self,
-        run: &ConfirmationRun,
-        progress: &dyn Progress,
-    ) -> Result<Vec<(usize, Simulated)>, SimulationError> {
-        let record = &self.problem.config.records[run.record].name;
-        let ended = run
-            .plan
-            .run_with(progress)
-            .map_err(|error| SimulationError::Unfinished {
-                record: record.clone(),
-                reason: error.to_string(),
-            })?;
-        let published = self.problem.config.published.iter().enumerate();
-        let own = published.filter(|(_, figure)| figure.record == *record);
-        Ok(own
-            .filter_map(|(index, figure)| Some((index, simulated(&ended, &figure.metric)?)))
-            .collect())
-    }
-}
-
-/// A metric of a run; none where it does not have it.
-pub(super) fn simulated(run: &crate::experiment::Run, written: &str) -> Option<Simulated> {
-    let (channel, name) = written.rsplit_once('.')?;
-    let key = metrics::find(name)?;
-    let Estimate {
-        value, low, high, ..
-    } = run.channel(channel).ok()?.metric(key).ok()?;
-    Some(Simulated { value, low, high })
 }

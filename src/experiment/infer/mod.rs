@@ -171,7 +171,7 @@ fn experiments(
     found: &[Option<Found>],
 ) -> Vec<crate::inference::Told> {
     let mut outcomes = Vec::new();
-    for judged in answer.readings.iter().filter(|judged| judged.is_accepted) {
+    for judged in answer.accepted() {
         let Some(found) = &found[judged.reading] else {
             continue;
         };

@@ -1,8 +1,11 @@
 //! Records of known settings, simulated.
 
 use super::bench::{Bench, sets_of};
-use super::confirm::simulated;
+use crate::experiment::Run;
 use crate::experiment::plan::{Plan, plan_suite};
+use crate::experiment::run::Progress;
+use crate::inference::Simulated;
+use crate::metrics::{self, Estimate};
 use crate::scenario::{Problem, ScenarioError};
 
 /// Why there are no records of settings.
@@ -89,29 +92,60 @@ impl Settings {
 /// Figures of one run of every record, in the order of the problem; none of one that the run does not
 /// have.
 ///
+/// * `seed`: of the first record; each has noise of its own.
+///
 /// # Errors
 /// Why a record cannot be simulated.
 pub(super) fn simulate(
     problem: &Problem,
     bench: &Bench,
     settings: &Settings,
-    more: &[String],
+    seed: u64,
 ) -> Result<Vec<Option<f64>>, SimulationError> {
     let mut figures = vec![None; problem.config.published.len()];
-    for (record, row) in problem.config.records.iter().enumerate() {
-        let run = settings
-            .plan(problem, bench, record, more)?
-            .run()
-            .map_err(|error| SimulationError::Unfinished {
-                record: row.name.clone(),
-                reason: error.to_string(),
-            })?;
-        for (figure, printed) in figures.iter_mut().zip(&problem.config.published) {
-            if printed.record != row.name {
-                continue;
-            }
-            *figure = simulated(&run, &printed.metric).map(|found| found.value);
+    for record in 0..problem.config.records.len() {
+        let own = seed.wrapping_add((record as u64) << SEED_BITS) % (1 << 32);
+        let plan = settings.plan(problem, bench, record, &[format!("seed={own}")])?;
+        for (figure, simulated) in figures_of(problem, record, &plan, &())? {
+            figures[figure] = Some(simulated.value);
         }
     }
     Ok(figures)
+}
+
+/// Bits of a seed below those that tell records apart: far more than draws are asked for.
+const SEED_BITS: u32 = 20;
+
+/// Figures of a run of a record, by their place in the problem; without those that it does not have.
+///
+/// # Errors
+/// Why it cannot be run to its end.
+pub(super) fn figures_of(
+    problem: &Problem,
+    record: usize,
+    plan: &Plan,
+    progress: &dyn Progress,
+) -> Result<Vec<(usize, Simulated)>, SimulationError> {
+    let record = &problem.config.records[record].name;
+    let ended = plan
+        .run_with(progress)
+        .map_err(|error| SimulationError::Unfinished {
+            record: record.clone(),
+            reason: error.to_string(),
+        })?;
+    let published = problem.config.published.iter().enumerate();
+    let own = published.filter(|(_, figure)| figure.record == *record);
+    Ok(own
+        .filter_map(|(index, figure)| Some((index, simulated(&ended, &figure.metric)?)))
+        .collect())
+}
+
+/// A metric of a run; none where it does not have it.
+fn simulated(run: &Run, written: &str) -> Option<Simulated> {
+    let (channel, name) = written.rsplit_once('.')?;
+    let key = metrics::find(name)?;
+    let Estimate {
+        value, low, high, ..
+    } = run.channel(channel).ok()?.metric(key).ok()?;
+    Some(Simulated { value, low, high })
 }

@@ -20,11 +20,7 @@ const UNTOLD: f64 = 0.9;
 pub fn infer_text(sheet: &InferenceSheet) -> String {
     let mut text = String::new();
     let answer = sheet.answer;
-    let accepted = answer
-        .readings
-        .iter()
-        .filter(|judged| judged.is_accepted)
-        .count();
+    let accepted = answer.accepted().count();
     line(
         &mut text,
         format_args!(
@@ -136,18 +132,7 @@ fn reading_text(sheet: &InferenceSheet, judged: &Judged) -> String {
 
 fn figures_text(sheet: &InferenceSheet) -> String {
     let mut text = String::new();
-    let explained = sheet
-        .answer
-        .figures
-        .iter()
-        .filter(|figure| figure.is_explained == Some(true))
-        .count();
-    let told = sheet
-        .answer
-        .figures
-        .iter()
-        .filter(|figure| figure.is_explained.is_some())
-        .count();
+    let (explained, told) = sheet.answer.explained();
     line(
         &mut text,
         format_args!(

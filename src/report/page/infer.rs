@@ -62,11 +62,9 @@ pub fn infer_page(sheet: &InferenceSheet, drawn: &Pictures, scenarios: &[String]
 
 fn head(sheet: &InferenceSheet) -> Markup {
     let figures = &sheet.answer.figures;
-    let told = figures.iter().filter(|own| own.is_explained.is_some());
-    let explained = told.clone().filter(|own| own.is_explained == Some(true));
-    let (explained, told) = (explained.count(), told.count());
+    let (explained, told) = sheet.answer.explained();
     let class = if explained == told { "pass" } else { "fail" };
-    let accepted = sheet.answer.readings.iter().filter(|own| own.is_accepted);
+    let accepted = sheet.answer.accepted();
     let pairs = [
         ("file", sheet.file.to_owned()),
         ("figures", figures.len().to_string()),

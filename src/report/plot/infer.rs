@@ -125,7 +125,7 @@ fn axis(parameter: &Parameter) -> Axis {
 
 /// Readings that are drawn, with what was found of each.
 fn drawn<'a>(sheet: &'a InferenceSheet) -> Vec<(&'a Judged, &'a Found)> {
-    let accepted = sheet.answer.readings.iter().filter(|own| own.is_accepted);
+    let accepted = sheet.answer.accepted();
     let found = accepted.filter_map(|own| Some((own, sheet.found[own.reading].as_ref()?)));
     found.take(READINGS_MAX).collect()
 }
