@@ -306,7 +306,8 @@ fn conclude(
             Ok(trial) => trial,
             Err(error) => {
                 output::talk(&format!("error: {error}"));
-                return Ok((Exit::Usage, trials));
+                let exit = if error.is_read { Exit::Io } else { Exit::Usage };
+                return Ok((exit, trials));
             }
         };
         if let Some(gates) = &gates {

@@ -21,6 +21,7 @@ pub fn try_log_stream(
     let refuse = |message: String| LogTrialError {
         file: file.clone(),
         message,
+        is_read: false,
     };
     let sample_period_s = stream.log().sample_period_s();
     let mut words = stream.take_first_words();
@@ -38,9 +39,12 @@ pub fn try_log_stream(
         stream.read(&mut words).map_err(|error| match error {
             LogError::Content { place, message } => LogTrialError {
                 file: place,
-                message,
+                ..refuse(message)
             },
-            error => refuse(error.to_string()),
+            error => LogTrialError {
+                is_read: true,
+                ..refuse(error.to_string())
+            },
         })?;
         if words.is_empty() {
             break;

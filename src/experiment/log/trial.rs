@@ -66,6 +66,8 @@ pub struct LogTrialError {
     pub file: String,
     /// What is wrong.
     pub message: String,
+    /// Whether it is the system that refused to read on.
+    pub is_read: bool,
 }
 
 /// A log with everything measured on it.
@@ -109,6 +111,7 @@ pub fn try_log(
         return Err(LogTrialError {
             file: log.file,
             message,
+            is_read: false,
         });
     }
     notes.splice(0..0, log.notes());
@@ -123,6 +126,7 @@ pub fn try_log(
     let finished = run(filters, &input, progress).map_err(|unfinished| LogTrialError {
         file: log.file.clone(),
         message: unfinished.to_string(),
+        is_read: false,
     })?;
     let measured = &record.raw_deg_per_h[length.warm_up..];
     let metric_settings = metric_settings(settings, measured, sample_period_s);
@@ -312,6 +316,7 @@ pub(super) fn record_length(
     let refuse = |message: String| LogTrialError {
         file: log.file.clone(),
         message,
+        is_read: false,
     };
     let warm_up = first_measured_index(settings.warm_up_s, log.sample_period_s());
     let warm_up = usize::try_from(warm_up).unwrap_or(usize::MAX);

@@ -278,14 +278,11 @@ impl AllanStream {
                 level.extend(new(level.spacing).map(at), self.thinned_from);
             }
             for means in &mut self.means {
-                for sample in new(means.block) {
-                    let angle = at(sample);
-                    if means.values.len() < MEANS_MAX {
-                        means
-                            .values
-                            .push((angle - means.last_angle) / means.block as f64);
-                        means.last_angle = angle;
-                    }
+                let room = MEANS_MAX - means.values.len();
+                for angle in new(means.block).take(room).map(at) {
+                    let mean = (angle - means.last_angle) / means.block as f64;
+                    means.values.push(mean);
+                    means.last_angle = angle;
                 }
             }
             dense[0].extend(std::iter::empty(), self.thinned_from);

@@ -39,7 +39,6 @@ pub(crate) struct BlockStream {
     sum: f64,
     filled: usize,
     means: Vec<f64>,
-    is_full: bool,
 }
 
 impl BlockStream {
@@ -51,13 +50,12 @@ impl BlockStream {
             sum: 0.0,
             filled: 0,
             means: Vec::new(),
-            is_full: false,
         }
     }
 
     /// Takes the next values.
     pub(crate) fn extend(&mut self, mut values: &[f64]) {
-        while !values.is_empty() && !self.is_full {
+        while !values.is_empty() && !self.is_full() {
             let (own, rest) = values.split_at((self.block_samples - self.filled).min(values.len()));
             // One after the other, as the mean of a whole block is summed.
             self.sum = own.iter().fold(self.sum, |sum, value| sum + value);
@@ -66,9 +64,13 @@ impl BlockStream {
             if self.filled == self.block_samples {
                 self.means.push(self.sum / self.block_samples as f64);
                 (self.sum, self.filled) = (0.0, 0);
-                self.is_full = self.means.len() > self.most;
             }
         }
+    }
+
+    /// Whether the means are more than are kept.
+    fn is_full(&self) -> bool {
+        self.means.len() > self.most
     }
 
     /// Samples of a block.
@@ -78,7 +80,7 @@ impl BlockStream {
 
     /// The means of all whole blocks; nothing where they are too many to be kept.
     pub(crate) fn means(&self) -> Option<&[f64]> {
-        (!self.is_full).then_some(self.means.as_slice())
+        (!self.is_full()).then_some(self.means.as_slice())
     }
 }
 

@@ -189,11 +189,9 @@ impl OutlierStream {
     pub(crate) fn extend(&mut self, words: &[f64]) {
         self.waiting.extend_from_slice(words);
         while self.waiting.len() >= Self::PIECE + 2 * Self::MARGIN {
-            let end = self.first + Self::PIECE + Self::MARGIN;
-            self.judge_up_to(end);
-            let old = end - Self::MARGIN - self.first;
-            self.waiting.drain(..old);
-            self.first += old;
+            self.judge_up_to(self.first + Self::PIECE + Self::MARGIN);
+            self.waiting.drain(..Self::PIECE);
+            self.first += Self::PIECE;
         }
     }
 
@@ -209,7 +207,7 @@ impl OutlierStream {
             ..event
         });
         let own = found.filter(|event| (self.next..end).contains(&event.first));
-        let room = Self::EVENTS_MAX + 1 - self.events.len().min(Self::EVENTS_MAX + 1);
+        let room = (Self::EVENTS_MAX + 1).saturating_sub(self.events.len());
         self.events.extend(own.take(room));
         self.next = end;
     }
@@ -226,13 +224,14 @@ impl OutlierStream {
             let most = Self::EVENTS_MAX;
             return Err(format!("off: more than {most} outliers, the most that are kept").into());
         }
-        let scale = self.scale.of_record(count);
+        let of_record = threshold(self.scale.places, count);
+        let threshold = of_record.unwrap_or(self.scale.threshold);
         self.events
-            .retain(|event| event.least_deviations > scale.threshold);
+            .retain(|event| event.least_deviations > threshold);
         Ok(Outliers {
             events: self.events,
-            threshold_deg_per_h: scale.threshold * scale.scatters[0],
-            threshold_deviations: scale.threshold,
+            threshold_deg_per_h: threshold * self.scale.scatters[0],
+            threshold_deviations: threshold,
         })
     }
 }
@@ -307,15 +306,6 @@ impl Scale {
             record: words.len(),
             threshold: threshold(places, words.len())?,
         })
-    }
-
-    /// The same in a record of so many words.
-    fn of_record(self, words: usize) -> Self {
-        Self {
-            record: words,
-            threshold: threshold(self.places, words).unwrap_or(self.threshold),
-            ..self
-        }
     }
 }
 

@@ -18,6 +18,7 @@ const ANGLE_CORRELATION: f64 = 0.999;
 const STEP_CORRELATION: f64 = 0.5;
 /// Fewest words of which that is asked.
 const CORRELATED_MIN: usize = 100;
+
 /// Numbers of a column on their way to words.
 pub(super) struct Words<'a> {
     pub(super) path: &'a Path,

@@ -107,9 +107,12 @@ pub fn read_assembly_log(
     format: &LogFormat,
     columns: &AssemblyColumns<'_>,
 ) -> Result<AssemblyLog, LogError> {
-    let wanted = columns.gyros.into_iter().chain(columns.temperature);
-    let selection = Selection::Each(wanted.collect());
-    let mut columns = read_columns(path, selection, format)?;
+    let names = columns.gyros.into_iter().chain(columns.temperature);
+    let wanted = Wanted {
+        columns: Selection::Each(names.collect()),
+        ..wanted_by(format)
+    };
+    let mut columns = read_wanted(path, &wanted)?;
     let mut data = std::mem::take(&mut columns.data);
     let spacing = spacing(path, &columns, &data, format)?;
     let temperature = (data.len() > 3).then(|| data.remove(3));
@@ -167,21 +170,6 @@ pub fn read_stimulus(
     let columns = read_wanted(path, &wanted)?;
     let column = columns.data.into_iter().next();
     Ok(column.map(|column| column.values).unwrap_or_default())
-}
-
-/// Reads columns of a log, all of its samples.
-fn read_columns(
-    path: &Path,
-    columns: Selection<'_>,
-    format: &LogFormat,
-) -> Result<Columns, LogError> {
-    let wanted = Wanted {
-        columns,
-        needs_time: true,
-        format,
-        samples_max: usize::MAX,
-    };
-    read_wanted(path, &wanted)
 }
 
 /// Reads columns of a text or an array; there is a sample.

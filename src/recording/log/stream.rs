@@ -18,7 +18,7 @@ use crate::recording::time::timing::Spacing;
 use crate::recording::unit::convert::Conversion;
 
 /// Most words of a log from a pipe that are kept: a longer one streams.
-pub const KEPT_WORDS: usize = 10_000_000;
+const KEPT_WORDS: usize = 10_000_000;
 
 /// Most words of a file that are kept.
 const FILE_WORDS_KEPT: usize = 100_000_000;
@@ -80,9 +80,6 @@ pub(crate) fn open_keeping(
     kept: Kept,
 ) -> Result<LogSource, LogError> {
     let mut input = Input::open(path)?;
-    if streams(format) {
-        input.let_go_on();
-    }
     let wanted = wanted_by(format);
     let most = match input.length() {
         Some(_) => kept.of_file,
@@ -91,6 +88,9 @@ pub(crate) fn open_keeping(
     if array::is_array(&input, format) {
         let heading = array::read_heading(path, &mut input, format)?;
         return open_array(path, heading, input, &wanted, (most, kept.words));
+    }
+    if streams(format) {
+        input.let_go_on();
     }
     let Some(mut rows) = Rows::open(path, input, &wanted)? else {
         return Err(LogError::of_file(path, "holds no sample"));
@@ -134,6 +134,7 @@ fn open_array(
     }
     array::check_columns(path, &heading, wanted)?;
     let may_end = input.length().is_none();
+    input.let_go_on();
     let mut words = ArrayWords::new(path, heading, may_end, false);
     let mut values = Vec::new();
     let mut goes_on = true;
@@ -173,10 +174,7 @@ impl Found {
         let log = log(path, &columns, column, format, &spacing)?;
         let conversion = conversion.map_err(|error| LogError::of_file(path, error))?;
         if conversion.running.is_some() {
-            let message = format!(
-                "a running angle does not stream: expected {} samples at most, --rows takes a part of them",
-                log.rate_deg_per_h.len()
-            );
+            let message = "a running angle does not stream: --rows takes a part of it";
             return Err(LogError::of_file(path, message));
         }
         Ok(Self {
@@ -249,7 +247,10 @@ impl LogStream {
 
     /// What is known of the log, once all of its words were read.
     #[must_use]
-    pub fn into_log(self) -> Log {
+    pub fn into_log(mut self) -> Log {
+        if let Rest::Text(rows) = &self.rest {
+            self.log.empty_lines = rows.columns().empty_lines;
+        }
         self.log
     }
 }
@@ -331,6 +332,23 @@ mod tests {
         assert!(
             error.ends_with("ends within a number: 1 of its 2 bytes are there"),
             "{error}"
+        );
+    }
+
+    #[test]
+    fn empty_lines_are_told_wherever_they_stand() {
+        let text = "1\n2\n".repeat(100_000);
+        let text = format!("{text}\n{text}");
+        let (_folder, path) = scratch(text.as_bytes());
+        let format = LogFormat {
+            rate_hz: Some(100.0),
+            ..format()
+        };
+        let (_, log) = streamed(&path, &format).unwrap();
+        let notes = log.notes().concat();
+        assert!(
+            notes.contains("1 empty line between the samples, from line 200001 on"),
+            "{notes}"
         );
     }
 

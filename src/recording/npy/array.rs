@@ -20,7 +20,7 @@ const INTEGER_MAX: u64 = 1 << 53;
 /// Bytes that are read at a time: whole numbers of every size.
 const CHUNK_BYTES: usize = 1 << 16;
 
-/// An array while it is read.
+/// An array of two dimensions while it is read.
 struct Array<'a> {
     path: &'a Path,
     heading: NpyHeading,
@@ -124,20 +124,11 @@ pub(in crate::recording) fn check_columns(
         .map_err(|error| LogError::of_file(path, error))
 }
 
-/// How many numbers there are to come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Count {
-    /// So many, and nothing behind them.
-    Exactly(u64),
-    /// So many at most: the end of the input ends the record.
-    AtMost(u64),
-}
-
 /// The numbers of an array of one dimension while they are read.
 pub(in crate::recording) struct ArrayWords {
     path: PathBuf,
     heading: NpyHeading,
-    count: Count,
+    may_end: bool,
     is_gap: bool,
     /// Numbers read.
     row: u64,
@@ -156,14 +147,11 @@ impl ArrayWords {
     ) -> Self {
         Self {
             path: path.to_owned(),
-            count: match may_end {
-                true => Count::AtMost(heading.rows),
-                false => Count::Exactly(heading.rows),
-            },
             heading,
+            may_end,
             is_gap,
             row: 0,
-            chunk: vec![0; CHUNK_BYTES],
+            chunk: Vec::with_capacity(CHUNK_BYTES),
         }
     }
 
@@ -182,13 +170,14 @@ impl ArrayWords {
 
     /// What is said of an input that ended before all numbers that its heading names, if it did.
     pub(in crate::recording) fn early_end(&self) -> Option<String> {
-        match self.count {
-            Count::AtMost(most) if self.row < most && most < u64::MAX => Some(format!(
+        let most = self.heading.rows;
+        // Words that stand alone have no heading that would name a number.
+        (self.may_end && self.row < most && most < u64::MAX).then(|| {
+            format!(
                 "the input ended behind {} of the {most} numbers that its heading names",
                 self.row
-            )),
-            _ => None,
-        }
+            )
+        })
     }
 
     /// Appends the next numbers; whether there were any.
@@ -202,14 +191,15 @@ impl ArrayWords {
         values: &mut Vec<f64>,
     ) -> Result<bool, LogError> {
         let word_bytes = self.heading.word_bytes;
-        let (Count::Exactly(all) | Count::AtMost(all)) = self.count;
-        let wanted = (all - self.row).min((CHUNK_BYTES / word_bytes) as u64);
+        let wanted = (self.heading.rows - self.row).min((CHUNK_BYTES / word_bytes) as u64);
         let wanted = usize::try_from(wanted).unwrap_or(0) * word_bytes;
         let failed = |error| failure(&self.path, error);
-        let filled = fill(input, &mut self.chunk[..wanted]).map_err(failed)?;
+        self.chunk.clear();
+        let mut coming = input.by_ref().take(wanted as u64);
+        let filled = coming.read_to_end(&mut self.chunk).map_err(failed)?;
         if filled < wanted {
             let is_whole = filled.is_multiple_of(word_bytes);
-            if matches!(self.count, Count::Exactly(_)) {
+            if !self.may_end {
                 return Err(LogError::of_file(
                     &self.path,
                     LengthError::CutShort(self.heading),
@@ -222,8 +212,9 @@ impl ArrayWords {
                     LengthError::Within(self.heading, left),
                 ));
             }
-        } else if wanted == 0 && all < u64::MAX {
-            let more = fill(input, &mut [0]).map_err(failed)?;
+        } else if wanted == 0 {
+            let more = input.by_ref().take(1).read_to_end(&mut self.chunk);
+            let more = more.map_err(failed)?;
             if more > 0 {
                 let there_is_more = LengthError::More(self.heading, None);
                 return Err(LogError::of_file(&self.path, there_is_more));
@@ -246,20 +237,6 @@ impl ArrayWords {
         }
         Ok(count > 0)
     }
-}
-
-/// Fills a buffer as far as the input goes; how far that is.
-fn fill(input: &mut impl Read, buffer: &mut [u8]) -> std::io::Result<usize> {
-    let mut filled = 0;
-    while filled < buffer.len() {
-        match input.read(&mut buffer[filled..]) {
-            Ok(0) => break,
-            Ok(more) => filled += more,
-            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(filled)
 }
 
 /// Why columns of an array are not known.
@@ -305,17 +282,12 @@ fn chosen(heading: &NpyHeading, wanted: &Wanted<'_>) -> Result<Chosen, ColumnErr
 
 impl<'a> Array<'a> {
     fn new(path: &'a Path, heading: NpyHeading, chosen: Chosen, wanted: &Wanted<'_>) -> Self {
-        let is_table = heading.columns > 1;
-        let name = |index: usize| is_table.then(|| (index + 1).to_string());
+        let name = |index: usize| (index + 1).to_string();
         let data = chosen.data.iter().map(|index| Column {
-            name: name(*index),
+            name: Some(name(*index)),
             ..Column::default()
         });
-        let times: Vec<String> = chosen
-            .time
-            .iter()
-            .filter_map(|(index, _)| name(*index))
-            .collect();
+        let times: Vec<String> = chosen.time.iter().map(|(index, _)| name(*index)).collect();
         let time = (!times.is_empty()).then(|| {
             let units = chosen.time.iter().map(|(_, unit)| *unit).collect();
             let mut time = TimeColumn::new(times.join(" + "), units, false);
@@ -325,7 +297,7 @@ impl<'a> Array<'a> {
         let columns = Columns {
             data: data.collect(),
             time,
-            layout: is_table.then(|| heading.to_string()),
+            layout: Some(heading.to_string()),
             ..Columns::default()
         };
         let parts = vec![Vec::new(); chosen.time.len()];

@@ -122,6 +122,7 @@ impl Rows {
             data: data.collect(),
             time: columns.time.as_mut().map(TimeColumn::going_on),
             lines: Some(RowLines::default()),
+            empty_lines: columns.empty_lines,
             ..Columns::default()
         };
         std::mem::replace(columns, next)
@@ -141,7 +142,7 @@ impl Rows {
         let columns = &mut self.table.columns;
         self.table.taken += columns.rows();
         for column in &mut columns.data {
-            column.values = Vec::new();
+            column.values.clear();
         }
         columns.lines = Some(RowLines::default());
         if let Some(time) = &mut columns.time {
