@@ -55,6 +55,25 @@ fn the_shortest_words_do_and_shorter_ones_do_not() {
 }
 
 #[test]
+fn words_too_short_for_a_constant_are_passed_over() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    // 0.05 in full scale: nothing below the point of a word Q14.3.
+    let options = [
+        "--filter",
+        "rls",
+        "--set",
+        "filter.rls.initial_inverse_correlation=1e-9",
+        "--format",
+        "json",
+    ];
+    let (exit, text, talk) = search(folder.path(), &options);
+    assert!(exit <= 1, "{text}{talk}");
+    let found: Value = serde_json::from_str(&text).expect("JSON");
+    let uniform = found["uniform"].as_array().expect("trials");
+    assert!(!uniform.is_empty(), "{text}");
+}
+
+#[test]
 fn what_no_words_do_is_said() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let options = [

@@ -1,6 +1,7 @@
 //! What a hardware pipeline adds to its channel's table, and what must be said of it.
 
 use super::channel_filter::{FinishedFilter, FinishedPipeline};
+use super::run::stamp_s;
 use crate::filters::hardware::FixedSummary;
 use crate::metrics::catalogue::{
     ANGLE_RANDOM_WALK, ANGLE_RANDOM_WALK_OVER_BINARY64, ASYMMETRY_MAX, CLOCKS_PER_SAMPLE,
@@ -120,7 +121,7 @@ pub(super) fn enter_fixed(
     }
     match fixed.indefinite_at {
         Some(sample) => {
-            let stamp_s = whole(sample + 1) * sample_period_s;
+            let stamp_s = stamp_s(sample, sample_period_s);
             metrics.put(&INDEFINITE_AT, Estimate::exact(stamp_s));
         }
         None => metrics.miss(

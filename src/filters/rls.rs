@@ -119,7 +119,13 @@ impl RlsFilterConfig {
     #[must_use]
     pub fn fixed_words(&self) -> Option<RlsWords> {
         let is_fixed = self.pipeline == Pipeline::Fpga && self.number_format == WordFormat::Fixed;
-        is_fixed.then(|| self.fixed.clone().unwrap_or_else(RlsWords::reference))
+        is_fixed.then(|| self.words())
+    }
+
+    /// The words of its table, or those of the reference.
+    #[must_use]
+    pub fn words(&self) -> RlsWords {
+        self.fixed.clone().unwrap_or_else(RlsWords::reference)
     }
 }
 

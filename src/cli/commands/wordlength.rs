@@ -33,7 +33,7 @@ pub(in crate::cli) fn wordlength(options: &WordLengthOptions) -> io::Result<Exit
         delay_change_max_us: options.max_delay_change_us,
         survive_s: options.survive_s,
     };
-    let found = match word_lengths(plan, &options.name, limits, &mut |_| {}) {
+    let found = match word_lengths(plan, &options.name, limits) {
         Ok(found) => found,
         Err(error) => {
             complaint::print(&[format!("{path}: {error}")]);

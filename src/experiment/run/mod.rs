@@ -27,7 +27,7 @@ pub(crate) use progress::{Unfinished, unless_stopped};
 #[cfg(feature = "report")]
 pub(crate) use ranges::{Repeat, pool, run_range};
 pub(crate) use rate_twins::{RATES_DEG_PER_S, RateTwins, rate_gain};
-pub(crate) use records::{RecordLength, count, sample_period_s};
+pub(crate) use records::{RecordLength, count, sample_period_s, stamp_s};
 pub(crate) use results::{Results, run_plan};
 #[cfg(feature = "report")]
 pub(crate) use results::{notes, verdicts};

@@ -1,7 +1,7 @@
 //! One trial of word lengths.
 
 use crate::experiment::plan::Plan;
-use crate::experiment::run::{first_words, motion};
+use crate::experiment::run::{first_words, motion, stamp_s};
 use crate::filters::hardware::PipelineSettings;
 use crate::filters::{FilterKind, FilterSettings as _, RlsFilterConfig, RlsWords};
 use crate::fpga::FpgaError;
@@ -75,12 +75,20 @@ pub(super) struct Bench {
     twin: Figures,
 }
 
-/// Noise and phase of some output words.
-#[derive(Clone, Copy, Debug)]
+/// Noise and phase of some output words; none of a filter that failed.
+#[derive(Clone, Copy, Debug, Default)]
 struct Figures {
     allan_deg_per_h: Option<f64>,
     phase_rad: Option<f64>,
-    frequency_hz: f64,
+}
+
+/// What a filter made of the words.
+struct Filtered {
+    outputs: Vec<f64>,
+    /// In which sample it failed, and why.
+    failure: Option<(u64, String)>,
+    /// When R was no longer definite.
+    indefinite_at: Option<u64>,
 }
 
 impl Bench {
@@ -122,28 +130,23 @@ impl Bench {
             period_s,
             motion: motion(scenario, period_s),
             limits,
-            twin: Figures {
-                allan_deg_per_h: None,
-                phase_rad: None,
-                frequency_hz: 0.0,
-            },
+            twin: Figures::default(),
         };
         let float = RlsFilterConfig {
             number_format: WordFormat::Float(NumberFormat::Binary64),
             ..bench.config.clone()
         };
-        let (outputs, failure) = bench.run(&float)?.0;
-        if let Some((_, message)) = failure {
+        let filtered = bench.run(&float)?;
+        if let Some((_, message)) = filtered.failure {
             return Err(WordLengthError::Twin(message));
         }
-        bench.twin = bench.figures(&outputs);
+        bench.twin = bench.figures(&filtered.outputs);
         Ok(bench)
     }
 
     /// The words that the filter has, or those of the reference.
     pub(super) fn words(&self) -> RlsWords {
-        let given = self.config.fixed.clone();
-        given.unwrap_or_else(RlsWords::reference)
+        self.config.words()
     }
 
     /// Samples that every trial filters.
@@ -158,24 +161,20 @@ impl Bench {
             fixed: Some(words.clone()),
             ..self.config.clone()
         };
-        let ((outputs, failure), indefinite_at) = self.run(&config)?;
-        let stamp_s = |sample: u64| count(sample + 1) * self.period_s;
-        let diverged_at_s = failure.map(|(sample, _)| stamp_s(sample));
+        let filtered = self.run(&config)?;
+        let stamp_s = |sample: u64| stamp_s(sample, self.period_s);
+        let diverged_at_s = filtered.failure.map(|(sample, _)| stamp_s(sample));
         let figures = match diverged_at_s {
-            None => self.figures(&outputs),
-            Some(_) => Figures {
-                allan_deg_per_h: None,
-                phase_rad: None,
-                frequency_hz: 0.0,
-            },
+            None => self.figures(&filtered.outputs),
+            Some(_) => Figures::default(),
         };
-        let pair = |own: Option<f64>, twin: Option<f64>| own.zip(twin);
-        let arw_ratio =
-            pair(figures.allan_deg_per_h, self.twin.allan_deg_per_h).map(|(own, twin)| own / twin);
-        let delay_change_us = pair(figures.phase_rad, self.twin.phase_rad).map(|(own, twin)| {
+        let noise = figures.allan_deg_per_h.zip(self.twin.allan_deg_per_h);
+        let arw_ratio = noise.map(|(own, twin)| own / twin);
+        let phases = figures.phase_rad.zip(self.twin.phase_rad);
+        let delay_change_us = phases.map(|(own, twin)| {
             let later = (twin - own) / std::f64::consts::TAU;
             // The nearest turn.
-            s_to_us((later - later.round()) / figures.frequency_hz)
+            s_to_us((later - later.round()) / self.frequency_hz())
         });
         let does = diverged_at_s.is_none()
             && arw_ratio.is_some_and(|ratio| ratio <= self.limits.arw_ratio_max)
@@ -184,18 +183,14 @@ impl Bench {
             words,
             arw_ratio,
             delay_change_us,
-            indefinite_at_s: indefinite_at.map(stamp_s),
+            indefinite_at_s: filtered.indefinite_at.map(stamp_s),
             diverged_at_s,
             does,
         })
     }
 
-    /// Filters the words: the outputs, when and why it failed, when R was no longer definite.
-    #[expect(clippy::type_complexity, reason = "taken apart where it is called")]
-    fn run(
-        &self,
-        config: &RlsFilterConfig,
-    ) -> Result<((Vec<f64>, Option<(u64, String)>), Option<u64>), FpgaError> {
+    /// Filters the words, as far as the filter goes.
+    fn run(&self, config: &RlsFilterConfig) -> Result<Filtered, FpgaError> {
         let settings: PipelineSettings = config.hardware().expect("pipeline = \"fpga\" is set");
         let mut filter = settings.filter(self.warm_up as u64)?;
         let mut outputs = Vec::with_capacity(self.input.len());
@@ -210,16 +205,17 @@ impl Bench {
             }
         }
         let indefinite_at = filter.fixed().and_then(|fixed| fixed.indefinite_at);
-        Ok(((outputs, failure), indefinite_at))
+        Ok(Filtered {
+            outputs,
+            failure,
+            indefinite_at,
+        })
     }
 
     /// Noise beside the swing, and the phase of the swing.
     fn figures(&self, outputs: &[f64]) -> Figures {
         let record = &outputs[self.warm_up.min(outputs.len())..];
-        let frequency_hz = match self.motion {
-            Motion::Swing { frequency_hz } | Motion::SwingFromRest { frequency_hz } => frequency_hz,
-            _ => 0.0,
-        };
+        let frequency_hz = self.frequency_hz();
         let clock = SwingClock {
             frequency_hz,
             sample_period_s: self.period_s,
@@ -247,7 +243,14 @@ impl Bench {
         Figures {
             allan_deg_per_h: points.first().map(|point| point.deviation_deg_per_h.value),
             phase_rad: fit.map(|sine| sine.phase_rad),
-            frequency_hz,
+        }
+    }
+
+    /// Frequency of the swing, Hz; 0 without one.
+    fn frequency_hz(&self) -> f64 {
+        match self.motion {
+            Motion::Swing { frequency_hz } | Motion::SwingFromRest { frequency_hz } => frequency_hz,
+            _ => 0.0,
         }
     }
 }
@@ -259,9 +262,4 @@ impl Bench {
 )]
 fn samples(count: f64) -> usize {
     count.round() as usize
-}
-
-#[expect(clippy::cast_precision_loss, reason = "far below 2^53")]
-fn count(samples: u64) -> f64 {
-    samples as f64
 }

@@ -49,7 +49,7 @@ fn costs(trial: &WordLengthTrial) -> [f64; 4] {
     ]
 }
 
-/// Searches the shortest words of a filter of recursive least squares; `progress` is told every trial.
+/// Searches the shortest words of a filter of recursive least squares.
 ///
 /// # Errors
 /// No such filter, constants that no words hold, a gyro without words.
@@ -57,7 +57,6 @@ pub fn word_lengths(
     plan: &Plan,
     filter: &str,
     limits: WordLengthLimits,
-    progress: &mut dyn FnMut(&WordLengthTrial),
 ) -> Result<WordLengths, WordLengthError> {
     let bench = Bench::new(plan, filter, limits)?;
     let mut found = WordLengths {
@@ -67,9 +66,12 @@ pub fn word_lengths(
     };
     let given = bench.words();
     let integer_bits = given.signals().named().map(|(_, word)| word.integer_bits);
-    for bits in integer_bits.max().unwrap_or(1) + 1..=BITS_MAX {
-        let trial = bench.trial(given.clone().uniform(bits))?;
-        progress(&trial);
+    for bits in integer_bits.max().unwrap_or(1).max(2)..=BITS_MAX {
+        let trial = match bench.trial(given.clone().uniform(bits)) {
+            // Too short for a constant; what no length holds is told at the last one.
+            Err(WordLengthError::Pipeline(_)) if bits < BITS_MAX => continue,
+            trial => trial?,
+        };
         found.uniform.push(trial);
         if found.uniform.last().is_some_and(|trial| trial.does) {
             break;
@@ -79,7 +81,7 @@ pub fn word_lengths(
         return Ok(found);
     };
     for (signal, word) in given.signals().named() {
-        best = shortened(&bench, best, signal, word.integer_bits, progress)?;
+        best = shortened(&bench, best, signal, word.integer_bits)?;
         found.greedy.push(best.clone());
     }
     Ok(found)
@@ -91,7 +93,6 @@ fn shortened(
     mut best: WordLengthTrial,
     signal: &str,
     integer_bits: u32,
-    progress: &mut dyn FnMut(&WordLengthTrial),
 ) -> Result<WordLengthTrial, WordLengthError> {
     let bits = |words: &RlsWords| {
         let mut signals = words.signals().named();
@@ -99,15 +100,15 @@ fn shortened(
             .find(|(name, _)| *name == signal)
             .map_or(0, |(_, word)| word.word_bits)
     };
-    let mut too_short = integer_bits.max(1);
+    // A word of integer bits alone may do.
+    let mut too_short = integer_bits.saturating_sub(1).max(1);
     while bits(&best.words) > too_short + 1 {
         let middle = too_short.midpoint(bits(&best.words));
-        let trial = bench.trial(best.words.clone().with_bits(signal, middle))?;
-        progress(&trial);
-        if trial.does {
-            best = trial;
-        } else {
-            too_short = middle;
+        match bench.trial(best.words.clone().with_bits(signal, middle)) {
+            Ok(trial) if trial.does => best = trial,
+            // Too short for a constant as well.
+            Ok(_) | Err(WordLengthError::Pipeline(_)) => too_short = middle,
+            Err(error) => return Err(error),
         }
     }
     Ok(best)
