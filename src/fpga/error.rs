@@ -68,7 +68,7 @@ pub enum FpgaError {
     FixedWaveform,
     /// Fixed-point words have units of their own.
     #[error(
-        "fixed-point words have units of their own, of one clock: leave --units, --synth and the latencies out"
+        "fixed-point words are exported with units of their own: leave --units, --synth and the latencies out; run.sh takes DIV_LATENCY"
     )]
     FixedUnits,
     /// Two sequences that belong together differ in length.

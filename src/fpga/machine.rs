@@ -143,7 +143,7 @@ impl<M: Machine> Sequencer<M> {
         let machine = M::new(config);
         Self {
             memories: M::memories(&config),
-            waits: machine.units().longest_clocks() > 1,
+            waits: machine.units().wait(),
             machine,
             left: 0,
         }
@@ -255,16 +255,22 @@ impl<M: Machine> Sequencer<M> {
         self.left > 0
     }
 
-    /// Clocks of the step that begins. The units that it uses are those that it uses in fact: a copy is
-    /// sent ahead to see.
-    fn step_clocks(&self, next_waits: bool) -> u64 {
+    /// Clocks of the step that begins. The units that it uses are those that it uses in fact: a copy of the
+    /// machine is sent ahead to see, and what it wrote is taken back.
+    fn step_clocks(&mut self, next_waits: bool) -> u64 {
         let mut uses = UnitsInUse {
             units: self.machine.units(),
             clocks: 1,
+            written: [None; 2],
         };
-        let mut memories = self.memories.clone();
-        let datapath = &mut Datapath::new(&mut memories, &mut uses);
+        let datapath = &mut Datapath::new(&mut self.memories, &mut uses);
         self.machine.clone().step(next_waits, datapath);
+        for (memory, written) in self.memories.iter_mut().zip(uses.written) {
+            memory.edge();
+            if let Some((address, word)) = written {
+                memory.preload(address, word);
+            }
+        }
         uses.clocks
     }
 
@@ -289,13 +295,21 @@ impl<M: Machine> Sequencer<M> {
     }
 }
 
-/// Notes how long the slowest unit in use takes.
-struct UnitsInUse {
+/// Notes how long the slowest unit in use takes, and what stood where a memory is written.
+struct UnitsInUse<F> {
     units: Units,
     clocks: u64,
+    /// Address and word before, of RAMA and RAMB.
+    written: [Option<(usize, F)>; 2],
 }
 
-impl<F: Fp> Probe<F> for UnitsInUse {
+impl<F: Fp> Probe<F> for UnitsInUse<F> {
+    fn rama(&mut self, address: usize, write: Option<F>, read: F) {
+        self.written[0] = write.map(|_| (address, read));
+    }
+    fn ramb(&mut self, address: usize, write: Option<F>, read: F) {
+        self.written[1] = write.map(|_| (address, read));
+    }
     fn multiply(&mut self, _a: F, _b: F, _q: F) {
         self.clocks = self.clocks.max(self.units.multiplier.latency_clocks);
     }

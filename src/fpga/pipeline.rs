@@ -62,11 +62,11 @@ pub trait Core {
     /// What the pipeline refuses; one whose units take a clock each refuses all others.
     fn config_with<F: Fp>(&self, units: Units) -> Result<Self::Config<F>, FpgaError> {
         units.check()?;
-        if units.longest_clocks() > 1 {
+        if units.wait() {
             return Err(FpgaError::CountOutOfRange {
                 name: "latency of a unit",
                 value: units.longest_clocks(),
-                range: "1 clock, as only rls has units of more",
+                range: "1 clock: only rls is exported with more; run.sh takes DIV_LATENCY for the others",
             });
         }
         self.config()

@@ -15,6 +15,7 @@ use crate::fpga::kinds::CoreSettings;
 use crate::fpga::rls::{ScheduleReport, ScheduleSettings, TimingRow, schedule_clocks, table};
 use crate::fpga::timing::{check_clock, sample_period_us, sample_rate_max_khz};
 use crate::vocabulary::WordFormat;
+use crate::wording::counted;
 
 /// Prints Table 1, the counted pipeline, and what units with latency do to it.
 pub(in crate::cli) fn timing(options: &TimingOptions) -> io::Result<Exit> {
@@ -55,8 +56,7 @@ impl<'a> Report<'a> {
         let units = options.units();
         let stalled = settings.stalled_clocks(units)?;
         // The RTL of every kind waits for its divider.
-        let only_the_divider_waits =
-            units.adder.latency_clocks == 1 && units.multiplier.latency_clocks == 1;
+        let only_the_divider_waits = units.chain();
         let takes_them = settings.check_units(units).is_ok();
         let mut report = Self {
             filter,
@@ -218,16 +218,11 @@ impl<'a> Report<'a> {
         };
         let _ = writeln!(
             text,
-            "  on a board: core {} clocks a sample; front end {} {} from {} to its pair, \
+            "  on a board: core {} clocks a sample; front end {} from {} to its pair, \
              {:.3} us;\n  system {} clocks a sample, {:.2} us; result {} clocks after {}, {:.3} us, \
              from idle",
             usage.clocks_per_sample,
-            board.front_end_clocks,
-            if board.front_end_clocks == 1 {
-                "clock"
-            } else {
-                "clocks"
-            },
+            counted(board.front_end_clocks, "clock"),
             sample.0,
             sample_period_us(board.front_end_clocks, clock_mhz),
             board.clocks_per_sample,

@@ -215,6 +215,17 @@ fn of_export(options: &ExportOptions, given: &ArgMatches) -> Vec<String> {
         }
         None => of_filter(&options.filter, given),
     };
+    let is_fixed = options.filter.number_format == WordFormat::Fixed;
+    if options.name.is_none() && options.filter.kind == Kind::Rls && is_fixed {
+        let of_float = [
+            "units",
+            "synth",
+            "adder_latency",
+            "multiplier_latency",
+            "divider_latency",
+        ];
+        complaints.extend(of_fixed(given, &of_float));
+    }
     let is_counted = !typed(given, &["samples"]).is_empty();
     if options.what == ExportForm::Waveform && is_counted && options.samples > options.trace_samples
     {

@@ -12,7 +12,6 @@ use crate::fpga::export::{
 };
 use crate::fpga::float_unit::Fp;
 use crate::fpga::timing::Units;
-use crate::fpga::trace::Window;
 use crate::vocabulary::{DesiredSignal, ExportForm};
 
 /// A sample stream in front of the front end.
@@ -110,12 +109,7 @@ fn export<F: Fp>(
         ExportForm::Vectors => write_vectors(folder, &export, &pairs),
         ExportForm::Rtl => write_rtl_parts(folder, &export, &pairs, parts.rtl),
         ExportForm::Waveform => {
-            let samples = export.trace_samples as u64;
-            let used = export.pipeline.as_pipeline().clocked().usage();
-            let window = Window {
-                first_clock: 0,
-                clock_count: 1 + samples * used.clocks_per_sample,
-            };
+            let window = export.window(export.trace_samples);
             write_waveform(folder, &export, &pairs, window)
         }
     }
@@ -128,6 +122,14 @@ fn export_fixed(
     stimulus: &Stimulus,
     trace_samples: usize,
 ) -> Result<Vec<PathBuf>, FpgaError> {
+    let mut numbered = stimulus.words.iter().enumerate();
+    if let Some((index, value)) = numbered.find(|(_, word)| !word.is_finite()) {
+        return Err(FpgaError::NonFiniteStimulus {
+            index,
+            value: *value,
+            format: "fixed point",
+        });
+    }
     let words = stimulus.words.iter();
     let export = FixedExport {
         config: settings.config()?,

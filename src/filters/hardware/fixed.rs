@@ -5,8 +5,7 @@ use super::monitor::{HealthSummary, Monitor};
 use super::settings::FloatSettings;
 use super::timing::PipelineTiming;
 use crate::filters::common::{
-    Complaints, Divergence, DivergenceKind, Fault, Filter, FrontEndConfig, Life, Output, Register,
-    Watch, least_squares_rule,
+    Complaints, Divergence, DivergenceKind, Fault, Filter, Life, Output, Register, Watch,
 };
 use crate::fpga::FpgaError;
 use crate::fpga::engine::InverseCorrelation;
@@ -136,13 +135,7 @@ impl FixedSettings {
     }
 
     fn shape(&self) -> FilterShape {
-        let front_end = FrontEndConfig {
-            desired: self.desired,
-            input_lag_samples: self.input_lag_samples,
-            output_register: self.output_register,
-        };
-        let rule = least_squares_rule(self.desired, self.core.forgetting_factor);
-        front_end.shape(Some(self.core.tap_count), rule)
+        self.twin().shape()
     }
 }
 

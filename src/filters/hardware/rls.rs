@@ -22,7 +22,7 @@ pub(in crate::filters) fn rls(config: &RlsFilterConfig) -> PipelineSettings {
     let format = match config.number_format {
         WordFormat::Float(format) => format,
         WordFormat::Fixed => {
-            let words = config.fixed.clone().unwrap_or_else(RlsWords::reference);
+            let words = config.words();
             return PipelineSettings::Fixed(FixedSettings {
                 core: fixed_rls(&settings, &words),
                 full_scale_deg_per_h: words.full_scale_deg_per_h,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::fixed::FixedExport;
-use super::params::half_period_ps;
+use super::params::clock_ps;
 use crate::fpga::fixed::{
     Format, fixed_board_usage, fixed_rls_clocks_per_sample, fixed_rls_latency_clocks,
 };
@@ -32,9 +32,7 @@ pub(super) fn fixed_macros(export: &FixedExport, rows: usize) -> String {
     define("TRACE_CLOCKS", &rows.to_string());
     define("PERIOD", &fixed_rls_clocks_per_sample(p).to_string());
     define("LATENCY", &fixed_rls_latency_clocks(p).to_string());
-    // A Verilog number without a width has 32 bits.
-    let period_ps = (2 * half_period_ps(export.clock_mhz)).min(2_000_000_000);
-    define("CLOCK_PS", &period_ps.to_string());
+    define("CLOCK_PS", &clock_ps(export.clock_mhz).to_string());
     define("CORE", &core_parameters(export));
     let board = fixed_board_usage(*config);
     let is_late = export.output_register == OutputRegister::NextSample;

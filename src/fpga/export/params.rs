@@ -9,6 +9,11 @@ use crate::fpga::timing::Units;
 use crate::fpga::trace::hex;
 use crate::vocabulary::{OutputRegister, UpdateSign};
 
+/// Period of the clock for Verilog, ps: a number without a width has 32 bits.
+pub(super) fn clock_ps(clock_mhz: f64) -> u64 {
+    (2 * half_period_ps(clock_mhz)).min(2_000_000_000)
+}
+
 /// Half a clock period in whole picoseconds, at least one.
 #[expect(
     clippy::cast_possible_truncation,
@@ -52,19 +57,14 @@ pub(super) fn params_vh<F: Fp>(
     define("SAMPLES", samples.to_string());
     define("PERIOD", pipeline.clocks_per_sample().to_string());
     define("LATENCY", pipeline.latency_clocks().to_string());
-    let used = pipeline.clocked().usage();
-    let own_clocks = [
-        ("UNITS_PERIOD", used.clocks_per_sample),
-        ("UNITS_LATENCY", used.latency_clocks),
-    ];
-    let waits = pipeline.units().longest_clocks() > 1;
-    for (name, clocks) in own_clocks.into_iter().filter(|_| waits) {
-        define(name, clocks.to_string());
+    let waits = pipeline.units().wait();
+    if waits {
+        let used = pipeline.clocked().usage();
+        define("UNITS_PERIOD", used.clocks_per_sample.to_string());
+        define("UNITS_LATENCY", used.latency_clocks.to_string());
     }
     define("TRACE_CLOCKS", trace_rows.to_string());
-    // A Verilog number without a width has 32 bits.
-    let period_ps = (2 * half_period_ps(settings.clock_mhz)).min(2_000_000_000);
-    define("CLOCK_PS", period_ps.to_string());
+    define("CLOCK_PS", clock_ps(settings.clock_mhz).to_string());
     if let Some(TopLevel {
         surroundings: around,
         ..
@@ -80,12 +80,11 @@ pub(super) fn params_vh<F: Fp>(
         define("TOP_PERIOD", clocks.clocks_per_sample.to_string());
     }
     // Latencies given to run.sh win.
-    for (name, clocks) in unit_latencies(pipeline.units())
-        .into_iter()
-        .filter(|_| waits)
-    {
-        let name = format!("VEC_{name}");
-        let _ = writeln!(text, "`ifndef {name}\n`define {name} {clocks}\n`endif");
+    if waits {
+        for (name, clocks) in unit_latencies(pipeline.units()) {
+            let name = format!("VEC_{name}");
+            let _ = writeln!(text, "`ifndef {name}\n`define {name} {clocks}\n`endif");
+        }
     }
     text
 }
@@ -144,7 +143,7 @@ pub(super) fn params_json<F: Fp>(
     let used = pipeline.clocked().usage();
     add("clocks_per_sample", used.clocks_per_sample.to_string());
     add("latency_clocks", used.latency_clocks.to_string());
-    if pipeline.units().longest_clocks() > 1 {
+    if pipeline.units().wait() {
         for (name, clocks) in unit_latencies(pipeline.units()) {
             add(&name.to_lowercase(), clocks.to_string());
         }

@@ -62,7 +62,8 @@ pub struct TopLevel<F> {
 
 impl<F: Fp> ExportSettings<F> {
     /// The clocks of the first `samples` samples, the wake-up clock included.
-    pub(super) fn window(&self, samples: usize) -> Window {
+    #[must_use]
+    pub fn window(&self, samples: usize) -> Window {
         let clocks = match samples {
             0 => 0,
             _ => {

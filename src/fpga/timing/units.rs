@@ -91,6 +91,11 @@ impl Units {
         both.max(divider.latency_clocks)
     }
 
+    /// Whether any takes more than a clock.
+    pub(in crate::fpga) fn wait(self) -> bool {
+        self.longest_clocks() > 1
+    }
+
     /// Clocks of a dot product over `taps` words when the control waits for every result: a product,
     /// products beside sums, the last sum.
     pub(in crate::fpga) fn dot_clocks(self, taps: u64) -> u64 {
@@ -99,7 +104,8 @@ impl Units {
     }
 
     /// Whether subtraction and product with `1/alpha` fit one clock, as in the RTL.
-    pub(in crate::fpga) fn chain(self) -> bool {
+    #[must_use]
+    pub fn chain(self) -> bool {
         self.adder.latency_clocks == 1 && self.multiplier.latency_clocks == 1
     }
 

@@ -26,9 +26,14 @@ module tb_rls;
                     : P * P * (2 * LM + LA + LS) + (LD > LM ? LD - LM : 0);
     localparam LATENCY = 1 + 2 * (P + 1) * DOT + RFR;
     localparam PERIOD  = LATENCY + LA + P * (LM + LA);
-    // With latencies from run.sh the control may take a step that the trace does not have.
+    // With latencies from run.sh the control may take a step that the trace does not have, or the other
+    // way round.
 `ifdef VEC_OTHER_UNITS
+`ifdef VEC_UNITS_PERIOD
+    localparam TRACED = 0;
+`else
     localparam TRACED = LS == 0;
+`endif
 `else
     localparam TRACED = 1;
 `endif
