@@ -6,7 +6,7 @@
 use crate::filters::common::{DivergenceKind, Fault};
 use crate::fpga::engine::InverseCorrelation;
 use crate::fpga::float_unit::Fp;
-use crate::fpga::health::{ASYMMETRY_LIMIT, HealthMonitor, MatrixHealth};
+use crate::fpga::health::{ASYMMETRY_LIMIT, HealthMonitor, LargestCondition, MatrixHealth};
 
 /// Samples between two looks at the matrix.
 const LOOK_SAMPLES: u64 = 64;
@@ -32,6 +32,7 @@ pub(super) struct Monitor {
     monitor: HealthMonitor,
     interval: u64,
     first_sample: u64,
+    condition: LargestCondition,
     worst: Option<HealthSummary>,
 }
 
@@ -42,6 +43,7 @@ impl Monitor {
             monitor: HealthMonitor::new(f64::INFINITY),
             interval: LOOK_SAMPLES.max((tap_count * tap_count) as u64),
             first_sample: warm_up_samples,
+            condition: LargestCondition::default(),
             worst: None,
         }
     }
@@ -67,7 +69,7 @@ impl Monitor {
         };
         let fault = fault(&health);
         if sample >= self.first_sample || fault.is_err() {
-            self.note(&health);
+            self.note(&health, matrix, tap_count);
         }
         fault
     }
@@ -82,7 +84,7 @@ impl Monitor {
         self.monitor.latest()
     }
 
-    fn note(&mut self, health: &MatrixHealth) {
+    fn note<F: Fp>(&mut self, health: &MatrixHealth, matrix: &[F], tap_count: usize) {
         if !health.is_finite {
             return;
         }
@@ -95,7 +97,8 @@ impl Monitor {
         });
         worst.asymmetry_max = worst.asymmetry_max.max(health.asymmetry);
         worst.smallest_pivot = worst.smallest_pivot.min(health.pivot_min);
-        worst.condition_number = worst.condition_number.max(health.condition);
+        self.condition.look(matrix, tap_count);
+        worst.condition_number = self.condition.value();
         worst.wind_up = health.wind_up;
         worst.looks += 1;
     }
