@@ -63,6 +63,12 @@ fn what_is_wrong_with_a_problem_is_said_at_its_place() {
         ),
         parameter("name = \"a\"\nkeys = [\"gyro.source.power_uw\"]\nlow = 1.0"),
         format!("{head}{figure}").replace("rest.toml", "none.toml"),
+        // What no run could hold is told before anything is searched.
+        format!("{head}set = [\"duration_s=1e6\"]\n{figure}"),
+        format!(
+            "{head}{figure}[[experiment]]\nname = \"long\"\nrecord = \"rest\"\nset = [\"duration_s=1e6\"]\n\
+             metric = \"raw.mean_deg_per_h\"\n"
+        ),
     ];
     let mut transcript = Transcript::of("infer", "what is wrong with a problem");
     for case in cases {
@@ -72,6 +78,19 @@ fn what_is_wrong_with_a_problem_is_said_at_its_place() {
         transcript.case(case, stderr(&output));
     }
     transcript.check();
+}
+
+#[test]
+fn every_problem_that_is_shipped_can_be_searched_and_its_records_run() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/infer");
+    for entry in std::fs::read_dir(&folder).expect("problems") {
+        let path = entry.expect("a file").path();
+        if path.extension().is_some_and(|it| it == "toml") {
+            let path = path.to_str().expect("a path of letters");
+            let output = fogbench(&folder, &["infer", path, "--check"]);
+            assert_eq!(code(&output), 0, "{path}: {}", stderr(&output));
+        }
+    }
 }
 
 /// A gyro whose power and technical noise make one angle random walk: the latter by the formula of the

@@ -20,6 +20,16 @@ pub struct ConfirmationRun {
     pub plan: Plan,
 }
 
+/// What names a ready scenario, so that all of them can be run at once.
+fn name_of(settings: &str, own: &str) -> String {
+    let mut name = format!("{settings}-{own}");
+    name.truncate(NAME_MAX);
+    format!("name=\"{name}\"")
+}
+
+/// Longest name of a scenario.
+const NAME_MAX: usize = 64;
+
 impl Inference {
     /// Settings worth a simulation: the most likely ones, and both ends of the ridges of the best reading.
     #[must_use]
@@ -72,7 +82,8 @@ impl Inference {
         let mut files = Vec::new();
         for candidate in &candidates {
             for (record, row) in config.records.iter().enumerate() {
-                let plan = self.plan_of(candidate, record, &[])?;
+                let name = name_of(&candidate.name, &row.name);
+                let plan = self.plan_of(candidate, record, &[name])?;
                 let path = format!("scenarios/{}/{}.toml", candidate.name, row.name);
                 files.push((path, plan.resolved().to_toml()));
             }
@@ -85,7 +96,8 @@ impl Inference {
                 .records
                 .iter()
                 .position(|record| record.name == experiment.record);
-            let more = experiment.set.clone().unwrap_or_default();
+            let mut more = experiment.set.clone().unwrap_or_default();
+            more.push(name_of("experiment", &experiment.name));
             let plan = self.plan_of(best, record.unwrap_or(0), &more)?;
             let path = format!("scenarios/experiments/{}.toml", experiment.name);
             files.push((path, plan.resolved().to_toml()));

@@ -13,6 +13,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use bench::Bench;
+use simulated::check_runs;
 
 use crate::inference::{
     Answer, Calibration, Confirmation, Found, JudgedGate, Levels, Parameter, Printed, Question,
@@ -50,7 +51,8 @@ pub struct Inference {
 /// # Errors
 /// Every complaint about the problem and its scenarios.
 pub fn check_problem(file: &Path) -> Result<(), Vec<ScenarioError>> {
-    Bench::new(&load_problem(file)?).map(|_| ())
+    let problem = load_problem(file)?;
+    check_runs(&problem, &Bench::new(&problem)?)
 }
 
 /// Reads a problem, searches every reading and weighs what is found.
@@ -62,6 +64,7 @@ pub fn check_problem(file: &Path) -> Result<(), Vec<ScenarioError>> {
 pub fn infer(file: &Path) -> Result<Inference, Vec<ScenarioError>> {
     let problem = load_problem(file)?;
     let bench = Bench::new(&problem)?;
+    check_runs(&problem, &bench)?;
     let found = search(&problem, &bench, &bench.printed, problem.config.seed);
     if found.iter().all(Option::is_none) {
         let message = "no values within the ranges of the parameters make a gyro";

@@ -77,15 +77,59 @@ impl Settings {
     ) -> Result<Plan, SimulationError> {
         let mut sets = self.sets(problem, bench, record);
         sets.extend(more.iter().cloned());
-        let row = &problem.config.records[record];
-        let file = problem.beside(&row.scenario);
-        let record = || row.name.clone();
-        let plans = plan_suite(&[file], &sets).map_err(|complaints| SimulationError::Scenario {
-            record: record(),
-            complaints,
-        })?;
-        let plan = plans.into_iter().next();
-        plan.ok_or_else(|| SimulationError::Empty { record: record() })
+        plan_of_record(problem, record, sets)
+    }
+}
+
+/// The plan of a record with what is set in it; its name is that of the record if none is set.
+///
+/// # Errors
+/// Complaints about the scenario.
+fn plan_of_record(
+    problem: &Problem,
+    record: usize,
+    mut sets: Vec<String>,
+) -> Result<Plan, SimulationError> {
+    let row = &problem.config.records[record];
+    if !sets.iter().any(|set| set.starts_with("name=")) {
+        sets.push(format!("name=\"{}\"", row.name));
+    }
+    let file = problem.beside(&row.scenario);
+    let record = || row.name.clone();
+    let plans = plan_suite(&[file], &sets).map_err(|complaints| SimulationError::Scenario {
+        record: record(),
+        complaints,
+    })?;
+    let plan = plans.into_iter().next();
+    plan.ok_or_else(|| SimulationError::Empty { record: record() })
+}
+
+/// Looks whether every record and every experiment can be run, so that nothing is searched in vain.
+///
+/// # Errors
+/// Complaints about the scenarios, with what their files and the problem set.
+pub(super) fn check_runs(problem: &Problem, bench: &Bench) -> Result<(), Vec<ScenarioError>> {
+    let config = &problem.config;
+    let place = |name: &String| config.records.iter().position(|row| row.name == *name);
+    let records =
+        (0..config.records.len()).map(|record| (record, None, format!("record[{record}]")));
+    let experiments = config.experiments.iter().enumerate();
+    let experiments = experiments.filter_map(|(index, experiment)| {
+        let at = format!("experiment[{index}]");
+        Some((place(&experiment.record)?, experiment.set.as_ref(), at))
+    });
+    let mut errors = Vec::new();
+    for (record, more, at) in records.chain(experiments) {
+        let mut sets = sets_of(config, record, &bench.readings[0]);
+        sets.extend(more.into_iter().flatten().cloned());
+        if let Err(error) = plan_of_record(problem, record, sets) {
+            errors.push(problem.complaint(&at, format!("{at}: {error}")));
+        }
+    }
+    if errors.is_empty() {
+        Ok(())
+    } else {
+        Err(errors)
     }
 }
 
