@@ -243,7 +243,10 @@ impl<M: Machine> Sequencer<M> {
         Tick { accepted, output }
     }
 
-    /// Counts a clock of the step under way; whether a unit that it uses needs another one.
+    /// Counts a clock of the step under way; whether a unit that it uses needs another one. Kept out of the
+    /// clock of machines that never wait, which it would slow.
+    #[cold]
+    #[inline(never)]
     fn unit_is_busy(&mut self, state: M::State, next_waits: bool) -> bool {
         if state == M::LOADING || state == M::State::IDLE || state == M::CLEARING {
             return false;
