@@ -75,6 +75,7 @@ mod known_answers_turntable;
 mod least_noise;
 mod library;
 mod log_layouts;
+mod log_pass;
 mod log_scenarios;
 mod log_stream;
 mod metrics_file;

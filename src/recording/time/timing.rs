@@ -128,7 +128,7 @@ pub(in crate::recording) fn timing(
     }
     let spacing = clock.measured(&cut);
     if let Some(rate) = format.rate_hz
-        && (rate / spacing.sample_rate_hz - 1.0).abs() > RATE_TOLERANCE
+        && (rate / spacing.sample_rate_hz - 1.0).abs() > clock.rate_tolerance(&spacing, &cut)
     {
         return Err(clock.contradiction(spacing.sample_rate_hz));
     }
@@ -294,6 +294,16 @@ impl<'a> Clock<'a> {
             resolution_s,
             drift: drift(stamps, stretches, resolution_s),
         }
+    }
+
+    /// Part by which a rate that was given may differ from that of the stamps: of a short record no more is
+    /// known than their jitter lets them tell.
+    fn rate_tolerance(&self, found: &Timing, stretches: &[Range<usize>]) -> f64 {
+        let stamps = &self.time.stamps;
+        let spans = stretches
+            .iter()
+            .map(|rows| stamps[rows.end - 1] - stamps[rows.start]);
+        RATE_TOLERANCE.max(2.0 * found.jitter_max_s / spans.sum::<f64>())
     }
 
     /// What doubts the unit of the column: steps that are hardly any part of it.
