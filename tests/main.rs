@@ -51,6 +51,7 @@ mod fixed_point;
 mod flush_order;
 mod fpga_health;
 mod frequency_response;
+mod gap_aware;
 mod generated;
 mod growth;
 mod gyro_effects;

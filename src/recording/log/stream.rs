@@ -190,6 +190,7 @@ fn whole_for(format: &LogFormat) -> Option<&'static str> {
         (format.to_s.is_some(), "--to-s"),
         (format.segments.is_some(), "--segments"),
         (format.split_gaps == Some(true), "--split-gaps"),
+        (format.gap_aware.is_some(), "--gap-aware"),
         (format.missing == Some(MissingWords::Gap), "--missing gap"),
         (format.reference_column.is_some(), "--reference-column"),
     ];
