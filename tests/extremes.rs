@@ -485,6 +485,7 @@ fn measuring_words_whose_squares_overflow_ends_with_reasons() {
             bias_averaging_time_s: 0.1,
             fit_tau_min_s: 0.01,
             allan: AllanOptions::default(),
+            bridges: Vec::new(),
         };
         let table = measure(&record, &settings, None);
         for (name, metric) in &table.metrics {

@@ -310,6 +310,7 @@ fn slow_noise_is_fitted_and_its_intervals_cover_the_truth() {
             bias_averaging_time_s: 100.0,
             fit_tau_min_s: 1.0,
             allan: AllanOptions::default(),
+            bridges: Vec::new(),
         };
         let metrics = measure(&record, &settings, None);
         let covers = |name: &str, wanted: f64| {

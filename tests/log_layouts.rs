@@ -957,3 +957,39 @@ fn gates_are_held_against_a_log() {
     }
     transcript.check();
 }
+
+#[test]
+fn a_thousand_lines_that_are_passed_over_hide_no_row() {
+    let text = "free text, with 1, 2\n".repeat(1500);
+    let text = format!("{text}rate [deg/h]\n1\n2\n4\n");
+    let heading = LogFormat {
+        heading_line: Some(1501),
+        ..at(100.0, "deg/h")
+    };
+    let skip = LogFormat {
+        skip_lines: Some(1500),
+        ..at(100.0, "deg/h")
+    };
+    for format in [heading, skip] {
+        let log = read(&text, &format).expect("readable");
+        assert_eq!(log.rate_deg_per_h, [1.0, 2.0, 4.0]);
+    }
+}
+
+#[test]
+fn a_rate_is_held_against_stamps_as_far_as_their_jitter_lets_them_tell_it() {
+    // 40 stamps at 100 Hz, the last 1 ms late: a mean rate of 99.7 Hz.
+    let stamps = |late: f64, count: usize| {
+        let rows = (0..count).map(|k| {
+            let late = if k + 1 == count { late } else { 0.0 };
+            format!("{:.4},{}\n", k as f64 / 100.0 + late, k % 7)
+        });
+        format!("time_s,rate\n{}", rows.collect::<String>())
+    };
+    assert!(read(stamps(0.001, 40), &at(100.0, "deg/h")).is_ok());
+    let other = read(stamps(0.001, 40), &at(101.0, "deg/h")).unwrap_err();
+    assert!(
+        other.contains("--rate-hz 101 contradicts the time column"),
+        "{other}"
+    );
+}

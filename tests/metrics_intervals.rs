@@ -71,6 +71,7 @@ fn measured_with(values: &[f64], period_s: f64, drift: Option<&SlowDrift>) -> Ch
         bias_averaging_time_s: 10.0,
         fit_tau_min_s: period_s,
         allan: AllanOptions::default(),
+        bridges: Vec::new(),
     };
     measure(&record, &settings, None)
 }

@@ -59,6 +59,7 @@ fn measured(values: &[f64], sample_period_s: f64, tau_min_s: f64) -> ChannelMetr
         bias_averaging_time_s: 10.0,
         fit_tau_min_s: tau_min_s,
         allan: AllanOptions::default(),
+        bridges: Vec::new(),
     };
     measure(&record, &settings, None)
 }

@@ -91,6 +91,7 @@ impl Words {
             bias_averaging_time_s: 10.0,
             fit_tau_min_s: record_fit_tau_min_s(values, 1.0 / self.frequency_hz()),
             allan: AllanOptions::default(),
+            bridges: Vec::new(),
         };
         measure(&record, &settings, None)
     }

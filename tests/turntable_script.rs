@@ -210,6 +210,7 @@ fn a_general_motion_has_means_and_tracking_error_and_reasons_for_the_rest() {
         bias_averaging_time_s: 1.0,
         fit_tau_min_s: 0.1,
         allan: AllanOptions::default(),
+        bridges: Vec::new(),
     };
     let metrics = measure(&record, &settings, None);
     let value = |name: &str| metrics.metrics[name].estimate.value;

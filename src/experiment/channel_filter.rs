@@ -197,7 +197,7 @@ impl Arithmetic {
         }
     }
 
-    fn step_all(
+    pub(super) fn step_all(
         &mut self,
         words_deg_per_h: &[f64],
         outputs: &mut Vec<Output>,

@@ -68,6 +68,7 @@ pub(crate) const SPECTRUM_POINTS_MAX: usize = 400;
 ///     bias_averaging_time_s: 1.0,
 ///     fit_tau_min_s: 0.1,
 ///     allan: AllanOptions::default(),
+///     bridges: Vec::new(),
 /// };
 /// let metrics = measure(&record, &settings, None);
 /// assert_eq!(metrics.metric(&MEAN).unwrap().value, 10.5);

@@ -61,12 +61,14 @@ pub use allan::noise_fit::{
 };
 pub use allan::noise_identification::PowerLaw;
 pub use allan::overlapping::{
-    AllanPoint, NoiseType, degrees_of_freedom, overlapping_allan, overlapping_allan_at,
+    AllanPoint, NoiseType, degrees_of_freedom, overlapping_allan, overlapping_allan_across,
+    overlapping_allan_at,
 };
 pub use allan::pulses::answer::{PulseAnswer, PulseMethod};
 pub use allan::stream::AllanStream;
 pub use allan::variants::{
-    AllanEstimator, AllanOptions, AllanVariantPoint, allan_variant, allan_variant_at,
+    AllanEstimator, AllanOptions, AllanVariantPoint, allan_variant, allan_variant_across,
+    allan_variant_at,
 };
 pub(crate) use catalogue::names::{meant, unknown, unknown_of_channel};
 pub use catalogue::support::{encoder_lack, requirement, support, truth_lack};

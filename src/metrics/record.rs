@@ -10,7 +10,7 @@ use super::estimate::two_runs::TwoRuns;
 use super::estimate::value::Estimate;
 use super::theory::learning::{LearnedWeights, Learning, NOT_FROM_ONE_RECORD};
 use super::theory::prediction::Prediction;
-use crate::signal::{FilterShape, SlowDrift, WeightRule};
+use crate::signal::{Bridge, FilterShape, SlowDrift, WeightRule};
 
 /// Fewest samples worth measuring.
 pub(crate) const SAMPLES_MIN: usize = 64;
@@ -337,4 +337,6 @@ pub struct Settings {
     /// Estimator and averaging times of the curve `allan`; the noise is fitted to the overlapping
     /// Allan variance whatever they are.
     pub allan: AllanOptions,
+    /// Gaps of the record that Allan differences span; none where its words are all there.
+    pub bridges: Vec<Bridge>,
 }

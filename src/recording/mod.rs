@@ -50,7 +50,7 @@ pub use log::read::{
     AssemblyColumns, AssemblyLog, read_assembly_log, read_log, read_logs, read_stimulus,
 };
 pub use log::record::{Log, Stretch};
-pub use log::stream::{LogSource, LogStream, open_log};
+pub use log::stream::{LogSource, LogStream, open_live_log, open_log};
 pub use log::words::read_words;
 pub use text::csv::csv_text;
 pub use text::lines::{Delimiter, Line, Lines, TextError};

@@ -2,9 +2,11 @@
 //!
 //! Invariant: no stage knowledge; a stage passes these to the right and never imports another.
 
+mod bridge;
 mod calibration;
 mod slow_drift;
 
+pub use bridge::Bridge;
 pub use calibration::{
     AssemblyParameters, AxisCoefficient, CalibrationEstimate, CalibrationGroup, CalibrationPlan,
     CalibrationRank, CalibrationSheet, CalibrationTruth, CompensationCheck, EstimateError,

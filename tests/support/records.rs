@@ -78,6 +78,7 @@ pub(crate) fn settings(motion: Motion) -> Settings {
         bias_averaging_time_s: 2.0,
         fit_tau_min_s: 10.0 * PERIOD_S,
         allan: AllanOptions::default(),
+        bridges: Vec::new(),
     }
 }
 

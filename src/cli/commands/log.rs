@@ -5,19 +5,19 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::commands::consent::consent;
 use crate::cli::options::format::Format;
-use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions, LogOptions};
+use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions, LogOptions, PassForm};
 use crate::cli::terminal::complaint::{self, Complaint};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::cli::terminal::place::{self, Place};
 use crate::experiment::{
-    LogFilters, LogInput, LogSettings, LogTrial, Progress, compensate_log, load_log_compensation,
-    load_log_filters, load_log_gates, try_log, try_log_stream,
+    LogFilters, LogInput, LogSettings, LogTrial, PassError, Progress, compensate_log,
+    load_log_compensation, load_log_filters, load_log_gates, pass_log, try_log, try_log_stream,
 };
 use crate::program::Programs;
 use crate::recording::{
-    AssemblyColumns, Log, LogError, LogFormat, LogSource, LogStream, open_log, read_assembly_log,
-    read_logs,
+    AssemblyColumns, Log, LogError, LogFormat, LogSource, LogStream, open_live_log, open_log,
+    read_assembly_log, read_logs,
 };
 use crate::report::{is_kalman_json, log_json, log_text};
 use crate::scenario::{AllanConfig, load_log_format, log_format_toml, slug};
@@ -85,6 +85,9 @@ fn write_kalman(trial: &LogTrial, file: SingleFile) -> Result<(), Exit> {
 
 /// Puts a log through the filters of a scenario and measures what they make of it.
 pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
+    if let Some(form) = options.pass {
+        return pass(options, form);
+    }
     let mut inputs = inputs(&options.log);
     inputs.push(&options.filters);
     if let Err(exit) = place(&options.log).check(&inputs) {
@@ -109,6 +112,85 @@ pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
     };
     let filters = Some((&filters, programs));
     conclude(logs, filters, &options.log, options.csv).map(|(exit, _)| exit)
+}
+
+/// Passes a log through the filters of a scenario while it comes in.
+fn pass(options: &FilterLogOptions, form: PassForm) -> io::Result<Exit> {
+    let format = match format(&options.log) {
+        Ok(format) => format,
+        Err(exit) => return Ok(exit),
+    };
+    let stream = match open_live_log(&options.log.file, &format) {
+        Ok(stream) => stream,
+        Err(error) => return Ok(unreadable(&error)),
+    };
+    tell_layout(stream.log());
+    let sample_rate_hz = stream.log().sample_rate_hz;
+    let filters = match load_log_filters(&options.filters, &options.set, sample_rate_hz) {
+        Ok(filters) => filters,
+        Err(errors) => return Ok(refused(&errors)),
+    };
+    let file = stream.log().file.clone();
+    let width = filters.names().count();
+    let mut heading = match form {
+        PassForm::Text => pass_heading(&filters),
+        PassForm::F8 | PassForm::F4 => String::new(),
+    };
+    let mut bytes = Vec::new();
+    let passed = pass_log(stream, &filters, |rows| {
+        bytes.clear();
+        bytes.extend(std::mem::take(&mut heading).into_bytes());
+        put_rows(rows, width, form, &mut bytes);
+        output::bytes(&bytes)
+    });
+    match passed {
+        Ok(notes) => {
+            for note in notes {
+                output::talk(&format!("{file}: {note}"));
+            }
+            Ok(Exit::Success)
+        }
+        // Whoever closed the pipe has seen enough.
+        Err(PassError::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
+            Ok(Exit::Success)
+        }
+        Err(PassError::Write(error)) => Err(error),
+        Err(PassError::Read(error)) => Ok(unreadable(&error)),
+        Err(error @ PassError::Failed { .. }) => {
+            output::talk(&format!("error: {error}"));
+            Ok(Exit::RunFailed)
+        }
+        Err(error) => Ok(refused(&[error.to_string()])),
+    }
+}
+
+/// Heading of filtered words as text: names that are read as rates.
+fn pass_heading(filters: &LogFilters) -> String {
+    let names = filters.names().map(|name| format!("{name}_deg_per_h"));
+    names.collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// Appends rows of so many filtered words, exact to the last bit of the form.
+fn put_rows(rows_deg_per_h: &[f64], width: usize, form: PassForm, bytes: &mut Vec<u8>) {
+    match form {
+        PassForm::Text => {
+            for row in rows_deg_per_h.chunks_exact(width) {
+                let cells: Vec<String> = row.iter().map(|word| format!("{word:?}")).collect();
+                bytes.extend(cells.join(",").bytes());
+                bytes.push(b'\n');
+            }
+        }
+        PassForm::F8 => bytes.extend(rows_deg_per_h.iter().flat_map(|word| word.to_le_bytes())),
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "binary32 was asked for, and rates are far inside its range"
+        )]
+        PassForm::F4 => bytes.extend(
+            rows_deg_per_h
+                .iter()
+                .flat_map(|word| (*word as f32).to_le_bytes()),
+        ),
+    }
 }
 
 /// What is measured.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueEnum};
 
 use crate::cli::options::format::Format;
 use crate::cli::options::layout::LayoutOptions;
@@ -92,6 +92,36 @@ pub(in crate::cli) struct LogOptions {
     pub(in crate::cli) format: Format,
 }
 
+/// Options that act on what is measured, kept or started.
+const OF_MEASURING: [&str; 15] = [
+    "output",
+    "force",
+    "csv",
+    "format",
+    "gates",
+    "explain",
+    "warm_up_s",
+    "bias_averaging_time_s",
+    "fit_tau_min_s",
+    "motion",
+    "allan_estimator",
+    "averaging_times",
+    "calibration",
+    "columns",
+    "allow_programs",
+];
+
+/// Form in which filtered words are passed on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum PassForm {
+    /// Rows of text below a heading
+    Text,
+    /// binary64, the low byte first
+    F8,
+    /// binary32, the low byte first
+    F4,
+}
+
 /// Options of `analyze`.
 #[derive(Args, Debug)]
 pub(in crate::cli) struct AnalyzeOptions {
@@ -117,6 +147,10 @@ pub(in crate::cli) struct FilterLogOptions {
     /// Start the programs that filters of the kind `process` name; without it nothing is started
     #[arg(long)]
     pub(in crate::cli) allow_programs: bool,
+    /// Pass the filtered words on to stdout as they come, deg/h, a column for each filter: `text`, or words
+    /// `f8` or `f4`, the low byte first; nothing is measured, and nothing kept
+    #[arg(long, value_name = "FORM", conflicts_with_all = OF_MEASURING)]
+    pub(in crate::cli) pass: Option<PassForm>,
     /// Write the filtered samples as CSV as well
     #[arg(long, requires = "output")]
     pub(in crate::cli) csv: bool,

@@ -38,6 +38,16 @@ pub(in crate::cli) fn data(text: &str) -> io::Result<()> {
     }
 }
 
+/// Writes bytes to stdout, where they are seen at once.
+///
+/// # Errors
+/// What the stream says; a closed pipe as well, as nothing is left to be done for whoever streams.
+pub(in crate::cli) fn bytes(bytes: &[u8]) -> io::Result<()> {
+    let mut stdout = io::stdout().lock();
+    stdout.write_all(bytes)?;
+    stdout.flush()
+}
+
 /// Writes a line of talk to stderr. Nobody is left to tell when stderr itself is gone.
 pub(in crate::cli) fn talk(line: &str) {
     let mut stderr = io::stderr().lock();

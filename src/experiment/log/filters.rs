@@ -76,6 +76,11 @@ impl LogFilters {
         &self.resolved.scenario.filters
     }
 
+    /// Their names in the order of the file.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.configs().iter().map(|config| config.name.as_str())
+    }
+
     /// The programs that they would start.
     #[must_use]
     pub fn programs(&self) -> Vec<ProgramFiles> {

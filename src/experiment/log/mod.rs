@@ -3,6 +3,7 @@
 mod compensation;
 mod filters;
 mod gates;
+mod pass;
 mod run;
 mod stream;
 mod trial;
@@ -12,6 +13,7 @@ mod written;
 pub use compensation::{CompensatedLog, LogCompensation, compensate_log, load_log_compensation};
 pub use filters::{LogFilters, load_log_filters};
 pub use gates::{LogGates, load_log_gates};
+pub use pass::{PassError, pass_log};
 pub(crate) use run::run_log;
 pub use stream::try_log_stream;
 pub use trial::{LogInput, LogSettings, LogTrial, LogTrialError, try_log};

@@ -129,7 +129,10 @@ pub fn try_log(
         is_read: false,
     })?;
     let measured = &record.raw_deg_per_h[length.warm_up..];
-    let metric_settings = metric_settings(settings, measured, sample_period_s);
+    let metric_settings = Settings {
+        bridges: log.bridges_behind(length.warm_up),
+        ..metric_settings(settings, measured, sample_period_s)
+    };
     let cut = Cut {
         record: &record,
         encoder_rad: None,
@@ -237,6 +240,7 @@ pub(super) fn metric_settings(
         fit_tau_min_s: fit_tau_min_s
             .unwrap_or_else(|| record_fit_tau_min_s(measured, sample_period_s)),
         allan: allan_options(settings.allan),
+        bridges: Vec::new(),
     }
 }
 

@@ -45,6 +45,7 @@ pub(crate) fn measure_repeat(
         bias_averaging_time_s: scenario.bias_averaging_time_s,
         fit_tau_min_s: plan.fit_tau_min_s(),
         allan: allan_options(scenario.allan),
+        bridges: Vec::new(),
     };
     let simulated_s = scenario.warm_up_s + scenario.duration_s;
     let drift = slow_drift(

@@ -74,6 +74,7 @@ fn of_word(plan: &Plan) -> Result<f64, Unfinished> {
         bias_averaging_time_s: scenario.bias_averaging_time_s,
         fit_tau_min_s: plan.fit_tau_min_s(),
         allan: allan_options(scenario.allan),
+        bridges: Vec::new(),
     };
     let began = Instant::now();
     let measured = simulation.gyros.first().map(|record| {

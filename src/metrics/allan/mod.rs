@@ -1,6 +1,7 @@
 //! Allan variance and its relatives, and the noise terms fitted to it (bias instability among them).
 
 pub(super) mod angle;
+pub(super) mod bridges;
 pub(super) mod coefficients;
 pub(super) mod combined_freedom;
 pub(super) mod covariance;

@@ -1,10 +1,14 @@
 //! Overlapping Allan deviation of a rate record.
 
+use rayon::prelude::*;
+
+use super::bridges::BridgedAngle;
 use super::gaps::{missing_stretches, second_difference_sums_with_gaps};
 use super::sums::second_difference_sums_of_record;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::round_to_count;
 use crate::metrics::estimate::value::Estimate;
+use crate::signal::Bridge;
 
 /// Averaging factors per decade of tau.
 const POINTS_PER_DECADE: f64 = 12.0;
@@ -194,13 +198,43 @@ pub fn overlapping_allan_at(
     } else {
         second_difference_sums_with_gaps(rate_deg_per_h, &missing, &factors)
     };
+    points_of_sums(&factors, sums, angle_count, sample_period_s)
+}
+
+/// Overlapping Allan deviation whose differences span some gaps of the record.
+///
+/// As [`overlapping_allan`]; which differences exist says
+/// [`allan_variant_across`](super::variants::allan_variant_across).
+#[must_use]
+pub fn overlapping_allan_across(
+    rate_deg_per_h: &[f64],
+    sample_period_s: f64,
+    bridges: &[Bridge],
+) -> Vec<AllanPoint> {
+    if bridges.is_empty() {
+        return overlapping_allan(rate_deg_per_h, sample_period_s);
+    }
+    let bridged = BridgedAngle::of(rate_deg_per_h, bridges);
+    let factors = averaging_factors(rate_deg_per_h.len() / 4);
+    let sum = |&m: &usize| bridged.second_difference_sum(m);
+    let sums: Vec<(f64, usize)> = factors.par_iter().map(sum).collect();
+    points_of_sums(&factors, sums, bridged.angle.len(), sample_period_s)
+}
+
+/// Points of averaging factors with their sums of squared differences and the numbers of these.
+fn points_of_sums(
+    factors: &[usize],
+    sums: Vec<(f64, usize)>,
+    angle_count: usize,
+    sample_period_s: f64,
+) -> Vec<AllanPoint> {
     let supported = factors
         .iter()
         .zip(sums)
         .filter(|(_, (_, count))| *count > 0);
     supported
         .map(|(&m, (sum, count))| {
-            let share = count as f64 / possible(m) as f64;
+            let share = count as f64 / (angle_count - 2 * m) as f64;
             let differences = Differences {
                 sum,
                 weight: count,

@@ -3,12 +3,14 @@
 use rayon::prelude::*;
 
 use super::angle::angle_about_mean;
+use super::bridges::BridgedAngle;
 use super::combined_freedom::{Differences, combined_degrees_of_freedom};
 use super::noise_identification::{PowerLaw, identify_noise};
 use super::overlapping::AllanPoint;
 use super::sums::second_difference_sums_of_record;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::value::CONFIDENCE;
+use crate::signal::Bridge;
 use crate::vocabulary::AveragingTimes;
 
 /// Most averaging times of [`AveragingTimes::All`].
@@ -162,9 +164,50 @@ pub fn allan_variant(
     sample_period_s: f64,
     options: &AllanOptions,
 ) -> Vec<AllanVariantPoint> {
-    let largest = rate_deg_per_h.len() / (options.estimator.span() + 2);
-    let factors = options.taus.averaging_factors(largest);
+    let factors = grid(rate_deg_per_h.len(), options);
     allan_variant_at(rate_deg_per_h, sample_period_s, &factors, options)
+}
+
+/// Averaging factors of a record of so many samples.
+fn grid(samples: usize, options: &AllanOptions) -> Vec<usize> {
+    let largest = samples / (options.estimator.span() + 2);
+    options.taus.averaging_factors(largest)
+}
+
+/// As [`allan_variant`], with differences that span some gaps of the record.
+///
+/// A difference exists where its angles do: none within a gap does, that on either side of a spanned one does.
+/// Where the mean rate over a gap is only assumed, a difference is left out unless nine tenths of each of its
+/// mean rates are words. The modified deviation averages angles and spans no gap.
+#[must_use]
+pub fn allan_variant_across(
+    rate_deg_per_h: &[f64],
+    sample_period_s: f64,
+    options: &AllanOptions,
+    bridges: &[Bridge],
+) -> Vec<AllanVariantPoint> {
+    let estimator = options.estimator;
+    if bridges.is_empty() || estimator == AllanEstimator::Modified {
+        return allan_variant(rate_deg_per_h, sample_period_s, options);
+    }
+    let bridged = BridgedAngle::of(rate_deg_per_h, bridges);
+    let factors = grid(rate_deg_per_h.len(), options);
+    let order = estimator.differences().order;
+    let find = |&m: &usize| {
+        let holds = |start: usize| bridged.holds(start, m, estimator.span());
+        let (sum, count) = sum_of_squares(&bridged.angle, m, estimator, holds);
+        FoundSum {
+            averaged_samples: m,
+            noise: identify_noise(&bridged.angle, Some(&bridged.missing), m, order),
+            sum,
+            weight: count,
+            count,
+            possible: possible_differences(bridged.angle.len(), m, estimator),
+        }
+    };
+    let found: Vec<FoundSum> = factors.par_iter().map(find).collect();
+    let angles = bridged.angle.len();
+    points_of(found.into_iter(), angles, sample_period_s, options)
 }
 
 /// A deviation of the Allan family at given averaging factors.
@@ -209,7 +252,11 @@ pub fn allan_variant_at(
             .map(|(sum, &m)| (sum, possible(m)))
             .collect()
     } else {
-        let sum = |&m: &usize| sum_of_squares(&angle, missing, m, estimator);
+        let sum = |&m: &usize| {
+            let reach = reach(m, estimator);
+            let whole = |start: usize| missing.is_none_or(|sum| sum[start + reach] == sum[start]);
+            sum_of_squares(&angle, m, estimator, whole)
+        };
         factors.par_iter().map(sum).collect()
     };
     let found = factors.iter().zip(identified).zip(sums);
@@ -320,16 +367,16 @@ fn possible_differences(angles: usize, m: usize, estimator: AllanEstimator) -> u
         .map_or(0, |last| last / stride + 1)
 }
 
-/// Sum of the squared differences that touch no missing sample, and their number.
+/// Sum of the squared differences that are whole, and their number.
+///
+/// * `whole`: whether that which starts at an angle is.
 fn sum_of_squares(
     angle: &[f64],
-    missing: Option<&[usize]>,
     m: usize,
     estimator: AllanEstimator,
+    whole: impl Fn(usize) -> bool,
 ) -> (f64, usize) {
     let possible = possible_differences(angle.len(), m, estimator);
-    let reach = reach(m, estimator);
-    let whole = |start: usize| missing.is_none_or(|sum| sum[start + reach] == sum[start]);
     let mut total = (0.0, 0);
     let mut add = |start: usize, difference: f64| {
         if whole(start) {

@@ -7,10 +7,10 @@ use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
 use crate::metrics::allan::noise_fit::{
     ANGLE_RANDOM_WALK, FIT_TAU_PER_RECORD_MAX, FitRange, NoiseFit, fit_noise,
 };
-use crate::metrics::allan::overlapping::{AllanPoint, overlapping_allan};
+use crate::metrics::allan::overlapping::{AllanPoint, overlapping_allan_across};
 use crate::metrics::allan::pulses::entry::{enter_lack, enter_pulses};
 use crate::metrics::allan::pulses::recognition::PulseWords;
-use crate::metrics::allan::variants::{AllanEstimator, AllanVariantPoint, allan_variant};
+use crate::metrics::allan::variants::{AllanEstimator, AllanVariantPoint, allan_variant_across};
 use crate::metrics::estimate::blocks::RATIO_BLOCKS;
 use crate::metrics::estimate::influence::Spread;
 use crate::metrics::estimate::reason::Unavailable;
@@ -142,7 +142,7 @@ fn measure_allan(
 ) -> Option<NoiseFit> {
     let words = record.channel_deg_per_h;
     let sample_period_s = record.sample_period_s;
-    let points = overlapping_allan(words, sample_period_s);
+    let points = overlapping_allan_across(words, sample_period_s, &settings.bridges);
     let duration_s = words.len() as f64 * sample_period_s;
     let range = FitRange {
         tau_min_s: filter.map_or(settings.fit_tau_min_s, |facts| {
@@ -168,7 +168,7 @@ fn measure_allan(
     };
     let curves = Curves {
         points,
-        variant: allan_variant(words, sample_period_s, &settings.allan),
+        variant: allan_variant_across(words, sample_period_s, &settings.allan, &settings.bridges),
         estimator: settings.allan.estimator,
         duration_s,
     };

@@ -375,6 +375,7 @@ mod tests {
             bias_averaging_time_s: 20.0,
             fit_tau_min_s: record_fit_tau_min_s(words, PERIOD_S),
             allan: AllanOptions::default(),
+            bridges: Vec::new(),
         }
     }
 

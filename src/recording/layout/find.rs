@@ -124,7 +124,7 @@ fn as_strs(marks: &[String]) -> Vec<&str> {
 }
 
 /// The last line that is said to stand above the rows.
-fn last_line_above(format: &LogFormat) -> usize {
+pub(in crate::recording) fn last_line_above(format: &LogFormat) -> usize {
     let given = [format.heading_line, format.units_line];
     given.into_iter().flatten().max().unwrap_or(0) as usize
 }

@@ -19,7 +19,7 @@ pub(super) mod words;
 
 pub(super) use cells::{finite_in, is_number, plain_spelling};
 pub(super) use error::{Fault, LayoutError};
-pub(super) use find::find;
+pub(super) use find::{find, last_line_above};
 pub(super) use heading::HeadLine;
 
 use crate::recording::text::lines::Delimiter;

@@ -50,6 +50,7 @@ impl Log {
         }
         self.rate_deg_per_h.truncate(count);
         self.reference_deg_per_h.truncate(count);
+        self.bridges.retain(|bridge| bridge.words.end < count);
         self.stretches.retain(|stretch| stretch.words.start < count);
         for stretch in &mut self.stretches {
             if stretch.words.end > count {

@@ -83,6 +83,9 @@ table! {
         segments: Option<String>, example "segments.csv", kind File;
         /// Cut the log where samples are missing, and pool the stretches between: no difference spans a gap.
         split_gaps: Option<bool>, example true;
+        /// Most samples that may be missing in a gap which differences of the Allan deviation span, where their
+        /// angles exist [default: none is spanned].
+        gap_aware: Option<u32>, example 3, in 1..=1000000;
         /// Longest step between stamps that is jitter and no gap [default: one and a half sample periods].
         max_gap_s: Option<f64>, example 0.02, in 1e-9..=1e9, "s";
         /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz [default: static].

@@ -1,5 +1,6 @@
 //! From the numbers of a column to rates, deg/h.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
 
@@ -9,13 +10,16 @@ use crate::recording::column::Columns;
 use crate::recording::error::LogError;
 use crate::recording::time::timing::Spacing;
 use crate::recording::unit::convert::Conversion;
-use crate::recording::unit::kinds::RateUnit;
+use crate::recording::unit::kinds::{AngleUnit, RateUnit};
+use crate::signal::Bridge;
 use crate::wording::plain;
 
 /// Lag-one correlation of words from which on they may be a running angle.
 const ANGLE_CORRELATION: f64 = 0.999;
 /// Largest lag-one correlation of the steps of an angle whose rate is noise.
 const STEP_CORRELATION: f64 = 0.5;
+/// Words on either side of a gap whose mean is taken for that over the gap, if it is no longer itself.
+const BESIDE_MIN: usize = 8;
 /// Fewest words of which that is asked.
 const CORRELATED_MIN: usize = 100;
 
@@ -25,56 +29,162 @@ pub(super) struct Words<'a> {
     pub(super) columns: &'a Columns,
     pub(super) conversion: Conversion,
     pub(super) spacing: &'a Spacing,
+    /// Most samples of a gap that differences span.
+    pub(super) gap_aware: usize,
+}
+
+/// Words, and what is missing between them.
+#[derive(Default)]
+pub(super) struct Taken {
+    /// Rates, deg/h; NaN where one is missing.
+    pub(super) words: Vec<f64>,
+    pub(super) stretches: Vec<Stretch>,
+    pub(super) bridges: Vec<Bridge>,
+}
+
+/// Numbers of some rows on the grid of the samples: NaN where one is missing.
+struct Grid<'a> {
+    numbers: Cow<'a, [f64]>,
+    rows: &'a Range<usize>,
+    spanned: &'a [(usize, usize)],
+}
+
+impl Grid<'_> {
+    /// Row of a number, that behind it where it is missing.
+    fn row(&self, index: usize) -> usize {
+        let mut row = self.rows.start + index;
+        for (behind, missing) in self.spanned {
+            if row >= behind + missing {
+                row -= missing;
+            } else if row > *behind {
+                row = *behind;
+            }
+        }
+        row
+    }
 }
 
 impl Words<'_> {
     /// The words of every stretch, a missing one between two, and where they stand.
-    pub(super) fn of(&self, mut values: Vec<f64>) -> Result<(Vec<f64>, Vec<Stretch>), LogError> {
+    pub(super) fn of(&self, mut values: Vec<f64>) -> Result<Taken, LogError> {
         let rows = &self.spacing.stretches;
         if matches!(&rows[..], [all] if *all == (0..values.len()))
             && self.conversion.running.is_none()
+            && self.spacing.spanned.is_empty()
         {
             for (row, value) in values.iter_mut().enumerate() {
                 *value = self.rate(*value, row)?;
             }
-            let stretches = vec![Stretch::of(&values, 0..values.len())];
-            return Ok((values, stretches));
+            return Ok(Taken {
+                stretches: vec![Stretch::of(&values, 0..values.len())],
+                bridges: self.assumed(&values, 0),
+                words: values,
+            });
         }
-        let (mut words, mut stretches) = (Vec::new(), Vec::new());
+        let mut all = Taken::default();
         for rows in rows {
-            let first = words.len() + usize::from(!words.is_empty());
-            let taken = self.taken(&values, rows)?;
+            let first = all.words.len() + usize::from(!all.words.is_empty());
+            let grid = self.grid(&values, rows);
+            let (taken, bridges) = match self.conversion.running {
+                Some(angle) => self.of_angle(&grid, angle, &values, first)?,
+                None => {
+                    let words = grid.numbers.iter().enumerate();
+                    let words = words.map(|(index, number)| self.rate(*number, grid.row(index)));
+                    let words = words.collect::<Result<Vec<f64>, _>>()?;
+                    let bridges = self.assumed(&words, first);
+                    (words, bridges)
+                }
+            };
             if taken.is_empty() {
                 continue;
             }
-            if first > words.len() {
-                words.push(f64::NAN);
+            if first > all.words.len() {
+                all.words.push(f64::NAN);
             }
-            words.extend(taken);
-            stretches.push(Stretch::of(&words, first..words.len()));
+            all.words.extend(taken);
+            all.bridges.extend(bridges);
+            all.stretches
+                .push(Stretch::of(&all.words, first..all.words.len()));
         }
-        Ok((words, stretches))
+        Ok(all)
     }
 
-    /// The words of some rows: one less of a running angle.
-    fn taken(&self, values: &[f64], rows: &Range<usize>) -> Result<Vec<f64>, LogError> {
-        let numbers = &values[rows.clone()];
-        let Some(angle) = self.conversion.running else {
-            let words = numbers.iter().zip(rows.clone());
-            return words.map(|(number, row)| self.rate(*number, row)).collect();
-        };
+    /// Some rows with the samples that are missing between them.
+    fn grid<'a>(&'a self, values: &'a [f64], rows: &'a Range<usize>) -> Grid<'a> {
+        let all = &self.spacing.spanned;
+        let from = all.partition_point(|(row, _)| *row <= rows.start);
+        let end = all.partition_point(|(row, _)| *row < rows.end);
+        let spanned = &all[from..end];
+        let mut numbers = Cow::Borrowed(&values[rows.clone()]);
+        if !spanned.is_empty() {
+            let mut first = rows.start;
+            let mut filled = Vec::new();
+            for (row, missing) in spanned {
+                filled.extend_from_slice(&values[first..*row]);
+                filled.resize(filled.len() + missing, f64::NAN);
+                first = *row;
+            }
+            filled.extend_from_slice(&values[first..rows.end]);
+            numbers = Cow::Owned(filled);
+        }
+        Grid {
+            numbers,
+            rows,
+            spanned,
+        }
+    }
+
+    /// The words of an angle that runs on, one less than it has numbers, and the gaps that are spanned: over
+    /// these the mean rate is known.
+    fn of_angle(
+        &self,
+        grid: &Grid<'_>,
+        angle: AngleUnit,
+        values: &[f64],
+        first: usize,
+    ) -> Result<(Vec<f64>, Vec<Bridge>), LogError> {
         let turn = angle.turn() / self.conversion.scale.abs();
         let turns_over = is_within_turn(values, turn);
-        let steps = numbers.windows(2).zip(rows.clone().skip(1));
-        let words = steps.map(|(pair, row)| {
-            let step = pair[1] - pair[0];
-            let step = match turns_over && step.abs() > 0.5 * turn {
-                true => step - turn * step.signum(),
-                false => step,
-            };
-            self.rate(step, row)
+        let turned = |step: f64| match turns_over && step.abs() > 0.5 * turn {
+            true => step - turn * step.signum(),
+            false => step,
+        };
+        let numbers = &grid.numbers;
+        let steps = numbers.windows(2).enumerate();
+        let words =
+            steps.map(|(index, pair)| self.rate(turned(pair[1] - pair[0]), grid.row(index + 1)));
+        let words = words.collect::<Result<Vec<f64>, _>>()?;
+        let mut bridges = Vec::new();
+        for gap in inner_gaps(numbers, self.gap_aware) {
+            let step = turned(numbers[gap.end] - numbers[gap.start - 1]);
+            let mean = step / as_float(gap.len() + 1);
+            bridges.push(Bridge {
+                words: first + gap.start - 1..first + gap.end,
+                mean_deg_per_h: self.rate(mean, grid.row(gap.end))?,
+                is_known: true,
+            });
+        }
+        Ok((words, bridges))
+    }
+
+    /// The gaps between words that are spanned, with the mean of words on both sides.
+    fn assumed(&self, words: &[f64], first: usize) -> Vec<Bridge> {
+        let gaps = inner_gaps(words, self.gap_aware).into_iter();
+        let bridges = gaps.map(|gap| {
+            let reach = gap.len().max(BESIDE_MIN);
+            let present = |word: &&f64| !word.is_nan();
+            let before = words[..gap.start].iter().rev().take(reach).filter(present);
+            let behind = words[gap.end..].iter().take(reach).filter(present);
+            let both = before.chain(behind);
+            let (sum, count) =
+                both.fold((0.0, 0.0), |(sum, count), word| (sum + word, count + 1.0));
+            Bridge {
+                words: first + gap.start..first + gap.end,
+                mean_deg_per_h: sum / count,
+                is_known: false,
+            }
         });
-        words.collect()
+        bridges.collect()
     }
 
     /// The rate of a number, deg/h.
@@ -115,6 +225,30 @@ pub(super) struct RateError {
     number: f64,
     unit: RateUnit,
     bounds: Option<OutOfBounds>,
+}
+
+/// Runs of missing numbers, so many at most, with numbers on both sides.
+fn inner_gaps(numbers: &[f64], most: usize) -> Vec<Range<usize>> {
+    let mut gaps: Vec<Range<usize>> = Vec::new();
+    if most == 0 {
+        return gaps;
+    }
+    for (index, _) in numbers.iter().enumerate().filter(|(_, it)| it.is_nan()) {
+        match gaps.last_mut() {
+            Some(gap) if gap.end == index => gap.end += 1,
+            _ => gaps.push(index..index + 1),
+        }
+    }
+    gaps.retain(|gap| gap.len() <= most && gap.start > 0 && gap.end < numbers.len());
+    gaps
+}
+
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "sample counts are far below 2^53"
+)]
+fn as_float(count: usize) -> f64 {
+    count as f64
 }
 
 /// Whether all angles lie within one turn, as those of an encoder do.

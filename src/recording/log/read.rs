@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::format::LogFormat;
-use super::rates::{Words, angle_remark};
+use super::rates::{Taken, Words, angle_remark};
 use super::record::Log;
 use super::stretches::parts;
 use crate::recording::bounds::{check_sample_rate, check_temperature};
@@ -221,6 +221,7 @@ fn by_rate(
         timing: None,
         sample_rate_hz,
         stretches,
+        spanned: Vec::new(),
         notes: Vec::new(),
         steps: None,
     })
@@ -263,9 +264,14 @@ pub(super) fn log(
         columns,
         conversion,
         spacing,
+        gap_aware: format.gap_aware.unwrap_or(0) as usize,
     };
     let column_name = column.name.clone();
-    let (rate_deg_per_h, stretches) = words.of(column.values)?;
+    let Taken {
+        words: rate_deg_per_h,
+        stretches,
+        bridges,
+    } = words.of(column.values)?;
     if rate_deg_per_h.is_empty() {
         return Err(LogError::of_file(path, "holds no sample"));
     }
@@ -279,6 +285,8 @@ pub(super) fn log(
         timing: spacing.timing,
         empty_lines: columns.empty_lines,
         stretches,
+        bridges,
+        gaps_in_time: spacing.stretches.len() - 1 + spacing.spanned.len(),
         layout: columns.layout.clone(),
         format: LogFormat {
             unit: Some(conversion.given()),

@@ -6,6 +6,7 @@ use super::format::LogFormat;
 use crate::recording::column::EmptyLines;
 use crate::recording::text::lines::shown;
 use crate::recording::time::timing::Timing;
+use crate::signal::Bridge;
 use crate::wording::counted;
 
 /// Most stretches whose means are named.
@@ -33,6 +34,10 @@ pub struct Log {
     pub empty_lines: EmptyLines,
     /// Stretches of words between which samples are missing.
     pub stretches: Vec<Stretch>,
+    /// Gaps within stretches that differences of the Allan deviation span.
+    pub bridges: Vec<Bridge>,
+    /// Gaps that the stamps show.
+    pub(super) gaps_in_time: usize,
     /// What the file was taken for, in a line; none of an array.
     pub layout: Option<String>,
     /// The same as a format: what was given, and what was found.
@@ -87,6 +92,17 @@ impl Log {
         self.stretches.len() > 1 || self.rate_deg_per_h.iter().any(|word| word.is_nan())
     }
 
+    /// Spanned gaps behind the first `count` words, as gaps of the record that is left.
+    #[must_use]
+    pub fn bridges_behind(&self, count: usize) -> Vec<Bridge> {
+        let behind = self.bridges.iter().filter(|it| it.words.start > count);
+        let moved = behind.map(|bridge| Bridge {
+            words: bridge.words.start - count..bridge.words.end - count,
+            ..bridge.clone()
+        });
+        moved.collect()
+    }
+
     /// Moves every stretch to the mean of all words, so that noise is measured about each one's own.
     pub fn take_about_common_mean(&mut self) {
         if self.stretches.len() < 2 {
@@ -99,6 +115,10 @@ impl Log {
             for word in &mut self.rate_deg_per_h[stretch.words.clone()] {
                 *word += step;
             }
+            let own = |bridge: &&mut Bridge| stretch.words.contains(&bridge.words.start);
+            for bridge in self.bridges.iter_mut().filter(own) {
+                bridge.mean_deg_per_h += step;
+            }
         }
     }
 
@@ -108,7 +128,7 @@ impl Log {
         let EmptyLines { count, first } = self.empty_lines;
         let mut notes = Vec::new();
         match self.timing {
-            Some(timing) => notes.push(timing.note(self.stretches.len())),
+            Some(timing) => notes.push(timing.note(self.gaps_in_time)),
             None if count > 0 => notes.push(format!(
                 "{} between the samples, from line {first} on, passed over: the samples are taken to be \
                  equally spaced all the same",
@@ -118,7 +138,26 @@ impl Log {
         }
         notes.extend(self.remarks.iter().cloned());
         notes.extend(self.stretches_note());
+        notes.extend(self.bridges_note());
         notes
+    }
+
+    /// What is said of gaps that differences span.
+    fn bridges_note(&self) -> Option<String> {
+        let first = self.bridges.first()?;
+        let lengths = self.bridges.iter().map(|bridge| bridge.words.len());
+        let exist = if first.is_known {
+            "their three angles exist"
+        } else {
+            "their three angles exist and nine tenths of both mean rates are words, the mean over a gap that of \
+             the words on both sides"
+        };
+        Some(format!(
+            "differences of the Allan deviation span {} ({} in all) where {exist}; its count and degrees of \
+             freedom are those of the differences that were used, and nothing else spans a gap",
+            counted(self.bridges.len(), "gap"),
+            counted(lengths.sum::<usize>(), "missing word")
+        ))
     }
 
     /// What is said of several stretches: how long they are, their means and the largest step between two.
@@ -129,7 +168,7 @@ impl Log {
                 .iter()
                 .filter(|word| word.is_nan())
                 .count();
-            return (missing > 0).then(|| {
+            return (missing > 0 && self.bridges.is_empty()).then(|| {
                 format!(
                     "{} missing: nothing is put in their place, and no sum spans one",
                     counted(missing, "sample")

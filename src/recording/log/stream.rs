@@ -12,6 +12,7 @@ use crate::recording::input::Input;
 use crate::recording::layout::words::MissingWords;
 use crate::recording::npy::array::{self, ArrayWords};
 use crate::recording::npy::heading::NpyHeading;
+use crate::recording::text::head::{HEAD_LINES, LIVE_HEAD_LINES};
 use crate::recording::text::lines::shown;
 use crate::recording::text::table::{Rows, Wanted};
 use crate::recording::time::timing::Spacing;
@@ -25,6 +26,9 @@ const FILE_WORDS_KEPT: usize = 100_000_000;
 
 /// Words that are read at a time.
 const BLOCK: usize = 1 << 17;
+
+/// The same where words are wanted as they come: none waits for the next one, and all before a fault are had.
+const LIVE_BLOCK: usize = 1;
 
 /// A log, whole or while it comes in.
 pub enum LogSource {
@@ -44,6 +48,8 @@ pub struct LogStream {
     rest: Rest,
     /// Rows that were read before the block that is read now.
     rows_before: usize,
+    /// Words that are read at a time.
+    block: usize,
 }
 
 /// What is still to be read.
@@ -92,7 +98,7 @@ pub(crate) fn open_keeping(
     if streams(format) {
         input.let_go_on();
     }
-    let Some(mut rows) = Rows::open(path, input, &wanted)? else {
+    let Some(mut rows) = Rows::open(path, input, &wanted, HEAD_LINES)? else {
         return Err(LogError::of_file(path, "holds no sample"));
     };
     let goes_on = rows.read_up_to(if streams(format) { most } else { usize::MAX })?;
@@ -102,20 +108,94 @@ pub(crate) fn open_keeping(
     }
     let columns = rows.take();
     let found = Found::of(path, columns, format)?;
-    Ok(found.with(path, Rest::Text(Box::new(rows))))
+    let stream = found.with(path, Rest::Text(Box::new(rows)));
+    Ok(LogSource::Stream(Box::new(stream)))
+}
+
+/// Opens a log of one column whose words are wanted as they come, all at its sample rate.
+///
+/// No word waits for the next one, but for those of the lines from which the layout is found.
+///
+/// # Errors
+/// What needs the whole log, a sample rate that is not given, whatever is wrong with the first words.
+pub fn open_live_log(path: &Path, format: &LogFormat) -> Result<LogStream, LogError> {
+    let refuse = |error: NotLive| LogError::of_file(path, error);
+    if let Some(option) = whole_for(format) {
+        return Err(refuse(NotLive::Whole(option)));
+    }
+    if format.rate_hz.is_none() {
+        return Err(refuse(NotLive::NoRate));
+    }
+    let mut input = Input::open(path)?;
+    input.let_go_on();
+    let wanted = wanted_by(format);
+    let (columns, rest) = if array::is_array(&input, format) {
+        let heading = array::read_heading(path, &mut input, format)?;
+        if heading.columns != 1 {
+            return Err(refuse(NotLive::Columns(heading.columns)));
+        }
+        array::check_columns(path, &heading, &wanted)?;
+        let may_end = input.length().is_none();
+        let mut words = ArrayWords::new(path, heading, may_end, false).at_a_time(LIVE_BLOCK);
+        let mut values = Vec::new();
+        words.read(&mut input, &mut values)?;
+        let mut columns = words.columns(values);
+        columns.note = None;
+        (columns, Rest::Array(Box::new((words, input))))
+    } else {
+        let Some(mut rows) = Rows::open(path, input, &wanted, LIVE_HEAD_LINES)? else {
+            return Err(LogError::of_file(path, "holds no sample"));
+        };
+        rows.read_head(usize::MAX)?;
+        rows.read_up_to(1)?;
+        (rows.take(), Rest::Text(Box::new(rows)))
+    };
+    let columns = with_samples(path, columns)?;
+    let stream = Found::of(path, columns, format)?.with(path, rest);
+    Ok(LogStream {
+        block: LIVE_BLOCK,
+        ..stream
+    })
+}
+
+/// Why words are not passed on as they come.
+#[derive(Debug, thiserror::Error)]
+enum NotLive {
+    #[error(
+        "{0} needs the whole log, and words that are passed on as they come are not kept: leave one of them \
+         out"
+    )]
+    Whole(&'static str),
+    #[error("filters are built for a sample rate before the first word comes: give --rate-hz")]
+    NoRate,
+    #[error(
+        "an array of {0} columns is read as a whole: pass on words of one column, as with --dtype, or text"
+    )]
+    Columns(u64),
 }
 
 /// Whether a log streams under a format: one column, all of it, without gaps or a reference.
 fn streams(format: &LogFormat) -> bool {
+    whole_for(format).is_none()
+}
+
+/// What is asked for that a log must be kept for, as an option.
+fn whole_for(format: &LogFormat) -> Option<&'static str> {
     let column = format.column.as_deref().unwrap_or_default();
     let is_one = column.len() < 2 && column.iter().all(|name| !name.contains('*'));
-    let has_parts = format.rows.is_some()
-        || format.from_s.is_some()
-        || format.to_s.is_some()
-        || format.segments.is_some()
-        || format.split_gaps == Some(true);
-    let has_gaps = format.missing == Some(MissingWords::Gap);
-    is_one && !has_parts && !has_gaps && format.reference_column.is_none()
+    let asked = [
+        (!is_one, "--column with several columns"),
+        (format.rows.is_some(), "--rows"),
+        (format.from_s.is_some(), "--from-s"),
+        (format.to_s.is_some(), "--to-s"),
+        (format.segments.is_some(), "--segments"),
+        (format.split_gaps == Some(true), "--split-gaps"),
+        (format.gap_aware.is_some(), "--gap-aware"),
+        (format.missing == Some(MissingWords::Gap), "--missing gap"),
+        (format.reference_column.is_some(), "--reference-column"),
+    ];
+    let mut asked = asked.into_iter().filter(|(is_asked, _)| *is_asked);
+    asked.next().map(|(_, option)| option)
 }
 
 fn open_array(
@@ -153,7 +233,8 @@ fn open_array(
         },
         format,
     )?;
-    Ok(found.with(path, Rest::Array(Box::new((words, input)))))
+    let stream = found.with(path, Rest::Array(Box::new((words, input))));
+    Ok(LogSource::Stream(Box::new(stream)))
 }
 
 /// What the first words of a log say of it.
@@ -184,15 +265,16 @@ impl Found {
         })
     }
 
-    fn with(self, path: &Path, rest: Rest) -> LogSource {
-        LogSource::Stream(Box::new(LogStream {
+    fn with(self, path: &Path, rest: Rest) -> LogStream {
+        LogStream {
             path: path.to_owned(),
             rows_before: self.log.rate_deg_per_h.len(),
             log: self.log,
             conversion: self.conversion,
             spacing: self.spacing,
             rest,
-        }))
+            block: BLOCK,
+        }
     }
 }
 
@@ -217,13 +299,13 @@ impl LogStream {
         match &mut self.rest {
             Rest::Array(array) => {
                 let (array, input) = &mut **array;
-                while words.len() < BLOCK && array.read(input, words)? {}
+                while words.len() < self.block && array.read(input, words)? {}
                 if words.is_empty() {
                     self.log.remark(array.early_end());
                 }
             }
             Rest::Text(rows) => {
-                rows.read_up_to(BLOCK)?;
+                rows.read_up_to(self.block)?;
                 rows.take_values(words);
                 check_steps(&self.path, rows, &self.spacing)?;
             }

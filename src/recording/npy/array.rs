@@ -132,6 +132,8 @@ pub(in crate::recording) struct ArrayWords {
     is_gap: bool,
     /// Numbers read.
     row: u64,
+    /// Most numbers that are read at a time.
+    at_a_time: usize,
     chunk: Vec<u8>,
 }
 
@@ -151,7 +153,16 @@ impl ArrayWords {
             may_end,
             is_gap,
             row: 0,
+            at_a_time: CHUNK_BYTES / heading.word_bytes,
             chunk: Vec::with_capacity(CHUNK_BYTES),
+        }
+    }
+
+    /// The same, so many numbers at a time at most: more are not waited for.
+    pub(in crate::recording) fn at_a_time(self, count: usize) -> Self {
+        Self {
+            at_a_time: count.min(self.at_a_time),
+            ..self
         }
     }
 
@@ -191,7 +202,7 @@ impl ArrayWords {
         values: &mut Vec<f64>,
     ) -> Result<bool, LogError> {
         let word_bytes = self.heading.word_bytes;
-        let wanted = (self.heading.rows - self.row).min((CHUNK_BYTES / word_bytes) as u64);
+        let wanted = (self.heading.rows - self.row).min(self.at_a_time as u64);
         let wanted = usize::try_from(wanted).unwrap_or(0) * word_bytes;
         let failed = |error| failure(&self.path, error);
         self.chunk.clear();

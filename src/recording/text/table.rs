@@ -3,6 +3,7 @@
 use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
+use super::head::{HEAD_LINES, head};
 use super::lines::{Delimiter, Lines, TextError, is_missing, shown};
 use super::plain::{plain_length, plain_number, plain_stamp};
 use super::transcode::{as_utf8, encoding_of};
@@ -16,10 +17,6 @@ use crate::recording::log::format::LogFormat;
 use crate::recording::time::column::TimeColumn;
 use crate::recording::time::stamp::Stamp;
 
-/// Lines from which the layout is found.
-const HEAD_LINES: usize = 1000;
-/// Most bytes of them.
-const HEAD_BYTES: usize = 1 << 20;
 /// Rows by which columns are told apart.
 const SAMPLE_ROWS: usize = 50;
 
@@ -44,7 +41,7 @@ pub(in crate::recording) fn read(
     input: Input,
     wanted: &Wanted<'_>,
 ) -> Result<Columns, LogError> {
-    let Some(mut rows) = Rows::open(path, input, wanted)? else {
+    let Some(mut rows) = Rows::open(path, input, wanted, HEAD_LINES)? else {
         return Ok(Columns::default());
     };
     rows.read_up_to(wanted.samples_max)?;
@@ -63,12 +60,16 @@ pub(in crate::recording) struct Rows {
 impl Rows {
     /// Finds the layout; nothing of a text without rows.
     ///
+    /// * `head_lines`: how many lines it is found from, those above the rows by what is said of them not
+    ///   counted.
+    ///
     /// # Errors
     /// As [`read`].
     pub(in crate::recording) fn open(
         path: &Path,
         input: Input,
         wanted: &Wanted<'_>,
+        head_lines: usize,
     ) -> Result<Option<Self>, LogError> {
         let given = wanted.format.encoding;
         let encoding = given.unwrap_or_else(|| encoding_of(input.first()));
@@ -77,7 +78,8 @@ impl Rows {
             false => "neither NPY nor text in UTF-8",
         };
         let mut lines = Lines::new(as_utf8(input, encoding), expected);
-        let mut head = head(path, &mut lines)?;
+        let head = head(&mut lines, wanted.format, head_lines);
+        let mut head = head.map_err(|error| fault(path, error))?;
         let at = |fault: Fault| match fault.line {
             Some(line) => LogError::at(path, Place::Line(line), fault.error),
             None => LogError::of_file(path, fault.error),
@@ -151,16 +153,13 @@ impl Rows {
         }
     }
 
-    /// Reads on until there are so many rows; whether the text goes on.
+    /// Reads the rows among the lines from which the layout was found, so many at most.
     ///
     /// # Errors
     /// As [`read`].
-    pub(in crate::recording) fn read_up_to(&mut self, rows: usize) -> Result<bool, LogError> {
+    pub(in crate::recording) fn read_head(&mut self, rows: usize) -> Result<(), LogError> {
         let Self {
-            path,
-            lines,
-            head,
-            table,
+            path, head, table, ..
         } = self;
         let mut empty = None;
         while table.columns.rows() < rows
@@ -173,6 +172,18 @@ impl Rows {
             }
             table.line(path, &line.text, line.number, empty.take())?;
         }
+        Ok(())
+    }
+
+    /// Reads on until there are so many rows; whether the text goes on.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub(in crate::recording) fn read_up_to(&mut self, rows: usize) -> Result<bool, LogError> {
+        self.read_head(rows)?;
+        let Self {
+            path, lines, table, ..
+        } = self;
         while table.columns.rows() < rows {
             let passed = lines.pass_while(|line, number| {
                 table.columns.rows() < rows && table.plain_row(line, number)
@@ -191,24 +202,6 @@ impl Rows {
         }
         Ok(true)
     }
-}
-
-/// The first lines, comments among them.
-fn head(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Vec<HeadLine>, LogError> {
-    let (mut head, mut bytes) = (Vec::new(), 0);
-    while head.len() < HEAD_LINES && bytes < HEAD_BYTES {
-        let line = lines.next_unless(|_| false);
-        let Some(line) = line.map_err(|error| fault(path, error))? else {
-            break;
-        };
-        bytes += line.text.len();
-        head.push(HeadLine {
-            number: line.number,
-            text: line.text.to_owned(),
-            empty_before: line.empty_before,
-        });
-    }
-    Ok(head)
 }
 
 /// An error of a text at its line.

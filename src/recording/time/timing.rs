@@ -47,6 +47,8 @@ pub(in crate::recording) struct Spacing {
     pub(in crate::recording) sample_rate_hz: f64,
     /// Stretches of rows between which samples are missing.
     pub(in crate::recording) stretches: Vec<Range<usize>>,
+    /// Gaps within them that are spanned: the row behind each, and how many samples are missing before it.
+    pub(in crate::recording) spanned: Vec<(usize, usize)>,
     /// What is worth saying.
     pub(in crate::recording) notes: Vec<String>,
     /// What a step between stamps may be; none where there are none.
@@ -64,6 +66,17 @@ pub(in crate::recording) struct Steps {
     /// Longest step that is jitter, if it is given.
     max_gap_s: Option<f64>,
     unit: &'static str,
+}
+
+/// A log where samples are missing.
+#[derive(Default)]
+struct Cut {
+    /// Stretches of rows between gaps that are not spanned.
+    stretches: Vec<Range<usize>>,
+    /// Those between gaps of any length.
+    pieces: Vec<Range<usize>>,
+    /// As in [`Spacing`].
+    spanned: Vec<(usize, usize)>,
 }
 
 /// How stamps are looked at.
@@ -97,6 +110,7 @@ pub(in crate::recording) fn timing(
             timing: None,
             sample_rate_hz,
             stretches: stretches.to_vec(),
+            spanned: Vec::new(),
             notes: Vec::new(),
             steps: None,
         });
@@ -110,7 +124,7 @@ pub(in crate::recording) fn timing(
     if (clock.steps.period / clock.found).ln().abs() > RATE_CLEARLY_OTHER {
         return Err(clock.contradiction(1.0 / clock.found));
     }
-    let mut cut = Vec::new();
+    let mut cut = Cut::default();
     for rows in stretches {
         clock.cut(rows, &mut cut)?;
     }
@@ -126,9 +140,9 @@ pub(in crate::recording) fn timing(
     if time.is_counter() {
         return clock.counted(cut, notes);
     }
-    let spacing = clock.measured(&cut);
+    let spacing = clock.measured(&cut.pieces);
     if let Some(rate) = format.rate_hz
-        && (rate / spacing.sample_rate_hz - 1.0).abs() > RATE_TOLERANCE
+        && (rate / spacing.sample_rate_hz - 1.0).abs() > clock.rate_tolerance(&spacing, &cut.pieces)
     {
         return Err(clock.contradiction(spacing.sample_rate_hz));
     }
@@ -141,7 +155,8 @@ pub(in crate::recording) fn timing(
     Ok(Spacing {
         sample_rate_hz: format.rate_hz.unwrap_or(spacing.sample_rate_hz),
         timing: Some(spacing),
-        stretches: cut,
+        stretches: cut.stretches,
+        spanned: cut.spanned,
         notes,
         steps: Some(clock.steps),
     })
@@ -216,8 +231,8 @@ impl<'a> Clock<'a> {
     }
 
     /// Cuts a stretch where samples are missing.
-    fn cut(&self, rows: &Range<usize>, found: &mut Vec<Range<usize>>) -> Result<(), LogError> {
-        let mut first = rows.start;
+    fn cut(&self, rows: &Range<usize>, found: &mut Cut) -> Result<(), LogError> {
+        let (mut first, mut first_of_piece) = (rows.start, rows.start);
         let stamps = &self.time.stamps[rows.clone()];
         for (offset, pair) in stamps.windows(2).enumerate() {
             let step = pair[1] - pair[0];
@@ -225,16 +240,39 @@ impl<'a> Clock<'a> {
                 continue;
             };
             let row = rows.start + offset + 1;
-            if self.format.split_gaps == Some(true) && matches!(complaint, StepError::Gap { .. }) {
-                found.push(first..row);
-                first = row;
+            let is_gap = matches!(complaint, StepError::Gap { .. });
+            let spanned = self.spanned(step).filter(|_| is_gap);
+            if spanned.is_some() || (is_gap && self.format.split_gaps == Some(true)) {
+                found.pieces.push(first_of_piece..row);
+                first_of_piece = row;
+                match spanned {
+                    Some(missing) => found.spanned.push((row, missing)),
+                    None => {
+                        found.stretches.push(first..row);
+                        first = row;
+                    }
+                }
                 continue;
             }
             let message = format!("column {}: {complaint}", shown(&self.time.name));
             return Err(LogError::at(self.path, self.columns.place(row), message));
         }
-        found.push(first..rows.end);
+        found.pieces.push(first_of_piece..rows.end);
+        found.stretches.push(first..rows.end);
         Ok(())
+    }
+
+    /// Samples that are missing in a step, where differences may span so many.
+    fn spanned(&self, step: f64) -> Option<usize> {
+        let most = f64::from(self.format.gap_aware?);
+        let missing = (step / self.steps.period).round() - 1.0;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number up to the most that may be missing"
+        )]
+        let count = missing.max(1.0) as usize;
+        (missing <= most).then_some(count)
     }
 
     /// The rate that was given against that of the stamps.
@@ -253,11 +291,7 @@ impl<'a> Clock<'a> {
     }
 
     /// A counter of samples: the rate is the one that was given.
-    fn counted(
-        &self,
-        stretches: Vec<Range<usize>>,
-        notes: Vec<String>,
-    ) -> Result<Spacing, LogError> {
+    fn counted(&self, cut: Cut, notes: Vec<String>) -> Result<Spacing, LogError> {
         let Some(sample_rate_hz) = self.format.rate_hz else {
             let message = format!(
                 "column {} counts samples and tells no time: give --rate-hz",
@@ -268,7 +302,8 @@ impl<'a> Clock<'a> {
         Ok(Spacing {
             timing: None,
             sample_rate_hz,
-            stretches,
+            stretches: cut.stretches,
+            spanned: cut.spanned,
             notes,
             steps: Some(self.steps),
         })
@@ -294,6 +329,16 @@ impl<'a> Clock<'a> {
             resolution_s,
             drift: drift(stamps, stretches, resolution_s),
         }
+    }
+
+    /// Part by which a rate that was given may differ from that of the stamps: of a short record no more is
+    /// known than their jitter lets them tell.
+    fn rate_tolerance(&self, found: &Timing, stretches: &[Range<usize>]) -> f64 {
+        let stamps = &self.time.stamps;
+        let spans = stretches
+            .iter()
+            .map(|rows| stamps[rows.end - 1] - stamps[rows.start]);
+        RATE_TOLERANCE.max(2.0 * found.jitter_max_s / spans.sum::<f64>())
     }
 
     /// What doubts the unit of the column: steps that are hardly any part of it.
@@ -328,10 +373,10 @@ impl<'a> Clock<'a> {
 
 impl Timing {
     /// What is said of a time column without a gap, or cut at its gaps.
-    pub(in crate::recording) fn note(&self, stretches: usize) -> String {
-        let gaps = match stretches {
-            1 => "no gap".to_owned(),
-            _ => counted(stretches - 1, "gap"),
+    pub(in crate::recording) fn note(&self, gaps: usize) -> String {
+        let gaps = match gaps {
+            0 => "no gap".to_owned(),
+            gaps => counted(gaps, "gap"),
         };
         let is_rounding =
             (0.1 * self.resolution_s..=self.resolution_s).contains(&self.jitter_max_s);
@@ -450,7 +495,8 @@ pub(in crate::recording) enum StepError {
     Descent { step: f64, unit: &'static str },
     #[error(
         "gap of {step:.9}{unit} where samples are {period:.9}{unit} apart ({:.0} missing): \
-         --split-gaps cuts the log there and pools what lies between, --rows or --to-s takes a part of it",
+         --split-gaps cuts the log there and pools what lies between, --gap-aware lets differences span it, \
+         --rows or --to-s takes a part of it",
         (step / period - 1.0).max(1.0)
     )]
     Gap {
