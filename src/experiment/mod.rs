@@ -44,8 +44,8 @@ pub use infer::{
 };
 pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogSettings, LogTrial,
-    LogTrialError, compensate_log, load_log_compensation, load_log_filters, load_log_gates,
-    try_log, try_log_stream,
+    LogTrialError, SETTLE_S, compensate_log, load_log_compensation, load_log_filters,
+    load_log_gates, try_log, try_log_stream,
 };
 pub use outside::{ProgramFiles, program_files};
 #[cfg(feature = "cli")]

@@ -4,6 +4,7 @@
 
 mod calibration;
 mod slow_drift;
+mod temperature_model;
 
 pub use calibration::{
     AssemblyParameters, AxisCoefficient, CalibrationEstimate, CalibrationGroup, CalibrationPlan,
@@ -11,6 +12,7 @@ pub use calibration::{
     ParameterRounding,
 };
 pub use slow_drift::SlowDrift;
+pub use temperature_model::TemperatureModel;
 
 /// Motion of the gyro's input axis over one output sample interval.
 ///

@@ -5,6 +5,7 @@ mod filters;
 mod gates;
 mod run;
 mod stream;
+mod temperature;
 mod trial;
 #[cfg(feature = "report")]
 mod written;
@@ -14,4 +15,4 @@ pub use filters::{LogFilters, load_log_filters};
 pub use gates::{LogGates, load_log_gates};
 pub(crate) use run::run_log;
 pub use stream::try_log_stream;
-pub use trial::{LogInput, LogSettings, LogTrial, LogTrialError, try_log};
+pub use trial::{LogInput, LogSettings, LogTrial, LogTrialError, SETTLE_S, try_log};

@@ -105,7 +105,7 @@ pub(crate) fn open_keeping(
     Ok(found.with(path, Rest::Text(Box::new(rows))))
 }
 
-/// Whether a log streams under a format: one column, all of it, without gaps or a reference.
+/// Whether a log streams under a format: one column, all of it, without gaps, a reference or a temperature.
 fn streams(format: &LogFormat) -> bool {
     let column = format.column.as_deref().unwrap_or_default();
     let is_one = column.len() < 2 && column.iter().all(|name| !name.contains('*'));
@@ -115,7 +115,7 @@ fn streams(format: &LogFormat) -> bool {
         || format.segments.is_some()
         || format.split_gaps == Some(true);
     let has_gaps = format.missing == Some(MissingWords::Gap);
-    is_one && !has_parts && !has_gaps && format.reference_column.is_none()
+    is_one && !has_parts && !has_gaps && format.beside().next().is_none()
 }
 
 fn open_array(
