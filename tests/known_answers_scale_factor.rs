@@ -189,6 +189,7 @@ fn staircase() -> (Motion, Vec<f64>) {
         settle_s: 100.0 * PERIOD_S,
         rest_deg_per_h: 8.0,
         has_static_zeros: false,
+        is_found: false,
     };
     let motion = Motion::Steps {
         last_step_index: 4000,

@@ -10,7 +10,7 @@ use fogbench::Scenario;
 use fogbench::metrics::catalogue::{BIAS_REPEATABILITY, SCALE_FACTOR_REPEATABILITY};
 use fogbench::metrics::{
     Applies, ChannelMetrics, Dwell, FilterFacts, Motion, RateGain, Record, Staircase, TwoRuns,
-    aggregate, known_curves, known_metrics, measure,
+    WarmRecord, aggregate, known_curves, known_metrics, measure, measure_temperature,
 };
 use fogbench::report::{Place, artefacts, curve_csv};
 use fogbench::signal::{FilterShape, WeightRule};
@@ -114,6 +114,7 @@ fn staircase() -> Case {
                 settle_s: 1.0,
                 rest_deg_per_h: 0.0,
                 has_static_zeros: false,
+                is_found: false,
             },
         },
         truth: (0..SAMPLES).map(|index| rates[index / each]).collect(),
@@ -274,7 +275,29 @@ fn found() -> Findings {
             channels.push((format!("channel-{}", channels.len()), own[0].clone()));
         }
     }
+    let warm: Vec<_> = (1..=REPEATS).map(beside_temperature).collect();
+    warm.iter().for_each(|repeat| single.add(repeat));
+    pooled.add(&aggregate(&warm));
+    channels.push(("warm".to_owned(), warm[0].clone()));
     (single, pooled, channels)
+}
+
+/// White noise beside a temperature that rises and falls.
+fn beside_temperature(seed: u64) -> ChannelMetrics {
+    let words = small_noise(seed);
+    let at = |index: usize| 25.0 + 5.0 * (TAU * index as f64 / 5000.0).sin();
+    let temperature_c: Vec<f64> = (0..SAMPLES).map(at).collect();
+    let record = WarmRecord {
+        words_deg_per_h: &words,
+        truth_deg_per_h: &[],
+        temperature_c: &temperature_c,
+        sample_period_s: PERIOD_S,
+        first_stamp_s: PERIOD_S,
+        swing_hz: None,
+    };
+    let mut metrics = ChannelMetrics::default();
+    measure_temperature(&record, None, &mut metrics);
+    metrics
 }
 
 /// A pipeline that fails early for the order of its update, and a sound one.

@@ -178,6 +178,7 @@ fn static_zeros_take_the_bias_out_of_the_offset() {
         settle_s: 100.0 * PERIOD_S,
         rest_deg_per_h: 8.0,
         has_static_zeros: true,
+        is_found: false,
     };
     let motion = Motion::Steps {
         last_step_index: 5000,

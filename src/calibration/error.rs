@@ -94,6 +94,26 @@ pub enum CalibrationError {
         /// Samples needed.
         needed: usize,
     },
+    /// Samples that do not determine the parameters of a gyro.
+    #[error(
+        "the samples do not determine the parameters of gyro {axis}: they want three mountings, two rates in one of \
+         them, and a change of rate"
+    )]
+    SamplesUndetermined {
+        /// Axis: `x`, `y` or `z`.
+        axis: &'static str,
+    },
+    /// A record too short for a covariance by its stretches.
+    #[error("the samples make {stretches} stretches of 20 s: expected at least {needed}")]
+    TooFewStretches {
+        /// Stretches at hand.
+        stretches: usize,
+        /// Stretches needed.
+        needed: usize,
+    },
+    /// Samples without the angle of an encoder.
+    #[error("the table has no encoder, which tells the rate of every sample")]
+    NoEncoder,
     /// Averaging over whole turns was asked for, but the group is shorter than one.
     #[error(
         "the group lasts {duration_s} s, less than one turn of the table ({turn_s} s): average over a \

@@ -16,7 +16,7 @@ use commands::comparison::{baseline, claim, compare};
 use commands::scenarios::{check, expand, init, list, reference, schema};
 use commands::shards::{merge, plan, status};
 use commands::shell::{completions, man};
-use commands::{budget, calibrate, export, infer, log, records, run, timing, wordlength};
+use commands::{budget, calibrate, export, infer, log, points, records, run, timing, wordlength};
 use options::arguments::{Arguments, Command};
 use options::idle;
 use terminal::exit::{self, Exit};
@@ -71,6 +71,7 @@ fn dispatch(arguments: &Arguments, interrupt: &Interrupt) -> Exit {
         Command::Filter(options) => log::filter(options),
         Command::Claim(options) => claim::claim(options),
         Command::Calibrate(options) => calibrate::calibrate(options),
+        Command::ScaleFactor(options) => points::scale_factor(options),
         Command::Timing(options) => timing::timing(options),
         Command::Wordlength(options) => wordlength::wordlength(options),
         Command::Export(options) => export::export(options),

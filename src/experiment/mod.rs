@@ -44,7 +44,7 @@ pub use infer::{
 };
 pub use log::{
     CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogSettings, LogTrial,
-    LogTrialError, PassError, compensate_log, load_log_compensation, load_log_filters,
+    LogTrialError, PassError, SETTLE_S, compensate_log, load_log_compensation, load_log_filters,
     load_log_gates, pass_log, try_log, try_log_stream,
 };
 pub use outside::{ProgramFiles, program_files};

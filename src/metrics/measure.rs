@@ -15,6 +15,8 @@ use super::noise::two_runs::{TWO_RUN_NOISE_STD, put_two_runs};
 use super::pipeline::PIPELINE_ONLY;
 use super::pool::repeatability::repeats_lack;
 use super::record::{FilterFacts, Motion, Record, SAMPLES_MIN, Settings};
+use super::steps::settling::SETTLING_TIME;
+use super::steps::shape::{OVERSHOOT, RISE_TIME};
 use super::steps::staircase::measure_scale_factor;
 use super::trial::dc_gain::put_dc_gains;
 use super::trial::frozen_response::put_frozen_response;
@@ -218,6 +220,11 @@ fn measure_words(
         } => {
             measure_steps(record, *last_step_index, *step_deg_per_h, filter, metrics);
             measure_scale_factor(record, staircase, metrics);
+            if staircase.is_found {
+                for key in [&SETTLING_TIME, &RISE_TIME, &OVERSHOOT] {
+                    metrics.withdraw(key, "the transitions of a reference are no steps");
+                }
+            }
             Ok(())
         }
     }

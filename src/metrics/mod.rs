@@ -23,6 +23,7 @@
 //! | `expected` | what the figures of a record are expected to be, and how far records scatter |
 //! | `trial` | what a filter does: DC gain, delay, noise-delay bound, readaptation |
 //! | `motion` | the metrics of each kind of motion: steady, swing, several sines, steps, any other |
+//! | `temperature` | bias and scale factor of a log against a temperature and its rate |
 //! | `verdict` | what the metrics say a filter did |
 //! | `catalogue` | the list of metrics, their names, and which records support them |
 //! | `pool` | independent repeats, and conditions compared |
@@ -47,6 +48,7 @@ mod sine;
 mod state_space;
 mod steps;
 mod stream;
+mod temperature;
 mod theory;
 mod trial;
 mod verdict;
@@ -111,7 +113,9 @@ pub use sine::fit::{SineFit, SwingClock, SwingFit, fit_sine, fit_swing};
 pub use sine::free_frequency::{FreeSineFit, fit_sine_free_frequency};
 pub use sine::tones::{ToneClock, ToneFits, ToneResponse, bandwidth_hz, fit_tones};
 pub use state_space::{FlickerBank, State, StateSpace, noise_state_space};
+pub use steps::dwells::find_dwells;
 pub use steps::nonlinearity::{Nonlinearity, Residual, expected_largest};
+pub use steps::points::fit_points;
 pub use steps::scale_factor::{
     Asymmetry, RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero,
     distinct_rates, distinct_rates_by_sense, fit_scale_factor, scale_factor_repeatability,
@@ -121,6 +125,11 @@ pub use steps::settling::{Settling, settling};
 pub use steps::shape::Step;
 pub use steps::small_input::smallest_answered;
 pub use stream::words::{NOT_STREAMED, StreamLack, WordStream};
+pub use temperature::coefficients::{Warmed, measure_temperature};
+pub(crate) use temperature::keys::{
+    APPLIED, BEFORE, MEAN_LENGTH, P_VALUE, REFERENCE, TEMPERATURE_METRICS,
+};
+pub use temperature::means::WarmRecord;
 pub use theory::bound::{
     LeastNoise, NoiseDelayBound, bound_taps, noise_delay_bound, noise_delay_bound_coloured,
     noise_power_gain,

@@ -112,6 +112,8 @@ pub struct Staircase {
     pub rest_deg_per_h: f64,
     /// Whether the first and the last dwell are rest, whose mean is the zero of all others.
     pub has_static_zeros: bool,
+    /// Whether they were found in a reference: its transitions are no steps, and its zero is not known.
+    pub is_found: bool,
 }
 
 /// One rate of a staircase.

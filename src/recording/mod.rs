@@ -15,6 +15,7 @@
 //! | `unit` | units, how they are spelled, rates from numbers |
 //! | `log` | what is said of a log, its parts, its words |
 //! | `groups` | group means of a calibration |
+//! | `points` | rates and outputs of a scale factor test |
 //!
 //! Invariant: a log comes out of here whole, in deg/h and equally spaced, or not at all; samples are
 //! missing (NaN) only where gaps were asked for. Every complaint names the file and the place in it, and
@@ -29,6 +30,7 @@ mod input;
 mod layout;
 mod log;
 mod npy;
+mod points;
 mod text;
 mod time;
 mod unit;
@@ -52,6 +54,7 @@ pub use log::read::{
 pub use log::record::{Log, Stretch};
 pub use log::stream::{LogSource, LogStream, open_live_log, open_log};
 pub use log::words::read_words;
+pub use points::{PointsFormat, RecordedPoints, read_points};
 pub use text::csv::csv_text;
 pub use text::lines::{Delimiter, Line, Lines, TextError};
 pub use time::timing::Timing;

@@ -13,7 +13,9 @@ use crate::report::layout::json::{object, pretty, put};
 use crate::report::layout::text::{Tone, toned, wrapped};
 use crate::report::record::measured::Measured;
 use crate::report::text::quality::quality_text;
+use crate::report::text::scale_factor::found_dwells_text;
 use crate::report::text::table::{channels_text, failures_text, filter_verdicts, gates_text};
+use crate::report::text::temperature::temperature_text;
 use crate::scenario::{MotionClass, MotionConfig};
 use crate::wording::counted;
 
@@ -84,8 +86,10 @@ pub fn log_text(report: &LogReport, width: usize, colour: bool) -> String {
     }
     let measured = report.measured();
     text.push_str(&channels_text(&measured, width, colour));
+    text.push_str(&found_dwells_text(report.channels, width, colour));
     text.push_str(&failures_text(&measured, &[], width, colour));
     text.push_str(&quality_text(report.channels, width));
+    text.push_str(&temperature_text(report.channels, width));
     text.push_str(&filter_verdicts(&measured, width, colour));
     text.push_str(&gates_text(report.verdicts, width, colour, |_| None));
     for note in report.notes {

@@ -41,6 +41,7 @@ mod plot;
 mod record;
 mod records;
 mod restore;
+mod scale_factor_points;
 mod starter;
 mod text;
 
@@ -82,6 +83,7 @@ pub use record::sweep::{PointFigure, PointOfSweep, assignments_text, swept_value
 pub use records::{RecordLine, RecordSheet, record_sheet};
 pub use restore::run::RestoredRun;
 pub(crate) use restore::values::interned;
+pub use scale_factor_points::{PointsReport, points_json, points_text};
 pub use starter::{Starter, starter_toml};
 pub use text::suite::{SuiteStyle, closing_text, scenario_text, suite_text, sweep_text};
 pub use text::table::table_text;

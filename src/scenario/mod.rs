@@ -46,7 +46,7 @@ pub use crate::turntable::{
 pub(crate) use check::cross::comparison::slug;
 pub(crate) use check::cross::{RESERVED, reserved};
 pub(crate) use check::leaf::is_name;
-pub(crate) use config::channels::{WITHOUT_OUTLIERS, motion_of_log};
+pub(crate) use config::channels::{WITHOUT_OUTLIERS, WITHOUT_TEMPERATURE, motion_of_log};
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, BlackBoxTrial, ComparisonColumn,
     ComparisonConfig, ComparisonKind, ComparisonRowConfig, FigureConfig, FilterState, GateConfig,

@@ -5,6 +5,7 @@
 mod bridge;
 mod calibration;
 mod slow_drift;
+mod temperature_model;
 
 pub use bridge::Bridge;
 pub use calibration::{
@@ -13,6 +14,7 @@ pub use calibration::{
     ParameterRounding,
 };
 pub use slow_drift::SlowDrift;
+pub use temperature_model::TemperatureModel;
 
 /// Motion of the gyro's input axis over one output sample interval.
 ///

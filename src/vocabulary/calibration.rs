@@ -41,6 +41,9 @@ words! {
         ArlsCovariance = "arls-covariance",
         /// Least squares with the weights of the recursion and a temperature coefficient of each bias.
         ArlsTemperature = "arls-temperature",
+        /// Least squares over all samples with the rate that the table's encoder shows, changes of rate included,
+        /// and a temperature coefficient of each bias.
+        EncoderRate = "encoder-rate",
     }
 }
 
@@ -48,6 +51,15 @@ impl EstimatorKind {
     /// Whether it fits a temperature coefficient of each bias.
     #[must_use]
     pub const fn fits_temperature(self) -> bool {
-        matches!(self, Self::BatchTemperature | Self::ArlsTemperature)
+        matches!(
+            self,
+            Self::BatchTemperature | Self::ArlsTemperature | Self::EncoderRate
+        )
+    }
+
+    /// Whether it takes the samples of the gyros, with the angle of an encoder, in place of their means.
+    #[must_use]
+    pub const fn takes_samples(self) -> bool {
+        matches!(self, Self::EncoderRate)
     }
 }

@@ -117,6 +117,8 @@ fn settings(draws: &mut Draws, log: &Log) -> LogSettings {
             averaging_times: *draws.pick(&times),
             ..AllanConfig::reference()
         },
+        temperature_reference_c: None,
+        settle_s: 0.5,
     }
 }
 

@@ -10,7 +10,8 @@ table! {
         /// a coefficient of temperature of each bias; "arls": the patent's recursion, whose forgetting factor
         /// falls with the step of temperature, in square-root form; "arls-covariance": the same to the letter,
         /// which loses digits; "arls-temperature": least squares with the weights of the recursion and a
-        /// coefficient of temperature.
+        /// coefficient of temperature; "encoder-rate": least squares over all samples with the rate that
+        /// turntable.encoder shows, changes of rate included, and a coefficient of temperature.
         estimators: Vec<EstimatorKind> = ["batch", "batch-temperature", "arls", "arls-covariance", "arls-temperature"];
         /// The one whose parameters are applied; it runs also if it is not among the others. Source of the
         /// default: the most robust of the five where biases drift with temperature, over simulated campaigns.

@@ -11,7 +11,7 @@ use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::cli::terminal::place::{self, Place};
 use crate::experiment::{
-    LogFilters, LogInput, LogSettings, LogTrial, PassError, Progress, compensate_log,
+    LogFilters, LogInput, LogSettings, LogTrial, PassError, Progress, SETTLE_S, compensate_log,
     load_log_compensation, load_log_filters, load_log_gates, pass_log, try_log, try_log_stream,
 };
 use crate::program::Programs;
@@ -293,11 +293,12 @@ fn read(
             Exit::Io
         }
     })?;
+    let format = format(options)?;
     let columns = AssemblyColumns {
         gyros: [x, y, z],
-        temperature: options.temperature_column.as_deref(),
+        temperature: format.temperature_column.as_deref(),
     };
-    let found = read_assembly_log(&options.file, &format(options)?, &columns);
+    let found = read_assembly_log(&options.file, &format, &columns);
     let logs = found.map_err(|error| unreadable(&error))?;
     tell_layout(&logs.gyros[axis]);
     let Log {
@@ -445,6 +446,7 @@ fn own_name(column: &str, taken: &mut Vec<String>) -> String {
 fn settings(options: &LogOptions, format: &LogFormat) -> LogSettings {
     LogSettings {
         motion: format.motion.unwrap_or_default(),
+        settle_s: format.settle_s.unwrap_or(SETTLE_S),
         warm_up_s: options.warm_up_s,
         bias_averaging_time_s: options.bias_averaging_time_s,
         fit_tau_min_s: format.fit_tau_min_s,
@@ -452,6 +454,7 @@ fn settings(options: &LogOptions, format: &LogFormat) -> LogSettings {
             estimator: options.allan_estimator,
             averaging_times: options.averaging_times,
         },
+        temperature_reference_c: format.temperature_reference_c,
     }
 }
 

@@ -7,6 +7,7 @@ mod consent;
 pub(in crate::cli) mod export;
 pub(in crate::cli) mod infer;
 pub(in crate::cli) mod log;
+pub(in crate::cli) mod points;
 pub(in crate::cli) mod records;
 pub(in crate::cli) mod run;
 pub(in crate::cli) mod scenarios;

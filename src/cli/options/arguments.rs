@@ -14,6 +14,7 @@ use crate::cli::options::hardware::{ExportOptions, TimingOptions};
 use crate::cli::options::infer::InferOptions;
 use crate::cli::options::init::InitOptions;
 use crate::cli::options::log::{AnalyzeOptions, FilterLogOptions};
+use crate::cli::options::points::ScaleFactorOptions;
 use crate::cli::options::records::RecordsOptions;
 use crate::cli::options::shard::{MergeOptions, PlanOptions, ShardOptions, StatusOptions};
 use crate::cli::options::wordlength::WordLengthOptions;
@@ -88,6 +89,8 @@ pub(in crate::cli) enum Command {
     Claim(ClaimOptions),
     /// Find the errors of a three-axis assembly from group means or a simulated campaign
     Calibrate(CalibrateOptions),
+    /// Find scale factor, offset and nonlinearity of a gyro from mean outputs at constant rates
+    ScaleFactor(ScaleFactorOptions),
     /// Print clocks, units and sample rates of a filter in hardware
     Timing(TimingOptions),
     /// Find the shortest fixed-point words of a filter in hardware, and say what each bit costs

@@ -22,7 +22,8 @@ pub(in crate::cli) struct CalibrateOptions {
     /// reference_x_deg_per_s, reference_y_deg_per_s and reference_z_deg_per_s
     #[arg(long, value_name = "DEG", value_parser = latitude, allow_negative_numbers = true)]
     pub(in crate::cli) latitude_deg: Option<f64>,
-    /// Estimator to apply: batch, batch-temperature, arls, arls-covariance, arls-temperature
+    /// Estimator to apply: batch, batch-temperature, arls, arls-covariance, arls-temperature, and of a scenario
+    /// whose table has an encoder encoder-rate
     /// [default: calibration.apply; batch where the groups determine no temperature coefficient]
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) estimator: Option<EstimatorKind>,

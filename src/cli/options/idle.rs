@@ -68,6 +68,7 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
         | Command::Claim(_)
         | Command::Infer(_)
         | Command::Records(_)
+        | Command::ScaleFactor(_)
         | Command::Wordlength(_)
         | Command::Completions(_)
         | Command::Man(_) => Vec::new(),
@@ -103,12 +104,18 @@ fn of_log(options: &LogOptions, given: &ArgMatches) -> Vec<String> {
     ];
     let motion = given.try_get_one::<String>("motion").ok().flatten();
     let motion = motion.and_then(|motion| motion.parse().ok());
-    if !matches!(motion, Some(LogMotion::Swing { .. })) {
-        return Vec::new();
-    }
+    let what = match motion {
+        Some(LogMotion::Swing { .. }) => "a swing",
+        Some(LogMotion::Dwells) => "dwells",
+        _ => {
+            let idle = typed(given, &["settle_s"]).into_iter();
+            let without = "has no effect without dwells: leave it out, or say --motion dwells";
+            return idle.map(|option| format!("{option} {without}")).collect();
+        }
+    };
     let idle = typed(given, &AT_REST).into_iter();
     idle.map(|option| {
-        format!("{option} has no effect on a swing: leave it out, or --motion if the gyro rested")
+        format!("{option} has no effect on {what}: leave it out, or --motion if the gyro rested")
     })
     .collect()
 }
@@ -415,7 +422,6 @@ mod tests {
             ),
             (format!("{log} --calibration c.toml"), "--columns"),
             (format!("{log} --columns a,b,c"), "--calibration"),
-            (format!("{log} --temperature-column t"), "--calibration"),
             (format!("{log} --compensation-form exact"), "--calibration"),
             (
                 "fogbench filter a.csv --unit deg/h --rate-hz 1 --filters a.toml --csv".to_owned(),

@@ -51,9 +51,6 @@ pub(in crate::cli) struct LogOptions {
     #[arg(long, value_name = "AXIS", requires = "columns", conflicts_with = "column",
           value_parser = axis)]
     pub(in crate::cli) axis: Option<usize>,
-    /// Column of the assembly's temperature, deg C, which its biases follow
-    #[arg(long, value_name = "COLUMN", requires = "calibration")]
-    pub(in crate::cli) temperature_column: Option<String>,
     /// How rates follow from the outputs: `exact`, or `first-order` as in the patent
     #[arg(
         long,

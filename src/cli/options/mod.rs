@@ -14,6 +14,7 @@ pub(in crate::cli) mod init;
 pub(in crate::cli) mod layout;
 pub(in crate::cli) mod log;
 pub(in crate::cli) mod numbers;
+pub(in crate::cli) mod points;
 pub(in crate::cli) mod records;
 pub(in crate::cli) mod shard;
 pub(in crate::cli) mod wordlength;

@@ -1,10 +1,12 @@
 //! A calibration campaign of a scenario: what its plan can determine, and its groups once it ran.
 
+use super::encoder_rate::calibrate_samples;
 use super::metrics::mean;
 use super::sheet::calibration_sheet;
+use super::units::observation;
 use crate::calibration::{
-    Averaging, Calibration, CalibrationError, GroupDesign, GroupSamples, TemperatureColumns,
-    check_plan, group_means, horizontal_residue_deg_per_s, whole_turns_s,
+    Averaging, Calibration, CalibrationError, GroupDesign, GroupObservation, GroupSamples,
+    TemperatureColumns, check_plan, group_means, horizontal_residue_deg_per_s, whole_turns_s,
 };
 use crate::experiment::run::{
     Progress, RecordLength, Simulation, Unfinished, axis_index, simulate,
@@ -17,6 +19,7 @@ use crate::units::{
     EARTH_RATE_RAD_PER_S, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, deg_to_rad,
     rad_per_s_to_deg_per_s, rad_to_deg,
 };
+use crate::vocabulary::EstimatorKind;
 
 /// The campaign of a scenario; none if the table does something else.
 pub(crate) fn campaign(scenario: &Scenario) -> Option<&CampaignConfig> {
@@ -53,7 +56,7 @@ fn reference_rates(scenario: &Scenario, campaign: &CampaignConfig) -> Vec<[f64; 
 }
 
 /// Earth rate about the case axes of a table without errors at rest, deg/s.
-fn at_rest(table: &TurntableConfig, group: &CampaignGroup, turned_rad: f64) -> [f64; 3] {
+pub(super) fn at_rest(table: &TurntableConfig, group: &CampaignGroup, turned_rad: f64) -> [f64; 3] {
     let mut still = table.clone();
     still.motion = MotionConfig::rest();
     still.servo = crate::scenario::ServoConfig::ideal();
@@ -110,6 +113,11 @@ pub(crate) enum PlanError {
         /// What is missing.
         error: CalibrationError,
     },
+    /// The rate of a sample is not known.
+    #[error(
+        "calibration.estimators: encoder-rate takes an encoder: give turntable.encoder.resolution_arcsec"
+    )]
+    NoEncoder,
     /// The temperature is the same in every group.
     #[error("{key} = \"{estimator}\" fits a coefficient of temperature: {error}")]
     OneTemperature {
@@ -127,6 +135,7 @@ impl PlanError {
     pub(crate) fn key(&self) -> &'static str {
         match self {
             Self::Undetermined { key, .. } | Self::OneTemperature { key, .. } => key,
+            Self::NoEncoder => "calibration.estimators",
         }
     }
 }
@@ -141,6 +150,11 @@ pub(crate) fn check_campaign(
     scenario: &Scenario,
     campaign: &CampaignConfig,
 ) -> Result<(String, Vec<String>), PlanError> {
+    let takes_samples = |kind: &EstimatorKind| kind.takes_samples();
+    let has_encoder = scenario.turntable.encoder.resolution_arcsec.is_some();
+    if !has_encoder && scenario.calibration.kinds().iter().any(takes_samples) {
+        return Err(PlanError::NoEncoder);
+    }
     let designs = planned(scenario, campaign);
     let reference = [scenario.gyro.thermal.reference_c; 3];
     let plan = check_plan(&designs, TemperatureColumns::NONE, reference).map_err(|error| {
@@ -372,7 +386,14 @@ pub(crate) fn calibrate_simulation(
     let first = RecordLength::new(scenario, period_s).warm_up;
     let groups = groups(scenario, campaign, simulation, first)?;
     let truth = simulated_truth(scenario);
-    calibration_sheet(&groups, &scenario.calibration, truth.as_ref()).map(Some)
+    let settings = &scenario.calibration;
+    let takes_samples = settings.kinds().iter().any(|kind| kind.takes_samples());
+    let of_samples = takes_samples.then(|| {
+        let means: Vec<GroupObservation> = groups.iter().map(observation).collect();
+        let found = calibrate_samples(scenario, campaign, simulation, (first, &means));
+        found.map(|found| found.calibration)
+    });
+    calibration_sheet(&groups, settings, truth.as_ref(), of_samples.as_ref()).map(Some)
 }
 
 /// Simulates repeat `repeat` of a calibration scenario and calibrates it.

@@ -3,6 +3,7 @@
 
 mod compensation;
 mod compensation_plan;
+mod encoder_rate;
 #[cfg(feature = "report")]
 mod findings;
 mod groups;

@@ -16,6 +16,7 @@ const MISFIT: f64 = 6.0;
 /// Estimates the parameters of an assembly from group means with every estimator asked for.
 ///
 /// * `groups`: in the order they were taken, which forgetting depends on.
+/// * `of_samples`: the estimate from the samples themselves, where one was asked for.
 /// * `truth`: parameters of a simulated assembly. Estimators that fit a coefficient of temperature
 ///   give bias and scale factor at its reference temperature; without a truth, at their weighted mean
 ///   temperature.
@@ -33,6 +34,7 @@ pub(crate) fn calibration_sheet(
     groups: &[CalibrationGroup],
     settings: &CalibrationConfig,
     truth: Option<&CalibrationTruth>,
+    of_samples: Option<&Result<Calibration, CalibrationError>>,
 ) -> Result<(CalibrationSheet, Calibration), CalibrationError> {
     let observations: Vec<GroupObservation> = groups.iter().map(observation).collect();
     let designs: Vec<GroupDesign> = observations.iter().map(|group| group.design).collect();
@@ -47,7 +49,13 @@ pub(crate) fn calibration_sheet(
     let mut estimates = Vec::new();
     let mut applied = None;
     for kind in settings.kinds() {
-        match estimate(&observations, &estimator(kind, settings), reference) {
+        let found = match estimator(kind, settings) {
+            Some(estimator) => estimate(&observations, &estimator, reference),
+            None => of_samples
+                .cloned()
+                .unwrap_or(Err(CalibrationError::NoEncoder)),
+        };
+        match found {
             Ok(calibration) => {
                 estimates.push(calibration_estimate(
                     kind.word(),
@@ -83,8 +91,8 @@ pub(crate) fn calibration_sheet(
     Ok((sheet, applied))
 }
 
-/// The estimator of a kind with its settings.
-fn estimator(kind: EstimatorKind, settings: &CalibrationConfig) -> Estimator {
+/// The estimator of a kind with its settings; nothing of one that takes no groups.
+fn estimator(kind: EstimatorKind, settings: &CalibrationConfig) -> Option<Estimator> {
     let form = settings.forgetting_form;
     let forgetting = |constant_per_k| Forgetting::Temperature {
         form,
@@ -94,7 +102,8 @@ fn estimator(kind: EstimatorKind, settings: &CalibrationConfig) -> Estimator {
         initial_covariance: settings.initial_covariance,
         ..RecursiveSettings::new(forgetting(settings.forgetting_constant_per_k))
     };
-    match kind {
+    Some(match kind {
+        EstimatorKind::EncoderRate => return None,
         EstimatorKind::Batch => Estimator::Batch {
             temperature: TemperatureColumns::NONE,
         },
@@ -108,7 +117,7 @@ fn estimator(kind: EstimatorKind, settings: &CalibrationConfig) -> Estimator {
             reading: Reading::Discount,
             temperature: TemperatureColumns::BIAS,
         },
-    }
+    })
 }
 
 fn mean_temperature(designs: &[GroupDesign]) -> [f64; 3] {

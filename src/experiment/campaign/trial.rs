@@ -124,6 +124,13 @@ pub fn calibrate_groups(
         message,
     };
     check_latitude(&recorded, settings).map_err(|error| vec![error])?;
+    let kinds = settings.calibration.kinds();
+    if let Some(kind) = kinds.iter().find(|kind| kind.takes_samples()) {
+        return Err(vec![refuse(format!(
+            "--estimator {} takes the samples of a campaign: a groups file holds their means",
+            kind.word()
+        ))]);
+    }
     let observations: Vec<GroupObservation> = recorded
         .groups
         .iter()
@@ -266,13 +273,13 @@ fn sheet(
     notes: &mut Vec<String>,
 ) -> Result<CalibrationSheet, CalibrationError> {
     let asked = &settings.calibration;
-    match calibration_sheet(groups, asked, None) {
+    match calibration_sheet(groups, asked, None, None) {
         Err(CalibrationError::Unobservable(_))
             if asked.apply.fits_temperature() && !settings.is_estimator_asked_for =>
         {
             let mut plain = asked.clone();
             plain.apply = EstimatorKind::Batch;
-            let (sheet, _) = calibration_sheet(groups, &plain, None)?;
+            let (sheet, _) = calibration_sheet(groups, &plain, None, None)?;
             notes.push(format!(
                 "batch is applied in place of {}: the groups do not determine a temperature \
                  coefficient of the biases",

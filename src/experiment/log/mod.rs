@@ -6,6 +6,7 @@ mod gates;
 mod pass;
 mod run;
 mod stream;
+mod temperature;
 mod trial;
 #[cfg(feature = "report")]
 mod written;
@@ -16,4 +17,4 @@ pub use gates::{LogGates, load_log_gates};
 pub use pass::{PassError, pass_log};
 pub(crate) use run::run_log;
 pub use stream::try_log_stream;
-pub use trial::{LogInput, LogSettings, LogTrial, LogTrialError, try_log};
+pub use trial::{LogInput, LogSettings, LogTrial, LogTrialError, SETTLE_S, try_log};

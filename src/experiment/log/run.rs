@@ -1,7 +1,7 @@
 //! A scenario that measures a recorded log: the results of a run.
 
 use super::filters::LogFilters;
-use super::trial::{LogInput, LogSettings, try_log};
+use super::trial::{LogInput, LogSettings, SETTLE_S, try_log};
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{Faults, Progress, Results, Simulation, Unfinished, unless_stopped};
 use crate::recording::{LogFormat, read_log};
@@ -36,10 +36,12 @@ pub(crate) fn run_log(
     log.keep_first(plan.record_length().total());
     let settings = LogSettings {
         motion: format.motion.unwrap_or_default(),
+        settle_s: format.settle_s.unwrap_or(SETTLE_S),
         warm_up_s: scenario.warm_up_s,
         bias_averaging_time_s: scenario.bias_averaging_time_s,
         fit_tau_min_s: format.fit_tau_min_s,
         allan: scenario.allan,
+        temperature_reference_c: format.temperature_reference_c,
     };
     let filters = LogFilters::of(resolved, log.sample_rate_hz);
     let trial = try_log(LogInput::Plain(log), filters.as_ref(), &settings, progress);

@@ -1,6 +1,8 @@
 //! A recorded log that is too long to be kept, measured while it comes in.
 
-use super::trial::{LogSettings, LogTrial, LogTrialError, RAW, metric_settings, record_length};
+use super::trial::{
+    LogSettings, LogTrial, LogTrialError, RAW, metric_motion, metric_settings, record_length,
+};
 use crate::experiment::run::{GyroRecord, Progress, RecordLength};
 use crate::metrics::WordStream;
 use crate::recording::{LogError, LogStream};
@@ -27,7 +29,9 @@ pub fn try_log_stream(
     let mut words = stream.take_first_words();
     let warm_up = record_length(stream.log(), words.len(), settings)?.warm_up;
     let first = &words[warm_up..];
-    let metric_settings = metric_settings(settings, first, sample_period_s);
+    let motion = metric_motion(settings, &[], sample_period_s)
+        .map_err(|reason| refuse(reason.to_string()))?;
+    let metric_settings = metric_settings(settings, motion, first, sample_period_s);
     let mut measured = WordStream::new(first, sample_period_s, metric_settings)
         .map_err(|lack| refuse(format!("{lack}: give a part of it, as with --rows")))?;
     measured.extend(first);

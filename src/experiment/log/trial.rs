@@ -7,17 +7,20 @@ use rayon::prelude::*;
 use super::compensation::CompensatedLog;
 use super::filters::LogFilters;
 use super::gates::LogGates;
+use super::temperature::Warmth;
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
 use crate::experiment::outside::{self, Input, Outside, OutsideFilter};
 use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, Progress, RecordLength, Unfinished, allan_options};
 use crate::gate::Verdict;
 use crate::metrics::{
-    ChannelMetrics, Motion, Settings, examine_log, is_sample_or_longer, measure_present,
-    record_fit_tau_min_s,
+    ChannelMetrics, Dwell, Motion, Settings, Staircase, Unavailable, examine_log, find_dwells,
+    is_sample_or_longer, measure_present, record_fit_tau_min_s,
 };
 use crate::recording::{Log, LogMotion};
-use crate::scenario::{AllanConfig, MotionConfig, WITHOUT_OUTLIERS, motion_of_log};
+use crate::scenario::{
+    AllanConfig, MotionConfig, WITHOUT_OUTLIERS, WITHOUT_TEMPERATURE, motion_of_log,
+};
 use crate::turntable::first_measured_index;
 use crate::wording::{counted, plain};
 
@@ -25,6 +28,9 @@ use crate::wording::{counted, plain};
 pub(super) const RAW: &str = "raw";
 /// Name of the channel without the constant errors of its assembly.
 pub(super) const COMPENSATED: &str = "compensated";
+
+/// Time at the start of a dwell that a gyro is given to settle where nobody says so, s.
+pub const SETTLE_S: f64 = 0.5;
 
 /// What is measured and filtered.
 #[derive(Clone, Debug)]
@@ -46,6 +52,8 @@ impl From<Log> for LogInput {
 pub struct LogSettings {
     /// What the gyro did.
     pub motion: LogMotion,
+    /// Time at the start of each dwell that is left out, s.
+    pub settle_s: f64,
     /// Time at its start that metrics leave out, s.
     pub warm_up_s: f64,
     /// Averaging time of the plain `bias_stability_deg_per_h`, s.
@@ -55,6 +63,8 @@ pub struct LogSettings {
     pub fit_tau_min_s: Option<f64>,
     /// Estimator and averaging times of the Allan curve.
     pub allan: AllanConfig,
+    /// Temperature that its coefficients are told at, deg C; none: the mean of the log.
+    pub temperature_reference_c: Option<f64>,
 }
 
 /// Why a log was not measured.
@@ -106,7 +116,7 @@ pub fn try_log(
     let sample_period_s = log.sample_period_s();
     let length = record_length(&log, log.rate_deg_per_h.len(), settings)?;
     let is_compensated = compensated.is_some();
-    let clash = filters.and_then(|filters| clash(filters, is_compensated));
+    let clash = filters.and_then(|filters| clash(filters, is_compensated, &log));
     if let Some(message) = clash.or_else(|| refusal_of_gaps(&log, filters, settings)) {
         return Err(LogTrialError {
             file: log.file,
@@ -114,6 +124,7 @@ pub fn try_log(
             is_read: false,
         });
     }
+    let warmth = Warmth::of(&log, length.warm_up, settings);
     notes.splice(0..0, log.notes());
     log.take_about_common_mean();
     let record = GyroRecord {
@@ -129,9 +140,16 @@ pub fn try_log(
         is_read: false,
     })?;
     let measured = &record.raw_deg_per_h[length.warm_up..];
+    let reference = record.truth_deg_per_h.get(length.warm_up..);
+    let motion = metric_motion(settings, reference.unwrap_or_default(), sample_period_s);
+    let motion = motion.map_err(|reason| LogTrialError {
+        file: log.file.clone(),
+        message: reason.to_string(),
+        is_read: false,
+    })?;
     let metric_settings = Settings {
         bridges: log.bridges_behind(length.warm_up),
-        ..metric_settings(settings, measured, sample_period_s)
+        ..metric_settings(settings, motion, measured, sample_period_s)
     };
     let cut = Cut {
         record: &record,
@@ -143,7 +161,10 @@ pub fn try_log(
         motion: OnceLock::new(),
         black_box: filters.and_then(|filters| filters.resolved().scenario.trial.black_box),
     };
-    let channels = measured_channels(&cut, &finished, settings.fit_tau_min_s.is_some());
+    let mut channels = measured_channels(&cut, &finished, settings.fit_tau_min_s.is_some());
+    if let Some(warmth) = warmth {
+        warmth.enter(&cut, &mut channels);
+    }
     notes.extend(notes_on(
         filters,
         &finished,
@@ -202,6 +223,7 @@ fn refusal_of_gaps(
     let needs = match (filters, settings.motion) {
         (Some(_), _) => "a filter needs every word",
         (None, LogMotion::Swing { .. }) => "the phase of a swing needs every word",
+        (None, LogMotion::Dwells) => "a reference is compared word by word",
         (None, LogMotion::Static) => return None,
     };
     log.has_gaps().then(|| {
@@ -213,13 +235,16 @@ fn refusal_of_gaps(
 }
 
 /// What is wrong with the name of a filter that a channel of the log has.
-fn clash(filters: &LogFilters, is_compensated: bool) -> Option<String> {
+fn clash(filters: &LogFilters, is_compensated: bool, log: &Log) -> Option<String> {
     let own = [(RAW, true), (COMPENSATED, is_compensated)];
-    let own: Vec<String> = own
+    let mut own: Vec<String> = own
         .into_iter()
         .filter(|(_, is_there)| *is_there)
         .flat_map(|(name, _)| [name.to_owned(), format!("{name}{WITHOUT_OUTLIERS}")])
         .collect();
+    if !log.temperature_c.is_empty() {
+        own.push(format!("{RAW}{WITHOUT_TEMPERATURE}"));
+    }
     let mut names = filters.configs().iter().map(|it| &it.name);
     let taken = names.find(|name| own.contains(name))?;
     Some(format!(
@@ -230,12 +255,13 @@ fn clash(filters: &LogFilters, is_compensated: bool) -> Option<String> {
 /// How the words of a log, those behind the warm-up, are measured.
 pub(super) fn metric_settings(
     settings: &LogSettings,
+    motion: Motion,
     measured: &[f64],
     sample_period_s: f64,
 ) -> Settings {
     let fit_tau_min_s = settings.fit_tau_min_s;
     Settings {
-        motion: metric_motion(settings.motion),
+        motion,
         bias_averaging_time_s: settings.bias_averaging_time_s,
         fit_tau_min_s: fit_tau_min_s
             .unwrap_or_else(|| record_fit_tau_min_s(measured, sample_period_s)),
@@ -355,10 +381,37 @@ pub(super) fn record_length(
     })
 }
 
-fn metric_motion(motion: LogMotion) -> Motion {
-    match motion {
-        LogMotion::Static => Motion::Steady,
-        LogMotion::Swing { frequency_hz } => Motion::Swing { frequency_hz },
+/// The motion of a log as the metrics see it.
+///
+/// # Errors
+/// Dwells without a reference, or one that has none.
+pub(super) fn metric_motion(
+    settings: &LogSettings,
+    reference_deg_per_h: &[f64],
+    sample_period_s: f64,
+) -> Result<Motion, Unavailable> {
+    match settings.motion {
+        LogMotion::Static => Ok(Motion::Steady),
+        LogMotion::Swing { frequency_hz } => Ok(Motion::Swing { frequency_hz }),
+        LogMotion::Dwells if reference_deg_per_h.is_empty() => {
+            Err("dwells are found in what the table did: --reference-column names it".into())
+        }
+        LogMotion::Dwells => {
+            let dwells = find_dwells(reference_deg_per_h, sample_period_s, settings.settle_s)?;
+            let mut last = dwells.iter().rev();
+            let (last, before) = (last.next(), last.next());
+            let rate = |dwell: Option<&Dwell>| dwell.map_or(0.0, |it| it.rate_deg_per_h);
+            Ok(Motion::Steps {
+                last_step_index: last.map_or(0, |dwell| dwell.samples.start),
+                step_deg_per_h: rate(last) - rate(before.or(last)),
+                staircase: Staircase {
+                    settle_s: settings.settle_s,
+                    is_found: true,
+                    dwells,
+                    ..Staircase::default()
+                },
+            })
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{assembly_motion, motion, sample_period_s};
 use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{self, MetricKey, Unavailable};
+use crate::recording::{LogFormat, LogMotion};
 use crate::scenario::{ComparisonColumn, Scenario};
 
 /// A metric that a scenario asks for.
@@ -133,14 +134,17 @@ impl Checker<'_> {
             let Some(known) = metrics::find(name) else {
                 continue;
             };
-            let supported = metrics::support(
-                name,
-                scenario.duration_s,
-                sample_period_s,
-                &motion,
-                !scenario.is_unfiltered(channel),
-                scenario.bias_averaging_time_s,
-            );
+            let supported = match &scenario.log {
+                Some(log) if is_told_by_log(log, known) => of_log(log, known),
+                _ => metrics::support(
+                    name,
+                    scenario.duration_s,
+                    sample_period_s,
+                    &motion,
+                    !scenario.is_unfiltered(channel),
+                    scenario.bias_averaging_time_s,
+                ),
+            };
             let lack = || {
                 lacks(scenario, channel, known).or_else(|| {
                     let is_filter = !scenario.is_unfiltered(channel);
@@ -161,6 +165,20 @@ impl Checker<'_> {
             }
         }
     }
+}
+
+/// Whether it is the log that tells whether it has a metric: one of logs, or of dwells that are found in it.
+fn is_told_by_log(log: &LogFormat, key: &MetricKey) -> bool {
+    let has_dwells = log.motion == Some(LogMotion::Dwells);
+    key.applies == metrics::Applies::Log || (has_dwells && key.applies == metrics::Applies::Steps)
+}
+
+/// Whether a log, by what is said of it, can have a metric of logs.
+fn of_log(log: &LogFormat, key: &MetricKey) -> Result<(), Unavailable> {
+    if metrics::TEMPERATURE_METRICS.contains(&key) && log.temperature_column.is_none() {
+        return Err("it takes a column of the temperature: log.temperature_column names it".into());
+    }
+    Ok(())
 }
 
 /// Every metric that gates and published figures ask for.

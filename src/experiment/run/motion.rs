@@ -63,6 +63,7 @@ fn staircase(stairs: &Stairs, scenario: &Scenario, sample_period_s: f64) -> Stai
         settle_s: stairs.settle_s,
         rest_deg_per_h,
         has_static_zeros: stairs.has_static_zeros,
+        is_found: false,
     }
 }
 

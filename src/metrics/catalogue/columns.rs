@@ -27,6 +27,11 @@ pub mod staircase {
     };
 }
 
+/// Columns of the means over a temperature.
+pub mod temperature {
+    pub use crate::metrics::temperature::keys::{BIAS, FITTED, LEFT, RATE, TEMPERATURE_C, TIME};
+}
+
 /// Columns of the responses over the frequency.
 pub mod tones {
     pub use crate::metrics::sine::tones::{

@@ -49,6 +49,7 @@ rows! {
     motion::mean::MINIMUM,
     motion::mean::MAXIMUM,
     steps::staircase::SCALE_FACTOR_ERROR,
+    steps::staircase::SCALE_FACTOR_OFFSET,
     steps::staircase::SCALE_FACTOR_NONLINEARITY,
     steps::staircase::SCALE_FACTOR_NONLINEARITY_OF_READING,
     steps::staircase::SCALE_FACTOR_ASYMMETRY,
@@ -90,6 +91,13 @@ rows! {
     pipeline::PREDICTED_FAILURE,
     quality::outliers::OUTLIERS,
     quality::smoothing::SMOOTHING_TIME,
+    temperature::keys::BIAS_PER_K,
+    temperature::keys::BIAS_PER_K2,
+    temperature::keys::BIAS_PER_K_PER_MIN,
+    temperature::keys::SCALE_FACTOR_PER_K,
+    temperature::keys::HYSTERESIS,
+    temperature::keys::HYSTERESIS_LEFT,
+    temperature::keys::STD_LEFT,
     measure::DIVERGED_AT,
     pipeline::LATENCY,
     pipeline::SAMPLE_PERIOD,
@@ -133,6 +141,7 @@ rows! {
     trial::frozen_response::FROZEN_RESPONSE,
     trial::noise_delay::NOISE_DELAY_BOUND,
     trial::rate_gain::RATE_GAIN,
+    temperature::keys::TEMPERATURE,
 }
 
 /// Every metric a channel can have, in the order tables print them.

@@ -52,6 +52,8 @@ pub struct ScaleFactorFit {
     pub factor: Estimate,
     /// Offset F0 at the input at rest, deg/h.
     pub offset_deg_per_h: f64,
+    /// The same with its interval.
+    pub offset: Estimate,
     /// Distances from the line in the order of the points.
     pub residuals: Vec<Residual>,
     /// Largest output in magnitude, that at rest subtracted, deg/h.
@@ -219,9 +221,18 @@ pub(crate) fn fit_drifting_scale_factor(
         .enumerate()
         .collect();
     let (deviation, freedom) = spread_of(&weights, points, drift);
+    let by_rest = inputs
+        .iter()
+        .map(|input| line.leverage(0.0, *input, inputs.len()));
+    let by_rest: Vec<(usize, f64)> = by_rest.enumerate().collect();
+    let (of_offset, its_freedom) = spread_of(&by_rest, points, drift);
     Ok(ScaleFactorFit {
         factor: Estimate::symmetric(line.slope, interval::student_quantile(freedom) * deviation),
         offset_deg_per_h: line.offset,
+        offset: Estimate::symmetric(
+            line.offset,
+            interval::student_quantile(its_freedom) * of_offset,
+        ),
         full_scale_deg_per_h: full_scale,
         nonlinearity: Nonlinearity::of_full_scale(&residuals, full_scale),
         nonlinearity_of_reading: Nonlinearity::of_reading(&residuals),

@@ -135,6 +135,17 @@ pub static SCALE_FACTOR_ERROR: MetricKey = MetricKey::new(
 .tables(&[Table::Steps])
 .headlines(&[Headline::Steps, Headline::ScaleFactor]);
 
+/// Offset of the scale factor.
+pub static SCALE_FACTOR_OFFSET: MetricKey = MetricKey::new(
+    "scale_factor_offset_deg_per_h",
+    "deg/h",
+    Applies::Log,
+    "that line at a reference of zero, of a log whose dwells were found",
+)
+.heading("offset")
+.needs(Needs::Dwells)
+.tables(&[Table::Steps]);
+
 /// Nonlinearity of full scale.
 pub static SCALE_FACTOR_NONLINEARITY: MetricKey = MetricKey::new(
     "scale_factor_nonlinearity_ppm",
@@ -352,6 +363,9 @@ fn put_fit(
         error,
         &[("offset_deg_per_h", fit.offset_deg_per_h)],
     );
+    if staircase.is_found {
+        put(&SCALE_FACTOR_OFFSET, fit.offset, &[]);
+    }
     for (key, found) in [
         (&SCALE_FACTOR_NONLINEARITY, &fit.nonlinearity),
         (

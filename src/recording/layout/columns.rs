@@ -65,7 +65,7 @@ pub(in crate::recording) enum Selection<'a> {
 /// The columns that are read.
 #[derive(Clone, Debug, Default)]
 pub(in crate::recording) struct Chosen {
-    /// Those of the data, in the order in which they were asked for; that of the reference behind them.
+    /// Those of the data, in the order in which they were asked for; those of reference and temperature behind them.
     pub(in crate::recording) data: Vec<usize>,
     /// Those whose sum is the time.
     pub(in crate::recording) time: Vec<(usize, TimeUnit)>,
@@ -116,15 +116,18 @@ pub(in crate::recording) fn choose(
     if needs_time {
         chooser.put_time(&named, &mut chosen)?;
     }
-    let reference = match (selection, &format.reference_column) {
-        (Selection::Named(_), Some(name)) if needs_time => Some(chooser.one(name)?),
-        _ => None,
+    let beside = match selection {
+        Selection::Named(_) if needs_time => {
+            format.beside().map(|name| chooser.one(name)).collect()
+        }
+        _ => Ok(Vec::new()),
     };
+    let beside: Vec<usize> = beside?;
     chosen.data = match named[..] {
-        [] => vec![chooser.only(&chosen, reference)?],
+        [] => vec![chooser.only(&chosen, &beside)?],
         _ => named,
     };
-    chosen.data.extend(reference);
+    chosen.data.extend(beside);
     for (position, index) in chosen.data.iter().enumerate() {
         if chosen.time.iter().any(|(time, _)| time == index) {
             return Err(LayoutError::DataIsTime);
@@ -228,9 +231,9 @@ impl Chooser<'_> {
 
     /// The column of the data where none was named: the only one beside the time, or the only one of these
     /// whose heading names a unit of a gyro.
-    fn only(&self, chosen: &Chosen, reference: Option<usize>) -> Result<usize, LayoutError> {
+    fn only(&self, chosen: &Chosen, beside: &[usize]) -> Result<usize, LayoutError> {
         let is_time = |index: &usize| {
-            chosen.time.iter().any(|(time, _)| time == index) || reference == Some(*index)
+            chosen.time.iter().any(|(time, _)| time == index) || beside.contains(index)
         };
         let others: Vec<usize> = (0..self.layout.width()).filter(|it| !is_time(it)).collect();
         if let [index] = others[..] {

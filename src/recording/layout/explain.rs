@@ -33,8 +33,8 @@ impl Layout {
                 Some(chosen.time.iter().map(|(_, unit)| *unit).collect()),
             ),
         };
-        let references = usize::from(given.reference_column.is_some());
-        let data = &chosen.data[..chosen.data.len().saturating_sub(references)];
+        let beside = given.beside().count();
+        let data = &chosen.data[..chosen.data.len().saturating_sub(beside)];
         LogFormat {
             column: names(&mut data.iter().copied()),
             time,

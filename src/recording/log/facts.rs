@@ -43,6 +43,18 @@ impl Log {
         }
     }
 
+    /// The log with other words in the place of its own.
+    #[must_use]
+    pub fn with_words(&self, rate_deg_per_h: Vec<f64>) -> Self {
+        let stretches = self.stretches.iter();
+        let stretches = stretches.map(|it| Stretch::of(&rate_deg_per_h, it.words.clone()));
+        Self {
+            stretches: stretches.collect(),
+            rate_deg_per_h,
+            ..self.clone()
+        }
+    }
+
     /// Leaves out what stands behind the first `count` words.
     pub fn keep_first(&mut self, count: usize) {
         if count >= self.rate_deg_per_h.len() {
@@ -51,6 +63,7 @@ impl Log {
         self.rate_deg_per_h.truncate(count);
         self.reference_deg_per_h.truncate(count);
         self.bridges.retain(|bridge| bridge.words.end < count);
+        self.temperature_c.truncate(count);
         self.stretches.retain(|stretch| stretch.words.start < count);
         for stretch in &mut self.stretches {
             if stretch.words.end > count {

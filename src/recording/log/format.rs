@@ -42,6 +42,11 @@ table! {
         reference_column: Option<String>, example "table_deg_per_s";
         /// Unit of the reference, an angle for an encoder [default: that of its heading].
         reference_unit: Option<LogUnit>, example "deg/s";
+        /// Column of the temperature, deg C: bias and scale factor are measured against it and its rate, or
+        /// follow it where a calibration is applied.
+        temperature_column: Option<String>, example "coil_c";
+        /// Temperature that its coefficients are told at [default: the mean of the log].
+        temperature_reference_c: Option<f64>, example 25.0, in -100.0..=150.0, "C";
         /// Column of the time; of two, such as week and seconds, the sum; `none` if the file has none
         /// [default: the one whose heading says so].
         time: Option<Vec<String>>, example ["time_s"];
@@ -88,8 +93,11 @@ table! {
         gap_aware: Option<u32>, example 3, in 1..=1000000;
         /// Longest step between stamps that is jitter and no gap [default: one and a half sample periods].
         max_gap_s: Option<f64>, example 0.02, in 1e-9..=1e9, "s";
-        /// What the gyro did: `static` (rest or constant rate) or `swing:F`, F in Hz [default: static].
+        /// What the gyro did: `static` (rest or constant rate), `swing:F`, F in Hz, or `dwells` (rates held one
+        /// after the other, which are found in the reference) [default: static].
         motion: Option<LogMotion>, example "static";
+        /// Time at the start of each dwell that is left out, for the gyro to settle [default: 0.5].
+        settle_s: Option<f64>, example 2.0, in 0.0..=1e6, "s";
         /// Shortest averaging time of the noise fit: longer than the noise is correlated
         /// [default: what the correlation of the log asks for, and ten samples at least unless the words are
         /// white].
@@ -98,6 +106,12 @@ table! {
 }
 
 impl LogFormat {
+    /// Columns that are read beside the words, in the order in which they stand behind them.
+    pub(in crate::recording) fn beside(&self) -> impl Iterator<Item = &str> {
+        let both = [&self.reference_column, &self.temperature_column];
+        both.into_iter().filter_map(|name| name.as_deref())
+    }
+
     /// What is said of the reference: its unit alone, of which an angle runs on.
     ///
     /// * `in_heading`: what the heading of its column says.

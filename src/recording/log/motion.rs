@@ -19,12 +19,14 @@ pub enum LogMotion {
         /// Swing frequency, Hz.
         frequency_hz: f64,
     },
+    /// It was turned at rates held one after the other, which the reference shows.
+    Dwells,
 }
 
 /// A motion of a log that nobody knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "expected `static`, or `swing:F` with a frequency F from {:e} to {:e} Hz",
+    "expected `static`, `dwells`, or `swing:F` with a frequency F from {:e} to {:e} Hz",
     SWING_HZ.0,
     SWING_HZ.1
 )]
@@ -35,8 +37,10 @@ impl FromStr for LogMotion {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let (least, most) = SWING_HZ;
-        if text == "static" {
-            return Ok(Self::Static);
+        match text {
+            "static" => return Ok(Self::Static),
+            "dwells" => return Ok(Self::Dwells),
+            _ => {}
         }
         let frequency = text.strip_prefix("swing:").map(str::parse::<f64>);
         match frequency {
@@ -52,6 +56,7 @@ impl fmt::Display for LogMotion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Static => f.write_str("static"),
+            Self::Dwells => f.write_str("dwells"),
             Self::Swing { frequency_hz } => write!(f, "swing:{frequency_hz}"),
         }
     }

@@ -12,6 +12,7 @@ use crate::recording::column::{Column, Columns};
 use crate::recording::error::LogError;
 use crate::recording::input::Input;
 use crate::recording::layout::columns::Selection;
+use crate::recording::layout::words::WordKind;
 use crate::recording::npy::array;
 use crate::recording::text::table::{self, Wanted};
 use crate::recording::time::timing::{Spacing, timing};
@@ -78,6 +79,10 @@ pub(super) fn logs_of(
     format: &LogFormat,
 ) -> Result<Vec<Log>, LogError> {
     let mut data = std::mem::take(&mut columns.data);
+    let temperature = match format.temperature_column {
+        Some(_) => data.pop(),
+        None => None,
+    };
     let reference = match format.reference_column {
         Some(_) => data.pop(),
         None => None,
@@ -87,6 +92,13 @@ pub(super) fn logs_of(
     let mut logs = logs
         .map(|column| log(path, &columns, column, format, &spacing))
         .collect::<Result<Vec<Log>, LogError>>()?;
+    if let Some(column) = temperature {
+        for log in &mut logs {
+            // A word of a running angle stands at the end of its step: the first row has none.
+            let without_word = usize::from(log.format.kind == Some(WordKind::Angle));
+            log.temperature_c = temperatures(path, &columns, (&column, without_word), &spacing)?;
+        }
+    }
     if let Some(column) = reference {
         let format = format.of_reference(column.unit);
         let reference = log(path, &columns, column, &format, &spacing)?;
@@ -131,21 +143,47 @@ pub fn read_assembly_log(
     let gyros = logs
         .try_into()
         .map_err(|_| LogError::of_file(path, "expected three gyros"))?;
-    let temperature_c = match temperature {
-        Some(column) => {
-            for (row, &warmth) in column.values.iter().enumerate() {
-                check_temperature(warmth)
-                    .map_err(|error| LogError::at(path, columns.place(row), error))?;
-            }
-            let rows = spacing.stretches[0].clone();
-            Some(column.values[rows].to_vec())
-        }
-        None => None,
-    };
+    let temperature_c = temperature
+        .map(|column| temperatures(path, &columns, (&column, 0), &spacing))
+        .transpose()?;
     Ok(AssemblyLog {
         gyros,
         temperature_c,
     })
+}
+
+/// The temperatures at the words of every stretch, one that is missing between two.
+///
+/// * `without_word`: rows at the start of a stretch that have no word.
+///
+/// # Errors
+/// A temperature that no gyro has.
+fn temperatures(
+    path: &Path,
+    columns: &Columns,
+    (column, without_word): (&Column, usize),
+    spacing: &Spacing,
+) -> Result<Vec<f64>, LogError> {
+    let mut temperature_c = Vec::new();
+    for rows in &spacing.stretches {
+        let rows = rows.start + without_word..rows.end;
+        if rows.is_empty() {
+            continue;
+        }
+        if !temperature_c.is_empty() {
+            temperature_c.push(f64::NAN);
+        }
+        for row in rows {
+            let warmth = column.values[row];
+            // The reader lets a missing number pass only where that is a gap.
+            if !warmth.is_nan() {
+                check_temperature(warmth)
+                    .map_err(|error| LogError::at(path, columns.place(row), error))?;
+            }
+            temperature_c.push(warmth);
+        }
+    }
+    Ok(temperature_c)
 }
 
 /// Reads the first numbers of a file as they stand, at most `samples_max`: a stimulus.
@@ -281,6 +319,7 @@ pub(super) fn log(
         unit: conversion.shown(),
         rate_deg_per_h,
         reference_deg_per_h: Vec::new(),
+        temperature_c: Vec::new(),
         sample_rate_hz: spacing.sample_rate_hz,
         timing: spacing.timing,
         empty_lines: columns.empty_lines,

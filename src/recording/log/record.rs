@@ -26,6 +26,8 @@ pub struct Log {
     pub rate_deg_per_h: Vec<f64>,
     /// What the column of the reference shows at the words, deg/h; empty without one.
     pub reference_deg_per_h: Vec<f64>,
+    /// Temperature at the words, deg C; empty without a column of it.
+    pub temperature_c: Vec<f64>,
     /// Samples per second, Hz.
     pub sample_rate_hz: f64,
     /// What the time column says; none without one.
@@ -70,6 +72,9 @@ impl Log {
         let (words, rates) = (&mut self.rate_deg_per_h, &reference.rate_deg_per_h);
         let count = words.len().min(rates.len());
         words.drain(..words.len() - count);
+        let temperatures = self.temperature_c.len();
+        self.temperature_c
+            .drain(..temperatures.saturating_sub(count));
         self.reference_deg_per_h = rates[rates.len() - count..].to_vec();
         self.stretches = vec![Stretch::of(words, 0..count)];
         let name = reference.column.as_deref().unwrap_or_default();

@@ -174,7 +174,7 @@ enum NotLive {
     Columns(u64),
 }
 
-/// Whether a log streams under a format: one column, all of it, without gaps or a reference.
+/// Whether a log streams under a format: one column, all of it, without gaps, a reference or a temperature.
 fn streams(format: &LogFormat) -> bool {
     whole_for(format).is_none()
 }
@@ -193,6 +193,7 @@ fn whole_for(format: &LogFormat) -> Option<&'static str> {
         (format.gap_aware.is_some(), "--gap-aware"),
         (format.missing == Some(MissingWords::Gap), "--missing gap"),
         (format.reference_column.is_some(), "--reference-column"),
+        (format.temperature_column.is_some(), "--temperature-column"),
     ];
     let mut asked = asked.into_iter().filter(|(is_asked, _)| *is_asked);
     asked.next().map(|(_, option)| option)

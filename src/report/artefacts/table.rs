@@ -208,8 +208,11 @@ pub(super) const TABLE: &[Artefact] = &[
         "scale-factor.svg",
         "residuals of full scale and of reading",
         "a channel has the curve `scale_factor`",
-        RUN,
-        |scene| plot::scale_factor::picture(scene.run?),
+        RUN_AND_LOG,
+        |scene| {
+            let state = scene.run.map(|run| run.scenario.trial.filter_state);
+            plot::scale_factor::picture(&scene.measured, state)
+        },
     ),
     drawn(
         "spectrum.svg",
@@ -224,6 +227,13 @@ pub(super) const TABLE: &[Artefact] = &[
         "the temperature changes",
         RUN,
         |scene| plot::thermal::picture(scene.run?, scene.signals),
+    ),
+    drawn(
+        "temperature.svg",
+        "means over the temperature with its coefficients, and what they leave",
+        "a log has a column of the temperature that changes",
+        RUN_AND_LOG,
+        |scene| plot::temperature::picture(&scene.measured),
     ),
     drawn(
         "noise-delay.svg",

@@ -20,6 +20,7 @@ pub(super) mod scale_factor;
 pub(super) mod spectrum;
 pub(super) mod sweep;
 pub(super) mod swing;
+pub(super) mod temperature;
 pub(super) mod thermal;
 
 pub(super) use budget::budget_svg;

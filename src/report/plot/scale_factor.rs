@@ -12,8 +12,9 @@ use crate::metrics::catalogue::{
 };
 use crate::metrics::columns::staircase::INPUT;
 use crate::metrics::{ChannelMetrics, Column};
-use crate::report::RunReport;
+use crate::report::record::measured::Measured;
 use crate::report::text::scale_factor::{OF_FULL_SCALE, OF_READING, filter_state_word};
+use crate::scenario::FilterState;
 use crate::units::deg_per_h_to_deg_per_s;
 
 /// Residual of one rate with the ends of its interval, ppm.
@@ -29,13 +30,18 @@ struct Channel<'a> {
 
 /// Residuals of full scale over the rate above, those of reading over its size below; `None` where
 /// no channel has a scale factor.
-pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
-    let channels = channels(report);
+///
+/// * `filter_state`: how the filters of a run were kept from rate to rate; none of a log.
+pub(in crate::report) fn picture(
+    measured: &Measured,
+    filter_state: Option<FilterState>,
+) -> Option<Picture> {
+    let channels = channels(measured);
     let all = || channels.iter().flat_map(|channel| &channel.points);
     let x = extent(all().map(|point| point.0))?;
     let sizes = extent(all().map(|point| point.0.abs()))?;
     let mut picture = Picture::new(WIDTH, 870.0);
-    let title = format!("{}: residuals of the scale factor", report.scenario.name);
+    let title = format!("{}: residuals of the scale factor", measured.name);
     picture.heading((90.0, 28.0), &title, 18.0);
     let above = extent(all().flat_map(|point| point.1))?;
     let upper = Panel::new(
@@ -68,11 +74,11 @@ pub(in crate::report) fn picture(report: &RunReport) -> Option<Picture> {
             draw(&mut picture, &lower, (channel.index, aside), &of_reading);
         }
     }
-    legends(&mut picture, report, &channels);
+    legends(&mut picture, filter_state, &channels);
     Some(picture)
 }
 
-fn legends(picture: &mut Picture, report: &RunReport, channels: &[Channel]) {
+fn legends(picture: &mut Picture, filter_state: Option<FilterState>, channels: &[Channel]) {
     let mut legend = Legend::new(56.0);
     for channel in channels {
         let stroke = stroke_of(channel.index);
@@ -96,8 +102,9 @@ fn legends(picture: &mut Picture, report: &RunReport, channels: &[Channel]) {
     }
     let mut legend = Legend::below(&legend, 466.0);
     legend.text(picture, "bars: 95 % interval of each rate");
-    let state = filter_state_word(report.scenario.trial.filter_state);
-    legend.text(picture, &format!("filter state: {state}"));
+    if let Some(state) = filter_state.map(filter_state_word) {
+        legend.text(picture, &format!("filter state: {state}"));
+    }
     if channels.len() > 1 {
         legend.text(picture, SIDE_BY_SIDE);
     }
@@ -120,8 +127,8 @@ fn draw(picture: &mut Picture, panel: &Panel, (index, aside): (usize, f64), poin
     }
 }
 
-fn channels<'a>(report: &RunReport<'a>) -> Vec<Channel<'a>> {
-    let channels = report.channels.iter().enumerate();
+fn channels<'a>(measured: &Measured<'a>) -> Vec<Channel<'a>> {
+    let channels = measured.channels.iter().enumerate();
     let found = channels.filter_map(|(index, (name, metrics))| {
         let curve = metrics.curve(&SCALE_FACTOR)?;
         let values = |column: &Column| column.of(curve).iter().copied();

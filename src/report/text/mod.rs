@@ -6,4 +6,5 @@ pub(super) mod repeats;
 pub(super) mod scale_factor;
 pub(super) mod suite;
 pub(super) mod table;
+pub(super) mod temperature;
 pub(super) mod verdict;

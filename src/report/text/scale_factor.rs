@@ -3,12 +3,13 @@
 use crate::gate::plain;
 use crate::metrics::catalogue::{
     SCALE_FACTOR, SCALE_FACTOR_NONLINEARITY, SCALE_FACTOR_NONLINEARITY_OF_READING,
+    SCALE_FACTOR_OFFSET,
 };
 use crate::metrics::columns::staircase::{
     INPUT, MEASURED, RESIDUAL, RESIDUAL_HIGH, RESIDUAL_LOW, RESIDUAL_OF_READING,
     RESIDUAL_OF_READING_HIGH, RESIDUAL_OF_READING_LOW, TURNS, WHOLE_TURNS,
 };
-use crate::metrics::{Column, Curve, MetricKey};
+use crate::metrics::{ChannelMetrics, Column, Curve, MetricKey};
 use crate::report::RunReport;
 use crate::report::layout::text::{Grid, Tone, toned, wrapped};
 use crate::scenario::FilterState;
@@ -39,14 +40,6 @@ pub(crate) fn scale_factor_text(report: &RunReport, width: usize, colour: bool) 
     let Some(stairs) = stairs.filter(|stairs| stairs.has_static_zeros) else {
         return String::new();
     };
-    let curves: Vec<(&str, &Curve)> = report
-        .channels
-        .iter()
-        .filter_map(|(name, metrics)| Some((name.as_str(), metrics.curve(&SCALE_FACTOR)?)))
-        .collect();
-    let Some((_, first)) = curves.first() else {
-        return String::new();
-    };
     let state = filter_state_word(report.scenario.trial.filter_state);
     let settled = plain(stairs.settle_s);
     let title = toned("scale factor test:", Tone::Heading, colour);
@@ -55,8 +48,41 @@ pub(crate) fn scale_factor_text(report: &RunReport, width: usize, colour: bool) 
          before and after subtracted; residuals in ppm of full scale (FS) and of reading with the \
          half width of their 95 % intervals"
     );
-    let mut text = format!("\n{}", wrapped(&line, INDENT, width));
-    text.push_str(&noise_floors(report, width));
+    table(&line, report.channels, width, colour)
+}
+
+/// The same of a log whose dwells were found; empty for others.
+pub(crate) fn found_dwells_text(
+    channels: &[(String, ChannelMetrics)],
+    width: usize,
+    colour: bool,
+) -> String {
+    let metrics = channels.iter().map(|(_, metrics)| metrics);
+    let Some(offset) = metrics.filter_map(|it| it.get(&SCALE_FACTOR_OFFSET)).next() else {
+        return String::new();
+    };
+    let field = |name: &str| offset.fields.get(name).copied().unwrap_or_default();
+    let title = toned("scale factor test:", Tone::Heading, colour);
+    let line = format!(
+        "{title} {} dwells found in the reference, at least {} s of settling left out of each; residuals in ppm of \
+         full scale (FS) and of reading with the half width of their 95 % intervals",
+        field("count"),
+        plain(field("settle_s"))
+    );
+    table(&line, channels, width, colour)
+}
+
+/// One row a rate behind a line; empty where no channel has a scale factor.
+fn table(line: &str, channels: &[(String, ChannelMetrics)], width: usize, colour: bool) -> String {
+    let curves: Vec<(&str, &Curve)> = channels
+        .iter()
+        .filter_map(|(name, metrics)| Some((name.as_str(), metrics.curve(&SCALE_FACTOR)?)))
+        .collect();
+    let Some((_, first)) = curves.first() else {
+        return String::new();
+    };
+    let mut text = format!("\n{}", wrapped(line, INDENT, width));
+    text.push_str(&noise_floors(channels, width));
     text.push_str(&rows(first, &curves, colour).lines(INDENT));
     if WHOLE_TURNS.of(first).contains(&0.0) {
         let note = "* not a whole number of turns: an error that goes with the table's angle does \
@@ -67,8 +93,8 @@ pub(crate) fn scale_factor_text(report: &RunReport, width: usize, colour: bool) 
 }
 
 /// What noise alone would make of the nonlinearity.
-fn noise_floors(report: &RunReport, width: usize) -> String {
-    let floors = report.channels.iter().filter_map(|(name, metrics)| {
+fn noise_floors(channels: &[(String, ChannelMetrics)], width: usize) -> String {
+    let floors = channels.iter().filter_map(|(name, metrics)| {
         let of = |key: &MetricKey| {
             let metric = metrics.get(key)?;
             metric.fields.get("noise_floor_ppm").copied()

@@ -17,7 +17,8 @@ use crate::report::record::sweep::assignments_text;
 use crate::report::text::compensation::compensation_text;
 use crate::report::text::quality::quality_text;
 use crate::report::text::repeats::repeats_text;
-use crate::report::text::scale_factor::scale_factor_text;
+use crate::report::text::scale_factor::{found_dwells_text, scale_factor_text};
+use crate::report::text::temperature::temperature_text;
 use crate::report::text::verdict::verdict_text;
 use crate::scenario::LogFacts;
 use crate::scenario::{AssumedValue, Fidelity, PublishedConfig};
@@ -46,7 +47,9 @@ pub fn table_text(report: &RunReport, width: usize, colour: bool) -> String {
     let verdicts = report.verdicts;
     text.push_str(&failures_text(&report.measured(), verdicts, width, colour));
     if report.log.is_some() {
+        text.push_str(&found_dwells_text(report.channels, width, colour));
         text.push_str(&quality_text(report.channels, width));
+        text.push_str(&temperature_text(report.channels, width));
     }
     text.push_str(&filter_verdicts(&report.measured(), width, colour));
     text.push_str(&sine_fits(report.channels, width));

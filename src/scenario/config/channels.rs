@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use crate::filters::FilterConfig;
 use crate::recording::LogMotion;
 use crate::scenario::config::Scenario;
-use crate::turntable::{MotionConfig, MultiSineConfig, SwingConfig};
+use crate::turntable::{MotionConfig, MultiSineConfig, StepsConfig, SwingConfig};
 
 /// Prefixes of the channels of an assembly, in the order of its case axes.
 const ASSEMBLY: &[&str] = &["x_", "y_", "z_"];
@@ -20,6 +20,9 @@ pub(in crate::scenario) const COMPENSATED: &str = "compensated";
 /// What stands behind the name of the channel of a log whose outliers are left out.
 pub(crate) const WITHOUT_OUTLIERS: &str = "_without_outliers";
 
+/// What stands behind the name of the channel of a log whose temperature is taken out.
+pub(crate) const WITHOUT_TEMPERATURE: &str = "_without_temperature";
+
 /// Prefix of the names of estimates.
 const CALIBRATION: &str = "calibration_";
 
@@ -28,6 +31,12 @@ const CALIBRATION: &str = "calibration_";
 pub(crate) fn motion_of_log(motion: LogMotion) -> MotionConfig {
     match motion {
         LogMotion::Static => MotionConfig::rest(),
+        // Which rates it holds is found in it.
+        LogMotion::Dwells => MotionConfig::Steps(StepsConfig {
+            rates_deg_per_s: Vec::new(),
+            dwell_s: 1.0,
+            settle_s: 0.0,
+        }),
         LogMotion::Swing { frequency_hz } => MotionConfig::Swing(SwingConfig {
             rate_amplitude_deg_per_s: None,
             angle_amplitude_deg: None,

@@ -11,7 +11,7 @@ use crate::turntable::MotionChecks;
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 use crate::wording::is_misspelling;
 
-use crate::scenario::config::channels::WITHOUT_OUTLIERS;
+use crate::scenario::config::channels::{WITHOUT_OUTLIERS, WITHOUT_TEMPERATURE};
 use crate::scenario::config::{FilterState, Scenario};
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::read::resolved::Resolved;
@@ -243,13 +243,19 @@ impl Checks<'_> {
 
     fn channel(&mut self, path: &str, written: &str, channel: &str) {
         let scenario = &self.resolved.scenario;
-        let without_outliers = scenario.log.as_ref().map(|_| {
-            let raw = scenario.raw_channels().into_iter();
-            raw.map(|raw| format!("{raw}{WITHOUT_OUTLIERS}")).collect()
+        let of_log = scenario.log.as_ref().map(|log| {
+            let warm = log.temperature_column.as_ref();
+            let names = warm.map(|_| WITHOUT_TEMPERATURE).into_iter();
+            let names = names.chain([WITHOUT_OUTLIERS]);
+            let of_raw = |name| {
+                let raw = scenario.raw_channels().into_iter();
+                raw.map(move |raw| format!("{raw}{name}"))
+            };
+            names.flat_map(of_raw).collect()
         });
         let known = [
             scenario.channel_names(),
-            without_outliers.unwrap_or_default(),
+            of_log.unwrap_or_default(),
             scenario.calibration_channels(),
         ]
         .concat();
