@@ -80,6 +80,17 @@ pub struct LogTrialError {
     pub is_read: bool,
 }
 
+impl LogTrialError {
+    /// What is wrong with a log, or with what is asked of it.
+    pub(super) fn of(log: &Log, message: impl ToString) -> Self {
+        Self {
+            file: log.file.clone(),
+            message: message.to_string(),
+            is_read: false,
+        }
+    }
+}
+
 /// A log with everything measured on it.
 pub struct LogTrial {
     pub(super) log: Log,
@@ -118,11 +129,7 @@ pub fn try_log(
     let is_compensated = compensated.is_some();
     let clash = filters.and_then(|filters| clash(filters, is_compensated, &log));
     if let Some(message) = clash.or_else(|| refusal_of_gaps(&log, filters, settings)) {
-        return Err(LogTrialError {
-            file: log.file,
-            message,
-            is_read: false,
-        });
+        return Err(LogTrialError::of(&log, message));
     }
     let warmth = Warmth::of(&log, length.warm_up, settings);
     notes.splice(0..0, log.notes());
@@ -134,19 +141,12 @@ pub fn try_log(
         compensated_deg_per_h: compensated,
     };
     let input = input_of(&record, length, sample_period_s);
-    let finished = run(filters, &input, progress).map_err(|unfinished| LogTrialError {
-        file: log.file.clone(),
-        message: unfinished.to_string(),
-        is_read: false,
-    })?;
+    let finished = run(filters, &input, progress);
+    let finished = finished.map_err(|unfinished| LogTrialError::of(&log, unfinished))?;
     let measured = &record.raw_deg_per_h[length.warm_up..];
     let reference = record.truth_deg_per_h.get(length.warm_up..);
     let motion = metric_motion(settings, reference.unwrap_or_default(), sample_period_s);
-    let motion = motion.map_err(|reason| LogTrialError {
-        file: log.file.clone(),
-        message: reason.to_string(),
-        is_read: false,
-    })?;
+    let motion = motion.map_err(|reason| LogTrialError::of(&log, reason))?;
     let metric_settings = Settings {
         bridges: log.bridges_behind(length.warm_up),
         ..metric_settings(settings, motion, measured, sample_period_s)

@@ -175,8 +175,9 @@ fn whitened(rows: &[Option<Wide>], count: usize, (correlation, ratio): (f64, f64
             found.rows += 1;
             for one in 0..=count {
                 let weighted = own[one] / innovation;
-                for other in one..=count {
-                    found.products[one][other] += weighted * own[other];
+                let into = found.products[one][one..=count].iter_mut();
+                for (product, other) in into.zip(&own[one..=count]) {
+                    *product += weighted * other;
                 }
             }
         }
