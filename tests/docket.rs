@@ -13,7 +13,16 @@ fn claims() -> Vec<(String, String)> {
     let texts = entries.flatten().filter_map(|entry| {
         let name = entry.file_name().into_string().ok()?;
         let text = fs::read_to_string(entry.path()).ok()?;
-        (name.ends_with(".toml") && name != "base.toml").then_some((name, text))
+        let is_claim = text.contains("[[published]]");
+        let head: toml::Table = match name.ends_with(".toml") {
+            true => text.parse().expect("a scenario"),
+            false => toml::Table::new(),
+        };
+        let is_base = !head.contains_key("name");
+        let is_beside = text.contains("\nextends = \"side-by-side");
+        let known = is_claim || is_base || is_beside || !name.ends_with(".toml");
+        assert!(known, "{name} is no claim, no base and not side by side");
+        is_claim.then_some((name, text))
     });
     texts.collect()
 }
@@ -21,7 +30,7 @@ fn claims() -> Vec<(String, String)> {
 #[test]
 fn every_claim_says_its_kind_its_figure_with_rounding_and_what_it_assumes() {
     let claims = claims();
-    assert!(claims.len() >= 10, "{}", claims.len());
+    assert!(claims.len() >= 15, "{}", claims.len());
     for (name, text) in claims {
         for part in [
             "description = \"a filter of the kind of: ",
@@ -117,4 +126,34 @@ fn known_answers_of_least_squares_at_rest_are_those_that_their_scenario_says() {
     // What is left out for one reason is said once.
     let verdict = result["channels"]["filter"]["verdict"].to_string();
     assert_eq!(verdict.matches("left out by").count(), 1, "{verdict}");
+}
+
+#[test]
+fn the_filters_of_the_claims_stand_side_by_side_on_every_motion() {
+    let read = |name: &str| fs::read_to_string(repository(name)).expect("the scenario is there");
+    let parsed = |text: &str| text.parse::<toml::Table>().expect("a scenario");
+    let filters = |text: &str| parsed(text)["filter"].as_array().expect("filters").clone();
+    let beside = filters(&read("scenarios/docket/side-by-side.toml"));
+    let kind = |filter: &toml::Value| {
+        let mut table = filter.as_table().expect("a filter").clone();
+        table.remove("name");
+        table
+    };
+    for (name, text) in claims() {
+        // Test signals have filters of their own.
+        if name == "signals.toml" {
+            continue;
+        }
+        let own = kind(&filters(&text)[0]);
+        assert!(beside.iter().any(|filter| kind(filter) == own), "{name}");
+    }
+    for prefix in ["", "words-"] {
+        for motion in ["rest", "swing", "step", "warm-up"] {
+            let text = read(&format!("scenarios/docket/{prefix}{motion}.toml"));
+            assert!(
+                text.contains("extends = \"side-by-side"),
+                "{prefix}{motion}"
+            );
+        }
+    }
 }

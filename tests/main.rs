@@ -117,6 +117,7 @@ mod scale_factor_test;
 mod scenario_errors;
 mod selection;
 mod shards;
+mod side_by_side;
 mod sign_lms_hardware;
 mod small_inputs_and_steps;
 mod suite;

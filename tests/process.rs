@@ -240,7 +240,7 @@ fn nothing_is_started_without_consent_on_the_command_line() {
 }
 
 /// What a program does, the kind of failure that it is, and what is said of it.
-const MISBEHAVIOUR: [(&str, &str, &str); 16] = [
+const MISBEHAVIOUR: [(&str, &str, &str); 18] = [
     (
         "sys.exit(3)",
         "program",
@@ -312,6 +312,17 @@ const MISBEHAVIOUR: [(&str, &str, &str); 16] = [
         "hello()\nwhile True:\n    n, b = block()\n    if n == 0: sys.exit(9)\n    say(struct.pack('<I', n) + b)",
         "program",
         "answered every word and then ended with exit code 9",
+    ),
+    // It goes on answering, and too slowly.
+    (
+        "hello(); n, b = block(); say(struct.pack('<I', n))\nfor k in range(600): say(b[k:k + 1]); time.sleep(0.1)",
+        "time-out",
+        "no answer to a block within 0.5 s",
+    ),
+    (
+        "import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN); hello(); block(); time.sleep(600)",
+        "time-out",
+        "no answer to a block within 0.5 s",
     ),
     // It reads ahead.
     (

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::beside::{Standing, beside, stands};
 use super::change_per_unit::{self, change_per_unit};
 use super::table::{
     Assumed, Cause, ComparedCell, ComparedColumn, ComparedRow, ComparedTable, Comparison,
@@ -12,7 +13,7 @@ use crate::metrics::catalogue::{
     AMPLITUDE_RATIO, ANGLE_RANDOM_WALK_OVER_DC_GAIN, DC_GAIN, MEAN_RATIO, NOISE_GAIN,
     WEIGHT_NOISE_RATIO,
 };
-use crate::metrics::{Estimate, Finding, Metric, MetricKey, find, paired_ratio};
+use crate::metrics::{Estimate, Finding, Metric, MetricKey, find, known_metrics, paired_ratio};
 use crate::scenario::{
     AssumptionConfig, ComparisonColumn, ComparisonConfig, ComparisonKind, ComparisonRowConfig,
     FigureConfig, Resolved, Scenario, ScenarioError, slug,
@@ -36,6 +37,9 @@ pub(crate) struct Layout<'a> {
     figures: Vec<&'a FigureConfig>,
     metrics: BTreeSet<&'a str>,
     scenarios: BTreeSet<&'a str>,
+    /// Every metric, and the scenarios whose filters stand side by side, of which all are kept.
+    all: BTreeSet<&'a str>,
+    beside: BTreeSet<&'a str>,
 }
 
 impl<'a> Layout<'a> {
@@ -60,13 +64,19 @@ impl<'a> Layout<'a> {
         }
         let named = layout.rows.iter().flat_map(|row| &row.scenarios);
         layout.scenarios = named.map(String::as_str).collect();
+        layout.all = known_metrics().iter().map(|key| key.name).collect();
+        let scenarios = suite.iter().map(|resolved| &resolved.scenario);
+        let standing = scenarios.filter(|scenario| stands(scenario));
+        layout.beside = standing.map(|scenario| scenario.name.as_str()).collect();
         layout
     }
 
-    /// The metrics that a table may ask of a scenario; empty where none names it.
+    /// The metrics that a table or the page of the filters may ask of a scenario; empty where none does.
     pub(crate) fn metrics_of(&self, scenario: &str) -> &BTreeSet<&'a str> {
         static NONE: BTreeSet<&str> = BTreeSet::new();
-        if self.scenarios.contains(scenario) {
+        if self.beside.contains(scenario) {
+            &self.all
+        } else if self.scenarios.contains(scenario) {
             &self.metrics
         } else {
             &NONE
@@ -84,11 +94,18 @@ impl<'a> Layout<'a> {
         let assumptions = self.assumptions.iter();
         let readings = self.reproducing(suite);
         let figures = self.figures.iter();
+        let standing = suite.iter().map(|run| Standing {
+            scenario: &run.resolved.scenario,
+            folder: run.folder,
+            kept: run.kept,
+        });
+        let standing: Vec<Standing> = standing.collect();
         Comparison {
             assumptions: assumptions
                 .filter_map(|one| assumed(one, &readings, &tables))
                 .collect(),
             figures: figures.filter_map(|figure| drawn(figure, suite)).collect(),
+            beside: beside(&standing),
             tables,
         }
     }

@@ -1,5 +1,6 @@
 //! Tables over several scenarios, ready to be written down.
 
+use super::beside::Beside;
 use crate::metrics::{Estimate, Finding, Metric};
 use crate::scenario::ComparisonKind;
 
@@ -12,6 +13,8 @@ pub struct Comparison {
     pub assumptions: Vec<Assumed>,
     /// Published figures that were drawn again.
     pub figures: Vec<DrawnFigure>,
+    /// Filters side by side.
+    pub beside: Vec<Beside>,
 }
 
 /// One table.

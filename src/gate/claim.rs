@@ -78,7 +78,8 @@ pub fn judge_claim(
     let Some(found) = simulated(figure, channels) else {
         let why = metrics.and_then(|(_, metrics)| {
             let failed = metrics.error.as_ref().map(|error| error.message.clone());
-            failed.or_else(|| metrics.unavailable.get(key).map(ToString::to_string))
+            let failed = failed.or_else(|| metrics.unavailable.get(key).map(ToString::to_string));
+            failed.or_else(|| near_zero(figure, key, channels))
         });
         let why = why.unwrap_or_else(|| "the run does not give it".to_owned());
         return Some(ClaimVerdict {
@@ -94,6 +95,19 @@ pub fn judge_claim(
         kind,
         reason: format!("{found} found, {published} published{conditions}"),
     })
+}
+
+/// That a ratio has no value as what divides it is not told apart from zero.
+fn near_zero(
+    figure: &PublishedConfig,
+    key: &str,
+    channels: &[(String, ChannelMetrics)],
+) -> Option<String> {
+    let reference = figure.relative_to.as_ref()?;
+    let (_, metrics) = channels.iter().find(|(name, _)| name == reference)?;
+    let estimate = metrics.metrics.get(key)?.estimate;
+    let text = estimate_text(&estimate, DIGITS);
+    Some(format!("{text} of {reference} is not told apart from 0"))
 }
 
 fn kind(figure: &PublishedConfig, key: &str, rounding: f64, found: &Estimate) -> ClaimKind {
@@ -174,6 +188,17 @@ mod tests {
         assert_eq!(kind(0.3), ClaimKind::NotReached);
         assert_eq!(kind(0.9), ClaimKind::Exceeded);
         assert_eq!(judge_claim(&figure(0.48, None), &channels()), None);
+    }
+
+    #[test]
+    fn a_ratio_over_what_may_be_zero_is_not_testable_and_says_so() {
+        let mut channels = channels();
+        let raw = channels[0].1.metrics.values_mut().next().unwrap();
+        raw.estimate = Estimate::symmetric(0.10, 0.13);
+        let verdict = judge_claim(&figure(0.48, Some(0.005)), &channels).unwrap();
+        assert_eq!(verdict.kind, ClaimKind::NotTestable);
+        let said = "0.10 \u{b1}0.13 of raw is not told apart from 0";
+        assert!(verdict.reason.contains(said), "{verdict:?}");
     }
 
     #[test]

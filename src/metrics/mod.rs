@@ -25,6 +25,7 @@
 //! | `motion` | the metrics of each kind of motion: steady, swing, several sines, steps, any other |
 //! | `temperature` | bias and scale factor of a log against a temperature and its rate |
 //! | `verdict` | what the metrics say a filter did |
+//! | `equal_delay` | noise beside that of a mean of the same delay, and what a word costs |
 //! | `catalogue` | the list of metrics, their names, and which records support them |
 //! | `pool` | independent repeats, and conditions compared |
 //! | `measure` | all of it for one channel |
@@ -34,6 +35,7 @@
 mod allan;
 mod calibration;
 pub mod catalogue;
+mod equal_delay;
 mod estimate;
 mod expected;
 mod key;
@@ -75,6 +77,7 @@ pub use allan::variants::{
 pub(crate) use catalogue::names::{meant, unknown, unknown_of_channel};
 pub use catalogue::support::{encoder_lack, requirement, support, truth_lack};
 pub use catalogue::{columns, find, known_curves, known_metrics, repeated_metrics};
+pub(crate) use equal_delay::put_beside_others;
 pub use estimate::blocks::{block_label_s, block_means, is_sample_or_longer, samples_in};
 pub use estimate::fit_sheet::{FitSheet, FitTerm};
 pub(crate) use estimate::interval::NORMAL_QUANTILE;
@@ -139,6 +142,8 @@ pub use theory::learning::Learning;
 pub use theory::memory::memory_samples;
 pub use theory::prediction::{Prediction, lags_needed, predict};
 pub use trial::black_box::{BlackBox, TwinFigure};
-pub(crate) use trial::black_box::{REACHES_START, SINE_FREQUENCY, STEP_GAINS, put_black_box};
+pub(crate) use trial::black_box::{
+    REACHES_START, SINE_DELAY_MS, SINE_FREQUENCY, STEP_GAINS, put_black_box,
+};
 pub use trial::readaptation::{GainUnits, Readaptation};
 pub use verdict::{AgainstOne, Deed, FilterVerdict, Finding, filter_verdict};

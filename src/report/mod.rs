@@ -46,9 +46,9 @@ mod starter;
 mod text;
 
 pub use artefacts::{
-    Artefact, Contents, INDEX, JUNIT, METRICS, OutputFile, PAGE, Place, SUITE_SUMMARY, artefacts,
-    budget_files, calibration_files, input_digest_toml, log_files, plots, run_file_names,
-    run_files, run_pages, run_pictures, suite_files,
+    Artefact, Contents, FILTERS, INDEX, JUNIT, METRICS, OutputFile, PAGE, Place, SUITE_SUMMARY,
+    artefacts, budget_files, calibration_files, input_digest_toml, log_files, plots,
+    run_file_names, run_files, run_pages, run_pictures, suite_files,
 };
 pub use baseline::json::comparison_with_baseline_json;
 pub use baseline::markdown::comparison_with_baseline_markdown;
@@ -74,6 +74,7 @@ pub use json::summary::run_summary_json;
 pub use kalman::{KalmanReport, is_kalman_json, kalman_json};
 pub use log::{LogReport, log_json, log_text};
 pub use page::against::{comparison_page, is_comparison_page};
+pub use page::beside::filters_page;
 pub use page::infer::infer_page;
 pub use page::suite::suite_page;
 pub use plot::infer::infer_pictures;

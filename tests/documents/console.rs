@@ -4,7 +4,7 @@
 //! first line below a command is its exit code, 0 where none stands. A line `...` stands for any lines.
 //! The commands of a page run in order in one scratch folder that holds a copy of `scenarios/`; a block
 //! fenced as `csv NAME` is written there as a file first. A block fenced as `console suite` is an excerpt
-//! of the complete job, which `.ci/run` compares with what that job printed.
+//! of the complete job, one as `console docket` of the docket's, which `.ci/run` compares with what the job printed.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -22,8 +22,8 @@ const ELISION: &str = "...";
 pub(super) enum Use<'a> {
     /// Commands that every test run executes.
     Commands,
-    /// Excerpt of what the complete job prints.
-    Excerpt,
+    /// Excerpt of what a long job prints, by the name of the job.
+    Excerpt(&'a str),
     /// File of the scratch folder.
     File(&'a str),
     /// Text that nobody checks.
@@ -67,7 +67,7 @@ pub(super) fn blocks(text: &str) -> Vec<Block<'_>> {
 fn purpose(info: &str) -> Use<'_> {
     match info.split_once(' ').unwrap_or((info, "")) {
         ("console", "") => Use::Commands,
-        ("console", "suite") => Use::Excerpt,
+        ("console", job @ ("suite" | "docket")) => Use::Excerpt(job),
         ("csv", name) if !name.is_empty() => Use::File(name),
         _ => Use::Other,
     }
@@ -212,10 +212,10 @@ pub(super) fn check_commands(page: &Page, complaints: &mut String) -> usize {
 }
 
 /// Appends to `complaints` the excerpts of a page that are not in `job`, what the complete job printed.
-pub(super) fn check_excerpts(page: &Page, job: &str, complaints: &mut String) -> usize {
+pub(super) fn check_excerpts(page: &Page, name: &str, job: &str, complaints: &mut String) -> usize {
     let mut count = 0;
     for block in blocks(&page.text) {
-        if block.purpose != Use::Excerpt {
+        if block.purpose != Use::Excerpt(name) {
             continue;
         }
         for example in examples(&block) {

@@ -47,7 +47,7 @@ pub(super) fn unfounded(page: &Page, inputs: &str) -> Vec<String> {
     let blocks = blocks(&page.text);
     let printed: Vec<&str> = blocks
         .iter()
-        .filter(|block| matches!(block.purpose, Use::Commands | Use::Excerpt))
+        .filter(|block| matches!(block.purpose, Use::Commands | Use::Excerpt(_)))
         .flat_map(|block| &block.lines)
         .flat_map(|line| decimals(line))
         .collect();

@@ -115,21 +115,29 @@ fn commands_print_what_the_pages_show() {
     assert!(complaints.is_empty(), "{complaints}");
 }
 
-/// `FOGBENCH_SUITE_TEXT` names a file with what `fogbench run -v` printed; without it this test says so.
+/// Variables that name a file with what a long job printed, by the name of the job: `fogbench run -v`, and the same of
+/// `scenarios/docket`. Without one the test says so.
+const JOBS: [(&str, &str); 2] = [
+    ("suite", "FOGBENCH_SUITE_TEXT"),
+    ("docket", "FOGBENCH_DOCKET_TEXT"),
+];
+
 #[test]
-fn excerpts_of_the_complete_job_are_what_it_printed() {
-    let Some(path) = std::env::var_os("FOGBENCH_SUITE_TEXT") else {
-        eprintln!("skipped: FOGBENCH_SUITE_TEXT names no output of the complete job");
-        return;
-    };
-    let job = fs::read_to_string(path).expect("the output of the job is readable");
-    let mut complaints = String::new();
-    let mut count = 0;
-    for page in pages() {
-        count += console::check_excerpts(&page, &job, &mut complaints);
+fn excerpts_of_the_long_jobs_are_what_they_printed() {
+    for (name, variable) in JOBS {
+        let Some(path) = std::env::var_os(variable) else {
+            eprintln!("skipped: {variable} names no output of the job {name}");
+            continue;
+        };
+        let job = fs::read_to_string(path).expect("the output of the job is readable");
+        let mut complaints = String::new();
+        let mut count = 0;
+        for page in pages() {
+            count += console::check_excerpts(&page, name, &job, &mut complaints);
+        }
+        assert!(count > 0, "no page shows an excerpt of the job {name}");
+        assert!(complaints.is_empty(), "{complaints}");
     }
-    assert!(count > 0, "no page shows an excerpt");
-    assert!(complaints.is_empty(), "{complaints}");
 }
 
 #[test]

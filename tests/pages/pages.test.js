@@ -8,7 +8,7 @@ import { after, before, test } from "node:test";
 import { browser, opened, written } from "./suite.js";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const PAGES = ["index.html", "compared.html", "swing/report.html", "repeats/report.html", "sweep/0003/report.html"];
+const PAGES = ["index.html", "compared.html", "filters.html", "swing/report.html", "repeats/report.html", "sweep/0003/report.html"];
 const WIDTHS = [390, 1400];
 
 let suite;

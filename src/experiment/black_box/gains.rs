@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::Figure;
 use super::subject::{Lack, Twins, std_of};
 use crate::metrics::catalogue::{ADAPTATION_MEMORY, LASTING_RATE_GAIN, SINE_GAIN, TWIN_MEAN_RATIO};
-use crate::metrics::{GainUnits, MetricKey, SINE_FREQUENCY, STEP_GAINS, TwinFigure};
+use crate::metrics::{GainUnits, MetricKey, SINE_DELAY_MS, SINE_FREQUENCY, STEP_GAINS, TwinFigure};
 
 /// Size of a change in standard deviations of a word's noise, and the field of the gain for it.
 type Size = (f64, &'static str);
@@ -272,14 +272,18 @@ fn sines_at(twins: &Twins, at: usize) -> f64 {
 /// Gain for each of the sines over the second half of the record.
 fn sine_gain(twins: &Twins, sines: &[Answer]) -> Figure {
     let half = twins.words.len() - twins.middle();
-    let gain = |answer: &Answer, cycles: usize| {
+    let parts = |answer: &Answer, cycles: usize| {
         let (mut sine, mut cosine) = (0.0, 0.0);
         for at in twins.middle()..twins.words.len() {
             let (s, c) = phase(twins, cycles, at).sin_cos();
             sine += s * answer.gain[at];
             cosine += c * answer.gain[at];
         }
-        sine.hypot(cosine) * 2.0 / half as f64
+        (2.0 / half as f64 * sine, 2.0 / half as f64 * cosine)
+    };
+    let gain = |answer: &Answer, cycles: usize| {
+        let (sine, cosine) = parts(answer, cycles);
+        sine.hypot(cosine)
     };
     if 4 * SINES[3].0 > half {
         return Err(format!("the record holds less than {} words", 8 * SINES[3].0).into());
@@ -287,6 +291,11 @@ fn sine_gain(twins: &Twins, sines: &[Answer]) -> Figure {
     let mut figure = pooled(sines, |answer| gain(answer, SINES[0].0));
     let frequency_hz = SINES[0].0 as f64 / (half as f64 * twins.sample_period_s);
     figure.fields.insert(SINE_FREQUENCY, frequency_hz);
+    let late = pooled(sines, |answer| {
+        let (sine, cosine) = parts(answer, SINES[0].0);
+        (-cosine).atan2(sine) / (TAU * frequency_hz)
+    });
+    figure.fields.insert(SINE_DELAY_MS, 1e3 * late.value);
     for (cycles, field) in &SINES[1..] {
         let others = pooled(sines, |answer| gain(answer, *cycles));
         figure.fields.insert(field, others.value);

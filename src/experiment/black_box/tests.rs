@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::filters::{FilterKind, LmsFilterConfig, RlsFilterConfig};
+use crate::metrics::SINE_DELAY_MS;
 use crate::metrics::catalogue::{
     ADAPTATION_MEMORY, DELAY_UNDER_SWING, GLITCH_RESPONSE, LASTING_RATE_GAIN, LINEARITY_ERROR,
     SATURATION_GAIN, SINE_GAIN, START_UP, STEP_GAIN_1S, STEP_GAIN_10S, SWING_READAPTATION,
@@ -79,6 +80,8 @@ fn known_answer_of_a_moving_average_of_eight() {
     let half = std::f64::consts::PI * 2.0 / 4000.0;
     let expected = (8.0 * half).sin() / (8.0 * half.sin());
     assert_near(&found, &SINE_GAIN, expected, 1e-9);
+    let late_ms = found.field(&SINE_GAIN, SINE_DELAY_MS);
+    assert!(late_ms.is_some_and(|late_ms| (late_ms - 3.5e3 * PERIOD_S).abs() < 1e-6));
     assert_near(&found, &LINEARITY_ERROR, 0.0, 1e-12);
     assert_near(&found, &TIME_INVARIANCE_ERROR, 0.0, 1e-9);
     assert_near(&found, &GLITCH_RESPONSE, 0.125, 1e-12);
@@ -219,6 +222,8 @@ fn known_answer_of_a_wavelet_over_the_record() {
     // A record that begins an odd number of words later has other pairs.
     assert!(found.value(&TIME_INVARIANCE_ERROR) > Some(0.1));
     assert_near(&found, &STEP_GAIN_1S, 1.0, 0.02);
+    // A word moves the other of its pair, and no further one.
+    assert!(found.value(&MEMORY_0P1_PERCENT) <= Some(2.0 * PERIOD_S));
 }
 
 #[test]
@@ -235,6 +240,8 @@ fn known_answer_of_a_median_which_is_not_linear() {
     assert!(found.value(&LINEARITY_ERROR) > Some(0.2));
     assert_near(&found, &TIME_INVARIANCE_ERROR, 0.0, 0.0);
     assert_near(&found, &STEP_GAIN_1S, 1.0, 1e-9);
+    // A word is in five windows.
+    assert!(found.value(&MEMORY_0P1_PERCENT) <= Some(5.0 * PERIOD_S));
     // A glitch moves the median by a neighbour's distance, not by its own height.
     assert!(found.value(&GLITCH_RESPONSE) < Some(0.03));
     assert_near(&found, &LOOK_AHEAD, 0.0, 0.0);
@@ -269,6 +276,8 @@ fn known_answer_of_least_squares_that_forget_nothing() {
     let kind = FilterKind::Rls(RlsFilterConfig::reference());
     let found = built_in(&kind, 40_000);
     assert_near(&found, &LOOK_AHEAD, 0.0, 0.0);
+    // What one word has taught the weights is less than a thousandth of what it is weighed by.
+    assert_near(&found, &MEMORY_1_PERCENT, 4.5 * PERIOD_S, 0.6 * PERIOD_S);
     // Wiener weights of a predictor by 4: p m^2 / (s^2 + p m^2).
     let power = 4.0 * 8.47_f64.powi(2);
     let wiener = power / (400.0 + power);

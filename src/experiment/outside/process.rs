@@ -1,6 +1,8 @@
 //! A program of the user's in the place of a filter: its words, and what they and a few more runs of it
 //! tell of its weights.
 
+use std::time::Instant;
+
 use rayon::prelude::*;
 
 use super::failure::FailureKind;
@@ -102,12 +104,18 @@ impl Program<'_> {
         let session = Session::start(self.programs, &self.launch, &greeting, &ear);
         let mut session = session.map_err(|error| Halt::of(error, 0))?;
         let mut answers = Vec::with_capacity(words.len());
+        let began = Instant::now();
         for block in words.chunks(block as usize) {
             let start = answers.len();
             let answer = session.exchange(block);
             answers.extend(answer.map_err(|error| Halt::of(error, start))?);
         }
         let end = words.len();
+        if is_heard && end > 0 {
+            let us_per_word = 1e6 * began.elapsed().as_secs_f64() / end as f64;
+            let (run, channel) = &self.name;
+            self.progress.program_took(run, channel, us_per_word);
+        }
         session.finish().map_err(|error| Halt::of(error, end))?;
         Ok(registered(answers, config.output_register))
     }

@@ -22,7 +22,7 @@ use crate::gyro::{self, slow_drift};
 use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{
     BlackBox, ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Learning, Motion, Record,
-    Settings, known_motion, measure, put_black_box,
+    Settings, known_motion, measure, put_beside_others, put_black_box,
 };
 use crate::scenario::BlackBoxTrial;
 use crate::signal::{SlowDrift, WeightRule};
@@ -271,6 +271,7 @@ impl Cut<'_> {
                 if let Some(found) = self.black_box(filter, words, input) {
                     let is_fixed = !adapts && filter.shape.hidden_reason().is_none();
                     put_black_box(&found, is_fixed, &mut metrics);
+                    put_beside_others(&facts, self.sample_period_s, &mut metrics);
                 }
                 metrics
             }

@@ -22,6 +22,8 @@ pub trait Progress: Sync {
     }
     /// A program has written a line on its stderr.
     fn program_said(&self, _run: &str, _channel: &str, _line: &str) {}
+    /// A program has answered every word of a record, in so much time a word. No result may hold it.
+    fn program_took(&self, _run: &str, _channel: &str, _us_per_word: f64) {}
 }
 
 /// Nobody listens, nobody stops.

@@ -6,7 +6,7 @@ use super::against::Sides;
 use super::entry::Suite;
 use super::ledger::Ledger;
 use super::outcome::SuiteOutcome;
-use super::output::{INDEX, JUNIT, METRICS, SUMMARY, Settled, SuiteOutput};
+use super::output::{FILTERS, INDEX, JUNIT, METRICS, SUMMARY, Settled, SuiteOutput};
 use crate::comparison::{ComparedRun, Comparison, Layout};
 use crate::experiment::build::VERSION;
 use crate::experiment::plan::Plan;
@@ -63,6 +63,8 @@ pub(crate) fn conclude(plans: &[Plan], layout: &Layout, suite: &Suite) -> SuiteO
     };
     let page = unbroken(ledger, || report::suite_page(&summary, &tables, &sweeps));
     files.extend(page.map(|text| (INDEX.to_owned(), text)));
+    let beside = unbroken(ledger, || report::filters_page(VERSION, &comparison.beside));
+    files.extend(beside.flatten().map(|text| (FILTERS.to_owned(), text)));
     let published = output.publish(|staged| {
         for (name, text) in &files {
             staged.write(name, text.as_bytes())?;

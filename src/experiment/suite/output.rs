@@ -20,6 +20,7 @@ use crate::store::{
 pub(crate) const SUMMARY: &str = report::SUITE_SUMMARY.name;
 pub(crate) const JUNIT: &str = report::JUNIT.name;
 pub(crate) const INDEX: &str = report::INDEX.name;
+pub(crate) const FILTERS: &str = report::FILTERS.name;
 pub(crate) const METRICS: &str = report::METRICS.name;
 
 /// The output folder of a suite that runs.

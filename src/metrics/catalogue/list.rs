@@ -80,6 +80,8 @@ rows! {
     trial::black_box::LASTING_RATE_GAIN,
     trial::black_box::TWIN_MEAN_RATIO,
     trial::black_box::DELAY_AT_REST,
+    equal_delay::NOISE_AT_EQUAL_DELAY,
+    equal_delay::OPERATIONS_PER_WORD,
     trial::black_box::DELAY_UNDER_SWING,
     trial::black_box::SWING_READAPTATION,
     trial::black_box::START_UP,

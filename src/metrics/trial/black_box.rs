@@ -170,6 +170,9 @@ pub(crate) static STEP_GAINS: [(&MetricKey, f64); 3] = [
 /// Field of `sine_gain`: frequency of the slowest sine, Hz.
 pub(crate) const SINE_FREQUENCY: &str = "frequency_hz";
 
+/// Field of `sine_gain`: delay of the slowest sine, ms.
+pub(crate) const SINE_DELAY_MS: &str = "delay_ms";
+
 /// Field of `look_ahead_samples`: 1 if the first word already shows the future, so that the look-ahead is as
 /// long as the record.
 pub(crate) const REACHES_START: &str = "reaches_the_first_word";
@@ -231,6 +234,13 @@ impl BlackBox {
     pub fn value(&self, key: &MetricKey) -> Option<f64> {
         let own = self.figures.iter().find(|(known, _)| *known == key)?;
         Some(own.1.as_ref().ok()?.value)
+    }
+
+    /// A field of a figure, where it was found.
+    #[must_use]
+    pub fn field(&self, key: &MetricKey, field: &str) -> Option<f64> {
+        let own = self.figures.iter().find(|(known, _)| *known == key)?;
+        own.1.as_ref().ok()?.fields.get(field).copied()
     }
 }
 

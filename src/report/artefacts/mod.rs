@@ -21,7 +21,7 @@ use crate::scenario::{AssumedValue, SamplesFormat};
 use crate::signal::{BudgetSheet, CalibrationSheet, RunSignals};
 
 pub use samples::input_digest_toml;
-pub use table::{INDEX, JUNIT, METRICS, PAGE, SUITE_SUMMARY};
+pub use table::{FILTERS, INDEX, JUNIT, METRICS, PAGE, SUITE_SUMMARY};
 
 use samples::Samples;
 use table::{RUN_AND_LOG, SUITE, TABLE};

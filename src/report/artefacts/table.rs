@@ -48,6 +48,15 @@ pub const INDEX: Artefact = Artefact {
     made: Made::By(SUITE),
 };
 
+/// Page of the filters of a suite.
+pub const FILTERS: Artefact = Artefact {
+    name: "filters.html",
+    holds: "filters side by side on every motion that runs of the suite try them on: conditions, noise, cost",
+    when: "runs have trial.black_box and two filters or more",
+    places: &[Place::Suite],
+    made: Made::By(SUITE),
+};
+
 /// Verdict of a suite for a build server.
 pub const JUNIT: Artefact = Artefact {
     name: "junit.xml",
@@ -62,6 +71,7 @@ pub const JUNIT: Artefact = Artefact {
 pub(super) const TABLE: &[Artefact] = &[
     SUITE_SUMMARY,
     INDEX,
+    FILTERS,
     METRICS,
     JUNIT,
     Artefact {

@@ -4,6 +4,7 @@
 //! All can be read without the script, which sorts, filters and reads values under the cursor.
 
 pub(super) mod against;
+pub(super) mod beside;
 mod channels;
 mod document;
 mod gates;

@@ -14,7 +14,7 @@ use crate::gate::{Verdict, VerdictKind, count_accepted, plain};
 use crate::report::json::suite::SuiteReport;
 use crate::report::record::columns::value_text;
 use crate::report::record::sweep::swept_text;
-use crate::report::{RunOutcome, RunStatus, SweepPictures};
+use crate::report::{FILTERS, RunOutcome, RunStatus, SweepPictures};
 
 /// Most points of a sweep that the page lists.
 const POINTS_MAX: usize = 500;
@@ -152,6 +152,7 @@ fn head(suite: &SuiteReport, sweeps: &[(&str, Points)]) -> Markup {
             a href="#runs" { "Runs" }
             @for (name, _) in sweeps { a href=(format!("#sweep-{name}")) { (name) } }
             @if !suite.across.tables.is_empty() { a href="#tables" { "Across scenarios" } }
+            @if !suite.across.beside.is_empty() { a href=(FILTERS.name) { "Filters side by side" } }
             a href="#origin" { "Files" }
         }
     }
@@ -472,6 +473,8 @@ fn assumptions(across: &Comparison) -> Option<Markup> {
 fn origin(suite: &SuiteReport, tables: &[(String, String)]) -> Markup {
     let pairs = [("version", format!("fogbench {}", suite.tool_version))];
     let names = ["summary.json", "metrics.csv", "junit.xml"].into_iter();
+    let beside = (!suite.across.beside.is_empty()).then_some(FILTERS.name);
+    let names = names.chain(beside);
     let names = names.chain(tables.iter().map(|(name, _)| name.as_str()));
     section(
         "origin",

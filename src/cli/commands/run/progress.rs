@@ -243,6 +243,12 @@ impl experiment::Progress for Progress<'_> {
         drop(self.program_log.note(&line));
         self.talk(&line);
     }
+
+    fn program_took(&self, run: &str, channel: &str, us_per_word: f64) {
+        let line = format!("{run} {channel}: {us_per_word:.3} us a word");
+        // What the log lacks then, no result has either.
+        drop(self.program_log.note(&line));
+    }
 }
 
 impl Observer for Progress<'_> {
