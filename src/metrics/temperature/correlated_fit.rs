@@ -173,11 +173,12 @@ fn whitened(rows: &[Option<Wide>], count: usize, (correlation, ratio): (f64, f64
             variance -= gain * variance;
             found.log_determinant += innovation.ln();
             found.rows += 1;
-            for one in 0..=count {
+            let own = &own[..=count];
+            for (one, sums) in found.products[..=count].iter_mut().enumerate() {
                 let weighted = own[one] / innovation;
-                let into = found.products[one][one..=count].iter_mut();
-                for (product, other) in into.zip(&own[one..=count]) {
-                    *product += weighted * other;
+                let later = sums[one..=count].iter_mut().zip(&own[one..]);
+                for (sum, value) in later {
+                    *sum += weighted * value;
                 }
             }
         }
