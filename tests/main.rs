@@ -90,6 +90,7 @@ mod moving_noise;
 mod mutation;
 mod noise_fit_coverage;
 mod noise_fit_judged;
+mod npz;
 mod output_folder;
 mod packages;
 mod patent_calibration;

@@ -510,7 +510,7 @@ fn npy_files_of_another_shape_are_refused_and_no_heading_is_followed_deeply() {
     ] {
         transcript.case(rest, refused_array(&npy_of(1, &plain(rest), &data)));
     }
-    let fields = "{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (4,)}";
+    let fields = "{'descr': [('a', [('b', '<f8')])], 'fortran_order': False, 'shape': (4,)}";
     for (what, bytes) in [
         (fields, npy_of(1, fields, &data)),
         (

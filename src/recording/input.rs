@@ -10,6 +10,8 @@ use super::error::LogError;
 const STREAM_BYTES_MAX: u64 = 1 << 28;
 /// Name of what comes on standard input.
 const STANDARD_INPUT: &str = "-";
+/// First bytes that are looked at.
+const FIRST: usize = 8;
 /// Most bytes of a text that is read as a whole.
 const TEXT_BYTES_MAX: u64 = 16_000_000;
 
@@ -40,7 +42,7 @@ struct Endless;
 
 /// A file while it is read.
 pub(super) struct Input {
-    reader: io::Chain<io::Cursor<Vec<u8>>, BufReader<File>>,
+    reader: Box<dyn BufRead + Send>,
     /// Bytes of a regular file; none of a pipe or a device.
     length: Option<u64>,
     /// Bytes that may still be read.
@@ -51,7 +53,6 @@ pub(super) struct Input {
 impl Input {
     /// Opens a file and reads its first bytes.
     pub(super) fn open(path: &Path) -> Result<Self, LogError> {
-        const FIRST: u64 = 8;
         let failed = |error| LogError::read(path, error);
         let file = match path == Path::new(STANDARD_INPUT) {
             true => File::open("/dev/stdin"),
@@ -63,14 +64,24 @@ impl Input {
         let length = (metadata.is_file() && metadata.len() > 0).then_some(metadata.len());
         let mut reader = BufReader::with_capacity(1 << 16, file);
         let mut first = Vec::new();
-        let read = reader.by_ref().take(FIRST).read_to_end(&mut first);
+        let read = reader.by_ref().take(FIRST as u64).read_to_end(&mut first);
         read.map_err(failed)?;
         Ok(Self {
-            reader: io::Cursor::new(first.clone()).chain(reader),
+            reader: Box::new(io::Cursor::new(first.clone()).chain(reader)),
             length,
             left: length.map_or(STREAM_BYTES_MAX, |_| u64::MAX),
             first,
         })
+    }
+
+    /// Bytes at hand, as if they were a file.
+    pub(super) fn of_bytes(bytes: Vec<u8>) -> Self {
+        Self {
+            length: Some(bytes.len() as u64),
+            left: u64::MAX,
+            first: bytes.iter().take(FIRST).copied().collect(),
+            reader: Box::new(io::Cursor::new(bytes)),
+        }
     }
 
     /// Takes a pipe for one that is not kept: it may go on as long as it will.

@@ -19,7 +19,7 @@ const TIME_MAX_S: f64 = 1e7;
 #[derive(Args, Debug)]
 #[command(group(ArgGroup::new("written").multiple(true)))]
 pub(in crate::cli) struct LogOptions {
-    /// Recorded log: NPY, or text with columns between `,`, `;`, tabs or blanks; `-` is standard input
+    /// Recorded log: NPY, NPZ, or text with columns between `,`, `;`, tabs or blanks; `-` is standard input
     pub(in crate::cli) file: PathBuf,
     /// File with a table [log] that says how the log is read; options stand above it
     #[arg(long, value_name = "FILE")]

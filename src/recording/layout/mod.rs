@@ -91,6 +91,16 @@ impl Layout {
         }
     }
 
+    /// That of arrays, or of fields of their records, under names, with what is said of their units.
+    pub(super) fn of_fields(names: Vec<String>, units: Vec<String>) -> Self {
+        Self {
+            units,
+            cells: names.len(),
+            names,
+            ..Self::of_array(0)
+        }
+    }
+
     /// Quantities of a record.
     pub(super) fn width(&self) -> usize {
         self.wrapped.unwrap_or(self.cells)

@@ -14,7 +14,7 @@ table! {
     /// How a log is read. What is not given is found from the first lines of the file.
     #[derive(Default, Serialize)]
     pub struct LogFormat {
-        /// The log that a scenario measures, in place of table and gyro: NPY, or text with columns.
+        /// The log that a scenario measures, in place of table and gyro: NPY, NPZ, or text with columns.
         file: Option<String>, example "log.csv", kind File;
         /// Type of the words of a file that holds nothing else, no heading either: `i2` and the like of 1 to 8
         /// bytes, `u2`, `f4`, `f8`; `i2-be` if the high byte comes first.

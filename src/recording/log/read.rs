@@ -13,7 +13,8 @@ use crate::recording::error::LogError;
 use crate::recording::input::Input;
 use crate::recording::layout::columns::Selection;
 use crate::recording::layout::words::WordKind;
-use crate::recording::npy::array;
+use crate::recording::npy::{archive, array};
+use crate::recording::text::lines::shown;
 use crate::recording::text::table::{self, Wanted};
 use crate::recording::time::timing::{Spacing, timing};
 use crate::recording::unit::convert::Conversion;
@@ -213,9 +214,12 @@ pub fn read_stimulus(
 /// Reads columns of a text or an array; there is a sample.
 fn read_wanted(path: &Path, wanted: &Wanted<'_>) -> Result<Columns, LogError> {
     let input = Input::open(path)?;
-    let columns = match array::is_array(&input, wanted.format) {
-        true => array::read(path, input, wanted)?,
-        false => table::read(path, input, wanted)?,
+    let columns = if archive::is_archive(&input, wanted.format) {
+        archive::read(path, &input, wanted)?
+    } else if array::is_array(&input, wanted.format) {
+        array::read(path, input, wanted)?
+    } else {
+        table::read(path, input, wanted)?
     };
     with_samples(path, columns)
 }
@@ -242,7 +246,14 @@ pub(super) fn spacing(
         None => by_rate(path, format, stretches),
     };
     let spacing = spacing.map_err(|error| with_units(path, data, format, error))?;
-    check_sample_rate(spacing.sample_rate_hz).map_err(|error| LogError::of_file(path, error))?;
+    check_sample_rate(spacing.sample_rate_hz).map_err(|error| match &columns.time {
+        Some(time) => {
+            let name = shown(&time.name);
+            let way_out = format!("{error}: --time-unit says what the stamps of column {name} are");
+            LogError::of_file(path, way_out)
+        }
+        None => LogError::of_file(path, error),
+    })?;
     Ok(spacing)
 }
 

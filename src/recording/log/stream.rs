@@ -10,8 +10,9 @@ use crate::recording::column::Columns;
 use crate::recording::error::{LogError, Place};
 use crate::recording::input::Input;
 use crate::recording::layout::words::MissingWords;
+use crate::recording::npy::archive;
 use crate::recording::npy::array::{self, ArrayWords};
-use crate::recording::npy::heading::NpyHeading;
+use crate::recording::npy::heading::ArrayHeading;
 use crate::recording::text::head::{HEAD_LINES, LIVE_HEAD_LINES};
 use crate::recording::text::lines::shown;
 use crate::recording::text::table::{Rows, Wanted};
@@ -91,6 +92,10 @@ pub(crate) fn open_keeping(
         Some(_) => kept.of_file,
         None => kept.words,
     };
+    if archive::is_archive(&input, format) {
+        let columns = with_samples(path, archive::read(path, &input, &wanted)?)?;
+        return logs_of(path, columns, format).map(LogSource::Whole);
+    }
     if array::is_array(&input, format) {
         let heading = array::read_heading(path, &mut input, format)?;
         return open_array(path, heading, input, &wanted, (most, kept.words));
@@ -129,11 +134,15 @@ pub fn open_live_log(path: &Path, format: &LogFormat) -> Result<LogStream, LogEr
     let mut input = Input::open(path)?;
     input.let_go_on();
     let wanted = wanted_by(format);
+    if archive::is_archive(&input, format) {
+        return Err(refuse(NotLive::Columns("an archive")));
+    }
     let (columns, rest) = if array::is_array(&input, format) {
         let heading = array::read_heading(path, &mut input, format)?;
-        if heading.columns != 1 {
-            return Err(refuse(NotLive::Columns(heading.columns)));
+        if !heading.is_plain_row() {
+            return Err(refuse(NotLive::Columns("an array of several columns")));
         }
+        let heading = heading.plain;
         array::check_columns(path, &heading, &wanted)?;
         let may_end = input.length().is_none();
         let mut words = ArrayWords::new(path, heading, may_end, false).at_a_time(LIVE_BLOCK);
@@ -168,10 +177,8 @@ enum NotLive {
     Whole(&'static str),
     #[error("filters are built for a sample rate before the first word comes: give --rate-hz")]
     NoRate,
-    #[error(
-        "an array of {0} columns is read as a whole: pass on words of one column, as with --dtype, or text"
-    )]
-    Columns(u64),
+    #[error("{0} is read as a whole: pass on words of one column, as with --dtype, or text")]
+    Columns(&'static str),
 }
 
 /// Whether a log streams under a format: one column, all of it, without gaps, a reference or a temperature.
@@ -201,22 +208,22 @@ fn whole_for(format: &LogFormat) -> Option<&'static str> {
 
 fn open_array(
     path: &Path,
-    heading: NpyHeading,
+    heading: ArrayHeading,
     mut input: Input,
     wanted: &Wanted<'_>,
     (most, first): (usize, usize),
 ) -> Result<LogSource, LogError> {
     let format = wanted.format;
-    let is_long = heading.rows > most as u64;
-    if !is_long || heading.columns != 1 || !streams(format) {
-        let columns = array::read_behind(path, heading, input, wanted)?;
+    let is_long = heading.plain.rows > most as u64;
+    if !is_long || !heading.is_plain_row() || !streams(format) {
+        let columns = array::read_behind(path, &heading, input, wanted)?;
         let columns = with_samples(path, columns)?;
         return logs_of(path, columns, format).map(LogSource::Whole);
     }
-    array::check_columns(path, &heading, wanted)?;
+    array::check_columns(path, &heading.plain, wanted)?;
     let may_end = input.length().is_none();
     input.let_go_on();
-    let mut words = ArrayWords::new(path, heading, may_end, false);
+    let mut words = ArrayWords::new(path, heading.plain, may_end, false);
     let mut values = Vec::new();
     let mut goes_on = true;
     while goes_on && values.len() < first {

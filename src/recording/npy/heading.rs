@@ -1,12 +1,13 @@
 //! The heading of an NPY file, versions 1 to 3: a Python dictionary of three known keys.
 //!
-//! Nothing is nested in the heading of an array of plain numbers, so nothing deeper is read.
+//! Records of an array may have named fields of numbers; nothing deeper is read.
 //!
 //! # Source
 //! NumPy Enhancement Proposal 1 and `numpy.lib.format`.
 
 use std::fmt;
 use std::io::{self, Read};
+use std::ops::Range;
 
 use crate::recording::layout::words::WordType;
 
@@ -14,6 +15,10 @@ use crate::recording::layout::words::WordType;
 pub(in crate::recording) const MAGIC: &[u8] = b"\x93NUMPY";
 /// Longest heading, bytes; that of a plain array has 118.
 const HEADING_BYTES_MAX: u32 = 1 << 16;
+/// Most fields of a record.
+const FIELDS_MAX: usize = 1 << 12;
+/// Longest record, bytes.
+const RECORD_BYTES_MAX: usize = 1 << 20;
 /// Most quantities of an array that has a sample in each column.
 const COLUMNS_OF_TURNED_MAX: u64 = 64;
 
@@ -68,6 +73,59 @@ pub(in crate::recording) struct NpyHeading {
     pub(in crate::recording) bytes: u64,
 }
 
+/// The heading of an array, of which each word may be a record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::recording) struct ArrayHeading {
+    /// That of the array; where it has fields, its words are records.
+    pub(in crate::recording) plain: NpyHeading,
+    /// Fields of a record; none where words are numbers.
+    pub(in crate::recording) fields: Vec<Field>,
+}
+
+/// A number of each record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::recording) struct Field {
+    pub(in crate::recording) name: String,
+    /// What is said of its unit; empty if nothing is.
+    pub(in crate::recording) unit: String,
+    /// Its type; none if it is no number.
+    pub(in crate::recording) kind: Option<NpyHeading>,
+    /// Its bytes in the record.
+    pub(in crate::recording) bytes: Range<usize>,
+}
+
+impl From<NpyHeading> for ArrayHeading {
+    fn from(plain: NpyHeading) -> Self {
+        Self {
+            plain,
+            fields: Vec::new(),
+        }
+    }
+}
+
+impl ArrayHeading {
+    /// Whether it is a row of numbers, which have no names.
+    pub(in crate::recording) fn is_plain_row(&self) -> bool {
+        self.plain.columns == 1 && self.fields.is_empty()
+    }
+
+    /// What is put behind the name of the array for each of its columns, and what is said of their units.
+    pub(super) fn columns(&self) -> Vec<(String, String)> {
+        if self.is_plain_row() {
+            return vec![(String::new(), String::new())];
+        }
+        if self.fields.is_empty() {
+            let columns =
+                (0..self.plain.columns).map(|column| (format!("[{column}]"), String::new()));
+            return columns.collect();
+        }
+        let fields = self.fields.iter();
+        fields
+            .map(|field| (format!(".{}", field.name), field.unit.clone()))
+            .collect()
+    }
+}
+
 /// Why there is no heading.
 #[derive(Debug, thiserror::Error)]
 pub(in crate::recording) enum HeadingError {
@@ -82,7 +140,7 @@ pub(in crate::recording) enum HeadingError {
     #[error("its NPY heading is no text in UTF-8")]
     NotText,
     #[error(
-        "its NPY heading is not the dictionary of an array of plain numbers: expected descr, \
+        "its NPY heading is not the dictionary of an array of plain numbers or records of them: expected descr, \
          fortran_order and shape"
     )]
     NotADictionary,
@@ -147,7 +205,7 @@ impl NpyHeading {
 ///
 /// # Errors
 /// A file cut short, another version, a heading too long or of another form, another shape or type.
-pub(in crate::recording) fn read(reader: &mut impl Read) -> Result<NpyHeading, HeadingError> {
+pub(in crate::recording) fn read(reader: &mut impl Read) -> Result<ArrayHeading, HeadingError> {
     let mut start = [0; 8];
     reader.read_exact(&mut start)?;
     let (length, before) = match start[6] {
@@ -170,9 +228,10 @@ pub(in crate::recording) fn read(reader: &mut impl Read) -> Result<NpyHeading, H
     reader.read_exact(&mut text)?;
     let text = std::str::from_utf8(&text).map_err(|_| HeadingError::NotText)?;
     let found = Dictionary::of(text).ok_or(HeadingError::NotADictionary)?;
-    let (word, word_bytes, is_big_endian) = word_of(&found.descr)?;
+    let is_record = matches!(found.descr, Descr::Record(_));
     let (rows, columns, is_turned) = match found.shape[..] {
         [count] => (count, 1, false),
+        _ if is_record => return Err(HeadingError::Shape(shape_text(&found.shape))),
         [rows, columns] if columns > 0 && rows >= columns => (rows, columns, false),
         [columns, rows] if columns > 0 && columns <= COLUMNS_OF_TURNED_MAX => (rows, columns, true),
         _ => return Err(HeadingError::Shape(shape_text(&found.shape))),
@@ -180,7 +239,7 @@ pub(in crate::recording) fn read(reader: &mut impl Read) -> Result<NpyHeading, H
     if columns > 1 && rows.checked_mul(columns).is_none() {
         return Err(HeadingError::Shape(shape_text(&found.shape)));
     }
-    Ok(NpyHeading {
+    let plain = |(word, word_bytes, is_big_endian)| NpyHeading {
         word,
         word_bytes,
         is_big_endian,
@@ -188,7 +247,90 @@ pub(in crate::recording) fn read(reader: &mut impl Read) -> Result<NpyHeading, H
         columns,
         is_by_column: columns > 1 && found.is_fortran != is_turned,
         bytes: before + u64::from(length),
-    })
+    };
+    match &found.descr {
+        Descr::Number(descr) => Ok(plain(word_of(descr)?).into()),
+        Descr::Record(parts) => {
+            let (fields, bytes) = fields_of(parts)?;
+            Ok(ArrayHeading {
+                plain: plain((Word::U1, bytes, false)),
+                fields,
+            })
+        }
+    }
+}
+
+/// The fields of a record and its bytes. What a field holds more than once are fields with an index; padding,
+/// which has no name, is none.
+fn fields_of(parts: &[Part]) -> Result<(Vec<Field>, usize), HeadingError> {
+    let (mut fields, mut end) = (Vec::new(), 0_usize);
+    for Part { name, descr, shape } in parts {
+        let unknown = || HeadingError::Word(crate::recording::text::lines::shown(descr));
+        let (bytes, unit) = size_of(descr).ok_or_else(unknown)?;
+        let count = shape
+            .iter()
+            .try_fold(1, |count: u64, more| count.checked_mul(*more));
+        let count = count.and_then(|count| usize::try_from(count).ok());
+        let count = count
+            .filter(|count| fields.len() + count <= FIELDS_MAX)
+            .ok_or_else(unknown)?;
+        let kind = word_of(descr).or_else(|error| match unit {
+            // Times are whole numbers of a unit.
+            Some(_) => word_of(&format!("{}i8", &descr[..1])),
+            None => Err(error),
+        });
+        let kind = kind
+            .ok()
+            .map(|(word, word_bytes, is_big_endian)| NpyHeading {
+                word,
+                word_bytes,
+                is_big_endian,
+                rows: 0,
+                columns: 1,
+                is_by_column: false,
+                bytes: 0,
+            });
+        for index in 0..count {
+            let field = Field {
+                name: match shape.is_empty() {
+                    true => name.clone(),
+                    false => format!("{name}[{index}]"),
+                },
+                unit: unit.unwrap_or_default().to_owned(),
+                kind,
+                bytes: end..end + bytes,
+            };
+            end = end
+                .checked_add(bytes)
+                .filter(|end| *end <= RECORD_BYTES_MAX)
+                .ok_or_else(unknown)?;
+            if !name.is_empty() {
+                fields.push(field);
+            }
+        }
+    }
+    match end {
+        0 => Err(HeadingError::NotADictionary),
+        _ => Ok((fields, end)),
+    }
+}
+
+/// Bytes of a type such as `<f8`, `|S10`, `<U3`, `|V4`, and the unit of one such as `<M8[ns]`; nothing of one that
+/// says no size.
+fn size_of(descr: &str) -> Option<(usize, Option<&str>)> {
+    let kind = descr.get(1..2)?;
+    let (digits, unit) = match descr.get(2..)?.split_once('[') {
+        Some((digits, unit)) => (digits, Some(unit.strip_suffix(']')?)),
+        None => (descr.get(2..)?, None),
+    };
+    let count: usize = digits.parse().ok()?;
+    let letter_bytes = if kind == "U" { 4 } else { 1 };
+    let is_known = matches!(
+        kind,
+        "f" | "i" | "u" | "c" | "b" | "S" | "U" | "V" | "M" | "m"
+    );
+    let bytes = count.checked_mul(letter_bytes)?;
+    is_known.then_some((bytes, unit.filter(|_| matches!(kind, "M" | "m"))))
 }
 
 /// Kind, bytes and byte order of a type such as `<f8`.
@@ -214,9 +356,23 @@ fn shape_text(shape: &[u64]) -> String {
     format!("[{}{rest}]", first.join(", "))
 }
 
+/// What the words of an array are.
+enum Descr {
+    Number(String),
+    Record(Vec<Part>),
+}
+
+/// A part of a record as the heading names it.
+struct Part {
+    name: String,
+    descr: String,
+    /// Empty of one that holds one number.
+    shape: Vec<u64>,
+}
+
 /// The three entries.
 struct Dictionary {
-    descr: String,
+    descr: Descr,
     shape: Vec<u64>,
     is_fortran: bool,
 }
@@ -230,7 +386,7 @@ impl Dictionary {
             let key = reader.string()?;
             reader.take(':')?;
             let is_new = match key {
-                "descr" => descr.replace(reader.string()?.to_owned()).is_none(),
+                "descr" => descr.replace(reader.descr()?).is_none(),
                 "shape" => shape.replace(reader.tuple()?).is_none(),
                 "fortran_order" => order.replace(reader.truth()?).is_none(),
                 _ => false,
@@ -270,6 +426,31 @@ impl<'a> Reader<'a> {
         let (inside, rest) = text[1..].split_once(quote)?;
         self.0 = rest;
         (!inside.contains('\\')).then_some(inside)
+    }
+
+    /// A type, or the parts of a record: `[('t', '<i8'), ('gyro', '<f4', (3,))]`.
+    fn descr(&mut self) -> Option<Descr> {
+        if self.take('[').is_none() {
+            return Some(Descr::Number(self.string()?.to_owned()));
+        }
+        let mut parts = Vec::new();
+        while self.take(']').is_none() {
+            self.take('(')?;
+            let name = self.string()?.to_owned();
+            self.take(',')?;
+            let descr = self.string()?.to_owned();
+            let mut shape = Vec::new();
+            if self.take(',').is_some() {
+                shape = self.tuple()?;
+            }
+            self.take(')')?;
+            parts.push(Part { name, descr, shape });
+            if self.take(',').is_none() {
+                self.take(']')?;
+                break;
+            }
+        }
+        Some(Descr::Record(parts))
     }
 
     fn truth(&mut self) -> Option<bool> {

@@ -1,4 +1,7 @@
-//! Arrays of NumPy: their heading, and the columns that they hold.
+//! Arrays of NumPy: their heading, the columns that they hold, archives of them.
 
+pub(super) mod archive;
 pub(super) mod array;
+mod gather;
 pub(super) mod heading;
+mod number;
