@@ -63,10 +63,14 @@ pub(crate) fn read_into(
     Ok(Some(facts))
 }
 
-/// Digest of the words of a log and of its true rate: a log that was read again is the same by it.
+/// Digest of the words of a log, of its true rate and of a temperature that it has: a log that was read again
+/// is the same by it.
 pub(crate) fn digest_of_log(log: &Log) -> String {
-    let parts = [&log.rate_deg_per_h, &log.reference_deg_per_h];
-    parts.map(|words| digest_of_words(words)).join(" ")
+    let words = [&log.rate_deg_per_h, &log.reference_deg_per_h].into_iter();
+    let temperature = Some(&log.temperature_c).filter(|own| !own.is_empty());
+    let parts = words.chain(temperature);
+    let digests: Vec<String> = parts.map(|words| digest_of_words(words)).collect();
+    digests.join(" ")
 }
 
 /// Gives the scenario of a log a duration where the log was not read, as something else is wrong.
