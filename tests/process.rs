@@ -710,7 +710,7 @@ fn twins_show_the_same_of_a_filter_of_the_bench_and_of_a_program_with_its_words(
         known += usize::from(of_bench.is_some());
     }
     // The record is too short for steps of 10 s and 100 s.
-    assert_eq!(known, 16, "{}", run["channels"]["own"]);
+    assert_eq!(known, 18, "{}", run["channels"]["own"]);
     let glitch = figure(&run, "own", "glitch_response").expect("a figure");
     assert!((glitch - 0.125).abs() < 1e-12, "{glitch}");
     // Another run gives the same bytes, and a run that does not ask has none of it.

@@ -597,7 +597,8 @@ fn units_of_other_latencies_are_refused_where_there_is_no_machine() {
     let refused = lms.config_with::<f64>(pipelined(1, 3, 1)).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "latency of a unit = 3 is out of range: expected 1 clock, as only rls has units of more"
+        "latency of a unit = 3 is out of range: expected 1 clock: only rls is exported with more; \
+         run.sh takes DIV_LATENCY for the others"
     );
     let load = mixes(1);
     let config = config::<f64>(&load[0]);

@@ -190,6 +190,9 @@ fn whitened(rows: &[Option<Wide>], count: usize, (correlation, ratio): (f64, f64
     found
 }
 
+/// Least part of the squares of a column that those before it do not explain; less is rounding.
+const OWN_MIN: f64 = 1e-10;
+
 /// The coefficients under one noise, with the restricted likelihood of it.
 fn candidate(whitened: &Whitened, sizes: &[f64]) -> Option<Candidate> {
     let count = sizes.len();
@@ -199,7 +202,19 @@ fn candidate(whitened: &Whitened, sizes: &[f64]) -> Option<Candidate> {
         product(row, column) / (sizes[row] * sizes[column])
     });
     let right = DVector::from_fn(count, |row, _| product(row, count) / sizes[row]);
+    let sums = normal.diagonal();
     let decomposed = normal.cholesky()?;
+    let own = decomposed
+        .l_dirty()
+        .diagonal()
+        .component_mul(&decomposed.l_dirty().diagonal());
+    if own
+        .iter()
+        .zip(&sums)
+        .any(|(own, sum)| *own <= OWN_MIN * sum)
+    {
+        return None;
+    }
     let scaled = decomposed.solve(&right);
     let explained = scaled.dot(&right);
     let freedom = (whitened.rows - count) as f64;
