@@ -29,11 +29,17 @@ impl ProgramLog {
         }
     }
 
-    /// Appends a line.
-    ///
-    /// # Errors
-    /// Whatever the file system says.
-    pub fn note(&self, line: &str) -> io::Result<()> {
+    /// Appends what a program said. The terminal has the line all the same where the file fails.
+    pub fn said(&self, line: &str) {
+        drop(self.append(line));
+    }
+
+    /// Appends the time of a channel's program. What the file lacks where it fails, no result has either.
+    pub fn took(&self, run: &str, channel: &str, us_per_word: f64) {
+        drop(self.append(&format!("{run} {channel}: {us_per_word:.3} us a word")));
+    }
+
+    fn append(&self, line: &str) -> io::Result<()> {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         let file = match &mut *file {
             Some(file) => file,

@@ -239,15 +239,12 @@ impl experiment::Progress for Progress<'_> {
 
     fn program_said(&self, run: &str, channel: &str, line: &str) {
         let line = format!("{run} {channel}: {}", printable(line));
-        // The terminal has the line all the same.
-        drop(self.program_log.note(&line));
+        self.program_log.said(&line);
         self.talk(&line);
     }
 
     fn program_took(&self, run: &str, channel: &str, us_per_word: f64) {
-        let line = format!("{run} {channel}: {us_per_word:.3} us a word");
-        // What the log lacks then, no result has either.
-        drop(self.program_log.note(&line));
+        self.program_log.took(run, channel, us_per_word);
     }
 }
 
