@@ -3,7 +3,6 @@
 use std::io;
 
 use crate::cli::options::arguments::BudgetOptions;
-use crate::cli::options::format::Format;
 use crate::cli::terminal::complaint;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
@@ -33,14 +32,10 @@ pub(in crate::cli) fn budget(options: &BudgetOptions) -> io::Result<Exit> {
     if let Err(exit) = place.fill(|folder| write(folder, &budget)) {
         return Ok(exit);
     }
-    output::data(&match options.format {
-        Format::Text => budget_text(file, sheet) + &assumed_text(assumed, output::width()),
-        Format::Json => budget_json(file, sheet),
-        Format::Jsonl => {
-            let document: serde_json::Value = serde_json::from_str(&budget_json(file, sheet))?;
-            format!("{document}\n")
-        }
-    })?;
+    output::data(&options.format.of(
+        || budget_text(file, sheet) + &assumed_text(assumed, output::width()),
+        || budget_json(file, sheet),
+    )?)?;
     Ok(Exit::Success)
 }
 

@@ -3,7 +3,6 @@
 use std::io;
 
 use crate::cli::options::calibrate::CalibrateOptions;
-use crate::cli::options::format::Format;
 use crate::cli::terminal::complaint;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
@@ -31,14 +30,10 @@ pub(in crate::cli) fn calibrate(options: &CalibrateOptions) -> io::Result<Exit> 
         return Ok(exit);
     }
     let report = found.report();
-    output::data(&match options.format {
-        Format::Text => calibrate_text(&report, output::width(), output::colour()),
-        Format::Json => calibrate_json(&report),
-        Format::Jsonl => {
-            let document: serde_json::Value = serde_json::from_str(&calibrate_json(&report))?;
-            format!("{document}\n")
-        }
-    })?;
+    output::data(&options.format.of(
+        || calibrate_text(&report, output::width(), output::colour()),
+        || calibrate_json(&report),
+    )?)?;
     if let Some(folder) = &options.output {
         output::talk(&format!("results in {}", folder.display()));
     }

@@ -4,7 +4,6 @@ use std::io;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::cli::options::format::Format;
 use crate::cli::options::infer::InferOptions;
 use crate::cli::terminal::complaint;
 use crate::cli::terminal::exit::Exit;
@@ -57,14 +56,7 @@ pub(in crate::cli) fn infer(options: &InferOptions) -> io::Result<Exit> {
     {
         return Ok(exit);
     }
-    output::data(&match options.format {
-        Format::Text => text,
-        Format::Json => json,
-        Format::Jsonl => {
-            let document: serde_json::Value = serde_json::from_str(&json)?;
-            format!("{document}\n")
-        }
-    })?;
+    output::data(&options.format.of(|| text, || json)?)?;
     Ok(if inference.is_accepted() {
         Exit::Success
     } else {

@@ -405,7 +405,7 @@ fn conclude(
             return Ok((exit, trials));
         }
         if is_one || options.format != Format::Json {
-            output::data(&text(&trial, options.format))?;
+            output::data(&text(&trial, options.format)?)?;
         }
         if let Some(folder) = folder {
             output::talk(&format!("results in {}", folder.display()));
@@ -413,12 +413,10 @@ fn conclude(
         trials.push(trial);
     }
     if !is_one && options.format == Format::Json {
-        let documents: Vec<String> = trials.iter().map(|it| text(it, options.format)).collect();
-        let documents = documents.iter().map(|document| document.trim_end());
-        output::data(&format!(
-            "[{}]\n",
-            documents.collect::<Vec<_>>().join(",\n")
-        ))?;
+        let documents = trials.iter().map(|it| text(it, options.format));
+        let documents: Vec<String> = documents.collect::<io::Result<_>>()?;
+        let documents: Vec<&str> = documents.iter().map(|text| text.trim_end()).collect();
+        output::data(&format!("[{}]\n", documents.join(",\n")))?;
     }
     let exits = trials
         .iter()
@@ -458,14 +456,11 @@ fn settings(options: &LogOptions, format: &LogFormat) -> LogSettings {
     }
 }
 
-fn text(trial: &LogTrial, format: Format) -> String {
-    trial.with_report(|report| match format {
-        Format::Text => log_text(report, output::width(), output::colour()),
-        Format::Json => log_json(report),
-        Format::Jsonl => {
-            let document = log_json(report);
-            let line: String = document.lines().map(str::trim_start).collect();
-            format!("{line}\n")
-        }
+fn text(trial: &LogTrial, format: Format) -> io::Result<String> {
+    trial.with_report(|report| {
+        format.of(
+            || log_text(report, output::width(), output::colour()),
+            || log_json(report),
+        )
     })
 }

@@ -3,7 +3,6 @@
 use std::io;
 
 use crate::cli::commands::log::unreadable;
-use crate::cli::options::format::Format;
 use crate::cli::options::points::ScaleFactorOptions;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
@@ -34,13 +33,9 @@ pub(in crate::cli) fn scale_factor(options: &ScaleFactorOptions) -> io::Result<E
         has_errors: points.error.is_some(),
         fit: &fit,
     };
-    output::data(&match options.format {
-        Format::Text => points_text(&report, output::width()),
-        Format::Json => points_json(&report),
-        Format::Jsonl => {
-            let document: serde_json::Value = serde_json::from_str(&points_json(&report))?;
-            format!("{document}\n")
-        }
-    })?;
+    output::data(&options.format.of(
+        || points_text(&report, output::width()),
+        || points_json(&report),
+    )?)?;
     Ok(Exit::Success)
 }

@@ -5,7 +5,6 @@ use std::io;
 
 use serde_json::{Value, json};
 
-use crate::cli::options::format::Format;
 use crate::cli::options::hardware::{FilterOptions, TimingOptions};
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
@@ -26,11 +25,8 @@ pub(in crate::cli) fn timing(options: &TimingOptions) -> io::Result<Exit> {
             return Ok(Exit::Usage);
         }
     };
-    output::data(&match options.format {
-        Format::Text => report.text(),
-        Format::Json => format!("{:#}\n", report.json()),
-        Format::Jsonl => format!("{}\n", report.json()),
-    })?;
+    let document = || format!("{:#}\n", report.json());
+    output::data(&options.format.of(|| report.text(), document)?)?;
     Ok(Exit::Success)
 }
 

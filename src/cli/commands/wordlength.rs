@@ -5,7 +5,6 @@ use std::io;
 
 use serde_json::{Value, json};
 
-use crate::cli::options::format::Format;
 use crate::cli::options::wordlength::WordLengthOptions;
 use crate::cli::terminal::complaint;
 use crate::cli::terminal::exit::Exit;
@@ -40,11 +39,10 @@ pub(in crate::cli) fn wordlength(options: &WordLengthOptions) -> io::Result<Exit
             return Ok(Exit::Usage);
         }
     };
-    output::data(&match options.format {
-        Format::Text => text(&found, &options.name),
-        Format::Json => format!("{:#}\n", json_of(&found)),
-        Format::Jsonl => format!("{}\n", json_of(&found)),
-    })?;
+    output::data(&options.format.of(
+        || text(&found, &options.name),
+        || format!("{:#}\n", json_of(&found)),
+    )?)?;
     Ok(match found.best() {
         Some(_) => Exit::Success,
         None => Exit::GateFailed,
