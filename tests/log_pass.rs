@@ -4,14 +4,14 @@
 use std::fmt::Write as _;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::Path;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout};
 
 use fogbench::recording::read_words;
 use fogbench::store::write_npy;
 
 use crate::support::records::white;
 use crate::support::transcript::Transcript;
-use crate::support::{code, fogbench, stderr, write};
+use crate::support::{code, fogbench, on_a_pipe, stderr, write};
 
 /// Filters of the bench: a mean, a low pass, the textbook and a pipeline.
 const FILTERS: &str = "schema = 1
@@ -61,15 +61,7 @@ struct Live {
 
 fn live(folder: &Path, more: &[&str]) -> Live {
     let common = ["filter", "-", "--unit", "deg/h", "--filters", "live.toml"];
-    let mut child = Command::new(env!("CARGO_BIN_EXE_fogbench"))
-        .args(common)
-        .args(more)
-        .current_dir(folder)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+    let mut child = on_a_pipe(folder, &[&common[..], more].concat());
     Live {
         words: child.stdin.take().expect("a pipe"),
         passed: BufReader::new(child.stdout.take().expect("a pipe")),

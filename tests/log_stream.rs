@@ -1,9 +1,8 @@
 //! Logs on standard input: words without a heading, arrays that end early, and what is said of logs that
 //! stream.
 
-use std::io::Write as _;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
 use fogbench::metrics::NOT_STREAMED;
 use fogbench::store::write_npy;
@@ -11,27 +10,10 @@ use serde_json::Value;
 
 use crate::support::records::white;
 use crate::support::transcript::Transcript;
-use crate::support::{code, fogbench, stderr, stdout};
+use crate::support::{code, fogbench, piped, stderr, stdout};
 
 fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("a scratch folder")
-}
-
-/// What a command says of some bytes on its standard input.
-fn piped(folder: &Path, bytes: &[u8], arguments: &[&str]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_fogbench"))
-        .args(arguments)
-        .current_dir(folder)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
-    let mut stdin = child.stdin.take().expect("a pipe");
-    // A command that refuses its input may end before it has read all of it.
-    let _ = stdin.write_all(bytes);
-    drop(stdin);
-    child.wait_with_output().expect("it ends")
 }
 
 /// Counts of a gyro at rest.

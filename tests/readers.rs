@@ -10,7 +10,7 @@ use fogbench::scenario::{MotionConfig, load_suite};
 use proptest::prelude::*;
 
 use crate::support::transcript::{Transcript, said_to_each};
-use crate::support::{code, fogbench, npy, stderr, stdout, write};
+use crate::support::{code, fogbench, npy, piped, stderr, stdout, write};
 
 /// The transcript of what the readers refuse.
 const READERS: &str = "readers";
@@ -628,23 +628,8 @@ fn a_stimulus_in_words_of_four_bytes_is_exported() {
 #[cfg(target_os = "linux")]
 #[test]
 fn pipes_are_read_and_endless_devices_are_refused() {
-    use std::io::Write as _;
-    use std::process::{Command, Stdio};
     let folder = scratch();
-    let piped = |text: &[u8], arguments: &[&str]| {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_fogbench"))
-            .args(arguments)
-            .current_dir(folder.path())
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
-        let mut stdin = child.stdin.take().expect("a pipe");
-        stdin.write_all(text).expect("it is read");
-        drop(stdin);
-        child.wait_with_output().expect("it ends")
-    };
+    let piped = |bytes: &[u8], arguments: &[&str]| piped(folder.path(), bytes, arguments);
     let log = [
         "analyze",
         "/dev/stdin",

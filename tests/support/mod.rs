@@ -2,8 +2,9 @@
 
 pub(crate) mod records;
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 
 use fogbench::declare::{Content, Presence};
 use fogbench::filters::FilterKind;
@@ -73,6 +74,28 @@ pub(crate) fn fogbench(folder: &Path, arguments: &[&str]) -> Output {
         .env_remove("COLUMNS")
         .output()
         .expect("the program starts")
+}
+
+/// The program at work with a pipe at each of its ends.
+pub(crate) fn on_a_pipe(folder: &Path, arguments: &[&str]) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_fogbench"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts")
+}
+
+/// What the program says of some bytes on its standard input.
+pub(crate) fn piped(folder: &Path, bytes: &[u8], arguments: &[&str]) -> Output {
+    let mut child = on_a_pipe(folder, arguments);
+    let mut stdin = child.stdin.take().expect("a pipe");
+    // A command that refuses its input may end before it has read all of it.
+    let _ = stdin.write_all(bytes);
+    drop(stdin);
+    child.wait_with_output().expect("it ends")
 }
 
 /// Runs shipped scenarios of `scenarios/audit` into `folder/out`; they must pass.
