@@ -5,6 +5,7 @@ mod calibrate;
 mod confirm;
 mod forms;
 mod geometry;
+mod interpolated;
 mod logged;
 mod measurand;
 mod record;
@@ -17,9 +18,9 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use bench::Bench;
+use interpolated::surfaces;
 use logged::with_logs;
 use simulated::check_runs;
-use surface::surfaces;
 
 use crate::inference::{
     Answer, Calibration, Confirmation, Found, JudgedGate, Levels, Parameter, Printed, Question,
