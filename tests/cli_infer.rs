@@ -245,3 +245,59 @@ fn a_scenario_and_a_problem_are_told_from_each_other() {
         assert_eq!(text.matches("error: ").count(), 1, "{text}");
     }
 }
+
+/// A filter that forgets never settles: its figures are simulated at points of the prior, and those of a record
+/// that was not among them lead back to its latitude.
+#[test]
+fn figures_without_a_closed_form_are_simulated_and_interpolated() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let gyro = GYRO
+        .replace("duration_s = 20.0", "duration_s = 4.0")
+        .replace("warm_up_s = 10.0", "warm_up_s = 1.0")
+        .replace("forgetting_factor = 1.0", "forgetting_factor = 0.999");
+    write(folder.path(), "rest.toml", &gyro);
+    let truth = 40.0;
+    let run = Scenario::from_toml(&gyro)
+        .and_then(|scenario| scenario.set("turntable.site.latitude_deg", truth))
+        .and_then(|scenario| scenario.set("seed", 4711))
+        .expect("a scenario")
+        .run()
+        .expect("a run");
+    let metric = |name: &str| {
+        let key = fogbench::metrics::find(name).expect("a metric");
+        run["rls"].metric(key).expect("a value").value
+    };
+    let problem = |simulations: u32| {
+        format!(
+            "schema = 1\nname = \"forgets\"\npoints = 64\nsimulations = {simulations}\n[[record]]\n\
+             name = \"rest\"\nscenario = \"rest.toml\"\n[[parameter]]\nname = \"latitude\"\n\
+             keys = [\"turntable.site.latitude_deg\"]\nlow = 20.0\nhigh = 60.0\n{}",
+            published(&[
+                ("rest", "rls.dc_gain", metric("dc_gain"), "1", 1e-3),
+                (
+                    "rest",
+                    "rls.noise_std_deg_per_h",
+                    metric("noise_std_deg_per_h"),
+                    "deg/h",
+                    1e-3
+                ),
+            ])
+        )
+    };
+    let untold = answer(folder.path(), &problem(0));
+    assert_eq!(untold["figures"][0]["predicted"], Value::Null, "{untold:#}");
+    let found = answer(folder.path(), &problem(24));
+    let figure = &found["figures"][0];
+    let (value, scatter) = (number(&figure["best"]), number(&figure["scatter"]));
+    assert!(
+        (value - metric("dc_gain")).abs() < 3.0 * scatter,
+        "{figure:#}"
+    );
+    let latitude = &found["readings"][0]["parameters"]["latitude"];
+    let (low, high) = (number(&latitude["low"]), number(&latitude["high"]));
+    assert!(
+        low < truth && truth < high && high - low < 25.0,
+        "{latitude:#}"
+    );
+    assert_eq!(found, answer(folder.path(), &problem(24)));
+}

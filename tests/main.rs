@@ -57,6 +57,7 @@ mod generated;
 mod growth;
 mod gyro_effects;
 mod html_pages;
+mod infer_logs;
 mod infer_truth;
 mod injection;
 mod interruption;

@@ -10,6 +10,7 @@ mod budget;
 mod build;
 mod campaign;
 mod channel_filter;
+#[cfg(feature = "report")]
 mod infer;
 mod log;
 #[cfg(feature = "report")]
@@ -39,6 +40,7 @@ pub use build::BUILD;
 pub use campaign::{
     CalibrateError, CalibrationTrial, GroupsSettings, calibrate_campaign, calibrate_groups,
 };
+#[cfg(feature = "report")]
 pub use infer::{
     CalibrateInference, ConfirmationRun, Figures, Inference, SimulationError, check_problem, infer,
 };

@@ -4,6 +4,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::inference::calibration::Levels;
 use crate::inference::forecast::{Forecast, Printed, likelihood};
+use crate::inference::mixture::Mixture;
 use crate::inference::search::{Found, Point, covariance};
 use crate::inference::space::{Parameter, Reading};
 
@@ -58,7 +59,7 @@ pub struct Explained {
     pub predicted: Option<(f64, f64)>,
     /// What the most likely point makes it, and how far records scatter about that.
     pub at_best: Option<(f64, f64)>,
-    /// Printed less predicted over the deviation.
+    /// Unit normal deviate below which as much lies as what the others make of the figure lies below the print.
     pub pull: Option<f64>,
     /// Whether the pull is within the limit.
     pub is_explained: Option<bool>,
@@ -355,23 +356,10 @@ impl Question<'_> {
                 is_explained: None,
             };
         }
-        let most = rows
-            .iter()
-            .map(|row| row.0)
-            .fold(f64::NEG_INFINITY, f64::max);
-        let (mut whole, mut first, mut second) = (0.0, 0.0, 0.0);
-        for (logarithm, value, deviation) in rows {
-            let weight = (logarithm - most).exp();
-            whole += weight;
-            first += weight * value;
-            second += weight * (value * value + deviation * deviation);
-        }
-        let mean = first / whole;
-        let variance = (second / whole - mean * mean).max(0.0) + printed.deviation().powi(2);
-        let deviation = variance.sqrt();
-        let pull = (printed.value - mean) / deviation;
+        let law = Mixture::of(&rows, printed.deviation());
+        let pull = law.pull(printed.value);
         Explained {
-            predicted: Some((mean, deviation)),
+            predicted: Some((law.mean, law.deviation)),
             at_best,
             pull: Some(pull),
             is_explained: Some(pull.abs() <= pull_limit),

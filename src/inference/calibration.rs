@@ -6,7 +6,7 @@
 use nalgebra::DMatrix;
 
 use crate::inference::answer::{Answer, Explained};
-use crate::inference::forecast::{Forecasts, Printed};
+use crate::inference::forecast::{Forecasts, Printed, likelihood};
 use crate::inference::search::{Found, Point, covariance};
 
 /// Part of the draws that a level holds.
@@ -44,6 +44,9 @@ pub struct Outcome {
     pub equivalent: usize,
     /// By parameter, whether the 95 % interval under the true reading holds the true value.
     pub is_inside: Vec<bool>,
+    /// Whether the 95 % region of all parameters under the true reading, the most likely settings that hold as
+    /// much, holds the true ones.
+    pub is_in_region: bool,
     /// Volume of the region under the true reading over that of the information bound; none where there
     /// is no region.
     pub volume: Option<f64>,
@@ -150,12 +153,13 @@ pub struct Truth {
 impl Truth {
     /// What an answer is worth.
     ///
+    /// * `doubt`: probability that a figure is not what its name says.
     /// * `bound`: logarithm of the determinant of the covariance that the information allows.
     #[must_use]
     pub fn outcome(
         &self,
-        answer: &Answer,
-        found: &[Option<Found>],
+        (answer, found): (&Answer, &[Option<Found>]),
+        doubt: f64,
         bound: Option<f64>,
         shifted: Shifted,
     ) -> Outcome {
@@ -183,6 +187,7 @@ impl Truth {
             accepted: accepted.count(),
             equivalent: equivalent.count(),
             is_inside: self.inside(points),
+            is_in_region: self.is_in_region(points, doubt),
             volume: bound.and_then(|bound| {
                 let spread = logarithm_of_determinant(&covariance(points, self.parts.len()))?;
                 Some((0.5 * (spread - bound)).exp())
@@ -240,6 +245,15 @@ impl Truth {
                 (TAIL..=1.0 - TAIL).contains(&rank)
             })
             .collect()
+    }
+
+    /// Whether more than 5 % of the points are less likely than the truth: over the parts of the priors the
+    /// density of what is left is the likelihood.
+    fn is_in_region(&self, points: &[Point], doubt: f64) -> bool {
+        let own = likelihood(&self.printed, &self.forecasts, doubt, None).logarithm;
+        let below = points.iter().filter(|point| point.log_likelihood < own);
+        let rank = (below.count() as f64 + 0.5) / (points.len() as f64 + 1.0);
+        !points.is_empty() && rank >= 1.0 - HELD
     }
 
     /// Logarithm of the determinant of the least covariance of the parts: that of Fisher's information of
@@ -317,6 +331,7 @@ mod tests {
             accepted: 2,
             equivalent: 1,
             is_inside: vec![true, false],
+            is_in_region: true,
             volume: Some(1.0),
             largest_pull,
             has_unexplained: false,

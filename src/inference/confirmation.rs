@@ -84,6 +84,16 @@ pub struct Confirmation {
 }
 
 impl Confirmation {
+    /// Whether records were simulated on the loop model as well.
+    #[must_use]
+    pub fn has_loop_model(&self) -> bool {
+        let mut figures = self
+            .candidates
+            .iter()
+            .flat_map(|candidate| &candidate.figures);
+        figures.any(|figure| figure.loop_model.is_some())
+    }
+
     /// Figures whose forecast is as near to the records as it is said to be, and all that were compared.
     #[must_use]
     pub fn agreeing(&self) -> (usize, usize) {

@@ -47,6 +47,18 @@ impl Forecast {
         }
     }
 
+    /// The same with another standard deviation.
+    #[must_use]
+    pub fn with_deviation(&self, deviation: f64) -> Self {
+        match self.scatter {
+            Scatter::Normal => Self { deviation, ..*self },
+            Scatter::Squares { .. } => {
+                let freedom = (0.5 * (self.value / deviation).powi(2)).max(1.0);
+                Self::squares(self.value * self.value, freedom)
+            }
+        }
+    }
+
     /// The figure as a unit normal deviate.
     ///
     /// Of squares by the cube root.

@@ -10,6 +10,7 @@ mod confirmation;
 mod drawing;
 mod forecast;
 mod gate;
+mod mixture;
 mod problem;
 mod search;
 mod space;
@@ -20,8 +21,9 @@ pub use confirmation::{Candidate, Confirmation, Confirmed, Simulated};
 pub use forecast::{Forecast, Forecasts, Likelihood, Print, Printed, Scatter, likelihood};
 pub use gate::JudgedGate;
 pub use problem::{
-    ChoiceConfig, ExperimentConfig, ParameterConfig, PrintedConfig, ProblemConfig,
+    ChoiceConfig, ExperimentConfig, LoggedConfig, ParameterConfig, PrintedConfig, ProblemConfig,
     ProblemGateConfig, RecordConfig,
 };
+pub(crate) use search::first_points;
 pub use search::{Found, Point, Search, Visited};
 pub use space::{Parameter, Reading};

@@ -16,6 +16,9 @@ table! {
         seed: u64 = 1, in 0..=9_223_372_036_854_775_807;
         /// Points by which each reading is searched. Source of the default: assumed.
         points: u32 = 256, in 32..=65_536;
+        /// Simulations of each record under each reading, between which figures without a closed form are
+        /// interpolated; 0 leaves these untold.
+        simulations: u32 = 0, in 0..=10_000;
         /// Probability that a figure is not what the metric of its name says. Source of the default:
         /// assumed; one figure in 200.
         doubt: f64 = 0.005, in 1e-9..=0.5;
@@ -23,6 +26,7 @@ table! {
         parameters as "parameter": Vec<ParameterConfig>;
         choices as "choice": Vec<ChoiceConfig>;
         published as "published": Vec<PrintedConfig>;
+        logs as "log": Vec<LoggedConfig>;
         experiments as "experiment": Vec<ExperimentConfig>;
         gates as "gate": Vec<ProblemGateConfig>;
     }
@@ -80,7 +84,8 @@ table! {
     pub struct PrintedConfig {
         /// Name of the record that it was read from.
         record: String, example "rest";
-        /// Channel and metric, split at the last dot.
+        /// Channel and metric, split at the last dot; of a point of a curve with its place in brackets, as in
+        /// raw.allan[10].
         metric: String, example "lms.angle_random_walk_deg_per_sqrt_h";
         /// The figure as printed.
         value: f64, example 0.006, in -1e30..=1e30;
@@ -92,6 +97,19 @@ table! {
         standard_uncertainty: Option<f64>, example 0.0001, in 1e-30..=1e30;
         /// Where it was published.
         source: String, example "paper, table 2";
+    }
+}
+
+table! {
+    /// Logs whose figures stand beside those that were printed, as `fogbench analyze` has measured them.
+    pub struct LoggedConfig {
+        /// Name of the record that was logged.
+        record: String, example "rest";
+        /// What `fogbench analyze --format json` has printed, relative to this file.
+        file: String, example "rest.json", kind File;
+        /// Channels and metrics; points of a curve with their place in brackets, or those that tell most by
+        /// the name of the curve alone.
+        metrics: Vec<String>, example ["raw.mean_deg_per_h", "raw.allan[100]", "raw.autocovariance"];
     }
 }
 

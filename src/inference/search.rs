@@ -110,9 +110,8 @@ impl Search<'_> {
         } else {
             FIRST_PER_POINT * self.points
         };
-        let mut points: Vec<Point> = (0..first)
-            .filter_map(|index| look(halton(index, self.parameters)))
-            .collect();
+        let first_points = first_points(first, self.parameters).into_iter();
+        let mut points: Vec<Point> = first_points.filter_map(&mut look).collect();
         let mut log_evidence = (points.len() as f64 / first as f64).ln();
         let mut best = points.iter().max_by(by_likelihood).cloned()?;
         let mut stream = streams.stream("search");
@@ -289,6 +288,11 @@ fn log_density(steps: &[Step], visits: usize, log_likelihood: f64) -> f64 {
 
 fn by_likelihood(own: &&Point, other: &&Point) -> std::cmp::Ordering {
     own.log_likelihood.total_cmp(&other.log_likelihood)
+}
+
+/// The first points of Halton's sequence: parts of the priors, spread evenly.
+pub(crate) fn first_points(points: usize, parameters: usize) -> Vec<Vec<f64>> {
+    (0..points).map(|index| halton(index, parameters)).collect()
 }
 
 /// A point of Halton's sequence.

@@ -89,6 +89,7 @@ pub use estimate::table::{ChannelFailure, ChannelMetrics};
 pub(crate) use estimate::text::{estimate_text, is_exact, plain, three_digits, wants_exponent};
 pub use estimate::two_runs::{DifferenceSums, TwoRuns};
 pub use estimate::value::{Estimate, IntervalKind, Metric};
+pub use expected::allan::{AllanGeometry, ExpectedAllan};
 pub use expected::blocks::{BlockGeometry, ExpectedBlocks};
 pub use expected::channel::{ChannelTheory, ExpectedFigure, KnownSine, Words, largest_of_normals};
 pub use key::curve::{Column, Curve, CurveKey};

@@ -44,7 +44,7 @@ pub(in crate::cli) fn infer(options: &InferOptions) -> io::Result<Exit> {
         return Ok(exit);
     }
     if let Some(repeats) = options.confirm
-        && let Err(exit) = confirm(&mut inference, repeats)
+        && let Err(exit) = confirm(&mut inference, repeats, !options.without_loop_model)
     {
         return Ok(exit);
     }
@@ -109,9 +109,9 @@ fn calibrate(
 }
 
 /// Simulates what was found; says beforehand how long that takes.
-fn confirm(inference: &mut Inference, repeats: u32) -> Result<(), Exit> {
+fn confirm(inference: &mut Inference, repeats: u32, has_loop_model: bool) -> Result<(), Exit> {
     let candidates = inference.candidates();
-    let runs = inference.confirmation_runs(&candidates, repeats);
+    let runs = inference.confirmation_runs(&candidates, repeats, has_loop_model);
     let confirmed = runs.and_then(|runs| {
         let plans: Vec<Plan> = runs.iter().map(|run| run.plan.clone()).collect();
         output::talk(&format!(

@@ -28,6 +28,9 @@ pub(in crate::cli) struct InferOptions {
           default_missing_value = "4", value_parser = clap::value_parser!(u32).range(1..=1000),
           conflicts_with = "check")]
     pub(in crate::cli) confirm: Option<u32>,
+    /// Leave the loop model out of the confirmation: it takes most of the time
+    #[arg(long, requires = "confirm")]
+    pub(in crate::cli) without_loop_model: bool,
     /// Folder for infer.json, infer.txt, the page with its pictures and ready scenarios [default: none is
     /// written]
     #[arg(short, long, value_name = "DIR")]

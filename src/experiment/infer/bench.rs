@@ -2,11 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::experiment::infer::forms::{Form, form_of};
+use crate::experiment::infer::forms::Form;
 use crate::experiment::infer::geometry::Geometries;
+use crate::experiment::infer::measurand::Measurand;
 use crate::experiment::infer::record::{Lack, RecordTheory};
-use crate::inference::{Forecast, Forecasts, Parameter, Print, Printed, ProblemConfig, Reading};
-use crate::metrics;
+use crate::experiment::infer::surface::Surfaces;
+use crate::inference::{
+    Forecast, Forecasts, Parameter, Print, Printed, PrintedConfig, ProblemConfig, Reading,
+};
 use crate::scenario::{Problem, Resolved, ScenarioError, load_base_or_scenario};
 
 /// Most readings of one problem.
@@ -23,6 +26,14 @@ pub(crate) struct Bench {
     pub(crate) printed: Vec<Printed>,
     /// Why a figure has no closed form, by figure; none where it has one.
     pub(crate) lacks: Vec<Option<String>>,
+    /// Record and figure of what has no closed form but may be simulated, by reading.
+    pub(super) lacking: Vec<Vec<(usize, usize)>>,
+    /// What stands for these, by reading; empty before it is simulated.
+    pub(super) surfaces: Vec<Surfaces>,
+    /// Forms of the figures.
+    forms: Vec<Option<Form>>,
+    /// Standard errors of the figures that logs bring, the scatter of their records included.
+    standard_errors: Vec<Option<f64>>,
     /// Records of every reading.
     records: Vec<Vec<RecordTheory>>,
     /// Records of the experiments of every reading; none where the reading has no such experiment.
@@ -55,25 +66,33 @@ impl Bench {
         let forms = builder.forms()?;
         let mut lacks = vec![None; config.published.len()];
         let (mut records, mut experiments) = (Vec::new(), Vec::new());
+        let mut lacking = Vec::new();
         for reading in &readings {
-            records.push(builder.records(reading, &forms, &mut lacks)?);
+            let mut own = Vec::new();
+            records.push(builder.records(reading, &forms, &mut lacks, &mut own)?);
+            lacking.push(own);
             experiments.push(builder.experiments(reading)?);
         }
         let parameters = builder.parameters()?;
-        let printed = config.published.iter().map(|figure| Printed {
+        let is_logged = |index: usize| index >= problem.logged_from;
+        let figures = config.published.iter().enumerate();
+        let printed = figures.clone().map(|(index, figure)| Printed {
             value: figure.value,
-            print: match (figure.rounding, figure.standard_uncertainty) {
-                (Some(step), _) => Print::Rounded { step },
-                (None, deviation) => Print::Stated {
-                    deviation: deviation.unwrap_or(f64::MIN_POSITIVE),
-                },
-            },
+            print: print_of(figure, is_logged(index)),
+        });
+        let standard_errors = figures.map(|(index, figure)| {
+            let known = figure.standard_uncertainty;
+            known.filter(|_| is_logged(index))
         });
         Ok(Self {
             parameters,
             readings,
             printed: printed.collect(),
             lacks,
+            surfaces: vec![Surfaces::default(); lacking.len()],
+            lacking,
+            forms: forms.into_iter().map(|(_, form)| form).collect(),
+            standard_errors: standard_errors.collect(),
             records,
             experiments,
         })
@@ -106,12 +125,34 @@ impl Bench {
                 record.forecast(
                     &values,
                     &mut shared,
-                    &mut |index, forecast| figures[index] = Some(forecast),
+                    &mut |index, forecast| {
+                        let own = self.standard_errors[index];
+                        let own = own.map(|error| forecast.with_deviation(error));
+                        figures[index] = Some(own.unwrap_or(forecast));
+                    },
                     &mut |one, other, correlation| correlations.push((one, other, correlation)),
                 )?;
             }
+            let own = &self.surfaces[reading];
+            for surface in &own.surfaces {
+                forecasts.figures[surface.figure] = Some(surface.at(parts));
+            }
+            forecasts.correlations.extend(&own.correlations);
             Some(forecasts)
         }
+    }
+
+    /// Parameters that move a record under a reading.
+    pub(super) fn acting(&self, reading: usize, record: usize) -> Vec<usize> {
+        self.records[reading][record].acting()
+    }
+
+    /// Whether a figure scatters as the root of a sum of squares.
+    pub(super) fn scatters_as_squares(&self, figure: usize) -> bool {
+        matches!(
+            self.forms[figure],
+            Some(Form::Blocks(_) | Form::Noise | Form::Allan(_))
+        )
     }
 
     /// What forecasts the outcome of every experiment under a reading.
@@ -143,6 +184,23 @@ impl Bench {
         parameters
             .map(|(parameter, part)| parameter.at(*part))
             .collect()
+    }
+}
+
+/// How a figure was printed.
+///
+/// One of a log is known to many digits: what its record scatters is that of the forecast.
+fn print_of(figure: &PrintedConfig, is_logged: bool) -> Print {
+    const DIGITS: f64 = 1e-3;
+    let deviation = figure.standard_uncertainty;
+    match figure.rounding {
+        Some(step) => Print::Rounded { step },
+        None if is_logged => Print::Stated {
+            deviation: DIGITS * deviation.unwrap_or(DIGITS * figure.value.abs()),
+        },
+        None => Print::Stated {
+            deviation: deviation.unwrap_or(f64::MIN_POSITIVE),
+        },
     }
 }
 
@@ -213,20 +271,24 @@ impl Builder<'_> {
         let mut found = Vec::new();
         for (index, figure) in self.problem.config.published.iter().enumerate() {
             match self.metric(&format!("published[{index}].metric"), &figure.metric) {
-                Ok((channel, metric)) => {
-                    let is_bare = metric.unit == "1" && figure.unit.is_empty();
-                    if figure.unit != metric.unit && !is_bare {
+                Ok((channel, measurand)) => {
+                    let unit = measurand.unit();
+                    let is_bare = unit == "1" && figure.unit.is_empty();
+                    if figure.unit != unit && !is_bare {
                         let at = format!("published[{index}].unit");
                         let message = format!(
                             "{at} = \"{}\" is not the unit of {}: give the value in \"{}\"",
-                            figure.unit, figure.metric, metric.unit
+                            figure.unit, figure.metric, unit
                         );
                         errors.push(self.problem.complaint(&at, message));
                     }
-                    found.push((channel, form_of(metric)));
+                    found.push((channel, measurand.form()));
                 }
                 Err(error) => errors.push(error),
             }
+        }
+        if errors.is_empty() {
+            errors.extend(self.repeated(&found));
         }
         if errors.is_empty() {
             Ok(found)
@@ -235,26 +297,29 @@ impl Builder<'_> {
         }
     }
 
-    /// Channel and metric of a name.
-    fn metric(
-        &self,
-        at: &str,
-        written: &str,
-    ) -> Result<(String, &'static metrics::MetricKey), ScenarioError> {
-        let parts = written.rsplit_once('.');
-        let found =
-            parts.and_then(|(channel, name)| Some((channel.to_owned(), metrics::find(name)?)));
-        found.ok_or_else(|| {
-            let name = parts.map_or(written, |(_, name)| name);
-            let message = match parts {
-                None => {
-                    format!("{at} = \"{written}\": expected channel and metric, as in raw.dc_gain")
-                }
-                Some(_) => format!(
-                    "{at} = \"{written}\": {}",
-                    metrics::unknown(name).unwrap_or_default()
-                ),
-            };
+    /// Figures that tell what another one of their record tells.
+    fn repeated(&self, forms: &[(String, Option<Form>)]) -> Option<ScenarioError> {
+        let figures = &self.problem.config.published;
+        let pairs = (0..figures.len())
+            .flat_map(|own| (own + 1..figures.len()).map(move |other| (own, other)));
+        let mut repeated = pairs.filter(|(own, other)| {
+            let both = forms[*own].1.zip(forms[*other].1);
+            figures[*own].record == figures[*other].record
+                && both.is_some_and(|(own, other)| own.repeats(other))
+        });
+        let (own, other) = repeated.next()?;
+        let message = format!(
+            "{} and {} of record {} are made of the same sums: give one of them",
+            figures[own].metric, figures[other].metric, figures[own].record
+        );
+        let at = format!("published[{own}].metric");
+        Some(self.problem.complaint(&at, message))
+    }
+
+    /// Channel and measurand of a name.
+    fn metric(&self, at: &str, written: &str) -> Result<(String, Measurand), ScenarioError> {
+        Measurand::of(written).map_err(|error| {
+            let message = format!("{at} = \"{written}\": {error}");
             self.problem.complaint(at, message)
         })
     }
@@ -321,6 +386,7 @@ impl Builder<'_> {
         reading: &Reading,
         forms: &[(String, Option<Form>)],
         lacks: &mut [Option<String>],
+        lacking: &mut Vec<(usize, usize)>,
     ) -> Result<Vec<RecordTheory>, Vec<ScenarioError>> {
         let mut found = Vec::new();
         for record in 0..self.problem.config.records.len() {
@@ -339,6 +405,9 @@ impl Builder<'_> {
                 };
                 if let Err(lack) = added {
                     lacks[index] = Some(lack.to_string());
+                    if !matches!(lack, Lack::Channel { .. }) {
+                        lacking.push((record, index));
+                    }
                 }
             }
             found.push(theory);
@@ -372,7 +441,7 @@ impl Builder<'_> {
             let theory = RecordTheory::new(&resolved, &keys).ok();
             found.push(theory.and_then(|mut theory| {
                 theory
-                    .add(0, (&channel, form_of(metric)?), &mut self.geometries)
+                    .add(0, (&channel, metric.form()?), &mut self.geometries)
                     .ok()?;
                 Some(theory)
             }));

@@ -81,7 +81,8 @@ impl Inference {
         let answer = question.answer(&found);
         let shifted = self.shifted(&truth, draw, seed);
         let bound = truth.bound(&mut bench.forecaster(truth.reading));
-        Ok(truth.outcome(&answer, &found, bound, shifted))
+        let doubt = self.problem.config.doubt;
+        Ok(truth.outcome((&answer, &found), doubt, bound, shifted))
     }
 
     /// What is said of one figure of the truth once it is shifted: a figure after the other by draw, up

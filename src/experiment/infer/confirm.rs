@@ -27,6 +27,8 @@ fn name_of(settings: &str, own: &str) -> String {
     format!("name=\"{name}\"")
 }
 
+/// Gates of a record judge it at its own settings.
+const NO_GATES: &str = "gate=[]";
 /// Longest name of a scenario.
 const NAME_MAX: usize = 64;
 
@@ -83,7 +85,7 @@ impl Inference {
         for candidate in &candidates {
             for (record, row) in config.records.iter().enumerate() {
                 let name = name_of(&candidate.name, &row.name);
-                let plan = self.plan_of(candidate, record, &[name])?;
+                let plan = self.plan_of(candidate, record, &[name, NO_GATES.to_owned()])?;
                 let path = format!("scenarios/{}/{}.toml", candidate.name, row.name);
                 files.push((path, plan.resolved().to_toml()));
             }
@@ -98,6 +100,7 @@ impl Inference {
                 .position(|record| record.name == experiment.record);
             let mut more = experiment.set.clone().unwrap_or_default();
             more.push(name_of("experiment", &experiment.name));
+            more.push(NO_GATES.to_owned());
             let plan = self.plan_of(best, record.unwrap_or(0), &more)?;
             let path = format!("scenarios/experiments/{}.toml", experiment.name);
             files.push((path, plan.resolved().to_toml()));
@@ -108,12 +111,15 @@ impl Inference {
     /// What a confirmation runs: every record of every candidate, repeated on the rate model and once on
     /// the loop model.
     ///
+    /// * `has_loop_model`: whether the loop model is run, which takes most of the time.
+    ///
     /// # Errors
     /// Complaints about a scenario.
     pub fn confirmation_runs(
         &self,
         candidates: &[Candidate],
         repeats: u32,
+        has_loop_model: bool,
     ) -> Result<Vec<ConfirmationRun>, SimulationError> {
         let models = [
             (
@@ -128,7 +134,7 @@ impl Inference {
         let mut runs = Vec::new();
         for (index, candidate) in candidates.iter().enumerate() {
             for record in 0..self.problem.config.records.len() {
-                for (is_loop, more) in &models {
+                for (is_loop, more) in models.iter().filter(|own| has_loop_model || !own.0) {
                     runs.push(ConfirmationRun {
                         candidate: index,
                         record,

@@ -30,6 +30,25 @@ pub(crate) enum Form {
     Nonlinearity,
     /// Bandwidth behind several sines.
     Bandwidth,
+    /// Overlapping Allan deviation at an averaging time, s.
+    Allan(f64),
+    /// Autocovariance of the noise at a lag, s.
+    Autocovariance(f64),
+}
+
+impl Form {
+    /// Whether two figures of one record are made of the same sums, so that the one tells nothing beside the
+    /// other: fits and means of blocks beside the Allan curve, powers beside the autocovariance.
+    pub(crate) fn repeats(self, other: Self) -> bool {
+        use Form::{Allan, Autocovariance, Blocks, Noise, NoiseGain, Walk, WalkOverGain};
+        matches!(
+            (self, other),
+            (Allan(_), Walk | WalkOverGain | Blocks(_))
+                | (Walk | WalkOverGain | Blocks(_), Allan(_))
+                | (Autocovariance(_), Noise | NoiseGain)
+                | (Noise | NoiseGain, Autocovariance(_))
+        )
+    }
 }
 
 /// The metrics, each with its form.

@@ -5,14 +5,21 @@ mod calibrate;
 mod confirm;
 mod forms;
 mod geometry;
+mod interpolated;
+mod logged;
+mod measurand;
 mod record;
+mod response;
 mod simulated;
+mod surface;
 
 use std::path::Path;
 
 use rayon::prelude::*;
 
 use bench::Bench;
+use interpolated::surfaces;
+use logged::with_logs;
 use simulated::check_runs;
 
 use crate::inference::{
@@ -51,7 +58,7 @@ pub struct Inference {
 /// # Errors
 /// Every complaint about the problem and its scenarios.
 pub fn check_problem(file: &Path) -> Result<(), Vec<ScenarioError>> {
-    let problem = load_problem(file)?;
+    let problem = with_logs(load_problem(file)?)?;
     check_runs(&problem, &Bench::new(&problem)?)
 }
 
@@ -62,9 +69,10 @@ pub fn check_problem(file: &Path) -> Result<(), Vec<ScenarioError>> {
 /// # Errors
 /// Every complaint about the problem and its scenarios; a problem that no instrument answers.
 pub fn infer(file: &Path) -> Result<Inference, Vec<ScenarioError>> {
-    let problem = load_problem(file)?;
-    let bench = Bench::new(&problem)?;
+    let problem = with_logs(load_problem(file)?)?;
+    let mut bench = Bench::new(&problem)?;
     check_runs(&problem, &bench)?;
+    bench.surfaces = surfaces(&problem, &bench);
     let found = search(&problem, &bench, &bench.printed, problem.config.seed);
     if found.iter().all(Option::is_none) {
         let message = "no values within the ranges of the parameters make a gyro";

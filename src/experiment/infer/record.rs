@@ -4,14 +4,15 @@ use std::sync::Arc;
 
 use crate::experiment::infer::forms::Form;
 use crate::experiment::infer::geometry::{BLOCKS_MAX, Geometries, Staircase, staircase};
+use crate::experiment::infer::response::{bandwidth_hz, line, sine};
 use crate::filters::FilterConfig;
 use crate::gyro::{self, GyroConfig, WordNoise};
 use crate::inference::Forecast;
 use crate::metrics::{
-    BlockGeometry, ChannelTheory, ExpectedFigure, KnownSine, NoiseCoefficients, Words, lags_needed,
-    samples_in,
+    AllanGeometry, BlockGeometry, ChannelTheory, ExpectedFigure, NoiseCoefficients, Words,
+    lags_needed, samples_in,
 };
-use crate::scenario::{MotionClass, MotionConfig, Movable, NotMovable, Resolved, Scenario};
+use crate::scenario::{MotionClass, MotionConfig, Movable, NotMovable, Resolved};
 use crate::signal::FilterShape;
 use crate::turntable::earth_rate_rad_per_s;
 use crate::units::{
@@ -21,8 +22,8 @@ use crate::units::{
 
 /// Fewest lags of the autocovariance: Bartlett's formula reaches as far.
 const LAGS_MIN: usize = 16;
-/// Frequencies at which a bandwidth is looked for, and the range over that of the lowest sine.
-const BANDWIDTH_POINTS: u32 = 96;
+/// Lags over which an Allan variance takes the noise of the words to be correlated.
+const ALLAN_LAGS: usize = 64;
 
 /// Why a figure has no closed form.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -49,6 +50,14 @@ pub(crate) enum Lack {
     /// The metric is simulated alone.
     #[error("it has no closed form")]
     Metric,
+    /// The record does not hold the averaging time twice, or a word is longer.
+    #[error("{time_s} s are shorter than a word or longer than half of {length_s} s")]
+    AveragingTime {
+        /// Averaging time, s.
+        time_s: f64,
+        /// Length of the record, s.
+        length_s: f64,
+    },
     /// Theory of filters ends.
     #[error("{0}")]
     Theory(&'static str),
@@ -82,6 +91,8 @@ pub(crate) struct RecordTheory {
     figures: Vec<Figure>,
     lags: usize,
     geometries: Vec<(f64, Arc<BlockGeometry>)>,
+    /// Averaging times of the Allan curve that are asked for, s, and what follows from them.
+    allan: (Vec<f64>, Option<AllanGeometry>),
     staircase: Option<Staircase>,
 }
 
@@ -122,9 +133,18 @@ impl RecordTheory {
             figures: Vec::new(),
             lags,
             geometries: Vec::new(),
+            allan: (Vec::new(), None),
             staircase,
             movable,
         })
+    }
+
+    /// Parameters that move its keys, each once.
+    pub(super) fn acting(&self) -> Vec<usize> {
+        let mut acting = self.parameters.clone();
+        acting.sort_unstable();
+        acting.dedup();
+        acting
     }
 
     /// Takes a figure in.
@@ -151,10 +171,19 @@ impl RecordTheory {
             }
         })?;
         self.supports(form, channel)?;
+        let period_s = gyro::sample_period_s(&self.movable.scenario().gyro);
+        if let Form::Allan(time_s) = form {
+            self.add_allan(time_s, period_s)?;
+        }
+        if let Form::Autocovariance(lag_s) = form {
+            let taps = self.channels[channel].shape.as_ref().map_or(0, lags_needed);
+            self.lags = self
+                .lags
+                .max(lag_samples(lag_s, period_s) + taps + LAGS_MIN);
+        }
         if let Form::Blocks(time_s) = form {
             let scenario = self.movable.scenario();
             let time_s = time_s.unwrap_or(scenario.bias_averaging_time_s);
-            let period_s = gyro::sample_period_s(&scenario.gyro);
             let count = samples_in(scenario.duration_s, period_s) / samples_in(time_s, period_s);
             let geometry = known
                 .of(time_s, count, scenario.warm_up_s)
@@ -170,6 +199,20 @@ impl RecordTheory {
             form,
         });
         Ok(())
+    }
+
+    /// Takes an averaging time of the Allan curve in.
+    fn add_allan(&mut self, time_s: f64, period_s: f64) -> Result<(), Lack> {
+        let length_s = self.movable.scenario().duration_s;
+        self.lags = self.lags.max(ALLAN_LAGS);
+        self.allan.0.push(time_s);
+        self.allan.1 = AllanGeometry::new(&self.allan.0, period_s, length_s);
+        if self.allan.1.is_some() {
+            return Ok(());
+        }
+        self.allan.0.pop();
+        self.allan.1 = AllanGeometry::new(&self.allan.0, period_s, length_s);
+        Err(Lack::AveragingTime { time_s, length_s })
     }
 
     /// Whether the record is one of which the form holds.
@@ -196,7 +239,10 @@ impl RecordTheory {
             _ if wants_steps && self.staircase.is_none() => {
                 return no_form("without steps of the rate");
             }
-            Form::Bandwidth if channel > 0 => return no_form("of a filter"),
+            Form::Bandwidth | Form::Allan(_) if channel > 0 => return no_form("of a filter"),
+            Form::Allan(_) | Form::Autocovariance(_) if is_swing => {
+                return no_form("in a swing");
+            }
             Form::Bandwidth if !matches!(class, MotionClass::MultiSine { .. }) => {
                 return no_form("without several sines");
             }
@@ -217,6 +263,12 @@ impl RecordTheory {
             }
             _ => {}
         }
+        self.supports_filter(form, channel)
+    }
+
+    /// Whether the form holds of a channel, where that is a filter.
+    fn supports_filter(&self, form: Form, channel: usize) -> Result<(), Lack> {
+        let no_form = |what| Err(Lack::Form(what));
         let Some(own) = self.channels.get(channel).filter(|_| channel > 0) else {
             return Ok(());
         };
@@ -229,13 +281,22 @@ impl RecordTheory {
                 .map(|lag| if lag == 0 { 1.0 } else { 0.0 })
                 .collect(),
             mean_deg_per_h: 1.0,
+            slow_deviation_deg_per_h: 0.0,
             sine: None,
             period_s: 1.0,
             warm_up_s: 1.0,
             duration_s: 1.0,
         };
         let theory = ChannelTheory::of_filter(shape, &probe).map_err(Lack::Theory)?;
-        if wants_steps && theory.gain_variance_s > 0.0 {
+        if matches!(form, Form::Autocovariance(_)) {
+            if theory.gain_variance_s > 0.0 {
+                return no_form("of weights that learn");
+            }
+            if theory.weights().is_none() {
+                return no_form("of an infinite response");
+            }
+        }
+        if matches!(form, Form::Scale | Form::Nonlinearity) && theory.gain_variance_s > 0.0 {
             return no_form("of weights that learn under steps of the rate");
         }
         Ok(())
@@ -277,9 +338,9 @@ impl RecordTheory {
                 let own = (one, &theories[one.channel]);
                 let against = (other, &theories[other.channel]);
                 let correlation = self.correlation(own, against, &moment);
-                if correlation > 1e-3 {
+                if correlation.abs() > 1e-3 {
                     let (first, second) = (one.index.min(other.index), one.index.max(other.index));
-                    correlate(first, second, correlation.min(1.0 - 1e-9));
+                    correlate(first, second, correlation.clamp(1e-9 - 1.0, 1.0 - 1e-9));
                 }
             }
         }
@@ -308,24 +369,28 @@ impl RecordTheory {
         };
         let rate = earth_rate_rad_per_s(&scenario.turntable.site) + rotation;
         let mean = gyro::expected_mean_rate_rad_per_s(&scenario.gyro, rate);
+        let coefficients = NoiseCoefficients {
+            angle_random_walk_deg_per_h_sqrt_s: deg_per_sqrt_h_to_deg_per_h_sqrt_s(walk),
+            bias_instability_deg_per_h: slow.bias_instability_deg_per_h,
+            rate_random_walk_deg_per_h_per_sqrt_s: deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(
+                slow.rate_random_walk_deg_per_h_per_sqrt_h,
+            ),
+            ..NoiseCoefficients::default()
+        };
+        let walked = (scenario.duration_s / 3.0).sqrt();
         Some(Moment {
             words: Words {
                 autocovariance: noise.autocovariance_deg2_per_h2,
                 mean_deg_per_h: rad_per_s_to_deg_per_h(mean),
+                slow_deviation_deg_per_h: coefficients.bias_instability_deg_per_h
+                    + coefficients.rate_random_walk_deg_per_h_per_sqrt_s * walked,
                 sine: sine(scenario),
                 period_s: noise.sample_period_s,
                 warm_up_s: scenario.warm_up_s,
                 duration_s: scenario.duration_s,
             },
             walk,
-            coefficients: NoiseCoefficients {
-                angle_random_walk_deg_per_h_sqrt_s: deg_per_sqrt_h_to_deg_per_h_sqrt_s(walk),
-                bias_instability_deg_per_h: slow.bias_instability_deg_per_h,
-                rate_random_walk_deg_per_h_per_sqrt_s: deg_per_h_per_sqrt_h_to_deg_per_h_per_sqrt_s(
-                    slow.rate_random_walk_deg_per_h_per_sqrt_h,
-                ),
-                ..NoiseCoefficients::default()
-            },
+            coefficients,
         })
     }
 
@@ -352,54 +417,39 @@ impl RecordTheory {
             Form::Mean => {
                 let noise =
                     coefficients.angle_random_walk_deg_per_h_sqrt_s / words.duration_s.sqrt();
-                let slow = coefficients.bias_instability_deg_per_h
-                    + coefficients.rate_random_walk_deg_per_h_per_sqrt_s
-                        * (words.duration_s / 3.0).sqrt();
+                let slow = words.slow_deviation_deg_per_h;
                 let gain = theory.gain_over_record(words).deviation * words.mean_deg_per_h;
                 let deviation = (theory.dc_gain * noise.hypot(slow)).hypot(gain);
                 Forecast::normal(theory.dc_gain * words.mean_deg_per_h, deviation)
             }
             Form::Noise => plain(theory.noise_std(words)),
-            Form::NoiseGain => {
-                let own = theory.noise_std(words);
-                let raw = ChannelTheory::raw().noise_std(words);
-                let ratio = own.value / raw.value;
-                let relative =
-                    (own.deviation / own.value).powi(2) - (raw.deviation / raw.value).powi(2);
-                Forecast::normal(
-                    ratio * ratio,
-                    2.0 * ratio * ratio * relative.max(0.0).sqrt(),
-                )
-            }
+            Form::NoiseGain => noise_gain(theory, words),
             Form::DelayVsRaw => scaled(theory.delay_s(words)?, s_to_ms(1.0)),
-            Form::DelayVsTruth => {
-                let behind = theory.delay_s(words)?;
-                let sine = words.sine?;
-                let scenario = self.movable.scenario();
-                let response = gyro::word_response(&scenario.gyro, &[sine.frequency_hz]).ok()?;
-                let (_, phase) = *response.first()?;
-                let angular = std::f64::consts::TAU * sine.frequency_hz;
-                // Of a sine of amplitude A in white noise over T: 2 N^2 / (A^2 T), in phase squared.
-                let density = coefficients.angle_random_walk_deg_per_h_sqrt_s;
-                let fitted =
-                    density * (2.0 / words.duration_s).sqrt() / sine.amplitude_deg_per_h / angular;
-                let value = behind.value - phase / angular;
-                Forecast::normal(s_to_ms(value), s_to_ms(fitted.hypot(behind.deviation)))
-            }
+            Form::DelayVsTruth => self.delay_behind_truth(moment, theory)?,
             Form::Scale => {
-                let (error, _) = self.line()?;
+                let staircase = self.staircase.as_ref()?;
+                let (error, _) = line(self.movable.scenario(), staircase);
                 let density = coefficients.angle_random_walk_deg_per_h_sqrt_s;
-                let deviation = self.staircase.as_ref()?.slope_deviation * density;
+                let deviation = staircase.slope_deviation * density;
                 Forecast::normal(ratio_to_ppm(error), ratio_to_ppm(deviation))
             }
             Form::Nonlinearity => {
-                let (_, largest) = self.line()?;
+                let staircase = self.staircase.as_ref()?;
+                let (_, largest) = line(self.movable.scenario(), staircase);
                 let density = coefficients.angle_random_walk_deg_per_h_sqrt_s;
-                let noise = self.staircase.as_ref()?.largest;
+                let noise = staircase.largest;
                 let value = largest.hypot(noise.value * density);
                 Forecast::normal(ratio_to_ppm(value), ratio_to_ppm(noise.deviation * density))
             }
-            Form::Bandwidth => Forecast::normal(self.bandwidth_hz()?, 0.0),
+            Form::Bandwidth => Forecast::normal(bandwidth_hz(self.movable.scenario())?, 0.0),
+            Form::Allan(time_s) => {
+                let (place, geometry) = self.allan(time_s)?;
+                let expected = geometry.expected(place, words, coefficients);
+                Forecast::squares(expected.variance, expected.freedom)
+            }
+            Form::Autocovariance(lag_s) => {
+                plain(theory.autocovariance(lag_samples(lag_s, words.period_s), words))
+            }
         })
     }
 
@@ -414,6 +464,34 @@ impl RecordTheory {
             .iter()
             .find(|(own, _)| own.to_bits() == time_s.to_bits())?;
         Some(&found.1)
+    }
+
+    /// Delay behind the true rate at a swing.
+    fn delay_behind_truth(&self, moment: &Moment, theory: &ChannelTheory) -> Option<Forecast> {
+        let words = &moment.words;
+        let behind = theory.delay_s(words)?;
+        let sine = words.sine?;
+        let scenario = self.movable.scenario();
+        let response = gyro::word_response(&scenario.gyro, &[sine.frequency_hz]).ok()?;
+        let (_, phase) = *response.first()?;
+        let angular = std::f64::consts::TAU * sine.frequency_hz;
+        // Of a sine of amplitude A in white noise over T: 2 N^2 / (A^2 T), in phase squared.
+        let density = moment.coefficients.angle_random_walk_deg_per_h_sqrt_s;
+        let fitted = density * (2.0 / words.duration_s).sqrt() / sine.amplitude_deg_per_h / angular;
+        let value = behind.value - phase / angular;
+        Some(Forecast::normal(
+            s_to_ms(value),
+            s_to_ms(fitted.hypot(behind.deviation)),
+        ))
+    }
+
+    /// Place of an averaging time among those of the Allan curve, with their geometry.
+    fn allan(&self, time_s: f64) -> Option<(usize, &AllanGeometry)> {
+        let (times, geometry) = &self.allan;
+        let place = times
+            .iter()
+            .position(|own| own.to_bits() == time_s.to_bits())?;
+        Some((place, geometry.as_ref()?))
     }
 
     /// Correlation of two figures of the record.
@@ -446,62 +524,43 @@ impl RecordTheory {
                 };
                 part(own) * part(other)
             }
+            (Form::Allan(first), Form::Allan(second)) => {
+                let (first, second) = (self.allan(first), self.allan(second));
+                let both = first.zip(second);
+                both.map_or(0.0, |((first, geometry), (second, _))| {
+                    geometry.correlation(first, second, &moment.coefficients)
+                })
+            }
+            (Form::Autocovariance(first), Form::Autocovariance(second)) => {
+                let [first, second] =
+                    [first, second].map(|lag_s| lag_samples(lag_s, words.period_s));
+                own.autocovariance_correlation(first, (other, second), words)
+            }
             (Form::Nonlinearity, Form::Nonlinearity) | (Form::Scale, Form::Scale) => 1.0,
             _ => 0.0,
         }
     }
+}
 
-    /// Error of the scale factor and largest distance from the line over the full scale, noise left out.
-    fn line(&self) -> Option<(f64, f64)> {
-        let scenario = self.movable.scenario();
-        let staircase = self.staircase.as_ref()?;
-        let earth = earth_rate_rad_per_s(&scenario.turntable.site);
-        let rates = &staircase.rates_rad_per_s;
-        let outputs: Vec<f64> = rates
-            .iter()
-            .map(|rate| gyro::expected_mean_rate_rad_per_s(&scenario.gyro, earth + rate))
-            .collect();
-        let count = rates.len() as f64;
-        let (mean_in, mean_out) = (
-            rates.iter().sum::<f64>() / count,
-            outputs.iter().sum::<f64>() / count,
-        );
-        let (mut square, mut product) = (0.0, 0.0);
-        for (rate, output) in rates.iter().zip(&outputs) {
-            square += (rate - mean_in).powi(2);
-            product += (rate - mean_in) * (output - mean_out);
-        }
-        let slope = product / square;
-        let full = outputs
-            .iter()
-            .fold(0.0_f64, |most, output| most.max(output.abs()));
-        let largest = rates
-            .iter()
-            .zip(&outputs)
-            .map(|(rate, output)| (output - mean_out - slope * (rate - mean_in)).abs())
-            .fold(0.0, f64::max);
-        Some((slope - 1.0, largest / full))
+/// Words of a lag; none of one below half a word.
+fn lag_samples(lag_s: f64, period_s: f64) -> usize {
+    if lag_s < 0.5 * period_s {
+        0
+    } else {
+        samples_in(lag_s, period_s)
     }
+}
 
-    /// Where the gain of the words first falls through 1/sqrt(2) of that of the lowest sine.
-    fn bandwidth_hz(&self) -> Option<f64> {
-        let scenario = self.movable.scenario();
-        let motion = scenario.measured_motion();
-        let MotionClass::MultiSine { frequencies_hz } = motion.class() else {
-            return None;
-        };
-        let (low, high) = (*frequencies_hz.first()?, *frequencies_hz.last()?);
-        let ratio = (high / low).ln() / f64::from(BANDWIDTH_POINTS - 1);
-        let grid: Vec<f64> = (0..BANDWIDTH_POINTS)
-            .map(|point| low * (ratio * f64::from(point)).exp())
-            .collect();
-        let response = gyro::word_response(&scenario.gyro, &grid).ok()?;
-        let limit = response.first()?.0 / std::f64::consts::SQRT_2;
-        let beyond = response.iter().position(|(gain, _)| *gain < limit)?.max(1);
-        let [(above, _), (below, _)] = [response[beyond - 1], response[beyond]];
-        let part = (above - limit) / (above - below);
-        Some(grid[beyond - 1] + part * (grid[beyond] - grid[beyond - 1]))
-    }
+/// Noise power over that of raw.
+fn noise_gain(theory: &ChannelTheory, words: &Words) -> Forecast {
+    let own = theory.noise_std(words);
+    let raw = ChannelTheory::raw().noise_std(words);
+    let ratio = own.value / raw.value;
+    let relative = (own.deviation / own.value).powi(2) - (raw.deviation / raw.value).powi(2);
+    Forecast::normal(
+        ratio * ratio,
+        2.0 * ratio * ratio * relative.max(0.0).sqrt(),
+    )
 }
 
 /// What a filter weighs; none of words from outside.
@@ -511,18 +570,4 @@ fn shape_of(filter: &FilterConfig, period_s: f64) -> Option<FilterShape> {
         return Some(pipeline.filter(0).ok()?.shape());
     }
     Some(settings.build(period_s)?.shape())
-}
-
-/// The sine that a swing puts into the words.
-fn sine(scenario: &Scenario) -> Option<KnownSine> {
-    let MotionConfig::Swing(swing) = &scenario.turntable.motion else {
-        return None;
-    };
-    let frequency_hz = swing.frequency_hz;
-    let response = gyro::word_response(&scenario.gyro, &[frequency_hz]).ok()?;
-    Some(KnownSine {
-        amplitude_deg_per_h: rad_per_s_to_deg_per_h(swing.rate_amplitude_rad_per_s())
-            * response.first()?.0,
-        frequency_hz,
-    })
 }

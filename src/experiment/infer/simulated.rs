@@ -1,11 +1,12 @@
 //! Records of known settings, simulated.
 
 use super::bench::{Bench, sets_of};
+use super::measurand::Measurand;
 use crate::experiment::Run;
 use crate::experiment::plan::{Plan, plan_suite};
 use crate::experiment::run::Progress;
 use crate::inference::Simulated;
-use crate::metrics::{self, Estimate};
+use crate::metrics::Estimate;
 use crate::scenario::{Problem, ScenarioError};
 
 /// Why there are no records of settings.
@@ -186,10 +187,9 @@ pub(super) fn figures_of(
 
 /// A metric of a run; none where it does not have it.
 fn simulated(run: &Run, written: &str) -> Option<Simulated> {
-    let (channel, name) = written.rsplit_once('.')?;
-    let key = metrics::find(name)?;
+    let (channel, measurand) = Measurand::of(written).ok()?;
     let Estimate {
         value, low, high, ..
-    } = run.channel(channel).ok()?.metric(key).ok()?;
+    } = measurand.read(run.channel(&channel).ok()?)?;
     Some(Simulated { value, low, high })
 }

@@ -28,6 +28,8 @@ pub struct Words {
     pub autocovariance: Vec<f64>,
     /// Their mean, deg/h.
     pub mean_deg_per_h: f64,
+    /// Standard deviation of the mean of their slow noise over a record, deg/h.
+    pub slow_deviation_deg_per_h: f64,
     /// A sine that they hold.
     pub sine: Option<KnownSine>,
     /// Time between them, s.
@@ -180,13 +182,16 @@ impl ChannelTheory {
         };
         let share = 2.0 * (length - early) / (length * length);
         let by_mean = if words.mean_deg_per_h.abs() > 0.0 {
-            (self.mean_pull / words.mean_deg_per_h).powi(2) * words.white_level_s()
+            self.mean_pull / words.mean_deg_per_h
         } else {
             0.0
         };
+        let learned = self.gain_variance_s + by_mean * by_mean * words.white_level_s();
+        // What the slow noise adds to the mean stays for the record.
+        let slow = by_mean * words.slow_deviation_deg_per_h;
         ExpectedFigure {
             value: self.dc_gain,
-            deviation: (share * (self.gain_variance_s + by_mean)).sqrt(),
+            deviation: (share * learned).sqrt().hypot(slow),
         }
     }
 
@@ -212,6 +217,44 @@ impl ChannelTheory {
             value,
             deviation: value * relative.hypot(gain),
         }
+    }
+
+    /// How the autocovariance of the channel at a lag follows from that of the words: weights by lag.
+    fn lag_weights(&self, lag: usize) -> Vec<f64> {
+        let weights = self.weights().unwrap_or(&[1.0]);
+        let mut by_lag = vec![0.0; lag + weights.len()];
+        for (age, own) in weights.iter().enumerate() {
+            for (other_age, other) in weights.iter().enumerate() {
+                by_lag[(lag + age).abs_diff(other_age)] += own * other;
+            }
+        }
+        by_lag
+    }
+
+    /// Autocovariance of the channel's noise at a lag, (deg/h)^2, its weights as they are.
+    #[must_use]
+    pub fn autocovariance(&self, lag: usize, words: &Words) -> ExpectedFigure {
+        let by_lag = self.lag_weights(lag);
+        let rows = by_lag.iter().zip(&words.autocovariance);
+        let value = rows.map(|(weight, own)| weight * own).sum();
+        let variance = words.bartlett(&by_lag, &by_lag);
+        ExpectedFigure {
+            value,
+            deviation: (variance * words.period_s / words.duration_s).sqrt(),
+        }
+    }
+
+    /// Correlation of the autocovariance at a lag with that of another channel at another.
+    #[must_use]
+    pub fn autocovariance_correlation(
+        &self,
+        lag: usize,
+        (other, other_lag): (&Self, usize),
+        words: &Words,
+    ) -> f64 {
+        let (own, against) = (self.lag_weights(lag), other.lag_weights(other_lag));
+        let scale = words.bartlett(&own, &own) * words.bartlett(&against, &against);
+        words.bartlett(&own, &against) / scale.sqrt().max(f64::MIN_POSITIVE)
     }
 
     /// The weights, newest sample first; none of raw or an infinite response.
@@ -320,6 +363,33 @@ impl Words {
         (self.autocovariance[0] + 2.0 * later) * self.period_s
     }
 
+    /// Covariance of two weighted sums of products at a lag, each a mean over one word, as far as the noise
+    /// alone makes it.
+    ///
+    /// Source: Bartlett's formula.
+    fn bartlett(&self, gradient: &[f64], other: &[f64]) -> f64 {
+        let noise = |lag: isize| {
+            let lag = lag.unsigned_abs();
+            self.autocovariance.get(lag).copied().unwrap_or(0.0)
+        };
+        let reach = self.autocovariance.len().cast_signed();
+        // With b_k = sum of gradient_l noise(k + l), c_k of the other: sum over lags k of b_k c_k + b_k c_-k.
+        let smeared = |gradient: &[f64]| -> Vec<f64> {
+            let shifts = -2 * reach..=2 * reach;
+            let of = |shift: isize| {
+                let lags = gradient.iter().enumerate();
+                lags.filter(|(_, own)| **own != 0.0)
+                    .map(|(lag, own)| own * noise(shift + lag.cast_signed()))
+                    .sum()
+            };
+            shifts.map(of).collect()
+        };
+        let (own, against) = (smeared(gradient), smeared(other));
+        let turned = own.iter().rev();
+        let rows = own.iter().zip(turned).zip(&against);
+        rows.map(|((a, b), c)| a * c + b * c).sum()
+    }
+
     /// Variance of a weighted sum of moments that are means over one word each, as far as the noise alone
     /// and the noise beside a sine make it.
     ///
@@ -330,17 +400,6 @@ impl Words {
             self.autocovariance.get(lag).copied().unwrap_or(0.0)
         };
         let reach = self.autocovariance.len().cast_signed();
-        // With b_k = sum of gradient_l noise(k + l): sum over lags k of b_k b_k + b_k b_-k.
-        let smeared: Vec<f64> = (-2 * reach..=2 * reach)
-            .map(|shift| {
-                let lags = gradient.iter().enumerate();
-                lags.filter(|(_, own)| **own != 0.0)
-                    .map(|(lag, own)| own * noise(shift + lag.cast_signed()))
-                    .sum()
-            })
-            .collect();
-        let turned = smeared.iter().rev();
-        let bartlett: f64 = smeared.iter().zip(turned).map(|(a, b)| a * a + a * b).sum();
         let beside = self.sine.map_or(0.0, |sine| {
             let turn = TAU * sine.frequency_hz * self.period_s;
             let later: f64 = (1..reach)
@@ -353,7 +412,7 @@ impl Words {
                 .sum();
             2.0 * sine.amplitude_deg_per_h.powi(2) * product * product * (noise(0) + later)
         });
-        bartlett + beside
+        self.bartlett(gradient, gradient) + beside
     }
 }
 

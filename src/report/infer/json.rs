@@ -134,6 +134,7 @@ fn calibration_json(calibration: &Calibration) -> Value {
         "at_most_a_third_accepted": calibration.third(),
         "intervals": all,
         "intervals_that_hold": inside,
+        "regions_that_hold": calibration.count(|outcome| outcome.is_in_region),
         "volumes_over_bound": calibration.volumes(),
         "without_unexplained": calibration.count(|outcome| !outcome.has_unexplained),
         "shifted_named": shifted(Shifted::Named),

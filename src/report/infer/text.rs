@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::InferenceSheet;
-use crate::gate::limits_text;
+use crate::gate::{limits_text, plain};
 use crate::inference::{
     Calibration, Confirmation, Confirmed, Explained, Judged, JudgedGate, PrintedConfig, Reading,
     Ridge, Shifted,
@@ -167,7 +167,7 @@ fn figure_text(printed: &PrintedConfig, figure: &Explained, lack: Option<&str>) 
                 &mut text,
                 format_args!(
                     "  {verdict:<11}  {name}: printed {} {}, from the others {} +-{}, pull {pull:+.1}",
-                    printed.value,
+                    plain(printed.value),
                     printed.unit,
                     three_digits(value),
                     three_digits(deviation)
@@ -178,7 +178,7 @@ fn figure_text(printed: &PrintedConfig, figure: &Explained, lack: Option<&str>) 
             &mut text,
             format_args!(
                 "  not told     {name}: printed {} {}; {}",
-                printed.value,
+                plain(printed.value),
                 printed.unit,
                 lack.unwrap_or("no reading forecasts it")
             ),
@@ -295,7 +295,11 @@ pub(in crate::report) fn calibration_text(calibration: &Calibration) -> String {
     if all > 0 {
         line(
             &mut text,
-            format_args!("  {inside} of {all} intervals of 95 % hold their value"),
+            format_args!(
+                "  {inside} of {all} intervals of 95 % hold their value; {} of {draws} regions of all parameters hold \
+                 the settings",
+                calibration.count(|outcome| outcome.is_in_region)
+            ),
         );
     }
     let volumes = calibration.volumes();
@@ -343,10 +347,9 @@ fn confirmation_text(sheet: &InferenceSheet, confirmation: &Confirmation) -> Str
     line(
         &mut text,
         format_args!(
-            "\nConfirmation: {} settings simulated, {} records on the rate model and one on the loop model; \
-             {agreeing} of {all} forecasts agree",
+            "\nConfirmation: {} settings simulated, each record {}; {agreeing} of {all} forecasts agree",
             confirmation.candidates.len(),
-            confirmation.repeats
+            repeats_text(confirmation)
         ),
     );
     for candidate in &confirmation.candidates {
@@ -372,6 +375,20 @@ fn confirmation_text(sheet: &InferenceSheet, confirmation: &Confirmation) -> Str
     text
 }
 
+/// How often and by which models records were simulated.
+pub(in crate::report) fn repeats_text(confirmation: &Confirmation) -> String {
+    let times = match confirmation.repeats {
+        1 => "once".to_owned(),
+        count => format!("{count} times"),
+    };
+    let loops = if confirmation.has_loop_model() {
+        " and once on the loop model"
+    } else {
+        ""
+    };
+    format!("{times} on the rate model{loops}")
+}
+
 /// A figure published, predicted and simulated.
 fn confirmed_text(printed: &PrintedConfig, figure: &Confirmed, repeats: u32) -> String {
     let mut text = String::new();
@@ -390,7 +407,7 @@ fn confirmed_text(printed: &PrintedConfig, figure: &Confirmed, repeats: u32) -> 
             "    {verdict:<9}  {} {}: published {}, predicted {}, simulated {}{interval}, loop {} {}{}",
             printed.record,
             printed.metric,
-            printed.value,
+            plain(printed.value),
             number(figure.predicted.map(|own| own.value)),
             number(figure.rate_model.map(|own| own.value)),
             number(figure.loop_model.map(|own| own.value)),

@@ -9,12 +9,13 @@ use super::run::PAGE_BYTES_MAX;
 use crate::gate::{plain, three_digits};
 use crate::inference::{Confirmation, Confirmed, Explained, Judged, PrintedConfig};
 use crate::report::infer::InferenceSheet;
-use crate::report::infer::text::{answers, calibration_text, gate_text, ridge_text};
+use crate::report::infer::text::{answers, calibration_text, gate_text, repeats_text, ridge_text};
 use crate::report::plot::Pictures;
 use crate::report::plot::infer::INFER_PICTURES;
 
-/// Most readings that are shown.
+/// Most readings that are shown, and of those that are not accepted.
 const READINGS_MAX: usize = 200;
+const REFUSED_MAX: usize = 8;
 
 /// The page of an inference with its pictures.
 ///
@@ -105,6 +106,8 @@ fn gates(sheet: &InferenceSheet) -> Option<Markup> {
 
 fn readings(sheet: &InferenceSheet) -> Markup {
     let all = &sheet.answer.readings;
+    let accepted = sheet.answer.accepted().count();
+    let shown = all.len().min(READINGS_MAX).min(accepted + REFUSED_MAX);
     let table = html! {
         table.sortable {
             thead { tr {
@@ -115,7 +118,7 @@ fn readings(sheet: &InferenceSheet) -> Markup {
                     th.num scope="col" { (parameter.name) span.unit { (parameter.unit) } }
                 }
             } }
-            tbody { @for judged in all.iter().take(READINGS_MAX) { (reading_row(sheet, judged)) } }
+            tbody { @for (place, judged) in all.iter().take(shown).enumerate() { (reading_row(sheet, place, judged)) } }
         }
     };
     section(
@@ -125,18 +128,23 @@ fn readings(sheet: &InferenceSheet) -> Markup {
             p.soft { "Each parameter as median and 95 % interval under the reading. Accepted are the fewest readings that hold "
                 (three_digits(sheet.answer.accepted_part)) " of the probability." }
             (wide("readings", &table))
-            @if all.len() > READINGS_MAX { p.soft { (all.len() - READINGS_MAX) " more stand in infer.json." } }
+            @if all.len() > shown { p.soft { (all.len() - shown) " more stand in infer.json." } }
         },
     )
 }
 
-fn reading_row(sheet: &InferenceSheet, judged: &Judged) -> Markup {
+fn reading_row(sheet: &InferenceSheet, place: usize, judged: &Judged) -> Markup {
+    let answers = &sheet.readings[judged.reading].answers;
     html! { tr {
         td {
             @if judged.is_accepted { span.pill.pass { "accepted" } } @else { span.pill.doubt { "refused" } }
         }
         td.num data-v=(by_value(judged.weight)) { (format!("{:.2}", 100.0 * judged.weight)) }
-        th scope="row" { (answers(&sheet.readings[judged.reading])) }
+        th scope="row" data-v=(place + 1) {
+            "reading " (place + 1)
+            @for (question, answer) in answers { span.definition { (question) ": " (answer) } }
+            @if answers.is_empty() { span.definition { "as the scenarios say" } }
+        }
         @for range in &judged.parameters {
             td.num data-v=(by_value(range.value)) {
                 (three_digits(range.value)) " [" (three_digits(range.low)) ", " (three_digits(range.high)) "]"
@@ -244,8 +252,8 @@ fn confirmation(sheet: &InferenceSheet, confirmation: &Confirmation) -> Markup {
         "confirmation",
         "Confirmation",
         &html! {
-            p { (agreeing) " of " (all) " forecasts agree with simulated records: " (confirmation.repeats)
-                " on the rate model, one on the loop model." }
+            p { (agreeing) " of " (all) " forecasts agree with simulated records: each "
+                (repeats_text(confirmation)) "." }
             @for candidate in &confirmation.candidates {
                 h3 { (candidate.name) }
                 p.soft { @for (parameter, part) in sheet.parameters.iter().zip(&candidate.parts) {

@@ -20,6 +20,8 @@ pub(in crate::report) const INFER_PICTURES: [(&str, &str); 3] = [
 const PANEL: f64 = 250.0;
 /// Bins of a density.
 const BINS: usize = 20;
+/// Most limits of a pull that the axis of the pulls reaches.
+const LIMITS_SHOWN: f64 = 3.0;
 /// Most readings that are drawn.
 const READINGS_MAX: usize = 4;
 /// Most ridges that are drawn.
@@ -58,7 +60,9 @@ fn pulls(sheet: &InferenceSheet) -> Option<Picture> {
     let figures = &sheet.answer.figures;
     let limit = sheet.answer.pull_limit;
     let told = figures.iter().filter_map(|figure| figure.pull);
-    let most = told.map(f64::abs).reduce(f64::max)?.max(limit) * 1.1;
+    let most = told.map(f64::abs).reduce(f64::max)?.max(limit);
+    // One far out would press all others onto the line: it stands at the edge, its pull in the legend.
+    let shown = most.min(LIMITS_SHOWN * limit);
     let mut picture = Picture::new(WIDTH, 420.0);
     let heading = format!(
         "{}: figures beside what all others make of them",
@@ -75,7 +79,11 @@ fn pulls(sheet: &InferenceSheet) -> Option<Picture> {
     x.ticks = (1..=figures.len())
         .map(|number| (real(number), number.to_string()))
         .collect();
-    let y = Axis::linear((-most, most), 0.0, "pull, standard deviations");
+    let y = Axis::linear(
+        (-1.1 * shown, 1.1 * shown),
+        0.0,
+        "pull, standard deviations",
+    );
     let panel = Panel::new(&mut picture, (56.0, 360.0), x, y);
     for at in [-limit, 0.0, limit] {
         let line = [(0.5, at), (last + 0.5, at)];
@@ -88,6 +96,7 @@ fn pulls(sheet: &InferenceSheet) -> Option<Picture> {
     legend.line(&mut picture, truth_stroke(), "limit of the pull");
     for (number, figure) in figures.iter().enumerate() {
         let Some(pull) = figure.pull else { continue };
+        let drawn = pull.clamp(-shown, shown);
         let (shape, colour) = if figure.is_explained == Some(true) {
             (Shape::Circle, fine)
         } else {
@@ -96,13 +105,18 @@ fn pulls(sheet: &InferenceSheet) -> Option<Picture> {
         let at = real(number + 1);
         panel.line(
             &mut picture,
-            &[(at, 0.0), (at, pull)],
+            &[(at, 0.0), (at, drawn)],
             Stroke::solid(colour, 1.25),
         );
-        panel.marker(&mut picture, (at, pull), shape, colour);
+        panel.marker(&mut picture, (at, drawn), shape, colour);
         if figure.is_explained != Some(true) {
             let printed = &sheet.problem.published[number];
-            let name = format!("{}: {} {}", number + 1, printed.record, printed.metric);
+            let name = format!(
+                "{}: {pull:+.1}, {} {}",
+                number + 1,
+                printed.record,
+                printed.metric
+            );
             legend.text(&mut picture, &short(&name));
         }
     }

@@ -60,7 +60,8 @@ fn channel(record: &Value) -> Option<ChannelMetrics> {
     let mut channel = ChannelMetrics::default();
     for (key, value) in record.as_object()? {
         match key.as_str() {
-            "verdict" | "repeats" | METRICS => {}
+            // Of these a summary does not keep all.
+            "verdict" | "repeats" | "smoothing" | "outlier_list" | METRICS => {}
             "noise_fit" => channel.noise_fit = Some(noise_fit(value)?),
             "pulse_words" => {
                 for (name, words) in value.as_object()? {

@@ -30,6 +30,8 @@ pub struct Problem {
     pub config: ProblemConfig,
     /// Bare name of its file.
     pub file: String,
+    /// Place of the first figure that a log brings: those before are printed.
+    pub logged_from: usize,
     folder: PathBuf,
     tree: Table,
     sources: Sources,
@@ -43,6 +45,17 @@ impl Problem {
         let path = address::parse(key).unwrap_or_default();
         let mark = nearest_mark(&self.tree, &path).unwrap_or(self.start);
         self.sources.error(mark, message)
+    }
+
+    /// The text of a file that the problem names.
+    ///
+    /// # Errors
+    /// That the key does not lead to a text.
+    pub fn read_beside(&self, key: &str, path: &str) -> Result<String, ScenarioError> {
+        let read = input::read(&self.beside(path));
+        let message = |error| format!("{key}: cannot read {}: {error}", excerpt(path));
+        read.map(|input| input.text)
+            .map_err(|error| self.complaint(key, message(error)))
     }
 
     /// A file that the problem names.
@@ -113,10 +126,11 @@ pub fn load_problem(file: &Path) -> Result<Problem, Vec<ScenarioError>> {
     if !errors.is_empty() {
         return Err(in_order(errors));
     }
-    let config =
+    let config: ProblemConfig =
         from_table(&tree).map_err(|error| vec![sources.error(start, error.to_string())])?;
     let name = file.file_name().unwrap_or_default();
     let problem = Problem {
+        logged_from: config.published.len(),
         config,
         file: name.to_string_lossy().into_owned(),
         folder: file.parent().unwrap_or(Path::new("")).to_owned(),
@@ -252,14 +266,13 @@ impl Reader<'_> {
 fn contradictions(problem: &Problem) -> Vec<ScenarioError> {
     let config = &problem.config;
     let mut errors = Vec::new();
-    for (table, lacks) in [
-        ("record", config.records.is_empty()),
-        ("published", config.published.is_empty()),
-    ] {
-        if lacks {
-            let message = format!("the problem has no [[{table}]]: expected at least one");
-            errors.push(problem.complaint(table, message));
-        }
+    if config.records.is_empty() {
+        let message = "the problem has no [[record]]: expected at least one";
+        errors.push(problem.complaint("record", message));
+    }
+    if config.published.is_empty() && config.logs.is_empty() {
+        let message = "the problem has neither [[published]] nor [[log]]: expected a figure";
+        errors.push(problem.complaint("published", message));
     }
     errors.extend(twins(problem));
     errors.extend(strangers(problem));
@@ -367,6 +380,9 @@ fn strangers(problem: &Problem) -> Vec<ScenarioError> {
     named.extend(lists.iter().map(|(at, name)| (at.clone(), name.as_str())));
     for (index, row) in config.published.iter().enumerate() {
         named.push((format!("published[{index}].record"), &row.record));
+    }
+    for (index, row) in config.logs.iter().enumerate() {
+        named.push((format!("log[{index}].record"), &row.record));
     }
     for (index, row) in config.experiments.iter().enumerate() {
         named.push((format!("experiment[{index}].record"), &row.record));
