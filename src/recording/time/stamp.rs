@@ -113,20 +113,23 @@ pub(in crate::recording) fn ticks_of(unit: TimeUnit) -> i128 {
 )]
 pub(in crate::recording) fn as_float(ticks: i128) -> f64 {
     // What fits into 64 bits, as most differences do, is converted faster.
-    i64::try_from(ticks).map_or(ticks as f64, |ticks| ticks as f64)
+    i64::try_from(ticks).map_or_else(|_| ticks as f64, |ticks| ticks as f64)
 }
 
 impl Stamp {
     /// The stamp that a number of digits is; nothing of too many decimals.
     #[inline]
     pub(in crate::recording) fn of_decimal(number: Decimal, unit: TimeUnit) -> Option<Self> {
-        let unit_ticks = ticks_of(unit);
-        let power = 10_u64.checked_pow(u32::try_from(number.decimals).ok()?)?;
-        let unit = u64::try_from(unit_ticks).ok()?;
-        let digits = i128::from(number.digits);
-        let magnitude = match unit % power {
-            0 => digits * i128::from(unit / power),
-            _ => rounded(digits * unit_ticks, i128::from(power)),
+        let (magnitude, resolution) = match last_place(unit, number.decimals) {
+            Some(ticks) => (i128::from(number.digits) * i128::from(ticks), ticks),
+            None => {
+                let power = 10_u64.checked_pow(u32::try_from(number.decimals).ok()?)?;
+                let unit_ticks = ticks_of(unit);
+                let digits = i128::from(number.digits);
+                let magnitude = rounded(digits * unit_ticks, i128::from(power));
+                let resolution = u64::try_from(unit_ticks).ok()? / power;
+                (magnitude, resolution.max(1))
+            }
         };
         Some(Self {
             ticks: if number.is_negative {
@@ -134,9 +137,37 @@ impl Stamp {
             } else {
                 magnitude
             },
-            resolution: i128::from((unit / power).max(1)),
+            resolution: i128::from(resolution),
         })
     }
+}
+
+/// Ticks of one in the last of so many decimals, where these are a whole number and the unit is a power of ten.
+#[inline]
+fn last_place(unit: TimeUnit, decimals: usize) -> Option<u64> {
+    const POWERS: [u64; DECIMALS + 1] = [
+        1,
+        10,
+        100,
+        1_000,
+        10_000,
+        100_000,
+        1_000_000,
+        10_000_000,
+        100_000_000,
+        1_000_000_000,
+        10_000_000_000,
+        100_000_000_000,
+        1_000_000_000_000,
+    ];
+    let places = match unit {
+        TimeUnit::Seconds | TimeUnit::Iso | TimeUnit::Samples => DECIMALS,
+        TimeUnit::Milliseconds => DECIMALS - 3,
+        TimeUnit::Microseconds => DECIMALS - 6,
+        TimeUnit::Nanoseconds => DECIMALS - 9,
+        TimeUnit::Minutes | TimeUnit::Hours | TimeUnit::Days | TimeUnit::Weeks => return None,
+    };
+    POWERS.get(places.checked_sub(decimals)?).copied()
 }
 
 /// A quotient, rounded to the nearest.
