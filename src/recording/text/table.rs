@@ -14,6 +14,7 @@ use crate::recording::layout::columns::{Chosen, Selection, choose};
 use crate::recording::layout::words::{DecimalSign, MissingWords};
 use crate::recording::layout::{Fault, HeadLine, Layout, LayoutError, find, finite_in, is_number};
 use crate::recording::log::format::LogFormat;
+use crate::recording::log::gaps::Gaps;
 use crate::recording::time::column::TimeColumn;
 use crate::recording::time::stamp::Stamp;
 
@@ -26,6 +27,8 @@ pub(in crate::recording) struct Wanted<'a> {
     pub(in crate::recording) columns: Selection<'a>,
     /// Whether the time is looked for.
     pub(in crate::recording) needs_time: bool,
+    /// What may be done about samples that are missing.
+    pub(in crate::recording) gaps: Gaps,
     pub(in crate::recording) format: &'a LogFormat,
     /// Samples after which reading ends.
     pub(in crate::recording) samples_max: usize,
@@ -257,8 +260,7 @@ struct Table {
     roles: Vec<Role>,
     columns: Columns,
     is_gap: bool,
-    /// Whether it is a log, of which the options can say that samples are missing.
-    is_log: bool,
+    gaps: Gaps,
     /// Cells of a first row that are no numbers; none once the second row was held against it.
     words: Vec<(usize, String)>,
     /// Values of a record that is spread over lines.
@@ -326,7 +328,7 @@ impl Table {
             layout,
             roles,
             is_gap: missing == Some(MissingWords::Gap),
-            is_log: wanted.needs_time,
+            gaps: wanted.gaps,
             words: Vec::new(),
             record: Vec::new(),
             taken: 0,
@@ -501,10 +503,9 @@ impl Table {
                     Ok(value) => value,
                     Err(_) if self.is_gap && is_missing(cell) => f64::NAN,
                     Err(error) => {
-                        let way_out = if self.is_log && is_missing(cell) {
-                            "; --missing gap takes the sample to be missing"
-                        } else {
-                            ""
+                        let way_out = match is_missing(cell) {
+                            true => self.gaps.at_number(),
+                            false => "",
                         };
                         return Err(CellFault::Content(format!("{error}{way_out}")));
                     }
