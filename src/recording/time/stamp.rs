@@ -208,29 +208,29 @@ fn date(cell: &str) -> Option<Stamp> {
     }
 }
 
-/// Days since 1970 of a year, month and day of digits, and what stands behind.
+/// Days since 1970 of a year, month and day of digits, and what stands behind: `2024-03-01`, `2024/03/01`, or with
+/// points between them the day first, `01.03.2024`.
 fn day(bytes: &[u8]) -> Option<(i64, &[u8])> {
-    let [
-        y0,
-        y1,
-        y2,
-        y3,
-        cut @ (b'-' | b'/'),
-        m0,
-        m1,
-        same,
-        d0,
-        d1,
-        behind @ ..,
-    ] = bytes
-    else {
-        return None;
+    let (year, month, day, behind) = match bytes {
+        [
+            y0,
+            y1,
+            y2,
+            y3,
+            cut @ (b'-' | b'/'),
+            m0,
+            m1,
+            same,
+            d0,
+            d1,
+            behind @ ..,
+        ] if cut == same => ([*y0, *y1, *y2, *y3], [*m0, *m1], [*d0, *d1], behind),
+        [d0, d1, b'.', m0, m1, b'.', y0, y1, y2, y3, behind @ ..] => {
+            ([*y0, *y1, *y2, *y3], [*m0, *m1], [*d0, *d1], behind)
+        }
+        _ => return None,
     };
-    if cut != same {
-        return None;
-    }
-    let year = number(&[*y0, *y1, *y2, *y3])?;
-    let (month, day) = (number(&[*m0, *m1])?, number(&[*d0, *d1])?);
+    let (year, month, day) = (number(&year)?, number(&month)?, number(&day)?);
     if !(1..=12).contains(&month) || !(1..=days_of_month(year, month)).contains(&day) {
         return None;
     }
@@ -361,6 +361,8 @@ mod tests {
         );
         assert_eq!(at("2024/03/01 12:00:00,005"), at("2024-03-01T12:00:00.005"));
         assert_eq!(at("2024-02-29"), at("2024-03-01") - DAY);
+        assert_eq!(at("29.02.2024"), at("2024-02-29"));
+        assert_eq!(at("01.03.2024 12:00:00,5"), at("2024-03-01T12:00:00.5"));
         assert_eq!(
             at("2024-03-01") + at("12:00:00.25"),
             at("2024-03-01T12:00:00.25")
@@ -376,6 +378,8 @@ mod tests {
             "12:00:00.",
             "1.5",
             "2024-03/01",
+            "29.02.2023",
+            "03.2024",
             "2024-03-01T25:00",
             "",
             "nan",

@@ -500,8 +500,9 @@ fn as_float(count: usize) -> f64 {
 #[derive(Debug, thiserror::Error)]
 pub(in crate::recording) enum StepError {
     #[error(
-        "the time goes from one stamp to the next by {step:.9}{unit}: stamps must ascend; if they are \
-         rounded too coarsely, say --time none and give --rate-hz"
+        "the time goes from one stamp to the next by {step:.9}{unit}: stamps must ascend; --roll-over says \
+         after how much a counter begins again; if they are rounded too coarsely, say --time none and give \
+         --rate-hz"
     )]
     Descent { step: f64, unit: &'static str },
     #[error(
