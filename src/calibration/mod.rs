@@ -89,4 +89,6 @@ pub use result::{
     AxisCoefficients, Calibration, RoundingLoss, SampleFindings, TemperatureCoefficients,
 };
 pub use sample_rates::{RateSample, SampleSettings, estimate_samples};
-pub use settings::{CalibrationConfig, CompensationConfig, CompensationParameters};
+pub use settings::{
+    CalibrationConfig, CompensationConfig, CompensationParameters, TemperatureParameters,
+};
