@@ -91,8 +91,8 @@ impl<'a> OwnFiles<'a> {
 
     /// Refuses what stands in their places.
     fn check(&self, inputs: &[&Path]) -> Result<(), Exit> {
-        let both = [self.kalman, self.temperature].into_iter().flatten();
-        both.map(|file| place::check_file(file, inputs)).collect()
+        let mut both = [self.kalman, self.temperature].into_iter().flatten();
+        both.try_for_each(|file| place::check_file(file, inputs))
     }
 
     /// The option that names one of them.

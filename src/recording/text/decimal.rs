@@ -64,7 +64,6 @@ fn halves(bytes: u128) -> [u64; 2] {
         reason = "the upper half is the other one"
     )]
     let lower = bytes as u64;
-    #[expect(clippy::cast_possible_truncation, reason = "it was moved down")]
     let upper = (bytes >> 64) as u64;
     [lower, upper]
 }

@@ -79,18 +79,18 @@ impl TemperatureTables {
     }
 }
 
-/// Why the calibration of a log of one gyro does nothing.
+/// What the calibration of a log of one gyro lacks: it would do nothing.
 #[derive(Debug, thiserror::Error)]
 enum IdleCalibration {
     #[error("it has no effect without --calibration: leave it out")]
-    NoFile,
+    Axis,
     #[error(
         "it takes the effect of the temperature out of the words of one gyro: --temperature-column names its \
          column"
     )]
-    NoTemperature,
+    Temperature,
     #[error("it holds no table [{wanted}]{way_out}")]
-    NoTable { wanted: String, way_out: String },
+    Table { wanted: String, way_out: String },
 }
 
 /// The coefficients of the temperature that the calibration of a log of one gyro has, and the digest of the file;
@@ -109,7 +109,7 @@ pub fn load_log_temperature(
         return Ok(None);
     };
     if format.temperature_column.is_none() {
-        return Err(refuse("--calibration", IdleCalibration::NoTemperature));
+        return Err(refuse("--calibration", IdleCalibration::Temperature));
     }
     let path = Path::new(file);
     let (tables, digest) = load_temperature(path)?;
@@ -118,7 +118,7 @@ pub fn load_log_temperature(
         None => {
             let wanted = TemperatureTables::name(format.axis);
             let way_out = tables.way_out();
-            let error = IdleCalibration::NoTable { wanted, way_out };
+            let error = IdleCalibration::Table { wanted, way_out };
             Err(refuse(&shown_path(path), error))
         }
     }
@@ -135,7 +135,7 @@ pub(super) fn check_axis(format: &LogFormat) -> Result<(), ScenarioError> {
     let location = Location::of_file("--axis".to_owned());
     Err(ScenarioError::at(
         location,
-        IdleCalibration::NoFile.to_string(),
+        IdleCalibration::Axis.to_string(),
     ))
 }
 
