@@ -52,16 +52,50 @@ fn bias_error(report: &Value, name: &str) -> f64 {
 
 #[test]
 fn known_answer_samples_find_the_parameters_within_their_covariance() {
-    let mut normalised = Vec::new();
-    for seed in 1..=4 {
+    const SEEDS: u32 = 40;
+    let mut sum = 0.0;
+    for seed in 1..=SEEDS {
         let report = calibrated(&[format!("seed={seed}")]);
         let own = &estimate(&report, SAMPLES)["error"]["normalised_error_squared"];
-        normalised.push(own.as_f64().expect("a number"));
+        sum += own.as_f64().expect("a number");
     }
-    // Chi-square of 12 degrees of freedom, four of them: 48 with a standard deviation of 9.8, and a covariance
-    // of a few dozen stretches.
-    let sum: f64 = normalised.iter().sum();
-    assert!((20.0..100.0).contains(&sum), "{normalised:?}");
+    // 99.9 % of the means of so many chi-squares of 12 degrees of freedom.
+    let mean = sum / f64::from(SEEDS);
+    let open = 3.29 * (24.0 / f64::from(SEEDS)).sqrt();
+    assert!((mean - 12.0).abs() < open, "{mean}");
+}
+
+#[test]
+fn known_answer_the_delay_of_the_encoder_and_what_was_left_out_are_told() {
+    // Of itself a gyro is as late as its loop; an encoder that is late makes it early.
+    let [own, late] = [0.0, 5000.0].map(|latency_us| {
+        let report = calibrated(&[format!("turntable.encoder.latency_us={latency_us:?}")]);
+        let found = estimate(&report, SAMPLES);
+        let rejected = found["rejected_samples"].as_array().expect("three counts");
+        // Beyond five robust deviations lies one normal sample in two million.
+        assert!(
+            rejected.iter().all(|count| count.as_u64() < Some(10)),
+            "{rejected:?}"
+        );
+        found["delay_ms"].clone()
+    });
+    for axis in 0..3 {
+        let of = |delay: &Value, field: &str| delay[field][axis].as_f64().expect("a number");
+        let change = of(&late, "value") - of(&own, "value");
+        let open = 4.0 * of(&own, "standard_error");
+        assert!(
+            (change + 5.0).abs() < open,
+            "{axis}: {change} within {open}"
+        );
+        assert!(open < 0.2, "{open}");
+    }
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    write(folder.path(), "campaign.toml", &scenario());
+    let text = stdout(&fogbench(folder.path(), &["calibrate", "campaign.toml"]));
+    assert!(
+        text.contains("  delay x ") && text.contains("  rejected z "),
+        "{text}"
+    );
 }
 
 #[test]

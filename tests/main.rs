@@ -77,6 +77,8 @@ mod known_answers_thermal;
 mod known_answers_turntable;
 mod least_noise;
 mod library;
+mod log_calibration;
+mod log_cases;
 mod log_dwells;
 mod log_layouts;
 mod log_pass;

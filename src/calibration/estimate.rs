@@ -247,6 +247,7 @@ fn assemble(
         reduced_chi_square: misfit,
         condition_number: [0, 1, 2].map(|axis: usize| fits[axis].condition_number),
         rounding_loss,
+        of_samples: None,
     }
 }
 

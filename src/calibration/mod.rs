@@ -85,6 +85,10 @@ pub use observations::{
 };
 pub use plan::{AxisPlan, PlanDefect, PlanReport, RANK_TOLERANCE, check_plan};
 pub use reference::{TableGroup, horizontal_residue_deg_per_s, reference_rate, whole_turns_s};
-pub use result::{AxisCoefficients, Calibration, RoundingLoss, TemperatureCoefficients};
-pub use sample_rates::{RateSample, SampleCalibration, SampleSettings, estimate_samples};
-pub use settings::{CalibrationConfig, CompensationConfig, CompensationParameters};
+pub use result::{
+    AxisCoefficients, Calibration, RoundingLoss, SampleFindings, TemperatureCoefficients,
+};
+pub use sample_rates::{RateSample, SampleSettings, estimate_samples};
+pub use settings::{
+    CalibrationConfig, CompensationConfig, CompensationParameters, TemperatureParameters,
+};

@@ -53,6 +53,16 @@ impl RoundingLoss {
     }
 }
 
+/// What samples tell beside the parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SampleFindings {
+    /// Delays of the gyros x, y, z behind the encoder, s.
+    pub delay_s: AxisCoefficients,
+    /// Samples left out as outliers, by gyro.
+    pub rejected: [usize; 3],
+}
+
 /// Estimated parameters of an assembly, with what they rest on.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -79,6 +89,8 @@ pub struct Calibration {
     pub condition_number: [f64; 3],
     /// For the covariance recursion: what rounding cost.
     pub rounding_loss: Option<RoundingLoss>,
+    /// For a calibration from samples: what these tell beside.
+    pub of_samples: Option<SampleFindings>,
 }
 
 impl Calibration {

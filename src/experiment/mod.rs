@@ -45,9 +45,10 @@ pub use infer::{
     CalibrateInference, ConfirmationRun, Figures, Inference, SimulationError, check_problem, infer,
 };
 pub use log::{
-    CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogSettings, LogTrial,
-    LogTrialError, PassError, SETTLE_S, compensate_log, load_log_compensation, load_log_filters,
-    load_log_gates, pass_log, try_log, try_log_stream,
+    CompensatedLog, LogCompensation, LogFilters, LogGates, LogInput, LogSettings, LogTemperature,
+    LogTrial, LogTrialError, PassError, SETTLE_S, compensate_log, compensate_temperature,
+    load_log_compensation, load_log_filters, load_log_gates, load_own_temperature, pass_log,
+    try_log, try_log_stream,
 };
 pub use outside::{ProgramFiles, program_files};
 #[cfg(feature = "cli")]

@@ -129,11 +129,14 @@ pub use steps::settling::{Settling, settling};
 pub use steps::shape::Step;
 pub use steps::small_input::smallest_answered;
 pub use stream::words::{NOT_STREAMED, StreamLack, WordStream};
-pub use temperature::coefficients::{Warmed, measure_temperature};
+pub use temperature::coefficients::measure_temperature;
 pub(crate) use temperature::keys::{
     APPLIED, BEFORE, MEAN_LENGTH, P_VALUE, REFERENCE, TEMPERATURE_METRICS,
 };
 pub use temperature::means::WarmRecord;
+pub use temperature::without::{
+    WarmWords, Warmed, temperature_rates_k_per_min, words_at_reference,
+};
 pub use theory::bound::{
     LeastNoise, NoiseDelayBound, bound_taps, noise_delay_bound, noise_delay_bound_coloured,
     noise_power_gain,

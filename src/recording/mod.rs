@@ -50,6 +50,7 @@ pub use log::format::LogFormat;
 pub use log::motion::{LogMotion, UnknownLogMotion};
 pub use log::read::{
     AssemblyColumns, AssemblyLog, read_assembly_log, read_log, read_logs, read_stimulus,
+    read_unbroken_log, read_unbroken_logs,
 };
 pub use log::record::{Log, Stretch};
 pub use log::stream::{LogSource, LogStream, open_live_log, open_log};

@@ -7,6 +7,7 @@ use super::error::LogError;
 use super::input::Input;
 use super::layout::columns::Selection;
 use super::log::format::LogFormat;
+use super::log::gaps::Gaps;
 use super::text::table::{self, Wanted};
 use super::unit::convert::Conversion;
 use super::unit::kinds::{LogUnit, Per};
@@ -73,6 +74,7 @@ pub fn read_points(path: &Path, format: &PointsFormat) -> Result<RecordedPoints,
         &Wanted {
             columns: Selection::Each(names.map(String::as_str).collect()),
             needs_time: false,
+            gaps: Gaps::Unsaid,
             format: &layout,
             samples_max: POINTS_MAX,
         },

@@ -61,6 +61,9 @@ pub use build_server::junit::{SuiteTimes, is_junit_xml, junit_xml};
 pub use build_server::markdown::{is_suite_markdown, suite_markdown};
 pub use calibration::calibrate::{CalibrateReport, calibrate_json, calibrate_text};
 pub use calibration::documents::{CalibrationProvenance, calibration_json};
+pub use calibration::temperature::{
+    TemperatureReport, TemperatureTableError, is_calibration_toml, with_temperature,
+};
 pub use calibration::text::calibration_text;
 pub use claim::{claim_json, claim_text};
 pub use comparison::files::{comparison_file_names, comparison_files};

@@ -19,7 +19,9 @@ mod keys;
 mod message;
 mod read;
 
-pub use crate::calibration::{CalibrationConfig, CompensationConfig, CompensationParameters};
+pub use crate::calibration::{
+    CalibrationConfig, CompensationConfig, CompensationParameters, TemperatureParameters,
+};
 pub use crate::filters::{
     ButterworthFilterConfig, ConstrainedRlsFilterConfig, FilterConfig, FilterKind,
     KalmanFilterConfig, LmsFilterConfig, MovingAverageFilterConfig, OnePoleFilterConfig,
@@ -71,6 +73,9 @@ pub(crate) use read::files::log_source::digest_of_log;
 pub use read::files::manifest::manifest_toml;
 pub use read::files::named_files::NamedFile;
 pub use read::files::problem::{Problem, load_problem, problem_keys};
+pub use read::files::temperature_source::{
+    TemperatureTables, load_log_temperature, load_temperature,
+};
 pub use read::moved::{Movable, NotMovable};
 pub(crate) use read::resolve::UnsoundReading;
 pub use read::resolved::{InputFile, Resolved, SweepPoint};

@@ -145,6 +145,10 @@ pub struct CalibrationEstimate {
     pub condition_number: [f64; 3],
     /// For the covariance recursion: what rounding cost.
     pub rounding: Option<ParameterRounding>,
+    /// For an estimate from samples: delays behind the encoder, ms.
+    pub delay_ms: Option<AxisCoefficient>,
+    /// For an estimate from samples: samples left out as outliers, by gyro.
+    pub rejected_samples: Option<[usize; 3]>,
     /// Against the truth, where it is known.
     pub error: Option<EstimateError>,
 }

@@ -51,6 +51,20 @@ impl SingleFile<'_> {
         refused(self.is_ours.map_or(Foreign::Present, |_| Foreign::Unknown))
     }
 
+    /// What a file of its kind that stands there holds; nothing where none does.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn text(&self) -> Result<String, StoreError> {
+        let at = StoreError::at(self.path);
+        if !stands(self.path).map_err(&at)? {
+            return Ok(String::new());
+        }
+        let text = read_text(self.path).map_err(&at)?.unwrap_or_default();
+        let is_ours = self.is_ours.unwrap_or(str::is_empty);
+        Ok(if is_ours(&text) { text } else { String::new() })
+    }
+
     /// Writes the file whole or not at all.
     ///
     /// # Errors

@@ -59,5 +59,12 @@ table! {
         /// Temperature coefficient of the biases of the gyros x, y, z. Source of the default: none; without
         /// it no thermometer is read.
         bias_deg_per_h_per_k: [f64; 3] = [0.0, 0.0, 0.0], in -1000.0..=1000.0, "deg/h/K";
+        /// Quadratic temperature coefficient of these biases. Source of the default: none.
+        bias_deg_per_h_per_k2: [f64; 3] = [0.0, 0.0, 0.0], in -100.0..=100.0, "deg/h/K^2";
+        /// Coefficient of these biases on the rate of the temperature, the Shupe effect. Source of the
+        /// default: none.
+        bias_deg_per_h_per_k_per_min: [f64; 3] = [0.0, 0.0, 0.0], in -1e4..=1e4, "deg/h/(K/min)";
+        /// Temperature coefficient of the scale factors. Source of the default: none.
+        scale_factor_ppm_per_k: [f64; 3] = [0.0, 0.0, 0.0], in -1e4..=1e4, "ppm/K";
     }
 }

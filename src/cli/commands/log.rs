@@ -11,49 +11,51 @@ use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::cli::terminal::place::{self, Place};
 use crate::experiment::{
-    LogFilters, LogInput, LogSettings, LogTrial, PassError, Progress, SETTLE_S, compensate_log,
-    load_log_compensation, load_log_filters, load_log_gates, pass_log, try_log, try_log_stream,
+    LogFilters, LogInput, LogSettings, LogTemperature, LogTrial, PassError, Progress, SETTLE_S,
+    compensate_log, compensate_temperature, load_log_compensation, load_log_filters,
+    load_log_gates, load_own_temperature, pass_log, try_log, try_log_stream,
 };
 use crate::program::Programs;
 use crate::recording::{
     AssemblyColumns, Log, LogError, LogFormat, LogSource, LogStream, open_live_log, open_log,
-    read_assembly_log, read_logs,
+    read_assembly_log, read_unbroken_logs,
 };
-use crate::report::{is_kalman_json, log_json, log_text};
+use crate::report::{is_calibration_toml, is_kalman_json, log_json, log_text};
 use crate::scenario::{AllanConfig, load_log_format, log_format_toml, slug};
 use crate::store::SingleFile;
+use crate::vocabulary::CaseAxis;
 use crate::wording::printable;
 
 /// Measures a log, and writes its noise as a linear system.
 pub(in crate::cli) fn analyze(options: &AnalyzeOptions) -> io::Result<Exit> {
-    let inputs = inputs(&options.log);
+    let format = match format(&options.log) {
+        Ok(format) => format,
+        Err(exit) => return Ok(exit),
+    };
+    let inputs = inputs(&options.log, &format);
     if let Err(exit) = place(&options.log).check(&inputs) {
         return Ok(exit);
     }
-    let kalman = options.kalman.as_deref().map(|path| SingleFile {
-        path,
-        is_ours: Some(is_kalman_json),
-        force: options.log.force,
-    });
-    if let Some(file) = kalman
-        && let Err(exit) = place::check_file(file, &inputs)
-    {
+    let files = OwnFiles::of(options);
+    if let Err(exit) = files.check(&inputs) {
         return Ok(exit);
     }
-    let logs = match read(&options.log, open) {
+    let logs = match read(&options.log, &format, open) {
         Ok(logs) => logs,
         Err(exit) => return Ok(exit),
     };
     if options.log.explain {
         return explain(&logs);
     }
-    if kalman.is_some() && logs.len() > 1 {
-        let message = format!("--kalman writes one log: --column names {}", logs.len());
+    if let Some(option) = files.option()
+        && logs.len() > 1
+    {
+        let message = format!("{option} writes one log: --column names {}", logs.len());
         return Ok(refused(&[message]));
     }
     let (exit, trials) = conclude(logs, None, &options.log, false)?;
-    match (kalman, &trials[..]) {
-        (Some(file), [trial]) => Ok(write_kalman(trial, file).err().unwrap_or(exit)),
+    match &trials[..] {
+        [trial] => Ok(files.write(trial).err().unwrap_or(exit)),
         _ => Ok(exit),
     }
 }
@@ -66,21 +68,65 @@ fn explain(logs: &[ReadLog]) -> io::Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// Writes the noise of a log as a linear system.
-fn write_kalman(trial: &LogTrial, file: SingleFile) -> Result<(), Exit> {
-    let text = trial.kalman().map_err(|error| {
-        output::talk(&format!(
-            "error: no --kalman {}: {error}",
-            file.path.display()
-        ));
-        Exit::RunFailed
-    })?;
-    file.write(&text).map_err(|error| place::refused(&error))?;
-    output::talk(&format!(
-        "noise for a Kalman filter in {}",
-        file.path.display()
-    ));
-    Ok(())
+/// Files that stand alone and are written of one log.
+struct OwnFiles<'a> {
+    kalman: Option<SingleFile<'a>>,
+    temperature: Option<SingleFile<'a>>,
+}
+
+impl<'a> OwnFiles<'a> {
+    fn of(options: &'a AnalyzeOptions) -> Self {
+        let file = |path: &'a Option<PathBuf>, is_ours: fn(&str) -> bool| {
+            path.as_deref().map(|path| SingleFile {
+                path,
+                is_ours: Some(is_ours),
+                force: options.log.force,
+            })
+        };
+        Self {
+            kalman: file(&options.kalman, is_kalman_json),
+            temperature: file(&options.temperature_model, is_calibration_toml),
+        }
+    }
+
+    /// Refuses what stands in their places.
+    fn check(&self, inputs: &[&Path]) -> Result<(), Exit> {
+        let mut both = [self.kalman, self.temperature].into_iter().flatten();
+        both.try_for_each(|file| place::check_file(file, inputs))
+    }
+
+    /// The option that names one of them.
+    fn option(&self) -> Option<&'static str> {
+        let kalman = self.kalman.map(|_| "--kalman");
+        kalman.or(self.temperature.map(|_| "--temperature-model"))
+    }
+
+    fn write(&self, trial: &LogTrial) -> Result<(), Exit> {
+        let none = |option: &str, file: &SingleFile, reason: String| {
+            output::talk(&format!(
+                "error: no {option} {}: {reason}",
+                file.path.display()
+            ));
+            Exit::RunFailed
+        };
+        if let Some(file) = self.kalman {
+            let text = trial.kalman();
+            let text = text.map_err(|reason| none("--kalman", &file, reason.to_string()))?;
+            file.write(&text).map_err(|error| place::refused(&error))?;
+            let path = file.path.display();
+            output::talk(&format!("noise for a Kalman filter in {path}"));
+        }
+        if let Some(file) = self.temperature {
+            let before = file.text().map_err(|error| place::refused(&error))?;
+            let text = trial.temperature_toml(&before);
+            let text =
+                text.map_err(|reason| none("--temperature-model", &file, reason.to_string()))?;
+            file.write(&text).map_err(|error| place::refused(&error))?;
+            let path = file.path.display();
+            output::talk(&format!("coefficients of the temperature in {path}"));
+        }
+        Ok(())
+    }
 }
 
 /// Puts a log through the filters of a scenario and measures what they make of it.
@@ -88,12 +134,16 @@ pub(in crate::cli) fn filter(options: &FilterLogOptions) -> io::Result<Exit> {
     if let Some(form) = options.pass {
         return pass(options, form);
     }
-    let mut inputs = inputs(&options.log);
+    let format = match format(&options.log) {
+        Ok(format) => format,
+        Err(exit) => return Ok(exit),
+    };
+    let mut inputs = inputs(&options.log, &format);
     inputs.push(&options.filters);
     if let Err(exit) = place(&options.log).check(&inputs) {
         return Ok(exit);
     }
-    let logs = match read(&options.log, whole) {
+    let logs = match read(&options.log, &format, whole) {
         Ok(logs) => logs,
         Err(exit) => return Ok(exit),
     };
@@ -221,6 +271,23 @@ impl From<Log> for ReadLog {
     }
 }
 
+impl ReadLog {
+    /// The log without what the temperature does to its words; one that streams has no temperature.
+    fn without(self, temperature: &LogTemperature) -> Self {
+        let words = match self.words {
+            Words::Whole(input) => match *input {
+                LogInput::Plain(log) => {
+                    let compensated = compensate_temperature(log, temperature);
+                    Words::Whole(Box::new(LogInput::Compensated(compensated)))
+                }
+                compensated => Words::Whole(Box::new(compensated)),
+            },
+            stream => stream,
+        };
+        Self { words, ..self }
+    }
+}
+
 impl From<Box<LogStream>> for ReadLog {
     fn from(stream: Box<LogStream>) -> Self {
         let log = stream.log();
@@ -246,7 +313,7 @@ fn open(path: &Path, format: &LogFormat) -> Result<Vec<ReadLog>, LogError> {
 
 /// Reads a log as a whole.
 fn whole(path: &Path, format: &LogFormat) -> Result<Vec<ReadLog>, LogError> {
-    read_logs(path, format).map(told)
+    read_unbroken_logs(path, format).map(told)
 }
 
 /// Says what the file was taken for.
@@ -263,50 +330,72 @@ fn place(options: &LogOptions) -> Place<'_> {
 }
 
 /// Files that are read.
-fn inputs(options: &LogOptions) -> Vec<&Path> {
-    let others = [&options.calibration, &options.gates, &options.layout];
+fn inputs<'a>(options: &'a LogOptions, format: &'a LogFormat) -> Vec<&'a Path> {
+    let others = [&options.gates, &options.layout];
     std::iter::once(&options.file)
         .chain(others.into_iter().flatten())
         .map(PathBuf::as_path)
+        .chain(format.calibration.as_deref().map(Path::new))
         .collect()
 }
 
 /// The words to measure: of each column that is named, or of three and a calibration.
 fn read(
     options: &LogOptions,
+    format: &LogFormat,
     reader: fn(&Path, &LogFormat) -> Result<Vec<ReadLog>, LogError>,
 ) -> Result<Vec<ReadLog>, Exit> {
-    let (Some(calibration), Some(axis)) = (&options.calibration, options.axis) else {
-        return reader(&options.file, &format(options)?).map_err(|error| unreadable(&error));
-    };
-    let [x, y, z] = &options.columns[..] else {
-        let count = options.columns.len();
-        let message = format!("--columns names {count} columns: expected three, of x, y and z");
-        return Err(refused(&[message]));
-    };
-    let form = options.compensation_form;
-    let compensation = load_log_compensation(calibration, form).map_err(|errors| {
-        let exit = refused(&errors);
-        if calibration.is_file() {
-            exit
-        } else {
-            Exit::Io
+    match (&format.calibration, format.axis, &options.columns[..]) {
+        (Some(calibration), Some(axis), [x, y, z]) => {
+            let path = Path::new(calibration);
+            let log = compensated(options, format, (path, axis), [x, y, z])?;
+            Ok(vec![log])
         }
-    })?;
-    let format = format(options)?;
+        (.., []) => {
+            let temperature = load_own_temperature(format).map_err(|errors| {
+                let calibration = format.calibration.as_deref().map(Path::new);
+                refused_file(calibration, &errors)
+            })?;
+            let logs = reader(&options.file, format).map_err(|error| unreadable(&error))?;
+            Ok(match temperature {
+                Some(temperature) => logs
+                    .into_iter()
+                    .map(|log| log.without(&temperature))
+                    .collect(),
+                None => logs,
+            })
+        }
+        (.., columns) => {
+            let count = columns.len();
+            let message = format!("--columns names {count} columns: expected three, of x, y and z");
+            Err(refused(&[message]))
+        }
+    }
+}
+
+/// One axis of an assembly without the errors that a calibration has found.
+fn compensated(
+    options: &LogOptions,
+    format: &LogFormat,
+    (calibration, axis): (&Path, CaseAxis),
+    gyros: [&str; 3],
+) -> Result<ReadLog, Exit> {
+    let compensation = load_log_compensation(calibration, options.compensation_form)
+        .map_err(|errors| refused_file(Some(calibration), &errors))?;
     let columns = AssemblyColumns {
-        gyros: [x, y, z],
+        gyros,
         temperature: format.temperature_column.as_deref(),
     };
-    let found = read_assembly_log(&options.file, &format, &columns);
+    let found = read_assembly_log(&options.file, format, &columns);
     let logs = found.map_err(|error| unreadable(&error))?;
+    let axis = axis as usize;
     tell_layout(&logs.gyros[axis]);
     let Log {
         sample_rate_hz,
         ref format,
         ..
     } = logs.gyros[axis];
-    Ok(vec![ReadLog {
+    Ok(ReadLog {
         sample_rate_hz,
         column: None,
         format: format.clone(),
@@ -315,7 +404,16 @@ fn read(
             &compensation,
             axis,
         )))),
-    }])
+    })
+}
+
+/// Says what is wrong with a file that is named beside the log.
+fn refused_file<C: Complaint>(file: Option<&Path>, errors: &[C]) -> Exit {
+    let exit = refused(errors);
+    match file {
+        Some(file) if !file.is_file() => Exit::Io,
+        _ => exit,
+    }
 }
 
 /// Says what the file was taken for.
@@ -341,13 +439,7 @@ impl Progress for Starting {
 /// What the layout and the options say of the log.
 fn format(options: &LogOptions) -> Result<LogFormat, Exit> {
     let layout = options.layout.as_deref();
-    load_log_format(layout, &options.keys.given).map_err(|errors| {
-        let exit = refused(&errors);
-        match layout {
-            Some(layout) if !layout.is_file() => Exit::Io,
-            _ => exit,
-        }
-    })
+    load_log_format(layout, &options.keys.given).map_err(|errors| refused_file(layout, &errors))
 }
 
 /// Says why a file was not read.

@@ -85,16 +85,22 @@ fn typed<'a>(given: &ArgMatches, ids: &[&'a str]) -> Vec<String> {
 
 /// An assembly has no reference; a swing no Allan curve, no noise fit and no means at rest.
 fn of_log(options: &LogOptions, given: &ArgMatches) -> Vec<String> {
-    if options.calibration.is_some() {
+    if !options.columns.is_empty() {
         let idle = typed(given, &["reference_column", "reference_unit"]).into_iter();
         let idle: Vec<String> = idle
-            .map(|option| {
-                format!("{option} has no effect beside --calibration: leave one of them out")
-            })
+            .map(|option| format!("{option} has no effect beside --columns: leave one of them out"))
             .collect();
         if !idle.is_empty() {
             return idle;
         }
+    }
+    let gives_axis = ["columns", "calibration", "temperature_model", "layout"];
+    let is_given = |id: &&str| matches!(given.try_contains_id(id), Ok(true));
+    if !gives_axis.iter().any(is_given) && !typed(given, &["axis"]).is_empty() {
+        return vec![
+            "--axis has no effect without --calibration, or --temperature-model: leave it out"
+                .to_owned(),
+        ];
     }
     const AT_REST: [&str; 4] = [
         "bias_averaging_time_s",
@@ -413,16 +419,13 @@ mod tests {
     fn options_that_need_another_one_ask_for_it() {
         let log = "fogbench analyze a.csv --unit deg/h --rate-hz 100";
         for (line, lacking) in [
-            (format!("{log} --axis x"), "--columns"),
-            (format!("{log} --axis x --column gx"), "--column"),
-            (format!("{log} --calibration c --column gx"), "--column"),
             (
                 format!("{log} --columns a,b,c --axis x --calibration c --column gx"),
                 "--column",
             ),
-            (format!("{log} --calibration c.toml"), "--columns"),
+            (format!("{log} --axis x"), "--calibration"),
             (format!("{log} --columns a,b,c"), "--calibration"),
-            (format!("{log} --compensation-form exact"), "--calibration"),
+            (format!("{log} --compensation-form exact"), "--columns"),
             (
                 "fogbench filter a.csv --unit deg/h --rate-hz 1 --filters a.toml --csv".to_owned(),
                 "--output",

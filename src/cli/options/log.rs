@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args, ValueEnum};
 
 use crate::cli::options::format::Format;
 use crate::cli::options::layout::LayoutOptions;
-use crate::cli::options::numbers::{OptionError, within};
+use crate::cli::options::numbers::within;
 use crate::scenario::AllanEstimatorConfig;
 use crate::vocabulary::{AveragingTimes, CompensationForm};
 
@@ -25,7 +25,7 @@ pub(in crate::cli) struct LogOptions {
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) layout: Option<PathBuf>,
     /// Print how the log is read, as a table [log] for --layout, and nothing else
-    #[arg(long, conflicts_with_all = ["written", "calibration", "columns"])]
+    #[arg(long, conflicts_with_all = ["written", "columns"])]
     pub(in crate::cli) explain: bool,
     #[command(flatten)]
     pub(in crate::cli) keys: LayoutOptions,
@@ -39,24 +39,12 @@ pub(in crate::cli) struct LogOptions {
         requires = "axis"
     )]
     pub(in crate::cli) columns: Vec<String>,
-    /// Parameters to take out of these columns: calibration.toml as `calibrate` and `run` write it
-    #[arg(
-        long,
-        value_name = "FILE",
-        requires = "columns",
-        conflicts_with = "column"
-    )]
-    pub(in crate::cli) calibration: Option<PathBuf>,
-    /// Axis to measure and to filter after compensation: x, y or z
-    #[arg(long, value_name = "AXIS", requires = "columns", conflicts_with = "column",
-          value_parser = axis)]
-    pub(in crate::cli) axis: Option<usize>,
-    /// How rates follow from the outputs: `exact`, or `first-order` as in the patent
+    /// How rates follow from the outputs of an assembly: `exact`, or `first-order` as in the patent
     #[arg(
         long,
         value_name = "FORM",
         default_value = "exact",
-        requires = "calibration"
+        requires = "columns"
     )]
     pub(in crate::cli) compensation_form: CompensationForm,
     /// File whose [[gate]] tables are held against what is measured: a scenario, a base or gates alone; exit
@@ -90,7 +78,7 @@ pub(in crate::cli) struct LogOptions {
 }
 
 /// Options that act on what is measured, kept or started.
-const OF_MEASURING: [&str; 15] = [
+const OF_MEASURING: [&str; 16] = [
     "output",
     "force",
     "csv",
@@ -104,6 +92,7 @@ const OF_MEASURING: [&str; 15] = [
     "allan_estimator",
     "averaging_times",
     "calibration",
+    "axis",
     "columns",
     "allow_programs",
 ];
@@ -128,6 +117,11 @@ pub(in crate::cli) struct AnalyzeOptions {
     /// Kalman filter
     #[arg(long, value_name = "FILE", group = "written")]
     pub(in crate::cli) kalman: Option<PathBuf>,
+    /// File for the significant coefficients of the temperature, as a table [temperature] (with --axis
+    /// [temperature.x]) that --calibration takes out of other logs: a new one, or a calibration.toml, all
+    /// else of which stays
+    #[arg(long, value_name = "FILE", group = "written")]
+    pub(in crate::cli) temperature_model: Option<PathBuf>,
 }
 
 /// Options of `filter`.
@@ -151,9 +145,4 @@ pub(in crate::cli) struct FilterLogOptions {
     /// Write the filtered samples as CSV as well
     #[arg(long, requires = "output")]
     pub(in crate::cli) csv: bool,
-}
-
-fn axis(text: &str) -> Result<usize, OptionError> {
-    let found = ["x", "y", "z"].iter().position(|axis| *axis == text);
-    found.ok_or(OptionError::Axis)
 }

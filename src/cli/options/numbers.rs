@@ -34,9 +34,6 @@ pub(in crate::cli) enum OptionError {
         "expected a name of 1 to 64 of the characters a-z, 0-9, _ and -, the first a letter or digit"
     )]
     Name,
-    /// No axis of an assembly.
-    #[error("expected x, y or z")]
-    Axis,
 }
 
 /// A parser of numbers from `least` to `most`, both allowed, for what `unit` names.

@@ -5,7 +5,7 @@ use crate::calibration::{
 };
 use crate::gyro::CoilThermometer;
 use crate::scenario::{CompensationParameters, GyroConfig};
-use crate::signal::CompensationSheet;
+use crate::signal::{CompensationSheet, TemperatureModel};
 use crate::units::{
     MICRO, arcsec_to_rad, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, rad_to_arcsec,
     ratio_to_ppm,
@@ -18,6 +18,8 @@ pub(crate) struct Parameters {
     compensation: Compensation,
     form: CompensationForm,
     found: ErrorParameters,
+    /// What the temperature does to the gyros x, y, z beside a bias that is linear in it.
+    beyond_linear: [TemperatureModel; 3],
     /// Where the parameters come from, for people.
     source: String,
 }
@@ -39,6 +41,13 @@ impl Parameters {
             compensation,
             form,
             found,
+            beyond_linear: std::array::from_fn(|axis| TemperatureModel {
+                reference_temperature_c: given.reference_temperature_c[axis],
+                bias_deg_per_h_per_k: 0.0,
+                bias_deg_per_h_per_k2: given.bias_deg_per_h_per_k2[axis],
+                bias_deg_per_h_per_k_per_min: given.bias_deg_per_h_per_k_per_min[axis],
+                scale_factor_ppm_per_k: given.scale_factor_ppm_per_k[axis],
+            }),
             source: "given parameters".to_owned(),
         })
     }
@@ -56,22 +65,39 @@ impl Parameters {
             compensation: Compensation::of(calibration)?,
             form,
             found: calibration.parameters,
+            beyond_linear: [TemperatureModel::default(); 3],
             source,
         })
     }
 
-    /// Whether the biases follow the temperatures of the gyros.
+    /// Whether words follow the temperatures of the gyros.
     pub(crate) fn needs_temperature(&self) -> bool {
-        self.compensation.needs_temperature()
+        let is_linear = self.beyond_linear.iter().all(TemperatureModel::is_flat);
+        self.compensation.needs_temperature() || !is_linear
+    }
+
+    /// Whether biases follow the rates of the temperatures.
+    pub(crate) fn needs_temperature_rate(&self) -> bool {
+        let mut models = self.beyond_linear.iter();
+        models.any(|model| model.bias_deg_per_h_per_k_per_min.abs() > 0.0)
     }
 
     /// Rates about the case axes for one word of each gyro, deg/h.
+    ///
+    /// * `warmth`: temperature of the gyros, which are one case, deg C, and its rate, K/min.
     pub(crate) fn rates_deg_per_h(
         &self,
-        output_deg_per_h: [f64; 3],
-        temperature_c: Option<[f64; 3]>,
+        mut output_deg_per_h: [f64; 3],
+        warmth: Option<(f64, f64)>,
     ) -> [f64; 3] {
+        if let Some((temperature_c, rate_k_per_min)) = warmth {
+            let models = self.beyond_linear.iter().zip(&mut output_deg_per_h);
+            for (model, output) in models.filter(|(model, _)| !model.is_flat()) {
+                *output = model.compensated(*output, temperature_c, rate_k_per_min);
+            }
+        }
         let output = output_deg_per_h.map(deg_per_h_to_deg_per_s);
+        let temperature_c = warmth.map(|(temperature_c, _)| [temperature_c; 3]);
         let rates = self.compensation.rates(self.form, output, temperature_c);
         rates.map(deg_per_s_to_deg_per_h)
     }
@@ -100,7 +126,7 @@ impl Parameters {
                 ("zy", angles.zy),
             ]
             .map(|(name, angle_rad)| (name, rad_to_arcsec(angle_rad))),
-            follows_temperature: self.compensation.needs_temperature(),
+            follows_temperature: self.needs_temperature(),
             rate_deg_per_h,
             exact_residual_deg_per_h: left(CompensationForm::Exact),
             first_order_residual_deg_per_h: left(CompensationForm::FirstOrder),
@@ -135,7 +161,7 @@ pub(crate) struct Compensator {
 impl Compensator {
     /// The stage before the first sample of the warm-up.
     pub(crate) fn new(parameters: &Parameters, gyro: &GyroConfig, sample_period_s: f64) -> Self {
-        let needs_temperature = parameters.compensation.needs_temperature();
+        let needs_temperature = parameters.needs_temperature();
         Self {
             parameters: parameters.clone(),
             thermometer: needs_temperature.then(|| CoilThermometer::new(gyro, sample_period_s)),
@@ -150,14 +176,13 @@ impl Compensator {
         };
         let mut compensated: [Vec<f64>; 3] = [x, y, z].map(|words| Vec::with_capacity(words.len()));
         for ((x, y), z) in x.iter().zip(y).zip(z) {
-            let output = [*x, *y, *z].map(deg_per_h_to_deg_per_s);
-            let temperature_c = self.thermometer.as_mut().map(|coil| [coil.next_c(); 3]);
-            let Parameters {
-                compensation, form, ..
-            } = &self.parameters;
-            let rates = compensation.rates(*form, output, temperature_c);
+            let warmth = self.thermometer.as_mut().map(|coil| {
+                let temperature_c = coil.next_c();
+                (temperature_c, coil.rate_k_per_min())
+            });
+            let rates = self.parameters.rates_deg_per_h([*x, *y, *z], warmth);
             for (words, rate) in compensated.iter_mut().zip(rates) {
-                words.push(deg_per_s_to_deg_per_h(rate));
+                words.push(rate);
             }
         }
         compensated.into()

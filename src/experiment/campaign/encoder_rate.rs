@@ -2,8 +2,7 @@
 
 use super::groups::at_rest;
 use crate::calibration::{
-    CalibrationError, GroupObservation, RateSample, SampleCalibration, SampleSettings,
-    estimate_samples,
+    Calibration, CalibrationError, GroupObservation, RateSample, SampleSettings, estimate_samples,
 };
 use crate::experiment::run::{Simulation, axis_index};
 use crate::gyro::{self, coil_temperatures_c};
@@ -68,7 +67,7 @@ pub(super) fn calibrate_samples(
     campaign: &CampaignConfig,
     simulation: &Simulation,
     (first, groups): (usize, &[GroupObservation]),
-) -> Result<SampleCalibration, CalibrationError> {
+) -> Result<Calibration, CalibrationError> {
     let encoder_rad = simulation.encoder_rad.as_deref();
     let encoder_rad = encoder_rad.ok_or(CalibrationError::NoEncoder)?;
     let sample_period_s = gyro::sample_period_s(&scenario.gyro);

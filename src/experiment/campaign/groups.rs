@@ -390,8 +390,7 @@ pub(crate) fn calibrate_simulation(
     let takes_samples = settings.kinds().iter().any(|kind| kind.takes_samples());
     let of_samples = takes_samples.then(|| {
         let means: Vec<GroupObservation> = groups.iter().map(observation).collect();
-        let found = calibrate_samples(scenario, campaign, simulation, (first, &means));
-        found.map(|found| found.calibration)
+        calibrate_samples(scenario, campaign, simulation, (first, &means))
     });
     calibration_sheet(&groups, settings, truth.as_ref(), of_samples.as_ref()).map(Some)
 }

@@ -10,7 +10,7 @@ use crate::signal::{
 };
 use crate::units::{
     MICRO, arcsec_to_rad, deg_per_h_to_deg_per_s, deg_per_s_to_deg_per_h, rad_to_arcsec,
-    ratio_to_ppm,
+    ratio_to_ppm, s_to_ms,
 };
 use crate::vocabulary::{CompensationForm, Word};
 
@@ -112,6 +112,11 @@ pub(crate) fn calibration_estimate(
             bias_deg_per_h: deg_per_s_to_deg_per_h(loss.bias_deg_per_s),
             sensitivity_ppm: ratio_to_ppm(loss.sensitivity),
         }),
+        delay_ms: calibration.of_samples.map(|found| AxisCoefficient {
+            value: found.delay_s.value.map(s_to_ms),
+            standard_error: found.delay_s.standard_error.map(s_to_ms),
+        }),
+        rejected_samples: calibration.of_samples.map(|found| found.rejected),
         error: error.transpose()?,
     })
 }

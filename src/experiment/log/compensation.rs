@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
+use super::own_temperature::{RATE_NOT_TOLD, warm_record};
 use crate::experiment::campaign::Parameters;
+use crate::metrics::temperature_rates_k_per_min;
 use crate::recording::{AssemblyLog, Log};
 use crate::scenario::{Location, ScenarioError, load_calibration};
 use crate::vocabulary::CompensationForm;
@@ -61,16 +63,21 @@ pub fn compensate_log(
     axis: usize,
 ) -> CompensatedLog {
     let [x, y, z] = &assembly.gyros;
+    let parameters = &compensation.parameters;
     let temperature_c = assembly.temperature_c.as_deref();
+    let rates = match (parameters.needs_temperature_rate(), temperature_c) {
+        (true, Some(temperature_c)) => temperature_rates_k_per_min(&warm_record(x, temperature_c)),
+        _ => None,
+    };
     let words = (0..x.rate_deg_per_h.len()).map(|sample| {
         let output = [x, y, z].map(|log| log.rate_deg_per_h[sample]);
-        let warmth = temperature_c.map(|all| [all[sample]; 3]);
-        compensation.parameters.rates_deg_per_h(output, warmth)[axis]
+        let rate = rates.as_ref().map_or(0.0, |rates| rates[sample]);
+        let warmth = temperature_c.map(|all| (all[sample], rate));
+        parameters.rates_deg_per_h(output, warmth)[axis]
     });
     let words = words.collect();
     let mut notes = vec![format!("channel compensated: {}", compensation.source)];
-    let follows = compensation.parameters.needs_temperature();
-    match (follows, temperature_c) {
+    match (parameters.needs_temperature(), temperature_c) {
         (true, None) => notes.push(
             "the calibration has temperature coefficients of the biases, which are left at their \
              reference temperatures: name the column of the temperature with --temperature-column"
@@ -80,6 +87,9 @@ pub fn compensate_log(
             "the calibration has no temperature coefficient: the temperature column has no effect"
                 .to_owned(),
         ),
+        (true, Some(_)) if parameters.needs_temperature_rate() && rates.is_none() => {
+            notes.push(RATE_NOT_TOLD.to_owned());
+        }
         _ => {}
     }
     let [x, y, z] = assembly.gyros;

@@ -3,6 +3,7 @@
 mod compensation;
 mod filters;
 mod gates;
+mod own_temperature;
 mod pass;
 mod run;
 mod stream;
@@ -14,6 +15,7 @@ mod written;
 pub use compensation::{CompensatedLog, LogCompensation, compensate_log, load_log_compensation};
 pub use filters::{LogFilters, load_log_filters};
 pub use gates::{LogGates, load_log_gates};
+pub use own_temperature::{LogTemperature, compensate_temperature, load_own_temperature};
 pub use pass::{PassError, pass_log};
 pub(crate) use run::run_log;
 pub use stream::try_log_stream;

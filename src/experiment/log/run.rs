@@ -1,6 +1,7 @@
 //! A scenario that measures a recorded log: the results of a run.
 
 use super::filters::LogFilters;
+use super::own_temperature::{compensate_temperature, load_own_temperature};
 use super::trial::{LogInput, LogSettings, SETTLE_S, try_log};
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{Faults, Progress, Results, Simulation, Unfinished, unless_stopped};
@@ -44,7 +45,15 @@ pub(crate) fn run_log(
         temperature_reference_c: format.temperature_reference_c,
     };
     let filters = LogFilters::of(resolved, log.sample_rate_hz);
-    let trial = try_log(LogInput::Plain(log), filters.as_ref(), &settings, progress);
+    let temperature = load_own_temperature(format).map_err(|errors| {
+        let said: Vec<String> = errors.iter().map(ToString::to_string).collect();
+        Unfinished::Failed(said.join("; "))
+    })?;
+    let input = match &temperature {
+        Some(temperature) => LogInput::Compensated(compensate_temperature(log, temperature)),
+        None => LogInput::Plain(log),
+    };
+    let trial = try_log(input, filters.as_ref(), &settings, progress);
     let trial = trial.map_err(|error| {
         let stopped = unless_stopped(progress).err();
         stopped.unwrap_or(Unfinished::Failed(error.message))

@@ -66,6 +66,7 @@ pub fn try_log_stream(
     ));
     Ok(LogTrial {
         channels,
+        temperature: None,
         verdicts: Vec::new(),
         motion: motion_of_log(settings.motion),
         source: None,

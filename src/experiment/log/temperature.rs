@@ -5,12 +5,23 @@ use crate::experiment::run::{Cut, stamp_s};
 use crate::metrics::{ChannelMetrics, WarmRecord, measure, measure_present, measure_temperature};
 use crate::recording::{Log, LogMotion};
 use crate::scenario::WITHOUT_TEMPERATURE;
+use crate::signal::TemperatureModel;
 
 /// What a column of the temperature says of a log.
 pub(super) struct Warmth {
     found: ChannelMetrics,
+    /// The significant coefficients; none where none is told.
+    fitted: Option<FittedTemperature>,
     /// All words, warm-up included, without the significant coefficients; none where there are none.
     without: Option<Vec<f64>>,
+}
+
+/// Coefficients that a log has shown.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FittedTemperature {
+    pub(super) model: TemperatureModel,
+    /// Lowest and highest temperature, deg C.
+    pub(super) range_c: (f64, f64),
 }
 
 impl Warmth {
@@ -35,6 +46,10 @@ impl Warmth {
         let reference_c = settings.temperature_reference_c;
         let warmed = measure_temperature(&record(warm_up), reference_c, &mut found);
         found.keep_finite();
+        let fitted = warmed.as_ref().map(|warmed| FittedTemperature {
+            model: warmed.model,
+            range_c: warmed.range_c(),
+        });
         // The words before those that are measured are the start of the channel, as they are of raw.
         let without = warmed.and_then(|warmed| warmed.words_without(&record(0)));
         let without = without.map(|words| {
@@ -42,7 +57,16 @@ impl Warmth {
             own.take_about_common_mean();
             own.rate_deg_per_h
         });
-        Some(Self { found, without })
+        Some(Self {
+            found,
+            fitted,
+            without,
+        })
+    }
+
+    /// The significant coefficients; none where none is told.
+    pub(super) fn fitted(&self) -> Option<FittedTemperature> {
+        self.fitted.filter(|it| !it.model.is_flat())
     }
 
     /// Enters it: coefficients beside the other metrics of raw, the words without it behind that channel.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::compensation::CompensatedLog;
 use super::filters::LogFilters;
 use super::gates::LogGates;
-use super::temperature::Warmth;
+use super::temperature::{FittedTemperature, Warmth};
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
 use crate::experiment::outside::{self, Input, Outside, OutsideFilter};
 use crate::experiment::pipeline_metrics;
@@ -100,6 +100,8 @@ pub struct LogTrial {
     pub(super) source: Option<(String, String)>,
     pub(super) filters: Vec<FinishedFilter>,
     pub(super) channels: Vec<(String, ChannelMetrics)>,
+    /// Coefficients of the temperature that are significant.
+    pub(super) temperature: Option<FittedTemperature>,
     pub(super) verdicts: Vec<Verdict>,
     pub(super) notes: Vec<String>,
 }
@@ -162,6 +164,7 @@ pub fn try_log(
         black_box: filters.and_then(|filters| filters.resolved().scenario.trial.black_box),
     };
     let mut channels = measured_channels(&cut, &finished, settings.fit_tau_min_s.is_some());
+    let temperature = warmth.as_ref().and_then(Warmth::fitted);
     if let Some(warmth) = warmth {
         warmth.enter(&cut, &mut channels);
     }
@@ -173,6 +176,7 @@ pub fn try_log(
     ));
     Ok(LogTrial {
         channels,
+        temperature,
         verdicts: Vec::new(),
         motion: motion_of_log(settings.motion),
         source: filters.map(LogFilters::source),
@@ -207,7 +211,10 @@ fn measured_channels(
         },
     );
     let compensated = cut.record.compensated_deg_per_h.as_deref().map(|words| {
-        let measured = cut.measure_compensated();
+        let measured = match words.iter().any(|word| word.is_nan()) {
+            true => measure_present(&cut.of(words, words), cut.settings),
+            false => cut.measure_compensated(),
+        };
         examined(COMPENSATED, measured, words, cut, is_tau_given)
     });
     let own = raw.into_iter().chain(compensated.into_iter().flatten());

@@ -4,7 +4,10 @@ use super::trial::{COMPENSATED, LogTrial, RAW};
 use crate::experiment::build::VERSION;
 use crate::experiment::output_file::write_file;
 use crate::metrics::{Unavailable, noise_state_space};
-use crate::report::{KalmanReport, LogReport, kalman_json, log_files};
+use crate::report::{
+    KalmanReport, LogReport, TemperatureReport, TemperatureTableError, kalman_json, log_files,
+    with_temperature,
+};
 use crate::scenario::WITHOUT_OUTLIERS;
 use crate::seal::digest_of_words;
 use crate::signal::RunSignals;
@@ -54,6 +57,29 @@ impl LogTrial {
             file: &self.log.file,
             system: &system,
         }))
+    }
+
+    /// What the temperature does to the words, as a table of a calibration file that keeps all else that it
+    /// holds.
+    ///
+    /// * `file`: what the file holds, nothing of one that is not there. The axis of the log names the table.
+    ///
+    /// # Errors
+    /// Words without a significant coefficient; a file whose table is not replaced.
+    pub fn temperature_toml(&self, file: &str) -> Result<String, TemperatureTableError> {
+        let Some(fitted) = &self.temperature else {
+            return Err(TemperatureTableError::NoCoefficient);
+        };
+        let (lowest_c, highest_c) = fitted.range_c;
+        let report = TemperatureReport {
+            tool_version: VERSION,
+            file: &self.log.file,
+            column: self.log.column.as_deref(),
+            axis: self.log.format.axis,
+            model: &fitted.model,
+            range_c: [lowest_c, highest_c],
+        };
+        with_temperature(file, &report)
     }
 
     /// Writes `summary.json`, curves and pictures into `folder`, and the words of every filter

@@ -4,7 +4,7 @@ use crate::gyro::error::GyroError;
 use crate::gyro::thermal::{Chamber, Network, NetworkState, Propagator, Sensitivities};
 use crate::gyro::{GyroConfig, ThermalWarmUp};
 use crate::signal::TemperatureRecord;
-use crate::units::rad_per_s_to_deg_per_h;
+use crate::units::{k_per_s_to_k_per_min, rad_per_s_to_deg_per_h};
 
 /// Longest time over which a condition is held, s.
 ///
@@ -157,6 +157,7 @@ impl Schedule {
 pub struct CoilThermometer {
     schedule: Option<Schedule>,
     coil_c: f64,
+    rate_k_per_min: f64,
 }
 
 impl CoilThermometer {
@@ -166,16 +167,26 @@ impl CoilThermometer {
         Self {
             schedule: Schedule::new(config, sample_period_s),
             coil_c: Condition::at_start(config).coil_c,
+            rate_k_per_min: 0.0,
         }
     }
 
     /// The reading of the next output sample, deg C; held for up to 0.25 s, as the conditions are.
     pub fn next_c(&mut self) -> f64 {
-        let change = self.schedule.as_mut().and_then(Schedule::next_change);
-        if let Some(condition) = change {
+        if let Some(schedule) = &mut self.schedule
+            && let Some(condition) = schedule.next_change()
+        {
+            let change_k = condition.coil_c - self.coil_c;
+            self.rate_k_per_min = k_per_s_to_k_per_min(change_k / schedule.interval_s);
             self.coil_c = condition.coil_c;
         }
         self.coil_c
+    }
+
+    /// How fast the readings change from the one before the last one on, K/min.
+    #[must_use]
+    pub fn rate_k_per_min(&self) -> f64 {
+        self.rate_k_per_min
     }
 }
 

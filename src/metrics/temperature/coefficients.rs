@@ -9,6 +9,7 @@ use super::keys::{
     TEMPERATURE, TEMPERATURE_C, TEMPERATURE_METRICS, TIME,
 };
 use super::means::{WarmMeans, WarmRecord};
+use super::without::Warmed;
 use crate::metrics::estimate::interval::{mean, sample_variance, student_quantile};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
@@ -417,71 +418,4 @@ fn left_of(values: &[f64], columns: &[Vec<f64>]) -> Option<Vec<f64>> {
         .cholesky()?
         .solve(&(matrix.transpose() * &right));
     Some((right - matrix * by).iter().copied().collect())
-}
-
-/// The significant coefficients of a record, and its means.
-#[derive(Clone, Debug)]
-pub struct Warmed {
-    /// The coefficients, those that are not significant 0.
-    pub model: TemperatureModel,
-    means: WarmMeans,
-}
-
-impl Warmed {
-    /// The words of the record without what the coefficients say of their temperature; nothing where none
-    /// is significant.
-    ///
-    /// The temperature at a word is that between the means on either side, as a thermometer is read in steps.
-    #[must_use]
-    pub fn words_without(&self, record: &WarmRecord) -> Option<Vec<f64>> {
-        let is_flat = TemperatureModel {
-            reference_temperature_c: 0.0,
-            ..self.model
-        } == TemperatureModel::default();
-        if is_flat {
-            return None;
-        }
-        let mut warmth = Between::of(&self.means.time_s, &self.means.temperature_c);
-        let mut rate = Between::of(&self.means.time_s, &self.means.rate_k_per_min);
-        let words = record.words_deg_per_h.iter().enumerate();
-        let words = words.map(|(index, word)| {
-            let time_s = record.first_stamp_s + index as f64 * record.sample_period_s;
-            let (warmth, rate) = (warmth.at(time_s), rate.at(time_s));
-            self.model.compensated(*word, warmth, rate)
-        });
-        Some(words.collect())
-    }
-}
-
-/// Values at rising times, with straight lines between them, held at either end; missing ones left out.
-struct Between {
-    points: Vec<(f64, f64)>,
-    behind: usize,
-}
-
-impl Between {
-    fn of(times: &[f64], values: &[f64]) -> Self {
-        let points = times.iter().copied().zip(values.iter().copied());
-        Self {
-            points: points.filter(|(_, value)| value.is_finite()).collect(),
-            behind: 0,
-        }
-    }
-
-    /// The value at a time no earlier than the one before; 0 without any.
-    fn at(&mut self, time: f64) -> f64 {
-        let is_behind = |point: Option<&(f64, f64)>| point.is_some_and(|(at, _)| *at <= time);
-        while is_behind(self.points.get(self.behind + 1)) {
-            self.behind += 1;
-        }
-        let at = |index: usize| self.points.get(index).copied();
-        match (at(self.behind), at(self.behind + 1)) {
-            (Some(one), Some(next)) => {
-                let part = ((time - one.0) / (next.0 - one.0)).clamp(0.0, 1.0);
-                one.1 + part * (next.1 - one.1)
-            }
-            (Some(one), None) => one.1,
-            (None, _) => 0.0,
-        }
-    }
 }

@@ -74,8 +74,27 @@ impl WarmMeans {
     /// # Errors
     /// A record too short, or without a change of the temperature.
     pub(crate) fn of(record: &WarmRecord) -> Result<Self, Unavailable> {
-        let parts = parts(record)?;
-        let length_s = parts[0].len() as f64 * record.sample_period_s;
+        let parts = parts(record);
+        check_count(record, parts.len())?;
+        let mut means = Self::over(record, &parts);
+        if let Some(frequency_hz) = record.swing_hz {
+            means.gain_error = gains(record, &parts, frequency_hz);
+        }
+        means.check_change()?;
+        Ok(means)
+    }
+
+    /// The means of a record however short it is, and whether its temperature changes or not; nothing where
+    /// none is known.
+    pub(crate) fn of_any(record: &WarmRecord) -> Option<Self> {
+        let means = Self::over(record, &parts(record));
+        let is_known = means.temperature_c.iter().any(|it| it.is_finite());
+        is_known.then_some(means)
+    }
+
+    /// The means over parts of a record, with the rates of the temperature.
+    fn over(record: &WarmRecord, parts: &[Range<usize>]) -> Self {
+        let length_s = parts.first().map_or(0, Range::len) as f64 * record.sample_period_s;
         let mut means = Self {
             length_s,
             time_s: Vec::new(),
@@ -86,19 +105,27 @@ impl WarmMeans {
             gain_error: Vec::new(),
             rate_noise_k_per_min: 0.0,
         };
-        for part in &parts {
+        for part in parts {
             means.take(record, part.clone());
         }
-        if let Some(frequency_hz) = record.swing_hz {
-            means.gain_error = gains(record, &parts, frequency_hz);
-        }
-        means.check_change()?;
-        let spacing_s = means.time_s[1] - means.time_s[0];
         let (slopes, noise) = slopes(&means.temperature_c);
+        let spacing_s = match means.time_s[..] {
+            [first_s, next_s, ..] => next_s - first_s,
+            _ => length_s,
+        };
         let per_min = k_per_s_to_k_per_min(1.0 / spacing_s);
         means.rate_k_per_min = slopes.iter().map(|slope| slope * per_min).collect();
         means.rate_noise_k_per_min = noise * per_min;
-        Ok(means)
+        means
+    }
+
+    /// Lowest and highest temperature, deg C.
+    pub(crate) fn range_c(&self) -> (f64, f64) {
+        let present = self.temperature_c.iter().copied();
+        let present = present.filter(|it| !it.is_nan());
+        present.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), it| {
+            (low.min(it), high.max(it))
+        })
     }
 
     /// Takes the mean over some words, of those that are there with their temperature.
@@ -135,8 +162,7 @@ impl WarmMeans {
         if present.len() < MEANS_MIN {
             return Err(too_few(present.len()));
         }
-        let low = present.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = present.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (low, high) = self.range_c();
         if high - low >= CHANGE_MIN_K {
             return Ok(());
         }
@@ -165,29 +191,33 @@ fn too_few(count: usize) -> Unavailable {
 }
 
 /// The parts of a record that its means are taken over, whole cycles of a swing.
-fn parts(record: &WarmRecord) -> Result<Vec<Range<usize>>, Unavailable> {
+fn parts(record: &WarmRecord) -> Vec<Range<usize>> {
     let samples = record.words_deg_per_h.len() as f64;
     let together = record.swing_hz.map_or(1.0, |frequency_hz| {
         CYCLES / (frequency_hz * record.sample_period_s)
     });
     let length = together * (samples / (MEANS_MAX as f64 * together)).ceil();
     let at = |part: usize| round_to_count(part as f64 * length);
-    let parts: Vec<Range<usize>> = (0..=MEANS_MAX)
+    (0..=MEANS_MAX)
         .map(|part| at(part)..at(part + 1))
         .take_while(|part| part.end <= record.words_deg_per_h.len())
-        .collect();
-    if parts.len() < MEANS_MIN {
-        let reason = too_few(parts.len());
-        return Err(match record.swing_hz {
-            None => reason,
-            Some(_) => format!(
-                "{reason} of {} each",
-                counted(round_to_count(CYCLES), "cycle")
-            )
-            .into(),
-        });
+        .collect()
+}
+
+/// Refuses a record of too few parts.
+fn check_count(record: &WarmRecord, parts: usize) -> Result<(), Unavailable> {
+    if parts >= MEANS_MIN {
+        return Ok(());
     }
-    Ok(parts)
+    let reason = too_few(parts);
+    Err(match record.swing_hz {
+        None => reason,
+        Some(_) => format!(
+            "{reason} of {} each",
+            counted(round_to_count(CYCLES), "cycle")
+        )
+        .into(),
+    })
 }
 
 /// Amplitudes of a swing, over the true ones where they are known, else over their mean, minus 1.

@@ -4,3 +4,4 @@ pub(crate) mod coefficients;
 mod correlated_fit;
 pub(crate) mod keys;
 pub(crate) mod means;
+pub(crate) mod without;

@@ -52,6 +52,8 @@ fn is_whole(cell: &str) -> bool {
     signs.into_iter().any(|sign| is_value(cell, sign))
         || is_missing(cell)
         || !begins_like_number(cell)
+        // Numbers that were not cut where they should have been have no other letters.
+        || cell.contains(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E'))
 }
 
 /// The separator of lines: the first of tab, semicolon and comma that most of them hold and that leaves

@@ -8,6 +8,7 @@ use crate::recording::layout::words::{
 use crate::recording::time::unit::TimeUnit;
 use crate::recording::unit::kinds::LogUnit;
 use crate::recording::unit::spelling::Spelled;
+use crate::vocabulary::CaseAxis;
 use serde::Serialize;
 
 table! {
@@ -47,6 +48,12 @@ table! {
         temperature_column: Option<String>, example "coil_c";
         /// Temperature that its coefficients are told at [default: the mean of the log].
         temperature_reference_c: Option<f64>, example 25.0, in -100.0..=150.0, "C";
+        /// A calibration.toml whose table [temperature] is taken out of the words by the column of the
+        /// temperature, or, beside --columns, whose parameters of an assembly are.
+        calibration: Option<String>, example "calibration.toml", kind File;
+        /// Gyro of an assembly that the log is of: that of the table [temperature.x], or of three columns the
+        /// one that is measured.
+        axis: Option<CaseAxis>, example "x";
         /// Column of the time; of two, such as week and seconds, the sum; `none` if the file has none
         /// [default: the one whose heading says so].
         time: Option<Vec<String>>, example ["time_s"];

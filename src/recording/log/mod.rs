@@ -2,6 +2,7 @@
 
 pub(super) mod facts;
 pub(super) mod format;
+pub(super) mod gaps;
 pub(super) mod motion;
 pub(super) mod rates;
 pub(super) mod read;

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::format::LogFormat;
+use super::gaps::Gaps;
 use super::rates::{Taken, Words, angle_remark};
 use super::record::Log;
 use super::stretches::parts;
@@ -44,7 +45,18 @@ pub struct AssemblyLog {
 /// [`LogError`]: whatever the file system says; a file that does not hold what `format` says of it;
 /// several columns.
 pub fn read_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
-    let mut logs = read_logs(path, format)?;
+    one_of(path, read_logs(path, format)?)
+}
+
+/// As [`read_log`], for what needs every word: a complaint about a gap names no way to go on with it.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_unbroken_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
+    one_of(path, read_unbroken_logs(path, format)?)
+}
+
+fn one_of(path: &Path, mut logs: Vec<Log>) -> Result<Log, LogError> {
     match (logs.pop(), logs.len()) {
         (Some(log), 0) => Ok(log),
         (_, others) => {
@@ -60,14 +72,28 @@ pub fn read_log(path: &Path, format: &LogFormat) -> Result<Log, LogError> {
 /// # Errors
 /// As [`read_log`].
 pub fn read_logs(path: &Path, format: &LogFormat) -> Result<Vec<Log>, LogError> {
-    logs_of(path, read_wanted(path, &wanted_by(format))?, format)
+    logs_with(path, format, Gaps::of(format, false))
+}
+
+/// As [`read_logs`] and [`read_unbroken_log`].
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_unbroken_logs(path: &Path, format: &LogFormat) -> Result<Vec<Log>, LogError> {
+    logs_with(path, format, Gaps::of(format, true))
+}
+
+fn logs_with(path: &Path, format: &LogFormat, gaps: Gaps) -> Result<Vec<Log>, LogError> {
+    let wanted = wanted_by(format, gaps);
+    logs_of(path, read_wanted(path, &wanted)?, &wanted)
 }
 
 /// What a format asks for of a log.
-pub(super) fn wanted_by(format: &LogFormat) -> Wanted<'_> {
+pub(super) fn wanted_by(format: &LogFormat, gaps: Gaps) -> Wanted<'_> {
     Wanted {
         columns: Selection::Named(format.column.as_deref().unwrap_or_default()),
         needs_time: true,
+        gaps,
         format,
         samples_max: usize::MAX,
     }
@@ -77,8 +103,9 @@ pub(super) fn wanted_by(format: &LogFormat) -> Wanted<'_> {
 pub(super) fn logs_of(
     path: &Path,
     mut columns: Columns,
-    format: &LogFormat,
+    wanted: &Wanted<'_>,
 ) -> Result<Vec<Log>, LogError> {
+    let format = wanted.format;
     let mut data = std::mem::take(&mut columns.data);
     let temperature = match format.temperature_column {
         Some(_) => data.pop(),
@@ -88,7 +115,7 @@ pub(super) fn logs_of(
         Some(_) => data.pop(),
         None => None,
     };
-    let spacing = spacing(path, &columns, &data, format)?;
+    let spacing = spacing(path, &columns, &data, wanted)?;
     let logs = data.into_iter();
     let mut logs = logs
         .map(|column| log(path, &columns, column, format, &spacing))
@@ -123,11 +150,11 @@ pub fn read_assembly_log(
     let names = columns.gyros.into_iter().chain(columns.temperature);
     let wanted = Wanted {
         columns: Selection::Each(names.collect()),
-        ..wanted_by(format)
+        ..wanted_by(format, Gaps::Refused)
     };
     let mut columns = read_wanted(path, &wanted)?;
     let mut data = std::mem::take(&mut columns.data);
-    let spacing = spacing(path, &columns, &data, format)?;
+    let spacing = spacing(path, &columns, &data, &wanted)?;
     let temperature = (data.len() > 3).then(|| data.remove(3));
     let logs = data
         .into_iter()
@@ -203,6 +230,7 @@ pub fn read_stimulus(
     let wanted = Wanted {
         columns: Selection::Named(&column),
         needs_time: false,
+        gaps: Gaps::Unsaid,
         format: &format,
         samples_max,
     };
@@ -237,12 +265,13 @@ pub(super) fn spacing(
     path: &Path,
     columns: &Columns,
     data: &[Column],
-    format: &LogFormat,
+    wanted: &Wanted<'_>,
 ) -> Result<Spacing, LogError> {
+    let format = wanted.format;
     let rows = data.first().map_or(0, |column| column.values.len());
     let stretches = parts(path, columns, rows, format)?;
     let spacing = match &columns.time {
-        Some(time) => timing(path, columns, time, format, &stretches),
+        Some(time) => timing(path, columns, time, (format, wanted.gaps), &stretches),
         None => by_rate(path, format, stretches),
     };
     let spacing = spacing.map_err(|error| with_units(path, data, format, error))?;

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::format::LogFormat;
+use super::gaps::Gaps;
 use super::rates::rate_of;
 use super::read::{log, logs_of, spacing, wanted_by, with_samples};
 use super::record::Log;
@@ -13,6 +14,7 @@ use crate::recording::layout::words::MissingWords;
 use crate::recording::npy::archive;
 use crate::recording::npy::array::{self, ArrayWords};
 use crate::recording::npy::heading::ArrayHeading;
+use crate::recording::npy::number::Missing;
 use crate::recording::text::head::{HEAD_LINES, LIVE_HEAD_LINES};
 use crate::recording::text::lines::shown;
 use crate::recording::text::table::{Rows, Wanted};
@@ -87,14 +89,14 @@ pub(crate) fn open_keeping(
     kept: Kept,
 ) -> Result<LogSource, LogError> {
     let mut input = Input::open(path)?;
-    let wanted = wanted_by(format);
+    let wanted = wanted_by(format, Gaps::of(format, false));
     let most = match input.length() {
         Some(_) => kept.of_file,
         None => kept.words,
     };
     if archive::is_archive(&input, format) {
         let columns = with_samples(path, archive::read(path, &input, &wanted)?)?;
-        return logs_of(path, columns, format).map(LogSource::Whole);
+        return logs_of(path, columns, &wanted).map(LogSource::Whole);
     }
     if array::is_array(&input, format) {
         let heading = array::read_heading(path, &mut input, format)?;
@@ -109,10 +111,10 @@ pub(crate) fn open_keeping(
     let goes_on = rows.read_up_to(if streams(format) { most } else { usize::MAX })?;
     if !goes_on {
         let columns = with_samples(path, rows.into_columns())?;
-        return logs_of(path, columns, format).map(LogSource::Whole);
+        return logs_of(path, columns, &wanted).map(LogSource::Whole);
     }
     let columns = rows.take();
-    let found = Found::of(path, columns, format)?;
+    let found = Found::of(path, columns, &wanted)?;
     let stream = found.with(path, Rest::Text(Box::new(rows)));
     Ok(LogSource::Stream(Box::new(stream)))
 }
@@ -133,7 +135,7 @@ pub fn open_live_log(path: &Path, format: &LogFormat) -> Result<LogStream, LogEr
     }
     let mut input = Input::open(path)?;
     input.let_go_on();
-    let wanted = wanted_by(format);
+    let wanted = wanted_by(format, Gaps::Passed);
     if archive::is_archive(&input, format) {
         return Err(refuse(NotLive::Columns("an archive")));
     }
@@ -145,7 +147,8 @@ pub fn open_live_log(path: &Path, format: &LogFormat) -> Result<LogStream, LogEr
         let heading = heading.plain;
         array::check_columns(path, &heading, &wanted)?;
         let may_end = input.length().is_none();
-        let mut words = ArrayWords::new(path, heading, may_end, false).at_a_time(LIVE_BLOCK);
+        let mut words =
+            ArrayWords::new(path, heading, may_end, Missing::of(&wanted)).at_a_time(LIVE_BLOCK);
         let mut values = Vec::new();
         words.read(&mut input, &mut values)?;
         let mut columns = words.columns(values);
@@ -160,7 +163,7 @@ pub fn open_live_log(path: &Path, format: &LogFormat) -> Result<LogStream, LogEr
         (rows.take(), Rest::Text(Box::new(rows)))
     };
     let columns = with_samples(path, columns)?;
-    let stream = Found::of(path, columns, format)?.with(path, rest);
+    let stream = Found::of(path, columns, &wanted)?.with(path, rest);
     Ok(LogStream {
         block: LIVE_BLOCK,
         ..stream
@@ -218,12 +221,12 @@ fn open_array(
     if !is_long || !heading.is_plain_row() || !streams(format) {
         let columns = array::read_behind(path, &heading, input, wanted)?;
         let columns = with_samples(path, columns)?;
-        return logs_of(path, columns, format).map(LogSource::Whole);
+        return logs_of(path, columns, wanted).map(LogSource::Whole);
     }
     array::check_columns(path, &heading.plain, wanted)?;
     let may_end = input.length().is_none();
     input.let_go_on();
-    let mut words = ArrayWords::new(path, heading.plain, may_end, false);
+    let mut words = ArrayWords::new(path, heading.plain, may_end, Missing::of(wanted));
     let mut values = Vec::new();
     let mut goes_on = true;
     while goes_on && values.len() < first {
@@ -231,7 +234,7 @@ fn open_array(
     }
     let columns = with_samples(path, words.columns(values))?;
     if !goes_on {
-        return logs_of(path, columns, format).map(LogSource::Whole);
+        return logs_of(path, columns, wanted).map(LogSource::Whole);
     }
     let found = Found::of(
         path,
@@ -239,7 +242,7 @@ fn open_array(
             note: None,
             ..columns
         },
-        format,
+        wanted,
     )?;
     let stream = found.with(path, Rest::Array(Box::new((words, input))));
     Ok(LogSource::Stream(Box::new(stream)))
@@ -253,9 +256,10 @@ struct Found {
 }
 
 impl Found {
-    fn of(path: &Path, mut columns: Columns, format: &LogFormat) -> Result<Self, LogError> {
+    fn of(path: &Path, mut columns: Columns, wanted: &Wanted<'_>) -> Result<Self, LogError> {
+        let format = wanted.format;
         let data = std::mem::take(&mut columns.data);
-        let spacing = spacing(path, &columns, &data, format)?;
+        let spacing = spacing(path, &columns, &data, wanted)?;
         let Some(column) = data.into_iter().next() else {
             return Err(LogError::of_file(path, "holds no sample"));
         };
@@ -263,7 +267,11 @@ impl Found {
         let log = log(path, &columns, column, format, &spacing)?;
         let conversion = conversion.map_err(|error| LogError::of_file(path, error))?;
         if conversion.running.is_some() {
-            let message = "a running angle does not stream: --rows takes a part of it";
+            let way_out = match wanted.gaps {
+                Gaps::Passed => "",
+                _ => ": --rows takes a part of it",
+            };
+            let message = format!("a running angle does not stream{way_out}");
             return Err(LogError::of_file(path, message));
         }
         Ok(Self {

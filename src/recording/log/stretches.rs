@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::format::LogFormat;
+use super::gaps::Gaps;
 use crate::recording::column::Columns;
 use crate::recording::error::LogError;
 use crate::recording::input::Input;
@@ -135,6 +136,7 @@ fn table_of(path: &Path, shown: &str) -> Result<Vec<(f64, f64)>, LogError> {
         &Wanted {
             columns: Selection::Each(BOUNDS.into()),
             needs_time: false,
+            gaps: Gaps::Unsaid,
             format: &format,
             samples_max: usize::MAX,
         },

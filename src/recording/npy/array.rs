@@ -5,13 +5,12 @@ use std::path::{Path, PathBuf};
 
 use super::gather::{Gather, each_word};
 use super::heading::{self, ArrayHeading, HeadingError, NpyHeading};
-use super::number::{WordError, number};
+use super::number::Missing;
 use crate::recording::column::{Column, Columns};
 use crate::recording::error::{LogError, Place};
 use crate::recording::input::{Input, failure};
 use crate::recording::layout::Layout;
 use crate::recording::layout::columns::{Selection, choose};
-use crate::recording::layout::words::MissingWords;
 use crate::recording::log::format::LogFormat;
 use crate::recording::text::lines::listed;
 use crate::recording::text::table::Wanted;
@@ -83,9 +82,8 @@ pub(in crate::recording) fn read_behind(
 ) -> Result<Columns, LogError> {
     let (layout, chosen, found) = if heading.is_plain_row() {
         check_columns(path, &heading.plain, wanted)?;
-        let is_gap = wanted.format.missing == Some(MissingWords::Gap);
         let may_end = wanted.needs_time && input.length().is_none();
-        let mut words = ArrayWords::new(path, heading.plain, may_end, is_gap);
+        let mut words = ArrayWords::new(path, heading.plain, may_end, Missing::of(wanted));
         let mut values = Vec::new();
         while values.len() < wanted.samples_max && words.read(&mut input, &mut values)? {}
         values.truncate(wanted.samples_max);
@@ -150,7 +148,7 @@ pub(in crate::recording) struct ArrayWords {
     path: PathBuf,
     heading: NpyHeading,
     may_end: bool,
-    is_gap: bool,
+    missing: Missing,
     /// Numbers read.
     row: u64,
     /// Most numbers that are read at a time.
@@ -166,13 +164,13 @@ impl ArrayWords {
         path: &Path,
         heading: NpyHeading,
         may_end: bool,
-        is_gap: bool,
+        missing: Missing,
     ) -> Self {
         Self {
             path: path.to_owned(),
             heading,
             may_end,
-            is_gap,
+            missing,
             row: 0,
             at_a_time: CHUNK_BYTES / heading.word_bytes,
             chunk: Vec::with_capacity(CHUNK_BYTES),
@@ -257,13 +255,11 @@ impl ArrayWords {
         reserved
             .map_err(|error| failed(std::io::Error::new(std::io::ErrorKind::OutOfMemory, error)))?;
         for word in self.chunk[..filled].chunks_exact(word_bytes) {
-            let value = match number(&self.heading, word) {
-                Err(WordError::NotFinite(value)) if self.is_gap && value.is_nan() => value,
-                value => value.map_err(|error| {
-                    let row = usize::try_from(self.row).unwrap_or(usize::MAX);
-                    LogError::at(&self.path, Place::Index(row), error)
-                })?,
-            };
+            let value = self.missing.number(&self.heading, word);
+            let value = value.map_err(|error| {
+                let row = usize::try_from(self.row).unwrap_or(usize::MAX);
+                LogError::at(&self.path, Place::Index(row), error)
+            })?;
             values.push(value);
             self.row += 1;
         }

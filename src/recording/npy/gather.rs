@@ -5,13 +5,12 @@ use std::path::Path;
 
 use super::array::{CHUNK_BYTES, LengthError};
 use super::heading::{ArrayHeading, NpyHeading};
-use super::number::{WordError, number, stamp};
+use super::number::{Missing, WordError, stamp};
 use crate::recording::column::{Column, Columns};
 use crate::recording::error::{LogError, Place};
 use crate::recording::input::{failure, push};
 use crate::recording::layout::Layout;
 use crate::recording::layout::columns::Chosen;
-use crate::recording::layout::words::MissingWords;
 use crate::recording::text::lines::shown;
 use crate::recording::text::table::Wanted;
 use crate::recording::time::column::TimeColumn;
@@ -31,7 +30,7 @@ pub(super) struct Gather<'a> {
     path: &'a Path,
     layout: &'a Layout,
     chosen: Chosen,
-    is_gap: bool,
+    missing: Missing,
     columns: Columns,
     /// Stamps, or parts of them, by column of the time.
     parts: Vec<Vec<Stamp>>,
@@ -77,7 +76,7 @@ impl<'a> Gather<'a> {
         Self {
             path,
             layout,
-            is_gap: wanted.format.missing == Some(MissingWords::Gap),
+            missing: Missing::of(wanted),
             columns: Columns {
                 data: data.collect(),
                 time,
@@ -116,10 +115,7 @@ impl<'a> Gather<'a> {
             ));
         };
         if let Some(position) = data {
-            let value = match number(kind, word.bytes) {
-                Err(WordError::NotFinite(value)) if self.is_gap && value.is_nan() => value,
-                value => value.map_err(at)?,
-            };
+            let value = self.missing.number(kind, word.bytes).map_err(at)?;
             let values = &mut self.columns.data[position].values;
             push(values, value).map_err(|error| failure(path, error))?;
         }

@@ -4,4 +4,4 @@ pub(super) mod archive;
 pub(super) mod array;
 mod gather;
 pub(super) mod heading;
-mod number;
+pub(super) mod number;

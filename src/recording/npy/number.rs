@@ -1,6 +1,9 @@
 //! What the bytes of a word are: a number, a stamp.
 
 use super::heading::{NpyHeading, Word};
+use crate::recording::layout::words::MissingWords;
+use crate::recording::log::gaps::Gaps;
+use crate::recording::text::table::Wanted;
 use crate::recording::time::stamp::Stamp;
 use crate::recording::time::unit::TimeUnit;
 
@@ -10,8 +13,8 @@ const INTEGER_MAX: u64 = 1 << 53;
 /// Why a word is no number of a record.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum WordError {
-    #[error("{0} is not a finite number")]
-    NotFinite(f64),
+    #[error("{0} is not a finite number{1}")]
+    NotFinite(f64, &'static str),
     #[error("{0} lies beyond 2^53, the largest count that is kept exactly")]
     Inexact(i128),
     #[error("{0} is beyond the times that a clock shows")]
@@ -19,7 +22,7 @@ pub(super) enum WordError {
 }
 
 /// The number that the bytes of a word are.
-pub(super) fn number(heading: &NpyHeading, bytes: &[u8]) -> Result<f64, WordError> {
+fn number(heading: &NpyHeading, bytes: &[u8]) -> Result<f64, WordError> {
     let word = word(heading, bytes);
     let [b0, b1, b2, b3, ..] = word;
     let value = match heading.word {
@@ -38,7 +41,36 @@ pub(super) fn number(heading: &NpyHeading, bytes: &[u8]) -> Result<f64, WordErro
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(WordError::NotFinite(value))
+        Err(WordError::NotFinite(value, ""))
+    }
+}
+
+/// What is done with words that are no number.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::recording) struct Missing {
+    /// Whether the sample is missing.
+    is_gap: bool,
+    /// What may be done about it.
+    gaps: Gaps,
+}
+
+impl Missing {
+    pub(in crate::recording) fn of(wanted: &Wanted<'_>) -> Self {
+        Self {
+            is_gap: wanted.format.missing == Some(MissingWords::Gap),
+            gaps: wanted.gaps,
+        }
+    }
+
+    /// The number that the bytes of a word are, NaN where one is missing.
+    pub(super) fn number(self, heading: &NpyHeading, bytes: &[u8]) -> Result<f64, WordError> {
+        match number(heading, bytes) {
+            Err(WordError::NotFinite(value, _)) if value.is_nan() => match self.is_gap {
+                true => Ok(value),
+                false => Err(WordError::NotFinite(value, self.gaps.at_number())),
+            },
+            found => found,
+        }
     }
 }
 

@@ -130,16 +130,17 @@ impl<R: BufRead> Lines<R> {
         }))
     }
 
-    /// Passes whole lines that are in the buffer already, each with its number and without its end, as long
-    /// as they are taken.
+    /// Passes lines that are in the buffer already, as long as they are taken.
     ///
-    /// A line that is not taken is the next one of [`Self::next_unless`].
+    /// * `take`: given the bytes from the start of a line to the end of the buffer, and the number of the line,
+    ///   the bytes that the line has with its end. A line that is not taken is the next one of
+    ///   [`Self::next_unless`].
     ///
     /// # Errors
     /// The system's.
     pub(super) fn pass_while(
         &mut self,
-        mut is_taken: impl FnMut(&[u8], usize) -> bool,
+        mut take: impl FnMut(&[u8], usize) -> Option<usize>,
     ) -> io::Result<()> {
         if self.number == 0 {
             return Ok(());
@@ -154,14 +155,9 @@ impl<R: BufRead> Lines<R> {
             Some(first) => usize::from(std::mem::take(&mut self.is_after_cr) && *first == b'\n'),
             None => 0,
         };
-        while let Some(length) = memchr::memchr(b'\n', &available[passed..]) {
-            let line = &available[passed..passed + length];
-            let line = line.strip_suffix(b"\r").unwrap_or(line);
-            if !is_taken(line, self.number + 1) {
-                break;
-            }
+        while let Some(length) = take(&available[passed..], self.number + 1) {
             self.number += 1;
-            passed += length + 1;
+            passed += length;
         }
         self.end += passed;
         self.reader.consume(passed);

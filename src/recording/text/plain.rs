@@ -9,7 +9,7 @@ use crate::recording::time::unit::TimeUnit;
 #[inline]
 pub(super) fn plain_number(rest: &[u8], separator: u8) -> Option<(f64, usize)> {
     if let Some((number, length)) = Decimal::at_start(rest)
-        && rest.get(length).is_none_or(|byte| *byte == separator)
+        && is_end(rest, length, separator)
         && let Some(value) = number.value()
     {
         return Some((value, length));
@@ -24,7 +24,7 @@ pub(super) fn plain_number(rest: &[u8], separator: u8) -> Option<(f64, usize)> {
 pub(super) fn plain_stamp(rest: &[u8], separator: u8, unit: TimeUnit) -> Option<(Stamp, usize)> {
     if unit != TimeUnit::Iso
         && let Some((number, length)) = Decimal::at_start(rest)
-        && rest.get(length).is_none_or(|byte| *byte == separator)
+        && is_end(rest, length, separator)
         && let Some(stamp) = Stamp::of_decimal(number, unit)
     {
         return Some((stamp, length));
@@ -34,14 +34,20 @@ pub(super) fn plain_stamp(rest: &[u8], separator: u8, unit: TimeUnit) -> Option<
     Some((stamp, cell.len()))
 }
 
-/// The cell at the beginning of a row without quotes and without blanks around it.
-fn plain_cell(rest: &[u8], separator: u8) -> Option<&str> {
-    let end = memchr::memchr(separator, rest).unwrap_or(rest.len());
-    let cell = std::str::from_utf8(&rest[..end]).ok()?;
-    (cell.trim().len() == cell.len() && !cell.contains('"')).then_some(cell)
+/// Whether a cell has so many bytes.
+#[inline]
+fn is_end(rest: &[u8], length: usize, separator: u8) -> bool {
+    let byte = rest.get(length);
+    byte.is_none_or(|byte| *byte == separator || matches!(byte, b'\n' | b'\r'))
 }
 
-/// Bytes of a cell that is passed over: up to the separator, the end, or what is not plain.
+/// The cell at the beginning of a row without quotes and without blanks around it.
+fn plain_cell(rest: &[u8], separator: u8) -> Option<&str> {
+    let cell = std::str::from_utf8(&rest[..plain_length(rest, separator)]).ok()?;
+    (cell.trim().len() == cell.len()).then_some(cell)
+}
+
+/// Bytes of a cell: up to the separator, the end, or what is not plain.
 pub(super) fn plain_length(rest: &[u8], separator: u8) -> usize {
     let is_plain = |byte: &u8| matches!(byte, b' '..=b'~') && *byte != b'"';
     let end = rest

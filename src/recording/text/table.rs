@@ -14,6 +14,7 @@ use crate::recording::layout::columns::{Chosen, Selection, choose};
 use crate::recording::layout::words::{DecimalSign, MissingWords};
 use crate::recording::layout::{Fault, HeadLine, Layout, LayoutError, find, finite_in, is_number};
 use crate::recording::log::format::LogFormat;
+use crate::recording::log::gaps::Gaps;
 use crate::recording::time::column::TimeColumn;
 use crate::recording::time::stamp::Stamp;
 
@@ -26,6 +27,8 @@ pub(in crate::recording) struct Wanted<'a> {
     pub(in crate::recording) columns: Selection<'a>,
     /// Whether the time is looked for.
     pub(in crate::recording) needs_time: bool,
+    /// What may be done about samples that are missing.
+    pub(in crate::recording) gaps: Gaps,
     pub(in crate::recording) format: &'a LogFormat,
     /// Samples after which reading ends.
     pub(in crate::recording) samples_max: usize,
@@ -185,8 +188,8 @@ impl Rows {
             path, lines, table, ..
         } = self;
         while table.columns.rows() < rows {
-            let passed = lines.pass_while(|line, number| {
-                table.columns.rows() < rows && table.plain_row(line, number)
+            let passed = lines.pass_while(|bytes, number| {
+                (table.columns.rows() < rows).then(|| table.plain_row(bytes, number))?
             });
             passed.map_err(|error| failure(path, error))?;
             if table.columns.rows() >= rows {
@@ -257,8 +260,7 @@ struct Table {
     roles: Vec<Role>,
     columns: Columns,
     is_gap: bool,
-    /// Whether it is a log, of which the options can say that samples are missing.
-    is_log: bool,
+    gaps: Gaps,
     /// Cells of a first row that are no numbers; none once the second row was held against it.
     words: Vec<(usize, String)>,
     /// Values of a record that is spread over lines.
@@ -326,7 +328,7 @@ impl Table {
             layout,
             roles,
             is_gap: missing == Some(MissingWords::Gap),
-            is_log: wanted.needs_time,
+            gaps: wanted.gaps,
             words: Vec::new(),
             record: Vec::new(),
             taken: 0,
@@ -376,58 +378,53 @@ impl Table {
         }
     }
 
-    /// Takes a line that is a row of plain numbers between separators of one byte; whether it was one.
+    /// Takes the line at the beginning of some bytes if it ends there and is a row of plain numbers between
+    /// separators of one byte; its bytes with its end.
     ///
     /// What is not is left as it is for [`Self::row`], which says what it is.
     #[inline]
-    fn plain_row(&mut self, line: &[u8], number: usize) -> bool {
-        let Some(separator) = self.plain_separator.filter(|_| self.seen() > 1) else {
-            return false;
-        };
+    fn plain_row(&mut self, bytes: &[u8], number: usize) -> Option<usize> {
+        let separator = self.plain_separator.filter(|_| self.seen() > 1)?;
         // Comments do not begin as numbers do.
-        if !matches!(line.first(), Some(b'0'..=b'9' | b'-' | b'+' | b'.')) {
-            return false;
+        if !matches!(bytes.first(), Some(b'0'..=b'9' | b'-' | b'+' | b'.')) {
+            return None;
         }
-        let (mut rest, mut stamp) = (line, Stamp::NOTHING);
+        let (mut rest, mut stamp) = (bytes, Stamp::NOTHING);
         let width = self.roles.len();
         for (index, role) in self.roles.iter().enumerate() {
             let length = match *role {
                 Role::Nothing => plain_length(rest, separator),
                 Role::Data(position) => {
-                    let Some((value, length)) = plain_number(rest, separator) else {
-                        return false;
-                    };
+                    let (value, length) = plain_number(rest, separator)?;
                     self.plain_values[position] = value;
                     length
                 }
                 Role::Time(position) => {
-                    let unit = self.columns.time.as_ref().map(|time| time.units[position]);
-                    let found = unit.and_then(|unit| plain_stamp(rest, separator, unit));
-                    let Some((part, length)) = found else {
-                        return false;
-                    };
+                    let unit = self.columns.time.as_ref()?.units[position];
+                    let (part, length) = plain_stamp(rest, separator, unit)?;
                     stamp = stamp.plus(part);
                     length
                 }
             };
-            rest = match (rest.get(length), index + 1 == width) {
-                (None, true) => &[],
-                (Some(byte), false) if *byte == separator => &rest[length + 1..],
-                _ => return false,
+            let end = match &rest[length..] {
+                [byte, ..] if index + 1 < width && *byte == separator => 1,
+                [b'\n', ..] if index + 1 == width => 1,
+                [b'\r', b'\n', ..] if index + 1 == width => 2,
+                _ => return None,
             };
+            rest = &rest[length + end..];
         }
         let row = self.columns.rows();
         for (column, value) in self.columns.data.iter_mut().zip(&self.plain_values) {
-            if push(&mut column.values, *value).is_err() {
-                return false;
-            }
+            push(&mut column.values, *value).ok()?;
         }
-        let is_stamped = match &mut self.columns.time {
-            Some(time) => time.take(stamp).is_ok(),
-            None => true,
-        };
-        let lines = self.columns.lines.as_mut();
-        is_stamped && lines.is_none_or(|lines| lines.take(row, number).is_ok())
+        if let Some(time) = &mut self.columns.time {
+            time.take(stamp).ok()?;
+        }
+        if let Some(lines) = &mut self.columns.lines {
+            lines.take(row, number).ok()?;
+        }
+        Some(bytes.len() - rest.len())
     }
 
     /// Takes a line that is a row.
@@ -506,10 +503,9 @@ impl Table {
                     Ok(value) => value,
                     Err(_) if self.is_gap && is_missing(cell) => f64::NAN,
                     Err(error) => {
-                        let way_out = if self.is_log && is_missing(cell) {
-                            "; --missing gap takes the sample to be missing"
-                        } else {
-                            ""
+                        let way_out = match is_missing(cell) {
+                            true => self.gaps.at_number(),
+                            false => "",
                         };
                         return Err(CellFault::Content(format!("{error}{way_out}")));
                     }

@@ -113,20 +113,23 @@ pub(in crate::recording) fn ticks_of(unit: TimeUnit) -> i128 {
 )]
 pub(in crate::recording) fn as_float(ticks: i128) -> f64 {
     // What fits into 64 bits, as most differences do, is converted faster.
-    i64::try_from(ticks).map_or(ticks as f64, |ticks| ticks as f64)
+    i64::try_from(ticks).map_or_else(|_| ticks as f64, |ticks| ticks as f64)
 }
 
 impl Stamp {
     /// The stamp that a number of digits is; nothing of too many decimals.
     #[inline]
     pub(in crate::recording) fn of_decimal(number: Decimal, unit: TimeUnit) -> Option<Self> {
-        let unit_ticks = ticks_of(unit);
-        let power = 10_u64.checked_pow(u32::try_from(number.decimals).ok()?)?;
-        let unit = u64::try_from(unit_ticks).ok()?;
-        let digits = i128::from(number.digits);
-        let magnitude = match unit % power {
-            0 => digits * i128::from(unit / power),
-            _ => rounded(digits * unit_ticks, i128::from(power)),
+        let (magnitude, resolution) = match last_place(unit, number.decimals) {
+            Some(ticks) => (i128::from(number.digits) * i128::from(ticks), ticks),
+            None => {
+                let power = 10_u64.checked_pow(u32::try_from(number.decimals).ok()?)?;
+                let unit_ticks = ticks_of(unit);
+                let digits = i128::from(number.digits);
+                let magnitude = rounded(digits * unit_ticks, i128::from(power));
+                let resolution = u64::try_from(unit_ticks).ok()? / power;
+                (magnitude, resolution.max(1))
+            }
         };
         Some(Self {
             ticks: if number.is_negative {
@@ -134,9 +137,37 @@ impl Stamp {
             } else {
                 magnitude
             },
-            resolution: i128::from((unit / power).max(1)),
+            resolution: i128::from(resolution),
         })
     }
+}
+
+/// Ticks of one in the last of so many decimals, where these are a whole number and the unit is a power of ten.
+#[inline]
+fn last_place(unit: TimeUnit, decimals: usize) -> Option<u64> {
+    const POWERS: [u64; DECIMALS + 1] = [
+        1,
+        10,
+        100,
+        1_000,
+        10_000,
+        100_000,
+        1_000_000,
+        10_000_000,
+        100_000_000,
+        1_000_000_000,
+        10_000_000_000,
+        100_000_000_000,
+        1_000_000_000_000,
+    ];
+    let places = match unit {
+        TimeUnit::Seconds | TimeUnit::Iso | TimeUnit::Samples => DECIMALS,
+        TimeUnit::Milliseconds => DECIMALS - 3,
+        TimeUnit::Microseconds => DECIMALS - 6,
+        TimeUnit::Nanoseconds => DECIMALS - 9,
+        TimeUnit::Minutes | TimeUnit::Hours | TimeUnit::Days | TimeUnit::Weeks => return None,
+    };
+    POWERS.get(places.checked_sub(decimals)?).copied()
 }
 
 /// A quotient, rounded to the nearest.
@@ -177,29 +208,29 @@ fn date(cell: &str) -> Option<Stamp> {
     }
 }
 
-/// Days since 1970 of a year, month and day of digits, and what stands behind.
+/// Days since 1970 of a year, month and day of digits, and what stands behind: `2024-03-01`, `2024/03/01`, or with
+/// points between them the day first, `01.03.2024`.
 fn day(bytes: &[u8]) -> Option<(i64, &[u8])> {
-    let [
-        y0,
-        y1,
-        y2,
-        y3,
-        cut @ (b'-' | b'/'),
-        m0,
-        m1,
-        same,
-        d0,
-        d1,
-        behind @ ..,
-    ] = bytes
-    else {
-        return None;
+    let (year, month, day, behind) = match bytes {
+        [
+            y0,
+            y1,
+            y2,
+            y3,
+            cut @ (b'-' | b'/'),
+            m0,
+            m1,
+            same,
+            d0,
+            d1,
+            behind @ ..,
+        ] if cut == same => ([*y0, *y1, *y2, *y3], [*m0, *m1], [*d0, *d1], behind),
+        [d0, d1, b'.', m0, m1, b'.', y0, y1, y2, y3, behind @ ..] => {
+            ([*y0, *y1, *y2, *y3], [*m0, *m1], [*d0, *d1], behind)
+        }
+        _ => return None,
     };
-    if cut != same {
-        return None;
-    }
-    let year = number(&[*y0, *y1, *y2, *y3])?;
-    let (month, day) = (number(&[*m0, *m1])?, number(&[*d0, *d1])?);
+    let (year, month, day) = (number(&year)?, number(&month)?, number(&day)?);
     if !(1..=12).contains(&month) || !(1..=days_of_month(year, month)).contains(&day) {
         return None;
     }
@@ -330,6 +361,8 @@ mod tests {
         );
         assert_eq!(at("2024/03/01 12:00:00,005"), at("2024-03-01T12:00:00.005"));
         assert_eq!(at("2024-02-29"), at("2024-03-01") - DAY);
+        assert_eq!(at("29.02.2024"), at("2024-02-29"));
+        assert_eq!(at("01.03.2024 12:00:00,5"), at("2024-03-01T12:00:00.5"));
         assert_eq!(
             at("2024-03-01") + at("12:00:00.25"),
             at("2024-03-01T12:00:00.25")
@@ -345,6 +378,8 @@ mod tests {
             "12:00:00.",
             "1.5",
             "2024-03/01",
+            "29.02.2023",
+            "03.2024",
             "2024-03-01T25:00",
             "",
             "nan",

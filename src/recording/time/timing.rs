@@ -8,6 +8,7 @@ use super::unit::TimeUnit;
 use crate::recording::column::Columns;
 use crate::recording::error::LogError;
 use crate::recording::log::format::LogFormat;
+use crate::recording::log::gaps::Gaps;
 use crate::recording::text::lines::shown;
 use crate::units::s_to_us;
 use crate::wording::{counted, plain};
@@ -66,6 +67,7 @@ pub(in crate::recording) struct Steps {
     /// Longest step that is jitter, if it is given.
     max_gap_s: Option<f64>,
     unit: &'static str,
+    gaps: Gaps,
 }
 
 /// A log where samples are missing.
@@ -100,7 +102,7 @@ pub(in crate::recording) fn timing(
     path: &Path,
     columns: &Columns,
     time: &TimeColumn,
-    format: &LogFormat,
+    (format, gaps): (&LogFormat, Gaps),
     stretches: &[Range<usize>],
 ) -> Result<Spacing, LogError> {
     let steps = stretches.iter().map(|rows| rows.len().saturating_sub(1));
@@ -119,7 +121,7 @@ pub(in crate::recording) fn timing(
         let message = "the time column holds fewer than two stamps: give --rate-hz";
         return Err(LogError::of_file(path, message));
     }
-    let clock = Clock::of(path, columns, time, format, stretches);
+    let clock = Clock::of(path, columns, time, (format, gaps), stretches);
     // Stamps of another clock altogether have no gaps.
     if (clock.steps.period / clock.found).ln().abs() > RATE_CLEARLY_OTHER {
         return Err(clock.contradiction(1.0 / clock.found));
@@ -168,13 +170,21 @@ impl Steps {
     /// # Errors
     /// What speaks against equal spacing.
     pub(in crate::recording) fn check(&self, step: f64) -> Result<(), StepError> {
-        let Self { period, unit, .. } = *self;
+        let Self {
+            period, unit, gaps, ..
+        } = *self;
+        let gap = || StepError::Gap {
+            step,
+            period,
+            unit,
+            gaps,
+        };
         if let Some(most_s) = self.max_gap_s {
             if step < 0.0 {
                 return Err(StepError::Descent { step, unit });
             }
             return match step > most_s {
-                true => Err(StepError::Gap { step, period, unit }),
+                true => Err(gap()),
                 false => Ok(()),
             };
         }
@@ -185,7 +195,7 @@ impl Steps {
         let rounded = self.coarseness * if self.may_repeat { 1.01 } else { 0.99 };
         let open = rounded.max(STEP_TOLERANCE * period);
         if step > period + open {
-            return Err(StepError::Gap { step, period, unit });
+            return Err(gap());
         }
         if step < period - open {
             return Err(StepError::Crowd { step, period, unit });
@@ -199,7 +209,7 @@ impl<'a> Clock<'a> {
         path: &'a Path,
         columns: &'a Columns,
         time: &'a TimeColumn,
-        format: &'a LogFormat,
+        (format, gaps): (&'a LogFormat, Gaps),
         stretches: &[Range<usize>],
     ) -> Self {
         let median = median_step(&time.stamps, stretches);
@@ -226,6 +236,7 @@ impl<'a> Clock<'a> {
                 may_repeat: is_coarse && repeats_by_rounding(&time.stamps, median, last_digit),
                 max_gap_s: format.max_gap_s,
                 unit: if time.is_counter() { "" } else { " s" },
+                gaps,
             },
         }
     }
@@ -489,20 +500,21 @@ fn as_float(count: usize) -> f64 {
 #[derive(Debug, thiserror::Error)]
 pub(in crate::recording) enum StepError {
     #[error(
-        "the time goes from one stamp to the next by {step:.9}{unit}: stamps must ascend; if they are \
-         rounded too coarsely, say --time none and give --rate-hz"
+        "the time goes from one stamp to the next by {step:.9}{unit}: stamps must ascend; --roll-over says \
+         after how much a counter begins again; if they are rounded too coarsely, say --time none and give \
+         --rate-hz"
     )]
     Descent { step: f64, unit: &'static str },
     #[error(
-        "gap of {step:.9}{unit} where samples are {period:.9}{unit} apart ({:.0} missing): \
-         --split-gaps cuts the log there and pools what lies between, --gap-aware lets differences span it, \
-         --rows or --to-s takes a part of it",
-        (step / period - 1.0).max(1.0)
+        "gap of {step:.9}{unit} where samples are {period:.9}{unit} apart ({:.0} missing){}",
+        (step / period - 1.0).max(1.0),
+        gaps.at_stamps()
     )]
     Gap {
         step: f64,
         period: f64,
         unit: &'static str,
+        gaps: Gaps,
     },
     #[error(
         "the stamp is {step:.9}{unit} after the one before where samples are {period:.9}{unit} apart: \

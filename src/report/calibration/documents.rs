@@ -81,7 +81,7 @@ pub(in crate::report) fn calibration_toml(
 }
 
 /// A basic string of TOML; JSON escapes the same characters in the same way.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     Value::from(text).to_string()
 }
 
@@ -278,6 +278,15 @@ fn estimate(found: &CalibrationEstimate) -> Value {
         put_array(&mut both, "value", &slope.value);
         put_array(&mut both, "standard_error", &slope.standard_error);
         record.insert("bias_deg_per_h_per_k".to_owned(), both.into());
+    }
+    if let Some(delay) = &found.delay_ms {
+        let mut both = Map::new();
+        put_array(&mut both, "value", &delay.value);
+        put_array(&mut both, "standard_error", &delay.standard_error);
+        record.insert("delay_ms".to_owned(), both.into());
+    }
+    if let Some(rejected) = &found.rejected_samples {
+        record.insert("rejected_samples".to_owned(), rejected.to_vec().into());
     }
     let misfit: Option<Vec<f64>> = found.reduced_chi_square.iter().copied().collect();
     if let Some(misfit) = misfit {

@@ -2,4 +2,5 @@
 
 pub(super) mod calibrate;
 pub(super) mod documents;
+pub(super) mod temperature;
 pub(super) mod text;

@@ -174,7 +174,31 @@ fn applied(sheet: &CalibrationSheet, colour: bool) -> Grid {
         ]);
     }
     slopes(sheet, found, &mut grid);
+    delays(found, &mut grid);
     grid
+}
+
+/// How much later than the encoder each gyro answers, and the samples left out for it, where samples tell.
+fn delays(found: &CalibrationEstimate, grid: &mut Grid) {
+    if let Some(delay) = &found.delay_ms {
+        for (axis, name) in AXES.iter().enumerate() {
+            grid.row([
+                format!("delay {name}"),
+                "ms".to_owned(),
+                format!("{:.4}", delay.value[axis]),
+                format!("{:.4}", delay.standard_error[axis]),
+            ]);
+        }
+    }
+    if let Some(rejected) = &found.rejected_samples {
+        for (name, count) in AXES.iter().zip(rejected) {
+            grid.row([
+                format!("rejected {name}"),
+                "samples".to_owned(),
+                count.to_string(),
+            ]);
+        }
+    }
 }
 
 fn slopes(sheet: &CalibrationSheet, found: &CalibrationEstimate, grid: &mut Grid) {

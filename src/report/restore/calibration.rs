@@ -51,6 +51,13 @@ fn count(record: &Value, key: &str) -> Option<usize> {
     usize::try_from(record.get(key)?.as_u64()?).ok()
 }
 
+/// Counts of the gyros x, y, z.
+fn counts(record: &Value, key: &str) -> Option<[usize; 3]> {
+    let counts = record.get(key)?.as_array()?.iter();
+    let counts = counts.map(|count| usize::try_from(count.as_u64()?).ok());
+    counts.collect::<Option<Vec<usize>>>()?.try_into().ok()
+}
+
 fn rows(record: &Value, key: &str) -> Option<Vec<[f64; 3]>> {
     let rows = record.get(key)?.as_array()?.iter();
     rows.map(|row| numbers(row)?.try_into().ok()).collect()
@@ -70,9 +77,6 @@ fn plan(record: &Value) -> Option<CalibrationPlan> {
 
 fn group(record: &Value) -> Option<CalibrationGroup> {
     let axis = record.get("mounting")?.as_str()?;
-    let rejected = record.get("rejected")?.as_array()?.iter();
-    let rejected = rejected.map(|count| usize::try_from(count.as_u64()?).ok());
-    let rejected: Vec<usize> = rejected.collect::<Option<_>>()?;
     Some(CalibrationGroup {
         mounting: AXES.iter().position(|known| *known == axis)?,
         rate_deg_per_s: real(record, "rate_deg_per_s")?,
@@ -85,7 +89,7 @@ fn group(record: &Value) -> Option<CalibrationGroup> {
         averaging_time_s: real(record, "averaging_time_s")?,
         turns: real(record, "turns"),
         samples: count(record, "samples")?,
-        rejected: rejected.try_into().ok()?,
+        rejected: counts(record, "rejected")?,
     })
 }
 
@@ -130,6 +134,10 @@ fn estimate(name: &str, record: &Value) -> Option<CalibrationEstimate> {
         weights: rows(record, "weights")?,
         condition_number: reals(record, "condition_number")?,
         rounding: lifted(record.get("rounding"), rounding)?,
+        delay_ms: lifted(record.get("delay_ms"), slope)?,
+        rejected_samples: lifted(record.get("rejected_samples"), |_| {
+            counts(record, "rejected_samples")
+        })?,
         error: lifted(record.get("error"), error)?,
     })
 }

@@ -236,9 +236,15 @@ const RULES: &[Rule] = &[
     run("gyro.thermal.power.quadratic.hot_ratio", DEPARTURE, departs),
     run("gyro.thermal.power.exponential.fall_k", DEPARTURE, departs),
     run("compensation.parameters.reference_temperature_c",
-        "compensation.parameters.bias_deg_per_h_per_k other than 0",
+        "a coefficient of the temperature in [compensation.parameters] other than 0",
         |s| s.compensation.as_ref().and_then(|one| one.parameters.as_ref()).is_none_or(|parameters| {
-            parameters.bias_deg_per_h_per_k.iter().any(|slope| !is_zero(*slope))
+            let coefficients = [
+                parameters.bias_deg_per_h_per_k,
+                parameters.bias_deg_per_h_per_k2,
+                parameters.bias_deg_per_h_per_k_per_min,
+                parameters.scale_factor_ppm_per_k,
+            ];
+            coefficients.as_flattened().iter().any(|coefficient| !is_zero(*coefficient))
         })),
     run("calibration.estimators", CAMPAIGN, is_campaign),
     run("calibration.apply", CAMPAIGN, is_campaign),

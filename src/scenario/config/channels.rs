@@ -95,7 +95,8 @@ impl Scenario {
     /// Names of the compensated channels, one for each gyro; none without a compensation.
     #[must_use]
     pub fn compensated_channels(&self) -> Vec<String> {
-        if self.compensation.is_none() {
+        let of_log = self.log.as_ref().and_then(|log| log.calibration.as_ref());
+        if self.compensation.is_none() && of_log.is_none() {
             return Vec::new();
         }
         let prefixes = self.axis_prefixes().iter();

@@ -6,13 +6,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::calibration::CompensationParameters;
+use crate::calibration::{CompensationParameters, TemperatureParameters};
 use crate::scenario::document::source::{Label, Mark, Sources, shown_path};
 use crate::scenario::document::tree::{Node, Table, Value, parse_document};
 use crate::scenario::message::error::{Location, ScenarioError};
 use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::read::chain;
 use crate::scenario::read::draft::Draft;
+use crate::scenario::read::files::temperature_source::{self, TemperatureTables};
 use crate::scenario::read::input::{self, Input};
 use crate::scenario::read::resolved::{InputFile, Resolved};
 
@@ -21,6 +22,7 @@ const TABLE: &str = "compensation";
 const FILE: &str = "file";
 const PARAMETERS: &str = "parameters";
 const CAMPAIGN: &str = "campaign";
+const REFERENCE: &str = "reference_temperature_c";
 const CAMPAIGN_SCENARIO: &str = "campaign_scenario";
 
 /// The version of calibration files this build reads.
@@ -40,7 +42,7 @@ pub(crate) fn read_into(
         return Ok(None);
     };
     if let Some(named) = Named::of(table, FILE, sources) {
-        let node = parameters(&named, sources, inputs).map_err(|error| vec![error])?;
+        let node = parameters(&named, sources, inputs)?;
         table.remove(FILE);
         table.insert(PARAMETERS.to_owned(), node);
     }
@@ -86,7 +88,7 @@ pub fn load_calibration(
         label: label.clone(),
     };
     let mut inputs = Vec::new();
-    let node = parameters(&named, &mut sources, &mut inputs).map_err(|error| vec![error])?;
+    let node = parameters(&named, &mut sources, &mut inputs)?;
     let mut root =
         parse_document(source, FRAME).map_err(|error| vec![sources.error(start, error.message)])?;
     if let Some(table) = root.get_mut(TABLE).and_then(Node::as_table_mut) {
@@ -145,13 +147,14 @@ impl Named {
     }
 }
 
-/// The parameters in a calibration file, every value marked where it stands.
+/// The parameters in a calibration file, every value marked where it stands; what its tables say of the
+/// temperature among them.
 fn parameters(
     named: &Named,
     sources: &mut Sources,
     inputs: &mut Vec<InputFile>,
-) -> Result<Node, ScenarioError> {
-    let Input { text, digest } = named.read(sources)?;
+) -> Result<Node, Vec<ScenarioError>> {
+    let Input { text, digest } = named.read(sources).map_err(|error| vec![error])?;
     let shown = shown_path(&named.path);
     let source = sources.add_file(shown, text.clone(), named.label.clone());
     inputs.push(InputFile {
@@ -161,7 +164,7 @@ fn parameters(
     let start = Mark { source, start: 0 };
     let mut root = parse_document(source, &text).map_err(|error| {
         let start = error.start;
-        sources.error(Mark { source, start }, error.message)
+        vec![sources.error(Mark { source, start }, error.message)]
     })?;
     if let Some(version) = root.get("schema")
         && !matches!(version.value, Value::Integer(FILE_VERSION))
@@ -173,18 +176,81 @@ fn parameters(
              {FILE_VERSION}",
             excerpt(&written)
         );
-        return Err(sources.error(mark, message));
+        return Err(vec![sources.error(mark, message)]);
     }
+    let temperature = root.remove(temperature_source::TABLE);
     match root.remove(TABLE) {
-        Some(node) if node.as_table().is_some() => Ok(node),
+        Some(mut node) if node.as_table().is_some() => {
+            if let Some(temperature) = temperature {
+                let tables = temperature_source::tables_of(&temperature, start, sources)?;
+                follow_temperature(&mut node, &tables, temperature.mark.unwrap_or(start));
+            }
+            Ok(node)
+        }
         _ => {
             let message = format!(
                 "this is no calibration file: expected a table [{TABLE}] with the parameters, as \
                  `fogbench calibrate` writes it"
             );
-            Err(sources.error(start, message))
+            Err(vec![sources.error(start, message)])
         }
     }
+}
+
+/// Puts what tables say of the gyros x, y, z in the place of the linear coefficients of a calibration, told at its
+/// reference temperatures. Values that are no three numbers are left for the checks to refuse.
+fn follow_temperature(node: &mut Node, tables: &TemperatureTables, mark: Mark) {
+    type Coefficient = fn(&TemperatureParameters) -> Option<f64>;
+    const KEYS: [(&str, Coefficient); 4] = [
+        ("bias_deg_per_h_per_k", |it| it.bias_deg_per_h_per_k),
+        ("bias_deg_per_h_per_k2", |it| it.bias_deg_per_h_per_k2),
+        ("bias_deg_per_h_per_k_per_min", |it| {
+            it.bias_deg_per_h_per_k_per_min
+        }),
+        ("scale_factor_ppm_per_k", |it| it.scale_factor_ppm_per_k),
+    ];
+    let Some(table) = node.as_table_mut() else {
+        return;
+    };
+    let default = CompensationParameters::reference().reference_temperature_c;
+    let Some(reference_c) = triple(table, REFERENCE, default) else {
+        return;
+    };
+    for (key, coefficient) in KEYS {
+        let Some(mut values) = triple(table, key, [0.0; 3]) else {
+            continue;
+        };
+        let axes = values.iter_mut().zip(&tables.axes).zip(reference_c);
+        for ((value, own), reference_c) in axes {
+            if let Some(own) = own {
+                *value = coefficient(&own.about(reference_c)).unwrap_or(0.0);
+            }
+        }
+        let number = |value: &f64| Node {
+            value: Value::Float(*value),
+            mark: Some(mark),
+        };
+        let value = Value::Array(Arc::new(values.iter().map(number).collect()));
+        let mark = Some(mark);
+        table.insert(key.to_owned(), Node { value, mark });
+    }
+}
+
+/// The three numbers of a key, or its default; nothing of another value.
+fn triple(table: &Table, key: &str, default: [f64; 3]) -> Option<[f64; 3]> {
+    let Some(node) = table.get(key) else {
+        return Some(default);
+    };
+    let numbers = node.as_array()?.iter().map(|node| match &node.value {
+        Value::Float(value) => Some(*value),
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "whole numbers of keys are converted so"
+        )]
+        Value::Integer(value) => Some(*value as f64),
+        _ => None,
+    });
+    numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
 /// The scenario of a campaign in a file.

@@ -18,8 +18,8 @@ use crate::wording::is_misspelling;
 
 /// The table of a file.
 const TABLE: &str = "log";
-/// The key that names a file, from the folder of the one that says so.
-const SEGMENTS: &str = "segments";
+/// Keys that name files, from the folder of the one that says so.
+const FILES: [&str; 2] = ["segments", "calibration"];
 
 fn keys() -> &'static [Key] {
     static KEYS: OnceLock<Keys> = OnceLock::new();
@@ -102,7 +102,7 @@ fn read(file: &Path) -> Result<Table, Vec<ScenarioError>> {
         if let Err(error) = check(name, &format!("{TABLE}.{name}"), node) {
             errors.push(sources.error(node.mark.unwrap_or(mark), error.to_string()));
         }
-        if name == SEGMENTS
+        if FILES.contains(&name.as_str())
             && let Value::Text(path) = &node.value
         {
             let beside = file.parent().unwrap_or(Path::new("")).join(path);

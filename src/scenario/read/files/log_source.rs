@@ -3,18 +3,21 @@
 //! It is read whole when the scenario is, so that what is wrong with it is said before the first run,
 //! and again when it runs: nothing of it is kept in between.
 
-use crate::recording::{Log, LogFacts, LogFormat, read_log};
+use crate::recording::{Log, LogFacts, LogFormat, read_log, read_unbroken_log};
 use crate::scenario::document::deserialize::from_table;
 use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::message::excerpt::bounded;
 use crate::scenario::read::files::named_files::{LOG as TABLE, NamedFile};
+use crate::scenario::read::files::temperature_source::{check_axis, load_log_temperature};
 use crate::scenario::read::resolved::Resolved;
 use crate::seal::digest_of_words;
 
 const FILE_KEY: &str = "log.file";
 const SEGMENTS_KEY: &str = "log.segments";
+const CALIBRATION_KEY: &str = "log.calibration";
+const FILTER: &str = "filter";
 const DURATION: &str = "duration_s";
 const WARM_UP: &str = "warm_up_s";
 /// Relative slack of a duration that is a whole number of samples.
@@ -48,7 +51,22 @@ pub(crate) fn read_into(
     let place = table.get("file").and_then(|node| node.mark);
     let place = place.unwrap_or(mark);
     let format = found(format, named);
-    let log = read_log(&file.path, &format).map_err(|error| {
+    let checked = check_axis(&format).map_err(|error| vec![error]);
+    checked
+        .and_then(|()| load_log_temperature(&format))
+        .map_err(|errors| {
+            let place = ["calibration", "axis"]
+                .iter()
+                .find_map(|key| table.get(*key)?.mark);
+            let said: Vec<String> = errors.iter().map(ToString::to_string).collect();
+            complain(place.unwrap_or(mark), in_keys(&said.join("; ")))
+        })?;
+    // A filter needs every word.
+    let read = match root.contains_key(FILTER) {
+        true => read_unbroken_log,
+        false => read_log,
+    };
+    let log = read(&file.path, &format).map_err(|error| {
         complain(
             place,
             format!("{FILE_KEY}: {}", in_keys(&error.to_string())),
@@ -84,9 +102,13 @@ pub(crate) fn make_up_length(root: &mut Table) {
 
 /// The format with the paths by which its files are found.
 fn found(format: LogFormat, named: &[NamedFile]) -> LogFormat {
-    let segments = named.iter().find(|file| file.key == SEGMENTS_KEY);
+    let path = |key: &str| {
+        let file = named.iter().find(|file| file.key == key)?;
+        Some(file.path.to_string_lossy().into_owned())
+    };
     LogFormat {
-        segments: segments.map(|file| file.path.to_string_lossy().into_owned()),
+        segments: path(SEGMENTS_KEY),
+        calibration: path(CALIBRATION_KEY),
         ..format
     }
 }

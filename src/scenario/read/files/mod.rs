@@ -7,3 +7,4 @@ pub(in crate::scenario) mod manifest;
 pub(in crate::scenario) mod named_files;
 pub(in crate::scenario) mod problem;
 pub(in crate::scenario) mod script;
+pub(in crate::scenario) mod temperature_source;
