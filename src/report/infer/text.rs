@@ -291,29 +291,7 @@ pub(in crate::report) fn calibration_text(calibration: &Calibration) -> String {
             calibration.third()
         ),
     );
-    let (inside, all) = calibration.intervals();
-    if all > 0 {
-        line(
-            &mut text,
-            format_args!(
-                "  {inside} of {all} intervals of 95 % hold their value; {} of {draws} regions of all parameters hold \
-                 the settings",
-                calibration.count(|outcome| outcome.is_in_region)
-            ),
-        );
-    }
-    let volumes = calibration.volumes();
-    if let Some(median) = volumes.get(volumes.len() / 2) {
-        line(
-            &mut text,
-            format_args!(
-                "  volume of the region over that of the information bound: {} at the median, at most 2 in {} of {}",
-                three_digits(*median),
-                volumes.iter().filter(|volume| **volume <= 2.0).count(),
-                volumes.len()
-            ),
-        );
-    }
+    put_regions(&mut text, calibration);
     line(
         &mut text,
         format_args!(
@@ -338,6 +316,34 @@ pub(in crate::report) fn calibration_text(calibration: &Calibration) -> String {
         ),
     );
     text
+}
+
+/// How often intervals and regions hold the settings, and how large regions are.
+fn put_regions(text: &mut String, calibration: &Calibration) {
+    let (inside, all) = calibration.intervals();
+    if all > 0 {
+        line(
+            text,
+            format_args!(
+                "  {inside} of {all} intervals of 95 % hold their value; {} of {} regions of all parameters hold \
+                 the settings",
+                calibration.count(|outcome| outcome.is_in_region),
+                calibration.outcomes.len()
+            ),
+        );
+    }
+    let volumes = calibration.volumes();
+    if let Some(median) = volumes.get(volumes.len() / 2) {
+        line(
+            text,
+            format_args!(
+                "  volume of the region over that of the information bound: {} at the median, at most 2 in {} of {}",
+                three_digits(*median),
+                volumes.iter().filter(|volume| **volume <= 2.0).count(),
+                volumes.len()
+            ),
+        );
+    }
 }
 
 /// Forecasts beside simulated records.
