@@ -243,8 +243,30 @@ fn words(count: usize) -> Vec<String> {
         .collect()
 }
 
-/// What is odd about a file, its bytes, options, and what it is to come out as: samples and rate.
-type Odd = (&'static str, Vec<u8>, &'static [&'static str], usize, f64);
+/// A file that is odd, and what it is to come out as.
+struct Odd {
+    what: &'static str,
+    bytes: Vec<u8>,
+    options: &'static [&'static str],
+    rate_hz: f64,
+}
+
+/// Samples of each of them.
+const ODD_SAMPLES: usize = 2000;
+
+fn odd(
+    what: &'static str,
+    bytes: impl Into<Vec<u8>>,
+    options: &'static [&'static str],
+    rate_hz: f64,
+) -> Odd {
+    Odd {
+        what,
+        bytes: bytes.into(),
+        options,
+        rate_hz,
+    }
+}
 
 /// A text in UTF-16 with its mark.
 fn utf16(text: &str) -> Vec<u8> {
@@ -252,79 +274,39 @@ fn utf16(text: &str) -> Vec<u8> {
     units.flat_map(u16::to_le_bytes).collect()
 }
 
-fn odd_files() -> Vec<Odd> {
-    let own = words(2000);
-    let rows = |line: &dyn Fn(usize, &str) -> String| -> String {
-        own.iter()
-            .enumerate()
-            .map(|(k, word)| line(k, word) + "\n")
-            .collect()
-    };
+/// A line for each word.
+fn rows(line: impl Fn(usize, &str) -> String) -> String {
+    let own = words(ODD_SAMPLES);
+    let lines = own.iter().enumerate();
+    lines.map(|(k, word)| line(k, word) + "\n").collect()
+}
+
+fn odd_tables() -> Vec<Odd> {
     let comma = |word: &str| word.replace('.', ",");
-    let quoted = format!(
-        "\"t [ms]\";\"rate [°/s]\"\n{}",
-        rows(&|k, word| format!("\"{}\";\"{}\"", 5 * k, comma(word)))
-    );
-    let counter = format!(
-        "# serial 0042, firmware 1.7\n# cnt(-)\trate(deg/s)\n{}",
-        rows(&|k, word| format!("{}\t{word}", (k + 250) % 256))
-    );
-    let over = rows(&|k, word| {
-        let tick = 604_798 * 100 + k;
-        let (week, tick) = (2300 + tick / 60_480_000, tick % 60_480_000);
-        format!("{week},{}.{:02},{word}", tick / 100, tick % 100)
-    });
-    let date = rows(&|k, word| {
-        format!(
-            "01.03.2024 ignored;2024-03-01 23:59:{:02}.{:03};{word}",
-            50 + k / 200,
-            k % 200 * 5
-        )
-    });
-    let wrapped: String = own.chunks(7).map(|row| row.join(" ") + "\r\n").collect();
+    let quoted = rows(|k, word| format!("\"{}\";\"{}\"", 5 * k, comma(word)));
     let units = format!(
         "Device: X\nRate: 200\n\ntime,omega\n[s],[mdeg/s]\n{}",
-        rows(&|k, word| format!("{:.3},{word}", k as f64 / 200.0))
+        rows(|k, word| format!("{:.3},{word}", k as f64 / 200.0))
     );
+    let own = words(ODD_SAMPLES);
+    let wrapped: String = own.chunks(7).map(|row| row.join(" ") + "\r\n").collect();
     vec![
-        (
+        odd(
             "quoted cells with decimal commas",
-            quoted.into_bytes(),
+            format!("\"t [ms]\";\"rate [°/s]\"\n{quoted}"),
             &[],
-            2000,
             200.0,
         ),
-        (
-            "a counter of 8 bits that rolls over, beside a rate",
-            counter.into_bytes(),
-            &["--rate-hz", "200", "--time-unit", "sample", "--time", "cnt"],
-            2000,
-            200.0,
-        ),
-        (
-            "week and seconds over the end of a week",
-            format!("week,sow [s],gyro_dps\n{over}").into_bytes(),
-            &["--time", "week,sow"],
-            2000,
-            100.0,
-        ),
-        (
+        odd(
             "UTF-16 of a spreadsheet",
             utf16(&units.replace('\n', "\r\n")),
             &[],
-            2000,
             200.0,
         ),
-        (
-            "a preamble of keys and a row of units",
-            units.into_bytes(),
-            &[],
-            2000,
-            200.0,
-        ),
-        (
+        odd("a preamble of keys and a row of units", units, &[], 200.0),
+        odd(
             "rows that are wrapped, without a heading",
-            wrapped.into_bytes(),
+            wrapped,
             &[
                 "--wrapped-columns",
                 "1",
@@ -333,14 +315,39 @@ fn odd_files() -> Vec<Odd> {
                 "--unit",
                 "deg/s",
             ],
-            2000,
             200.0,
         ),
-        (
+    ]
+}
+
+fn odd_clocks() -> Vec<Odd> {
+    let counter = rows(|k, word| format!("{}\t{word}", (k + 250) % 256));
+    let over = rows(|k, word| {
+        let tick = 604_798 * 100 + k;
+        let (week, tick) = (2300 + tick / 60_480_000, tick % 60_480_000);
+        format!("{week},{}.{:02},{word}", tick / 100, tick % 100)
+    });
+    let date = rows(|k, word| {
+        let (s, ms) = (50 + k / 200, k % 200 * 5);
+        format!("01.03.2024 ignored;2024-03-01 23:59:{s:02}.{ms:03};{word}")
+    });
+    vec![
+        odd(
+            "a counter of 8 bits that rolls over, beside a rate",
+            format!("# serial 0042, firmware 1.7\n# cnt(-)\trate(deg/s)\n{counter}"),
+            &["--rate-hz", "200", "--time-unit", "sample", "--time", "cnt"],
+            200.0,
+        ),
+        odd(
+            "week and seconds over the end of a week",
+            format!("week,sow [s],gyro_dps\n{over}"),
+            &["--time", "week,sow"],
+            100.0,
+        ),
+        odd(
             "dates with blanks",
-            format!("note;utc;rate dps\n{date}").into_bytes(),
+            format!("note;utc;rate dps\n{date}"),
             &["--column", "rate"],
-            2000,
             200.0,
         ),
     ]
@@ -349,11 +356,11 @@ fn odd_files() -> Vec<Odd> {
 #[test]
 fn odd_files_come_out_whole_at_their_rate() {
     let folder = scratch();
-    for (what, bytes, options, samples, rate_hz) in odd_files() {
-        std::fs::write(folder.path().join("odd.txt"), bytes).expect("writable");
-        let json = analysed(folder.path(), &[&["odd.txt"], options].concat());
-        assert_eq!(json["log"]["samples"], samples, "{what}");
-        let rate = json["log"]["rate_hz"].as_f64().expect("a rate");
-        assert_close(rate, rate_hz, 1e-6, 0.0);
+    for odd in odd_tables().into_iter().chain(odd_clocks()) {
+        std::fs::write(folder.path().join("odd.txt"), odd.bytes).expect("writable");
+        let json = analysed(folder.path(), &[&["odd.txt"], odd.options].concat());
+        assert_eq!(json["log"]["samples"], ODD_SAMPLES, "{}", odd.what);
+        let rate_hz = json["log"]["rate_hz"].as_f64().expect("a rate");
+        assert_close(rate_hz, odd.rate_hz, 1e-6, 0.0);
     }
 }
