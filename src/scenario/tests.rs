@@ -165,7 +165,8 @@ fn each_alternative_of_the_reference_validates_when_enabled() {
         std::fs::write(folder.path().join("base.toml"), reference_toml()).unwrap();
         let motion = "time_s,rate_deg_per_s\n0,0\n20,1\n";
         std::fs::write(folder.path().join("motion.csv"), motion).unwrap();
-        let calibration = "schema = 1\n[compensation]\ntheta_xy_arcsec = 1.0\n";
+        let calibration = "schema = 1\n[compensation]\ntheta_xy_arcsec = 1.0\n\
+            [temperature.x]\nreference_temperature_c = 25.0\nbias_deg_per_h_per_k = 0.1\n";
         std::fs::write(folder.path().join("calibration.toml"), calibration).unwrap();
         std::fs::write(folder.path().join("campaign.toml"), LEAST).unwrap();
         for named in ["y.npy", "f.py", "weights.csv", "log.csv", "segments.csv"] {
