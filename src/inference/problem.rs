@@ -85,7 +85,7 @@ table! {
         /// Name of the record that it was read from.
         record: String, example "rest";
         /// Channel and metric, split at the last dot; of a point of a curve with its place in brackets, as in
-        /// raw.allan[10].
+        /// `raw.allan[10]`.
         metric: String, example "lms.angle_random_walk_deg_per_sqrt_h";
         /// The figure as printed.
         value: f64, example 0.006, in -1e30..=1e30;

@@ -48,7 +48,7 @@ table! {
         temperature_column: Option<String>, example "coil_c";
         /// Temperature that its coefficients are told at [default: the mean of the log].
         temperature_reference_c: Option<f64>, example 25.0, in -100.0..=150.0, "C";
-        /// A calibration.toml whose table [temperature] is taken out of the words by the column of the
+        /// A calibration.toml whose table temperature is taken out of the words by the column of the
         /// temperature, or, beside --columns, whose parameters of an assembly are.
         calibration: Option<String>, example "calibration.toml", kind File;
         /// Gyro of an assembly that the log is of: that of the table [temperature.x], or of three columns the
