@@ -237,7 +237,8 @@ impl ChannelTheory {
         let by_lag = self.lag_weights(lag);
         let rows = by_lag.iter().zip(&words.autocovariance);
         let value = rows.map(|(weight, own)| weight * own).sum();
-        let variance = words.bartlett(&by_lag, &by_lag);
+        let moments = words.smeared(&by_lag);
+        let variance = bartlett(&moments, &moments);
         ExpectedFigure {
             value,
             deviation: (variance * words.period_s / words.duration_s).sqrt(),
@@ -252,9 +253,10 @@ impl ChannelTheory {
         (other, other_lag): (&Self, usize),
         words: &Words,
     ) -> f64 {
-        let (own, against) = (self.lag_weights(lag), other.lag_weights(other_lag));
-        let scale = words.bartlett(&own, &own) * words.bartlett(&against, &against);
-        words.bartlett(&own, &against) / scale.sqrt().max(f64::MIN_POSITIVE)
+        let own = words.smeared(&self.lag_weights(lag));
+        let against = words.smeared(&other.lag_weights(other_lag));
+        let scale = bartlett(&own, &own) * bartlett(&against, &against);
+        bartlett(&own, &against) / scale.sqrt().max(f64::MIN_POSITIVE)
     }
 
     /// The weights, newest sample first; none of raw or an infinite response.
@@ -363,31 +365,28 @@ impl Words {
         (self.autocovariance[0] + 2.0 * later) * self.period_s
     }
 
-    /// Covariance of two weighted sums of products at a lag, each a mean over one word, as far as the noise
-    /// alone makes it.
-    ///
-    /// Source: Bartlett's formula.
-    fn bartlett(&self, gradient: &[f64], other: &[f64]) -> f64 {
-        let noise = |lag: isize| {
-            let lag = lag.unsigned_abs();
-            self.autocovariance.get(lag).copied().unwrap_or(0.0)
+    /// Autocovariance of the noise at a lag of either sign.
+    fn at_lag(&self, lag: isize) -> f64 {
+        let known = self.autocovariance.get(lag.unsigned_abs());
+        known.copied().unwrap_or(0.0)
+    }
+
+    /// Lags beyond which the noise is not correlated.
+    fn reach(&self) -> isize {
+        self.autocovariance.len().cast_signed()
+    }
+
+    /// A weighted sum of products at a lag beside one product: `b_k = sum of gradient_l noise(k + l)` at every lag
+    /// k that is not out of reach, from the most negative one on.
+    fn smeared(&self, gradient: &[f64]) -> Vec<f64> {
+        let shifts = -2 * self.reach()..=2 * self.reach();
+        let of = |shift: isize| {
+            let lags = gradient.iter().enumerate();
+            lags.filter(|(_, own)| **own != 0.0)
+                .map(|(lag, own)| own * self.at_lag(shift + lag.cast_signed()))
+                .sum()
         };
-        let reach = self.autocovariance.len().cast_signed();
-        // With b_k = sum of gradient_l noise(k + l), c_k of the other: sum over lags k of b_k c_k + b_k c_-k.
-        let smeared = |gradient: &[f64]| -> Vec<f64> {
-            let shifts = -2 * reach..=2 * reach;
-            let of = |shift: isize| {
-                let lags = gradient.iter().enumerate();
-                lags.filter(|(_, own)| **own != 0.0)
-                    .map(|(lag, own)| own * noise(shift + lag.cast_signed()))
-                    .sum()
-            };
-            shifts.map(of).collect()
-        };
-        let (own, against) = (smeared(gradient), smeared(other));
-        let turned = own.iter().rev();
-        let rows = own.iter().zip(turned).zip(&against);
-        rows.map(|((a, b), c)| a * c + b * c).sum()
+        shifts.map(of).collect()
     }
 
     /// Variance of a weighted sum of moments that are means over one word each, as far as the noise alone
@@ -395,25 +394,31 @@ impl Words {
     ///
     /// Source: Bartlett's formula, and the product of a sine with noise.
     fn variance_of(&self, gradient: &[f64]) -> f64 {
-        let noise = |lag: isize| {
-            let lag = lag.unsigned_abs();
-            self.autocovariance.get(lag).copied().unwrap_or(0.0)
-        };
-        let reach = self.autocovariance.len().cast_signed();
+        let moments = self.smeared(gradient);
         let beside = self.sine.map_or(0.0, |sine| {
             let turn = TAU * sine.frequency_hz * self.period_s;
-            let later: f64 = (1..reach)
-                .map(|lag| 2.0 * noise(lag) * (turn * lag as f64).cos())
+            let later: f64 = (1..self.reach())
+                .map(|lag| 2.0 * self.at_lag(lag) * (turn * lag as f64).cos())
                 .sum();
             let product: f64 = gradient
                 .iter()
                 .enumerate()
                 .map(|(lag, own)| own * (turn * lag as f64).cos())
                 .sum();
-            2.0 * sine.amplitude_deg_per_h.powi(2) * product * product * (noise(0) + later)
+            2.0 * sine.amplitude_deg_per_h.powi(2) * product * product * (self.at_lag(0) + later)
         });
-        self.bartlett(gradient, gradient) + beside
+        bartlett(&moments, &moments) + beside
     }
+}
+
+/// Covariance of two weighted sums of products at a lag, each a mean over one word, as far as the noise alone makes
+/// it: over all lags k the sum of `b_k c_k + b_k c_-k`, of what [`Words::smeared`] makes of both.
+///
+/// Source: Bartlett's formula.
+fn bartlett(own: &[f64], against: &[f64]) -> f64 {
+    let turned = own.iter().rev();
+    let rows = own.iter().zip(turned).zip(against);
+    rows.map(|((a, b), c)| a * c + b * c).sum()
 }
 
 /// Mean and standard deviation of the largest magnitude of independent normals of these deviations.
