@@ -273,17 +273,15 @@ fn estimate(found: &CalibrationEstimate) -> Value {
     }
     put_rows(&mut record, "weights", &found.weights);
     put_rows(&mut record, "residual_deg_per_h", &found.residual_deg_per_h);
-    if let Some(slope) = &found.bias_deg_per_h_per_k {
+    for (key, fitted) in [
+        ("bias_deg_per_h_per_k", &found.bias_deg_per_h_per_k),
+        ("delay_ms", &found.delay_ms),
+    ] {
+        let Some(fitted) = fitted else { continue };
         let mut both = Map::new();
-        put_array(&mut both, "value", &slope.value);
-        put_array(&mut both, "standard_error", &slope.standard_error);
-        record.insert("bias_deg_per_h_per_k".to_owned(), both.into());
-    }
-    if let Some(delay) = &found.delay_ms {
-        let mut both = Map::new();
-        put_array(&mut both, "value", &delay.value);
-        put_array(&mut both, "standard_error", &delay.standard_error);
-        record.insert("delay_ms".to_owned(), both.into());
+        put_array(&mut both, "value", &fitted.value);
+        put_array(&mut both, "standard_error", &fitted.standard_error);
+        record.insert(key.to_owned(), both.into());
     }
     if let Some(rejected) = &found.rejected_samples {
         record.insert("rejected_samples".to_owned(), rejected.to_vec().into());
