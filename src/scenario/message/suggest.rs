@@ -10,7 +10,7 @@ use crate::scenario::document::tree::{Node, Table};
 use crate::scenario::keys::schema::{children, groups, join, keys};
 use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::message::synonyms::{Meaning, meaning};
-use crate::wording::{Likeness, Name, Vocabulary, conversion, likeness};
+use crate::wording::{Likeness, Name, Vocabulary, conversion, is_misspelling, likeness};
 
 /// Most keys that are suggested at once, equally like.
 const SUGGESTIONS_MAX: usize = 3;
@@ -50,6 +50,19 @@ pub(crate) fn unknown_key(place: Place<'_>, name: &str) -> String {
         }
         Some((last, more)) => format!("{unknown}: did you mean {} or {last}?", more.join(", ")),
     }
+}
+
+/// The complaint about a key of a table with keys of its own, outside of the scenarios.
+///
+/// * `shown`: the key as the user writes it; `name`: its last part; `known`: those of the table.
+pub(crate) fn unknown_in_table<'a>(
+    shown: &str,
+    name: &str,
+    mut known: impl Iterator<Item = &'a str>,
+) -> String {
+    let near = known.find(|known| is_misspelling(name, known));
+    let near = near.map_or_else(String::new, |known| format!("; did you mean {known}?"));
+    format!("unknown key {}{near}", excerpt(shown))
 }
 
 /// The one name of the same table that must have been meant.

@@ -13,8 +13,8 @@ use crate::scenario::document::source::{Label, Mark, Sources, shown_path};
 use crate::scenario::document::tree::{Node, Table, Value, parse_document};
 use crate::scenario::message::error::{Location, ScenarioError};
 use crate::scenario::message::excerpt::excerpt;
+use crate::scenario::message::suggest::unknown_in_table;
 use crate::scenario::read::input;
-use crate::wording::is_misspelling;
 
 /// The table of a file.
 const TABLE: &str = "log";
@@ -119,8 +119,8 @@ fn read(file: &Path) -> Result<Table, Vec<ScenarioError>> {
 #[derive(Debug, thiserror::Error)]
 enum KeyError {
     /// With what may have been meant.
-    #[error("unknown key {shown}{near}")]
-    Unknown { shown: String, near: String },
+    #[error("{0}")]
+    Unknown(String),
     #[error(transparent)]
     Value(#[from] Fault),
     #[error("{shown} = {value}: {why}")]
@@ -134,11 +134,8 @@ enum KeyError {
 /// Checks one value of the table; `shown` is what the user calls its key.
 fn check(name: &str, shown: &str, node: &Node) -> Result<(), KeyError> {
     let Some(key) = keys().iter().find(|key| key.path == name) else {
-        let near = keys().iter().find(|key| is_misspelling(name, key.path));
-        return Err(KeyError::Unknown {
-            shown: excerpt(shown).to_string(),
-            near: near.map_or_else(String::new, |key| format!("; did you mean {}?", key.path)),
-        });
+        let known = keys().iter().map(|key| key.path);
+        return Err(KeyError::Unknown(unknown_in_table(shown, name, known)));
     };
     check_leaf(key, shown, node)?;
     let alone = Table::from([(name.to_owned(), node.clone())]);

@@ -15,8 +15,8 @@ use crate::scenario::document::tree::{Node, Table, Value, parse_document};
 use crate::scenario::keys::defaults::declared_value;
 use crate::scenario::message::error::{Location, ScenarioError, in_order};
 use crate::scenario::message::excerpt::excerpt;
+use crate::scenario::message::suggest::unknown_in_table;
 use crate::scenario::read::input;
-use crate::wording::is_misspelling;
 
 /// The version of the file format this build reads.
 const VERSION: i64 = 1;
@@ -182,13 +182,8 @@ impl Reader<'_> {
             let shown = format!("{shown}{name}");
             let row = declared.rows.iter().find(|row| row.name == name);
             let Some(row) = row else {
-                let near = declared
-                    .rows
-                    .iter()
-                    .find(|row| is_misspelling(name, row.name));
-                let near =
-                    near.map_or_else(String::new, |row| format!("; did you mean {}?", row.name));
-                let message = format!("unknown key {}{near}", excerpt(&shown));
+                let known = declared.rows.iter().map(|row| row.name);
+                let message = unknown_in_table(&shown, name, known);
                 self.errors.push(self.sources.error(place, message));
                 continue;
             };

@@ -22,10 +22,9 @@ use crate::scenario::document::deserialize::from_table;
 use crate::scenario::document::source::{Label, Mark, Sources, shown_path};
 use crate::scenario::document::tree::{Node, Table, parse_document};
 use crate::scenario::message::error::{Location, ScenarioError};
-use crate::scenario::message::excerpt::excerpt;
+use crate::scenario::message::suggest::unknown_in_table;
 use crate::scenario::read::input;
 use crate::vocabulary::{CaseAxis, Word};
-use crate::wording::is_misspelling;
 
 /// The table of a calibration file.
 pub(super) const TABLE: &str = "temperature";
@@ -238,11 +237,8 @@ impl Reader<'_> {
                     }
                 }
                 None => {
-                    let mut near = keys().iter().map(|known| known.path);
-                    let near = near.find(|known| is_misspelling(key, known));
-                    let near = near.map(|known| format!("; did you mean {known}?"));
-                    let message = format!("unknown key {}", excerpt(&shown));
-                    self.complain(place, message + &near.unwrap_or_default());
+                    let known = keys().iter().map(|known| known.path);
+                    self.complain(place, unknown_in_table(&shown, key, known));
                 }
             }
         }
