@@ -1,5 +1,7 @@
 //! What the temperature does to one gyro, as a calibration file holds it.
 
+use serde::Serialize;
+
 use crate::declare::table;
 use crate::signal::TemperatureModel;
 
@@ -7,6 +9,7 @@ table! {
     /// Bias and scale factor of one gyro against its temperature T and the rate of that, as a log has shown
     /// them: a word is `(1 + k (T - T0)) W + b1 (T - T0) + b2 (T - T0)^2 + s dT/dt` beside what does not
     /// depend on the temperature.
+    #[derive(Serialize)]
     pub struct TemperatureParameters {
         /// Temperature T0 that the coefficients are told at.
         reference_temperature_c: f64, example 25.0, in -100.0..=150.0, "C";
@@ -26,18 +29,26 @@ table! {
 }
 
 impl TemperatureParameters {
-    /// The same effect told at another temperature.
+    /// A model, and the lowest and highest temperature that it was fitted to.
     #[must_use]
-    pub fn about(&self, reference_temperature_c: f64) -> Self {
-        let model = self.model().about(reference_temperature_c);
+    pub fn of(model: &TemperatureModel, fitted_c: [Option<f64>; 2]) -> Self {
+        let [lowest_c, highest_c] = fitted_c;
         Self {
-            reference_temperature_c,
+            reference_temperature_c: model.reference_temperature_c,
             bias_deg_per_h_per_k: Some(model.bias_deg_per_h_per_k),
             bias_deg_per_h_per_k2: Some(model.bias_deg_per_h_per_k2),
             bias_deg_per_h_per_k_per_min: Some(model.bias_deg_per_h_per_k_per_min),
             scale_factor_ppm_per_k: Some(model.scale_factor_ppm_per_k),
-            ..self.clone()
+            lowest_c,
+            highest_c,
         }
+    }
+
+    /// The same effect told at another temperature.
+    #[must_use]
+    pub fn about(&self, reference_temperature_c: f64) -> Self {
+        let model = self.model().about(reference_temperature_c);
+        Self::of(&model, [self.lowest_c, self.highest_c])
     }
 
     /// The model that they are.

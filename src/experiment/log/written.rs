@@ -8,7 +8,7 @@ use crate::report::{
     KalmanReport, LogReport, TemperatureReport, TemperatureTableError, kalman_json, log_files,
     with_temperature,
 };
-use crate::scenario::WITHOUT_OUTLIERS;
+use crate::scenario::{TemperatureParameters, WITHOUT_OUTLIERS};
 use crate::seal::digest_of_words;
 use crate::signal::RunSignals;
 use crate::store::{OutputFolder, StoreError};
@@ -71,13 +71,13 @@ impl LogTrial {
             return Err(TemperatureTableError::NoCoefficient);
         };
         let (lowest_c, highest_c) = fitted.range_c;
+        let fitted_c = [Some(lowest_c), Some(highest_c)];
         let report = TemperatureReport {
             tool_version: VERSION,
             file: &self.log.file,
             column: self.log.column.as_deref(),
             axis: self.log.format.axis,
-            model: &fitted.model,
-            range_c: [lowest_c, highest_c],
+            parameters: &TemperatureParameters::of(&fitted.model, fitted_c),
         };
         with_temperature(file, &report)
     }

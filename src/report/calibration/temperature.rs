@@ -9,8 +9,7 @@ use toml::{Table, Value};
 
 use crate::report::calibration::documents::quoted;
 use crate::report::layout::json::SCHEMA;
-use crate::scenario::TemperatureTables;
-use crate::signal::TemperatureModel;
+use crate::scenario::{TemperatureParameters, TemperatureTables};
 use crate::vocabulary::CaseAxis;
 
 /// The table of a calibration file, and those below it that belong to gyros of an assembly.
@@ -29,10 +28,8 @@ pub struct TemperatureReport<'a> {
     pub column: Option<&'a str>,
     /// The gyro of an assembly that it is; none of a gyro alone.
     pub axis: Option<CaseAxis>,
-    /// Significant coefficients, the others 0.
-    pub model: &'a TemperatureModel,
-    /// Lowest and highest temperature of the log, deg C.
-    pub range_c: [f64; 2],
+    /// Significant coefficients, the others 0, with the temperatures of the log.
+    pub parameters: &'a TemperatureParameters,
 }
 
 /// Why there is no such table.
@@ -96,26 +93,12 @@ pub fn with_temperature(
 
 /// The table as text.
 fn table(name: &str, report: &TemperatureReport) -> String {
-    let model = report.model;
-    let [lowest_c, highest_c] = report.range_c;
+    let parameters = toml::to_string(report.parameters);
     let mut text = format!(
-        "[{name}]\n# A word is (1 + k (T - T0)) W + b1 (T - T0) + b2 (T - T0)^2 + s dT/dt: T0, b1, b2, s and k.\n"
+        "[{name}]\n# A word is (1 + k (T - T0)) W + b1 (T - T0) + b2 (T - T0)^2 + s dT/dt: T0, b1, b2, s and k.\n{}",
+        parameters.expect("a flat table of numbers is TOML")
     );
-    for (key, value) in [
-        ("reference_temperature_c", model.reference_temperature_c),
-        ("bias_deg_per_h_per_k", model.bias_deg_per_h_per_k),
-        ("bias_deg_per_h_per_k2", model.bias_deg_per_h_per_k2),
-        (
-            "bias_deg_per_h_per_k_per_min",
-            model.bias_deg_per_h_per_k_per_min,
-        ),
-        ("scale_factor_ppm_per_k", model.scale_factor_ppm_per_k),
-        ("lowest_c", lowest_c),
-        ("highest_c", highest_c),
-    ] {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{key} = {value:?}");
-    }
+    // Writing to a string cannot fail.
     let _ = writeln!(
         text,
         "\n[{name}.provenance]\ntool = \"fogbench {}\"\nlog = {}",
@@ -167,6 +150,7 @@ fn take_out(document: &mut Table, axis: Option<CaseAxis>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::signal::TemperatureModel;
 
     fn report(axis: Option<CaseAxis>, slope: f64) -> String {
         let model = TemperatureModel {
@@ -174,14 +158,14 @@ mod tests {
             bias_deg_per_h_per_k: slope,
             ..TemperatureModel::default()
         };
+        let parameters = TemperatureParameters::of(&model, [Some(-10.0), Some(60.0)]);
         let of = |file: &str| {
             let report = TemperatureReport {
                 tool_version: "1.2.3",
                 file: "warm.csv",
                 column: None,
                 axis,
-                model: &model,
-                range_c: [-10.0, 60.0],
+                parameters: &parameters,
             };
             with_temperature(file, &report)
         };
@@ -221,14 +205,14 @@ mod tests {
 
     #[test]
     fn a_table_in_other_words_is_not_lost() {
-        let model = TemperatureModel::default();
+        let parameters =
+            TemperatureParameters::of(&TemperatureModel::default(), [Some(0.0), Some(1.0)]);
         let report = TemperatureReport {
             tool_version: "1.2.3",
             file: "warm.csv",
             column: Some("gyro, \"z\""),
             axis: None,
-            model: &model,
-            range_c: [0.0, 1.0],
+            parameters: &parameters,
         };
         let dotted = "temperature.reference_temperature_c = 20.0\n[compensation]\n";
         let error = with_temperature(dotted, &report).unwrap_err().to_string();
