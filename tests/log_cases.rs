@@ -303,6 +303,12 @@ fn odd_tables() -> Vec<Odd> {
             &[],
             200.0,
         ),
+        odd(
+            "the heading again, where a logger began anew",
+            units.replacen("\n0.010,", "\ntime,omega\n[s],[mdeg/s]\n0.010,", 1),
+            &[],
+            200.0,
+        ),
         odd("a preamble of keys and a row of units", units, &[], 200.0),
         odd(
             "rows that are wrapped, without a heading",

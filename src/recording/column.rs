@@ -33,28 +33,37 @@ pub(crate) struct Columns {
     /// What is worth saying of how the file ended.
     pub(super) note: Option<String>,
     /// Empty lines between the rows.
-    pub(crate) empty_lines: EmptyLines,
+    pub(crate) lines_between: LinesBetween,
     /// Where each row stands; rows of an array stand at their index.
     pub(crate) lines: Option<RowLines>,
 }
 
-/// Empty lines between samples, several in a row as one: each may stand for samples that are missing.
+/// Lines of one sort between the samples of a text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct EmptyLines {
+pub struct CountedLines {
     /// How many.
     pub count: usize,
     /// The first, from 1; 0 where there is none.
     pub first: usize,
 }
 
-impl EmptyLines {
-    /// Counts an empty line.
+impl CountedLines {
+    /// Counts a line.
     pub(crate) fn extend(&mut self, line: Option<usize>) {
         if let Some(line) = line {
             self.count += 1;
             self.first = if self.count == 1 { line } else { self.first };
         }
     }
+}
+
+/// Lines between the samples of a text that hold none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LinesBetween {
+    /// Empty ones, several in a row as one: each may stand for samples that are missing.
+    pub empty: CountedLines,
+    /// The heading, or the row of units, once more: files may have been joined there.
+    pub headings: CountedLines,
 }
 
 /// The lines that rows stand in. Most rows stand in the line after that of the row before.

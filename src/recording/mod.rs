@@ -39,7 +39,7 @@ pub use bounds::{
     OutOfBounds, RATE_MAX_DEG_PER_H, SAMPLE_RATE_HZ, STANDARD_ERROR_MIN_DEG_PER_H, TEMPERATURE_C,
     check_rate, check_sample_rate, check_temperature,
 };
-pub use column::EmptyLines;
+pub use column::{CountedLines, LinesBetween};
 pub use error::LogError;
 pub use groups::read::{GROUPS_MAX, Mounting, RecordedGroup, RecordedGroups, read_groups};
 pub use layout::words::{

@@ -362,7 +362,7 @@ pub(super) fn log(
         temperature_c: Vec::new(),
         sample_rate_hz: spacing.sample_rate_hz,
         timing: spacing.timing,
-        empty_lines: columns.empty_lines,
+        lines_between: columns.lines_between,
         stretches,
         bridges,
         gaps_in_time: spacing.stretches.len() - 1 + spacing.spanned.len(),

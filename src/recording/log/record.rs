@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::format::LogFormat;
-use crate::recording::column::EmptyLines;
+use crate::recording::column::LinesBetween;
 use crate::recording::text::lines::shown;
 use crate::recording::time::timing::Timing;
 use crate::signal::Bridge;
@@ -33,7 +33,7 @@ pub struct Log {
     /// What the time column says; none without one.
     pub timing: Option<Timing>,
     /// Empty lines between the samples.
-    pub empty_lines: EmptyLines,
+    pub lines_between: LinesBetween,
     /// Stretches of words between which samples are missing.
     pub stretches: Vec<Stretch>,
     /// Gaps within stretches that differences of the Allan deviation span.
@@ -130,14 +130,23 @@ impl Log {
     /// What is worth saying about how it was read.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
-        let EmptyLines { count, first } = self.empty_lines;
+        let LinesBetween { empty, headings } = self.lines_between;
         let mut notes = Vec::new();
+        if headings.count > 0 {
+            notes.push(format!(
+                "heading once more in {}, from line {} on, passed over: where files were joined there, --rows \
+                 takes one of them",
+                counted(headings.count, "line"),
+                headings.first
+            ));
+        }
         match self.timing {
             Some(timing) => notes.push(timing.note(self.gaps_in_time)),
-            None if count > 0 => notes.push(format!(
-                "{} between the samples, from line {first} on, passed over: the samples are taken to be \
+            None if empty.count > 0 => notes.push(format!(
+                "{} between the samples, from line {} on, passed over: the samples are taken to be \
                  equally spaced all the same",
-                counted(count, "empty line")
+                counted(empty.count, "empty line"),
+                empty.first
             )),
             None => {}
         }

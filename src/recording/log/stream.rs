@@ -347,7 +347,7 @@ impl LogStream {
     #[must_use]
     pub fn into_log(mut self) -> Log {
         if let Rest::Text(rows) = &self.rest {
-            self.log.empty_lines = rows.columns().empty_lines;
+            self.log.lines_between = rows.columns().lines_between;
         }
         self.log
     }

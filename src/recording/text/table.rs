@@ -7,7 +7,7 @@ use super::head::{HEAD_LINES, head};
 use super::lines::{Delimiter, Lines, TextError, is_missing, shown};
 use super::plain::{plain_length, plain_number, plain_stamp};
 use super::transcode::{as_utf8, encoding_of};
-use crate::recording::column::{Column, Columns, EmptyLines, RowLines};
+use crate::recording::column::{Column, Columns, LinesBetween, RowLines};
 use crate::recording::error::{LogError, Place};
 use crate::recording::input::{Input, failure, push};
 use crate::recording::layout::columns::{Chosen, Selection, choose};
@@ -92,10 +92,11 @@ impl Rows {
         };
         layout.encoding = encoding;
         let said = layout.heading_line.unwrap_or(layout.first_row_line);
-        let chosen = chosen(&layout, &head, wanted)
+        let heads = heads(&layout, &head);
+        let chosen = chosen(&layout, &head, &heads, wanted)
             .map_err(|error| LogError::at(path, Place::Line(said), error))?;
         head.reverse();
-        let table = Table::new(layout, chosen, wanted);
+        let table = Table::new(layout, heads, chosen, wanted);
         Ok(Some(Self {
             path: path.to_owned(),
             lines,
@@ -127,7 +128,7 @@ impl Rows {
             data: data.collect(),
             time: columns.time.as_mut().map(TimeColumn::going_on),
             lines: Some(RowLines::default()),
-            empty_lines: columns.empty_lines,
+            lines_between: columns.lines_between,
             ..Columns::default()
         };
         std::mem::replace(columns, next)
@@ -215,10 +216,32 @@ pub(in crate::recording) fn fault(path: &Path, error: TextError) -> LogError {
     }
 }
 
+/// Heading and row of units as they stand there, unless they could be samples.
+fn heads(layout: &Layout, head: &[HeadLine]) -> Vec<String> {
+    let are_words = |text: &str| {
+        let cells = layout.delimiter().cells(text);
+        let is_word = |cell: &str| !is_number(cell, layout.decimal) && !is_missing(cell);
+        cells.into_iter().any(is_word)
+    };
+    let lines = [layout.heading_line, layout.units_line];
+    head.iter()
+        .filter(|line| lines.contains(&Some(line.number)))
+        .map(|line| line.text.trim().to_owned())
+        .filter(|text| are_words(text))
+        .collect()
+}
+
 /// The columns to read, by the names of the layout and its first rows.
-fn chosen(layout: &Layout, head: &[HeadLine], wanted: &Wanted<'_>) -> Result<Chosen, LayoutError> {
+fn chosen(
+    layout: &Layout,
+    head: &[HeadLine],
+    heads: &[String],
+    wanted: &Wanted<'_>,
+) -> Result<Chosen, LayoutError> {
     let rows = head.iter().filter(|line| {
-        line.number >= layout.first_row_line && !layout.is_comment(line.text.trim())
+        let text = line.text.trim();
+        let is_row = !layout.is_comment(text) && heads.iter().all(|head| head != text);
+        line.number >= layout.first_row_line && is_row
     });
     let cells = rows.take(SAMPLE_ROWS).flat_map(|line| {
         let cells = layout.delimiter().cells_up_to(&line.text, layout.cells);
@@ -265,6 +288,8 @@ struct Table {
     words: Vec<(usize, String)>,
     /// Values of a record that is spread over lines.
     record: Vec<String>,
+    /// Heading and row of units as they stand there.
+    heads: Vec<String>,
     /// Rows that were read and taken away.
     taken: usize,
     /// What stands between plain numbers, if it is a byte of its own.
@@ -282,7 +307,7 @@ enum RowError {
 }
 
 impl Table {
-    fn new(layout: Layout, chosen: Chosen, wanted: &Wanted<'_>) -> Self {
+    fn new(layout: Layout, heads: Vec<String>, chosen: Chosen, wanted: &Wanted<'_>) -> Self {
         let mut roles = vec![Role::Nothing; layout.width()];
         for (position, index) in chosen.data.iter().enumerate() {
             roles[*index] = Role::Data(position);
@@ -323,7 +348,7 @@ impl Table {
                 found: Some(found),
                 note: None,
                 lines: Some(RowLines::default()),
-                empty_lines: EmptyLines::default(),
+                lines_between: LinesBetween::default(),
             },
             layout,
             roles,
@@ -331,6 +356,7 @@ impl Table {
             gaps: wanted.gaps,
             words: Vec::new(),
             record: Vec::new(),
+            heads,
             taken: 0,
         }
     }
@@ -349,7 +375,12 @@ impl Table {
         empty_before: Option<usize>,
     ) -> Result<(), LogError> {
         if self.seen() > 0 {
-            self.columns.empty_lines.extend(empty_before);
+            let between = &mut self.columns.lines_between;
+            between.empty.extend(empty_before);
+            if self.heads.iter().any(|head| head == text.trim()) {
+                between.headings.extend(Some(number));
+                return Ok(());
+            }
         }
         let taken = match self.layout.wrapped {
             Some(columns) => self.wrapped(text, columns),
