@@ -126,6 +126,10 @@ impl Structure {
         let table = &self.products[first * self.points + second];
         let mut sum = 0.0;
         for a in 0..TERMS {
+            // Most terms are not in a fit.
+            if squares[a] == 0.0 {
+                continue;
+            }
             for b in a..TERMS {
                 sum += table[a][b] * squares[a] * squares[b];
             }
@@ -137,12 +141,15 @@ impl Structure {
     /// square, the others given: the coefficients of its powers 0, 1, 2.
     pub(crate) fn combined(&self, g: &[f64], squares: &[f64; TERMS], term: usize) -> [f64; 3] {
         let mut powers = [0.0; 3];
+        let there: Vec<usize> = (0..TERMS)
+            .filter(|&other| other == term || squares[other] != 0.0)
+            .collect();
         for (first, g1) in g.iter().enumerate() {
             for (second, g2) in g.iter().enumerate() {
                 let table = &self.products[first * self.points + second];
                 let weight = g1 * g2;
-                for a in 0..TERMS {
-                    for b in a..TERMS {
+                for (at, &a) in there.iter().enumerate() {
+                    for &b in &there[at..] {
                         let product = weight * table[a][b];
                         match (a == term, b == term) {
                             (true, true) => powers[2] += product,

@@ -406,9 +406,17 @@ impl Problem {
         let factors: Vec<f64> = (0..points)
             .map(|row| weights[row] / self.fitted(squares, row).cbrt())
             .collect();
+        // Covariances are symmetric, and their roots the dearest part: the factors of the rows come last.
+        let mut shared = DMatrix::zeros(points, points);
+        for column in 0..points {
+            for row in column..points {
+                let covariance = self.structure.covariance(row, column, squares).max(0.0);
+                shared[(row, column)] = covariance.cbrt().powi(2);
+            }
+        }
+        shared.fill_upper_triangle_with_lower_triangle();
         let shared = DMatrix::from_fn(points, points, |row, column| {
-            let covariance = self.structure.covariance(row, column, squares).max(0.0);
-            factors[row] * covariance.cbrt().powi(2)
+            factors[row] * shared[(row, column)]
         });
         let twice = &shared * &shared;
         2.0 * twice.component_mul(&shared.transpose()).sum() / (self.records * self.records)
