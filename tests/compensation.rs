@@ -205,6 +205,44 @@ fn a_bias_that_follows_the_coil_is_compensated_by_its_thermometer() {
     }
 }
 
+#[test]
+fn coefficients_that_a_log_has_shown_are_taken_out_of_a_simulated_gyro() {
+    // 0.3 deg/h per K and 0.005 per K^2 about 25 C are 0.35 per K about 30 C; z is told nothing of itself.
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let silent = SILENT.replace(
+        "[gyro.output]\n",
+        "[gyro.output]\nhalf_periods_per_sample = 8192\n",
+    );
+    write(
+        folder.path(),
+        "warm.toml",
+        &format!(
+            "schema = 1\nname = \"warm\"\nfidelity = \"rate\"\nduration_s = 600.0\nwarm_up_s = 2.0\n\
+             {silent}[gyro.temperature.ramp]\nstart_c = 25.0\nend_c = 45.0\nrate_c_per_min = 4.0\n\
+             [gyro.thermal]\nreference_c = 25.0\nindex_per_k = 0.0\nlength_ppm_per_k = 0.0\n\
+             bias_deg_per_h_per_k = 0.3\ndiameter_ppm_per_k = 0.0\nbias_deg_per_h_per_k2 = 0.005\n\
+             bias_deg_per_h_per_c_per_min = 0.0\n[gyro.assembly]\n\
+             [compensation]\nfile = \"calibration.toml\"\n"
+        ),
+    );
+    let table = |axis: &str| {
+        format!(
+            "[temperature.{axis}]\nreference_temperature_c = 30.0\nbias_deg_per_h_per_k = 0.35\n\
+             bias_deg_per_h_per_k2 = 0.005\n"
+        )
+    };
+    let head = "schema = 1\n[compensation]\nreference_temperature_c = [25.0, 25.0, 25.0]\n";
+    let file = [head, &table("x"), &table("y")].concat();
+    write(folder.path(), "calibration.toml", &file);
+    run(folder.path(), "warm.toml");
+    let [x, y, z] = mean_errors(folder.path(), "warm", "compensated");
+    assert!(z > 0.2, "{z}");
+    assert!(
+        x.abs() < 0.02 * z && y.abs() < 0.02 * z,
+        "{x}, {y} beside {z}"
+    );
+}
+
 #[track_caller]
 fn refused(folder: &Path, compensation: &str, more: &str) -> String {
     let text = format!(

@@ -147,21 +147,22 @@ fn filters_and_scenarios_take_the_same_words() {
     let manifest = ["run", "c/again.toml", "-o", "again"];
     let output = fogbench(path, &manifest);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
-    let short = [
-        &[
-            "filter",
-            "other.csv",
-            "--column",
-            "gx",
-            "--filters",
-            "c/filters.toml",
-        ],
-        &["--calibration", "c/calibration.toml", "--format", "json"][..],
-        &COIL,
-    ];
-    let output = fogbench(path, &short.concat());
+    let of_log = ["filter", "other.csv", "--column", "gx"];
+    let compensated = ["--calibration", "c/calibration.toml", "--format", "json"];
+    let short = |own: &[&str]| fogbench(path, &[&of_log[..], own, &compensated, &COIL].concat());
+    let output = short(&["--filters", "c/filters.toml"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let report = stdout(&output);
+    // The file of the log does for its filters and gates as well, where the same is taken out.
+    let own = ["--filters", "c/other.toml", "--gates", "c/other.toml"];
+    let output = short(&own);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let gates: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert_eq!(gates["gates"][0]["verdict"], "pass", "{}", gates["gates"]);
+    let output = fogbench(path, &[&of_log[..], &own].concat());
+    assert_eq!(code(&output), 2, "{}", stdout(&output));
+    let said = stderr(&output);
+    assert!(said.contains("there is one with --calibration"), "{said}");
     let run = std::fs::read_to_string(path.join("out/other/summary.json")).expect("a summary");
     let run: Value = serde_json::from_str(&run).expect("JSON");
     for channel in ["compensated", "same"] {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::gyro;
 use crate::scenario::AssumedValue;
-use crate::scenario::{ScenarioError, load_base_or_scenario};
+use crate::scenario::{Purpose, ScenarioError, load_base_or_scenario};
 use crate::signal::BudgetSheet;
 
 /// The noise budget of one gyro, and whose it is.
@@ -26,7 +26,7 @@ pub struct GyroBudget {
 /// # Errors
 /// Every complaint about the file; a gyro that cannot be built; a sweep over gyros.
 pub fn gyro_budget(path: &Path, sets: &[String]) -> Result<GyroBudget, Vec<ScenarioError>> {
-    let runs = load_base_or_scenario(path, sets)?;
+    let runs = load_base_or_scenario(path, sets, Purpose::Run)?;
     let Some((first, others)) = runs.split_first() else {
         return Err(Vec::new());
     };

@@ -48,6 +48,7 @@ pub use crate::turntable::{
 pub(crate) use check::cross::comparison::slug;
 pub(crate) use check::cross::{RESERVED, reserved};
 pub(crate) use check::leaf::is_name;
+pub use config::channels::LogChannels;
 pub(crate) use config::channels::{WITHOUT_OUTLIERS, WITHOUT_TEMPERATURE, motion_of_log};
 pub use config::{
     AllanConfig, AllanEstimatorConfig, AssumptionConfig, BlackBoxTrial, ComparisonColumn,
@@ -77,6 +78,7 @@ pub use read::files::temperature_source::{
     TemperatureTables, load_log_temperature, load_temperature,
 };
 pub use read::moved::{Movable, NotMovable};
+pub use read::purpose::Purpose;
 pub(crate) use read::resolve::UnsoundReading;
 pub use read::resolved::{InputFile, Resolved, SweepPoint};
 pub(crate) use read::suite::{Reading, read_suite};

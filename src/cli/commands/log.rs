@@ -11,8 +11,8 @@ use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
 use crate::cli::terminal::place::{self, Place};
 use crate::experiment::{
-    LogFilters, LogInput, LogSettings, LogTemperature, LogTrial, PassError, Progress, SETTLE_S,
-    compensate_log, compensate_temperature, load_log_compensation, load_log_filters,
+    LogFilters, LogGates, LogInput, LogSettings, LogTemperature, LogTrial, PassError, Progress,
+    SETTLE_S, compensate_log, compensate_temperature, load_log_compensation, load_log_filters,
     load_log_gates, load_own_temperature, pass_log, try_log, try_log_stream,
 };
 use crate::program::Programs;
@@ -21,7 +21,9 @@ use crate::recording::{
     read_assembly_log, read_unbroken_logs,
 };
 use crate::report::{is_calibration_toml, is_kalman_json, log_json, log_text};
-use crate::scenario::{AllanConfig, load_log_format, log_format_toml, slug};
+use crate::scenario::{
+    AllanConfig, LogChannels, ScenarioError, load_log_format, log_format_toml, slug,
+};
 use crate::store::SingleFile;
 use crate::vocabulary::CaseAxis;
 use crate::wording::printable;
@@ -456,6 +458,14 @@ fn refused<C: Complaint>(errors: &[C]) -> Exit {
     Exit::Usage
 }
 
+/// The gates to hold against logs, which are read alike.
+fn gates(options: &LogOptions, logs: &[ReadLog]) -> Result<Option<LogGates>, Vec<ScenarioError>> {
+    let Some((path, log)) = options.gates.as_deref().zip(logs.first()) else {
+        return Ok(None);
+    };
+    load_log_gates(path, LogChannels::from(&log.format)).map(Some)
+}
+
 /// Measures every log, writes and prints the results.
 fn conclude(
     logs: Vec<ReadLog>,
@@ -465,7 +475,7 @@ fn conclude(
 ) -> io::Result<(Exit, Vec<LogTrial>)> {
     let (filters, programs) = filters.unzip();
     let programs = Starting(programs.flatten());
-    let gates = match options.gates.as_deref().map(load_log_gates).transpose() {
+    let gates = match gates(options, &logs) {
         Ok(gates) => gates,
         Err(errors) => return Ok((refused(&errors), Vec::new())),
     };

@@ -10,7 +10,7 @@ use crate::experiment::infer::surface::Surfaces;
 use crate::inference::{
     Forecast, Forecasts, Parameter, Print, Printed, PrintedConfig, ProblemConfig, Reading,
 };
-use crate::scenario::{Problem, Resolved, ScenarioError, load_base_or_scenario};
+use crate::scenario::{Problem, Purpose, Resolved, ScenarioError, load_base_or_scenario};
 
 /// Most readings of one problem.
 const READINGS_MAX: usize = 4096;
@@ -339,7 +339,7 @@ impl Builder<'_> {
             return Ok(resolved.clone());
         }
         let file = self.problem.beside(&row.scenario);
-        let mut runs = load_base_or_scenario(&file, &sets)?;
+        let mut runs = load_base_or_scenario(&file, &sets, Purpose::Run)?;
         if runs.len() != 1 {
             let message = format!(
                 "{at}: {} is a sweep of {} runs: expected a single one; give the values with set",

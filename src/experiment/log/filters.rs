@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::experiment::outside::{ProgramFiles, program_files};
 use crate::filters::{ExpectedWords, FilterConfig};
-use crate::scenario::{Resolved, ScenarioError, load_base_or_scenario};
+use crate::scenario::{Purpose, Resolved, ScenarioError, load_base_or_scenario};
 
 /// The filters of one scenario or base, checked against the sample rate of a log.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub fn load_log_filters(
     sets: &[String],
     sample_rate_hz: f64,
 ) -> Result<LogFilters, Vec<ScenarioError>> {
-    let runs = load_base_or_scenario(path, sets)?;
+    let runs = load_base_or_scenario(path, sets, Purpose::Filters)?;
     let Some((first, others)) = runs.split_first() else {
         return Err(Vec::new());
     };

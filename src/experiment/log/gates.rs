@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::gate::{Verdict, judge};
 use crate::metrics::{ChannelMetrics, unknown_of_channel};
-use crate::scenario::{Resolved, ScenarioError, load_base_or_scenario};
+use crate::scenario::{LogChannels, Purpose, Resolved, ScenarioError, load_base_or_scenario};
 
 /// Name of the log's own channel.
 const RAW: &str = "raw";
@@ -15,12 +15,12 @@ pub struct LogGates {
     resolved: Resolved,
 }
 
-/// Reads the gates of a file. A channel that is not raw must be a filter of the same file.
+/// Reads the gates of a file. A channel that is not the log's must be a filter of the same file.
 ///
 /// # Errors
 /// Every complaint about the file; no gate; a metric that nobody knows.
-pub fn load_log_gates(path: &Path) -> Result<LogGates, Vec<ScenarioError>> {
-    let runs = load_base_or_scenario(path, &[])?;
+pub fn load_log_gates(path: &Path, channels: LogChannels) -> Result<LogGates, Vec<ScenarioError>> {
+    let runs = load_base_or_scenario(path, &[], Purpose::Gates(channels))?;
     let Some(resolved) = runs.into_iter().next() else {
         return Err(Vec::new());
     };

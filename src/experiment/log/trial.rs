@@ -18,9 +18,7 @@ use crate::metrics::{
     is_sample_or_longer, measure_present, record_fit_tau_min_s,
 };
 use crate::recording::{Log, LogMotion};
-use crate::scenario::{
-    AllanConfig, MotionConfig, WITHOUT_OUTLIERS, WITHOUT_TEMPERATURE, motion_of_log,
-};
+use crate::scenario::{AllanConfig, LogChannels, MotionConfig, WITHOUT_OUTLIERS, motion_of_log};
 use crate::turntable::first_measured_index;
 use crate::wording::{counted, plain};
 
@@ -243,15 +241,11 @@ fn refusal_of_gaps(
 
 /// What is wrong with the name of a filter that a channel of the log has.
 fn clash(filters: &LogFilters, is_compensated: bool, log: &Log) -> Option<String> {
-    let own = [(RAW, true), (COMPENSATED, is_compensated)];
-    let mut own: Vec<String> = own
-        .into_iter()
-        .filter(|(_, is_there)| *is_there)
-        .flat_map(|(name, _)| [name.to_owned(), format!("{name}{WITHOUT_OUTLIERS}")])
-        .collect();
-    if !log.temperature_c.is_empty() {
-        own.push(format!("{RAW}{WITHOUT_TEMPERATURE}"));
-    }
+    let channels = LogChannels {
+        is_compensated,
+        has_temperature: !log.temperature_c.is_empty(),
+    };
+    let own = channels.names();
     let mut names = filters.configs().iter().map(|it| &it.name);
     let taken = names.find(|name| own.contains(name))?;
     Some(format!(

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use crate::filters::FilterConfig;
-use crate::recording::LogMotion;
+use crate::recording::{LogFormat, LogMotion};
 use crate::scenario::config::Scenario;
 use crate::turntable::{MotionConfig, MultiSineConfig, StepsConfig, SwingConfig};
 
@@ -22,6 +22,68 @@ pub(crate) const WITHOUT_OUTLIERS: &str = "_without_outliers";
 
 /// What stands behind the name of the channel of a log whose temperature is taken out.
 pub(crate) const WITHOUT_TEMPERATURE: &str = "_without_temperature";
+
+/// What decides which channels a log has of its own, beside the raw one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LogChannels {
+    /// Whether errors that are known are taken out of its words.
+    pub is_compensated: bool,
+    /// Whether a temperature stands beside them.
+    pub has_temperature: bool,
+}
+
+impl From<&LogFormat> for LogChannels {
+    fn from(format: &LogFormat) -> Self {
+        Self {
+            is_compensated: format.calibration.is_some(),
+            has_temperature: format.temperature_column.is_some(),
+        }
+    }
+}
+
+/// Option without which no known errors are taken out.
+const CALIBRATION_OPTION: &str = "--calibration";
+/// Option without which there is no temperature.
+const TEMPERATURE_OPTION: &str = "--temperature-column";
+
+impl LogChannels {
+    /// All that a log can have, each with the option that it needs: the words, then what is measured without
+    /// outliers and without the temperature.
+    fn all() -> [(String, Option<&'static str>); 5] {
+        [
+            (RAW.to_owned(), None),
+            (format!("{RAW}{WITHOUT_OUTLIERS}"), None),
+            (
+                format!("{RAW}{WITHOUT_TEMPERATURE}"),
+                Some(TEMPERATURE_OPTION),
+            ),
+            (COMPENSATED.to_owned(), Some(CALIBRATION_OPTION)),
+            (
+                format!("{COMPENSATED}{WITHOUT_OUTLIERS}"),
+                Some(CALIBRATION_OPTION),
+            ),
+        ]
+    }
+
+    /// The names of those that are there.
+    #[must_use]
+    pub(crate) fn names(self) -> Vec<String> {
+        let is_there = |option: Option<&str>| match option {
+            Some(CALIBRATION_OPTION) => self.is_compensated,
+            Some(_) => self.has_temperature,
+            None => true,
+        };
+        let there = Self::all()
+            .into_iter()
+            .filter(|(_, option)| is_there(*option));
+        there.map(|(name, _)| name).collect()
+    }
+
+    /// The option by which a channel is there that a log need not have.
+    pub(in crate::scenario) fn option_for(channel: &str) -> Option<&'static str> {
+        Self::all().into_iter().find(|(name, _)| name == channel)?.1
+    }
+}
 
 /// Prefix of the names of estimates.
 const CALIBRATION: &str = "calibration_";
@@ -116,6 +178,13 @@ impl Scenario {
             names.extend(prefixes.map(|prefix| format!("{prefix}{}", filter.name)));
         }
         names
+    }
+
+    /// Every channel of a log that is put through its filters.
+    #[must_use]
+    pub(in crate::scenario) fn channels_of_log(&self, log: LogChannels) -> Vec<String> {
+        let filters = self.filters.iter().map(|filter| filter.name.clone());
+        log.names().into_iter().chain(filters).collect()
     }
 
     /// Names under which gates find the estimates of a calibration campaign, one for each estimator;

@@ -14,6 +14,7 @@ use crate::scenario::read::draft::Draft;
 use crate::scenario::read::files::manifest;
 use crate::scenario::read::files::problem::is_problem;
 use crate::scenario::read::input::{self, Input, InputError};
+use crate::scenario::read::purpose::Purpose;
 use crate::scenario::read::resolved::InputFile;
 
 /// Most bases below one another.
@@ -196,6 +197,7 @@ impl Chain {
             warnings: Vec::new(),
             remarks: Vec::new(),
             is_record: false,
+            purpose: Purpose::Run,
             is_partial: self.is_partial,
         };
         Ok((draft, self.errors))

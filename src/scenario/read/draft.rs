@@ -6,6 +6,7 @@ use crate::recording::LogFacts;
 use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::Table;
 use crate::scenario::read::files::named_files::NamedFile;
+use crate::scenario::read::purpose::Purpose;
 use crate::scenario::read::resolved::{InputFile, SweepPoint, broken};
 
 /// What a scenario is resolved from.
@@ -34,6 +35,8 @@ pub(crate) struct Draft {
     /// Whether the file is a record, or a base of which a scenario was made up: what it sets is then
     /// nobody's wish for this run.
     pub(crate) is_record: bool,
+    /// What it is read for.
+    pub(crate) purpose: Purpose,
     /// Whether a file it builds on could not be read: only what is there can be checked.
     pub(crate) is_partial: bool,
 }
@@ -58,6 +61,7 @@ impl Draft {
             warnings: Vec::new(),
             remarks: Vec::new(),
             is_record: true,
+            purpose: Purpose::Run,
             is_partial: false,
         }
     }

@@ -9,6 +9,7 @@ pub(in crate::scenario) mod draft;
 pub(in crate::scenario) mod files;
 pub(in crate::scenario) mod input;
 pub(in crate::scenario) mod moved;
+pub(in crate::scenario) mod purpose;
 pub(in crate::scenario) mod resolve;
 pub(in crate::scenario) mod resolved;
 pub(in crate::scenario) mod suite;

@@ -193,6 +193,7 @@ impl Draft {
             sources: self.sources,
             root_mark: self.root_mark,
             is_record: self.is_record,
+            purpose: self.purpose,
         };
         let errors = cross::check(&resolved);
         Ok((resolved, errors))

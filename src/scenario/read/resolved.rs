@@ -12,6 +12,7 @@ use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::keys::defaults::default_of;
 use crate::scenario::message::error::{Location, ScenarioError};
 use crate::scenario::read::files::named_files::NamedFile;
+use crate::scenario::read::purpose::Purpose;
 
 /// A file that a scenario was read from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -80,6 +81,8 @@ pub struct Resolved {
     pub(in crate::scenario) root_mark: Mark,
     /// Whether that file is a record rather than a scenario that somebody wrote.
     pub(in crate::scenario) is_record: bool,
+    /// What it was read for.
+    pub(in crate::scenario) purpose: Purpose,
 }
 
 /// Equality of the run; where its values were written does not count.

@@ -15,6 +15,7 @@ use crate::scenario::read::clashes::Names;
 use crate::scenario::read::discover::discover;
 use crate::scenario::read::draft::Draft;
 use crate::scenario::read::files::named_files::LOG;
+use crate::scenario::read::purpose::Purpose;
 use crate::scenario::read::resolve::{Unsound, UnsoundReading};
 use crate::scenario::read::resolved::Resolved;
 use crate::scenario::read::sweep::matrix::{self, Swept};
@@ -118,6 +119,7 @@ impl From<Vec<ScenarioError>> for Findings {
 pub fn load_base_or_scenario(
     file: &Path,
     sets: &[String],
+    purpose: Purpose,
 ) -> Result<Vec<Resolved>, Vec<ScenarioError>> {
     if file.is_dir() {
         let location = Location::of_file(shown_path(file));
@@ -127,7 +129,7 @@ pub fn load_base_or_scenario(
         )]);
     }
     let mut runs = Vec::new();
-    let draft = read_whole(file, &Label::of_scenario(file)).map(completed)?;
+    let draft = read_whole(file, &Label::of_scenario(file)).map(|read| completed(read, purpose))?;
     let findings = load_drafted(draft, sets, &mut |reading| runs.extend(reading));
     let mut idle_sets = IdleSets::default();
     idle_sets.add(findings.idle_sets);
@@ -141,7 +143,11 @@ pub fn load_base_or_scenario(
 }
 
 /// A draft with a name and a duration.
-fn completed((mut draft, errors): (Draft, Vec<ScenarioError>)) -> (Draft, Vec<ScenarioError>) {
+fn completed(
+    (mut draft, errors): (Draft, Vec<ScenarioError>),
+    purpose: Purpose,
+) -> (Draft, Vec<ScenarioError>) {
+    draft.purpose = purpose;
     let made_up = [
         ("name", Value::Text("base".to_owned())),
         ("duration_s", Value::Float(1.0)),

@@ -11,9 +11,10 @@ use crate::turntable::MotionChecks;
 use crate::units::SPEED_OF_LIGHT_M_PER_S;
 use crate::wording::is_misspelling;
 
-use crate::scenario::config::channels::{WITHOUT_OUTLIERS, WITHOUT_TEMPERATURE};
+use crate::scenario::config::channels::LogChannels;
 use crate::scenario::config::{FilterState, Scenario};
 use crate::scenario::message::error::ScenarioError;
+use crate::scenario::read::purpose::Purpose;
 use crate::scenario::read::resolved::Resolved;
 
 /// Channel names that mean something else.
@@ -243,29 +244,24 @@ impl Checks<'_> {
 
     fn channel(&mut self, path: &str, written: &str, channel: &str) {
         let scenario = &self.resolved.scenario;
-        let of_log = scenario.log.as_ref().map(|log| {
-            let warm = log.temperature_column.as_ref();
-            let names = warm.map(|_| WITHOUT_TEMPERATURE).into_iter();
-            let names = names.chain([WITHOUT_OUTLIERS]);
-            let of_raw = |name| {
-                let raw = scenario.raw_channels().into_iter();
-                raw.map(move |raw| format!("{raw}{name}"))
-            };
-            names.flat_map(of_raw).collect()
-        });
-        let known = [
-            scenario.channel_names(),
-            of_log.unwrap_or_default(),
-            scenario.calibration_channels(),
-        ]
-        .concat();
+        let known = match (self.resolved.purpose, &scenario.log) {
+            (Purpose::Filters, _) => return,
+            (Purpose::Gates(log), _) => scenario.channels_of_log(log),
+            (Purpose::Run, Some(log)) => scenario.channels_of_log(log.into()),
+            (Purpose::Run, None) => {
+                [scenario.channel_names(), scenario.calibration_channels()].concat()
+            }
+        };
         if known.iter().any(|name| name == channel) {
             return;
         }
         let mut alike = known.iter().filter(|name| is_misspelling(channel, name));
         let hint = match (alike.next(), alike.next()) {
             (Some(one), None) => format!(" (did you mean {one}?)"),
-            _ => String::new(),
+            _ => match (self.resolved.purpose, LogChannels::option_for(channel)) {
+                (Purpose::Gates(_), Some(option)) => format!(" (there is one with {option})"),
+                _ => String::new(),
+            },
         };
         let message = format!(
             "{path} = \"{written}\": there is no channel {channel}: expected one of {}{hint}",

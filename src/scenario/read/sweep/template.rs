@@ -146,6 +146,7 @@ fn with_tree(run: &Resolved, tree: Table, text: &str) -> Result<Resolved, Vec<Sc
         sources: Arc::clone(&run.sources),
         root_mark: run.root_mark,
         is_record: run.is_record,
+        purpose: run.purpose,
     };
     let errors = cross::check(&other);
     if errors.is_empty() {
