@@ -8,7 +8,7 @@ use std::ops::Range;
 use crate::experiment::build::VERSION;
 use crate::experiment::campaign;
 use crate::experiment::plan::Plan;
-use crate::scenario::manifest_toml;
+use crate::scenario::Resolved;
 
 /// Most parts that the repeats of a run are split into.
 const PARTS_MAX: u32 = 1000;
@@ -43,10 +43,7 @@ impl RunList {
         };
         for (run, plan) in plans.iter().enumerate() {
             let resolved = plan.resolved();
-            // Two builds of one version give the same.
-            let manifest = manifest_toml(resolved, VERSION, "");
-            list.ids
-                .push(blake3::hash(manifest.as_bytes()).to_hex().to_string());
+            list.ids.push(id(resolved));
             list.folders.push(resolved.folder());
             list.units
                 .extend(parts(plan).map(|repeats| Unit { run, repeats }));
@@ -100,6 +97,31 @@ impl RunList {
         let (first, step) = (index as usize - 1, count as usize);
         (first..self.units.len()).step_by(step)
     }
+}
+
+/// Digest of all that makes a run: version, every resolved value, the files it was read from, its place in a
+/// sweep. Two builds of one version give the same.
+fn id(resolved: &Resolved) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut enter = |text: &str| {
+        hasher.update(&(text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
+    };
+    enter(VERSION);
+    enter(&resolved.file);
+    enter(&resolved.digest);
+    for input in &resolved.inputs {
+        enter(&input.file);
+        enter(&input.digest);
+    }
+    if let Some(point) = &resolved.sweep {
+        enter(&format!("{} of {}", point.index, point.count));
+        for (key, value) in &point.assignments {
+            enter(key);
+            enter(value);
+        }
+    }
+    hasher.finalize().to_hex().to_string()
 }
 
 /// The parts of a run: none where it is done in one piece.

@@ -203,7 +203,7 @@ impl LaggedProducts {
 }
 
 /// Lags whose products are summed side by side, so that none waits for the addition of another.
-const SIDE_BY_SIDE: usize = 4;
+pub(crate) const SIDE_BY_SIDE: usize = 4;
 
 /// Adds the products of the first `own` deviations with those behind them at every lag.
 fn add_products(deviations: &[f64], own: usize, sums: &mut [f64], counts: &mut [usize]) {
@@ -216,25 +216,11 @@ fn add_products(deviations: &[f64], own: usize, sums: &mut [f64], counts: &mut [
     let few = few.zip(counts.chunks_mut(SIDE_BY_SIDE)).enumerate();
     for (index, (sums, counts)) in few {
         let first = index * SIDE_BY_SIDE;
-        if sums.len() == SIDE_BY_SIDE && own + first + SIDE_BY_SIDE <= deviations.len() {
-            let others: [&[f64]; SIDE_BY_SIDE] = std::array::from_fn(|at| later(first + at));
-            let products = with_wide_vectors(
-                #[inline(always)]
-                || dots(&deviations[..own], others),
-            );
-            if products.iter().all(|sum| !sum.is_nan()) {
-                for ((sum, count), product) in sums.iter_mut().zip(counts).zip(products) {
-                    *sum += product;
-                    *count += own;
-                }
-                continue;
-            }
-        }
-        for ((sum, count), lag) in sums.iter_mut().zip(counts).zip(first..) {
-            let later = later(lag);
-            let (more, found) = products(&deviations[..later.len()], later);
+        let lags: Vec<&[f64]> = (first..first + sums.len()).map(later).collect();
+        let found = products(&deviations[..own], &lags);
+        for ((sum, count), (more, pairs)) in sums.iter_mut().zip(counts).zip(found) {
             *sum += more;
-            *count += found;
+            *count += pairs;
         }
     }
 }
@@ -348,32 +334,43 @@ pub(crate) fn independent_samples(autocovariance: &[f64], count: usize) -> f64 {
     }
 }
 
-/// Sum of the products of all pairs without a missing value (NaN), and their number.
-pub(crate) fn products(a: &[f64], b: &[f64]) -> (f64, usize) {
-    let whole = dot(a, b);
-    if !whole.is_nan() {
-        return (whole, a.len());
-    }
-    let pairs = a.iter().zip(b).map(|(a, b)| a * b);
-    pairs
-        .filter(|product| !product.is_nan())
-        .fold((0.0, 0), |(sum, count), product| (sum + product, count + 1))
+/// Sums of the products of a slice with the beginning of each of several, none longer than it, over all pairs
+/// without a missing value (NaN), and the numbers of these pairs.
+pub(crate) fn products(a: &[f64], others: &[&[f64]]) -> Vec<(f64, usize)> {
+    let mut found = Vec::with_capacity(others.len());
+    let (whole, rest) = others.as_chunks::<SIDE_BY_SIDE>();
+    found.extend(whole.iter().flat_map(|others| products_of(a, *others)));
+    found.extend(rest.iter().flat_map(|other| products_of(a, [*other])));
+    found
 }
 
-/// Dot product in eight interleaved sums, which the compiler turns into vectors.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let [sum] = dots(a, [b]);
-    sum
+fn products_of<const N: usize>(a: &[f64], others: [&[f64]; N]) -> [(f64, usize); N] {
+    let sums = with_wide_vectors(
+        #[inline(always)]
+        || dots(a, others),
+    );
+    std::array::from_fn(|at| {
+        if !sums[at].is_nan() {
+            return (sums[at], others[at].len());
+        }
+        let pairs = a.iter().zip(others[at]).map(|(a, b)| a * b);
+        pairs
+            .filter(|product| !product.is_nan())
+            .fold((0.0, 0), |(sum, count), product| (sum + product, count + 1))
+    })
 }
 
-/// Dot products of one slice with several of its length, each as [`dot`].
+/// Dot products of a slice with several, none longer than it, each over its own length in eight interleaved
+/// sums, which the compiler turns into vectors.
 #[inline(always)]
 fn dots<const N: usize>(a: &[f64], others: [&[f64]; N]) -> [f64; N] {
     const LANES: usize = 8;
     let mut lanes = [[0.0; LANES]; N];
-    let (chunks, rest) = a.as_chunks::<LANES>();
-    let whole = others.map(|other| &other.as_chunks::<LANES>().0[..chunks.len()]);
-    for (index, a) in chunks.iter().enumerate() {
+    let a_chunks = a.as_chunks::<LANES>().0;
+    let chunks = others.map(|other| other.as_chunks::<LANES>().0);
+    let common = chunks.iter().map(|own| own.len()).min().unwrap_or(0);
+    let whole = chunks.map(|own| &own[..common]);
+    for (index, a) in a_chunks[..common].iter().enumerate() {
         for (lanes, other) in lanes.iter_mut().zip(&whole) {
             let b = &other[index];
             for lane in 0..LANES {
@@ -382,10 +379,17 @@ fn dots<const N: usize>(a: &[f64], others: [&[f64]; N]) -> [f64; N] {
         }
     }
     let mut sums = [0.0; N];
-    for ((sum, lanes), other) in sums.iter_mut().zip(lanes).zip(others) {
-        let last = &other[chunks.len() * LANES..];
-        let rest: f64 = rest.iter().zip(last).map(|(a, b)| a * b).sum();
-        *sum = lanes.iter().sum::<f64>() + rest;
+    for (index, sum) in sums.iter_mut().enumerate() {
+        let own = chunks[index];
+        for (a, b) in a_chunks[common..].iter().zip(&own[common..]) {
+            for lane in 0..LANES {
+                lanes[index][lane] += a[lane] * b[lane];
+            }
+        }
+        let done = own.len() * LANES;
+        let rest = a[done..].iter().zip(&others[index][done..]);
+        let rest: f64 = rest.map(|(a, b)| a * b).sum();
+        *sum = lanes[index].iter().sum::<f64>() + rest;
     }
     sums
 }

@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::autocovariance::products;
+use super::autocovariance::{SIDE_BY_SIDE, products};
 use crate::metrics::allan::pulses::recognition::PulseWords;
 use crate::metrics::estimate::interval;
 use crate::metrics::theory::memory::memory_samples;
@@ -64,11 +64,12 @@ pub fn correlation_length_samples(values: &[f64]) -> Option<usize> {
     let mean = interval::mean_of_present(values);
     let deviations: Vec<f64> = values.iter().map(|value| value - mean).collect();
     let covariances: Vec<f64> = lags
-        .par_iter()
-        .map(|&lag| {
-            let pairs = deviations.len() - lag;
-            let (sum, count) = products(&deviations[..pairs], &deviations[lag..]);
-            sum / count.max(1) as f64
+        .par_chunks(SIDE_BY_SIDE)
+        .flat_map_iter(|lags| {
+            let later: Vec<&[f64]> = lags.iter().map(|lag| &deviations[*lag..]).collect();
+            let found = products(&deviations, &later);
+            let mean = |(sum, count): (f64, usize)| sum / count.max(1) as f64;
+            found.into_iter().map(mean)
         })
         .collect();
     let far: Vec<f64> = lags
