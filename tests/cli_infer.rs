@@ -93,6 +93,28 @@ fn every_problem_that_is_shipped_can_be_searched_and_its_records_run() {
     }
 }
 
+/// Its coefficients of the temperature act in one of three records alone.
+#[test]
+fn the_shipped_data_sheet_contradicts_itself_and_leaves_scenarios_that_can_be_run() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let problem = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/infer/datasheet.toml");
+    let problem = problem.to_str().expect("a path of letters");
+    let output = fogbench(
+        folder.path(),
+        &["infer", problem, "-o", "out", "--format", "json"],
+    );
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let found: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    // 0.012 deg/sqrt(h) alone are 0.072 deg/h over 100 s, and 0.05 are stated.
+    let explained = |index: usize| found["figures"][index]["explained"].as_bool();
+    assert_eq!(
+        [0, 1, 2, 3].map(explained),
+        [Some(false), Some(false), Some(true), Some(true)]
+    );
+    let output = fogbench(folder.path(), &["check", "out/scenarios"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+}
+
 /// A gyro whose power and technical noise make one angle random walk: the latter by the formula of the
 /// budget, so that the line between both is known.
 #[test]

@@ -5,7 +5,7 @@ use super::measurand::Measurand;
 use crate::experiment::Run;
 use crate::experiment::plan::{Plan, plan_suite};
 use crate::experiment::run::Progress;
-use crate::inference::Simulated;
+use crate::inference::{ProblemConfig, Simulated};
 use crate::metrics::Estimate;
 use crate::scenario::{Problem, ScenarioError};
 
@@ -49,21 +49,25 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    /// Keys that a record has under these settings, as key=value.
-    pub(super) fn sets(&self, problem: &Problem, bench: &Bench, record: usize) -> Vec<String> {
-        let config = &problem.config;
-        let mut sets = sets_of(config, record, &bench.readings[self.reading]);
+    /// The keys that parameters have under these settings in a record, with what sets them.
+    fn moved<'a>(&self, config: &'a ProblemConfig, record: usize) -> Vec<(&'a str, String)> {
         let name = &config.records[record].name;
-        for (parameter, value) in config.parameters.iter().zip(&self.values) {
+        let values = config.parameters.iter().zip(&self.values);
+        let own = values.filter(|(parameter, _)| {
             let records = parameter.records.as_ref();
-            if records.is_none_or(|names| names.contains(name)) {
-                sets.extend(parameter.keys.iter().map(|key| format!("{key}={value:?}")));
-            }
-        }
-        sets
+            records.is_none_or(|names| names.contains(name))
+        });
+        own.flat_map(|(parameter, value)| {
+            let keys = parameter.keys.iter();
+            keys.map(move |key| (key.as_str(), format!("{key}={value:?}")))
+        })
+        .collect()
     }
 
     /// The plan of a record.
+    ///
+    /// A parameter that several records share need not act in each of them: a coefficient of the temperature does
+    /// nothing at the reference temperature. There it is left out.
     ///
     /// * `more`: keys over those of the settings.
     ///
@@ -76,9 +80,21 @@ impl Settings {
         record: usize,
         more: &[String],
     ) -> Result<Plan, SimulationError> {
-        let mut sets = self.sets(problem, bench, record);
-        sets.extend(more.iter().cloned());
-        plan_of_record(problem, record, sets)
+        let config = &problem.config;
+        let mut sets = sets_of(config, record, &bench.readings[self.reading]);
+        let mut waiting = self.moved(config, record);
+        loop {
+            let plan = plan_of_record(problem, record, [&sets, more].concat())?;
+            let (acting, idle): (Vec<_>, Vec<_>) = waiting
+                .into_iter()
+                .partition(|(key, _)| plan.resolved().acts(key));
+            if acting.is_empty() {
+                return Ok(plan);
+            }
+            // What is set now may let another one act.
+            sets.extend(acting.into_iter().map(|(_, set)| set));
+            waiting = idle;
+        }
     }
 }
 
@@ -108,7 +124,7 @@ fn plan_of_record(
 /// Looks whether every record and every experiment can be run, so that nothing is searched in vain.
 ///
 /// # Errors
-/// Complaints about the scenarios, with what their files and the problem set.
+/// Complaints about the scenarios, with what their files, the problem and the middle of its priors set.
 pub(super) fn check_runs(problem: &Problem, bench: &Bench) -> Result<(), Vec<ScenarioError>> {
     let config = &problem.config;
     let place = |name: &String| config.records.iter().position(|row| row.name == *name);
@@ -119,11 +135,14 @@ pub(super) fn check_runs(problem: &Problem, bench: &Bench) -> Result<(), Vec<Sce
         let at = format!("experiment[{index}]");
         Some((place(&experiment.record)?, experiment.set.as_ref(), at))
     });
+    let middle = Settings {
+        reading: 0,
+        values: bench.values(&vec![0.5; config.parameters.len()]),
+    };
     let mut errors = Vec::new();
     for (record, more, at) in records.chain(experiments) {
-        let mut sets = sets_of(config, record, &bench.readings[0]);
-        sets.extend(more.into_iter().flatten().cloned());
-        if let Err(error) = plan_of_record(problem, record, sets) {
+        let more: Vec<String> = more.into_iter().flatten().cloned().collect();
+        if let Err(error) = middle.plan(problem, bench, record, &more) {
             errors.push(problem.complaint(&at, format!("{at}: {error}")));
         }
     }

@@ -117,12 +117,12 @@ fn reading_text(sheet: &InferenceSheet, judged: &Judged) -> String {
             line(
                 &mut text,
                 format_args!(
-                    "      {} {} [{}, {}] {}{note}",
+                    "      {} {} [{}, {}]{}{note}",
                     parameter.name,
                     three_digits(range.value),
                     three_digits(range.low),
                     three_digits(range.high),
-                    parameter.unit
+                    behind(&parameter.unit)
                 ),
             );
         }
@@ -210,6 +210,14 @@ pub(in crate::report) fn gate_text(gate: &JudgedGate) -> String {
     )
 }
 
+/// A unit behind a number; nothing of a bare one.
+fn behind(unit: &str) -> String {
+    match unit {
+        "" | "1" => String::new(),
+        unit => format!(" {unit}"),
+    }
+}
+
 /// A ridge in words.
 pub(in crate::report) fn ridge_text(sheet: &InferenceSheet, ridge: &Ridge) -> String {
     let [one, other] = ridge
@@ -217,13 +225,13 @@ pub(in crate::report) fn ridge_text(sheet: &InferenceSheet, ridge: &Ridge) -> St
         .map(|parameter| &sheet.parameters[parameter]);
     let end = |end: [f64; 2]| {
         format!(
-            "{} {} {} with {} {} {}",
+            "{} {}{} with {} {}{}",
             one.name,
             three_digits(end[0]),
-            one.unit,
+            behind(&one.unit),
             other.name,
             three_digits(end[1]),
-            other.unit
+            behind(&other.unit)
         )
     };
     format!(

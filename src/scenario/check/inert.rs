@@ -124,6 +124,12 @@ pub(crate) fn is_idle(run: &Resolved, schema_path: &str) -> bool {
     own.any(|rule| matches!(rule.acts, Acts::Run(acts) if !acts(&run.scenario)))
 }
 
+/// Whether a key outside arrays acts in a run.
+pub(in crate::scenario) fn acts_in(run: &Resolved, schema_path: &str) -> bool {
+    let mut own = rules().iter().filter(|rule| rule.path == schema_path);
+    own.all(|rule| acts(run, rule, &[]))
+}
+
 /// Whether the key of a rule acts in a run, at a path.
 fn acts(run: &Resolved, rule: &Rule, path: &[Step]) -> bool {
     let scenario = &run.scenario;

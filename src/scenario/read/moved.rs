@@ -1,6 +1,7 @@
 //! A resolved scenario of which numbers are moved again and again without reading it again.
 
 use crate::gyro::GyroConfig;
+use crate::scenario::check::inert::acts_in;
 use crate::scenario::config::Scenario;
 use crate::scenario::document::address::{self, AddressError, Step};
 use crate::scenario::document::deserialize::from_table;
@@ -48,6 +49,12 @@ enum MoveFault {
 }
 
 impl Resolved {
+    /// Whether a key of gyro or turntable does something in this run: what `--set` would not refuse.
+    #[must_use]
+    pub fn acts(&self, key: &str) -> bool {
+        acts_in(self, key)
+    }
+
     /// The scenario with these keys to move, each as `--set` writes it.
     ///
     /// # Errors
