@@ -34,7 +34,7 @@ pub(in crate::experiment::run) fn figures_of_other_runs(
             *word += motion;
         }
         let mut made = Vec::with_capacity(input.len());
-        let mut again = Arithmetic::new(kind, length, sample_period_s);
+        let mut again = Arithmetic::but_for_rounding(kind, length, sample_period_s);
         again.step_all(&input, &mut made).ok()?;
         let gains = made[length.warm_up..].iter().map(|word| word.weight_sum);
         let dc_gain = gains.sum::<f64>() / count(length.measured);
