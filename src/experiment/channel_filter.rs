@@ -12,6 +12,7 @@ use crate::filters::hardware::{
 use crate::filters::{Divergence, Filter, FilterKind, Output};
 use crate::metrics::{BlackBox, ChannelFailure, RateGain};
 use crate::signal::{FilterShape, Section, WeightRule};
+use crate::vocabulary::NumberFormat;
 
 /// Rate added to the twin's input, deg/h: small against Earth rate, large against rounding.
 pub(super) const ADDED_RATE_DEG_PER_H: f64 = 0.1;
@@ -188,6 +189,23 @@ impl Arithmetic {
         }
         let filter = kind.settings().build(sample_period_s);
         Self::Textbook(filter.expect("words from outside have no channel filter"))
+    }
+
+    /// The same where only the scatter of the outputs is asked for: hardware of binary64 words differs from
+    /// the textbook by rounding, and takes several times as long.
+    pub(super) fn but_for_rounding(
+        kind: &FilterKind,
+        length: RecordLength,
+        sample_period_s: f64,
+    ) -> Self {
+        let is_binary64 = |settings: &PipelineSettings| match settings {
+            PipelineSettings::Float(settings) => settings.format == NumberFormat::Binary64,
+            PipelineSettings::Fixed(_) => false,
+        };
+        let settings = kind.settings();
+        let hardware = settings.hardware().filter(is_binary64);
+        let textbook = hardware.and_then(|_| settings.build(sample_period_s));
+        textbook.map_or_else(|| Self::new(kind, length, sample_period_s), Self::Textbook)
     }
 
     pub(super) fn as_filter(&self) -> &dyn Filter {

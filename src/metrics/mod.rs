@@ -97,11 +97,13 @@ pub(crate) use key::metric::{Against, Headline, Table};
 pub use key::metric::{Applies, Better, MetricKey, OfBlocks};
 pub use measure::measure;
 pub(crate) use measure::measure_present;
+pub use motion::step_figures::StepFigures;
 pub use noise::autocovariance::autocovariance;
 pub use noise::bias_stability::{
     effective_degrees_of_freedom, expected_bias_stability, paired_ratio,
 };
 pub use noise::memory::{correlation_length_samples, record_fit_tau_min_s};
+pub use noise::other_noise::noise_like;
 pub use noise::spectrum::{Spectrum, log_binned, segment_samples, welch};
 pub use noise::truth_response::known_motion;
 pub(crate) use pipeline::{FIXED_POINT_ONLY, OVERFLOWS};

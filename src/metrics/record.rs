@@ -9,6 +9,7 @@ use super::estimate::interval::{self, round_to_count};
 use super::estimate::two_runs::TwoRuns;
 use super::estimate::value::Estimate;
 use super::theory::learning::{LearnedWeights, Learning, NOT_FROM_ONE_RECORD};
+use super::theory::memory::impulse_response;
 use super::theory::prediction::Prediction;
 use crate::signal::{Bridge, FilterShape, SlowDrift, WeightRule};
 
@@ -300,6 +301,19 @@ impl FilterFacts {
             WeightRule::Adaptive { .. } => None,
             _ => self.frozen(),
         }
+    }
+
+    /// What the filter frozen makes of an impulse, by the age of it, samples; `None` without weights.
+    pub(crate) fn response(&self) -> Option<Vec<f64>> {
+        let weights = match (&self.shape.rule, &self.mean_weights) {
+            (WeightRule::Sections(sections), _) => impulse_response(sections),
+            (WeightRule::Fixed(weights), _) | (WeightRule::Adaptive { .. }, Some(weights)) => {
+                weights.clone()
+            }
+            (WeightRule::Adaptive { .. }, None) | (WeightRule::Hidden(_), _) => return None,
+        };
+        let before = std::iter::repeat_n(0.0, self.shape.newest_age_samples);
+        Some(before.chain(weights).collect())
     }
 
     /// Delay at DC of the filter frozen, samples; 0 where it has none.

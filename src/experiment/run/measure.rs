@@ -7,11 +7,10 @@ use rayon::prelude::*;
 use super::allan_settings::allan_options;
 use super::assembly_motion::drop_lacking;
 use super::motion::motion;
-use super::other_runs::runs_that_differ;
+use super::other_noise::{figures_of_other_runs, runs_that_differ, two_runs};
 use super::progress::{Progress, Unfinished, unless_stopped};
 use super::records::{RecordLength, stamp_s};
 use super::simulate::{GyroRecord, Simulation};
-use super::two_runs::two_runs;
 use crate::experiment::black_box::{self, BuiltIn, TwinInput};
 use crate::experiment::campaign;
 use crate::experiment::channel_filter::{ADDED_RATE_DEG_PER_H, FilterWords, FinishedFilter};
@@ -22,7 +21,7 @@ use crate::gyro::{self, slow_drift};
 use crate::metrics::catalogue::DIVERGED_AT;
 use crate::metrics::{
     BlackBox, ChannelFailure, ChannelMetrics, Estimate, FilterFacts, Learning, Motion, Record,
-    Settings, known_motion, measure, put_beside_others, put_black_box,
+    Settings, StepFigures, known_motion, measure, put_beside_others, put_black_box,
 };
 use crate::scenario::BlackBoxTrial;
 use crate::signal::{SlowDrift, WeightRule};
@@ -213,6 +212,32 @@ impl Cut<'_> {
         follows_gradient.then(tries).flatten().unwrap_or_default()
     }
 
+    /// Whether steps move the weights of a filter that forgets nothing within a stretch of its learning.
+    fn moves_weights_in_steps(&self, facts: &FilterFacts) -> bool {
+        let learning = facts.learning.as_ref();
+        matches!(self.settings.motion, Motion::Steps { .. })
+            && learning.is_some_and(|learning| !learning.is_even())
+    }
+
+    /// Figures of steps in runs of a filter on other noise; none where one fails.
+    fn figures_of_other_runs(
+        &self,
+        filter: &FinishedFilter,
+        words: (&[f64], &[f64]),
+    ) -> Option<Vec<StepFigures>> {
+        let figures = |output: &[f64], input: &[f64], dc_gain: f64| {
+            StepFigures::of(&self.of(output, input), &self.settings.motion, dc_gain)
+        };
+        figures_of_other_runs(filter, words, self.length, self.sample_period_s, figures)
+    }
+
+    /// How far the slow noise of the gyro moves figures of steps from seed to seed.
+    fn by_slow_noise(&self, facts: &FilterFacts) -> Option<StepFigures> {
+        let words = self.record.filter_input_deg_per_h();
+        let gain = facts.dc_gain_adapted?;
+        StepFigures::by_slow_noise(&self.of(words, words), &self.settings.motion, gain)
+    }
+
     /// Variance over seeds of the slow noise in the mean of the record, (deg/h)^2.
     fn drift_variance(&self) -> f64 {
         let first = self.length.warm_up as u64;
@@ -268,6 +293,10 @@ impl Cut<'_> {
                     ..filter_facts(filter, words)
                 };
                 let mut metrics = self.measure(&words.output_deg_per_h, input, Some(&facts));
+                if let Some(words) = on_motion.filter(|_| self.moves_weights_in_steps(&facts)) {
+                    let runs = self.figures_of_other_runs(filter, words);
+                    metrics.scatter_over_runs(runs.as_deref(), self.by_slow_noise(&facts));
+                }
                 if let Some(found) = self.black_box(filter, words, input) {
                     let is_fixed = !adapts && filter.shape.hidden_reason().is_none();
                     put_black_box(&found, is_fixed, &mut metrics);

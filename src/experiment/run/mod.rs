@@ -5,7 +5,7 @@ pub(crate) mod assembly_motion;
 mod in_memory;
 mod measure;
 mod motion;
-mod other_runs;
+mod other_noise;
 mod output_average;
 mod progress;
 #[cfg(feature = "report")]
@@ -15,7 +15,6 @@ mod records;
 mod results;
 mod simulate;
 mod theory;
-mod two_runs;
 
 pub(crate) use allan_settings::allan_options;
 pub(crate) use assembly_motion::axis_index;

@@ -27,6 +27,9 @@ const REACHES_PER_BLOCK: usize = 16;
 /// The same where the density is known: so long that the two ends of a block have nothing in common.
 const REACHES_PER_KNOWN_BLOCK: usize = 2;
 
+/// Fewest degrees of freedom of ends that plain blocks show.
+const ENDS_FREEDOM_MIN: f64 = 5.0;
+
 /// Fewest samples of a tapered block.
 const SAMPLES_MIN: usize = 4;
 
@@ -123,6 +126,19 @@ impl MeanScatter {
         Self::of_blocks(differences, density, REACHES_PER_KNOWN_BLOCK * reach, cycle)
     }
 
+    /// The same with the ends of a response in closed form, where the values hold too few blocks to show
+    /// their own.
+    ///
+    /// * `response`: what the filter makes of an impulse, by age.
+    /// * `input`: its noise, correlated over `reach` samples.
+    pub(crate) fn or_ends_of(self, response: &[f64], input: &[f64], reach: usize) -> Self {
+        if self.ends.freedom >= ENDS_FREEDOM_MIN {
+            return self;
+        }
+        let ends = ends_of_response(response, input, reach);
+        Self { ends, ..self }
+    }
+
     /// Of differences with this density, in blocks of so many samples at least.
     fn of_blocks(differences: &[f64], density: Spread, least: usize, cycle: Option<f64>) -> Self {
         let short = whole(least, cycle).max(differences.len() as f64 / SHORT_BLOCKS_MAX as f64);
@@ -149,6 +165,32 @@ impl MeanScatter {
     /// What the two ends alone do to it.
     pub(crate) fn ends_over(&self, count: usize) -> Spread {
         self.ends.scaled(1.0 / count.max(1) as f64)
+    }
+}
+
+/// E of what a response makes of its input, less its gain times that.
+///
+/// The mean of the output lacks, of the words at the end of the record, what they still add to it, and has
+/// that of the words before: of the word k before either end `c_k = h_(k+1) + h_(k+2) + ...`, with the
+/// variance `2 sum_kl c_k c_l R(k - l)` of both ends, R the autocovariance of the input.
+fn ends_of_response(response: &[f64], input: &[f64], reach: usize) -> Spread {
+    let later = response.iter().skip(1).rev().scan(0.0, |sum, weight| {
+        *sum += weight;
+        Some(*sum)
+    });
+    let sums: Vec<f64> = later.collect();
+    let lags = reach.min(sums.len().saturating_sub(1)).min(input.len() / 2);
+    let colour = covariance_at_lags(input, lags);
+    let of_lag = |(lag, covariance): (usize, &f64)| {
+        let pairs = sums.iter().zip(sums.iter().skip(lag));
+        let product: f64 = pairs.map(|(one, other)| one * other).sum();
+        let both = if lag == 0 { 1.0 } else { 2.0 };
+        both * covariance * product
+    };
+    let end: f64 = colour.iter().enumerate().map(of_lag).sum();
+    Spread {
+        variance: 2.0 * end.max(0.0),
+        freedom: input.len() as f64 / (lags + 1) as f64,
     }
 }
 
@@ -247,6 +289,29 @@ mod tests {
             (*state >> 11) as f64 / (1_u64 << 53) as f64
         });
         uniform.sum::<f64>() - 6.0
+    }
+
+    #[test]
+    fn the_ends_of_a_response_are_what_its_mean_has_beside_that_of_its_input() {
+        let mut state = 11;
+        let (taps, count, trials) = (8, 500, 400);
+        let response = vec![1.0 / taps as f64; taps];
+        let (mut found, mut stated) = (0.0, 0.0);
+        for _ in 0..trials {
+            let white: Vec<f64> = (0..count + taps).map(|_| normal(&mut state)).collect();
+            let means = white.windows(taps).map(interval::mean);
+            let filtered: f64 = means.skip(1).take(count).sum();
+            let input = &white[taps..];
+            found += (filtered - input.iter().sum::<f64>()).powi(2);
+            stated += ends_of_response(&response, input, 3).variance;
+        }
+        // 2 (7^2 + 6^2 + ... + 1) / 8^2; four standard errors of 400 squares.
+        let expected = 2.0 * 140.0 / 64.0 * f64::from(trials);
+        assert!((found / expected - 1.0).abs() < 0.3, "{found} {expected}");
+        assert!(
+            (stated / expected - 1.0).abs() < 0.05,
+            "{stated} {expected}"
+        );
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::{Against, Applies, Headline, MetricKey, Needs, OfBlocks, Table};
+use crate::metrics::noise::truth_response::moves;
 use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
 use crate::metrics::theory::memory::memory_samples;
@@ -236,9 +237,13 @@ pub(crate) fn paired_ratio(
     learned: Option<Learned>,
 ) -> Estimate {
     let own = &record.channel_deg_per_h[settled.clone()];
+    let still = !moves(record, settled.start);
     let raw = &record.raw_deg_per_h[settled];
-    let gain = interval::mean(own) / interval::mean(raw);
-    let scatter = paired_scatter((own, raw), gain, facts, None);
+    let scatter = paired_scatter((own, raw), of.ratio, facts, None);
+    let scatter = match facts.response().filter(|_| still) {
+        Some(response) => scatter.or_ends_of(&response, raw, GYRO_REACH),
+        None => scatter,
+    };
     let over_level = 1.0 / of.raw_deg_per_h;
     let blocks = scatter.over(of.samples).scaled(over_level);
     let weights = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);

@@ -26,9 +26,7 @@ use crate::metrics::sine::fit::{SwingClock, SwingFit, fit_swing};
 use crate::metrics::theory::bound::{LeastNoise, filter_bound_at, noise_power_gain};
 use crate::metrics::theory::learning::{Learning, NOT_FROM_ONE_RECORD};
 use crate::metrics::theory::prediction::{lags_needed, predict, prediction_lack};
-use crate::metrics::trial::noise_delay::{
-    put_bound, put_bound_curve, put_over_bound, widen_over_bound,
-};
+use crate::metrics::trial::noise_delay::{OverBound, put_bound, put_bound_curve, widen_over_bound};
 use crate::metrics::trial::predicted::DC_GAIN_PREDICTED;
 use crate::metrics::trial::readaptation;
 use crate::metrics::trial::readaptation::{GainUnits, adapts};
@@ -459,7 +457,13 @@ fn measure_bound(
         let least = least.map_or(f64::NAN, |least| least.noise_gain);
         noise_power_gain(weights, &autocovariance) / least
     });
-    put_over_bound(channel, raw, &bound, &without, over.as_ref(), metrics);
+    let of = OverBound {
+        channel,
+        raw,
+        bound: &bound,
+        bounds_without: &without,
+    };
+    of.put(facts, over.as_ref(), metrics);
     let bound = bound.map(|least| {
         let at = |delay| at(delay, &autocovariance).ok();
         (least.over_delay(&delay, at, &left_out), least)

@@ -152,6 +152,13 @@ impl LaggedProducts {
         self.mean_products(None)
     }
 
+    /// Autocovariance of the pairs of one block.
+    pub(crate) fn autocovariance_of(&self, block: usize) -> Vec<f64> {
+        let lags = self.sums[block].iter().zip(&self.counts[block]);
+        lags.map(|(sum, count)| sum / (*count).max(1) as f64)
+            .collect()
+    }
+
     /// Autocovariance without the pairs of one block.
     pub(crate) fn autocovariance_without(&self, block: usize) -> Vec<f64> {
         self.mean_products(Some(block))

@@ -6,6 +6,7 @@ pub(super) mod by_weights;
 pub(super) mod level;
 pub(super) mod line;
 pub(super) mod memory;
+pub(super) mod other_noise;
 pub(super) mod pulse_fit;
 pub(super) mod spectrum;
 pub(super) mod truth_response;

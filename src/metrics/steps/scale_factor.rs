@@ -200,19 +200,7 @@ pub(crate) fn fit_drifting_scale_factor(
     rest: StaticZero,
     drift: DriftCovariance,
 ) -> Result<ScaleFactorFit, Unavailable> {
-    let inputs: Vec<f64> = points
-        .iter()
-        .map(|point| point.input_deg_per_h - rest.input_deg_per_h)
-        .collect();
-    let outputs: Vec<f64> = points
-        .iter()
-        .map(|point| point.output_deg_per_h - rest.output_deg_per_h)
-        .collect();
-    let rates = distinct_rates(inputs.iter().copied());
-    if rates < RATES_MIN {
-        return Err(too_few_rates(rates));
-    }
-    let line = Line::through(&inputs, &outputs);
+    let (inputs, outputs, line) = line_above_rest(points, rest)?;
     let residuals = residuals(points, (&inputs, &outputs), &line, drift);
     let full_scale = outputs.iter().fold(0.0_f64, |max, at| max.max(at.abs()));
     let weights: Vec<(usize, f64)> = inputs
@@ -239,6 +227,49 @@ pub(crate) fn fit_drifting_scale_factor(
         asymmetry: asymmetry(points, (&inputs, &outputs), drift),
         residuals,
     })
+}
+
+/// Slope K of the same line alone.
+pub(crate) fn slope(points: &[RatePoint], rest: StaticZero) -> Result<f64, Unavailable> {
+    line_above_rest(points, rest).map(|(_, _, line)| line.slope)
+}
+
+/// Standard deviation of that slope by slow noise alone.
+pub(crate) fn slope_deviation(
+    points: &[RatePoint],
+    rest: StaticZero,
+    drift: DriftCovariance,
+) -> Result<f64, Unavailable> {
+    let (inputs, _, line) = line_above_rest(points, rest)?;
+    let quiet = |point: &RatePoint| RatePoint {
+        deviation_deg_per_h: 0.0,
+        ..*point
+    };
+    let quiet: Vec<RatePoint> = points.iter().map(quiet).collect();
+    let weights = inputs.iter().map(|input| line.slope_weight(*input));
+    let weights: Vec<(usize, f64)> = weights.enumerate().collect();
+    Ok(spread_of(&weights, &quiet, drift).0)
+}
+
+/// Inputs and outputs less those at rest, and the line through them.
+fn line_above_rest(
+    points: &[RatePoint],
+    rest: StaticZero,
+) -> Result<(Vec<f64>, Vec<f64>, Line), Unavailable> {
+    let inputs: Vec<f64> = points
+        .iter()
+        .map(|point| point.input_deg_per_h - rest.input_deg_per_h)
+        .collect();
+    let outputs: Vec<f64> = points
+        .iter()
+        .map(|point| point.output_deg_per_h - rest.output_deg_per_h)
+        .collect();
+    let rates = distinct_rates(inputs.iter().copied());
+    if rates < RATES_MIN {
+        return Err(too_few_rates(rates));
+    }
+    let line = Line::through(&inputs, &outputs);
+    Ok((inputs, outputs, line))
 }
 
 /// Why there is no scale factor.

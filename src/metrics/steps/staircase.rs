@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::scale_factor::{
     RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero, distinct_rates,
-    distinct_rates_by_sense, fit_drifting_scale_factor, too_few_rates,
+    distinct_rates_by_sense, fit_drifting_scale_factor, slope, slope_deviation, too_few_rates,
 };
 use super::small_input::measure_small_inputs;
 use crate::metrics::estimate::blocks::equal_block_means;
@@ -257,11 +257,7 @@ pub(crate) fn measure_scale_factor(
     metrics: &mut ChannelMetrics,
 ) {
     let samples = record.channel_deg_per_h.len();
-    let mut dwells: Vec<(&Dwell, RatePoint)> = staircase
-        .dwells
-        .iter()
-        .filter_map(|dwell| Some((dwell, rate_point(record, counted(dwell, samples)?))))
-        .collect();
+    let mut dwells = counted_dwells(record, staircase);
     let every: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
     put_response(&every, metrics);
     measure_small_inputs(&every, staircase, metrics);
@@ -275,10 +271,7 @@ pub(crate) fn measure_scale_factor(
         }
     };
     let points: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
-    let ranges: Vec<Range<usize>> = dwells
-        .iter()
-        .filter_map(|(dwell, _)| counted(dwell, samples))
-        .collect();
+    let ranges = ranges(&dwells, samples);
     let drift = |one: usize, other: usize| record.drift_covariance(&ranges[one], &ranges[other]);
     match fit_drifting_scale_factor(&points, rest, &drift) {
         Ok(fit) => {
@@ -299,6 +292,39 @@ pub(crate) fn measure_scale_factor(
             }
         }
     }
+}
+
+/// Scale factor error alone; none where the dwells give no line.
+pub(crate) fn scale_factor_error_ppm(record: &Record, staircase: &Staircase) -> Option<f64> {
+    let mut dwells = counted_dwells(record, staircase);
+    let rest = static_zero(staircase, &mut dwells).ok()?;
+    let points: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
+    Some(ratio_to_ppm(slope(&points, rest).ok()? - 1.0))
+}
+
+/// Standard deviation of the scale factor error over seeds by slow noise alone.
+pub(crate) fn scale_factor_drift_ppm(record: &Record, staircase: &Staircase) -> Option<f64> {
+    let mut dwells = counted_dwells(record, staircase);
+    let rest = static_zero(staircase, &mut dwells).ok()?;
+    let points: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
+    let ranges = ranges(&dwells, record.channel_deg_per_h.len());
+    let drift = |one: usize, other: usize| record.drift_covariance(&ranges[one], &ranges[other]);
+    Some(ratio_to_ppm(slope_deviation(&points, rest, &drift).ok()?))
+}
+
+/// Samples of dwells that count.
+fn ranges(dwells: &[(&Dwell, RatePoint)], samples: usize) -> Vec<Range<usize>> {
+    let ranges = dwells.iter();
+    ranges
+        .filter_map(|(dwell, _)| counted(dwell, samples))
+        .collect()
+}
+
+/// The dwells that count, with their means.
+fn counted_dwells<'a>(record: &Record, staircase: &'a Staircase) -> Vec<(&'a Dwell, RatePoint)> {
+    let samples = record.channel_deg_per_h.len();
+    let point = |dwell| Some((dwell, rate_point(record, counted(dwell, samples)?)));
+    staircase.dwells.iter().filter_map(point).collect()
 }
 
 /// Input and output at rest; takes the static zeros out of the dwells.

@@ -336,8 +336,9 @@ impl Learning {
         Some(learned)
     }
 
-    /// Whether the words have about the same power in all stretches.
-    fn is_even(&self) -> bool {
+    /// Whether the words have about the same power in all stretches; else the weights move within one.
+    #[must_use]
+    pub fn is_even(&self) -> bool {
         let last = self.taps + 1;
         let powers = self
             .moments

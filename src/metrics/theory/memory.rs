@@ -62,7 +62,7 @@ fn step(sections: &[Section], states: &mut [[f64; 2]], input: f64) -> f64 {
 }
 
 /// Impulse response of a cascade until it has died out.
-fn impulse_response(sections: &[Section]) -> Vec<f64> {
+pub(crate) fn impulse_response(sections: &[Section]) -> Vec<f64> {
     let mut states = vec![[0.0; 2]; sections.len()];
     let mut response = Vec::new();
     let (mut moment, mut of_half, mut half_end) = (0.0, 0.0, 64);

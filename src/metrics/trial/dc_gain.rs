@@ -69,7 +69,9 @@ pub static BIAS_STABILITY_OVER_DC_GAIN: MetricKey = MetricKey::of_filters(
 /// Enters the DC gains found by replay.
 ///
 /// Those of given weights are exact. Weights that adapt scatter from seed to seed: the blocks of the
-/// record show it, or what the filter has learned from each stretch of its words.
+/// record show it, or what the filter has learned from each stretch of its words. Of weights that noise left
+/// somewhere before the motion, and that the motion keeps, the DC gain adapted has no interval: how a twin
+/// on other noise would differ is in neither.
 pub(crate) fn put_dc_gains(record: &Record, facts: &FilterFacts, metrics: &mut ChannelMetrics) {
     let scatter = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
     let estimate = |gain: f64, blocks: &[f64], learned: Option<Learned>| {
@@ -82,10 +84,8 @@ pub(crate) fn put_dc_gains(record: &Record, facts: &FilterFacts, metrics: &mut C
                 learned.spread().plus(Spread::of(&of_blocks)).about(gain)
             }
             Some(learned) => learned.spread().about(gain),
-            None if matches!(scatter, WeightScatter::Learned(_)) => {
-                Estimate::without_interval(gain, NOT_FROM_ONE_RECORD)
-            }
-            None => scatter.unless_unknown(of_blocks),
+            None if matches!(scatter, WeightScatter::Blocks) => of_blocks,
+            None => Estimate::without_interval(gain, NOT_FROM_ONE_RECORD),
         }
     };
     let sums: Vec<f64> = facts

@@ -1,6 +1,6 @@
 //! A filter on the noise-delay plane: its bound, the curve of it, and how far above it stands.
 
-use crate::metrics::estimate::influence::{Learned, resampled};
+use crate::metrics::estimate::influence::{Learned, Spread, resampled, spread};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
@@ -9,7 +9,9 @@ use crate::metrics::key::curve::{Column, CurveKey};
 use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::FilterFacts;
-use crate::metrics::theory::bound::{LeastNoise, NoiseDelayBound, bound_taps, filter_bound};
+use crate::metrics::theory::bound::{
+    LeastNoise, NoiseDelayBound, bound_taps, filter_bound, noise_power_gain,
+};
 use crate::units;
 
 /// Least noise power gain at the delay of the filter.
@@ -143,39 +145,83 @@ pub(crate) fn put_bound_curve(
     metrics.put_curve(&NOISE_DELAY_BOUND, columns);
 }
 
-/// Enters `noise_gain_over_bound`.
-///
-/// Blocks leave the noise and the bound together: of fixed weights with unit DC gain the ratio
-/// hardly scatters, as both follow from the same autocovariance. `learned` is what weights that forget
-/// nothing add to it.
-pub(crate) fn put_over_bound(
-    channel: &LaggedProducts,
-    raw: &LaggedProducts,
-    bound: &Result<LeastNoise, Unavailable>,
-    bounds_without: &[Result<LeastNoise, Unavailable>],
-    learned: Option<&Learned>,
-    metrics: &mut ChannelMetrics,
-) {
-    let bound = match bound {
-        Ok(bound) => bound.noise_gain,
-        Err(reason) => return metrics.miss(&NOISE_GAIN_OVER_BOUND, reason.clone()),
-    };
-    let ratio = |channel: &[f64], raw: &[f64], bound: f64| channel[0] / raw[0] / bound;
-    let value = ratio(&channel.autocovariance(), &raw.autocovariance(), bound);
-    let left_out: Vec<f64> = bounds_without
-        .iter()
-        .enumerate()
-        .filter_map(|(block, bound)| {
-            let bound = bound.as_ref().ok()?.noise_gain;
-            let (own, other) = (
-                channel.autocovariance_without(block),
-                raw.autocovariance_without(block),
-            );
-            Some(ratio(&own, &other, bound))
-        })
-        .collect();
-    let estimate = resampled(value, &left_out, learned);
-    metrics.put(&NOISE_GAIN_OVER_BOUND, estimate);
+/// Noise of a channel and of raw, from which the noise gain over the bound follows.
+pub(crate) struct OverBound<'a> {
+    /// Of the channel.
+    pub(crate) channel: &'a LaggedProducts,
+    /// Of raw.
+    pub(crate) raw: &'a LaggedProducts,
+    /// The bound, and the same without each block.
+    pub(crate) bound: &'a Result<LeastNoise, Unavailable>,
+    pub(crate) bounds_without: &'a [Result<LeastNoise, Unavailable>],
+}
+
+impl OverBound<'_> {
+    /// Enters `noise_gain_over_bound`.
+    ///
+    /// * `learned`: what weights that forget nothing add to it.
+    pub(crate) fn put(
+        &self,
+        facts: &FilterFacts,
+        learned: Option<&Learned>,
+        metrics: &mut ChannelMetrics,
+    ) {
+        let bound = match self.bound {
+            Ok(bound) => bound.noise_gain,
+            Err(reason) => return metrics.miss(&NOISE_GAIN_OVER_BOUND, reason.clone()),
+        };
+        let (own, raw) = (self.channel.autocovariance(), self.raw.autocovariance());
+        let value = own[0] / raw[0] / bound;
+        let given = facts.given().and_then(|_| facts.response());
+        let estimate = match given.filter(|response| response.len() <= raw.len()) {
+            Some(response) => self.of_given(value, bound, &response),
+            None => {
+                let left_out = self.without_blocks(|block, raw| {
+                    self.channel.autocovariance_without(block)[0] / raw[0]
+                });
+                resampled(value, &left_out, learned)
+            }
+        };
+        metrics.put(&NOISE_GAIN_OVER_BOUND, estimate);
+    }
+
+    /// Noise gain over bound without each block, by the gain that goes with raw's autocovariance.
+    fn without_blocks(&self, gain: impl Fn(usize, &[f64]) -> f64) -> Vec<f64> {
+        let bounds = self.bounds_without.iter().enumerate();
+        bounds
+            .filter_map(|(block, bound)| {
+                let bound = bound.as_ref().ok()?.noise_gain;
+                Some(gain(block, &self.raw.autocovariance_without(block)) / bound)
+            })
+            .collect()
+    }
+
+    /// Of given weights w gain and bound follow from the same autocovariance R of raw.
+    ///
+    /// A filter near its bound hardly moves with R. What is left is what the channel has beside `w'Rw`: the
+    /// words that the ends of a block cut off, which the next block takes back, so that of n blocks the
+    /// record as a whole has the ends of one, `1/n` of what a block has of its variance.
+    fn of_given(&self, value: f64, bound: f64, response: &[f64]) -> Estimate {
+        let of_raw = |raw: &[f64]| noise_power_gain(response, raw);
+        let left_out = self.without_blocks(|_, raw| of_raw(raw));
+        if left_out.len() < 2 {
+            return Estimate::without_interval(value, interval::TOO_FEW_BLOCKS);
+        }
+        let blocks = self.raw.blocks();
+        let power = self.raw.autocovariance()[0];
+        let ends: Vec<f64> = (0..blocks)
+            .map(|block| {
+                let raw = self.raw.autocovariance_of(block);
+                let own = self.channel.autocovariance_of(block)[0];
+                (own - of_raw(&raw) * raw[0]) / power / bound
+            })
+            .collect();
+        let ends = Spread {
+            variance: interval::sample_variance(&ends) / (blocks * blocks) as f64,
+            freedom: blocks as f64 - 1.0,
+        };
+        spread(&left_out, None).plus(ends).about(value)
+    }
 }
 
 /// Adds what the uncertain delay does to the bound to the interval of the noise gain over it.

@@ -1,8 +1,8 @@
 //! What theory predicts of a filter at rest, with the noise that the record shows.
 
 use super::noise_delay::{
-    NOISE_DELAY_BOUND_NOISE_GAIN, NOISE_GAIN_OVER_BOUND, put_bound, put_bound_curve,
-    put_over_bound, widen_over_bound,
+    NOISE_DELAY_BOUND_NOISE_GAIN, NOISE_GAIN_OVER_BOUND, OverBound, put_bound, put_bound_curve,
+    widen_over_bound,
 };
 use crate::metrics::estimate::influence::{Spread, spread};
 use crate::metrics::estimate::interval;
@@ -87,8 +87,27 @@ pub(crate) fn measure_predictions(
         Estimate::exact(delay_samples)
     };
     let without: Vec<_> = parts.into_iter().map(|part| part.2).collect();
+    let of = OverBound {
+        channel,
+        raw,
+        bound: &bound,
+        bounds_without: &without,
+    };
+    measure_bound(record, facts, &of, &delay, metrics);
+}
+
+/// The noise-delay bound at the delay at DC, and the noise gain over it.
+///
+/// * `delay`: delay at DC, samples.
+fn measure_bound(
+    record: &Record,
+    facts: &FilterFacts,
+    of: &OverBound,
+    delay: &Estimate,
+    metrics: &mut ChannelMetrics,
+) {
     let newest = facts.shape.newest_age_samples;
-    let autocovariance = raw.autocovariance();
+    let autocovariance = of.raw.autocovariance();
     let scatter = facts.weight_scatter(record.raw_deg_per_h.len(), 0.0);
     let over = scatter.of(facts.mean_weights.as_deref(), |weights| {
         let delay = Prediction::of_weights(weights.to_vec(), newest).delay_at_dc_samples();
@@ -96,25 +115,21 @@ pub(crate) fn measure_predictions(
         let least = least.map_or(f64::NAN, |least| least.noise_gain);
         noise_power_gain(weights, &autocovariance) / least
     });
-    put_over_bound(channel, raw, &bound, &without, over.as_ref(), metrics);
-    put_bound_curve(
-        facts,
-        &raw.autocovariance(),
-        record.sample_period_s,
-        metrics,
-    );
-    let bounds: Vec<f64> = without
+    of.put(facts, over.as_ref(), metrics);
+    put_bound_curve(facts, &autocovariance, record.sample_period_s, metrics);
+    let bounds: Vec<f64> = of
+        .bounds_without
         .iter()
         .filter_map(|bound| Some(bound.as_ref().ok()?.noise_gain))
         .collect();
-    let bound = bound.map(|least| {
+    let bound = of.bound.clone().map(|least| {
         let at = |delay| filter_bound_at(&facts.shape, delay, &autocovariance).ok();
-        (least.over_delay(&delay, at, &bounds), least)
+        (least.over_delay(delay, at, &bounds), least)
     });
     if let (Ok((bound, _)), None) = (&bound, &over) {
         widen_over_bound(bound, &bounds, metrics);
     }
-    put_bound(bound, facts, delay_samples, record.sample_period_s, metrics);
+    put_bound(bound, facts, delay.value, record.sample_period_s, metrics);
 }
 
 /// Mean of the values with each of `blocks` blocks of equal length left out.

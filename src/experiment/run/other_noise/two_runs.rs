@@ -12,8 +12,8 @@
 
 use std::collections::VecDeque;
 
-use super::records::RecordLength;
 use crate::experiment::channel_filter::{Arithmetic, FinishedFilter};
+use crate::experiment::run::RecordLength;
 use crate::metrics::TwoRuns;
 
 /// Blocks of the record whose sums are kept apart.
@@ -53,7 +53,7 @@ impl Run {
 /// * `words`, `motion`: input of the filter, and what of it is no noise, warm-up included.
 ///
 /// None for a filter without taps, one that starts afresh within the record, and one that diverges.
-pub(super) fn two_runs(
+pub(in crate::experiment::run) fn two_runs(
     filter: &FinishedFilter,
     (words, motion): (&[f64], &[f64]),
     length: RecordLength,

@@ -8,8 +8,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::records::RecordLength;
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
+use crate::experiment::run::RecordLength;
 
 /// Runs on the noise of other parts of the record.
 const RUNS: usize = 6;
@@ -34,7 +34,7 @@ const FLOOR: f64 = 1e-5;
 /// do not show how they scatter; else none.
 ///
 /// * `words`, `motion`: input of the filter, and what of it is no noise, warm-up included.
-pub(super) fn runs_that_differ(
+pub(in crate::experiment::run) fn runs_that_differ(
     filter: &FinishedFilter,
     (words, motion): (&[f64], &[f64]),
     length: RecordLength,

@@ -1,0 +1,248 @@
+//! The few figures of steps that weights on their way move, of a record or of a run like it.
+//!
+//! Least squares that forgets nothing learns more from a step than from all words before: stretches of its
+//! record do not show how these figures scatter from seed to seed, runs of it on other noise do.
+
+use super::mean::{MEAN, MEAN_ERROR};
+use super::tracking::TRACKING_ERROR_RMS;
+use crate::metrics::estimate::influence::Spread;
+use crate::metrics::estimate::interval;
+use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::estimate::value::Estimate;
+use crate::metrics::key::metric::MetricKey;
+use crate::metrics::noise::level::NOISE_GAIN;
+use crate::metrics::noise::truth_response::moves;
+use crate::metrics::record::{Motion, Record, SAMPLES_MIN};
+use crate::metrics::steps::settling::tail_start;
+use crate::metrics::steps::staircase::{
+    SCALE_FACTOR_ERROR, scale_factor_drift_ppm, scale_factor_error_ppm,
+};
+use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
+use crate::metrics::trial::dc_gain::DC_GAIN;
+
+/// A metric, and its value in a run; none where the run does not give it.
+type Figure = (&'static MetricKey, fn(&StepFigures) -> Option<f64>);
+
+/// What runs on other noise give the intervals of.
+const FIGURES: [Figure; 6] = [
+    (&MEAN, |of| Some(of.mean_deg_per_h)),
+    // The true rate is that of the record.
+    (&MEAN_ERROR, |of| Some(of.mean_deg_per_h)),
+    (&TRACKING_ERROR_RMS, |of| {
+        Some(of.tracking_error_rms_deg_per_h)
+    }),
+    (&DC_GAIN, |of| Some(of.dc_gain)),
+    (&NOISE_GAIN, |of| of.noise_gain),
+    (&SCALE_FACTOR_ERROR, |of| of.scale_factor_error_ppm),
+];
+
+/// Figures of a filter over steps, without intervals: as [`measure`](fn@super::super::measure::measure)
+/// finds them, and nothing else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepFigures {
+    mean_deg_per_h: f64,
+    tracking_error_rms_deg_per_h: f64,
+    dc_gain: f64,
+    /// None where the true rate goes on moving after the last step.
+    noise_gain: Option<f64>,
+    /// None where the dwells give no line.
+    scale_factor_error_ppm: Option<f64>,
+}
+
+impl StepFigures {
+    /// Those of a record of steps; none of another motion, and where the true rate is not known.
+    ///
+    /// * `dc_gain`: that of the filter in this record.
+    #[must_use]
+    pub fn of(record: &Record, motion: &Motion, dc_gain: f64) -> Option<Self> {
+        let Motion::Steps {
+            last_step_index,
+            staircase,
+            ..
+        } = motion
+        else {
+            return None;
+        };
+        let (channel, truth) = (record.channel_deg_per_h, record.truth()?);
+        let errors = channel.iter().zip(truth).map(|(rate, truth)| rate - truth);
+        let square = errors.map(|error| error * error).sum::<f64>() / channel.len() as f64;
+        let start = tail_start(channel.len(), (*last_step_index).min(channel.len()));
+        let is_still = channel.len() - start >= SAMPLES_MIN && !moves(record, start);
+        let power = |values: &[f64]| interval::sample_variance(&values[start..]);
+        Some(Self {
+            mean_deg_per_h: interval::mean(channel),
+            tracking_error_rms_deg_per_h: square.sqrt(),
+            dc_gain,
+            noise_gain: is_still.then(|| power(channel) / power(record.raw_deg_per_h)),
+            scale_factor_error_ppm: scale_factor_error_ppm(record, staircase),
+        })
+    }
+
+    /// Their standard deviations over seeds by slow noise, of which neither a record nor runs on its noise
+    /// show much: that of a filter with this gain for a rate that is there from the first word on.
+    #[must_use]
+    pub fn by_slow_noise(record: &Record, motion: &Motion, dc_gain_adapted: f64) -> Option<Self> {
+        let Motion::Steps { staircase, .. } = motion else {
+            return None;
+        };
+        Some(Self {
+            mean_deg_per_h: dc_gain_adapted * record.drift_variance().sqrt(),
+            tracking_error_rms_deg_per_h: 0.0,
+            dc_gain: 0.0,
+            noise_gain: None,
+            scale_factor_error_ppm: scale_factor_drift_ppm(record, staircase),
+        })
+    }
+}
+
+impl ChannelMetrics {
+    /// Gives the figures of a record of steps the intervals that they have in runs on other noise, by
+    /// Student's t, and by slow noise; without runs they have none.
+    ///
+    /// What some run lacks, and what is the same in all of them, stays as it is.
+    pub(crate) fn scatter_over_runs(
+        &mut self,
+        runs: Option<&[StepFigures]>,
+        by_slow_noise: Option<StepFigures>,
+    ) {
+        for (key, figure) in FIGURES {
+            let Some(metric) = self.get_mut(key) else {
+                continue;
+            };
+            let value = metric.estimate.value;
+            let Some(runs) = runs else {
+                metric.estimate = Estimate::without_interval(value, NOT_FROM_ONE_RECORD);
+                continue;
+            };
+            let values: Option<Vec<f64>> = runs.iter().map(figure).collect();
+            let variance = values.map_or(0.0, |values| interval::sample_variance(&values));
+            if variance > 0.0 {
+                let freedom = runs.len() as f64 - 1.0;
+                let slow = by_slow_noise.as_ref().and_then(figure).unwrap_or(0.0);
+                let slow = Spread::known(slow * slow);
+                metric.estimate = Spread { variance, freedom }.plus(slow).about(value);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::allan::variants::AllanOptions;
+    use crate::metrics::measure::measure;
+    use crate::metrics::record::{Dwell, FilterFacts, Settings, Staircase};
+    use crate::random::Streams;
+    use crate::signal::{FilterShape, WeightRule};
+
+    const DWELL: usize = 500;
+    const RATES: [f64; 5] = [10.0, 200.0, 400.0, -300.0, 100.0];
+
+    fn motion() -> Motion {
+        let dwell = |(at, rate): (usize, &f64)| Dwell {
+            samples: at * DWELL + 100..(at + 1) * DWELL,
+            rate_deg_per_h: *rate,
+        };
+        Motion::Steps {
+            last_step_index: 4 * DWELL,
+            step_deg_per_h: RATES[4] - RATES[3],
+            staircase: Staircase {
+                dwells: RATES.iter().enumerate().map(dwell).collect(),
+                settle_s: 0.1,
+                rest_deg_per_h: 10.0,
+                ..Staircase::default()
+            },
+        }
+    }
+
+    /// A mean of three samples times 0.9.
+    fn facts() -> FilterFacts {
+        FilterFacts {
+            shape: FilterShape {
+                taps: Some(3),
+                newest_age_samples: 0,
+                register_samples: 0,
+                rule: WeightRule::Fixed(vec![0.3; 3]),
+            },
+            dc_gain: Some(0.9),
+            dc_gain_adapted: Some(0.9),
+            mean_weights: Some(vec![0.3; 3]),
+            block_weights: Vec::new(),
+            block_dc_gains_adapted: Vec::new(),
+            learning: None,
+            weights_of_other_runs: Vec::new(),
+            two_runs: None,
+            added_rate_deg_per_h: 0.1,
+            rate_gains: Vec::new(),
+            latency_s: 0.0,
+        }
+    }
+
+    /// What is measured of a record, and its figures.
+    fn measured() -> (ChannelMetrics, StepFigures) {
+        let mut stream = Streams::new(5, 0).stream("white");
+        let truth: Vec<f64> = RATES.iter().flat_map(|rate| [*rate; DWELL]).collect();
+        let raw: Vec<f64> = truth.iter().map(|rate| rate + stream.normal()).collect();
+        let taps = |at: usize| raw[at.saturating_sub(2)..=at].iter().sum::<f64>();
+        let channel: Vec<f64> = (0..raw.len()).map(|at| 0.3 * taps(at)).collect();
+        let record = Record {
+            channel_deg_per_h: &channel,
+            raw_deg_per_h: &raw,
+            truth_deg_per_h: &truth,
+            response_deg_per_h: &[],
+            encoder_rad: None,
+            sample_period_s: 1e-3,
+            first_stamp_s: 1e-3,
+            drift: None,
+        };
+        let settings = Settings {
+            motion: motion(),
+            bias_averaging_time_s: 1.0,
+            fit_tau_min_s: 0.01,
+            allan: AllanOptions::default(),
+            bridges: Vec::new(),
+        };
+        let metrics = measure(&record, &settings, Some(&facts()));
+        let figures = StepFigures::of(&record, &settings.motion, 0.9);
+        (metrics, figures.unwrap())
+    }
+
+    #[test]
+    fn figures_of_a_record_are_the_values_that_are_measured_of_it() {
+        let (metrics, figures) = measured();
+        let mean = interval::mean(&RATES);
+        for (key, figure) in FIGURES {
+            let shift = if key == &MEAN_ERROR { mean } else { 0.0 };
+            let value = metrics.get(key).unwrap().estimate.value + shift;
+            let own = figure(&figures).unwrap();
+            assert!(
+                (own - value).abs() <= 1e-9 * value.abs(),
+                "{}: {own} {value}",
+                key.name
+            );
+        }
+    }
+
+    #[test]
+    fn runs_give_the_interval_that_their_scatter_and_slow_noise_say() {
+        let (mut metrics, figures) = measured();
+        let of = |mean: f64| StepFigures {
+            mean_deg_per_h: mean,
+            ..figures
+        };
+        let gain = *metrics.get(&DC_GAIN).unwrap();
+        let runs = [1.0, 2.0, 4.0, 8.0].map(of);
+        metrics.scatter_over_runs(Some(&runs), Some(of(0.0)));
+        let mean = metrics.get(&MEAN).unwrap().estimate;
+        // Student's t of three degrees of freedom, 3.1824, times their deviation.
+        let half_width = 3.1824 * interval::sample_variance(&[1.0, 2.0, 4.0, 8.0]).sqrt();
+        assert!((mean.high - mean.value - half_width).abs() < 1e-3);
+        // What is the same in all runs stays as it is.
+        assert_eq!(metrics.get(&DC_GAIN).unwrap().estimate, gain.estimate);
+        metrics.scatter_over_runs(Some(&runs), Some(of(10.0)));
+        let wider = metrics.get(&MEAN).unwrap().estimate;
+        assert!(wider.high - wider.value > 1.96 * 10.0);
+        metrics.scatter_over_runs(None, None);
+        assert!(!metrics.get(&MEAN).unwrap().estimate.has_interval());
+    }
+}

@@ -1,0 +1,70 @@
+//! Noise like that of a record, for filters that run again.
+//!
+//! Pieces of the record's noise from anywhere in it, of either sign, fade into each other by sine and
+//! cosine: the sum of the squares of these is 1, so that independent pieces keep their power. Each piece
+//! is many times as long as the words of a gyro correlate, and its ends are soft: the colour stays, to
+//! zero frequency. Slow noise, of which a record shows next to nothing, is not in it.
+//!
+//! Source: derived; Kuensch, Annals of Statistics 17 (1989), for blocks drawn with replacement, Paparoditis
+//! and Politis, Biometrika 88 (2001), for tapered ones.
+
+use std::f64::consts::PI;
+
+use crate::metrics::estimate::interval::round_to_count;
+use crate::random::Streams;
+
+/// Samples of a piece: some thirty times those over which the words of a gyro correlate.
+const PIECE: usize = 480;
+
+/// Pieces that a record holds, at least: those of a short one are shorter.
+const PIECES_MIN: usize = 16;
+
+/// Noise of so many samples like `noise`; one draw for each `run`.
+#[must_use]
+pub fn noise_like(noise: &[f64], samples: usize, run: u64) -> Vec<f64> {
+    let hop = (PIECE / 2).min(noise.len() / (2 * PIECES_MIN)).max(1);
+    let window: Vec<f64> = (0..2 * hop)
+        .map(|index| (PI * (index as f64 + 0.5) / (2 * hop) as f64).sin())
+        .collect();
+    let mut stream = Streams::new(0, run).stream("pieces of noise");
+    let mut made = vec![0.0; samples + 2 * hop];
+    let last = noise.len().saturating_sub(2 * hop) as f64;
+    for start in (0..=samples).step_by(hop) {
+        let from = round_to_count(stream.uniform() * last);
+        let sign = stream.normal().signum();
+        let piece = noise[from..].iter().zip(&window);
+        for (sum, (value, weight)) in made[start..].iter_mut().zip(piece) {
+            *sum += sign * value * weight;
+        }
+    }
+    // Half a piece in, both of two pieces are there.
+    made.drain(..hop);
+    made.truncate(samples);
+    made
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_has_the_colour_of_the_noise_to_zero_frequency() {
+        let mut stream = Streams::new(3, 0).stream("white");
+        let white: Vec<f64> = (0..40_001).map(|_| stream.normal()).collect();
+        let differences: Vec<f64> = white.windows(2).map(|two| two[1] - two[0]).collect();
+        let (mut squares, mut products, mut sums) = (0.0, 0.0, 0.0);
+        let runs = 50;
+        for run in 0..runs {
+            let made = noise_like(&differences, 20_000, run);
+            let pairs = made.windows(2).map(|two| two[0] * two[1]);
+            squares += made.iter().map(|value| value * value).sum::<f64>();
+            products += pairs.sum::<f64>();
+            sums += made.iter().sum::<f64>().powi(2);
+        }
+        let samples = 20_000.0 * 50.0;
+        assert!((squares / samples / 2.0 - 1.0).abs() < 0.03, "{squares}");
+        assert!((products / samples + 1.0).abs() < 0.03, "{products}");
+        // The sum of white values has a thousand times as much; the sharp ends of a run are 2.
+        assert!(sums / samples < 2e-3, "{sums}");
+    }
+}
