@@ -173,13 +173,25 @@ fn measure_words(
     metrics: &mut ChannelMetrics,
 ) -> Result<(), Unavailable> {
     let values = record.channel_deg_per_h;
-    let spectrum = welch(
-        values,
-        record.sample_period_s,
-        segment_samples(values.len()),
+    let segment = segment_samples(values.len());
+    let (spectrum, measured) = rayon::join(
+        || welch(values, record.sample_period_s, segment),
+        || {
+            put_extremes(record, metrics);
+            measure_by_motion(record, settings, filter, metrics)
+        },
     );
     put_spectrum(log_binned(&spectrum, SPECTRUM_POINTS_MAX), metrics);
-    put_extremes(record, metrics);
+    measured
+}
+
+/// What the motion of a record lets measure.
+fn measure_by_motion(
+    record: &Record,
+    settings: &Settings,
+    filter: Option<&FilterFacts>,
+    metrics: &mut ChannelMetrics,
+) -> Result<(), Unavailable> {
     match &settings.motion {
         Motion::MultiSine { .. } | Motion::General | Motion::Steps { .. }
             if record.truth().is_none() =>

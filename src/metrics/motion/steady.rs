@@ -66,7 +66,16 @@ pub(crate) fn measure_steady(
         raw_deg_per_h: raw,
         ..*record
     });
-    let fit = measure_allan(record, settings, filter, pulses.as_ref(), metrics);
+    let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
+    let blocks = filter.map_or(RATIO_BLOCKS, FilterFacts::blocks);
+    let products_of = |words| products_about_mean(words, lags, blocks);
+    let (fit, (products, raw)) = rayon::join(
+        || measure_allan(record, settings, filter, pulses.as_ref(), metrics),
+        || {
+            let raw = filter.map(|_| products_of(record.raw_deg_per_h));
+            (products_of(record.channel_deg_per_h), raw)
+        },
+    );
     let means_of = |block: usize| {
         let means = blocks::block_means(record.channel_deg_per_h, block);
         Ok((means, blocks::block_means(record.raw_deg_per_h, block)))
@@ -74,12 +83,8 @@ pub(crate) fn measure_steady(
     let times = (record.sample_period_s, settings.bias_averaging_time_s);
     measure_bias(times, means_of, fit.as_ref(), metrics);
     measure_mean(record, fit.as_ref(), filter, metrics);
-    let lags = LAGS_MIN.max(filter.map_or(0, |facts| lags_needed(&facts.shape)));
-    let blocks = filter.map_or(RATIO_BLOCKS, FilterFacts::blocks);
-    let products = products_about_mean(record.channel_deg_per_h, lags, blocks);
     let words = record.channel_deg_per_h.iter();
     let samples = words.filter(|word| !word.is_nan()).count();
-    let raw = filter.map(|_| products_about_mean(record.raw_deg_per_h, lags, blocks));
     let by_weights = match (filter, &raw) {
         (Some(facts), Some(raw)) => NoiseByWeights::new(facts, raw, samples, 0.0),
         _ => NoiseByWeights::none(),
