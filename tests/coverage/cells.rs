@@ -135,7 +135,9 @@ impl Cell {
             is_resolution: is(&RESOLUTION),
             by_few_runs: OF_FEW_RUNS
                 .iter()
-                .find(|cell| (cell.0, cell.1, cell.2) == (motion.name(), channel, metric))
+                .find(|cell| {
+                    (cell.0, cell.1, cell.2) == (motion.name(), channel.as_str(), metric.as_str())
+                })
                 .map_or(1.0, |cell| student_quantile(cell.3) / 1.96),
         }
     }
