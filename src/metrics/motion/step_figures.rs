@@ -10,10 +10,7 @@ use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::MetricKey;
-use crate::metrics::noise::level::NOISE_GAIN;
-use crate::metrics::noise::truth_response::moves;
-use crate::metrics::record::{Motion, Record, SAMPLES_MIN};
-use crate::metrics::steps::settling::tail_start;
+use crate::metrics::record::{Motion, Record};
 use crate::metrics::steps::staircase::{
     SCALE_FACTOR_ERROR, scale_factor_drift_ppm, scale_factor_error_ppm,
 };
@@ -24,7 +21,7 @@ use crate::metrics::trial::dc_gain::DC_GAIN;
 type Figure = (&'static MetricKey, fn(&StepFigures) -> Option<f64>);
 
 /// What runs on other noise give the intervals of.
-const FIGURES: [Figure; 6] = [
+const FIGURES: [Figure; 5] = [
     (&MEAN, |of| Some(of.mean_deg_per_h)),
     // The true rate is that of the record.
     (&MEAN_ERROR, |of| Some(of.mean_deg_per_h)),
@@ -32,7 +29,6 @@ const FIGURES: [Figure; 6] = [
         Some(of.tracking_error_rms_deg_per_h)
     }),
     (&DC_GAIN, |of| Some(of.dc_gain)),
-    (&NOISE_GAIN, |of| of.noise_gain),
     (&SCALE_FACTOR_ERROR, |of| of.scale_factor_error_ppm),
 ];
 
@@ -43,8 +39,6 @@ pub struct StepFigures {
     mean_deg_per_h: f64,
     tracking_error_rms_deg_per_h: f64,
     dc_gain: f64,
-    /// None where the true rate goes on moving after the last step.
-    noise_gain: Option<f64>,
     /// None where the dwells give no line.
     scale_factor_error_ppm: Option<f64>,
 }
@@ -55,25 +49,16 @@ impl StepFigures {
     /// * `dc_gain`: that of the filter in this record.
     #[must_use]
     pub fn of(record: &Record, motion: &Motion, dc_gain: f64) -> Option<Self> {
-        let Motion::Steps {
-            last_step_index,
-            staircase,
-            ..
-        } = motion
-        else {
+        let Motion::Steps { staircase, .. } = motion else {
             return None;
         };
         let (channel, truth) = (record.channel_deg_per_h, record.truth()?);
         let errors = channel.iter().zip(truth).map(|(rate, truth)| rate - truth);
         let square = errors.map(|error| error * error).sum::<f64>() / channel.len() as f64;
-        let start = tail_start(channel.len(), (*last_step_index).min(channel.len()));
-        let is_still = channel.len() - start >= SAMPLES_MIN && !moves(record, start);
-        let power = |values: &[f64]| interval::sample_variance(&values[start..]);
         Some(Self {
             mean_deg_per_h: interval::mean(channel),
             tracking_error_rms_deg_per_h: square.sqrt(),
             dc_gain,
-            noise_gain: is_still.then(|| power(channel) / power(record.raw_deg_per_h)),
             scale_factor_error_ppm: scale_factor_error_ppm(record, staircase),
         })
     }
@@ -89,7 +74,6 @@ impl StepFigures {
             mean_deg_per_h: dc_gain_adapted * record.drift_variance().sqrt(),
             tracking_error_rms_deg_per_h: 0.0,
             dc_gain: 0.0,
-            noise_gain: None,
             scale_factor_error_ppm: scale_factor_drift_ppm(record, staircase),
         })
     }
@@ -230,7 +214,7 @@ mod tests {
             mean_deg_per_h: mean,
             ..figures
         };
-        let gain = *metrics.get(&DC_GAIN).unwrap();
+        let gain = metrics.get(&DC_GAIN).unwrap().estimate;
         let runs = [1.0, 2.0, 4.0, 8.0].map(of);
         metrics.scatter_over_runs(Some(&runs), Some(of(0.0)));
         let mean = metrics.get(&MEAN).unwrap().estimate;
@@ -238,7 +222,7 @@ mod tests {
         let half_width = 3.1824 * interval::sample_variance(&[1.0, 2.0, 4.0, 8.0]).sqrt();
         assert!((mean.high - mean.value - half_width).abs() < 1e-3);
         // What is the same in all runs stays as it is.
-        assert_eq!(metrics.get(&DC_GAIN).unwrap().estimate, gain.estimate);
+        assert_eq!(metrics.get(&DC_GAIN).unwrap().estimate, gain);
         metrics.scatter_over_runs(Some(&runs), Some(of(10.0)));
         let wider = metrics.get(&MEAN).unwrap().estimate;
         assert!(wider.high - wider.value > 1.96 * 10.0);

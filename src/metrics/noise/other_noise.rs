@@ -1,12 +1,13 @@
 //! Noise like that of a record, for filters that run again.
 //!
-//! Pieces of the record's noise from anywhere in it, of either sign, fade into each other by sine and
+//! Pieces of the record's noise from near their place, of either sign, fade into each other by sine and
 //! cosine: the sum of the squares of these is 1, so that independent pieces keep their power. Each piece
 //! is many times as long as the words of a gyro correlate, and its ends are soft: the colour stays, to
-//! zero frequency. Slow noise, of which a record shows next to nothing, is not in it.
+//! zero frequency. As pieces stay about where they were, so does noise that changes with the rate, and what
+//! a step leaves of itself. Slow noise, of which a record shows next to nothing, is not in it.
 //!
 //! Source: derived; Kuensch, Annals of Statistics 17 (1989), for blocks drawn with replacement, Paparoditis
-//! and Politis, Biometrika 88 (2001), for tapered ones.
+//! and Politis, Biometrika 88 (2001), for tapered ones, C. R. Acad. Sci. Paris 335 (2002), for local ones.
 
 use std::f64::consts::PI;
 
@@ -19,18 +20,25 @@ const PIECE: usize = 480;
 /// Pieces that a record holds, at least: those of a short one are shorter.
 const PIECES_MIN: usize = 16;
 
-/// Noise of so many samples like `noise`; one draw for each `run`.
+/// Part of the record by which a piece may be from before its place or from behind it.
+const NEAR: f64 = 1.0 / 48.0;
+
+/// Noise like `noise`; one draw for each `run`.
 #[must_use]
-pub fn noise_like(noise: &[f64], samples: usize, run: u64) -> Vec<f64> {
-    let hop = (PIECE / 2).min(noise.len() / (2 * PIECES_MIN)).max(1);
+pub fn noise_like(noise: &[f64], run: u64) -> Vec<f64> {
+    let samples = noise.len();
+    let hop = (PIECE / 2).min(samples / (2 * PIECES_MIN)).max(1);
     let window: Vec<f64> = (0..2 * hop)
         .map(|index| (PI * (index as f64 + 0.5) / (2 * hop) as f64).sin())
         .collect();
     let mut stream = Streams::new(0, run).stream("pieces of noise");
     let mut made = vec![0.0; samples + 2 * hop];
-    let last = noise.len().saturating_sub(2 * hop) as f64;
+    let last = samples.saturating_sub(2 * hop) as f64;
     for start in (0..=samples).step_by(hop) {
-        let from = round_to_count(stream.uniform() * last);
+        // The first half of the first piece is cut off below.
+        let place = start as f64 - hop as f64;
+        let away = (2.0 * stream.uniform() - 1.0) * NEAR * samples as f64;
+        let from = round_to_count((place + away).clamp(0.0, last));
         let sign = stream.normal().signum();
         let piece = noise[from..].iter().zip(&window);
         for (sum, (value, weight)) in made[start..].iter_mut().zip(piece) {
@@ -55,13 +63,13 @@ mod tests {
         let (mut squares, mut products, mut sums) = (0.0, 0.0, 0.0);
         let runs = 50;
         for run in 0..runs {
-            let made = noise_like(&differences, 20_000, run);
+            let made = noise_like(&differences, run);
             let pairs = made.windows(2).map(|two| two[0] * two[1]);
             squares += made.iter().map(|value| value * value).sum::<f64>();
             products += pairs.sum::<f64>();
             sums += made.iter().sum::<f64>().powi(2);
         }
-        let samples = 20_000.0 * 50.0;
+        let samples = 40_000.0 * 50.0;
         assert!((squares / samples / 2.0 - 1.0).abs() < 0.03, "{squares}");
         assert!((products / samples + 1.0).abs() < 0.03, "{products}");
         // The sum of white values has a thousand times as much; the sharp ends of a run are 2.

@@ -26,10 +26,10 @@ pub(in crate::experiment::run) fn figures_of_other_runs(
     figures: impl Fn(&[f64], &[f64], f64) -> Option<StepFigures>,
 ) -> Option<Vec<StepFigures>> {
     let kind = filter.kind.as_ref().filter(|_| !filter.restarts)?;
-    let measured = words.iter().zip(motion).skip(length.warm_up);
-    let noise: Vec<f64> = measured.map(|(word, motion)| word - motion).collect();
+    let noise = words.iter().zip(motion).map(|(word, motion)| word - motion);
+    let noise: Vec<f64> = noise.collect();
     let run = |run: u64| {
-        let mut input = noise_like(&noise, words.len(), run);
+        let mut input = noise_like(&noise, run);
         for (word, motion) in input.iter_mut().zip(motion) {
             *word += motion;
         }
