@@ -122,7 +122,7 @@ fn reading_text(sheet: &InferenceSheet, judged: &Judged) -> String {
                     three_digits(range.value),
                     three_digits(range.low),
                     three_digits(range.high),
-                    behind(&parameter.unit)
+                    behind(parameter.unit)
                 ),
             );
         }
@@ -228,10 +228,10 @@ pub(in crate::report) fn ridge_text(sheet: &InferenceSheet, ridge: &Ridge) -> St
             "{} {}{} with {} {}{}",
             one.name,
             three_digits(end[0]),
-            behind(&one.unit),
+            behind(one.unit),
             other.name,
             three_digits(end[1]),
-            behind(&other.unit)
+            behind(other.unit)
         )
     };
     format!(
