@@ -90,7 +90,42 @@ fn what_no_words_do_is_said() {
     let (exit, _, talk) = search(folder.path(), &["--filter", "lms"]);
     assert_eq!(exit, 2);
     assert!(
-        talk.contains("no filter `lms` of recursive least squares: expected one of rls"),
+        talk.contains("no filter `lms` with fixed-point hardware: expected one of rls"),
         "{talk}"
     );
+}
+
+#[test]
+fn words_of_least_mean_squares_are_searched_as_well() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let text = SWING.replace(
+        "name = \"rls\"\n[filter.rls]\ninitial_inverse_correlation = 1.97e-5\n",
+        "name = \"f\"\n[filter.lms]\n[[filter]]\nname = \"s\"\n[filter.sign_lms]\nunit = \"deg/h\"\n\
+         [[filter]]\nname = \"u\"\n[filter.sign_lms]\nform = \"unity-gain\"\n",
+    );
+    write(folder.path(), "a.toml", &text);
+    for (name, table) in [
+        ("f", "[filter.lms.fixed]"),
+        ("s", "[filter.sign_lms.fixed]"),
+    ] {
+        let arguments = ["wordlength", "a.toml", "--filter", name];
+        let output = fogbench(folder.path(), &arguments);
+        let said = stdout(&output);
+        assert_eq!(code(&output), 0, "{said}{}", stderr(&output));
+        assert!(said.contains("  x  d  t den  k  w  y  ARW"), "{said}");
+        let (_, best) = said.split_once(table).expect("a table to paste");
+        let head = table.trim_start_matches('[').trim_end_matches(".fixed]");
+        let kind = head.trim_start_matches("filter.");
+        let pasted = format!(
+            "[[filter]]\nname = \"p\"\n[filter.{kind}]\npipeline = \"fpga\"\n\
+             number_format = \"fixed\"\n{table}{best}"
+        );
+        let (head, _) = text.split_once("[[filter]]").expect("a filter");
+        write(folder.path(), "b.toml", &format!("{head}{pasted}"));
+        let run = fogbench(folder.path(), &["run", "b.toml", "-o", name]);
+        assert_eq!(code(&run), 0, "{}{}", stdout(&run), stderr(&run));
+    }
+    let output = fogbench(folder.path(), &["wordlength", "a.toml", "--filter", "u"]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("expected one of f, s"));
 }
