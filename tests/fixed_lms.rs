@@ -15,9 +15,9 @@ use fogbench::vocabulary::UpdateSign;
 
 use crate::support::fixed::{
     Draws, OVERFLOWS, ROUNDINGS, check_noticed, check_resets, check_rtl, export, for_each_seed,
-    has, pairs, run,
+    has, pairs, run, simulate,
 };
-use crate::support::is_long_rtl;
+use crate::support::{code, fogbench, is_long_rtl, stderr, stdout, summary, write};
 
 /// Mixes of each kind: plain LMS, NLMS, line enhancer by the sign, line enhancer normalised.
 const MIXES: u32 = 48;
@@ -153,7 +153,7 @@ fn distance(config: &FixedConfig, mut float: impl FnMut(Pair<f64>) -> f64) -> (f
 
 #[test]
 fn wide_fixed_lms_words_follow_the_floating_point_filters() {
-    let formats = uniform(44, Rounding::HalfUp, Overflow::Saturate);
+    let formats = uniform(48, Rounding::HalfUp, Overflow::Saturate);
     for (form, regularisation) in [(0, None), (1, Some(0.01))] {
         let config = filter(form, 4, formats).expect("sound settings");
         let mut float = LmsEngine::new(
@@ -315,17 +315,107 @@ fn a_wrong_constant_of_fixed_lms_is_noticed() {
     if !has("iverilog") {
         return;
     }
+    let formats = uniform(20, Rounding::HalfUp, Overflow::Saturate);
+    let of = |form, taps| filter(form, taps, formats).expect("sound settings");
     check_noticed(
-        &export(&mix(5), 21, 10),
+        &export(&of(1, 4), 21, 10),
         &[
             (".RN(1)", ".RN(0)"),
             (".RK(1)", ".RK(0)"),
             (".RT(1)", ".RT(0)"),
-            (".RW(1)", ".RW(2)"),
+            (".RW(1)", ".RW(0)"),
         ],
     );
     check_noticed(
-        &export(&mix(6), 21, 10),
-        &[(".RY(1)", ".RY(0)"), (".HOLD(", ".HOLD(0*")],
+        &export(&of(2, 8), 21, 10),
+        &[(".RY(1)", ".RY(0)"), (".GUARDED(1)", ".GUARDED(0)")],
+    );
+}
+
+/// A second of the rate model with a filter of each form.
+const SCENARIO: &str = "schema = 1\nname = \"a\"\nduration_s = 1.0\nwarm_up_s = 0.5\nfidelity = \"rate\"\n\
+    [[filter]]\nname = \"nlms\"\n[filter.lms]\npipeline = \"fpga\"\nnumber_format = \"fixed\"\n\
+    [[filter]]\nname = \"plain\"\n[filter.lms]\nnormalised = false\nstep_size = 1e-6\n\
+    pipeline = \"fpga\"\nnumber_format = \"fixed\"\n\
+    [[filter]]\nname = \"sign\"\n[filter.sign_lms]\npipeline = \"fpga\"\nnumber_format = \"fixed\"\n";
+
+#[test]
+fn fixed_lms_filters_of_a_scenario_run_beside_their_twins_and_their_export_proves_itself() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    write(folder.path(), "a.toml", SCENARIO);
+    let output = fogbench(folder.path(), &["run", "a.toml", "-o", "out"]);
+    assert_eq!(code(&output), 0, "{}{}", stdout(&output), stderr(&output));
+    let channels = summary(&folder.path().join("out"), "a")["channels"].clone();
+    for (name, clocks) in [("nlms", 45.0), ("plain", 34.0), ("sign", 67.0)] {
+        let figure = |key: &str| channels[name][key]["value"].as_f64();
+        assert_eq!(figure("clocks_per_sample"), Some(clocks), "{name}");
+        let error = figure("rounding_error_over_signal").expect("an error");
+        assert!(error > 0.0 && error < 1e-3, "{name}: {error:e}");
+        for signal in ["x", "d", "t", "w", "y"] {
+            let count = figure(&format!("overflows_{signal}"));
+            assert_eq!(count, Some(0.0), "{name}.{signal}");
+        }
+        assert_eq!(figure("overflows_r"), None, "{name} has no R");
+        assert_eq!(figure("asymmetry_max"), None, "{name} has no R");
+    }
+    if !has("iverilog") {
+        return;
+    }
+    for name in ["nlms", "plain", "sign"] {
+        let arguments = format!("export rtl {name} --scenario a.toml --filter {name} --samples 50");
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        let output = fogbench(folder.path(), &arguments);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let (passed, text) = simulate(&folder.path().join(name), &[]);
+        assert!(passed && text.matches("PASS").count() == 2, "{text}");
+    }
+}
+
+#[test]
+fn what_fixed_lms_cannot_have_names_key_and_way_out() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    for (find, put, said) in [
+        (
+            "name = \"nlms\"\n[filter.lms]\n",
+            "name = \"nlms\"\n[filter.lms]\nupdate_sign = \"as-printed\"\n",
+            "filter[0].lms.update_sign = \"as-printed\" has no hardware in fixed point",
+        ),
+        (
+            "step_size = 1e-6\n",
+            "step_size = 1e-2\nallow_unstable = true\n",
+            "step_size = 1.0000e-2 (deg/h)^-2, at a full scale of 7200 deg/h: step size = 518400 does not \
+             fit k: Q17.15",
+        ),
+        (
+            "[filter.sign_lms]\n",
+            "[filter.sign_lms]\nguard_deg_per_h = 8000.0\n",
+            "less than 7.2000e3 deg/h, or more integer bits in fixed.y",
+        ),
+        (
+            "[filter.sign_lms]\n",
+            "[filter.sign_lms]\nnorm_recompute_samples = 500\n",
+            "norm_recompute_samples = 500 has no effect: the recursive norm of fixed-point words is exact",
+        ),
+        (
+            "[filter.sign_lms]\n",
+            "[filter.sign_lms]\nfixed.w = { integer_bits = 40 }\n",
+            "fixed.w.integer_bits = 40 is more than the 32 bits of a word",
+        ),
+    ] {
+        assert!(SCENARIO.contains(find), "{find}");
+        write(folder.path(), "a.toml", &SCENARIO.replace(find, put));
+        let output = fogbench(folder.path(), &["check", "a.toml"]);
+        let talk = stderr(&output);
+        assert_eq!(code(&output), 2, "{put}: {talk}");
+        let words = talk.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(said), "{put}: {talk}");
+    }
+    let gate = "[[gate]]\nmetric = \"nlms.overflows_r\"\nmax = 0.0\n";
+    write(folder.path(), "a.toml", &format!("{SCENARIO}{gate}"));
+    let output = fogbench(folder.path(), &["check", "a.toml"]);
+    assert!(
+        stderr(&output).contains("the filter has no such signal"),
+        "{}",
+        stderr(&output)
     );
 }

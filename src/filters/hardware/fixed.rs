@@ -1,10 +1,10 @@
 //! A fixed-point pipeline on the bench: its constants, its timing and the filter they stand for.
 
 use super::filter::HardwareFilter;
+use super::fixed_core::{FixedConstant, constants_of, fixed_core};
 use super::monitor::{HealthSummary, Monitor};
 use super::settings::FloatSettings;
 use super::timing::PipelineTiming;
-use super::{lms, rls, sign_lms};
 use crate::filters::common::{
     Complaints, Divergence, DivergenceKind, Fault, Filter, Life, Output, Register, Watch,
 };
@@ -16,7 +16,6 @@ use crate::fpga::fixed::{
     fixed_board_usage, fixed_usage,
 };
 use crate::fpga::health::{Warning, wind_up_warning};
-use crate::fpga::kinds::CoreSettings;
 use crate::signal::FilterShape;
 
 /// A fixed-point pipeline with its front end, before any check.
@@ -30,37 +29,10 @@ pub struct FixedSettings {
     pub twin: FloatSettings,
 }
 
-/// A constant of a pipeline that its words may not hold.
-pub(super) struct FixedConstant {
-    /// Its name in a refusal.
-    pub(super) name: &'static str,
-    /// Key that it comes from.
-    pub(super) key: &'static str,
-    /// Unit of the key behind a blank; nothing without.
-    pub(super) unit: &'static str,
-    /// Power of deg/h in that unit.
-    pub(super) power: i32,
-    /// Signal whose words hold it.
-    pub(super) signal: SignalName,
-}
-
 impl FixedSettings {
     /// The filter of the books on fixed-point words.
     pub(super) fn of(float: FloatSettings, words: &FixedWords) -> Self {
-        let (core, twin) = match &float.core {
-            CoreSettings::Rls(core) => (
-                FixedCoreSettings::Rls(rls::fixed_rls(core, words)),
-                CoreSettings::Rls(rls::twin(*core)),
-            ),
-            CoreSettings::Lms(core) => (
-                FixedCoreSettings::Lms(lms::fixed_lms(core, words)),
-                float.core,
-            ),
-            CoreSettings::SignLms(core) => (
-                FixedCoreSettings::SignLms(sign_lms::fixed_sign_lms(core, words)),
-                float.core,
-            ),
-        };
+        let (core, twin) = fixed_core(&float.core, words);
         Self {
             core,
             full_scale_deg_per_h: words.full_scale_deg_per_h,
@@ -68,15 +40,6 @@ impl FixedSettings {
                 core: twin,
                 ..float
             },
-        }
-    }
-
-    /// Constants that a refusal may name.
-    fn constants(&self) -> &'static [FixedConstant] {
-        match self.core {
-            FixedCoreSettings::Rls(_) => rls::CONSTANTS,
-            FixedCoreSettings::Lms(_) => lms::CONSTANTS,
-            FixedCoreSettings::SignLms(_) => sign_lms::CONSTANTS,
         }
     }
 
@@ -109,7 +72,7 @@ impl FixedSettings {
         else {
             return complaints.table(&error.to_string());
         };
-        let mut constants = self.constants().iter();
+        let mut constants = constants_of(&self.core).iter();
         let Some(constant) = constants.find(|constant| constant.name == *name) else {
             return complaints.table(&error.to_string());
         };

@@ -9,6 +9,7 @@
 mod export;
 mod filter;
 mod fixed;
+mod fixed_core;
 mod lms;
 mod monitor;
 mod pipeline;
@@ -16,7 +17,6 @@ mod rls;
 mod settings;
 mod sign_lms;
 mod timing;
-mod words;
 
 #[cfg(feature = "hdl")]
 pub use export::{HardwareParts, Stimulus, export_pipeline, export_pipeline_of};
