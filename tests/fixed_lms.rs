@@ -153,7 +153,10 @@ fn distance(config: &FixedConfig, mut float: impl FnMut(Pair<f64>) -> f64) -> (f
 
 #[test]
 fn wide_fixed_lms_words_follow_the_floating_point_filters() {
-    let formats = uniform(48, Rounding::HalfUp, Overflow::Saturate);
+    let mut formats = uniform(48, Rounding::HalfUp, Overflow::Saturate);
+    // The step over an empty ring is 50.
+    formats.gain.integer_bits = 8;
+    formats.gain.fraction_bits = 40;
     for (form, regularisation) in [(0, None), (1, Some(0.01))] {
         let config = filter(form, 4, formats).expect("sound settings");
         let mut float = LmsEngine::new(
