@@ -18,7 +18,7 @@
 //! * [`FixedPipeline`]: what a pipeline declares of itself; [`FixedConfig`]: one of any kind.
 //! * [`FixedFrontEnd`], [`fixed_board_usage`], [`fixed_usage`]: what stands around a core, and clocks.
 //!
-//! Checked by `fixed_point`, `fixed::format::tests`.
+//! Checked by `fixed_point`, `fixed_lms`, `fixed::format::tests`.
 
 mod board;
 mod datapath;
