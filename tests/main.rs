@@ -48,6 +48,7 @@ mod extremes;
 mod false_alarms;
 mod fast_motion;
 mod filters;
+mod fixed_lms;
 mod fixed_point;
 mod flush_order;
 mod fpga_health;

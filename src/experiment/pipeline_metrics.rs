@@ -3,6 +3,7 @@
 use super::channel_filter::{FinishedFilter, FinishedPipeline};
 use super::run::stamp_s;
 use crate::filters::hardware::FixedSummary;
+use crate::fpga::fixed::SignalName;
 use crate::metrics::catalogue::{
     ANGLE_RANDOM_WALK, ANGLE_RANDOM_WALK_OVER_BINARY64, ASYMMETRY_MAX, CLOCKS_PER_SAMPLE,
     CONDITION_NUMBER, DC_GAIN, DC_GAIN_MINUS_BINARY64, DELAY_MINUS_BINARY64, DELAY_VS_RAW,
@@ -19,6 +20,9 @@ use crate::wording::counted;
 pub(super) static MATRIX_METRICS: [&MetricKey; 3] =
     [&ASYMMETRY_MAX, &SMALLEST_PIVOT, &CONDITION_NUMBER];
 
+/// Why a filter on fixed-point words has no count of a signal's.
+const NO_SIGNAL: &str = "the filter has no such signal";
+
 /// Why a channel can never have a metric of hardware pipelines; nothing for other metrics.
 pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Option<&'static str> {
     if ![Applies::Pipeline, Applies::FixedPoint].contains(&key.applies) {
@@ -30,6 +34,12 @@ pub(super) fn lacks(scenario: &Scenario, channel: &str, key: &MetricKey) -> Opti
     };
     if key.applies == Applies::FixedPoint && !settings.is_fixed() {
         return Some(FIXED_POINT_ONLY);
+    }
+    let mut overflows = OVERFLOWS.into_iter().zip(SignalName::ALL);
+    if let Some((_, signal)) = overflows.find(|(overflow, _)| *overflow == key)
+        && !settings.has_signal(signal)
+    {
+        return Some(NO_SIGNAL);
     }
     if MATRIX_METRICS.contains(&key) && !settings.has_matrix() {
         return Some("a least-mean-squares filter has no matrix");
@@ -117,7 +127,10 @@ pub(super) fn enter_fixed(
     metrics: &mut ChannelMetrics,
 ) {
     for (key, count) in OVERFLOWS.into_iter().zip(fixed.overflows) {
-        metrics.put(key, Estimate::exact(whole(count)));
+        match count {
+            Some(count) => drop(metrics.put(key, Estimate::exact(whole(count)))),
+            None => metrics.miss(key, NO_SIGNAL),
+        }
     }
     match fixed.indefinite_at {
         Some(sample) => {

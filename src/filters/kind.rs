@@ -3,6 +3,7 @@
 use super::FilterKind;
 use super::common::{Complaint, Complaints, Filter};
 use super::hardware::PipelineSettings;
+use super::words::{FixedWords, HardwareWords};
 use crate::declare::table;
 
 /// Settings of a filter of one kind, and all that follows from them.
@@ -37,6 +38,17 @@ pub trait FilterSettings {
     fn hardware(&self) -> Option<PipelineSettings> {
         None
     }
+
+    /// Its fixed-point words, or those of the reference; none of a filter without hardware for them.
+    fn fixed_words(&self) -> Option<FixedWords> {
+        None
+    }
+
+    /// Its hardware on these words, whatever its own are and whether it filters on them; none of a filter
+    /// without hardware.
+    fn hardware_on(&self, _words: &HardwareWords) -> Option<PipelineSettings> {
+        None
+    }
 }
 
 /// A key of a kind of filter that other settings can leave without effect.
@@ -57,6 +69,15 @@ impl<S: FilterSettings> Condition<S> {
             key,
             needs: "pipeline = \"textbook\" has no hardware; pipeline = \"fpga\"",
             acts: |settings| settings.hardware().is_some(),
+        }
+    }
+
+    /// The table of fixed-point words.
+    pub(super) const fn fixed() -> Self {
+        Self {
+            key: "fixed",
+            needs: "pipeline = \"fpga\" and number_format = \"fixed\"",
+            acts: |settings| matches!(settings.hardware(), Some(PipelineSettings::Fixed(_))),
         }
     }
 

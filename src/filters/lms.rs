@@ -3,8 +3,9 @@
 use super::common::{Complaints, Core, CoreFilter, Fault, Filter, FrontEndConfig, Output, dot};
 use super::hardware::{self, PipelineSettings};
 use super::kind::{Condition, ExpectedWords, FilterSettings};
+use super::words::{FixedWords, HardwareWords, LmsWords, refuse_as_printed};
 use crate::declare::table;
-use crate::vocabulary::{DesiredSignal, NumberFormat, OutputRegister, Pipeline, UpdateSign};
+use crate::vocabulary::{DesiredSignal, OutputRegister, Pipeline, UpdateSign, WordFormat};
 
 table! {
     /// Least mean squares, normalised or not.
@@ -30,11 +31,13 @@ table! {
         update_sign: UpdateSign = "corrected";
         /// Arithmetic: the recursion of the books, or the pipeline of the hardware with its bits and clocks.
         pipeline: Pipeline = "textbook";
-        /// Words of the hardware; -ftz flushes subnormal numbers to zero. This key and those below only
-        /// matter with pipeline = "fpga". Source of the default: the paper's double precision.
-        number_format: NumberFormat = "binary64";
+        /// Words of the hardware; -ftz flushes subnormal numbers to zero, "fixed" has a table of its own. This
+        /// key and those below only matter with pipeline = "fpga". Source of the default: the paper's double
+        /// precision.
+        number_format: WordFormat = "binary64";
         /// Clock of the hardware. Source of the default: the paper.
         clock_mhz: f64 = 40.0, in 1e-3..=10000.0, "MHz";
+        fixed: Option<LmsWords>;
     }
 }
 
@@ -54,7 +57,22 @@ impl FilterSettings for LmsFilterConfig {
                 },
                 Condition::hardware("number_format"),
                 Condition::hardware("clock_mhz"),
+                Condition::fixed(),
             ]
+        }
+    }
+
+    fn check(&self, complaints: &mut Complaints) {
+        if let Some(PipelineSettings::Fixed(_)) = self.hardware() {
+            self.words().check(complaints);
+            refuse_as_printed(self.update_sign, complaints);
+        }
+    }
+
+    fn notes(&self, words: &ExpectedWords) -> Vec<String> {
+        match self.hardware() {
+            Some(PipelineSettings::Fixed(_)) => self.words().notes(words.peak_deg_per_h),
+            _ => Vec::new(),
         }
     }
 
@@ -105,7 +123,24 @@ impl FilterSettings for LmsFilterConfig {
     }
 
     fn hardware(&self) -> Option<PipelineSettings> {
-        (self.pipeline == Pipeline::Fpga).then(|| hardware::lms(self))
+        let words = HardwareWords::of(self.number_format, || self.words());
+        (self.pipeline == Pipeline::Fpga).then(|| hardware::lms(self, &words))
+    }
+
+    fn fixed_words(&self) -> Option<FixedWords> {
+        Some(self.words())
+    }
+
+    fn hardware_on(&self, words: &HardwareWords) -> Option<PipelineSettings> {
+        Some(hardware::lms(self, words))
+    }
+}
+
+impl LmsFilterConfig {
+    /// The words of its table, or those of the reference.
+    fn words(&self) -> FixedWords {
+        let table = self.fixed.as_ref();
+        table.map_or_else(|| LmsWords::reference().resolved(), LmsWords::resolved)
     }
 }
 

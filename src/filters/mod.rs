@@ -40,9 +40,9 @@ mod one_pole;
 mod process;
 mod replay;
 mod rls;
-mod rls_words;
 mod savitzky_golay;
 mod sign_lms;
+mod words;
 
 pub use butterworth::{ButterworthFilterConfig, butterworth};
 pub use common::{
@@ -67,12 +67,12 @@ pub use one_pole::{OnePoleFilterConfig, one_pole};
 pub use process::{Parameter, Parameters, ProcessFilterConfig, ProcessMode, is_file_argument};
 pub use replay::ReplayFilterConfig;
 pub use rls::{Rls, RlsConfig, RlsCore, RlsFilterConfig, covariance_digits_warning};
-pub use rls_words::{RlsWords, SignalWord, SignalWords};
 pub use savitzky_golay::{SavitzkyGolayFilterConfig, savitzky_golay};
 pub use sign_lms::{
     SignLms, SignLmsConfig, SignLmsCore, SignLmsFilterConfig, sign_lms_slew_per_sample,
     sign_lms_slew_samples,
 };
+pub use words::{FixedWords, HardwareWords, LmsWords, RlsWords, SignLmsWords, SignalWord};
 
 // The kinds of filters, in the order in which the reference shows them.
 kinds! {

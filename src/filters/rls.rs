@@ -6,7 +6,7 @@ use super::common::{
 };
 use super::hardware::{self, PipelineSettings};
 use super::kind::{Condition, ExpectedWords, FilterSettings};
-use super::rls_words::RlsWords;
+use super::words::{FixedWords, HardwareWords, RlsWords, refuse_as_printed};
 use crate::declare::table;
 use crate::signal::WeightRule;
 use crate::vocabulary::{
@@ -59,31 +59,21 @@ impl FilterSettings for RlsFilterConfig {
                 Condition::hardware("clock_mhz"),
                 Condition::float("division"),
                 Condition::float("update_order"),
-                Condition {
-                    key: "fixed",
-                    needs: "pipeline = \"fpga\" and number_format = \"fixed\"",
-                    acts: |settings| settings.fixed_words().is_some(),
-                },
+                Condition::fixed(),
             ]
         }
     }
 
     fn check(&self, complaints: &mut Complaints) {
-        let Some(words) = self.fixed_words() else {
-            return;
-        };
-        words.check(complaints);
-        if self.update_sign == UpdateSign::AsPrinted {
-            complaints.key(
-                "update_sign",
-                "= \"as-printed\" has no hardware in fixed point: use \"corrected\", or another number_format",
-            );
+        if let Some(PipelineSettings::Fixed(_)) = self.hardware() {
+            self.words().check(complaints);
+            refuse_as_printed(self.update_sign, complaints);
         }
     }
 
     fn notes(&self, words: &ExpectedWords) -> Vec<String> {
-        if let Some(fixed) = self.fixed_words() {
-            return fixed.notes(words.peak_deg_per_h);
+        if let Some(PipelineSettings::Fixed(_)) = self.hardware() {
+            return self.words().notes(words.peak_deg_per_h);
         }
         // The hardware warns by itself.
         if self.pipeline == Pipeline::Fpga {
@@ -110,22 +100,24 @@ impl FilterSettings for RlsFilterConfig {
     }
 
     fn hardware(&self) -> Option<PipelineSettings> {
-        (self.pipeline == Pipeline::Fpga).then(|| hardware::rls(self))
+        let words = HardwareWords::of(self.number_format, || self.words());
+        (self.pipeline == Pipeline::Fpga).then(|| hardware::rls(self, &words))
+    }
+
+    fn fixed_words(&self) -> Option<FixedWords> {
+        Some(self.words())
+    }
+
+    fn hardware_on(&self, words: &HardwareWords) -> Option<PipelineSettings> {
+        Some(hardware::rls(self, words))
     }
 }
 
 impl RlsFilterConfig {
-    /// The fixed-point words of the hardware; none of floating point and of the textbook.
-    #[must_use]
-    pub fn fixed_words(&self) -> Option<RlsWords> {
-        let is_fixed = self.pipeline == Pipeline::Fpga && self.number_format == WordFormat::Fixed;
-        is_fixed.then(|| self.words())
-    }
-
     /// The words of its table, or those of the reference.
-    #[must_use]
-    pub fn words(&self) -> RlsWords {
-        self.fixed.clone().unwrap_or_else(RlsWords::reference)
+    fn words(&self) -> FixedWords {
+        let table = self.fixed.as_ref();
+        table.map_or_else(|| RlsWords::reference().resolved(), RlsWords::resolved)
     }
 }
 

@@ -6,11 +6,11 @@
 //! control nor storage, and the tests hold them together to the last bit.
 //!
 //! * [`float_unit`]: number formats and their rounding; [`memory`]: single-port RAM.
-//! * [`fixed`]: fixed-point words, and recursive least squares on them.
 //! * [`front_end`]: from a sample stream to the pairs a core takes.
 //! * [`board`]: front end, core and output register, clocked together.
 //! * [`machine`]: the sequencer under every pipeline; [`registers`], [`datapath`]: what it clocks.
 //! * [`rls`], [`lms`], [`sign_lms`]: states and steps of the pipelines, their clock-less engines.
+//! * [`fixed`]: fixed-point words, and the pipelines on them.
 //! * [`pipeline`]: what a pipeline declares of itself; [`kinds`]: the list of them; [`engine`].
 //! * [`health`]: what goes wrong inside and when. [`timing`]: clocks, units, rates.
 //! * [`probe`], [`trace`]: test points and per-clock records. [`export`]: vectors, waveforms, RTL.

@@ -138,9 +138,13 @@ fn reference_alone_with_a_name_and_duration_resolves() {
     assert_eq!(runs[0].to_toml(), load(LEAST).unwrap()[0].to_toml());
 }
 
-/// A filter in fixed point, without the table of its words.
-const FIXED_POINT: &str = "[[filter]]\nname = \"words\"\n[filter.rls]\npipeline = \"fpga\"\n\
-    number_format = \"fixed\"\n";
+/// A filter of a kind in fixed point, without the table of its words.
+fn fixed_point(kind: &str) -> String {
+    format!(
+        "[[filter]]\nname = \"words\"\n[filter.{kind}]\npipeline = \"fpga\"\n\
+         number_format = \"fixed\"\n"
+    )
+}
 
 #[test]
 fn each_alternative_of_the_reference_validates_when_enabled() {
@@ -155,9 +159,10 @@ fn each_alternative_of_the_reference_validates_when_enabled() {
         let least = least.replace("20.0", if is_campaign { "3180.0" } else { "20.0" });
         let base = if block.starts_with("extends") {
             "extends = \"base.toml\"\n".to_owned()
-        } else if block.starts_with("[filter.") {
+        } else if let Some(rest) = block.strip_prefix("[filter.") {
             // A table inside that of a kind acts in a filter whose words it describes.
-            format!("{FIXED_POINT}{block}")
+            let kind = rest.split(['.', ']']).next().unwrap();
+            format!("{}{block}", fixed_point(kind))
         } else {
             block.clone()
         };

@@ -9,6 +9,7 @@ use std::process::{Child, Command, Output, Stdio};
 use fogbench::declare::{Content, Presence};
 use fogbench::filters::FilterKind;
 
+pub(crate) mod fixed;
 pub(crate) mod generated;
 pub(crate) mod gyro_cases;
 pub(crate) mod inference;

@@ -54,9 +54,7 @@ fn text(found: &WordLengths, name: &str) -> String {
         "{} of the gyro; * no other words are better in bits, noise, delay and life at once\n",
         counted(found.samples, "sample")
     );
-    text.push_str(
-        "   bits   x  d  t den  k  r  w  y  ARW/binary64  delay - binary64 us  indefinite s  fails s\n",
-    );
+    write_head(&mut text, found);
     for trial in &found.uniform {
         write_row(&mut text, found, trial);
     }
@@ -72,7 +70,8 @@ fn text(found: &WordLengths, name: &str) -> String {
             let _ = write!(
                 text,
                 "\n# filter `{name}`: pipeline = \"fpga\", number_format = \"fixed\"\n\
-                 [filter.rls.fixed]\n{}",
+                 [filter.{}.fixed]\n{}",
+                found.kind,
                 best.words.to_toml()
             );
         }
@@ -81,10 +80,21 @@ fn text(found: &WordLengths, name: &str) -> String {
     text
 }
 
+fn write_head(text: &mut String, found: &WordLengths) {
+    text.push_str("   bits ");
+    let trial = found.uniform.first();
+    let signals = trial.map_or(&[][..], |trial| &trial.words.signals);
+    for (name, _) in signals {
+        // Writing to a string cannot fail.
+        let _ = write!(text, " {name:>2}");
+    }
+    text.push_str("  ARW/binary64  delay - binary64 us  indefinite s  fails s\n");
+}
+
 fn write_row(text: &mut String, found: &WordLengths, trial: &WordLengthTrial) {
     let mark = if found.is_pareto(trial) { '*' } else { ' ' };
     let _ = write!(text, "{mark}  {:>4} ", trial.words.total_bits());
-    for (_, word) in trial.words.signals().named() {
+    for (_, word) in &trial.words.signals {
         let _ = write!(text, " {:>2}", word.word_bits);
     }
     let figure = |value: Option<f64>, digits: usize| {
@@ -102,10 +112,9 @@ fn write_row(text: &mut String, found: &WordLengths, trial: &WordLengthTrial) {
 
 fn json_of(found: &WordLengths) -> Value {
     let trial = |trial: &WordLengthTrial| {
-        let signals = trial.words.signals();
+        let signals = trial.words.signals.iter();
         let bits: serde_json::Map<String, Value> = signals
-            .named()
-            .map(|(name, word)| (name.to_owned(), word.word_bits.into()))
+            .map(|(name, word)| ((*name).to_owned(), word.word_bits.into()))
             .collect();
         json!({
             "word_bits": bits, "total_bits": trial.words.total_bits(),

@@ -6,10 +6,8 @@ use clap::{Args, ValueEnum};
 
 use crate::cli::options::format::Format;
 use crate::cli::options::numbers::{OptionError, count_within, within};
-use crate::filters::RlsWords;
-use crate::filters::hardware::{
-    FixedSettings, FloatSettings, HardwareParts, PipelineSettings, fixed_rls,
-};
+use crate::filters::hardware::{Around, HardwareParts, PipelineSettings};
+use crate::filters::{HardwareWords, LmsWords, RlsWords, SignLmsWords};
 use crate::fpga::export::RtlParts;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
@@ -30,6 +28,11 @@ const LINE_ENHANCER_RECOMPUTE: u32 = 1000;
 const INVERSE_CORRELATION: f64 = 7.716e-4;
 /// The same that the formats of the reference hold: about 1024 in their full scale.
 const FIXED_INVERSE_CORRELATION: f64 = 1.97e-5;
+
+/// Step size of least mean squares.
+const STEP_SIZE: f64 = 0.8;
+/// The same that the formats of the reference hold without normalisation: about 0.8 in their full scale.
+const FIXED_STEP_SIZE: f64 = 1.5e-8;
 
 /// Clocks that hardware runs at, MHz: as of the keys of a scenario.
 const CLOCK_MHZ: (f64, f64) = (1e-3, 1e4);
@@ -94,15 +97,15 @@ pub(in crate::cli) struct FilterOptions {
         value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
     pub(in crate::cli) initial_inverse_correlation: Option<f64>,
-    /// Step size of least mean squares; of sign-lms in the words' unit
+    /// Step size of least mean squares; of lms in the inverse square of the words' unit, of sign-lms in that
+    /// unit [default: 0.8; of lms on fixed words 1.5e-8]
     #[arg(
         long,
         value_name = "MU",
         allow_negative_numbers = true,
-        default_value_t = 0.8,
         value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
-    pub(in crate::cli) step_size: f64,
+    pub(in crate::cli) step_size: Option<f64>,
     /// Added to the energy of the input (nlms, sign-lms), in the square of the words' unit
     #[arg(
         long,
@@ -112,7 +115,7 @@ pub(in crate::cli) struct FilterOptions {
         value_parser = within(CONSTANT.0, CONSTANT.1, "")
     )]
     pub(in crate::cli) regularisation: f64,
-    /// Words of the hardware; fixed (rls alone) has the formats of the reference
+    /// Words of the hardware; fixed has the formats of the reference
     #[arg(long, value_enum, default_value_t = WordFormat::Float(NumberFormat::Binary64))]
     pub(in crate::cli) number_format: WordFormat,
 }
@@ -120,11 +123,6 @@ pub(in crate::cli) struct FilterOptions {
 impl FilterOptions {
     /// The pipeline: the paper's front end for its kind.
     pub(in crate::cli) fn settings(&self) -> PipelineSettings {
-        let format = match self.number_format {
-            WordFormat::Float(format) => format,
-            // Of another kind it is refused beforehand.
-            WordFormat::Fixed => return PipelineSettings::Fixed(self.fixed()),
-        };
         let update_sign = UpdateSign::Corrected;
         let (core, desired, input_lag_samples) = match self.kind {
             Kind::Rls => {
@@ -136,7 +134,7 @@ impl FilterOptions {
             Kind::Lms | Kind::Nlms => {
                 let core = CoreSettings::Lms(LmsSettings {
                     tap_count: self.taps,
-                    step_size: self.step_size,
+                    step_size: self.step(),
                     regularisation: (self.kind == Kind::Nlms).then_some(self.regularisation),
                     desired: DesiredSource::MeanOfTwoNewest,
                     update_sign,
@@ -148,7 +146,7 @@ impl FilterOptions {
                     tap_count: self.taps,
                     delay_samples: LINE_ENHANCER_DELAY,
                     normalised: false,
-                    step: self.step_size,
+                    step: self.step(),
                     regularisation: self.regularisation,
                     initial_weight: self.mean_weight(),
                     guard: None,
@@ -157,14 +155,34 @@ impl FilterOptions {
                 (core, DesiredSignal::Current, LINE_ENHANCER_DELAY)
             }
         };
-        PipelineSettings::Float(FloatSettings {
-            core,
+        let around = Around {
             desired,
             input_lag_samples,
             output_register: OutputRegister::NextSample,
-            format,
             clock_mhz: self.clock_mhz,
-        })
+        };
+        PipelineSettings::of(core, around, &self.words())
+    }
+
+    /// The words; fixed-point ones are those of the reference.
+    fn words(&self) -> HardwareWords {
+        match self.number_format {
+            WordFormat::Float(format) => HardwareWords::Float(format),
+            WordFormat::Fixed => HardwareWords::Fixed(match self.kind {
+                Kind::Rls => RlsWords::reference().resolved(),
+                Kind::Lms | Kind::Nlms => LmsWords::reference().resolved(),
+                Kind::SignLms => SignLmsWords::reference().resolved(),
+            }),
+        }
+    }
+
+    /// Step of least mean squares.
+    fn step(&self) -> f64 {
+        self.step_size
+            .unwrap_or(match (self.kind, self.number_format) {
+                (Kind::Lms, WordFormat::Fixed) => FIXED_STEP_SIZE,
+                _ => STEP_SIZE,
+            })
     }
 
     /// Recursive least squares.
@@ -180,19 +198,6 @@ impl FilterOptions {
             ),
             division: self.division,
             update_sign: UpdateSign::Corrected,
-        }
-    }
-
-    /// Recursive least squares in the fixed-point words of the reference.
-    fn fixed(&self) -> FixedSettings {
-        let words = RlsWords::reference();
-        FixedSettings {
-            core: fixed_rls(&self.rls(), &words),
-            full_scale_deg_per_h: words.full_scale_deg_per_h,
-            desired: DesiredSignal::Current,
-            input_lag_samples: 1,
-            output_register: OutputRegister::NextSample,
-            clock_mhz: self.clock_mhz,
         }
     }
 

@@ -151,15 +151,8 @@ fn of_filter(options: &FilterOptions, given: &ArgMatches) -> Vec<String> {
             format!("{option} has no effect on --kind {kind}: leave it out, or name another kind")
         })
         .collect();
-    if options.number_format == WordFormat::Fixed {
-        if options.kind == Kind::Rls {
-            complaints.extend(of_fixed(given, &["division"]));
-        } else {
-            complaints.push(
-                "--number-format fixed has no effect but on --kind rls: leave one of them out"
-                    .to_owned(),
-            );
-        }
+    if options.number_format == WordFormat::Fixed && options.kind == Kind::Rls {
+        complaints.extend(of_fixed(given, &["division"]));
     }
     complaints
 }
@@ -176,15 +169,13 @@ fn of_fixed(given: &ArgMatches, ids: &[&str]) -> Vec<String> {
 fn of_timing(options: &TimingOptions, given: &ArgMatches) -> Vec<String> {
     let kind = options.filter.kind;
     let mut complaints = of_filter(&options.filter, given);
-    if kind == Kind::Rls && options.filter.number_format == WordFormat::Fixed {
+    if options.filter.number_format == WordFormat::Fixed {
         // Nothing but its divider can be waited for.
-        const OF_FLOAT: [&str; 4] = [
-            "adder_latency",
-            "multiplier_latency",
-            "initiation_interval",
-            "ram_ports",
-        ];
+        const OF_FLOAT: [&str; 3] = ["adder_latency", "multiplier_latency", "initiation_interval"];
         complaints.extend(of_fixed(given, &OF_FLOAT));
+        if kind == Kind::Rls {
+            complaints.extend(of_fixed(given, &["ram_ports"]));
+        }
     }
     if kind != Kind::Rls && !typed(given, &["ram_ports"]).is_empty() {
         complaints.push(
@@ -229,7 +220,7 @@ fn of_export(options: &ExportOptions, given: &ArgMatches) -> Vec<String> {
         None => of_filter(&options.filter, given),
     };
     let is_fixed = options.filter.number_format == WordFormat::Fixed;
-    if options.name.is_none() && options.filter.kind == Kind::Rls && is_fixed {
+    if options.name.is_none() && is_fixed {
         let of_float = [
             "units",
             "synth",
@@ -400,9 +391,9 @@ mod tests {
             "--number-format fixed",
         );
         assert_idle(
-            "fogbench timing --number-format fixed --kind lms",
-            &["--number-format fixed"],
-            "--kind rls",
+            "fogbench timing --number-format fixed --kind lms --adder-latency 2",
+            &["--adder-latency"],
+            "--number-format fixed",
         );
     }
 
@@ -453,6 +444,7 @@ mod tests {
             "fogbench timing --kind nlms --regularisation 1 --divider-latency 9",
             "fogbench timing --kind sign-lms --step-size 1 --divider-latency 9",
             "fogbench timing --number-format fixed --forgetting-factor 0.9 --divider-latency 9",
+            "fogbench timing --number-format fixed --kind nlms --divider-latency 9",
             "fogbench export rtl out --scenario a.toml --filter rls --samples 20 --trace-samples 5",
             "fogbench export rtl out --scenario a.toml --kind lms --taps 8 --step-size 0.1",
             "fogbench export waveform out --stimulus a.csv --column 2 --samples 20 --trace-samples 20",

@@ -12,7 +12,7 @@ use crate::cli::options::numbers::within;
 pub(in crate::cli) struct WordLengthOptions {
     /// Scenario whose gyro gives the words
     pub(in crate::cli) path: PathBuf,
-    /// Filter of the scenario, of recursive least squares; fixed-point words that it has are the start
+    /// Filter of the scenario, rls, lms or sign_lms; fixed-point words that it has are the start
     #[arg(long = "filter", value_name = "NAME")]
     pub(in crate::cli) name: String,
     /// Override a key of the scenario; `filter.<name>.<key>` reaches into a filter

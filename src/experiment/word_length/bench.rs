@@ -2,13 +2,12 @@
 
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{first_words, motion, stamp_s};
-use crate::filters::hardware::PipelineSettings;
-use crate::filters::{FilterKind, FilterSettings as _, RlsFilterConfig, RlsWords};
+use crate::filters::{FilterKind, FixedWords, HardwareWords};
 use crate::fpga::FpgaError;
 use crate::gyro::GyroError;
 use crate::metrics::{Motion, SwingClock, fit_swing, overlapping_allan_at};
 use crate::units::s_to_us;
-use crate::vocabulary::{NumberFormat, Pipeline, WordFormat};
+use crate::vocabulary::NumberFormat;
 
 /// Averaging time at which noise is compared, s.
 const ALLAN_S: f64 = 0.1;
@@ -28,7 +27,7 @@ pub struct WordLengthLimits {
 #[derive(Debug, thiserror::Error)]
 pub enum WordLengthError {
     /// No such filter.
-    #[error("there is no filter `{name}` of recursive least squares: expected one of {known}")]
+    #[error("there is no filter `{name}` with fixed-point hardware: expected one of {known}")]
     NoFilter {
         /// Name that was given.
         name: String,
@@ -51,7 +50,7 @@ pub enum WordLengthError {
 #[non_exhaustive]
 pub struct WordLengthTrial {
     /// The words.
-    pub words: RlsWords,
+    pub words: FixedWords,
     /// Ratio of the Allan deviations at 0.1 s to that of binary64; none of a filter that failed.
     pub arw_ratio: Option<f64>,
     /// Delay minus that of binary64, us; none without a swing and of a filter that failed.
@@ -66,7 +65,8 @@ pub struct WordLengthTrial {
 
 /// The words of the gyro and what the filter makes of them in binary64.
 pub(super) struct Bench {
-    config: RlsFilterConfig,
+    kind: FilterKind,
+    words: FixedWords,
     input: Vec<f64>,
     warm_up: usize,
     period_s: f64,
@@ -98,19 +98,19 @@ impl Bench {
         limits: WordLengthLimits,
     ) -> Result<Self, WordLengthError> {
         let scenario = &plan.resolved().scenario;
-        let of_rls = scenario
-            .filters
-            .iter()
-            .filter_map(|filter| match &filter.kind {
-                FilterKind::Rls(config) => Some((filter.name.as_str(), config)),
-                _ => None,
-            });
-        let found = of_rls.clone().find(|(known, _)| *known == name);
-        let Some((_, config)) = found else {
-            let known: Vec<&str> = of_rls.map(|(known, _)| known).collect();
+        let fixed = scenario.filters.iter().filter_map(|filter| {
+            let words = filter.kind.settings().fixed_words()?;
+            Some((filter, words))
+        });
+        let found = fixed.clone().find(|(filter, _)| filter.name == name);
+        let Some((filter, words)) = found else {
+            let known: Vec<&str> = fixed.map(|(filter, _)| filter.name.as_str()).collect();
             return Err(WordLengthError::NoFilter {
                 name: name.to_owned(),
-                known: known.join(", "),
+                known: match known.as_slice() {
+                    [] => "none of this scenario".to_owned(),
+                    known => known.join(", "),
+                },
             });
         };
         let period_s = plan.sample_period_s();
@@ -119,12 +119,9 @@ impl Bench {
             .survive_s
             .map_or(0, |life_s| samples(life_s / period_s));
         let input = first_words(scenario, asked.max(length.total()))?;
-        let config = RlsFilterConfig {
-            pipeline: Pipeline::Fpga,
-            ..config.clone()
-        };
         let mut bench = Self {
-            config,
+            kind: filter.kind.clone(),
+            words,
             input,
             warm_up: length.warm_up,
             period_s,
@@ -132,11 +129,7 @@ impl Bench {
             limits,
             twin: Figures::default(),
         };
-        let float = RlsFilterConfig {
-            number_format: WordFormat::Float(NumberFormat::Binary64),
-            ..bench.config.clone()
-        };
-        let filtered = bench.run(&float)?;
+        let filtered = bench.run(&HardwareWords::Float(NumberFormat::Binary64))?;
         if let Some((_, message)) = filtered.failure {
             return Err(WordLengthError::Twin(message));
         }
@@ -145,8 +138,13 @@ impl Bench {
     }
 
     /// The words that the filter has, or those of the reference.
-    pub(super) fn words(&self) -> RlsWords {
-        self.config.words()
+    pub(super) fn words(&self) -> FixedWords {
+        self.words.clone()
+    }
+
+    /// Table of the filter's kind in a scenario.
+    pub(super) fn kind(&self) -> &'static str {
+        self.kind.name()
     }
 
     /// Samples that every trial filters.
@@ -155,13 +153,8 @@ impl Bench {
     }
 
     /// Tries some words.
-    pub(super) fn trial(&self, words: RlsWords) -> Result<WordLengthTrial, WordLengthError> {
-        let config = RlsFilterConfig {
-            number_format: WordFormat::Fixed,
-            fixed: Some(words.clone()),
-            ..self.config.clone()
-        };
-        let filtered = self.run(&config)?;
+    pub(super) fn trial(&self, words: FixedWords) -> Result<WordLengthTrial, WordLengthError> {
+        let filtered = self.run(&HardwareWords::Fixed(words.clone()))?;
         let stamp_s = |sample: u64| stamp_s(sample, self.period_s);
         let diverged_at_s = filtered.failure.map(|(sample, _)| stamp_s(sample));
         let figures = match diverged_at_s {
@@ -190,8 +183,9 @@ impl Bench {
     }
 
     /// Filters the words, as far as the filter goes.
-    fn run(&self, config: &RlsFilterConfig) -> Result<Filtered, FpgaError> {
-        let settings: PipelineSettings = config.hardware().expect("pipeline = \"fpga\" is set");
+    fn run(&self, words: &HardwareWords) -> Result<Filtered, FpgaError> {
+        let settings = self.kind.settings().hardware_on(words);
+        let settings = settings.expect("a filter with fixed-point words has hardware");
         let mut filter = settings.filter(self.warm_up as u64)?;
         let mut outputs = Vec::with_capacity(self.input.len());
         let mut failure = None;

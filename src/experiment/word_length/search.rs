@@ -2,7 +2,7 @@
 
 use super::bench::{Bench, WordLengthError, WordLengthLimits, WordLengthTrial};
 use crate::experiment::plan::Plan;
-use crate::filters::RlsWords;
+use crate::filters::FixedWords;
 
 /// Most bits of a word.
 const BITS_MAX: u32 = 48;
@@ -11,6 +11,8 @@ const BITS_MAX: u32 = 48;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct WordLengths {
+    /// Table of the filter's kind in a scenario.
+    pub kind: &'static str,
     /// Samples that every trial filtered.
     pub samples: usize,
     /// One length for all signals, from the shortest on, to the first that does.
@@ -49,7 +51,7 @@ fn costs(trial: &WordLengthTrial) -> [f64; 4] {
     ]
 }
 
-/// Searches the shortest words of a filter of recursive least squares.
+/// Searches the shortest words of a filter.
 ///
 /// # Errors
 /// No such filter, constants that no words hold, a gyro without words.
@@ -60,12 +62,13 @@ pub fn word_lengths(
 ) -> Result<WordLengths, WordLengthError> {
     let bench = Bench::new(plan, filter, limits)?;
     let mut found = WordLengths {
+        kind: bench.kind(),
         samples: bench.samples(),
         uniform: Vec::new(),
         greedy: Vec::new(),
     };
     let given = bench.words();
-    let integer_bits = given.signals().named().map(|(_, word)| word.integer_bits);
+    let integer_bits = given.signals.iter().map(|(_, word)| word.integer_bits);
     for bits in integer_bits.max().unwrap_or(1).max(2)..=BITS_MAX {
         let trial = match bench.trial(given.clone().uniform(bits)) {
             // Too short for a constant; what no length holds is told at the last one.
@@ -80,7 +83,7 @@ pub fn word_lengths(
     let Some(mut best) = found.uniform.last().filter(|trial| trial.does).cloned() else {
         return Ok(found);
     };
-    for (signal, word) in given.signals().named() {
+    for (signal, word) in &given.signals {
         best = shortened(&bench, best, signal, word.integer_bits)?;
         found.greedy.push(best.clone());
     }
@@ -94,12 +97,7 @@ fn shortened(
     signal: &str,
     integer_bits: u32,
 ) -> Result<WordLengthTrial, WordLengthError> {
-    let bits = |words: &RlsWords| {
-        let mut signals = words.signals().named();
-        signals
-            .find(|(name, _)| *name == signal)
-            .map_or(0, |(_, word)| word.word_bits)
-    };
+    let bits = |words: &FixedWords| words.word(signal).word_bits;
     // A word of integer bits alone may do.
     let mut too_short = integer_bits.saturating_sub(1).max(1);
     while bits(&best.words) > too_short + 1 {

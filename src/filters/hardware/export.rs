@@ -130,15 +130,20 @@ fn export_fixed(
             format: "fixed point",
         });
     }
+    let config = settings.config()?;
+    let format = config.as_pipeline().desired();
+    let full_scale = settings.full_scale_deg_per_h;
     let words = stimulus.words.iter();
     let export = FixedExport {
-        config: settings.config()?,
-        desired: settings.desired,
-        input_lag_samples: settings.input_lag_samples,
-        output_register: settings.output_register,
-        samples: words.map(|word| settings.stored(*word).code).collect(),
-        full_scale: format!("{} deg/h", settings.full_scale_deg_per_h),
-        clock_mhz: settings.clock_mhz,
+        config,
+        desired: settings.twin.desired,
+        input_lag_samples: settings.twin.input_lag_samples,
+        output_register: settings.twin.output_register,
+        samples: words
+            .map(|word| format.of(word / full_scale).code)
+            .collect(),
+        full_scale: format!("{full_scale} deg/h"),
+        clock_mhz: settings.twin.clock_mhz,
         trace_samples,
     };
     match form {

@@ -1,141 +1,130 @@
 //! A fixed-point pipeline on the bench: its constants, its timing and the filter they stand for.
 
 use super::filter::HardwareFilter;
+use super::fixed_core::{FixedConstant, constants_of, fixed_core};
 use super::monitor::{HealthSummary, Monitor};
 use super::settings::FloatSettings;
 use super::timing::PipelineTiming;
 use crate::filters::common::{
     Complaints, Divergence, DivergenceKind, Fault, Filter, Life, Output, Register, Watch,
 };
+use crate::filters::words::FixedWords;
 use crate::fpga::FpgaError;
 use crate::fpga::engine::InverseCorrelation;
 use crate::fpga::fixed::{
-    FixedFrontEnd, FixedRlsConfig, FixedRlsEngine, FixedRlsSettings, Stored, fixed_board_usage,
-    fixed_rls_usage,
+    FixedConfig, FixedCoreSettings, FixedEngine, FixedFrontEnd, Format, SignalName,
+    fixed_board_usage, fixed_usage,
 };
 use crate::fpga::health::{Warning, wind_up_warning};
-use crate::fpga::kinds::CoreSettings;
-use crate::fpga::rls::{RlsCore, RlsSettings};
 use crate::signal::FilterShape;
-use crate::vocabulary::{
-    DesiredSignal, Division, NumberFormat, OutputRegister, UpdateOrder, UpdateSign,
-};
 
 /// A fixed-point pipeline with its front end, before any check.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedSettings {
     /// The filter, its constants in the full scale.
-    pub core: FixedRlsSettings,
+    pub core: FixedCoreSettings,
     /// Word that the value 1 stands for, deg/h.
     pub full_scale_deg_per_h: f64,
-    /// What the filter is asked to reproduce.
-    pub desired: DesiredSignal,
-    /// Samples by which the regressors lag the newest sample.
-    pub input_lag_samples: usize,
-    /// When the result appears.
-    pub output_register: OutputRegister,
-    /// Clock, MHz.
-    pub clock_mhz: f64,
+    /// The same filter in binary64; front end, register and clock are common to both.
+    pub twin: FloatSettings,
 }
 
 impl FixedSettings {
+    /// The filter of the books on fixed-point words.
+    pub(super) fn of(float: FloatSettings, words: &FixedWords) -> Self {
+        let (core, twin) = fixed_core(&float.core, words);
+        Self {
+            core,
+            full_scale_deg_per_h: words.full_scale_deg_per_h,
+            twin: FloatSettings {
+                core: twin,
+                ..float
+            },
+        }
+    }
+
     /// The constants in their words.
     ///
     /// # Errors
     /// What the pipeline refuses.
-    pub fn config(&self) -> Result<FixedRlsConfig, FpgaError> {
-        FixedRlsConfig::new(self.core)
+    pub fn config(&self) -> Result<FixedConfig, FpgaError> {
+        self.core.config()
     }
 
-    /// The hold registers in front of the core.
-    pub(super) fn front_end(&self) -> FixedFrontEnd {
-        FixedFrontEnd::new(self.core.formats, self.desired, self.input_lag_samples)
-    }
-
-    /// The word of d for a sample.
-    pub(super) fn stored(&self, word_deg_per_h: f64) -> Stored {
-        let format = self.core.formats.desired;
-        format.of(word_deg_per_h / self.full_scale_deg_per_h)
-    }
-
-    /// The same filter in binary64.
-    fn twin(&self) -> FloatSettings {
-        let full_scale = self.full_scale_deg_per_h;
-        let delta = self.core.initial_inverse_correlation / full_scale / full_scale;
-        FloatSettings {
-            core: CoreSettings::Rls(RlsCore {
-                settings: RlsSettings {
-                    tap_count: self.core.tap_count,
-                    forgetting_factor: self.core.forgetting_factor,
-                    initial_inverse_correlation: delta,
-                    division: Division::Reciprocal,
-                    update_sign: UpdateSign::Corrected,
-                },
-                order: UpdateOrder::Schedule,
-            }),
-            desired: self.desired,
-            input_lag_samples: self.input_lag_samples,
-            output_register: self.output_register,
-            format: NumberFormat::Binary64,
-            clock_mhz: self.clock_mhz,
-        }
+    /// Format of a signal; none of one that the pipeline does not have.
+    pub(super) fn format_of(&self, name: SignalName) -> Option<Format> {
+        let signals = self.core.signals();
+        let found = signals.iter().find(|signal| signal.name == name);
+        found.map(|signal| signal.format)
     }
 
     pub(super) fn timing(&self) -> Result<PipelineTiming, FpgaError> {
         let config = self.config()?;
-        let (usage, board) = (fixed_rls_usage(config), fixed_board_usage(config));
-        Ok(PipelineTiming::of(usage, board, self.clock_mhz))
+        let pipeline = config.as_pipeline();
+        let (usage, board) = (fixed_usage(pipeline), fixed_board_usage(pipeline));
+        Ok(PipelineTiming::of(usage, board, self.twin.clock_mhz))
     }
 
     /// Blames the key that a refused constant comes from.
     pub(super) fn complain(&self, error: &FpgaError, complaints: &mut Complaints) {
+        let (FpgaError::DoesNotFit { name, value, .. } | FpgaError::OutOfRange { name, value, .. }) =
+            error
+        else {
+            return complaints.table(&error.to_string());
+        };
+        let mut constants = constants_of(&self.core).iter();
+        let Some(constant) = constants.find(|constant| constant.name == *name) else {
+            return complaints.table(&error.to_string());
+        };
         let full_scale = self.full_scale_deg_per_h;
-        let per_square = |value: f64| value / full_scale / full_scale;
-        let delta = self.core.initial_inverse_correlation;
+        let FixedConstant { unit, power, .. } = constant;
+        let in_unit = |value: f64| format!("{:.4e}{unit}", value * full_scale.powi(*power));
+        let table = format!("fixed.{}", constant.signal.name().to_lowercase());
         let advice = match error {
-            FpgaError::DoesNotFit { value, limit, .. } if value.to_bits() == delta.to_bits() => {
+            FpgaError::DoesNotFit { limit, .. } => {
                 format!(
-                    "less than {:.4e} (deg/h)^-2, or more integer bits in fixed.r",
-                    per_square(*limit)
+                    "less than {}, or more integer bits in {table}",
+                    in_unit(*limit)
                 )
             }
-            FpgaError::OutOfRange { value, .. } if value.to_bits() == delta.to_bits() => {
-                let step = self.core.formats.inverse.value(1);
-                format!(
-                    "{:.4e} (deg/h)^-2 or more, or more bits in fixed.r",
-                    per_square(step)
-                )
+            _ => {
+                let format = self.format_of(constant.signal);
+                let step = format.map_or(0.0, |format| format.value(1));
+                format!("{} or more, or more bits in {table}", in_unit(step))
             }
-            _ => return complaints.table(&error.to_string()),
         };
         let message = format!(
-            "= {:.4e} (deg/h)^-2, at a full scale of {full_scale} deg/h: {error}; use {advice}",
-            per_square(delta)
+            "= {}, at a full scale of {full_scale} deg/h: {error}; use {advice}",
+            in_unit(*value)
         );
-        complaints.key("initial_inverse_correlation", &message);
+        complaints.key(constant.key, &message);
     }
 
     pub(super) fn filter(
         &self,
         warm_up_samples: u64,
     ) -> Result<Box<dyn HardwareFilter>, FpgaError> {
-        let engine = FixedRlsEngine::new(self.config()?);
+        let config = self.config()?;
+        let pipeline = config.as_pipeline();
+        let twin = &self.twin;
+        let (desired, lag) = (twin.desired, twin.input_lag_samples);
         Ok(Box::new(FixedPipelineFilter {
-            settings: *self,
-            front_end: self.front_end(),
-            weights: vec![0.0; self.core.tap_count],
-            engine,
-            register: Register::new(self.output_register),
+            full_scale_deg_per_h: self.full_scale_deg_per_h,
+            has_signal: SignalName::ALL.map(|name| self.format_of(name).is_some()),
+            desired: pipeline.desired(),
+            weight: pipeline.weight(),
+            output: pipeline.output(),
+            front_end: FixedFrontEnd::new(pipeline.input(), pipeline.desired(), desired, lag),
+            weights: vec![0.0; pipeline.tap_count()],
+            engine: pipeline.engine(),
+            register: Register::new(twin.output_register),
             watch: Watch::new(),
-            monitor: Monitor::new(self.core.tap_count, warm_up_samples),
-            twin: Twin::new(self.twin().filter(0)?, warm_up_samples),
+            monitor: Monitor::new(pipeline.tap_count(), warm_up_samples),
+            twin: Twin::new(twin.filter(0)?, warm_up_samples),
             desired_overflows: 0,
+            shape: twin.shape(),
             life: Life::default(),
         }))
-    }
-
-    fn shape(&self) -> FilterShape {
-        self.twin().shape()
     }
 }
 
@@ -143,8 +132,8 @@ impl FixedSettings {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FixedSummary {
-    /// Words beyond the ends of each signal, in the order of the formats.
-    pub overflows: [u64; 8],
+    /// Words beyond the ends of each signal, in the order of their names; none of one that is not there.
+    pub overflows: [Option<u64>; SignalName::ALL.len()],
     /// First sample, warm-up included, with a denominator or a diagonal element of R at or below zero.
     pub indefinite_at: Option<u64>,
     /// Root of the mean square of the output's distance from the twin's, over that of the twin's output,
@@ -216,32 +205,38 @@ impl Twin {
 
 /// Fixed-point pipeline behind its front end.
 struct FixedPipelineFilter {
-    settings: FixedSettings,
+    full_scale_deg_per_h: f64,
+    /// Whether the pipeline has each signal, in the order of their names.
+    has_signal: [bool; SignalName::ALL.len()],
+    /// Formats of d, W and y.
+    desired: Format,
+    weight: Format,
+    output: Format,
     front_end: FixedFrontEnd,
-    engine: FixedRlsEngine,
+    engine: Box<dyn FixedEngine + Send>,
     weights: Vec<f64>,
     register: Register,
     watch: Watch,
     monitor: Monitor,
     twin: Twin,
     desired_overflows: u64,
+    shape: FilterShape,
     life: Life,
 }
 
 impl FixedPipelineFilter {
     fn advance(&mut self, input: f64, sample: u64) -> Result<Output, Fault> {
-        let formats = self.settings.core.formats;
-        let full_scale = self.settings.full_scale_deg_per_h;
+        let full_scale = self.full_scale_deg_per_h;
         let weight_sum = self.weights.iter().sum();
-        let stored = self.settings.stored(input);
+        let stored = self.desired.of(input / full_scale);
         self.desired_overflows += u64::from(stored.overflowed);
         let pair = self.front_end.pair(stored.code);
         let code = self.engine.process(pair);
         for (held, word) in self.weights.iter_mut().zip(self.engine.weights()) {
-            *held = formats.weight.value(*word);
+            *held = self.weight.value(*word);
         }
         let result = Output {
-            value_deg_per_h: formats.output.value(code) * full_scale,
+            value_deg_per_h: self.output.value(code) * full_scale,
             weight_sum,
         };
         let output = self.register.clock(result);
@@ -257,14 +252,16 @@ impl FixedPipelineFilter {
     /// Notes the state of the matrix. That it is no longer definite does not end a filter whose words
     /// have ends.
     fn look(&mut self, sample: u64) {
-        let format = self.settings.core.formats.inverse;
-        let codes = self.engine.inverse_correlation();
-        let matrix: Vec<f64> = codes.iter().map(|code| format.value(*code)).collect();
+        let Some(inverse) = self.engine.inverse_correlation() else {
+            return;
+        };
+        let codes = inverse.codes.iter();
+        let matrix: Vec<f64> = codes.map(|code| inverse.format.value(*code)).collect();
         let inverse = InverseCorrelation {
             matrix: &matrix,
-            tap_count: self.settings.core.tap_count,
-            delta: self.settings.core.initial_inverse_correlation,
-            alpha: self.settings.core.forgetting_factor,
+            tap_count: self.weights.len(),
+            delta: inverse.delta,
+            alpha: inverse.alpha,
         };
         drop(self.monitor.look(inverse, sample));
     }
@@ -283,7 +280,7 @@ impl Filter for FixedPipelineFilter {
     }
 
     fn shape(&self) -> FilterShape {
-        self.settings.shape()
+        self.shape.clone()
     }
 }
 
@@ -294,23 +291,22 @@ impl HardwareFilter for FixedPipelineFilter {
     }
 
     fn wind_up(&self) -> Option<Warning> {
-        wind_up_warning(self.monitor.latest()?, self.settings.core.forgetting_factor)
+        let inverse = self.engine.inverse_correlation()?;
+        wind_up_warning(self.monitor.latest()?, inverse.alpha)
     }
 
     fn fixed(&self) -> Option<FixedSummary> {
         let health = self.engine.health();
         let [input, mean] = self.front_end.overflows();
         Some(FixedSummary {
-            overflows: [
-                input,
-                mean + self.desired_overflows,
-                health.intermediate_overflows,
-                health.denominator_overflows,
-                health.gain_overflows,
-                health.inverse_overflows,
-                health.weight_overflows,
-                health.output_overflows,
-            ],
+            overflows: SignalName::ALL.map(|name| {
+                let count = match name {
+                    SignalName::X => input,
+                    SignalName::D => mean + self.desired_overflows,
+                    of_core => health.overflows.of(of_core),
+                };
+                self.has_signal[name as usize].then_some(count)
+            }),
             indefinite_at: health.indefinite_at,
             error_over_signal: self.twin.error_over_signal(),
         })

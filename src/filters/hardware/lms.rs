@@ -1,16 +1,16 @@
 //! Least mean squares in hardware.
 
-use super::pipeline::PipelineSettings;
-use super::settings::FloatSettings;
+use super::pipeline::{Around, PipelineSettings};
 use crate::filters::lms::LmsFilterConfig;
+use crate::filters::words::HardwareWords;
 use crate::fpga::kinds::CoreSettings;
 use crate::fpga::lms::{DesiredSource, LmsSettings};
 
 /// The pipeline that the keys stand for.
-pub(in crate::filters) fn lms(config: &LmsFilterConfig) -> PipelineSettings {
+pub(in crate::filters) fn lms(config: &LmsFilterConfig, words: &HardwareWords) -> PipelineSettings {
     let desired = config.desired;
     let input_lag_samples = config.input_lag_samples as usize;
-    let settings = LmsSettings {
+    let core = CoreSettings::Lms(LmsSettings {
         tap_count: config.taps as usize,
         step_size: config.step_size,
         regularisation: config
@@ -22,13 +22,12 @@ pub(in crate::filters) fn lms(config: &LmsFilterConfig) -> PipelineSettings {
             _ => DesiredSource::Port,
         },
         update_sign: config.update_sign,
-    };
-    PipelineSettings::Float(FloatSettings {
-        core: CoreSettings::Lms(settings),
+    });
+    let around = Around {
         desired,
         input_lag_samples,
         output_register: config.output_register,
-        format: config.number_format,
         clock_mhz: config.clock_mhz,
-    })
+    };
+    PipelineSettings::of(core, around, words)
 }

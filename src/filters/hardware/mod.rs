@@ -9,6 +9,7 @@
 mod export;
 mod filter;
 mod fixed;
+mod fixed_core;
 mod lms;
 mod monitor;
 mod pipeline;
@@ -23,8 +24,7 @@ pub use filter::HardwareFilter;
 pub use fixed::{FixedSettings, FixedSummary};
 pub(super) use lms::lms;
 pub use monitor::HealthSummary;
-pub use pipeline::{PipelineSettings, has_hardware, kind_names};
-pub use rls::fixed_rls;
+pub use pipeline::{Around, PipelineSettings, has_hardware, kind_names};
 pub(super) use rls::rls;
 pub use settings::FloatSettings;
 pub(super) use sign_lms::sign_lms;

@@ -5,13 +5,14 @@ use super::fixed::FixedSettings;
 use super::settings::FloatSettings;
 use super::timing::PipelineTiming;
 use crate::filters::common::Complaints;
+use crate::filters::words::HardwareWords;
 use crate::fpga::FpgaError;
-use crate::fpga::fixed::fixed_rls_stalled_clocks;
+use crate::fpga::fixed::SignalName;
 use crate::fpga::health::Warning;
-use crate::fpga::kinds::KINDS;
+use crate::fpga::kinds::{CoreSettings, KINDS};
 use crate::fpga::timing::Units;
 use crate::units::s_to_us;
-use crate::vocabulary::OutputRegister;
+use crate::vocabulary::{DesiredSignal, NumberFormat, OutputRegister};
 
 /// A hardware pipeline with its front end, before any check.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +21,19 @@ pub enum PipelineSettings {
     Float(FloatSettings),
     /// On fixed-point words.
     Fixed(FixedSettings),
+}
+
+/// What stands around a core, and its clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Around {
+    /// What the filter is asked to reproduce.
+    pub desired: DesiredSignal,
+    /// Samples by which the regressors lag the newest sample.
+    pub input_lag_samples: usize,
+    /// When the result appears.
+    pub output_register: OutputRegister,
+    /// Clock, MHz.
+    pub clock_mhz: f64,
 }
 
 /// Names of the kinds of filters that have a hardware pipeline.
@@ -34,12 +48,31 @@ pub fn has_hardware(kind: &str) -> bool {
 }
 
 impl PipelineSettings {
+    /// A core on some words.
+    #[must_use]
+    pub fn of(core: CoreSettings, around: Around, words: &HardwareWords) -> Self {
+        let float = |format| FloatSettings {
+            core,
+            desired: around.desired,
+            input_lag_samples: around.input_lag_samples,
+            output_register: around.output_register,
+            format,
+            clock_mhz: around.clock_mhz,
+        };
+        match words {
+            HardwareWords::Float(format) => Self::Float(float(*format)),
+            HardwareWords::Fixed(words) => {
+                Self::Fixed(FixedSettings::of(float(NumberFormat::Binary64), words))
+            }
+        }
+    }
+
     /// Number of weights.
     #[must_use]
     pub fn tap_count(&self) -> usize {
         match self {
             Self::Float(settings) => settings.tap_count(),
-            Self::Fixed(settings) => settings.core.tap_count,
+            Self::Fixed(settings) => settings.core.tap_count(),
         }
     }
 
@@ -48,7 +81,7 @@ impl PipelineSettings {
     pub fn output_register(&self) -> OutputRegister {
         match self {
             Self::Float(settings) => settings.output_register,
-            Self::Fixed(settings) => settings.output_register,
+            Self::Fixed(settings) => settings.twin.output_register,
         }
     }
 
@@ -57,7 +90,7 @@ impl PipelineSettings {
     pub fn clock_mhz(&self) -> f64 {
         match self {
             Self::Float(settings) => settings.clock_mhz,
-            Self::Fixed(settings) => settings.clock_mhz,
+            Self::Fixed(settings) => settings.twin.clock_mhz,
         }
     }
 
@@ -72,7 +105,16 @@ impl PipelineSettings {
     pub fn has_matrix(&self) -> bool {
         match self {
             Self::Float(settings) => settings.core.kind().has_matrix,
-            Self::Fixed(_) => true,
+            Self::Fixed(settings) => settings.core.kind().has_matrix,
+        }
+    }
+
+    /// Whether its fixed-point words have a signal; floating-point words have none of them.
+    #[must_use]
+    pub fn has_signal(&self, name: SignalName) -> bool {
+        match self {
+            Self::Float(_) => false,
+            Self::Fixed(settings) => settings.format_of(name).is_some(),
         }
     }
 
@@ -106,11 +148,9 @@ impl PipelineSettings {
             Self::Float(settings) => settings.core.stalled_clocks(units),
             Self::Fixed(settings) => {
                 units.check()?;
+                let config = settings.config()?;
                 let divider_clocks = units.divider.latency_clocks;
-                Ok(fixed_rls_stalled_clocks(
-                    settings.core.tap_count,
-                    divider_clocks,
-                ))
+                Ok(config.as_pipeline().stalled_clocks(divider_clocks))
             }
         }
     }

@@ -6,9 +6,10 @@ use crate::declare::table;
 use crate::filters::common::{Complaints, Filter};
 use crate::filters::hardware::{self, PipelineSettings};
 use crate::filters::kind::{Condition, ExpectedWords, FilterSettings};
+use crate::filters::words::{FixedWords, HardwareWords, SignLmsWords};
 use crate::units::{deg_per_s_to_deg_per_h, rad_per_s_to_deg_per_h};
 use crate::vocabulary::{
-    ConstantUnit, InitialWeights, NumberFormat, OutputRegister, Pipeline, SignLmsForm,
+    ConstantUnit, InitialWeights, OutputRegister, Pipeline, SignLmsForm, WordFormat,
 };
 
 /// Step at and beyond which the normalised forms are unstable in any input.
@@ -52,11 +53,13 @@ table! {
         /// Arithmetic: the recursion of the books, or the pipeline of the hardware with its bits and clocks
         /// (not for form = "unity-gain").
         pipeline: Pipeline = "textbook";
-        /// Words of the hardware; -ftz flushes subnormal numbers to zero. This key and those below only
-        /// matter with pipeline = "fpga". Source of the default: that of the other filters.
-        number_format: NumberFormat = "binary64";
+        /// Words of the hardware; -ftz flushes subnormal numbers to zero, "fixed" has a table of its own. This
+        /// key and those below only matter with pipeline = "fpga". Source of the default: that of the other
+        /// filters.
+        number_format: WordFormat = "binary64";
         /// Clock of the hardware. Source of the default: that of the other filters.
         clock_mhz: f64 = 40.0, in 1e-3..=10000.0, "MHz";
+        fixed: Option<SignLmsWords>;
     }
 }
 
@@ -86,12 +89,31 @@ impl SignLmsFilterConfig {
     }
 }
 
+impl SignLmsFilterConfig {
+    /// The words of its table, or those of the reference.
+    fn words(&self) -> FixedWords {
+        let table = self.fixed.as_ref();
+        table.map_or_else(
+            || SignLmsWords::reference().resolved(),
+            SignLmsWords::resolved,
+        )
+    }
+}
+
 impl FilterSettings for SignLmsFilterConfig {
     fn conditions() -> &'static [Condition<Self>] {
         const {
             &[
                 Condition::hardware("number_format"),
                 Condition::hardware("clock_mhz"),
+                Condition {
+                    key: "norm_recompute_samples",
+                    needs: "the recursive norm of fixed-point words is exact; another number_format",
+                    acts: |settings| {
+                        !matches!(settings.hardware(), Some(PipelineSettings::Fixed(_)))
+                    },
+                },
+                Condition::fixed(),
             ]
         }
     }
@@ -104,6 +126,9 @@ impl FilterSettings for SignLmsFilterConfig {
                 self.step
             ),
         );
+        }
+        if let Some(PipelineSettings::Fixed(_)) = self.hardware() {
+            self.words().check(complaints);
         }
         let recompute = self.norm_recompute_samples;
         if recompute != 0 && recompute < self.taps {
@@ -132,7 +157,11 @@ impl FilterSettings for SignLmsFilterConfig {
     }
 
     fn notes(&self, words: &ExpectedWords) -> Vec<String> {
-        notes::notes(self, words)
+        let mut notes = notes::notes(self, words);
+        if let Some(PipelineSettings::Fixed(_)) = self.hardware() {
+            notes.extend(self.words().notes(words.peak_deg_per_h));
+        }
+        notes
     }
 
     fn build(&self, _sample_period_s: f64) -> Option<Box<dyn Filter>> {
@@ -140,7 +169,16 @@ impl FilterSettings for SignLmsFilterConfig {
     }
 
     fn hardware(&self) -> Option<PipelineSettings> {
-        (self.pipeline == Pipeline::Fpga).then(|| hardware::sign_lms(self))
+        let words = HardwareWords::of(self.number_format, || self.words());
+        (self.pipeline == Pipeline::Fpga).then(|| hardware::sign_lms(self, &words))
+    }
+
+    fn fixed_words(&self) -> Option<FixedWords> {
+        (self.form != SignLmsForm::UnityGain).then(|| self.words())
+    }
+
+    fn hardware_on(&self, words: &HardwareWords) -> Option<PipelineSettings> {
+        (self.form != SignLmsForm::UnityGain).then(|| hardware::sign_lms(self, words))
     }
 }
 

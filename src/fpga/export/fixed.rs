@@ -10,19 +10,21 @@ use super::top::TOP_SAMPLES;
 use super::vectors::write_text;
 use crate::fpga::error::FpgaError;
 use crate::fpga::fixed::{
-    CodePair, FixedClock, FixedFrontEnd, FixedRlsConfig, FixedRlsPipeline, FixedRlsState,
-    PortAccess, fixed_rls_clocks_per_sample,
+    CodePair, FixedClock, FixedClocked, FixedConfig, FixedFrontEnd, FixedKind, PortAccess,
 };
 use crate::vocabulary::{DesiredSignal, OutputRegister};
 
-/// Files of the RTL beside those of the export itself.
-const SOURCES: [(&str, &str); 9] = [
-    ("README.txt", include_str!("rtl/README_fixed.txt")),
-    ("rls_fixed_core.v", include_str!("rtl/rls_fixed_core.v")),
+/// Testbench of every fixed-point core, which goes under the name of its kind.
+const BENCH: &str = include_str!("rtl/tb_fixed.v");
+
+/// Description of the folder; words in braces stand for what the kind says.
+const README: &str = include_str!("rtl/README_fixed.txt");
+
+/// Files of the RTL of every kind beside those of the export itself.
+const SOURCES: [(&str, &str); 6] = [
     ("fx.v", include_str!("rtl/fx.v")),
     ("sp_ram.v", include_str!("rtl/sp_ram.v")),
     ("fx_front_end.v", include_str!("rtl/fx_front_end.v")),
-    ("tb_rls_fixed.v", include_str!("rtl/tb_rls_fixed.v")),
     ("top_bench.v", include_str!("rtl/top_bench.v")),
     ("tb_defaults.vh", include_str!("rtl/tb_defaults.vh")),
     ("run.sh", include_str!("rtl/run.sh")),
@@ -32,7 +34,7 @@ const SOURCES: [(&str, &str); 9] = [
 #[derive(Clone, Debug, PartialEq)]
 pub struct FixedExport {
     /// The core.
-    pub config: FixedRlsConfig,
+    pub config: FixedConfig,
     /// What d reproduces.
     pub desired: DesiredSignal,
     /// Samples by which x is older than the newest.
@@ -53,8 +55,10 @@ impl FixedExport {
     /// The pairs behind the front end.
     #[must_use]
     pub fn pairs(&self) -> Vec<CodePair> {
-        let formats = *self.config.formats();
-        let mut front_end = FixedFrontEnd::new(formats, self.desired, self.input_lag_samples);
+        let pipeline = self.config.as_pipeline();
+        let (input, desired) = (pipeline.input(), pipeline.desired());
+        let mut front_end =
+            FixedFrontEnd::new(input, desired, self.desired, self.input_lag_samples);
         let samples = self.samples.iter();
         samples.map(|sample| front_end.pair(*sample)).collect()
     }
@@ -76,9 +80,11 @@ pub fn write_fixed_vectors(dir: &Path, export: &FixedExport) -> Result<Vec<PathB
     crate::fpga::check::check_clock(export.clock_mhz)?;
     fs::create_dir_all(dir).map_err(|cause| FpgaError::write(dir, cause))?;
     let pairs = export.pairs();
-    let mut pipeline = FixedRlsPipeline::new(export.config);
-    let before = memories(&pipeline);
-    let (outputs, trace, rows) = simulate(&mut pipeline, &pairs, export.trace_samples);
+    let declared = export.config.as_pipeline();
+    let mut pipeline = declared.clocked();
+    let before = hex_lines(&pipeline.memories().concat());
+    let traced = export.trace_samples.min(pairs.len()) * declared.clocks_per_sample();
+    let (outputs, trace, rows) = simulate(pipeline.as_mut(), &pairs, traced);
     let words: Vec<i64> = pairs
         .iter()
         .flat_map(|pair| [pair.input, pair.desired])
@@ -88,7 +94,7 @@ pub fn write_fixed_vectors(dir: &Path, export: &FixedExport) -> Result<Vec<PathB
         (TOP_SAMPLES, hex_lines(&export.samples)),
         ("y.hex", hex_lines(&outputs)),
         ("ram_init.hex", before),
-        ("ram_final.hex", memories(&pipeline)),
+        ("ram_final.hex", hex_lines(&pipeline.memories().concat())),
         ("trace.csv", trace),
         ("params.json", fixed_json(export, rows)),
         ("params.vh", fixed_macros(export, rows)),
@@ -107,38 +113,58 @@ pub fn write_fixed_vectors(dir: &Path, export: &FixedExport) -> Result<Vec<PathB
 /// As [`write_fixed_vectors`].
 pub fn write_fixed_rtl(dir: &Path, export: &FixedExport) -> Result<Vec<PathBuf>, FpgaError> {
     let mut files = write_fixed_vectors(dir, export)?;
-    for (name, text) in SOURCES {
+    let kind = export.config.as_pipeline().kind();
+    for (name, text) in SOURCES.iter().chain(kind.sources) {
         files.push(write_text(dir, name, text)?);
     }
-    let top = fixed_top_verilog(export);
-    files.push(write_text(dir, "rls_fixed_top.v", &top)?);
+    for (name, text) in [
+        ("README.txt".to_owned(), readme(kind)),
+        (format!("tb_{}.v", kind.name), BENCH.to_owned()),
+        (format!("{}_top.v", kind.name), fixed_top_verilog(export)),
+    ] {
+        files.push(write_text(dir, &name, &text)?);
+    }
     Ok(files)
 }
 
-/// Runs the pairs back to back; outputs, rows of the trace and their number.
+/// The description of the folder of a kind.
+fn readme(kind: &FixedKind) -> String {
+    let own: Vec<&str> = kind.sources.iter().map(|(name, _)| *name).collect();
+    let mut codes = String::from(" ");
+    for (code, state) in kind.states.iter().enumerate() {
+        let entry = format!(" {code} {state}");
+        let line = codes.lines().last().unwrap_or_default();
+        if line.len() + entry.len() > 100 {
+            codes.push_str("\n ");
+        }
+        codes.push_str(&entry);
+    }
+    README
+        .replace("{kind}", kind.name)
+        .replace("{sources}", &own.join(" "))
+        .replace("{memories}", kind.memories)
+        .replace("{states}", &codes)
+}
+
+/// Runs the pairs back to back; outputs, at most `traced` rows of the trace and their number.
 fn simulate(
-    pipeline: &mut FixedRlsPipeline,
+    pipeline: &mut dyn FixedClocked,
     pairs: &[CodePair],
-    trace_samples: usize,
+    traced: usize,
 ) -> (Vec<i64>, String, usize) {
-    let period = fixed_rls_clocks_per_sample(pipeline.config().tap_count());
-    let traced = trace_samples.min(pairs.len()) * period;
     let (mut outputs, mut trace, mut rows) = (Vec::new(), String::new(), 0);
     let mut next = 0;
-    while next < pairs.len() || pipeline.registers().state != FixedRlsState::Idle {
+    while next < pairs.len() || !pipeline.is_idle() {
+        let was_idle = pipeline.is_idle();
         let clock = pipeline.tick(pairs.get(next).copied());
         next += usize::from(clock.accepted);
         outputs.extend(clock.output);
-        if clock.registers.state != FixedRlsState::Idle && rows < traced {
+        if !was_idle && rows < traced {
             write_row(&mut trace, &clock);
             rows += 1;
         }
     }
     (outputs, trace, rows)
-}
-
-fn memories(pipeline: &FixedRlsPipeline) -> String {
-    hex_lines(&[pipeline.rama(), pipeline.ramb()].concat())
 }
 
 fn hex_lines(words: &[i64]) -> String {
@@ -158,8 +184,8 @@ fn write_row(trace: &mut String, clock: &FixedClock) {
     // Writing to a string cannot fail.
     let _ = writeln!(
         trace,
-        "{},{},{},{:032x},{:032x},{:016x},{:016x},{:016x},{:016x},{:016x},{}",
-        r.state as u8,
+        "{},{},{},{:032x},{:032x},{:016x},{:016x},{:016x},{:016x},{:016x},{},{:016x},{:016x}",
+        r.state,
         port(clock.rama),
         port(clock.ramb),
         r.product,
@@ -169,24 +195,29 @@ fn write_row(trace: &mut String, clock: &FixedClock) {
         r.desired,
         r.error,
         r.output,
-        r.head
+        r.head,
+        r.gain,
+        r.intermediate
     );
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fpga::registers::ControlState as _;
+    use crate::fpga::fixed::FIXED_KINDS;
 
     #[test]
-    fn the_readme_of_fixed_point_states_files_and_state_codes() {
-        let (_, readme) = SOURCES[0];
-        let words = readme.split_whitespace().collect::<Vec<_>>().join(" ");
-        for (name, _) in SOURCES.iter().skip(1) {
-            assert!(words.contains(name), "{name}");
-        }
-        for (code, state) in FixedRlsState::NAMES.iter().enumerate() {
-            assert!(words.contains(&format!("{code} {state}")), "{code} {state}");
+    fn the_readme_of_every_fixed_point_kind_states_files_and_state_codes() {
+        for kind in FIXED_KINDS {
+            let readme = readme(kind);
+            let words = readme.split_whitespace().collect::<Vec<_>>().join(" ");
+            for (name, _) in SOURCES.iter().chain(kind.sources) {
+                assert!(words.contains(name), "{name}");
+            }
+            for (code, state) in kind.states.iter().enumerate() {
+                assert!(words.contains(&format!("{code} {state}")), "{code} {state}");
+            }
+            assert!(!words.contains('{'), "{readme}");
         }
     }
 }

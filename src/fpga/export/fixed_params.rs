@@ -4,76 +4,77 @@ use std::fmt::Write as _;
 
 use super::fixed::FixedExport;
 use super::params::clock_ps;
-use crate::fpga::fixed::{
-    Format, fixed_board_usage, fixed_rls_clocks_per_sample, fixed_rls_latency_clocks,
-};
+use crate::fpga::fixed::{Format, fixed_board_usage, fixed_clearing_clocks};
 use crate::vocabulary::{OutputRegister, Overflow, Rounding};
-
-/// Letter of each signal in the names of the core's parameters.
-const LETTERS: [char; 8] = ['X', 'D', 'T', 'N', 'K', 'R', 'W', 'Y'];
 
 /// Verilog macros of the testbenches; the core's parameters all in one.
 pub(super) fn fixed_macros(export: &FixedExport, rows: usize) -> String {
-    let mut text = "// Parameters of this export.\n`define VEC_RLS_FIXED\n".to_owned();
+    let pipeline = export.config.as_pipeline();
+    let kind = pipeline.kind();
+    let upper = kind.name.to_uppercase();
+    let mut text = format!("// Parameters of this export.\n`define VEC_{upper}\n");
     let mut define = |name: &str, value: &str| {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "`define VEC_{name} {value}");
     };
-    let config = &export.config;
-    let p = config.tap_count();
-    let formats = config.formats().named();
-    define("TAPS", &p.to_string());
-    define("MW", &widest(export).to_string());
-    for ((_, format), letter) in formats.iter().zip(LETTERS) {
-        define(&format!("W{letter}"), &format.width().to_string());
+    let words = pipeline.clocked().memories().map(<[i64]>::len);
+    define("BENCH", &format!("tb_{}", kind.name));
+    define("CORE_MODULE", &format!("{}_core", kind.name));
+    define("CONTROL", kind.control);
+    define("KIND_NAME", &format!("\"{}\"", kind.name));
+    define("TAPS", &pipeline.tap_count().to_string());
+    let [a_bits, b_bits] = pipeline.memory_bits();
+    define("MA", &a_bits.to_string());
+    define("MB", &b_bits.to_string());
+    define("A_WORDS", &words[0].to_string());
+    define("WORDS", &(words[0] + words[1]).to_string());
+    define("CLEAR", &(kind.states.len() - 1).to_string());
+    define("CLEAR_CLOCKS", &fixed_clearing_clocks(pipeline).to_string());
+    define("DIVISIONS", &pipeline.divisions().to_string());
+    for (name, format) in [
+        ("WX", pipeline.input()),
+        ("WD", pipeline.desired()),
+        ("WY", pipeline.output()),
+    ] {
+        define(name, &format.width().to_string());
+    }
+    if kind.has_gain_registers {
+        define("GAIN_REGISTERS", "1");
     }
     define("WIDTH", "64");
     define("SAMPLES", &export.samples.len().to_string());
     define("TRACE_CLOCKS", &rows.to_string());
-    define("PERIOD", &fixed_rls_clocks_per_sample(p).to_string());
-    define("LATENCY", &fixed_rls_latency_clocks(p).to_string());
+    define("PERIOD", &pipeline.clocks_per_sample().to_string());
+    define("LATENCY", &pipeline.latency_clocks().to_string());
     define("CLOCK_PS", &clock_ps(export.clock_mhz).to_string());
     define("CORE", &core_parameters(export));
-    let board = fixed_board_usage(*config);
+    let board = fixed_board_usage(pipeline);
     let is_late = export.output_register == OutputRegister::NextSample;
-    define("TOP", "rls_fixed_top");
+    define("TOP", &format!("{}_top", kind.name));
     define("TOP_CODE", "0");
     define("TOP_NEXT", &u8::from(is_late).to_string());
     define("TOP_FRONT", &board.front_end_clocks.to_string());
     define("TOP_PERIOD", &board.clocks_per_sample.to_string());
-    let formats = config.formats();
-    define("TOP_SAMPLE_BITS", &formats.desired.width().to_string());
-    define("TOP_RESULT_BITS", &formats.output.width().to_string());
+    let (sample, result) = (pipeline.desired(), pipeline.output());
+    define("TOP_SAMPLE_BITS", &sample.width().to_string());
+    define("TOP_RESULT_BITS", &result.width().to_string());
     text
-}
-
-/// Bits of a memory's word.
-fn widest(export: &FixedExport) -> u32 {
-    let formats = export.config.formats().named();
-    let widths = formats.iter().map(|(_, format)| format.width());
-    widths.max().unwrap_or(0)
 }
 
 /// Parameters of the core as its instance names them.
 pub(super) fn core_parameters(export: &FixedExport) -> String {
-    let config = &export.config;
-    let mut core = format!(".P({}), .MW({})", config.tap_count(), widest(export));
-    for ((_, format), letter) in config.formats().named().iter().zip(LETTERS) {
-        // Nothing is rounded into the input's words.
-        let is_rounded = letter != 'X' && letter != 'D';
+    let pipeline = export.config.as_pipeline();
+    let taps = pipeline.tap_count();
+    let mut core = format!(".{}({taps})", pipeline.kind().tap_parameter);
+    for signal in pipeline.signals() {
+        let (letter, is_rounded) = (signal.name.letter(), signal.name.is_rounded());
         core.push_str(", ");
-        core.push_str(&format_parameters(*format, letter, is_rounded));
+        core.push_str(&format_parameters(signal.format, letter, is_rounded));
     }
-    let (factor, factor_bits) = config.inverse_alpha().unwrap_or((0, 0));
-    let _ = write!(
-        core,
-        ", .ALPHA(128'sh{:032x}), .SCALES({}), .IALPHA(64'sh{factor:016x}), .NI({factor_bits}), \
-         .DELTA(64'sh{:016x}), .FLOOR(64'sh{:016x})",
-        config.alpha(),
-        u8::from(factor != 0),
-        config.delta(),
-        config.floor()
-    );
+    for (name, value) in pipeline.parameters().core {
+        // Writing to a string cannot fail.
+        let _ = write!(core, ", .{name}({value})");
+    }
     core
 }
 
@@ -98,48 +99,43 @@ pub(super) fn format_parameters(format: Format, letter: char, is_rounded: bool) 
 
 /// Parameters for people and programs: formats, constants with their codes, clocks.
 pub(super) fn fixed_json(export: &FixedExport, rows: usize) -> String {
-    let config = &export.config;
-    let p = config.tap_count();
-    let named = config.formats().named();
-    let formats: Vec<String> = named
-        .iter()
-        .map(|(name, format)| {
+    let pipeline = export.config.as_pipeline();
+    let kind = pipeline.kind();
+    let signals = pipeline.signals().into_iter();
+    let formats: Vec<String> = signals
+        .map(|signal| {
+            let format = signal.format;
             format!(
-                "    \"{name}\": {{ \"integer_bits\": {}, \"fraction_bits\": {}, \"rounding\": \"{}\", \
+                "    \"{}\": {{ \"integer_bits\": {}, \"fraction_bits\": {}, \"rounding\": \"{}\", \
                  \"overflow\": \"{}\" }}",
-                format.integer_bits, format.fraction_bits, format.rounding, format.overflow
+                signal.name.name(),
+                format.integer_bits,
+                format.fraction_bits,
+                format.rounding,
+                format.overflow
             )
         })
         .collect();
-    let board = fixed_board_usage(*config);
-    let (factor, factor_bits) = config.inverse_alpha().map_or_else(
-        || ("null".to_owned(), "null".to_owned()),
-        |(code, bits)| (code.to_string(), bits.to_string()),
-    );
-    let fields: Vec<(&str, String)> = vec![
-        ("filter", "\"rls_fixed\"".to_owned()),
+    let board = fixed_board_usage(pipeline);
+    let taps = kind.tap_parameter.to_lowercase();
+    let mut fields: Vec<(&str, String)> = vec![
+        ("filter", format!("\"{}\"", kind.name)),
         ("format", "\"fixed\"".to_owned()),
-        ("p", p.to_string()),
+        (&taps, pipeline.tap_count().to_string()),
         ("formats", format!("{{\n{}\n  }}", formats.join(",\n"))),
         ("full_scale", format!("\"{}\"", export.full_scale)),
-        ("alpha_code", config.alpha().to_string()),
-        (
-            "alpha_fraction_bits",
-            config.alpha_fraction_bits().to_string(),
-        ),
-        ("inverse_alpha_code", factor),
-        ("inverse_alpha_fraction_bits", factor_bits),
-        ("delta_code", config.delta().to_string()),
-        ("floor_code", config.floor().to_string()),
+    ];
+    fields.extend(pipeline.parameters().constants);
+    fields.extend([
         ("desired", format!("\"{}\"", export.desired)),
         ("input_lag_samples", export.input_lag_samples.to_string()),
         ("output_register", format!("\"{}\"", export.output_register)),
         ("clock_mhz", export.clock_mhz.to_string()),
         (
             "clocks_per_sample",
-            fixed_rls_clocks_per_sample(p).to_string(),
+            pipeline.clocks_per_sample().to_string(),
         ),
-        ("latency_clocks", fixed_rls_latency_clocks(p).to_string()),
+        ("latency_clocks", pipeline.latency_clocks().to_string()),
         ("front_end_clocks", board.front_end_clocks.to_string()),
         (
             "system_clocks_per_sample",
@@ -147,7 +143,7 @@ pub(super) fn fixed_json(export: &FixedExport, rows: usize) -> String {
         ),
         ("samples", export.samples.len().to_string()),
         ("trace_clocks", rows.to_string()),
-    ];
+    ]);
     let lines: Vec<String> = fields
         .iter()
         .map(|(name, value)| format!("  \"{name}\": {value}"))

@@ -7,13 +7,14 @@ use crate::vocabulary::DesiredSignal;
 
 /// Verilog of the top level.
 pub(super) fn fixed_top_verilog(export: &FixedExport) -> String {
-    let formats = export.config.formats();
-    let (input, desired) = (formats.input, formats.desired);
+    let pipeline = export.config.as_pipeline();
+    let (input, desired, output) = (pipeline.input(), pipeline.desired(), pipeline.output());
+    let kind = pipeline.kind().name;
     let sample_bits = desired.width() - 1;
-    let result_bits = formats.output.width() - 1;
+    let result_bits = output.width() - 1;
     let means = export.desired == DesiredSignal::TwoSampleMean;
     format!(
-        "{TOP_HEAD}module rls_fixed_top #(\n    \
+        "{TOP_HEAD}module {kind}_top #(\n    \
          // Adder and multiplier take one clock; a bench of any filter may say so.\n    \
          parameter ADD_LATENCY = 1,\n    parameter MUL_LATENCY = 1,\n    \
          parameter DIV_LATENCY = 1       // clocks of the divider\n) (\n    \
@@ -27,14 +28,14 @@ pub(super) fn fixed_top_verilog(export: &FixedExport) -> String {
          fx_front_end #(\n        {},\n        {},\n        .LAG({}), .MEAN({})\n    ) front (\n        \
          .clk(clk), .rst(rst), .valid(sample_valid), .ready(sample_ready), .sample(sample),\n        \
          .pair_valid(pair_valid), .pair_ready(pair_ready), .x(x), .d(d));\n\n    \
-         rls_fixed_core #(\n        {},\n        .DIV_LATENCY(DIV_LATENCY)\n    ) core (\n        \
+         {kind}_core #(\n        {},\n        .DIV_LATENCY(DIV_LATENCY)\n    ) core (\n        \
          .clk(clk), .rst(rst), .in_valid(pair_valid), .in_ready(pair_ready), .x(x), .d(d),\n        \
          .out_valid(core_valid), .y(y));\n\n{}endmodule\n\n`default_nettype wire\n",
         desired.integer_bits,
         desired.fraction_bits,
         export.full_scale,
-        formats.output.integer_bits,
-        formats.output.fraction_bits,
+        output.integer_bits,
+        output.fraction_bits,
         input.width() - 1,
         format_parameters(input, 'X', true),
         format_parameters(desired, 'D', true),

@@ -1,4 +1,4 @@
-//! What stands around the fixed-point core on a board: from samples to pairs, and their clocks.
+//! What stands around a fixed-point core on a board: from samples to pairs, and their clocks.
 //!
 //! ```text
 //!             +-----------------------+  x, d  +------+   y
@@ -13,16 +13,18 @@
 //! Checked by `fixed_point`.
 
 use super::CodePair;
-use super::config::{FixedRlsConfig, RlsFormats};
-use super::machine::{FixedRlsPipeline, FixedRlsState};
+use super::format::Format;
+use super::pipeline::FixedPipeline;
+use super::sequencer::FixedClocked;
 use crate::fpga::board::BoardUsage;
 use crate::vocabulary::DesiredSignal;
 
 /// The hold registers in front of the core.
 #[derive(Clone, Debug)]
 pub struct FixedFrontEnd {
-    formats: RlsFormats,
-    desired: DesiredSignal,
+    input: Format,
+    desired: Format,
+    signal: DesiredSignal,
     lag: usize,
     /// Newest first.
     held: Vec<i64>,
@@ -32,12 +34,13 @@ pub struct FixedFrontEnd {
 impl FixedFrontEnd {
     /// A front end just out of reset.
     ///
-    /// * `lag`: samples by which x is older than the newest.
+    /// * `input`, `desired`: formats of x and d. * `lag`: samples by which x is older than the newest.
     #[must_use]
-    pub fn new(formats: RlsFormats, desired: DesiredSignal, lag: usize) -> Self {
+    pub fn new(input: Format, desired: Format, signal: DesiredSignal, lag: usize) -> Self {
         Self {
-            formats,
+            input,
             desired,
+            signal,
             lag,
             held: vec![0; lag.max(1)],
             overflows: [0; 2],
@@ -52,12 +55,12 @@ impl FixedFrontEnd {
 
     /// The pair of the next sample, a code of d.
     pub fn pair(&mut self, sample: i64) -> CodePair {
-        let format = self.formats.desired;
+        let format = self.desired;
         let old = match self.lag {
             0 => sample,
             lag => self.held[lag - 1],
         };
-        let desired = match self.desired {
+        let desired = match self.signal {
             DesiredSignal::Current => sample,
             DesiredSignal::TwoSampleMean => {
                 let sum = i128::from(sample) + i128::from(self.held[0]);
@@ -68,8 +71,7 @@ impl FixedFrontEnd {
         };
         self.held.rotate_right(1);
         self.held[0] = sample;
-        let input = self.formats.input;
-        let input = input.store(i128::from(old), format.fraction_bits);
+        let input = self.input.store(i128::from(old), format.fraction_bits);
         self.overflows[0] += u64::from(input.overflowed);
         CodePair {
             input: input.code,
@@ -80,9 +82,9 @@ impl FixedFrontEnd {
 
 /// Counts the clocks of a board just out of reset: an idle sample, then samples back to back.
 #[must_use]
-pub fn fixed_board_usage(config: FixedRlsConfig) -> BoardUsage {
+pub fn fixed_board_usage(pipeline: &dyn FixedPipeline) -> BoardUsage {
     let mut board = FixedBoard {
-        core: FixedRlsPipeline::new(config),
+        core: pipeline.clocked(),
         offered: None,
     };
     board.tick(true);
@@ -91,7 +93,7 @@ pub fn fixed_board_usage(config: FixedRlsConfig) -> BoardUsage {
     while !board.tick(false).1 {
         latency_clocks += 1;
     }
-    while board.core.registers().state != FixedRlsState::Idle {
+    while !board.core.is_idle() {
         board.tick(false);
     }
     let (mut clock, mut accepted) = (0, Vec::new());
@@ -110,7 +112,7 @@ pub fn fixed_board_usage(config: FixedRlsConfig) -> BoardUsage {
 
 /// Core and pair register; the words do not matter to the clocks.
 struct FixedBoard {
-    core: FixedRlsPipeline,
+    core: Box<dyn FixedClocked>,
     offered: Option<CodePair>,
 }
 

@@ -99,6 +99,25 @@ impl Format {
         self.limit(below + i128::from(self.rounds_up(below, rest, denominator)))
     }
 
+    /// Stores the sum of two exact values at scales of their own.
+    pub(super) fn store_sum(self, values: [i128; 2], scales: [u32; 2]) -> Stored {
+        let scale = scales[0].max(scales[1]);
+        let first = values[0] << (scale - scales[0]);
+        let second = values[1] << (scale - scales[1]);
+        self.store(first + second, scale)
+    }
+
+    /// Stores the quotient of two codes at scales of their own.
+    pub(super) fn store_ratio(self, codes: [i64; 2], scales: [u32; 2]) -> Stored {
+        let [numerator, denominator] = codes.map(i128::from);
+        let up = self.fraction_bits + scales[1];
+        if up >= scales[0] {
+            self.store_quotient(numerator << (up - scales[0]), denominator)
+        } else {
+            self.store_quotient(numerator, denominator << (scales[0] - up))
+        }
+    }
+
     /// Stores a number, rounded as the format rounds; NaN counts as zero.
     #[must_use]
     pub fn of(self, value: f64) -> Stored {
@@ -151,6 +170,37 @@ impl Format {
         Stored {
             code,
             overflowed: true,
+        }
+    }
+
+    /// The code of a constant that the words have to hold.
+    pub(super) fn holding(
+        self,
+        name: &'static str,
+        value: f64,
+        signal: &'static str,
+    ) -> Result<i64, FpgaError> {
+        let stored = self.of(value);
+        if stored.overflowed {
+            return Err(self.does_not_fit(name, value, signal));
+        }
+        Ok(stored.code)
+    }
+
+    /// A constant is beyond the largest word.
+    pub(super) fn does_not_fit(
+        self,
+        name: &'static str,
+        value: f64,
+        signal: &'static str,
+    ) -> FpgaError {
+        FpgaError::DoesNotFit {
+            name,
+            value,
+            signal,
+            integer_bits: self.integer_bits,
+            fraction_bits: self.fraction_bits,
+            limit: 2.0 * self.value(1 << (self.width() - 2)),
         }
     }
 

@@ -170,7 +170,10 @@ module sign_lms_ctrl #(
     assign den_en      = (state == OUT_R) & acc_first;
     assign rcp_en      = div_req & div_done;
     assign in_en       = take;
+    // Without an interval the age starts nothing.
+    /* verilator lint_off UNSIGNED */
     assign fresh_en    = (state == L_W) & (RECOMPUTE != 0) & (age >= AGE_START);
+    /* verilator lint_on UNSIGNED */
     assign fresh_first = age == AGE_START;
     assign norm_en     = (state == NRM_A) | (state == NRM_W);
     assign norm_last   = state == NRM_W;

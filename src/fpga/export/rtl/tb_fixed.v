@@ -1,20 +1,19 @@
-// Self-checking testbench of the fixed-point RLS core, with the constants of params.vh: resets in
+// Self-checking testbench of a fixed-point core of any kind, constants of params.vh: resets in
 // every state, every word of y, the clocks of every sample, the memories before and after, and every
 // clock of trace.csv. The first mismatch ends the run non-zero.
 `timescale 1ps/1ps
 `include "params.vh"
 `include "tb_defaults.vh"
 
-module tb_rls_fixed;
-    localparam P       = `VEC_TAPS;
+module `VEC_BENCH;
     localparam SAMPLES = `VEC_SAMPLES;
-    localparam A_WORDS = 2 * P;
-    localparam WORDS   = 4 * P + P * P;
-    localparam CLEAR_CLOCKS = 2 * P + P * P;
-    localparam EXTRA   = (`VEC_DIV_LATENCY - 1) * P;    // clocks a slower divider adds
+    localparam A_WORDS = `VEC_A_WORDS;
+    localparam WORDS   = `VEC_WORDS;
+    localparam CLEAR_CLOCKS = `VEC_CLEAR_CLOCKS;
+    localparam EXTRA   = (`VEC_DIV_LATENCY - 1) * `VEC_DIVISIONS;   // clocks a slower divider adds
     localparam PERIOD  = `VEC_PERIOD + EXTRA;
     localparam LATENCY = `VEC_LATENCY + EXTRA;
-    localparam [3:0] CLEAR = 4'd14;
+    localparam [3:0] CLEAR = `VEC_CLEAR;
 
     reg [63:0]    in_words [0:2*SAMPLES-1];
     reg [63:0]    y_words [0:SAMPLES-1];
@@ -31,7 +30,7 @@ module tb_rls_fixed;
     wire signed [`VEC_WY-1:0] y;
     integer       cycle, taken, given, start, rows, k, target, waited, trace_file, scanned;
 
-    rls_fixed_core #(`VEC_CORE, .DIV_LATENCY(`VEC_DIV_LATENCY)) rls (
+    `VEC_CORE_MODULE #(`VEC_CORE, .DIV_LATENCY(`VEC_DIV_LATENCY)) dut (
         .clk(clk), .rst(rst), .in_valid(valid), .in_ready(in_ready), .x(x), .d(d),
         .out_valid(out_valid), .y(y));
 
@@ -41,7 +40,7 @@ module tb_rls_fixed;
         if (!failed) begin
             failed = 1'b1;
             $display("MISMATCH %0s: expected %h got %h", what, expected, got);
-            $display("  cycle %0d, sample %0d, state %0d, trace row %0d", cycle, taken, rls.state,
+            $display("  cycle %0d, sample %0d, state %0d, trace row %0d", cycle, taken, dut.state,
                      rows);
             $fatal(1, "first mismatch, stopped");
         end
@@ -51,9 +50,9 @@ module tb_rls_fixed;
     task check_memories(input last);
         for (k = 0; k < WORDS; k = k + 1) begin
             want = last ? final_words[k] : init_words[k];
-            if (k < A_WORDS) have = {{(64-`VEC_MW){rls.rama.mem[k][`VEC_MW-1]}}, rls.rama.mem[k]};
-            else have = {{(64-`VEC_MW){rls.ramb.mem[k-A_WORDS][`VEC_MW-1]}},
-                         rls.ramb.mem[k-A_WORDS]};
+            if (k < A_WORDS) have = {{(64-`VEC_MA){dut.rama.mem[k][`VEC_MA-1]}}, dut.rama.mem[k]};
+            else have = {{(64-`VEC_MB){dut.ramb.mem[k-A_WORDS][`VEC_MB-1]}},
+                         dut.ramb.mem[k-A_WORDS]};
             if (have !== want) fail(last ? "memory, end" : "memory, reset", want, have);
         end
     endtask
@@ -61,12 +60,12 @@ module tb_rls_fixed;
     task check_clearing;
         begin
             for (waited = 0; waited < CLEAR_CLOCKS; waited = waited + 1) begin
-                if (rls.state != CLEAR || in_ready) fail("clearing", CLEAR, rls.state);
+                if (dut.state != CLEAR || in_ready) fail("clearing", CLEAR, dut.state);
                 @(negedge clk);
             end
-            if (rls.state != 4'd0) fail("after clearing", 0, rls.state);
-            if (rls.p !== 0 || rls.acc !== 0 || rls.rr !== 0 || rls.den !== 0 || rls.dd !== 0
-                || rls.ee !== 0 || rls.yy !== 0 || rls.head != P - 1)
+            if (dut.state != 4'd0) fail("after clearing", 0, dut.state);
+            if (dut.p !== 0 || dut.acc !== 0 || dut.rr !== 0 || dut.den !== 0 || dut.dd !== 0
+                || dut.ee !== 0 || dut.yy !== 0 || `VEC_CONTROL.head != `VEC_TAPS - 1)
                 fail("registers", 0, 1);
             check_memories(1'b0);
         end
@@ -89,7 +88,7 @@ module tb_rls_fixed;
 `ifdef WAVE
         if ($value$plusargs("VCD=%s", path)) begin
             $dumpfile(path);
-            $dumpvars(0, rls);
+            $dumpvars(0, dut);
         end
 `endif
         if (trace_file == 0 || ^y_words[SAMPLES-1] === 1'bx) fail("vectors", 0, 0);
@@ -107,7 +106,7 @@ module tb_rls_fixed;
             waited = 0;
             repeat (2) begin
                 @(negedge clk);
-                while (rls.state != target && waited < 4 * PERIOD) begin
+                while (dut.state != target && waited < 4 * PERIOD) begin
                     waited = waited + 1;
                     @(negedge clk);
                 end
@@ -126,31 +125,39 @@ module tb_rls_fixed;
 
     // A row of the trace: values visible in a clock before its edge.
     integer       r_state, r_ra, r_ra_we, r_rb, r_rb_we, r_head;
-    reg [63:0]    r_ra_data, r_rb_data, r_rr, r_den, r_d, r_e, r_y;
+    reg [63:0]    r_ra_data, r_rb_data, r_rr, r_den, r_d, r_e, r_y, r_k, r_t;
     reg [127:0]   r_p, r_acc;
-    wire signed [63:0] ra_data = rls.ra_wdata, rb_data = rls.rb_wdata, rr = rls.rr, den = rls.den;
-    wire signed [63:0] dd = rls.dd, ee = rls.ee, yy = rls.yy;
+    wire signed [63:0] ra_data = dut.ra_wdata, rb_data = dut.rb_wdata, rr = dut.rr, den = dut.den;
+    wire signed [63:0] dd = dut.dd, ee = dut.ee, yy = dut.yy;
+`ifdef VEC_GAIN_REGISTERS
+    wire signed [63:0] kk = dut.kk, tt = dut.tt;
+`endif
     task check_row;
         begin
-            scanned = $fscanf(trace_file, "%d,%d,%d,%h,%d,%d,%h,%h,%h,%h,%h,%h,%h,%h,%d", r_state,
+            scanned = $fscanf(trace_file, "%d,%d,%d,%h,%d,%d,%h,%h,%h,%h,%h,%h,%h,%h,%d,%h,%h",
+                r_state,
                 r_ra, r_ra_we, r_ra_data, r_rb, r_rb_we, r_rb_data, r_p, r_acc, r_rr, r_den, r_d,
-                r_e, r_y, r_head);
-            if (scanned != 15) fail("trace ends", 15, scanned);
-            if (rls.state != r_state) fail("state", r_state, rls.state);
-            if (rls.ra_addr != r_ra) fail("ra_addr", r_ra, rls.ra_addr);
-            if (rls.ra_we != r_ra_we) fail("ra_we", r_ra_we, rls.ra_we);
-            if (rls.ra_we && ra_data !== r_ra_data) fail("ra_wdata", r_ra_data, ra_data);
-            if (rls.rb_addr != r_rb) fail("rb_addr", r_rb, rls.rb_addr);
-            if (rls.rb_we != r_rb_we) fail("rb_we", r_rb_we, rls.rb_we);
-            if (rls.rb_we && rb_data !== r_rb_data) fail("rb_wdata", r_rb_data, rb_data);
-            if (rls.p !== r_p) fail("P", r_p, rls.p);
-            if (rls.acc !== r_acc) fail("ACC", r_acc, rls.acc);
+                r_e, r_y, r_head, r_k, r_t);
+            if (scanned != 17) fail("trace ends", 17, scanned);
+            if (dut.state != r_state) fail("state", r_state, dut.state);
+            if (dut.ra_addr != r_ra) fail("ra_addr", r_ra, dut.ra_addr);
+            if (dut.ra_we != r_ra_we) fail("ra_we", r_ra_we, dut.ra_we);
+            if (dut.ra_we && ra_data !== r_ra_data) fail("ra_wdata", r_ra_data, ra_data);
+            if (dut.rb_addr != r_rb) fail("rb_addr", r_rb, dut.rb_addr);
+            if (dut.rb_we != r_rb_we) fail("rb_we", r_rb_we, dut.rb_we);
+            if (dut.rb_we && rb_data !== r_rb_data) fail("rb_wdata", r_rb_data, rb_data);
+            if (dut.p !== r_p) fail("P", r_p, dut.p);
+            if (dut.acc !== r_acc) fail("ACC", r_acc, dut.acc);
             if (rr !== r_rr) fail("RR", r_rr, rr);
             if (den !== r_den) fail("DEN", r_den, den);
             if (dd !== r_d) fail("D", r_d, dd);
             if (ee !== r_e) fail("E", r_e, ee);
             if (yy !== r_y) fail("Y", r_y, yy);
-            if (rls.head != r_head) fail("HEAD", r_head, rls.head);
+            if (`VEC_CONTROL.head != r_head) fail("HEAD", r_head, `VEC_CONTROL.head);
+`ifdef VEC_GAIN_REGISTERS
+            if (kk !== r_k) fail("K", r_k, kk);
+            if (tt !== r_t) fail("T", r_t, tt);
+`endif
             rows = rows + 1;
         end
     endtask
@@ -158,7 +165,7 @@ module tb_rls_fixed;
     wire signed [63:0] y_full = y;
     always @(posedge clk) if (running && !failed) begin
         cycle <= cycle + 1;
-        if (rls.state != 4'd0 && !rls.stall && rows < `VEC_TRACE_CLOCKS) check_row;
+        if (dut.state != 4'd0 && !`VEC_CONTROL.stall && rows < `VEC_TRACE_CLOCKS) check_row;
         if (valid && in_ready) begin
             if (taken != 0 && cycle - start != PERIOD)
                 fail("period", PERIOD, cycle - start);
@@ -173,9 +180,9 @@ module tb_rls_fixed;
         end
         if (taken == SAMPLES && cycle - start == PERIOD) begin
             if (given != SAMPLES) fail("results", SAMPLES, given);
-            if (rls.state != 4'd0) fail("state, end", 0, rls.state);
+            if (dut.state != 4'd0) fail("state, end", 0, dut.state);
             check_memories(1'b1);
-            $display("PASS rls_fixed: %0d samples, %0d trace rows", SAMPLES, rows);
+            $display("PASS %0s: %0d samples, %0d trace rows", `VEC_KIND_NAME, SAMPLES, rows);
             $finish;
         end
         if (cycle > (SAMPLES + 3) * PERIOD) fail("results", SAMPLES, given);

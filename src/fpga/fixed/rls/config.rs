@@ -1,9 +1,10 @@
 //! What never changes while the fixed-point pipeline runs, and what each exact value becomes.
 
-use super::format::{EXACT_BITS, Format, Stored};
 use crate::fpga::check::check_tap_count;
 use crate::fpga::error::FpgaError;
-use crate::vocabulary::{Overflow, Rounding};
+use crate::fpga::fixed::exact::{Exact, constant, scaled};
+use crate::fpga::fixed::format::{Format, Stored};
+use crate::fpga::fixed::signal::{Signal, SignalName};
 
 /// Formats of the signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,17 +30,18 @@ pub struct RlsFormats {
 impl RlsFormats {
     /// All of them by name.
     #[must_use]
-    pub fn named(&self) -> [(&'static str, Format); 8] {
+    pub fn signals(&self) -> [Signal; 8] {
         [
-            ("x", self.input),
-            ("d", self.desired),
-            ("t", self.intermediate),
-            ("den", self.denominator),
-            ("k", self.gain),
-            ("R", self.inverse),
-            ("W", self.weight),
-            ("y", self.output),
+            (SignalName::X, self.input),
+            (SignalName::D, self.desired),
+            (SignalName::T, self.intermediate),
+            (SignalName::Den, self.denominator),
+            (SignalName::K, self.gain),
+            (SignalName::R, self.inverse),
+            (SignalName::W, self.weight),
+            (SignalName::Y, self.output),
         ]
+        .map(|(name, format)| Signal { name, format })
     }
 }
 
@@ -68,7 +70,10 @@ pub struct FixedRlsConfig {
     /// Code of `1/alpha`; none at alpha = 1.
     pub(super) inverse_alpha: Option<i64>,
     pub(super) inverse_alpha_fraction_bits: u32,
+    /// Initial diagonal of R, in the inverse square of the input's full scale, and its code.
+    pub(super) initial_inverse_correlation: f64,
     pub(super) delta: i64,
+    pub(super) forgetting_factor: f64,
     /// Smallest code of a diagonal element of R; 0: none.
     pub(super) floor: i64,
 }
@@ -83,8 +88,8 @@ impl FixedRlsConfig {
     pub fn new(settings: FixedRlsSettings) -> Result<Self, FpgaError> {
         check_tap_count(settings.tap_count)?;
         let formats = settings.formats;
-        for (name, format) in formats.named() {
-            format.check(name)?;
+        for signal in formats.signals() {
+            signal.format.check(signal.name.name())?;
         }
         let alpha = settings.forgetting_factor;
         if !(1e-3..=1.0).contains(&alpha) {
@@ -97,20 +102,17 @@ impl FixedRlsConfig {
         }
         check_exact_bits(&formats)?;
         let delta = settings.initial_inverse_correlation;
-        let stored = formats.inverse.of(delta);
-        if stored.overflowed {
-            let name = "initial inverse correlation";
-            return Err(does_not_fit(name, delta, "R", formats.inverse));
-        }
-        if stored.code <= 0 {
+        let name = "initial inverse correlation";
+        let code = formats.inverse.holding(name, delta, "R")?;
+        if code <= 0 {
             return Err(FpgaError::OutOfRange {
-                name: "initial inverse correlation",
+                name,
                 value: delta,
                 range: "at least one step of R",
                 format: "fixed point",
             });
         }
-        if !(0..=stored.code).contains(&settings.inverse_floor) {
+        if !(0..=code).contains(&settings.inverse_floor) {
             return Err(FpgaError::CountOutOfRange {
                 name: "floor of R",
                 value: settings.inverse_floor.unsigned_abs(),
@@ -125,7 +127,9 @@ impl FixedRlsConfig {
             alpha: scaled(alpha, scale),
             inverse_alpha,
             inverse_alpha_fraction_bits,
-            delta: stored.code,
+            initial_inverse_correlation: delta,
+            delta: code,
+            forgetting_factor: alpha,
             floor: settings.inverse_floor,
         })
     }
@@ -134,6 +138,13 @@ impl FixedRlsConfig {
     #[must_use]
     pub fn tap_count(&self) -> usize {
         self.tap_count
+    }
+
+    /// Bits of the widest signal.
+    pub(super) fn widest(&self) -> u32 {
+        let signals = self.formats.signals();
+        let widths = signals.iter().map(|signal| signal.format.width());
+        widths.max().unwrap_or(0)
     }
 
     /// Formats of the signals.
@@ -199,25 +210,16 @@ impl FixedRlsConfig {
     /// `Q_k(t / den)`.
     pub(super) fn gain(&self, t: i64, denominator: i64) -> Stored {
         let f = &self.formats;
-        let (t, denominator) = (i128::from(t), i128::from(denominator));
-        let up = f.gain.fraction_bits + f.denominator.fraction_bits;
-        let down = f.intermediate.fraction_bits;
-        if up >= down {
-            f.gain.store_quotient(t << (up - down), denominator)
-        } else {
-            f.gain.store_quotient(t, denominator << (down - up))
-        }
+        let scales = [f.intermediate.fraction_bits, f.denominator.fraction_bits];
+        f.gain.store_ratio([t, denominator], scales)
     }
 
     /// `Q_R(Q_R(R - k*t) * ialpha)`; the two of them, the second equal to the first at alpha = 1.
     pub(super) fn inverse(&self, element: i64, product: i128) -> [Stored; 2] {
         let f = &self.formats;
         let product_scale = f.gain.fraction_bits + f.intermediate.fraction_bits;
-        let difference = sum_at(
-            [i128::from(element), -product],
-            [f.inverse.fraction_bits, product_scale],
-        );
-        let corrected = f.inverse.store(difference.0, difference.1);
+        let scales = [f.inverse.fraction_bits, product_scale];
+        let corrected = f.inverse.store_sum([i128::from(element), -product], scales);
         let Some(factor) = self.inverse_alpha else {
             return [corrected; 2];
         };
@@ -237,8 +239,8 @@ impl FixedRlsConfig {
     pub(super) fn error(&self, desired: i64, output: i64) -> Stored {
         let f = &self.formats;
         let scales = [f.desired.fraction_bits, f.output.fraction_bits];
-        let difference = sum_at([i128::from(desired), -i128::from(output)], scales);
-        f.output.store(difference.0, difference.1)
+        let values = [i128::from(desired), -i128::from(output)];
+        f.output.store_sum(values, scales)
     }
 
     /// `Q_W(W + k*e)`.
@@ -246,37 +248,8 @@ impl FixedRlsConfig {
         let f = &self.formats;
         let product_scale = f.gain.fraction_bits + f.output.fraction_bits;
         let scales = [f.weight.fraction_bits, product_scale];
-        let sum = sum_at([i128::from(weight), product], scales);
-        f.weight.store(sum.0, sum.1)
+        f.weight.store_sum([i128::from(weight), product], scales)
     }
-}
-
-/// Sum of two exact values at the finer of their scales, and that scale.
-fn sum_at(values: [i128; 2], scales: [u32; 2]) -> (i128, u32) {
-    let scale = scales[0].max(scales[1]);
-    let first = values[0] << (scale - scales[0]);
-    let second = values[1] << (scale - scales[1]);
-    (first + second, scale)
-}
-
-/// `value * 2^fraction_bits` for a value in (0, 1], nearest, ties to even.
-fn scaled(value: f64, fraction_bits: u32) -> i128 {
-    let bits = value.to_bits();
-    let fraction = i128::from(bits & ((1 << 52) - 1) | 1 << 52);
-    let exponent = u32::try_from(bits >> 52 & 0x7ff).unwrap_or(0);
-    // value = fraction * 2^(exponent - 1075), the exponent at most 1023.
-    let down = 1075 - exponent;
-    if down <= fraction_bits {
-        return fraction << (fraction_bits - down);
-    }
-    let shift = down - fraction_bits;
-    if shift > 100 {
-        return 0;
-    }
-    let below = fraction >> shift;
-    let rest = fraction - (below << shift);
-    let half = 1 << (shift - 1);
-    below + i128::from(rest > half || (rest == half && below & 1 != 0))
 }
 
 /// Code and fraction bits of `1/alpha` in a word as wide as one of R.
@@ -285,86 +258,23 @@ fn inverse_alpha(alpha: f64, inverse: Format) -> Result<(Option<i64>, u32), Fpga
     if value <= 1.0 {
         return Ok((None, 0));
     }
-    let mut format = Format {
-        integer_bits: 2,
-        fraction_bits: inverse.width().saturating_sub(2),
-        rounding: Rounding::NearestEven,
-        overflow: Overflow::Saturate,
-    };
-    while format.of(value).overflowed {
-        if format.fraction_bits == 0 {
-            return Err(does_not_fit(
-                "1 / forgetting factor",
-                value,
-                "a word of R",
-                format,
-            ));
-        }
-        format.integer_bits += 1;
-        format.fraction_bits -= 1;
-    }
-    Ok((Some(format.of(value).code), format.fraction_bits))
-}
-
-fn does_not_fit(name: &'static str, value: f64, signal: &'static str, format: Format) -> FpgaError {
-    FpgaError::DoesNotFit {
-        name,
-        value,
-        signal,
-        integer_bits: format.integer_bits,
-        fraction_bits: format.fraction_bits,
-        limit: 2.0 * format.value(1 << (format.width() - 2)),
-    }
+    let name = "1 / forgetting factor";
+    let (code, fraction_bits) = constant(name, value, inverse.width(), "a word of R")?;
+    Ok((Some(code), fraction_bits))
 }
 
 /// Refuses formats whose exact sums and quotients need more bits than the models hold.
 fn check_exact_bits(f: &RlsFormats) -> Result<(), FpgaError> {
-    // Products of up to 64 taps and a constant.
-    const GROWTH: u32 = 7;
-    let check = |name, bits: u32, scale: u32, to: Format| {
-        let needed = bits + to.fraction_bits.saturating_sub(scale);
-        if needed < EXACT_BITS {
-            return Ok(());
-        }
-        Err(FpgaError::CountOutOfRange {
-            name,
-            value: u64::from(needed),
-            range: "at most 126 bits before it is rounded",
-        })
-    };
-    let dot = |a: Format, b: Format| a.width() + b.width() + GROWTH;
-    let scale = |a: Format, b: Format| a.fraction_bits + b.fraction_bits;
-    let pair = |a: (u32, u32), b: (u32, u32)| {
-        let finer = a.1.max(b.1);
-        ((a.0 + finer - a.1).max(b.0 + finer - b.1) + 1, finer)
-    };
-    let word = |a: Format| (a.width(), a.fraction_bits);
-    let product = |a: Format, b: Format| (a.width() + b.width(), scale(a, b));
     let (x, t, den, k) = (f.input, f.intermediate, f.denominator, f.gain);
-    check("exact t", dot(x, f.inverse), scale(x, f.inverse), t)?;
-    check(
-        "exact denominator",
-        dot(x, t).max(scale(x, t) + 2),
-        scale(x, t),
-        den,
-    )?;
-    check("exact y", dot(x, f.weight), scale(x, f.weight), f.output)?;
-    let (bits, finer) = pair(word(f.inverse), product(k, t));
-    check("exact R", bits, finer, f.inverse)?;
-    let (bits, finer) = pair(word(f.weight), product(k, f.output));
-    check("exact W", bits, finer, f.weight)?;
-    let (bits, finer) = pair(word(f.desired), word(f.output));
-    check("exact error", bits, finer, f.output)?;
-    let up = scale(k, den);
-    let numerator = t.width() + up.saturating_sub(t.fraction_bits);
-    let divisor = den.width() + t.fraction_bits.saturating_sub(up);
-    check(
-        "exact quotient",
-        numerator.max(divisor) + 1,
-        0,
-        Format {
-            fraction_bits: 0,
-            ..k
-        },
-    )
+    Exact::dot(x, f.inverse, 0).check("exact t", t)?;
+    // Alpha is at most 1.
+    Exact::dot(x, t, 2).check("exact denominator", den)?;
+    Exact::dot(x, f.weight, 0).check("exact y", f.output)?;
+    let corrected = Exact::word(f.inverse).plus(Exact::product(k, t));
+    corrected.check("exact R", f.inverse)?;
+    let weight = Exact::word(f.weight).plus(Exact::product(k, f.output));
+    weight.check("exact W", f.weight)?;
+    let error = Exact::word(f.desired).plus(Exact::word(f.output));
+    error.check("exact error", f.output)?;
+    Exact::quotient(Exact::word(t), Exact::word(den), k).check("exact quotient", k)
 }

@@ -1,0 +1,162 @@
+//! The control machine of LMS and NLMS in fixed point: what each state does in its clock.
+
+use super::config::{FixedLmsConfig, Step};
+use crate::fpga::fixed::CodePair;
+use crate::fpga::fixed::datapath::FixedDatapath;
+use crate::fpga::fixed::registers::FixedRegisters;
+use crate::fpga::fixed::sequencer::{FixedMachine, FixedSequencer};
+use crate::fpga::lms::LmsState;
+use crate::fpga::memory::SinglePortRam;
+
+/// The clocked pipeline. RAMA: ring of L. RAMB: W, tap 0 first.
+pub type FixedLmsPipeline = FixedSequencer<FixedLmsMachine>;
+
+/// Control machine and registers of the pipeline.
+#[derive(Clone, Debug)]
+pub struct FixedLmsMachine {
+    config: FixedLmsConfig,
+    registers: FixedRegisters<LmsState>,
+}
+
+impl FixedMachine for FixedLmsMachine {
+    type Config = FixedLmsConfig;
+    type State = LmsState;
+
+    const LOADING: LmsState = LmsState::LLoading;
+    const CLEARING: LmsState = LmsState::Clearing;
+
+    fn new(config: FixedLmsConfig) -> Self {
+        Self {
+            config,
+            registers: FixedRegisters::reset(config.tap_count),
+        }
+    }
+
+    fn memories(config: &FixedLmsConfig) -> [SinglePortRam<i64>; 2] {
+        ["RAMA", "RAMB"].map(|name| SinglePortRam::filled(name, config.tap_count, 0))
+    }
+
+    fn config(&self) -> &FixedLmsConfig {
+        &self.config
+    }
+
+    fn registers(&self) -> &FixedRegisters<LmsState> {
+        &self.registers
+    }
+
+    fn registers_mut(&mut self) -> &mut FixedRegisters<LmsState> {
+        &mut self.registers
+    }
+
+    fn strobes_output(&self) -> bool {
+        self.registers.state == LmsState::Err
+    }
+
+    fn load(&mut self, pair: CodePair, datapath: &mut FixedDatapath<'_>) {
+        let head = self.registers.next_slot(self.config.tap_count);
+        datapath.write_a(head, pair.input);
+        self.registers.head = head;
+        self.registers.desired = pair.desired;
+        self.registers.state = if self.config.is_normalised() {
+            LmsState::LlReading
+        } else {
+            LmsState::OutReading
+        };
+    }
+
+    fn step(&mut self, next_waits: bool, datapath: &mut FixedDatapath<'_>) {
+        let taps = self.config.tap_count;
+        match self.registers.state {
+            // The sequencer's own: waiting and loading.
+            LmsState::Idle | LmsState::LLoading => {}
+            LmsState::LlReading => self.accumulate_energy(datapath),
+            LmsState::LlWriting => {
+                let sum = self.registers.last_sum(datapath);
+                self.registers.denominator = self.config.denominator(sum).code;
+                self.registers.state = LmsState::OutReading;
+            }
+            LmsState::OutReading => self.accumulate_output(datapath),
+            LmsState::OutWriting => {
+                let sum = self.registers.last_sum(datapath);
+                self.registers.output = self.config.formats.output(sum).code;
+                self.registers.state = LmsState::Err;
+            }
+            LmsState::Err => self.form_error(datapath),
+            LmsState::Gain => self.scale_error(datapath),
+            LmsState::LmwReading => {
+                self.registers.read_weight(taps, datapath);
+                self.registers.state = LmsState::LmwWriting;
+            }
+            LmsState::LmwWriting => self.weight_write(next_waits, datapath),
+            LmsState::Clearing => {
+                datapath.write_a(self.registers.j, 0);
+                if self.registers.write_weight(0, taps, datapath) {
+                    self.registers.state = LmsState::Idle;
+                }
+            }
+        }
+    }
+}
+
+impl FixedLmsMachine {
+    /// LL_reading: `L'L`, both factors from one read of RAMA, started at the regularisation.
+    fn accumulate_energy(&mut self, datapath: &mut FixedDatapath<'_>) {
+        let taps = self.config.tap_count;
+        let l_j = datapath.read_a(self.registers.slot(self.registers.j, taps));
+        let first = self.config.regularisation();
+        self.registers
+            .accumulate((l_j, l_j), first, taps, LmsState::LlWriting, datapath);
+    }
+
+    /// Out_reading: `W'L`.
+    fn accumulate_output(&mut self, datapath: &mut FixedDatapath<'_>) {
+        let taps = self.config.tap_count;
+        let l_j = datapath.read_a(self.registers.slot(self.registers.j, taps));
+        let w_j = datapath.read_b(self.registers.j);
+        self.registers
+            .accumulate((l_j, w_j), 0, taps, LmsState::OutWriting, datapath);
+    }
+
+    /// ERR: the error, and for NLMS the gain, which the divider forms meanwhile.
+    fn form_error(&mut self, datapath: &mut FixedDatapath<'_>) {
+        let FixedRegisters {
+            desired, output, ..
+        } = self.registers;
+        datapath.count_sum();
+        self.registers.error = self.config.formats.error(desired, output).code;
+        if let Step::OverEnergy(step) = self.config.step {
+            datapath.count_quotient();
+            let denominator = self.registers.denominator;
+            self.registers.gain = step.gain(&self.config.formats, denominator).code;
+        }
+        self.registers.state = LmsState::Gain;
+    }
+
+    /// GAIN: what the taps are multiplied by.
+    fn scale_error(&mut self, datapath: &mut FixedDatapath<'_>) {
+        let gain = match self.config.step {
+            Step::Given(code) => code,
+            Step::OverEnergy(_) => self.registers.gain,
+        };
+        let product = datapath.multiply(self.registers.error, gain);
+        self.registers.intermediate = self.config.formats.step(product).code;
+        self.registers.state = LmsState::LmwReading;
+    }
+
+    /// LMW_writing: the new weight; after the last one the next sample is loaded at once.
+    fn weight_write(&mut self, next_waits: bool, datapath: &mut FixedDatapath<'_>) {
+        let FixedRegisters {
+            read_latch,
+            product,
+            ..
+        } = self.registers;
+        datapath.count_sum();
+        let weight = self.config.formats.weight(read_latch, product).code;
+        let taps = self.config.tap_count;
+        self.registers.state = if self.registers.write_weight(weight, taps, datapath) {
+            Self::after_sample(next_waits)
+        } else {
+            LmsState::LmwReading
+        };
+    }
+}

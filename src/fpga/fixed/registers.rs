@@ -1,0 +1,137 @@
+//! Registers of a fixed-point control machine, and the steps that the machines share.
+
+use super::datapath::FixedDatapath;
+use crate::fpga::registers::ControlState;
+
+/// Registers, named as in the RTL. One that a pipeline has not built stays at zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FixedRegisters<S> {
+    /// Control state.
+    pub state: S,
+    /// Row counter.
+    pub i: usize,
+    /// Column (tap) counter.
+    pub j: usize,
+    /// Second clock of a state that has two kinds of them.
+    pub second: bool,
+    /// Ring slot HEAD of the newest regressor word.
+    pub head: usize,
+    /// Product P, exact.
+    pub product: i128,
+    /// Accumulator ACC, exact.
+    pub accumulator: i128,
+    /// Read latch RR.
+    pub read_latch: i64,
+    /// Denominator DEN.
+    pub denominator: i64,
+    /// Gain K, where it is no word of a memory.
+    pub gain: i64,
+    /// Intermediate T, where it is no word of a memory.
+    pub intermediate: i64,
+    /// Desired word D.
+    pub desired: i64,
+    /// Error E.
+    pub error: i64,
+    /// Output Y.
+    pub output: i64,
+}
+
+impl<S: ControlState> FixedRegisters<S> {
+    /// Values after reset: all zero, HEAD p-1 so that sample 0 goes to slot 0.
+    #[must_use]
+    pub fn reset(tap_count: usize) -> Self {
+        Self {
+            state: S::IDLE,
+            i: 0,
+            j: 0,
+            second: false,
+            head: tap_count - 1,
+            product: 0,
+            accumulator: 0,
+            read_latch: 0,
+            denominator: 0,
+            gain: 0,
+            intermediate: 0,
+            desired: 0,
+            error: 0,
+            output: 0,
+        }
+    }
+
+    /// The same with the code of the state on the state bus of the RTL.
+    pub(super) fn coded(self) -> FixedRegisters<u8> {
+        FixedRegisters {
+            state: self.state.code(),
+            i: self.i,
+            j: self.j,
+            second: self.second,
+            head: self.head,
+            product: self.product,
+            accumulator: self.accumulator,
+            read_latch: self.read_latch,
+            denominator: self.denominator,
+            gain: self.gain,
+            intermediate: self.intermediate,
+            desired: self.desired,
+            error: self.error,
+            output: self.output,
+        }
+    }
+
+    /// Ring slot of tap j: `(HEAD - j) mod p`.
+    pub(super) fn slot(&self, j: usize, tap_count: usize) -> usize {
+        (self.head + tap_count - j) % tap_count
+    }
+
+    /// Ring slot after HEAD, which holds the oldest word: `(HEAD + 1) mod p`.
+    pub(super) fn next_slot(&self, tap_count: usize) -> usize {
+        (self.head + 1) % tap_count
+    }
+
+    /// One clock of a dot product over the taps: `P <- a*b`, `ACC <- first` or `ACC + P`.
+    ///
+    /// * `first`: what the sum starts at. * `done`: state after the last tap.
+    pub(super) fn accumulate(
+        &mut self,
+        (a, b): (i64, i64),
+        first: i128,
+        tap_count: usize,
+        done: S,
+        datapath: &mut FixedDatapath<'_>,
+    ) {
+        self.accumulator = if self.j == 0 {
+            first
+        } else {
+            self.last_sum(datapath)
+        };
+        self.product = datapath.multiply(a, b);
+        self.j = (self.j + 1) % tap_count;
+        if self.j == 0 {
+            self.state = done;
+        }
+    }
+
+    /// The last sum of a dot product, in its writing clock: `ACC + P`.
+    pub(super) fn last_sum(&self, datapath: &mut FixedDatapath<'_>) -> i128 {
+        datapath.add(self.accumulator, self.product)
+    }
+
+    /// Reading clock of a weight behind the ring of L: `P <- L_j*T`, `RR <- W_j`.
+    pub(super) fn read_weight(&mut self, tap_count: usize, datapath: &mut FixedDatapath<'_>) {
+        let l_j = datapath.read_a(self.slot(self.j, tap_count));
+        self.read_latch = datapath.read_b(self.j);
+        self.product = datapath.multiply(l_j, self.intermediate);
+    }
+
+    /// Writing clock of a weight: `W_j <- weight`, on to the next tap; whether it was the last one.
+    pub(super) fn write_weight(
+        &mut self,
+        weight: i64,
+        tap_count: usize,
+        datapath: &mut FixedDatapath<'_>,
+    ) -> bool {
+        datapath.write_b(self.j, weight);
+        self.j = (self.j + 1) % tap_count;
+        self.j == 0
+    }
+}

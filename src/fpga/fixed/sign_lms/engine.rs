@@ -1,0 +1,89 @@
+//! The line enhancer without clocks: same words, no control machine.
+
+use super::config::FixedSignLmsConfig;
+use crate::fpga::fixed::CodePair;
+use crate::fpga::fixed::exact::{dot, ring};
+use crate::fpga::fixed::pipeline::{FixedEngine, FixedHealth};
+use crate::fpga::fixed::signal::SignalName;
+
+/// Clock-less engine of the line enhancer in fixed point.
+#[derive(Clone, Debug)]
+pub struct FixedSignLmsEngine {
+    config: FixedSignLmsConfig,
+    head: usize,
+    /// Regressors, newest first.
+    line: Vec<i64>,
+    weights: Vec<i64>,
+    held_samples: usize,
+    health: FixedHealth,
+}
+
+impl FixedSignLmsEngine {
+    /// An engine in the pipeline's reset state.
+    #[must_use]
+    pub fn new(config: FixedSignLmsConfig) -> Self {
+        Self {
+            config,
+            head: config.tap_count - 1,
+            line: vec![0; config.tap_count],
+            weights: vec![config.initial_weight; config.tap_count],
+            held_samples: 0,
+            health: FixedHealth::default(),
+        }
+    }
+
+    /// The words RAMA holds after the last sample: the ring of L.
+    #[must_use]
+    pub fn rama(&self) -> Vec<i64> {
+        ring(&self.line, self.head)
+    }
+
+    fn is_held(&mut self, error: i64) -> bool {
+        if !self.config.is_beyond(error) {
+            self.held_samples = 0;
+            return false;
+        }
+        let is_held = self.held_samples < self.config.hold_samples;
+        self.held_samples += usize::from(is_held);
+        is_held
+    }
+}
+
+impl FixedEngine for FixedSignLmsEngine {
+    fn process(&mut self, pair: CodePair) -> i64 {
+        let config = self.config;
+        let formats = config.formats;
+        self.head = (self.head + 1) % config.tap_count;
+        self.line.rotate_right(1);
+        self.line[0] = pair.input;
+        // The recursion of the hardware is exact, and so the sum itself.
+        let norm = dot(0, &self.line, &self.line);
+        let overflows = &mut self.health.overflows;
+        let denominator = overflows.counted(SignalName::Den, config.denominator(norm));
+        let gain = overflows.counted(SignalName::K, config.step.gain(&formats, denominator));
+        let sum = dot(0, &self.line, &self.weights);
+        let output = overflows.counted(SignalName::Y, formats.output(sum));
+        let error = overflows.counted(SignalName::Y, formats.error(pair.desired, output));
+        let step = if self.is_held(error) {
+            0
+        } else {
+            let stored = config.step_of(error, gain);
+            self.health.overflows.counted(SignalName::T, stored)
+        };
+        let overflows = &mut self.health.overflows;
+        for (l_j, w_j) in self.line.iter().zip(&mut self.weights) {
+            let product = i128::from(*l_j) * i128::from(step);
+            *w_j = overflows.counted(SignalName::W, formats.weight(*w_j, product));
+        }
+        self.health.close(denominator > 0);
+        output
+    }
+
+    fn weights(&self) -> &[i64] {
+        &self.weights
+    }
+
+    fn health(&self) -> FixedHealth {
+        self.health
+    }
+}

@@ -1,0 +1,193 @@
+//! The control machine of the line enhancer in fixed point: what each state does in its clock.
+
+use super::config::FixedSignLmsConfig;
+use crate::fpga::fixed::CodePair;
+use crate::fpga::fixed::datapath::FixedDatapath;
+use crate::fpga::fixed::registers::FixedRegisters;
+use crate::fpga::fixed::sequencer::{FixedMachine, FixedSequencer};
+use crate::fpga::memory::SinglePortRam;
+use crate::fpga::sign_lms::SignLmsState;
+
+/// The clocked line enhancer. RAMA: ring of L. RAMB: W, tap 0 first.
+pub type FixedSignLmsPipeline = FixedSequencer<FixedSignLmsMachine>;
+
+/// Control machine and registers of the line enhancer.
+#[derive(Clone, Debug)]
+pub struct FixedSignLmsMachine {
+    config: FixedSignLmsConfig,
+    registers: FixedRegisters<SignLmsState>,
+    /// Samples on end that the guard has held the weights.
+    held_samples: usize,
+    /// Input X.
+    input: i64,
+    /// Norm S, exact.
+    norm: i128,
+}
+
+impl FixedMachine for FixedSignLmsMachine {
+    type Config = FixedSignLmsConfig;
+    type State = SignLmsState;
+
+    const LOADING: SignLmsState = SignLmsState::LReading;
+    const CLEARING: SignLmsState = SignLmsState::Clearing;
+
+    fn new(config: FixedSignLmsConfig) -> Self {
+        Self {
+            config,
+            registers: FixedRegisters::reset(config.tap_count),
+            held_samples: 0,
+            input: 0,
+            norm: 0,
+        }
+    }
+
+    fn memories(config: &FixedSignLmsConfig) -> [SinglePortRam<i64>; 2] {
+        let taps = config.tap_count;
+        [
+            SinglePortRam::filled("RAMA", taps, 0),
+            SinglePortRam::filled("RAMB", taps, config.initial_weight),
+        ]
+    }
+
+    fn config(&self) -> &FixedSignLmsConfig {
+        &self.config
+    }
+
+    fn registers(&self) -> &FixedRegisters<SignLmsState> {
+        &self.registers
+    }
+
+    fn registers_mut(&mut self) -> &mut FixedRegisters<SignLmsState> {
+        &mut self.registers
+    }
+
+    fn strobes_output(&self) -> bool {
+        self.registers.state == SignLmsState::Err
+    }
+
+    /// L_reading: the slot that the new word will take still holds the one that leaves the taps.
+    fn load(&mut self, pair: CodePair, datapath: &mut FixedDatapath<'_>) {
+        let oldest = self.registers.next_slot(self.config.tap_count);
+        self.registers.read_latch = datapath.read_a(oldest);
+        self.registers.product = datapath.multiply(pair.input, pair.input);
+        self.input = pair.input;
+        self.registers.desired = pair.desired;
+        self.registers.state = SignLmsState::LWriting;
+    }
+
+    fn step(&mut self, next_waits: bool, datapath: &mut FixedDatapath<'_>) {
+        let taps = self.config.tap_count;
+        match self.registers.state {
+            // The sequencer's own: waiting and loading.
+            SignLmsState::Idle | SignLmsState::LReading => {}
+            SignLmsState::LWriting => {
+                let head = self.registers.next_slot(taps);
+                datapath.write_a(head, self.input);
+                self.registers.head = head;
+                self.registers.state = SignLmsState::NrmAdding;
+            }
+            SignLmsState::NrmAdding => self.norm_add(datapath),
+            SignLmsState::NrmWriting => {
+                self.norm = datapath.add(self.norm, -self.registers.product);
+                self.registers.state = SignLmsState::OutReading;
+            }
+            SignLmsState::OutReading => self.accumulate_output(datapath),
+            SignLmsState::OutWriting => {
+                let sum = self.registers.last_sum(datapath);
+                self.registers.output = self.config.formats.output(sum).code;
+                self.registers.state = SignLmsState::Err;
+            }
+            SignLmsState::Err => self.form_error(datapath),
+            SignLmsState::Gain => self.scale_error(datapath),
+            SignLmsState::LmwReading => {
+                self.registers.read_weight(taps, datapath);
+                self.registers.state = SignLmsState::LmwWriting;
+            }
+            SignLmsState::LmwWriting => self.weight_write(next_waits, datapath),
+            SignLmsState::Clearing => {
+                datapath.write_a(self.registers.j, 0);
+                let weight = self.config.initial_weight;
+                if self.registers.write_weight(weight, taps, datapath) {
+                    self.registers.state = SignLmsState::Idle;
+                }
+            }
+        }
+    }
+}
+
+impl FixedSignLmsMachine {
+    /// NRM_adding: the square of the new word joins the norm, that of the old one is formed.
+    fn norm_add(&mut self, datapath: &mut FixedDatapath<'_>) {
+        let leaving = self.registers.read_latch;
+        self.norm = datapath.add(self.norm, self.registers.product);
+        self.registers.product = datapath.multiply(leaving, leaving);
+        self.registers.state = SignLmsState::NrmWriting;
+    }
+
+    /// Out_reading: `P <- L_j*W_j`; the adder forms the denominator first, then sums.
+    fn accumulate_output(&mut self, datapath: &mut FixedDatapath<'_>) {
+        let (taps, j) = (self.config.tap_count, self.registers.j);
+        let l_j = datapath.read_a(self.registers.slot(j, taps));
+        let w_j = datapath.read_b(j);
+        if j == 0 {
+            datapath.count_sum();
+            self.registers.denominator = self.config.denominator(self.norm).code;
+        }
+        self.registers
+            .accumulate((l_j, w_j), 0, taps, SignLmsState::OutWriting, datapath);
+    }
+
+    /// ERR: the error, and the gain, which the divider forms meanwhile.
+    fn form_error(&mut self, datapath: &mut FixedDatapath<'_>) {
+        let FixedRegisters {
+            desired,
+            output,
+            denominator,
+            ..
+        } = self.registers;
+        let formats = &self.config.formats;
+        datapath.count_sum();
+        datapath.count_quotient();
+        self.registers.error = formats.error(desired, output).code;
+        self.registers.gain = self.config.step.gain(formats, denominator).code;
+        self.registers.state = SignLmsState::Gain;
+    }
+
+    /// GAIN: what the taps are multiplied by, once per sample.
+    fn scale_error(&mut self, datapath: &mut FixedDatapath<'_>) {
+        let FixedRegisters { error, gain, .. } = self.registers;
+        let is_beyond = self.config.is_beyond(error);
+        let is_held = is_beyond && self.held_samples < self.config.hold_samples;
+        if is_held {
+            self.held_samples += 1;
+        } else if !is_beyond {
+            self.held_samples = 0;
+        }
+        if self.config.normalised {
+            datapath.count_product();
+        }
+        self.registers.intermediate = if is_held {
+            0
+        } else {
+            self.config.step_of(error, gain).code
+        };
+        self.registers.state = SignLmsState::LmwReading;
+    }
+
+    /// LMW_writing: the new weight; after the last one the next sample is loaded at once.
+    fn weight_write(&mut self, next_waits: bool, datapath: &mut FixedDatapath<'_>) {
+        let FixedRegisters {
+            read_latch,
+            product,
+            ..
+        } = self.registers;
+        datapath.count_sum();
+        let weight = self.config.formats.weight(read_latch, product).code;
+        let taps = self.config.tap_count;
+        self.registers.state = if self.registers.write_weight(weight, taps, datapath) {
+            Self::after_sample(next_waits)
+        } else {
+            SignLmsState::LmwReading
+        };
+    }
+}
