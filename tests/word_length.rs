@@ -183,7 +183,7 @@ fn known_answers_of_word_lengths_under_the_swing_of_the_paper() {
     assert_eq!(figure("a28", "diverged_at_s"), None);
     let delay_us = figure("a28", "delay_minus_binary64_us").expect("a delay");
     assert!(delay_us.abs() < 0.2, "{delay_us}");
-    // Known: near 19 000. Winding up, R falls at a chance of the noise: 15 600 to 43 400 over four seeds.
+    // Known: near 19 000. Winding up, R falls at a chance of the noise: 15 600 to 43 400 in five runs.
     let found = sample("f32", "diverged_at_s").expect("it fails");
     assert!((10_000.0..60_000.0).contains(&found), "{found}");
     assert_eq!(figure("f36", "indefinite_at_s"), None);
