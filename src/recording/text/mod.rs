@@ -2,6 +2,7 @@
 
 pub(super) mod csv;
 pub(super) mod decimal;
+mod first_rows;
 pub(super) mod head;
 pub(super) mod lines;
 pub(super) mod plain;

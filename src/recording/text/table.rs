@@ -3,6 +3,7 @@
 use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
+use super::first_rows::{chosen, heads};
 use super::head::{HEAD_LINES, head};
 use super::lines::{Delimiter, Lines, TextError, is_missing, shown};
 use super::plain::{plain_length, plain_number, plain_stamp};
@@ -10,16 +11,13 @@ use super::transcode::{as_utf8, encoding_of};
 use crate::recording::column::{Column, Columns, LinesBetween, RowLines};
 use crate::recording::error::{LogError, Place};
 use crate::recording::input::{Input, failure, push};
-use crate::recording::layout::columns::{Chosen, Selection, choose};
+use crate::recording::layout::columns::{Chosen, Selection};
 use crate::recording::layout::words::{DecimalSign, MissingWords};
 use crate::recording::layout::{Fault, HeadLine, Layout, LayoutError, find, finite_in, is_number};
 use crate::recording::log::format::LogFormat;
 use crate::recording::log::gaps::Gaps;
 use crate::recording::time::column::TimeColumn;
 use crate::recording::time::stamp::Stamp;
-
-/// Rows by which columns are told apart.
-const SAMPLE_ROWS: usize = 50;
 
 /// What is read from a file.
 #[derive(Clone, Debug)]
@@ -214,57 +212,6 @@ pub(in crate::recording) fn fault(path: &Path, error: TextError) -> LogError {
         TextError::Io(error) => failure(path, error),
         TextError::Content { line, message, .. } => LogError::at(path, Place::Line(line), message),
     }
-}
-
-/// Heading and row of units as they stand there, unless they could be samples.
-fn heads(layout: &Layout, head: &[HeadLine]) -> Vec<String> {
-    let are_words = |text: &str| {
-        let cells = layout.delimiter().cells(text);
-        let is_word = |cell: &str| !is_number(cell, layout.decimal) && !is_missing(cell);
-        cells.into_iter().any(is_word)
-    };
-    let lines = [layout.heading_line, layout.units_line];
-    head.iter()
-        .filter(|line| lines.contains(&Some(line.number)))
-        .map(|line| line.text.trim().to_owned())
-        .filter(|text| are_words(text))
-        .collect()
-}
-
-/// The columns to read, by the names of the layout and its first rows.
-fn chosen(
-    layout: &Layout,
-    head: &[HeadLine],
-    heads: &[String],
-    wanted: &Wanted<'_>,
-) -> Result<Chosen, LayoutError> {
-    let rows = head.iter().filter(|line| {
-        let text = line.text.trim();
-        let is_row = !layout.is_comment(text) && heads.iter().all(|head| head != text);
-        line.number >= layout.first_row_line && is_row
-    });
-    let cells = rows.take(SAMPLE_ROWS).flat_map(|line| {
-        let cells = layout.delimiter().cells_up_to(&line.text, layout.cells);
-        cells.into_iter().map(str::to_owned).collect::<Vec<_>>()
-    });
-    let cells: Vec<String> = cells.collect();
-    let records: Vec<Vec<String>> = match layout.wrapped {
-        Some(columns) => cells
-            .chunks_exact(columns)
-            .map(<[String]>::to_vec)
-            .collect(),
-        None => cells
-            .chunks_exact(layout.cells.max(1))
-            .map(<[String]>::to_vec)
-            .collect(),
-    };
-    choose(
-        layout,
-        wanted.format,
-        &records,
-        &wanted.columns,
-        wanted.needs_time,
-    )
 }
 
 /// What a cell of a row is for.
