@@ -103,7 +103,7 @@ pub use noise::bias_stability::{
     effective_degrees_of_freedom, expected_bias_stability, paired_ratio,
 };
 pub use noise::memory::{correlation_length_samples, record_fit_tau_min_s};
-pub use noise::other_noise::noise_like;
+pub use noise::other_noise::{noise_beside_steps, noise_like};
 pub use noise::spectrum::{Spectrum, log_binned, segment_samples, welch};
 pub use noise::truth_response::known_motion;
 pub(crate) use pipeline::{FIXED_POINT_ONLY, OVERFLOWS};

@@ -3,8 +3,8 @@
 //! Pieces of the record's noise from near their place, of either sign, fade into each other by sine and
 //! cosine: the sum of the squares of these is 1, so that independent pieces keep their power. Each piece
 //! is many times as long as the words of a gyro correlate, and its ends are soft: the colour stays, to
-//! zero frequency. As pieces stay about where they were, so does noise that changes with the rate, and what
-//! a step leaves of itself. Slow noise, of which a record shows next to nothing, is not in it.
+//! zero frequency. As pieces stay about where they were, so does noise that changes with the rate. Slow
+//! noise, of which a record shows next to nothing, is not in it.
 //!
 //! Source: derived; Kuensch, Annals of Statistics 17 (1989), for blocks drawn with replacement, Paparoditis
 //! and Politis, Biometrika 88 (2001), for tapered ones, C. R. Acad. Sci. Paris 335 (2002), for local ones.
@@ -22,6 +22,54 @@ const PIECES_MIN: usize = 16;
 
 /// Part of the record by which a piece may be from before its place or from behind it.
 const NEAR: f64 = 1.0 / 48.0;
+
+/// Words on either side of a step in which it leaves something of itself: those over which the words of a gyro
+/// correlate.
+const STEP_REACH: usize = 16;
+
+/// Rate from one word to the next that is a step, in standard deviations of the noise.
+const STEP: f64 = 4.0;
+
+/// The noise of words, given what of them is none; where the motion steps it is that of the words behind.
+///
+/// What a step leaves of itself is the same in every record and stays where it is. Moved, it would be noise.
+#[must_use]
+pub fn noise_beside_steps(words: &[f64], motion: &[f64]) -> Vec<f64> {
+    let pairs = words.iter().zip(motion);
+    let mut noise: Vec<f64> = pairs.map(|(word, motion)| word - motion).collect();
+    let mut sizes: Vec<f64> = noise.iter().map(|value| value.abs()).collect();
+    let middle = sizes.len() / 2;
+    if sizes.is_empty() {
+        return noise;
+    }
+    // The median, which few steps do not move; two thirds of the standard deviation.
+    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+    let least = STEP * 1.5 * *median;
+    let steps = motion
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).abs() > least);
+    let mut index = 0;
+    let steps: Vec<bool> = std::iter::once(false).chain(steps).collect();
+    while let Some(step) = steps[index..].iter().position(|is_step| *is_step) {
+        let start = (index + step).saturating_sub(STEP_REACH);
+        let mut end = index + step;
+        while let Some(next) = steps[end + 1..]
+            .iter()
+            .take(2 * STEP_REACH)
+            .position(|it| *it)
+        {
+            end += 1 + next;
+        }
+        index = (end + STEP_REACH + 1).min(noise.len());
+        for place in start..index {
+            let behind = 2 * index - 1 - place;
+            let before = (2 * start).checked_sub(place + 1);
+            let from = noise.get(behind).or(before.and_then(|at| noise.get(at)));
+            noise[place] = from.copied().unwrap_or_default();
+        }
+    }
+    noise
+}
 
 /// Noise like `noise`; one draw for each `run`.
 #[must_use]
@@ -54,6 +102,26 @@ pub fn noise_like(noise: &[f64], run: u64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_a_step_leaves_of_itself_is_no_noise() {
+        let mut stream = Streams::new(4, 0).stream("white");
+        let mut motion = vec![0.0; 2000];
+        motion[700..].fill(1000.0);
+        motion[1990..].fill(-1000.0);
+        let white: Vec<f64> = motion.iter().map(|_| stream.normal()).collect();
+        let mut words: Vec<f64> = white.iter().zip(&motion).map(|(a, b)| a + b).collect();
+        for left in [700, 701, 1990] {
+            words[left] += 50.0;
+        }
+        let noise = noise_beside_steps(&words, &motion);
+        assert!(noise.iter().all(|value| value.abs() < 6.0));
+        let same = noise
+            .iter()
+            .zip(&white)
+            .filter(|(a, b)| (*a - *b).abs() < 1e-9);
+        assert!((1900..2000).contains(&same.count()));
+    }
 
     #[test]
     fn it_has_the_colour_of_the_noise_to_zero_frequency() {

@@ -7,7 +7,7 @@
 
 use crate::experiment::channel_filter::{Arithmetic, FinishedFilter};
 use crate::experiment::run::{RecordLength, count};
-use crate::metrics::{StepFigures, noise_like};
+use crate::metrics::{StepFigures, noise_beside_steps, noise_like};
 
 /// Runs; their scatter has as many degrees of freedom less one.
 const RUNS: u64 = 8;
@@ -26,8 +26,7 @@ pub(in crate::experiment::run) fn figures_of_other_runs(
     figures: impl Fn(&[f64], &[f64], f64) -> Option<StepFigures>,
 ) -> Option<Vec<StepFigures>> {
     let kind = filter.kind.as_ref().filter(|_| !filter.restarts)?;
-    let noise = words.iter().zip(motion).map(|(word, motion)| word - motion);
-    let noise: Vec<f64> = noise.collect();
+    let noise = noise_beside_steps(words, motion);
     let run = |run: u64| {
         let mut input = noise_like(&noise, run);
         for (word, motion) in input.iter_mut().zip(motion) {
