@@ -31,8 +31,12 @@ except ImportError:
 PROTOCOL = 1
 
 
-def serve(kind, name=None, version="0"):
-    """Speaks protocol 1 for a class or a function, until there are no more words."""
+def serve(kind, name=None, version="0", stateless=False):
+    """Speaks protocol 1 for a class or a function, until there are no more words.
+
+    `stateless` promises that the answer to a block depends on that block alone, so that one start of the
+    program may be given several records.
+    """
     with _streams() as (words_in, words_out):
         bench = _greeting(words_in)
         call = kind(bench) if isinstance(kind, type) else lambda words: kind(words, bench)
@@ -41,6 +45,8 @@ def serve(kind, name=None, version="0"):
             "name": name or getattr(kind, "__name__", "filter"),
             "version": version,
         }
+        if stateless:
+            introduction["stateless"] = True
         words_out.write(json.dumps(introduction).encode() + b"\n")
         words_out.flush()
         while True:

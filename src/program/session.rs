@@ -21,7 +21,7 @@ const TICK: Duration = Duration::from_millis(20);
 const GRACE: Duration = Duration::from_secs(2);
 
 /// Whoever waits for a program.
-pub(crate) trait Listener {
+pub(crate) trait Listener: Sync {
     /// Hears a line that the program wrote on stderr.
     fn said(&self, line: &str);
     /// Whether to stop waiting.
@@ -83,6 +83,9 @@ struct Introduction {
     fogbench_filter: u32,
     name: String,
     version: String,
+    /// Whether what it answers depends on the block alone.
+    #[serde(default)]
+    stateless: bool,
 }
 
 /// Why a session came to no end.
@@ -126,6 +129,7 @@ pub(crate) struct Session<'a> {
     timeout_s: f64,
     memory_mb: Option<u32>,
     listener: &'a dyn Listener,
+    is_stateless: bool,
 }
 
 impl<'a> Session<'a> {
@@ -150,9 +154,14 @@ impl<'a> Session<'a> {
         };
         let answer = session.ask(line, Expected::Line, wait)?;
         if let Answer::Line(line) = answer {
-            check_introduction(&line)?;
+            session.is_stateless = introduction(&line)?.stateless;
         }
         Ok(session)
+    }
+
+    /// Whether the program says that what it answers depends on the block alone.
+    pub(crate) fn is_stateless(&self) -> bool {
+        self.is_stateless
     }
 
     fn launch(
@@ -206,6 +215,7 @@ impl<'a> Session<'a> {
             timeout_s: launch.timeout_s,
             memory_mb: launch.memory_mb,
             listener,
+            is_stateless: false,
         })
     }
 
@@ -366,8 +376,8 @@ impl Drop for Session<'_> {
     }
 }
 
-/// Refuses an answer to the greeting that is none, or of another version.
-fn check_introduction(line: &str) -> Result<(), ProgramError> {
+/// What a program says of itself; refuses an answer to the greeting that is none, or of another version.
+fn introduction(line: &str) -> Result<Introduction, ProgramError> {
     let refuse = |reason| ProgramError::Greeting {
         reason,
         line: shown(line.as_bytes()),
@@ -378,5 +388,5 @@ fn check_introduction(line: &str) -> Result<(), ProgramError> {
     if found.fogbench_filter != PROTOCOL {
         return Err(refuse("expected version 1 of the protocol"));
     }
-    Ok(())
+    Ok(found)
 }

@@ -1,6 +1,7 @@
 //! A program of the user's in the place of a filter: its words, and what they and a few more runs of it
 //! tell of its weights.
 
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -37,6 +38,11 @@ struct Program<'a> {
     /// Folder of the run and name of the channel.
     name: (String, &'a str),
     progress: &'a dyn Progress,
+    /// Hears nothing of what the program says beside its record.
+    deaf: &'a Ear<'a>,
+    /// Sessions of a stateless program that wait for another record of as many words: its start may take
+    /// longer than its work.
+    idle: Mutex<Vec<(u32, Session<'a>)>>,
 }
 
 /// Why a program gave no words.
@@ -61,68 +67,106 @@ impl Halt {
 
 /// Passes on what the program says, where somebody is to hear it.
 struct Ear<'a> {
-    program: &'a Program<'a>,
-    is_heard: bool,
+    progress: &'a dyn Progress,
+    /// Folder of the run and name of the channel under which it is heard.
+    heard_as: Option<(&'a str, &'a str)>,
 }
 
 impl Listener for Ear<'_> {
     fn said(&self, line: &str) {
-        if self.is_heard {
-            let (run, channel) = &self.program.name;
-            self.program.progress.program_said(run, channel, line);
+        if let Some((run, channel)) = self.heard_as {
+            self.progress.program_said(run, channel, line);
         }
     }
 
     fn should_stop(&self) -> bool {
-        self.program.progress.should_stop()
+        self.progress.should_stop()
     }
 }
 
-impl Program<'_> {
-    /// What a fresh run of the program makes of some words.
-    fn over(&self, words: &[f64], is_heard: bool) -> Result<Vec<f64>, Halt> {
-        let block = match self.config.mode {
+impl<'a> Program<'a> {
+    /// Most words that are handed over at once of so many.
+    fn block(&self, words: usize) -> u32 {
+        match self.config.mode {
             ProcessMode::Stream => self.config.block_samples,
-            ProcessMode::Record => u32::try_from(words.len()).unwrap_or(u32::MAX),
-        };
-        self.in_blocks(words, block, is_heard)
+            ProcessMode::Record => u32::try_from(words).unwrap_or(u32::MAX),
+        }
     }
 
-    /// The same in blocks of so many words.
-    fn in_blocks(&self, words: &[f64], block: u32, is_heard: bool) -> Result<Vec<f64>, Halt> {
-        let ear = Ear {
-            program: self,
-            is_heard,
-        };
-        let config = self.config;
+    /// The program, started and greeted.
+    fn start<'s>(&self, block: u32, ear: &'s Ear<'s>) -> Result<Session<'s>, Halt> {
         let greeting = Greeting::new(
             1.0 / self.input.sample_period_s,
             self.input.channel.to_owned(),
             block,
-            config.parameters.clone().unwrap_or_default(),
+            self.config.parameters.clone().unwrap_or_default(),
         );
-        let session = Session::start(self.programs, &self.launch, &greeting, &ear);
-        let mut session = session.map_err(|error| Halt::of(error, 0))?;
-        let mut answers = Vec::with_capacity(words.len());
-        let began = Instant::now();
-        for block in words.chunks(block as usize) {
-            let start = answers.len();
-            let answer = session.exchange(block);
-            answers.extend(answer.map_err(|error| Halt::of(error, start))?);
-        }
-        let end = words.len();
-        if is_heard && end > 0 {
-            let us_per_word = 1e6 * began.elapsed().as_secs_f64() / end as f64;
-            let (run, channel) = &self.name;
-            self.progress.program_took(run, channel, us_per_word);
-        }
-        session.finish().map_err(|error| Halt::of(error, end))?;
-        Ok(registered(answers, config.output_register))
+        Session::start(self.programs, &self.launch, &greeting, ear)
+            .map_err(|error| Halt::of(error, 0))
     }
 
-    /// The same of words beside the record, of which nobody hears; none where the program fails on them.
+    /// What the program makes of the record, heard and timed.
+    fn over_record(&self) -> Result<Vec<f64>, Halt> {
+        let words = self.input.words_deg_per_h;
+        let (run, channel) = &self.name;
+        let ear = Ear {
+            progress: self.progress,
+            heard_as: Some((run, channel)),
+        };
+        let block = self.block(words.len());
+        let mut session = self.start(block, &ear)?;
+        let began = Instant::now();
+        let answers = in_blocks(&mut session, words, block)?;
+        if !words.is_empty() {
+            let us_per_word = 1e6 * began.elapsed().as_secs_f64() / words.len() as f64;
+            self.progress.program_took(run, channel, us_per_word);
+        }
+        self.finished(session, answers)
+    }
+
+    /// What a fresh run of the program makes of some words in blocks of so many, of which nobody hears.
+    fn afresh(&self, words: &[f64], block: u32) -> Result<Vec<f64>, Halt> {
+        let mut session = self.start(block, self.deaf)?;
+        let answers = in_blocks(&mut session, words, block)?;
+        self.finished(session, answers)
+    }
+
+    /// The same of a record, by a stateless program that may have answered another before.
+    fn another_record(&self, words: &[f64]) -> Result<Vec<f64>, Halt> {
+        let block = self.block(words.len());
+        let mut session = match self.idle_of(block) {
+            Some(session) => session,
+            None => self.start(block, self.deaf)?,
+        };
+        let answers = in_blocks(&mut session, words, block)?;
+        if !session.is_stateless() {
+            return self.finished(session, answers);
+        }
+        let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+        idle.push((block, session));
+        Ok(registered(answers, self.config.output_register))
+    }
+
+    /// A session that waits for a record of so many words.
+    fn idle_of(&self, block: u32) -> Option<Session<'a>> {
+        let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = idle.iter().position(|(words, _)| *words == block)?;
+        Some(idle.swap_remove(place).1)
+    }
+
+    /// The outputs of a session that ends as it should.
+    fn finished(&self, session: Session, answers: Vec<f64>) -> Result<Vec<f64>, Halt> {
+        let end = answers.len();
+        session.finish().map_err(|error| Halt::of(error, end))?;
+        Ok(registered(answers, self.config.output_register))
+    }
+
+    /// What it makes of words beside the record; none where the program fails on them.
     fn beside(&self, words: &[f64]) -> Result<Option<Vec<f64>>, Unfinished> {
-        Self::unless_failed(self.over(words, false))
+        Self::unless_failed(match self.config.mode {
+            ProcessMode::Stream => self.afresh(words, self.config.block_samples),
+            ProcessMode::Record => self.another_record(words),
+        })
     }
 
     /// None where the program failed.
@@ -186,7 +230,7 @@ impl Subject for Program<'_> {
     }
 
     fn answer_word_by_word(&self, words_deg_per_h: &[f64]) -> Result<Option<Vec<f64>>, Unfinished> {
-        Self::unless_failed(self.in_blocks(words_deg_per_h, 1, false))
+        Self::unless_failed(self.afresh(words_deg_per_h, 1))
     }
 
     fn handing(&self) -> Handing {
@@ -214,6 +258,10 @@ impl OutsideFilter<'_> {
             let failure = FailureKind::NotAllowed.failure(0, message.to_owned());
             return Ok(self.failed(config, failure));
         };
+        let deaf = Ear {
+            progress,
+            heard_as: None,
+        };
         let program = Program {
             programs,
             launch: self.launch(config),
@@ -221,8 +269,10 @@ impl OutsideFilter<'_> {
             input,
             name: (self.resolved.folder(), &self.name),
             progress,
+            deaf: &deaf,
+            idle: Mutex::default(),
         };
-        let output = match program.over(input.words_deg_per_h, true) {
+        let output = match program.over_record() {
             Ok(output) => output,
             Err(Halt::Stopped) => return Err(Unfinished::Stopped),
             Err(Halt::Failed(failure)) => return Ok(self.failed(config, failure)),
@@ -287,6 +337,17 @@ impl OutsideFilter<'_> {
             pipeline: None,
         }
     }
+}
+
+/// What a session answers to words in blocks of so many.
+fn in_blocks(session: &mut Session, words: &[f64], block: u32) -> Result<Vec<f64>, Halt> {
+    let mut answers = Vec::with_capacity(words.len());
+    for block in words.chunks(block as usize) {
+        let start = answers.len();
+        let answer = session.exchange(block);
+        answers.extend(answer.map_err(|error| Halt::of(error, start))?);
+    }
+    Ok(answers)
 }
 
 /// The outline of a program of which the measured words alone are known, for a reason.

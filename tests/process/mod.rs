@@ -1,6 +1,8 @@
 //! Programs of the user's in the place of a filter: their words, their misbehaviour and their end.
 #![cfg(unix)]
 
+mod twins;
+
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -658,64 +660,4 @@ fn a_program_that_answers_otherwise_each_time_is_told() {
         "{lack}"
     );
     assert!(run["channels"]["p"]["noise_gain"]["value"].is_number());
-}
-
-const WHOLE: &str = "[trial]\nblack_box = \"whole\"\n";
-
-/// Value of a figure of a channel; none where it is unavailable.
-fn figure(run: &Value, channel: &str, key: &str) -> Option<f64> {
-    run["channels"][channel]["metrics"][key]["value"].as_f64()
-}
-
-#[test]
-fn a_program_that_reads_ahead_inside_a_block_is_found_out() {
-    if !has("python3") {
-        return;
-    }
-    let folder = tempfile::tempdir().expect("a scratch folder");
-    misbehaving(
-        folder.path(),
-        "hello()\nwhile True:\n    n, b = block()\n    if n == 0: break\n\
-         \x20   w = struct.unpack('<%dd' % n, b)\n\
-         \x20   y = [0.5 * (w[k] + w[min(k + 3, n - 1)]) for k in range(n)]\n\
-         \x20   say(struct.pack('<I%dd' % n, n, *y))",
-    );
-    let ahead = program("p", "[\"python3\", \"./bad.py\"]", "block_samples = 100");
-    let run = allowed(folder.path(), &format!("{HEAD}{ahead}{WHOLE}"), 0);
-    assert_eq!(figure(&run, "p", "look_ahead_samples"), Some(3.0));
-    let found = &run["channels"]["p"]["metrics"]["look_ahead_samples"];
-    let change = found["change_by_single_words_deg_per_h"].as_f64();
-    assert!(change > Some(1.0), "{found}");
-    let verdict = run["channels"]["p"]["verdict"].to_string();
-    assert!(verdict.contains("looks 3 samples ahead"), "{verdict}");
-}
-
-#[test]
-fn twins_show_the_same_of_a_filter_of_the_bench_and_of_a_program_with_its_words() {
-    if !has("python3") {
-        return;
-    }
-    let folder = scratch();
-    let own = "[[filter]]\nname = \"own\"\n[filter.moving_average]\ntaps = 8\n";
-    let taps = "parameters = { taps = 8 }\nblock_samples = 1000";
-    let python = program("python", "[\"python3\", \"./mean.py\"]", taps);
-    let text = format!("{HEAD}{own}{python}{WHOLE}");
-    let run = allowed(folder.path(), &text, 0);
-    let keys = fogbench::metrics::known_metrics().iter();
-    let keys = keys.filter(|key| key.applies == fogbench::metrics::Applies::Twins);
-    let mut known = 0;
-    for key in keys {
-        let of_bench = figure(&run, "own", key.name);
-        assert_eq!(figure(&run, "python", key.name), of_bench, "{}", key.name);
-        known += usize::from(of_bench.is_some());
-    }
-    // The record is too short for steps of 10 s and 100 s.
-    assert_eq!(known, 18, "{}", run["channels"]["own"]);
-    let glitch = figure(&run, "own", "glitch_response").expect("a figure");
-    assert!((glitch - 0.125).abs() < 1e-12, "{glitch}");
-    // Another run gives the same bytes, and a run that does not ask has none of it.
-    let again = allowed(folder.path(), &text, 0);
-    assert_eq!(run, again);
-    let without = allowed(folder.path(), &format!("{HEAD}{own}"), 0);
-    assert!(!without.to_string().contains("look_ahead"), "{without}");
 }
