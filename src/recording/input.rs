@@ -10,6 +10,8 @@ use super::error::LogError;
 const STREAM_BYTES_MAX: u64 = 1 << 28;
 /// Name of what comes on standard input.
 const STANDARD_INPUT: &str = "-";
+/// Bytes that are read at once: of a text, enough for several threads.
+const BUFFER_BYTES: usize = 1 << 18;
 /// First bytes that are looked at.
 const FIRST: usize = 8;
 /// Most bytes of a text that is read as a whole.
@@ -62,7 +64,7 @@ impl Input {
         let metadata = file.metadata().map_err(failed)?;
         // Files that the system makes up while they are read have no length.
         let length = (metadata.is_file() && metadata.len() > 0).then_some(metadata.len());
-        let mut reader = BufReader::with_capacity(1 << 16, file);
+        let mut reader = BufReader::with_capacity(BUFFER_BYTES, file);
         let mut first = Vec::new();
         let read = reader.by_ref().take(FIRST as u64).read_to_end(&mut first);
         read.map_err(failed)?;
@@ -140,10 +142,21 @@ pub(super) fn failure(path: &Path, error: io::Error) -> LogError {
 
 /// Appends a value, or says that memory is used up.
 pub(super) fn push<T>(values: &mut Vec<T>, value: T) -> io::Result<()> {
-    let reserved = values.try_reserve(1);
-    reserved.map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))?;
+    reserve(values, 1)?;
     values.push(value);
     Ok(())
+}
+
+/// Appends values, or says that memory is used up.
+pub(super) fn append(values: &mut Vec<f64>, more: &[f64]) -> io::Result<()> {
+    reserve(values, more.len())?;
+    values.extend_from_slice(more);
+    Ok(())
+}
+
+fn reserve<T>(values: &mut Vec<T>, more: usize) -> io::Result<()> {
+    let reserved = values.try_reserve(more);
+    reserved.map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))
 }
 
 #[cfg(test)]

@@ -262,12 +262,12 @@ fn is_within_turn(angles: &[f64], turn: f64) -> bool {
 }
 
 /// What is said of numbers that were called rates and look like an angle that runs on.
-pub(super) fn angle_remark(values: &[f64], conversion: &Conversion) -> Option<String> {
-    if conversion.running.is_some() || values.len() < CORRELATED_MIN {
+pub(super) fn angle_remark(neighbours: Neighbours, conversion: &Conversion) -> Option<String> {
+    if conversion.running.is_some() {
         return None;
     }
-    let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
-    let (words, steps) = (lag_one(values.iter().copied())?, lag_one(steps)?);
+    let Neighbours { words, steps } = neighbours;
+    let (words, steps) = (words?, steps?);
     (words > ANGLE_CORRELATION && steps.abs() < STEP_CORRELATION).then(|| {
         format!(
             "each number follows the one before it (correlation {}) and the steps do not: this may be a \
@@ -275,6 +275,27 @@ pub(super) fn angle_remark(values: &[f64], conversion: &Conversion) -> Option<St
             plain((words * 1e6).round() / 1e6)
         )
     })
+}
+
+/// Correlations of neighbours; nothing of a few numbers, and of those that do not vary.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Neighbours {
+    words: Option<f64>,
+    /// Of the steps from each number to the next.
+    steps: Option<f64>,
+}
+
+impl Neighbours {
+    pub(super) fn of(values: &[f64]) -> Self {
+        if values.len() < CORRELATED_MIN {
+            return Self::default();
+        }
+        let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
+        Self {
+            words: lag_one(values.iter().copied()),
+            steps: lag_one(steps),
+        }
+    }
 }
 
 /// Correlation of neighbours about the mean; nothing of numbers that do not vary.

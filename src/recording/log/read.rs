@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::format::LogFormat;
 use super::gaps::Gaps;
-use super::rates::{Taken, Words, angle_remark};
+use super::rates::{Neighbours, Taken, Words, angle_remark};
 use super::record::Log;
 use super::stretches::parts;
 use crate::recording::bounds::{check_sample_rate, check_temperature};
@@ -115,10 +115,18 @@ pub(super) fn logs_of(
         Some(_) => data.pop(),
         None => None,
     };
-    let spacing = spacing(path, &columns, &data, wanted)?;
-    let logs = data.into_iter();
+    // Stamps and numbers have nothing to do with each other yet.
+    let (spacing, neighbours) = rayon::join(
+        || spacing(path, &columns, &data, wanted),
+        || -> Vec<Neighbours> {
+            let values = data.iter().map(|column| Neighbours::of(&column.values));
+            values.collect()
+        },
+    );
+    let spacing = spacing?;
+    let logs = data.into_iter().zip(neighbours);
     let mut logs = logs
-        .map(|column| log(path, &columns, column, format, &spacing))
+        .map(|(column, neighbours)| log(path, &columns, (column, neighbours), format, &spacing))
         .collect::<Result<Vec<Log>, LogError>>()?;
     if let Some(column) = temperature {
         for log in &mut logs {
@@ -129,7 +137,8 @@ pub(super) fn logs_of(
     }
     if let Some(column) = reference {
         let format = format.of_reference(column.unit);
-        let reference = log(path, &columns, column, &format, &spacing)?;
+        let neighbours = Neighbours::of(&column.values);
+        let reference = log(path, &columns, (column, neighbours), &format, &spacing)?;
         for log in &mut logs {
             log.take_reference(&reference)
                 .map_err(|error| LogError::of_file(path, error))?;
@@ -156,9 +165,10 @@ pub fn read_assembly_log(
     let mut data = std::mem::take(&mut columns.data);
     let spacing = spacing(path, &columns, &data, &wanted)?;
     let temperature = (data.len() > 3).then(|| data.remove(3));
-    let logs = data
-        .into_iter()
-        .map(|column| log(path, &columns, column, format, &spacing));
+    let logs = data.into_iter().map(|column| {
+        let neighbours = Neighbours::of(&column.values);
+        log(path, &columns, (column, neighbours), format, &spacing)
+    });
     let logs = logs.collect::<Result<Vec<Log>, LogError>>()?;
     if let Some(gappy) = logs.iter().find(|log| log.has_gaps()) {
         let message = format!(
@@ -324,7 +334,7 @@ fn with_units(path: &Path, data: &[Column], format: &LogFormat, error: LogError)
 pub(super) fn log(
     path: &Path,
     columns: &Columns,
-    column: Column,
+    (column, neighbours): (Column, Neighbours),
     format: &LogFormat,
     spacing: &Spacing,
 ) -> Result<Log, LogError> {
@@ -335,7 +345,7 @@ pub(super) fn log(
     })?;
     let mut remarks = spacing.notes.clone();
     remarks.extend(columns.note.clone());
-    remarks.extend(angle_remark(&column.values, &conversion));
+    remarks.extend(angle_remark(neighbours, &conversion));
     let name = path.file_name().unwrap_or(path.as_os_str());
     let words = Words {
         path,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::format::LogFormat;
 use super::gaps::Gaps;
-use super::rates::rate_of;
+use super::rates::{Neighbours, rate_of};
 use super::read::{log, logs_of, spacing, wanted_by, with_samples};
 use super::record::Log;
 use crate::recording::column::Columns;
@@ -264,7 +264,8 @@ impl Found {
             return Err(LogError::of_file(path, "holds no sample"));
         };
         let conversion = Conversion::of(format, &column);
-        let log = log(path, &columns, column, format, &spacing)?;
+        let neighbours = Neighbours::of(&column.values);
+        let log = log(path, &columns, (column, neighbours), format, &spacing)?;
         let conversion = conversion.map_err(|error| LogError::of_file(path, error))?;
         if conversion.running.is_some() {
             let way_out = match wanted.gaps {

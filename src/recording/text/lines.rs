@@ -130,17 +130,17 @@ impl<R: BufRead> Lines<R> {
         }))
     }
 
-    /// Passes lines that are in the buffer already, as long as they are taken.
+    /// Passes lines that are in the buffer already, as far as they are taken.
     ///
     /// * `take`: given the bytes from the start of a line to the end of the buffer, and the number of the line,
-    ///   the bytes that the line has with its end. A line that is not taken is the next one of
+    ///   how many lines are taken and their bytes with their ends. The line behind them is the next one of
     ///   [`Self::next_unless`].
     ///
     /// # Errors
-    /// The system's.
-    pub(super) fn pass_while(
+    /// The system's, and those of `take`.
+    pub(super) fn pass(
         &mut self,
-        mut take: impl FnMut(&[u8], usize) -> Option<usize>,
+        take: impl FnOnce(&[u8], usize) -> io::Result<(usize, usize)>,
     ) -> io::Result<()> {
         if self.number == 0 {
             return Ok(());
@@ -151,14 +151,13 @@ impl<R: BufRead> Lines<R> {
             Err(error) => return Err(error),
         };
         // The LF that still belongs to the line before.
-        let mut passed = match available.first() {
+        let end = match available.first() {
             Some(first) => usize::from(std::mem::take(&mut self.is_after_cr) && *first == b'\n'),
             None => 0,
         };
-        while let Some(length) = take(&available[passed..], self.number + 1) {
-            self.number += 1;
-            passed += length;
-        }
+        let (lines, length) = take(&available[end..], self.number + 1)?;
+        self.number += lines;
+        let passed = end + length;
         self.end += passed;
         self.reader.consume(passed);
         Ok(())

@@ -1,16 +1,16 @@
 //! Columns of numbers in text.
 
-use std::io::BufRead;
+use std::io::{self, BufRead};
 use std::path::{Path, PathBuf};
 
 use super::first_rows::{chosen, heads};
 use super::head::{HEAD_LINES, head};
 use super::lines::{Delimiter, Lines, TextError, is_missing, shown};
-use super::plain::{plain_length, plain_number, plain_stamp};
+use super::plain::{PlainRows, Role};
 use super::transcode::{as_utf8, encoding_of};
 use crate::recording::column::{Column, Columns, LinesBetween, RowLines};
 use crate::recording::error::{LogError, Place};
-use crate::recording::input::{Input, failure, push};
+use crate::recording::input::{Input, append, failure, push};
 use crate::recording::layout::columns::{Chosen, Selection};
 use crate::recording::layout::words::{DecimalSign, MissingWords};
 use crate::recording::layout::{Fault, HeadLine, Layout, LayoutError, find, finite_in, is_number};
@@ -187,9 +187,8 @@ impl Rows {
             path, lines, table, ..
         } = self;
         while table.columns.rows() < rows {
-            let passed = lines.pass_while(|bytes, number| {
-                (table.columns.rows() < rows).then(|| table.plain_row(bytes, number))?
-            });
+            let most = rows - table.columns.rows();
+            let passed = lines.pass(|bytes, number| table.plain_rows(bytes, number, most));
             passed.map_err(|error| failure(path, error))?;
             if table.columns.rows() >= rows {
                 break;
@@ -214,16 +213,6 @@ pub(in crate::recording) fn fault(path: &Path, error: TextError) -> LogError {
     }
 }
 
-/// What a cell of a row is for.
-#[derive(Clone, Copy)]
-enum Role {
-    Nothing,
-    /// A number of this column of the data.
-    Data(usize),
-    /// A part of the time.
-    Time(usize),
-}
-
 /// A file while it is read.
 struct Table {
     layout: Layout,
@@ -241,8 +230,6 @@ struct Table {
     taken: usize,
     /// What stands between plain numbers, if it is a byte of its own.
     plain_separator: Option<u8>,
-    /// Values of a row of plain numbers.
-    plain_values: Vec<f64>,
 }
 
 /// What is wrong with a row.
@@ -287,7 +274,6 @@ impl Table {
         let is_plain = layout.decimal == DecimalSign::Point && layout.wrapped.is_none();
         Self {
             plain_separator: plain_separator.filter(|_| is_plain),
-            plain_values: vec![0.0; chosen.data.len()],
             columns: Columns {
                 data: data.collect(),
                 time,
@@ -356,53 +342,44 @@ impl Table {
         }
     }
 
-    /// Takes the line at the beginning of some bytes if it ends there and is a row of plain numbers between
-    /// separators of one byte; its bytes with its end.
+    /// Takes the rows of plain numbers at the beginning of some bytes, so many at most: how many, and their bytes.
     ///
-    /// What is not is left as it is for [`Self::row`], which says what it is.
-    #[inline]
-    fn plain_row(&mut self, bytes: &[u8], number: usize) -> Option<usize> {
-        let separator = self.plain_separator.filter(|_| self.seen() > 1)?;
-        // Comments do not begin as numbers do.
-        if !matches!(bytes.first(), Some(b'0'..=b'9' | b'-' | b'+' | b'.')) {
-            return None;
-        }
-        let (mut rest, mut stamp) = (bytes, Stamp::NOTHING);
-        let width = self.roles.len();
-        for (index, role) in self.roles.iter().enumerate() {
-            let length = match *role {
-                Role::Nothing => plain_length(rest, separator),
-                Role::Data(position) => {
-                    let (value, length) = plain_number(rest, separator)?;
-                    self.plain_values[position] = value;
-                    length
+    /// * `number`: of the first line.
+    fn plain_rows(
+        &mut self,
+        bytes: &[u8],
+        number: usize,
+        most: usize,
+    ) -> io::Result<(usize, usize)> {
+        let Some(separator) = self.plain_separator.filter(|_| self.seen() > 1) else {
+            return Ok((0, 0));
+        };
+        let units = self.columns.time.as_ref().map(|time| &time.units[..]);
+        let rows = PlainRows {
+            roles: &self.roles,
+            units: units.unwrap_or_default(),
+            columns: self.columns.data.len(),
+            separator,
+        };
+        let first = self.columns.rows();
+        let (mut count, mut length) = (0, 0);
+        for part in rows.at_start(bytes, most) {
+            count += part.count;
+            length += part.length;
+            for (column, values) in self.columns.data.iter_mut().zip(&part.values) {
+                append(&mut column.values, values)?;
+            }
+            if let Some(time) = &mut self.columns.time {
+                for stamp in part.stamps {
+                    time.take(stamp)?;
                 }
-                Role::Time(position) => {
-                    let unit = self.columns.time.as_ref()?.units[position];
-                    let (part, length) = plain_stamp(rest, separator, unit)?;
-                    stamp = stamp.plus(part);
-                    length
-                }
-            };
-            let end = match &rest[length..] {
-                [byte, ..] if index + 1 < width && *byte == separator => 1,
-                [b'\n', ..] if index + 1 == width => 1,
-                [b'\r', b'\n', ..] if index + 1 == width => 2,
-                _ => return None,
-            };
-            rest = &rest[length + end..];
+            }
         }
-        let row = self.columns.rows();
-        for (column, value) in self.columns.data.iter_mut().zip(&self.plain_values) {
-            push(&mut column.values, *value).ok()?;
+        // The lines of the others follow.
+        if let Some(lines) = self.columns.lines.as_mut().filter(|_| count > 0) {
+            lines.take(first, number)?;
         }
-        if let Some(time) = &mut self.columns.time {
-            time.take(stamp).ok()?;
-        }
-        if let Some(lines) = &mut self.columns.lines {
-            lines.take(row, number).ok()?;
-        }
-        Some(bytes.len() - rest.len())
+        Ok((count, length))
     }
 
     /// Takes a line that is a row.
